@@ -124,14 +124,15 @@ char *strut_arena_format(strut_arena *arena, const char *format, ...) {
 /* Before the contents: how many chunks there are, and how much of each is used, the newest first. */
 static size_t chunk_count(const strut_arena *arena) {
   size_t count = 0;
-  for (const struct strut_arena_chunk *c = arena->chunk; c; c = c->previous) count++;
+  for (const struct strut_arena_chunk *chunk = arena->chunk; chunk; chunk = chunk->previous)
+    count++;
   return count;
 }
 
 size_t strut_arena_stored_size(const strut_arena *arena) {
   size_t bytes = sizeof(size_t);
-  for (const struct strut_arena_chunk *c = arena->chunk; c; c = c->previous)
-    bytes += sizeof(size_t) + c->used;
+  for (const struct strut_arena_chunk *chunk = arena->chunk; chunk; chunk = chunk->previous)
+    bytes += sizeof(size_t) + chunk->used;
   return bytes;
 }
 
@@ -140,24 +141,24 @@ void strut_arena_store(const strut_arena *arena, void *to) {
   size_t count = chunk_count(arena);
   memcpy(at, &count, sizeof count);
   at += sizeof count;
-  for (const struct strut_arena_chunk *c = arena->chunk; c; c = c->previous) {
-    memcpy(at, &c->used, sizeof c->used);
-    memcpy(at + sizeof c->used, c->base, c->used);
-    at += sizeof c->used + c->used;
+  for (const struct strut_arena_chunk *chunk = arena->chunk; chunk; chunk = chunk->previous) {
+    memcpy(at, &chunk->used, sizeof chunk->used);
+    memcpy(at + sizeof chunk->used, chunk->base, chunk->used);
+    at += sizeof chunk->used + chunk->used;
   }
 }
 
 void strut_arena_restore(strut_arena *arena, const void *from) {
   const char *at = from;
   size_t count, now = chunk_count(arena);
-  struct strut_arena_chunk *c = arena->chunk;
+  struct strut_arena_chunk *chunk = arena->chunk;
   memcpy(&count, at, sizeof count);
   at += sizeof count;
-  for (; now > count; now--) c = c->previous; /* chunks that came since */
-  for (; c; c = c->previous) {
+  for (; now > count; now--) chunk = chunk->previous; /* chunks that came since */
+  for (; chunk; chunk = chunk->previous) {
     size_t used;
     memcpy(&used, at, sizeof used);
-    memcpy(c->base, at + sizeof used, used);
+    memcpy(chunk->base, at + sizeof used, used);
     at += sizeof used + used;
   }
 }

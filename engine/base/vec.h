@@ -20,8 +20,8 @@ typedef struct strut_vec2 {
 } strut_vec2;
 
 /** The vector from point a to point b. */
-static inline strut_vec2 strut_vec2_between(const double *a, const double *b) {
-  return (strut_vec2){b[0] - a[0], b[1] - a[1]};
+static inline strut_vec2 strut_vec2_between(const double *first, const double *second) {
+  return (strut_vec2){second[0] - first[0], second[1] - first[1]};
 }
 
 static inline double strut_vec2_length(strut_vec2 d) { return sqrt(d.x * d.x + d.y * d.y); }
@@ -32,30 +32,31 @@ static inline strut_vec2 strut_vec2_unit(strut_vec2 d, double length) {
 }
 
 /** Distance of the points a and b. */
-static inline double strut_distance(const double *a, const double *b) {
-  return strut_vec2_length(strut_vec2_between(a, b));
+static inline double strut_distance(const double *first, const double *second) {
+  return strut_vec2_length(strut_vec2_between(first, second));
 }
 
 /** Distance of the point p from the segment from a to b. */
-static inline double strut_distance_to_segment(const double *p, const double *a, const double *b) {
-  double wx = b[0] - a[0], wy = b[1] - a[1], w2 = wx * wx + wy * wy;
-  double s = w2 > 0.0 ? ((p[0] - a[0]) * wx + (p[1] - a[1]) * wy) / w2 : 0.0;
+static inline double strut_distance_to_segment(const double *p, const double *first,
+                                               const double *second) {
+  double wx = second[0] - first[0], wy = second[1] - first[1], w2 = wx * wx + wy * wy;
+  double s = w2 > 0.0 ? ((p[0] - first[0]) * wx + (p[1] - first[1]) * wy) / w2 : 0.0;
   s = fmin(fmax(s, 0.0), 1.0);
-  return hypot(p[0] - a[0] - s * wx, p[1] - a[1] - s * wy);
+  return hypot(p[0] - first[0] - s * wx, p[1] - first[1] - s * wy);
 }
 
 /** Sum of x[i] y[i], i < n, in this order. */
-static inline double strut_dot(const double *x, const double *y, ptrdiff_t n) {
+static inline double strut_dot(const double *vector, const double *y, ptrdiff_t n) {
   double sum = 0.0;
-  for (ptrdiff_t i = 0; i < n; i++) sum += x[i] * y[i];
+  for (ptrdiff_t i = 0; i < n; i++) sum += vector[i] * y[i];
   return sum;
 }
 
 /** Largest |x[i]|, i < n; 0 if n is 0, NAN if any is NAN. */
-static inline double strut_largest_magnitude(const double *x, ptrdiff_t n) {
+static inline double strut_largest_magnitude(const double *vector, ptrdiff_t n) {
   double largest = 0.0;
   for (ptrdiff_t i = 0; i < n && !isnan(largest); i++)
-    if (!(fabs(x[i]) <= largest)) largest = fabs(x[i]);
+    if (!(fabs(vector[i]) <= largest)) largest = fabs(vector[i]);
   return largest;
 }
 

@@ -29,72 +29,72 @@ typedef struct cable {
   int mode[MOST];
 } cable;
 
-static void turn_at(cable *c, int k) {
-  assert(k >= 0 && k + 1 < c->n);
-  c->turn[k] = atan2(c->x[k] * c->y[k + 1] - c->y[k] * c->x[k + 1],
-                     c->x[k] * c->x[k + 1] + c->y[k] * c->y[k + 1]);
-  c->side[k] = c->turn[k] < 0.0 ? -1 : 1;
-  c->bend[k] = fabs(c->turn[k]);
+static void turn_at(cable *self, int k) {
+  assert(k >= 0 && k + 1 < self->n);
+  self->turn[k] = atan2(self->x[k] * self->y[k + 1] - self->y[k] * self->x[k + 1],
+                        self->x[k] * self->x[k + 1] + self->y[k] * self->y[k + 1]);
+  self->side[k] = self->turn[k] < 0.0 ? -1 : 1;
+  self->bend[k] = fabs(self->turn[k]);
 }
 
 /* The angle continued through straight, from the side that is kept; at half a turn it turns back. */
-static double bend_on_side(const cable *c, int k, int side) {
-  assert(k >= 0 && k + 1 < c->n);
-  double bend = side * c->turn[k];
-  return bend < -1.5 ? c->bend[k] : bend;
+static double bend_on_side(const cable *self, int k, int side) {
+  assert(k >= 0 && k + 1 < self->n);
+  double bend = side * self->turn[k];
+  return bend < -1.5 ? self->bend[k] : bend;
 }
 
 /* material (segments): as it was at earlier positions. */
 static void measure(const strut_model *model, const double *rest, const double *material, int32_t i,
-                    const double *q, cable *c) {
+                    const double *q, cable *self) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
-  const uint32_t *at = model->elements.at + e->first;
+  const strut_element *element = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + element->first;
   double others = 0.0;
-  c->n = e->nodes - 1;
-  c->whole = rest[e->base];
-  c->axial = e->law == STRUT_LAW_AXIAL;
-  c->ea = c->axial ? e->numbers.axial : e->numbers.stiffness * c->whole;
-  c->friction = e->guide_friction;
-  for (int k = 0; k < c->n; k++) {
+  self->n = element->nodes - 1;
+  self->whole = rest[element->base];
+  self->axial = element->law == STRUT_LAW_AXIAL;
+  self->ea = self->axial ? element->numbers.axial : element->numbers.stiffness * self->whole;
+  self->friction = element->guide_friction;
+  for (int k = 0; k < self->n; k++) {
     double x = q[at[k + 1]] - q[at[k]], y = q[at[k + 1] + 1] - q[at[k] + 1];
     double length = sqrt(x * x + y * y), inverse = length > 0.0 ? 1.0 / length : 0.0;
-    c->length[k] = length, c->x[k] = x * inverse, c->y[k] = y * inverse;
-    c->material[k] = material[k];
-    if (k) others += c->material[k];
+    self->length[k] = length, self->x[k] = x * inverse, self->y[k] = y * inverse;
+    self->material[k] = material[k];
+    if (k) others += self->material[k];
   }
-  for (int k = 0; k + 1 < c->n; k++) turn_at(c, k);
-  if (c->material[0] < 0.0) return;
-  c->material[0] = fmax(c->whole - others, 1e-12 * c->whole);
+  for (int k = 0; k + 1 < self->n; k++) turn_at(self, k);
+  if (self->material[0] < 0.0) return;
+  self->material[0] = fmax(self->whole - others, 1e-12 * self->whole);
 }
 
 /* Equal tensions, where nothing is remembered. */
-static void share_evenly(cable *c) {
+static void share_evenly(cable *self) {
   double sum = 0.0;
-  for (int k = 0; k < c->n; k++) sum += c->length[k];
-  for (int k = 0; k < c->n; k++)
-    c->material[k] = sum > 0.0 ? c->whole * c->length[k] / sum : c->whole / c->n;
+  for (int k = 0; k < self->n; k++) sum += self->length[k];
+  for (int k = 0; k < self->n; k++)
+    self->material[k] = sum > 0.0 ? self->whole * self->length[k] / sum : self->whole / self->n;
 }
 
 /* Ratio of the tension of segment k + 1 to that of k where guide k slips. */
-static double ratio_at(const cable *c, int k) {
-  assert(k >= 0 && k + 1 < c->n);
-  return exp(-c->mode[k] * c->friction * c->bend[k]);
+static double ratio_at(const cable *self, int k) {
+  assert(k >= 0 && k + 1 < self->n);
+  return exp(-self->mode[k] * self->friction * self->bend[k]);
 }
 
 /* Tensions and materials of segments a .. b, all guides between which slip. */
-static void solve_group(cable *c, int a, int b) {
+static void solve_group(cable *self, int a, int b) {
   assert(a <= b);
   double ratio[MOST], sum = 0.0, material = 0.0, strain = 0.0;
   ratio[a] = 1.0;
   for (int k = a; k <= b; k++) {
-    if (k > a) ratio[k] = ratio[k - 1] * ratio_at(c, k - 1);
-    sum += c->length[k], material += c->material[k];
+    if (k > a) ratio[k] = ratio[k - 1] * ratio_at(self, k - 1);
+    sum += self->length[k], material += self->material[k];
   }
   if (!(sum > material)) {
     for (int k = a; k <= b; k++) {
-      if (b > a && sum > 0.0) c->material[k] = material * c->length[k] / sum;
-      c->tension[k] = 0.0;
+      if (b > a && sum > 0.0) self->material[k] = material * self->length[k] / sum;
+      self->tension[k] = 0.0;
     }
     return;
   }
@@ -102,7 +102,7 @@ static void solve_group(cable *c, int a, int b) {
   for (int turn = 0; turn < 60; turn++) {
     double value = -material, slope = 0.0;
     for (int k = a; k <= b; k++) {
-      double inverse = 1.0 / (1.0 + ratio[k] * strain), part = c->length[k] * inverse;
+      double inverse = 1.0 / (1.0 + ratio[k] * strain), part = self->length[k] * inverse;
       value += part, slope += part * ratio[k] * inverse;
     }
     double step = value / slope;
@@ -110,43 +110,43 @@ static void solve_group(cable *c, int a, int b) {
     if (!(fabs(step) > 1e-16 * strain)) break;
   }
   for (int k = a; k <= b; k++) {
-    c->tension[k] = c->ea * (ratio[k] * strain);
-    if (b > a) c->material[k] = c->length[k] / (1.0 + ratio[k] * strain);
+    self->tension[k] = self->ea * (ratio[k] * strain);
+    if (b > a) self->material[k] = self->length[k] / (1.0 + ratio[k] * strain);
   }
 }
 
-static int group_end(const cable *c, int a) {
-  assert(a >= 0 && a < c->n);
-  while (a + 1 < c->n && c->mode[a] != STRUT_GUIDE_STICKS) a++;
+static int group_end(const cable *self, int a) {
+  assert(a >= 0 && a < self->n);
+  while (a + 1 < self->n && self->mode[a] != STRUT_GUIDE_STICKS) a++;
   return a;
 }
 
 /* Tensions differ by finite factors, so that they end all at once: where the whole cable is slack. */
-static bool is_slack(const cable *c) {
+static bool is_slack(const cable *self) {
   double sum = 0.0;
-  for (int k = 0; k < c->n; k++) sum += c->length[k];
-  return !(sum > c->whole);
+  for (int k = 0; k < self->n; k++) sum += self->length[k];
+  return !(sum > self->whole);
 }
 
-static void solve(cable *c) {
-  if (is_slack(c)) {
-    share_evenly(c);
-    for (int k = 0; k < c->n; k++) c->tension[k] = 0.0;
+static void solve(cable *self) {
+  if (is_slack(self)) {
+    share_evenly(self);
+    for (int k = 0; k < self->n; k++) self->tension[k] = 0.0;
     return;
   }
-  for (int a = 0; a < c->n; a++) {
-    int b = group_end(c, a);
-    solve_group(c, a, b);
+  for (int a = 0; a < self->n; a++) {
+    int b = group_end(self, a);
+    solve_group(self, a, b);
     a = b;
   }
 }
 
 /* How far the tensions at guide k are within their bounds, which are relaxed by `more`, on the worse side. */
-static double room_at(const cable *c, int k, double more) {
-  assert(k >= 0 && k + 1 < c->n);
-  double bound = exp(c->friction * c->bend[k]) * (1.0 + more);
-  double left = c->tension[k], right = c->tension[k + 1];
-  double bits = more < 0.0 ? -LAST_BITS * c->ea : LAST_BITS * c->ea;
+static double room_at(const cable *self, int k, double more) {
+  assert(k >= 0 && k + 1 < self->n);
+  double bound = exp(self->friction * self->bend[k]) * (1.0 + more);
+  double left = self->tension[k], right = self->tension[k + 1];
+  double bits = more < 0.0 ? -LAST_BITS * self->ea : LAST_BITS * self->ea;
   return fmin(right * bound - left, left * bound - right) + bits;
 }
 
@@ -154,28 +154,29 @@ static double room_at(const cable *c, int k, double more) {
  * Modes, tensions and materials that follow from the materials as they are: guides that hold too much
  * slip, and those that would slip back stick, until all agree.
  */
-static void settle(cable *c) {
+static void settle(cable *self) {
   double before[MOST];
-  memcpy(before, c->material, sizeof before);
-  for (int k = 0; k < c->n; k++) c->mode[k] = STRUT_GUIDE_STICKS;
-  if (is_slack(c)) {
-    solve(c);
+  memcpy(before, self->material, sizeof before);
+  for (int k = 0; k < self->n; k++) self->mode[k] = STRUT_GUIDE_STICKS;
+  if (is_slack(self)) {
+    solve(self);
     return;
   }
   for (int turn = 0; turn < 8 * MOST; turn++) {
     double moved = 0.0;
     bool back = false, beyond = false;
-    memcpy(c->material, before, sizeof before);
-    solve(c);
-    for (int k = 0; k + 1 < c->n; k++) {
-      moved += c->material[k] - before[k];
-      if (!(c->mode[k] * moved < -1e-15 * c->whole)) continue;
-      c->mode[k] = STRUT_GUIDE_STICKS;
+    memcpy(self->material, before, sizeof before);
+    solve(self);
+    for (int k = 0; k + 1 < self->n; k++) {
+      moved += self->material[k] - before[k];
+      if (!(self->mode[k] * moved < -1e-15 * self->whole)) continue;
+      self->mode[k] = STRUT_GUIDE_STICKS;
       back = true;
     }
-    for (int k = 0; k + 1 < c->n && !back; k++) {
-      if (c->mode[k] != STRUT_GUIDE_STICKS || !(room_at(c, k, ROUNDING) < 0.0)) continue;
-      c->mode[k] = c->tension[k] > c->tension[k + 1] ? STRUT_GUIDE_TO_FIRST : STRUT_GUIDE_TO_LAST;
+    for (int k = 0; k + 1 < self->n && !back; k++) {
+      if (self->mode[k] != STRUT_GUIDE_STICKS || !(room_at(self, k, ROUNDING) < 0.0)) continue;
+      self->mode[k] =
+          self->tension[k] > self->tension[k + 1] ? STRUT_GUIDE_TO_FIRST : STRUT_GUIDE_TO_LAST;
       beyond = true;
     }
     if (!back && !beyond) return;
@@ -184,151 +185,154 @@ static void settle(cable *c) {
 
 /* Rates of lengths and turning angles, and what flows through slipping guides. */
 static void find_rates(const strut_model *model, const strut_state *state, int32_t i,
-                       const double *v, cable *c) {
+                       const double *velocity, cable *self) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
-  const uint32_t *at = model->elements.at + e->first;
+  const strut_element *element = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + element->first;
   double spin[MOST];
-  c->winding = state->latest->rest_rate[e->base];
-  for (int k = 0; k < c->n; k++) {
-    double x = v[at[k + 1]] - v[at[k]], y = v[at[k + 1] + 1] - v[at[k] + 1];
-    c->length_rate[k] = c->x[k] * x + c->y[k] * y;
-    spin[k] = c->length[k] > 0.0 ? (c->x[k] * y - c->y[k] * x) / c->length[k] : 0.0;
+  self->winding = state->latest->rest_rate[element->base];
+  for (int k = 0; k < self->n; k++) {
+    double x = velocity[at[k + 1]] - velocity[at[k]],
+           y = velocity[at[k + 1] + 1] - velocity[at[k] + 1];
+    self->length_rate[k] = self->x[k] * x + self->y[k] * y;
+    spin[k] = self->length[k] > 0.0 ? (self->x[k] * y - self->y[k] * x) / self->length[k] : 0.0;
   }
-  for (int k = 0; k + 1 < c->n; k++) c->turn_rate[k] = c->side[k] * (spin[k + 1] - spin[k]);
+  for (int k = 0; k + 1 < self->n; k++)
+    self->turn_rate[k] = self->side[k] * (spin[k + 1] - spin[k]);
 }
 
 /* The flows in the group of segments a .. b. */
-static void find_group_flows(cable *c, int a, int b) {
+static void find_group_flows(cable *self, int a, int b) {
   assert(a <= b);
-  double ratio = 1.0, ratio_rate = 0.0, strain = c->tension[a] / c->ea;
+  double ratio = 1.0, ratio_rate = 0.0, strain = self->tension[a] / self->ea;
   double loose[MOST], stiff[MOST], sum = 0.0, weight = 0.0, passed;
   for (int k = a; k <= b; k++) { /* rate of material: loose - stiff * rate of the first strain */
-    double inverse = 1.0 / (1.0 + ratio * strain), part = c->length[k] * inverse * inverse;
-    loose[k] = c->length_rate[k] * inverse - part * ratio_rate * strain;
+    double inverse = 1.0 / (1.0 + ratio * strain), part = self->length[k] * inverse * inverse;
+    loose[k] = self->length_rate[k] * inverse - part * ratio_rate * strain;
     stiff[k] = part * ratio;
     sum += loose[k], weight += stiff[k];
     if (k == b) break;
-    double next = ratio_at(c, k);
-    ratio_rate = next * (ratio_rate - ratio * c->mode[k] * c->friction * c->turn_rate[k]);
+    double next = ratio_at(self, k);
+    ratio_rate = next * (ratio_rate - ratio * self->mode[k] * self->friction * self->turn_rate[k]);
     ratio *= next;
   }
-  passed = a == 0 ? -c->winding : 0.0;
+  passed = a == 0 ? -self->winding : 0.0;
   double strain_rate = (sum + passed) / weight;
   for (int k = a; k < b; k++) {
     passed += loose[k] - stiff[k] * strain_rate;
-    c->flow[k] = strain > 0.0 ? passed : 0.0;
+    self->flow[k] = strain > 0.0 ? passed : 0.0;
   }
 }
 
-static void find_flows(cable *c) {
-  for (int a = 0; a < c->n; a++) {
-    int b = group_end(c, a);
-    if (b > a) find_group_flows(c, a, b);
-    if (b + 1 < c->n) c->flow[b] = 0.0;
+static void find_flows(cable *self) {
+  for (int a = 0; a < self->n; a++) {
+    int b = group_end(self, a);
+    if (b > a) find_group_flows(self, a, b);
+    if (b + 1 < self->n) self->flow[b] = 0.0;
     a = b;
   }
 }
 
 /* d energy / d material, with its sign turned: what a length of cable takes with it. */
-static double carried(const cable *c, int k) {
-  assert(k >= 0 && k < c->n);
-  return c->tension[k] + 0.5 * c->tension[k] * c->tension[k] / c->ea;
+static double carried(const cable *self, int k) {
+  assert(k >= 0 && k < self->n);
+  return self->tension[k] + 0.5 * self->tension[k] * self->tension[k] / self->ea;
 }
 
-static double energy_of(const cable *c) {
+static double energy_of(const cable *self) {
   double sum = 0.0;
-  if (is_slack(c)) return sum;
-  for (int k = 0; k < c->n; k++) {
-    double stretch = c->length[k] - c->material[k];
-    if (stretch > 0.0 && c->material[k] > 0.0)
-      sum += 0.5 * c->ea * stretch * stretch / c->material[k];
+  if (is_slack(self)) return sum;
+  for (int k = 0; k < self->n; k++) {
+    double stretch = self->length[k] - self->material[k];
+    if (stretch > 0.0 && self->material[k] > 0.0)
+      sum += 0.5 * self->ea * stretch * stretch / self->material[k];
   }
   return sum;
 }
 
 static double *materials_of(const strut_model *model, const strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *t = &model->elements;
-  return state->history.material + (t->element[i].slot + 1 - t->history_slot);
+  const strut_element_table *elements = &model->elements;
+  return state->history.material + (elements->element[i].slot + 1 - elements->history_slot);
 }
 
 static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *t = &model->elements;
-  return state->history.guide_mode + (t->element[i].slot + 1 - t->history_slot);
+  const strut_element_table *elements = &model->elements;
+  return state->history.guide_mode + (elements->element[i].slot + 1 - elements->history_slot);
 }
 
 static int8_t *sides_of(const strut_model *model, const strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *t = &model->elements;
-  return state->history.guide_side + (t->element[i].slot + 1 - t->history_slot);
+  const strut_element_table *elements = &model->elements;
+  return state->history.guide_side + (elements->element[i].slot + 1 - elements->history_slot);
 }
 
 static double *drops_of(const strut_model *model, const strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *t = &model->elements;
-  return state->history.guide_drop + (t->element[i].slot + 1 - t->history_slot);
+  const strut_element_table *elements = &model->elements;
+  return state->history.guide_drop + (elements->element[i].slot + 1 - elements->history_slot);
 }
 
 /* The cable at q with the materials that the state remembers. */
 static void measure_kept(const strut_model *model, const strut_state *state, int32_t i,
-                         const double *q, cable *c) {
-  measure(model, state->latest->rest, materials_of(model, state, i), i, q, c);
+                         const double *q, cable *self) {
+  measure(model, state->latest->rest, materials_of(model, state, i), i, q, self);
 }
 
 /* The cable at q in its modes; true where these are frozen. */
 static bool stand(const strut_model *model, const strut_state *state, int32_t i, const double *q,
-                  cable *c) {
+                  cable *self) {
   const int8_t *mode = modes_of(model, state, i);
-  measure_kept(model, state, i, q, c);
-  if (c->material[0] < 0.0) share_evenly(c);
+  measure_kept(model, state, i, q, self);
+  if (self->material[0] < 0.0) share_evenly(self);
   if (mode[0] == STRUT_GUIDE_FREE) {
-    settle(c);
+    settle(self);
     return false;
   }
   const int8_t *side = sides_of(model, state, i);
-  for (int k = 0; k < c->n; k++) c->mode[k] = k + 1 < c->n ? mode[k] : STRUT_GUIDE_STICKS;
-  for (int k = 0; k + 1 < c->n; k++) {
-    double bend = bend_on_side(c, k, side[k]);
-    if (bend == side[k] * c->turn[k]) c->side[k] = side[k];
-    c->bend[k] = bend;
+  for (int k = 0; k < self->n; k++) self->mode[k] = k + 1 < self->n ? mode[k] : STRUT_GUIDE_STICKS;
+  for (int k = 0; k + 1 < self->n; k++) {
+    double bend = bend_on_side(self, k, side[k]);
+    if (bend == side[k] * self->turn[k]) self->side[k] = side[k];
+    self->bend[k] = bend;
   }
-  solve(c);
+  solve(self);
   return true;
 }
 
 /* Leaves the materials of an evaluation in the slots, where the energy is found by them. */
 static void show_materials(const strut_model *model, const strut_state *state, int32_t i,
-                           const cable *c) {
+                           const cable *self) {
   assert(i >= 0 && i < model->elements.count);
   double *material = state->latest->rest + model->elements.element[i].slot + 1;
-  memcpy(material, c->material, (size_t)c->n * sizeof *material);
+  memcpy(material, self->material, (size_t)self->n * sizeof *material);
 }
 
 static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
-                           const cable *c) {
-  show_materials(model, state, i, c);
-  memcpy(materials_of(model, state, i), c->material, (size_t)c->n * sizeof *c->material);
+                           const cable *self) {
+  show_materials(model, state, i, self);
+  memcpy(materials_of(model, state, i), self->material, (size_t)self->n * sizeof *self->material);
 }
 
 /* Its damper works along the whole cable while that is taut, and does not push. */
-static double damper_force(const strut_element *e, const cable *c) {
-  double rate = -c->winding, least = HUGE_VAL;
-  for (int k = 0; k < c->n; k++) {
-    rate += c->length_rate[k];
-    least = fmin(least, c->tension[k]);
+static double damper_force(const strut_element *element, const cable *self) {
+  double rate = -self->winding, least = HUGE_VAL;
+  for (int k = 0; k < self->n; k++) {
+    rate += self->length_rate[k];
+    least = fmin(least, self->tension[k]);
   }
-  return least > 0.0 ? fmax(e->damping * rate, -least) : 0.0;
+  return least > 0.0 ? fmax(element->damping * rate, -least) : 0.0;
 }
 
-static void add_powers(const strut_state *state, const cable *c, double damper, bool frozen) {
-  double rate = -c->winding, lost = 0.0;
-  for (int k = 0; k < c->n; k++) rate += c->length_rate[k];
-  double stiffer = c->axial ? 0.0 : energy_of(c) / c->whole; /* E grows with the rest length */
-  double drive = (stiffer - carried(c, 0) - damper) * c->winding;
-  for (int k = 0; k + 1 < c->n && frozen; k++)
-    lost += (carried(c, k) - carried(c, k + 1)) * c->flow[k];
+static void add_powers(const strut_state *state, const cable *self, double damper, bool frozen) {
+  double rate = -self->winding, lost = 0.0;
+  for (int k = 0; k < self->n; k++) rate += self->length_rate[k];
+  double stiffer =
+      self->axial ? 0.0 : energy_of(self) / self->whole; /* E grows with the rest length */
+  double drive = (stiffer - carried(self, 0) - damper) * self->winding;
+  for (int k = 0; k + 1 < self->n && frozen; k++)
+    lost += (carried(self, k) - carried(self, k + 1)) * self->flow[k];
   lost += damper * rate;
   state->latest->power[STRUT_POWER_DRIVE] += drive;
   state->latest->power[STRUT_POWER_MEMBERS] += lost;
@@ -336,15 +340,15 @@ static void add_powers(const strut_state *state, const cable *c, double damper, 
 }
 
 void strut_capstan_add_forces(const strut_model *model, const strut_state *state, int32_t i,
-                              const double *q, const double *v, double *force) {
+                              const double *q, const double *velocity, double *force) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
-  const uint32_t *at = model->elements.at + e->first;
+  const strut_element *element = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + element->first;
   cable c;
   bool frozen = stand(model, state, i, q, &c);
   if (frozen) show_materials(model, state, i, &c);
-  find_rates(model, state, i, v, &c);
-  double damper = e->damping > 0.0 ? damper_force(e, &c) : 0.0;
+  find_rates(model, state, i, velocity, &c);
+  double damper = element->damping > 0.0 ? damper_force(element, &c) : 0.0;
   for (int k = 0; k < c.n; k++) {
     double x = (c.tension[k] + damper) * c.x[k], y = (c.tension[k] + damper) * c.y[k];
     force[at[k]] += x, force[at[k] + 1] += y;
@@ -357,9 +361,9 @@ void strut_capstan_add_forces(const strut_model *model, const strut_state *state
 
 void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
+  const strut_element *element = &model->elements.element[i];
   cable c;
-  if (strut_capstan_remembers(e, state->latest->rest)) return;
+  if (strut_capstan_remembers(element, state->latest->rest)) return;
   measure_kept(model, state, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);
@@ -401,7 +405,7 @@ void strut_capstan_thaw(const strut_model *model, strut_state *state, int32_t i)
 }
 
 void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
-                          const double *v) {
+                          const double *velocity) {
   int8_t *mode = modes_of(model, state, i);
   cable c;
   strut_capstan_renew(model, state, i, q, true);
@@ -414,7 +418,7 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
     if (at_bound)
       c.mode[k] = c.tension[k] > c.tension[k + 1] ? STRUT_GUIDE_TO_FIRST : STRUT_GUIDE_TO_LAST;
   }
-  find_rates(model, state, i, v, &c);
+  find_rates(model, state, i, velocity, &c);
   find_flows(&c);
   for (int k = 0; k + 1 < c.n; k++)
     mode[k] = (int8_t)(c.mode[k] * c.flow[k] > 0.0 ? c.mode[k] : STRUT_GUIDE_STICKS);
@@ -429,12 +433,13 @@ void strut_capstan_pass_straight(const strut_model *model, strut_state *state, i
 }
 
 void strut_capstan_measure(const strut_model *model, const strut_state *state, int32_t i,
-                           const double *q, const double *v, double h, strut_capstan_guide *guide) {
+                           const double *q, const double *velocity, double h,
+                           strut_capstan_guide *guide) {
   assert(i >= 0 && i < model->elements.count);
   const int8_t *side = sides_of(model, state, i);
   cable c;
   bool pulls = stand(model, state, i, q, &c) && !is_slack(&c);
-  if (pulls) find_rates(model, state, i, v, &c);
+  if (pulls) find_rates(model, state, i, velocity, &c);
   if (pulls) find_flows(&c);
   for (int k = 0; k + 1 < c.n; k++) {
     double flow = pulls ? c.mode[k] * c.flow[k] * h * c.ea / c.whole : c.ea;
@@ -445,23 +450,23 @@ void strut_capstan_measure(const strut_model *model, const strut_state *state, i
 }
 
 strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,
-                                               int32_t i, const double *q, const double *v) {
+                                               int32_t i, const double *q, const double *velocity) {
   cable c;
   measure_kept(model, state, i, q, &c);
-  find_rates(model, state, i, v, &c);
+  find_rates(model, state, i, velocity, &c);
   strut_capstan_stretch found = {-c.whole, -c.winding};
   for (int k = 0; k < c.n; k++) found.stretch += c.length[k], found.rate += c.length_rate[k];
   return found;
 }
 
 void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t i, const double *q,
-                          const double *v, double soon) {
+                          const double *velocity, double soon) {
   int8_t *mode = modes_of(model, state, i);
   cable c;
   measure_kept(model, state, i, q, &c);
   share_evenly(&c);
   keep_materials(model, state, i, &c);
-  find_rates(model, state, i, v, &c);
+  find_rates(model, state, i, velocity, &c);
   c.whole += soon * c.winding, c.material[0] += soon * c.winding;
   for (int k = 0; k < c.n; k++) c.length[k] += soon * c.length_rate[k];
   settle(&c);
@@ -482,14 +487,14 @@ void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t 
 }
 
 strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_state *state,
-                                          int32_t i, const double *q, const double *v) {
+                                          int32_t i, const double *q, const double *velocity) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
+  const strut_element *element = &model->elements.element[i];
   strut_capstan_ends ends = {0.0, 0.0, 0.0};
   cable c;
   stand(model, state, i, q, &c);
-  find_rates(model, state, i, v, &c);
-  double damper = e->damping > 0.0 ? damper_force(e, &c) : 0.0;
+  find_rates(model, state, i, velocity, &c);
+  double damper = element->damping > 0.0 ? damper_force(element, &c) : 0.0;
   for (int k = 0; k < c.n; k++) ends.most = fmax(ends.most, c.tension[k] + damper);
   ends.first = c.tension[0] + damper, ends.last = c.tension[c.n - 1] + damper;
   return ends;
@@ -520,16 +525,16 @@ double strut_capstan_energy(const strut_model *model, int32_t i, const double *r
 
 void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
-  int32_t rows = 2 * e->nodes;
+  const strut_element *element = &model->elements.element[i];
+  int32_t rows = 2 * element->nodes;
   double whole = 0.0;
   cable c;
-  measure(model, model->members.rest, model->members.rest + e->slot + 1, i, q, &c);
+  measure(model, model->members.rest, model->members.rest + element->slot + 1, i, q, &c);
   for (int s = 0; s < c.n; s++) whole += c.length[s];
   memset(k, 0, (size_t)rows * (size_t)rows * sizeof *k);
   for (int s = 0; s < c.n; s++) {
     if (!(c.length[s] > 0.0)) continue;
-    double stiffness = e->numbers.stiffness * whole / c.length[s];
+    double stiffness = element->numbers.stiffness * whole / c.length[s];
     const double b[4] = {-c.x[s], -c.y[s], c.x[s], c.y[s]};
     for (int r = 0; r < 4; r++)
       for (int j = 0; j < 4; j++) k[(2 * s + r) * rows + 2 * s + j] += stiffness * b[r] * b[j];

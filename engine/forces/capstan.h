@@ -22,16 +22,18 @@
 /** Modes of a guide, as state->history.guide_mode holds them: material slips to the first or the last node. */
 enum { STRUT_GUIDE_TO_LAST = -1, STRUT_GUIDE_STICKS, STRUT_GUIDE_TO_FIRST, STRUT_GUIDE_FREE };
 
-static inline bool strut_has_capstan(const strut_element *e) { return e->guide_friction > 0.0; }
+static inline bool strut_has_capstan(const strut_element *element) {
+  return element->guide_friction > 0.0;
+}
 
 /** Does the element remember its materials? `rest`: the state's slots. */
-static inline bool strut_capstan_remembers(const strut_element *e, const double *rest) {
-  return strut_has_capstan(e) && rest[e->slot + 1] >= 0.0;
+static inline bool strut_capstan_remembers(const strut_element *element, const double *rest) {
+  return strut_has_capstan(element) && rest[element->slot + 1] >= 0.0;
 }
 
 /** Adds its forces at q and v, and its powers. */
 void strut_capstan_add_forces(const strut_model *model, const strut_state *state, int32_t i,
-                              const double *q, const double *v, double *force);
+                              const double *q, const double *velocity, double *force);
 /** Materials from q where none are remembered: equal tensions. */
 void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i, const double *q);
 /** Materials after a step, by the tensions at q; what slipping loses goes to the losses. Where nothing but the rest
@@ -42,7 +44,7 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
 void strut_capstan_keep(const strut_model *model, strut_state *state, int32_t i, const double *q);
 /** Modes by the tensions and the flows at q and v, of which those of the tensions are renewed. */
 void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
-                          const double *v);
+                          const double *velocity);
 /** A guide at some q and v: how far it is from the end of its mode, as a force [N]; and its turning angle, continued
     through straight from the side on which modes were frozen [rad]. */
 typedef struct strut_capstan_guide {
@@ -50,7 +52,8 @@ typedef struct strut_capstan_guide {
 } strut_capstan_guide;
 /** All its guides, the first first; `h`: a step [s]. */
 void strut_capstan_measure(const strut_model *model, const strut_state *state, int32_t i,
-                           const double *q, const double *v, double h, strut_capstan_guide *guide);
+                           const double *q, const double *velocity, double h,
+                           strut_capstan_guide *guide);
 /** It has passed straight. */
 void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k);
 /** How much longer than its material the whole cable is, and the rate: it is slack below 0. */
@@ -58,10 +61,10 @@ typedef struct strut_capstan_stretch {
   double stretch, rate;
 } strut_capstan_stretch;
 strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const strut_state *state,
-                                               int32_t i, const double *q, const double *v);
+                                               int32_t i, const double *q, const double *velocity);
 /** The modes in which it becomes taut at q and v, by the tensions a short time later. */
 void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t i, const double *q,
-                          const double *v, double soon);
+                          const double *velocity, double soon);
 /** Ends the mode of guide k at q. */
 void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t i, int k,
                           const double *q);
@@ -73,7 +76,7 @@ typedef struct strut_capstan_ends {
   double first, last, most;
 } strut_capstan_ends;
 strut_capstan_ends strut_capstan_tensions(const strut_model *model, const strut_state *state,
-                                          int32_t i, const double *q, const double *v);
+                                          int32_t i, const double *q, const double *velocity);
 /** A cable at rest. */
 typedef struct strut_capstan_rest {
   double force[STRUT_MOST_GRADIENT];         /* (2 nodes) on its nodes [N] */

@@ -26,12 +26,13 @@
 #define STRUT_BEND_ARC(e) (e)->axis, (e)->radius,
 
 /* Strain and gradient. */
-static double strain_of(const strut_element *e, const uint32_t *at, const double *q, double turn,
-                        double *b) {
-  switch (e->strain) {
+static double strain_of(const strut_element *element, const uint32_t *at, const double *q,
+                        double turn, double *b) {
+  switch (element->strain) {
 #define STRUT_CASE(NAME, name, unit, reference, ...)                                               \
   case STRUT_STRAIN_##NAME:                                                                        \
-    return strut_strain_##name(at, e->nodes, q, STRUT_REFERENCE_##reference(e, turn), b);
+    return strut_strain_##name(at, element->nodes, q, STRUT_REFERENCE_##reference(element, turn),  \
+                               b);
     STRUT_STRAINS(STRUT_CASE, )
 #undef STRUT_CASE
     case STRUT_STRAIN_COUNT: break;
@@ -87,26 +88,27 @@ void strut_element_evaluate(const strut_model *model, int32_t element, const dou
 }
 
 double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
-                          const double *v) {
+                          const double *velocity) {
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
   double sum = 0.0;
   for (int32_t k = 0; k < e->nodes; k++)
-    sum += pose->b[2 * k] * v[at[k]] + pose->b[2 * k + 1] * v[at[k] + 1];
+    sum += pose->b[2 * k] * velocity[at[k]] + pose->b[2 * k + 1] * velocity[at[k] + 1];
   return sum;
 }
 
 double strut_member_elastic_tension(const strut_model *model, const double *rest, int32_t member,
                                     const double *q) {
   assert(member >= 0 && (size_t)member < model->scene->member_count);
-  const strut_element *e = strut_element_of_member(&model->elements, member);
+  const strut_element *element = strut_element_of_member(&model->elements, member);
   strut_member_pose plain = strut_member_pose_at(&model->members, rest, member, q);
   double sum = strut_member_elastic_force(&model->members, member, &plain);
   strut_element_pose pose;
-  for (; e; e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL) {
-    strut_element_evaluate(model, (int32_t)(e - model->elements.element), rest, q, (double)NAN,
-                           &pose);
+  for (; element;
+       element = element->sibling >= 0 ? &model->elements.element[element->sibling] : NULL) {
+    strut_element_evaluate(model, (int32_t)(element - model->elements.element), rest, q,
+                           (double)NAN, &pose);
     sum += pose.force;
   }
   return sum;
@@ -114,10 +116,10 @@ double strut_member_elastic_tension(const strut_model *model, const double *rest
 
 double strut_member_path_length(const strut_model *model, int32_t member, const double *q) {
   assert(member >= 0 && (size_t)member < model->scene->member_count);
-  const strut_element *e = strut_element_of_member(&model->elements, member);
+  const strut_element *element = strut_element_of_member(&model->elements, member);
   double b[STRUT_MOST_GRADIENT];
-  if (!e) return strut_member_length(&model->members, member, q);
-  return strain_of(e, model->elements.at + e->first, q, 0.0, b);
+  if (!element) return strut_member_length(&model->members, member, q);
+  return strain_of(element, model->elements.at + element->first, q, 0.0, b);
 }
 
 double strut_elements_energy(const strut_model *model, const double *rest, const double *turn,
@@ -140,24 +142,27 @@ typedef struct exertion {
 } exertion;
 
 /* Its modes are those that a method with events has frozen, or those that hold here. */
-static inline exertion exert(const strut_element *e, const strut_state *state, int32_t i,
-                             const strut_law_response *r, double x, double own_rate) {
-  double force = r->force + e->damping * own_rate;
-  if (e->carries) {
+static inline exertion exert(const strut_element *element, const strut_state *state, int32_t i,
+                             const strut_law_response *response, double x, double own_rate) {
+  double force = response->force + element->damping * own_rate;
+  if (element->carries) {
     int8_t mode = state->modes.element_acts[i];
-    bool acts = mode ? mode > 0 : e->carries * x > 0.0 && e->carries * force > 0.0;
+    bool acts = mode ? mode > 0 : element->carries * x > 0.0 && element->carries * force > 0.0;
     /* a damper may outweigh the spring: that relaxes then, and the damper takes its energy */
-    bool beyond = e->carries * x > 0.0;
-    if (!acts) return (exertion){0.0, beyond ? r->force : 0.0, own_rate, beyond ? r->excess : 0.0};
+    bool beyond = element->carries * x > 0.0;
+    if (!acts)
+      return (exertion){0.0, beyond ? response->force : 0.0, own_rate,
+                        beyond ? response->excess : 0.0};
   }
-  return (exertion){force, r->force, own_rate, r->excess};
+  return (exertion){force, response->force, own_rate, response->excess};
 }
 
-static inline void add_powers(const strut_element *e, const strut_state *state, const exertion *x,
-                              double rest_rate) {
-  double drive = (x->excess - x->force) * rest_rate, lost = (x->force - x->elastic) * x->own_rate;
-  bool load = e->role == STRUT_ELEMENT_LOAD;
-  if (load) drive = -x->force * x->own_rate;
+static inline void add_powers(const strut_element *element, const strut_state *state,
+                              const exertion *self, double rest_rate) {
+  double drive = (self->excess - self->force) * rest_rate,
+         lost = (self->force - self->elastic) * self->own_rate;
+  bool load = element->role == STRUT_ELEMENT_LOAD;
+  if (load) drive = -self->force * self->own_rate;
   state->latest->power[load ? STRUT_POWER_LOAD : STRUT_POWER_DRIVE] += drive;
   state->latest->power[STRUT_POWER_MEMBERS] += lost;
   state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
@@ -221,26 +226,27 @@ static void add_hinges(const strut_model *model, const strut_state *state,
 /* What add_path_linear does, with the segments in vectors. */
 STRUT_CLONES
 static void add_running_cables(const strut_model *model, const strut_state *state,
-                               const strut_element_block *block, const double *q, const double *v,
-                               double *force) {
-  const strut_element_table *t = &model->elements;
+                               const strut_element_block *block, const double *q,
+                               const double *velocity, double *force) {
+  const strut_element_table *elements = &model->elements;
   for (int32_t i = block->begin; i < block->end; i++) {
-    const strut_element *e = &t->element[i];
-    const uint32_t *at = t->at + e->first;
+    const strut_element *element = &elements->element[i];
+    const uint32_t *at = elements->at + element->first;
     strut_pair b[STRUT_MOST_GRADIENT / 2 + 1];
-    double strain = measure_path(at, e->nodes, q, b),
-           natural = strut_element_natural(e, state->latest->rest);
-    double rest_rate = e->slot >= 0 ? state->latest->rest_rate[e->slot] : 0.0, rate = 0.0;
-    if (e->damping > 0.0 || state->balance) rate = path_rate(at, e->nodes, v, b);
-    strut_law_response r = strut_law_linear(&e->numbers, strain, natural, -1);
-    exertion x = exert(e, state, i, &r, strain - natural, rate - rest_rate);
-    pull_path(at, e->nodes, force, b, x.force);
-    if (state->balance) add_powers(e, state, &x, rest_rate);
+    double strain = measure_path(at, element->nodes, q, b),
+           natural = strut_element_natural(element, state->latest->rest);
+    double rest_rate = element->slot >= 0 ? state->latest->rest_rate[element->slot] : 0.0,
+           rate = 0.0;
+    if (element->damping > 0.0 || state->balance) rate = path_rate(at, element->nodes, velocity, b);
+    strut_law_response r = strut_law_linear(&element->numbers, strain, natural, -1);
+    exertion x = exert(element, state, i, &r, strain - natural, rate - rest_rate);
+    pull_path(at, element->nodes, force, b, x.force);
+    if (state->balance) add_powers(element, state, &x, rest_rate);
   }
 }
 
 typedef void add_block(const strut_model *model, const strut_state *state,
-                       const strut_element_block *block, const double *q, const double *v,
+                       const strut_element_block *block, const double *q, const double *velocity,
                        double *force);
 
 #define STRUT_NAME_CELL(LAW, law, word, needs, strain) add_##strain##_##law,
@@ -250,7 +256,7 @@ static add_block *const adders[STRUT_STRAIN_COUNT][STRUT_LAW_COUNT] = {
 
 /* Of a block with collisions, those that may act. */
 static void add_nearby(const strut_model *model, const strut_state *state,
-                       const strut_element_block *block, const double *q, const double *v,
+                       const strut_element_block *block, const double *q, const double *velocity,
                        double *force) {
   const strut_nearby *near = strut_nearby_at(model, state, q);
   add_block *add = adders[block->strain][block->law];
@@ -258,26 +264,26 @@ static void add_nearby(const strut_model *model, const strut_state *state,
   for (int32_t k = strut_nearby_find(near, block->begin); k < near->count; k++) {
     one.begin = near->element[k], one.end = one.begin + 1;
     if (one.begin >= block->end) return;
-    add(model, state, &one, q, v, force);
+    add(model, state, &one, q, velocity, force);
   }
 }
 
 void strut_elements_add_forces(const strut_model *model, const strut_state *state, const double *q,
-                               const double *v, double *force) {
+                               const double *velocity, double *force) {
   for (int32_t b = 0; b < model->elements.block_count; b++) {
     const strut_element_block *block = &model->elements.block[b];
     bool hinges = block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR;
     bool cables = block->strain == STRUT_STRAIN_PATH && block->law == STRUT_LAW_LINEAR;
     if (block->collides && model->elements.scattered)
-      add_nearby(model, state, block, q, v, force);
+      add_nearby(model, state, block, q, velocity, force);
     else if (block->remembers)
-      strut_history_add_forces(model, state, block, q, v, force);
+      strut_history_add_forces(model, state, block, q, velocity, force);
     else if (hinges && block->both_signs)
-      add_hinges(model, state, block, q, v, force);
+      add_hinges(model, state, block, q, velocity, force);
     else if (cables)
-      add_running_cables(model, state, block, q, v, force);
+      add_running_cables(model, state, block, q, velocity, force);
     else
-      adders[block->strain][block->law](model, state, block, q, v, force);
+      adders[block->strain][block->law](model, state, block, q, velocity, force);
   }
 }
 
@@ -293,28 +299,28 @@ void strut_elements_keep_turns(const strut_model *model, strut_state *state) {
 int32_t strut_cell_that_collapsed(const strut_model *model, const double *q) {
   double b[STRUT_MOST_GRADIENT];
   for (int32_t i = 0; i < model->elements.count && model->scene->cell_count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_CELL) continue;
-    double area = strain_of(e, model->elements.at + e->first, q, 0.0, b);
-    if (!(area > STRUT_CELL_COLLAPSED * e->numbers.area)) return e->item;
+    const strut_element *element = &model->elements.element[i];
+    if (element->role != STRUT_ELEMENT_CELL) continue;
+    double area = strain_of(element, model->elements.at + element->first, q, 0.0, b);
+    if (!(area > STRUT_CELL_COLLAPSED * element->numbers.area)) return element->item;
   }
   return -1;
 }
 
 int32_t strut_member_that_is_wound_in(const strut_model *model, const double *rest) {
-  const strut_element_table *t = &model->elements;
-  for (int32_t b = 0; b < t->block_count; b++)
-    for (int32_t i = t->block[b].begin; t->block[b].law == STRUT_LAW_AXIAL && i < t->block[b].end;
-         i++) {
-      const strut_element *e = &t->element[i];
-      double natural = rest[e->remembers ? e->base : e->slot];
-      if (strut_axial_length(&e->numbers, natural) != natural) return e->item;
+  const strut_element_table *elements = &model->elements;
+  for (int32_t b = 0; b < elements->block_count; b++)
+    for (int32_t i = elements->block[b].begin;
+         elements->block[b].law == STRUT_LAW_AXIAL && i < elements->block[b].end; i++) {
+      const strut_element *element = &elements->element[i];
+      double natural = rest[element->remembers ? element->base : element->slot];
+      if (strut_axial_length(&element->numbers, natural) != natural) return element->item;
     }
   return -1;
 }
 
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,
-                                        int32_t element, const double *q, const double *v) {
+                                        int32_t element, const double *q, const double *velocity) {
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   const uint32_t *at = model->elements.at + e->first;
@@ -323,7 +329,8 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
   double natural = e->remembers ? strut_history_natural(model, state, element, strain)
                                 : strut_element_natural(e, state->latest->rest);
   if (strut_element_is_gone(natural)) return (strut_element_motion){-e->carries, 0.0, -e->carries};
-  for (int32_t k = 0; k < e->nodes; k++) rate += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+  for (int32_t k = 0; k < e->nodes; k++)
+    rate += b[2 * k] * velocity[at[k]] + b[2 * k + 1] * velocity[at[k] + 1];
   int32_t slot = e->remembers ? e->base : e->slot;
   if (slot >= 0) rate -= state->latest->rest_rate[slot];
   int piece = state->modes.element_piece[element];
@@ -333,7 +340,7 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
 }
 
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
-                                const double *q, const double *v, strut_element_pose *pose) {
+                                const double *q, const double *velocity, strut_element_pose *pose) {
   assert(element >= 0 && element < model->elements.count);
   const strut_element *e = &model->elements.element[element];
   strut_element_evaluate(model, element, state->latest->rest, q, state->history.turn[element],
@@ -346,7 +353,7 @@ double strut_element_measure_at(const strut_model *model, const strut_state *sta
   strut_law_response r =
       strut_law_respond(e->law, &e->numbers, pose->strain, pose->natural,
                         strut_element_piece(e, state->latest->rest, pose->strain - pose->natural));
-  double own = strut_element_rate(model, element, pose, v) - rest_rate;
+  double own = strut_element_rate(model, element, pose, velocity) - rest_rate;
   double force = exert(e, state, element, &r, pose->strain - pose->natural, own).force;
   /* where a step ends a little beyond the end of a frozen mode */
   return e->carries && !(e->carries * force > 0.0) ? 0.0 : force;

@@ -25,14 +25,15 @@ typedef struct strut_element_pose {
 } strut_element_pose;
 
 /** Natural strain of an element. */
-static inline double strut_element_natural(const strut_element *e, const double *rest) {
-  return e->slot >= 0 ? rest[e->slot] : e->natural;
+static inline double strut_element_natural(const strut_element *element, const double *rest) {
+  return element->slot >= 0 ? rest[element->slot] : element->natural;
 }
 
 /** The piece of a curve on which an element is at x, by what `rest` remembers; -1: by x alone. */
-static inline int strut_element_piece(const strut_element *e, const double *rest, double x) {
-  if (e->law != STRUT_LAW_FOLDING) return -1;
-  return strut_folding_follow(e->numbers.curve, (int)rest[e->slot + STRUT_CURVE_PIECE], x, NULL);
+static inline int strut_element_piece(const strut_element *element, const double *rest, double x) {
+  if (element->law != STRUT_LAW_FOLDING) return -1;
+  return strut_folding_follow(element->numbers.curve, (int)rest[element->slot + STRUT_CURVE_PIECE],
+                              x, NULL);
 }
 
 /**
@@ -46,7 +47,7 @@ double strut_element_strain(const strut_model *model, int32_t element, const dou
                             double *b);
 /** de/dt at velocities v, for a pose of the same element. */
 double strut_element_rate(const strut_model *model, int32_t element, const strut_element_pose *pose,
-                          const double *v);
+                          const double *velocity);
 /** h (2 nodes, 2 nodes) += t d2e/dq2. */
 void strut_element_bend(const strut_model *model, int32_t element, const double *q, double t,
                         double *h);
@@ -55,7 +56,7 @@ void strut_element_bend(const strut_model *model, int32_t element, const double 
  * modes; with the state's balance their powers.
  */
 void strut_elements_add_forces(const strut_model *model, const strut_state *state, const double *q,
-                               const double *v, double *force);
+                               const double *velocity, double *force);
 /**
  * After a step has been accepted: the angles of hinges at the state's positions are those near which later ones are
  * taken, so that they are continuous over whole turns.
@@ -81,11 +82,11 @@ typedef struct strut_element_motion {
 } strut_element_motion;
 /** Of an element at q and v, with the state's natural strains and frozen piece. */
 strut_element_motion strut_element_move(const strut_model *model, const strut_state *state,
-                                        int32_t element, const double *q, const double *v);
+                                        int32_t element, const double *q, const double *velocity);
 
 /** Force of an element with its damper at positions q and velocities v, with the state's natural strains; `pose`
     is filled as well. */
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
-                                const double *q, const double *v, strut_element_pose *pose);
+                                const double *q, const double *velocity, strut_element_pose *pose);
 
 #endif

@@ -33,8 +33,8 @@ typedef struct hinge_powers {
 } hinge_powers;
 
 /* Four linear hinges that carry both signs, from element i on: what add_angle_linear does. */
-STRUT_INLINE void add_four_hinges(const strut_element_table *t, const strut_state *state, int32_t i,
-                                  const uint32_t *restrict at, const double *restrict q,
+STRUT_INLINE void add_four_hinges(const strut_element_table *elements, const strut_state *state,
+                                  int32_t i, const uint32_t *restrict at, const double *restrict q,
                                   const double *restrict v, double *restrict force,
                                   hinge_powers *powers) {
   const strut_lanes zero = {0};
@@ -49,14 +49,14 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, const strut_stat
               by = -ay - cy;
   strut_lanes natural, rest_rate;
   for (int l = 0; l < STRUT_LANES; l++)
-    natural[l] = state->latest->rest[t->slot[i + l]],
-    rest_rate[l] = state->latest->rest_rate[t->slot[i + l]];
+    natural[l] = state->latest->rest[elements->slot[i + l]],
+    rest_rate[l] = state->latest->rest_rate[elements->slot[i + l]];
   hinge_nodes wa = gather_hinges(v, at, 0), wo = gather_hinges(v, at, 1),
               wc = gather_hinges(v, at, 2);
   strut_lanes own =
       (ax * wa.x + ay * wa.y) + (bx * wo.x + by * wo.y) + (cx * wc.x + cy * wc.y) - rest_rate;
-  strut_lanes elastic = strut_lanes_load(t->stiffness + i) * (strain - natural);
-  strut_lanes moment = elastic + strut_lanes_load(t->damping + i) * own;
+  strut_lanes elastic = strut_lanes_load(elements->stiffness + i) * (strain - natural);
+  strut_lanes moment = elastic + strut_lanes_load(elements->damping + i) * own;
   ax *= moment, ay *= moment, bx *= moment, by *= moment, cx *= moment, cy *= moment;
   for (int l = 0; l < STRUT_LANES; l++) { /* hinge by hinge, so that sums keep their order */
     pull_node(force + at[3 * l], (strut_pair){ax[l], ay[l]});
@@ -69,19 +69,19 @@ STRUT_INLINE void add_four_hinges(const strut_element_table *t, const strut_stat
 }
 
 /* Segment k's unit vector enters the gradient at both of its ends. */
-STRUT_INLINE void lay_segment(strut_pair *b, int32_t k, strut_pair unit) {
+STRUT_INLINE void lay_segment(strut_pair *pair, int32_t k, strut_pair unit) {
   const strut_pair zero = {0};
-  b[k] -= unit;
-  b[k + 1] = zero + unit;
+  pair[k] -= unit;
+  pair[k + 1] = zero + unit;
 }
 
 /* Strain `path` and its gradient b (nodes), four segments at a time; see strut_strain_path. */
 STRUT_INLINE double measure_path(const uint32_t *restrict at, int32_t nodes,
-                                 const double *restrict q, strut_pair *restrict b) {
+                                 const double *restrict q, strut_pair *restrict pair) {
   const strut_lanes zero = {0};
   double sum = 0.0;
   int32_t k = 0;
-  b[0] = (strut_pair){0};
+  pair[0] = (strut_pair){0};
   for (; k + STRUT_LANES < nodes; k += STRUT_LANES) {
     member_vectors d = members_gather(q, at + k, at + k + 1);
     strut_lanes length = four_root(d.x * d.x + d.y * d.y);
@@ -89,32 +89,32 @@ STRUT_INLINE double measure_path(const uint32_t *restrict at, int32_t nodes,
     d.x *= inverse, d.y *= inverse;
     for (int32_t l = 0; l < STRUT_LANES; l++) {
       sum += length[l];
-      lay_segment(b, k + l, (strut_pair){d.x[l], d.y[l]});
+      lay_segment(pair, k + l, (strut_pair){d.x[l], d.y[l]});
     }
   }
   for (; k + 1 < nodes; k++) {
     strut_pair d = strut_pair_load(q + at[k + 1]) - strut_pair_load(q + at[k]);
     double length = sqrt(d[0] * d[0] + d[1] * d[1]), inverse = length > 0.0 ? 1.0 / length : 0.0;
     sum += length;
-    lay_segment(b, k, d * inverse);
+    lay_segment(pair, k, d * inverse);
   }
   return sum;
 }
 
 /* Rate of a path at velocities v. */
 STRUT_INLINE double path_rate(const uint32_t *restrict at, int32_t nodes, const double *restrict v,
-                              const strut_pair *restrict b) {
+                              const strut_pair *restrict pair) {
   double rate = 0.0;
   for (int32_t k = 0; k < nodes; k++) {
-    strut_pair part = b[k] * strut_pair_load(v + at[k]);
+    strut_pair part = pair[k] * strut_pair_load(v + at[k]);
     rate += part[0] + part[1];
   }
   return rate;
 }
 
 STRUT_INLINE void pull_path(const uint32_t *restrict at, int32_t nodes, double *restrict force,
-                            const strut_pair *restrict b, double tension) {
-  for (int32_t k = 0; k < nodes; k++) pull_node(force + at[k], tension * b[k]);
+                            const strut_pair *restrict pair, double tension) {
+  for (int32_t k = 0; k < nodes; k++) pull_node(force + at[k], tension * pair[k]);
 }
 
 #endif

@@ -14,44 +14,45 @@
 #include "engine/model/surface_search.h"
 
 /* Of masses that rest on their members. */
-static double sliding_at_rest(const strut_model *model, const double *v) {
+static double sliding_at_rest(const strut_model *model, const double *velocity) {
   double sum = 0.0;
   for (int32_t i = 0; i < model->sliding.count; i++) {
-    const strut_sliding_item *s = &model->sliding.item[i];
-    double far = s->start, near = 1.0 - far;
-    for (int c = 0; c < 2 && s->signal < 0; c++) {
-      double u = near * v[s->at[0] + (uint32_t)c] + far * v[s->at[1] + (uint32_t)c];
-      sum += 0.5 * s->mass * u * u;
+    const strut_sliding_item *item = &model->sliding.item[i];
+    double far = item->start, near = 1.0 - far;
+    for (int c = 0; c < 2 && item->signal < 0; c++) {
+      double u =
+          near * velocity[item->at[0] + (uint32_t)c] + far * velocity[item->at[1] + (uint32_t)c];
+      sum += 0.5 * item->mass * u * u;
     }
   }
   return sum;
 }
 
-double strut_energy_kinetic(const strut_model *model, const double *v) {
-  const strut_member_table *t = &model->members;
+double strut_energy_kinetic(const strut_model *model, const double *velocity) {
+  const strut_member_table *members = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   double sum = 0.0;
-  for (int c = 0; c < 2; c++, v++) {
+  for (int c = 0; c < 2; c++, velocity++) {
     for (int32_t i = 0; i < model->node_count; i++)
-      sum += 0.5 * model->point_mass[i] * v[2 * i] * v[2 * i];
-    for (int32_t j = 0; j < t->count; j++) {
-      double a = v[t->from[j]], b = v[t->to[j]];
-      sum += consistent ? t->mass[j] / 6.0 * (a * a + a * b + b * b)
-                        : t->mass[j] / 4.0 * (a * a + b * b);
+      sum += 0.5 * model->point_mass[i] * velocity[2 * i] * velocity[2 * i];
+    for (int32_t j = 0; j < members->count; j++) {
+      double a = velocity[members->from[j]], b = velocity[members->to[j]];
+      sum += consistent ? members->mass[j] / 6.0 * (a * a + a * b + b * b)
+                        : members->mass[j] / 4.0 * (a * a + b * b);
     }
   }
-  return sum + (model->sliding.count ? sliding_at_rest(model, v - 2) : 0.0);
+  return sum + (model->sliding.count ? sliding_at_rest(model, velocity - 2) : 0.0);
 }
 
 static double elastic(const strut_model *model, const strut_state *state, const double *q) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   const strut_member *member = model->scene->members;
   bool rigid = model->terms & STRUT_TERM_RIGID; /* rigid bars store nothing */
   double sum = 0.0;
-  for (int32_t j = 0; j < t->count; j++) {
+  for (int32_t j = 0; j < members->count; j++) {
     if (rigid && member[j].kind == STRUT_BAR) continue;
-    strut_member_pose pose = strut_member_pose_at(t, state->latest->rest, j, q);
-    sum += strut_member_elastic_energy(t, j, &pose);
+    strut_member_pose pose = strut_member_pose_at(members, state->latest->rest, j, q);
+    sum += strut_member_elastic_energy(members, j, &pose);
   }
   if (model->elements.count)
     sum += strut_elements_energy(model, state->latest->rest, state->history.turn, q,
@@ -69,15 +70,16 @@ static double gravity(const strut_model *model, const double *q) {
 }
 
 static double contact(const strut_model *model, const strut_state *state, const double *q) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   double sum = 0.0;
   int32_t count =
-      c->surface ? strut_contacts_all_near(c, q, state->latest->ground_motion, state->buffers->near)
-                 : c->count;
+      contacts->surface
+          ? strut_contacts_all_near(contacts, q, state->latest->ground_motion, state->buffers->near)
+          : contacts->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = c->surface ? state->buffers->near[k] : k;
-    double gap = strut_contact_gap_at(c, i, q, state->latest->ground_motion);
-    if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
+    int32_t i = contacts->surface ? state->buffers->near[k] : k;
+    double gap = strut_contact_gap_at(contacts, i, q, state->latest->ground_motion);
+    if (gap < 0.0) sum += 0.5 * contacts->entry[i].stiffness * gap * gap;
   }
   return sum;
 }
@@ -88,12 +90,12 @@ strut_energies strut_energy_evaluate(const strut_model *model, const strut_state
 }
 
 strut_energies strut_energy_evaluate_at(const strut_model *model, const strut_state *state,
-                                        const double *q, const double *v) {
-  strut_energies e = {strut_energy_kinetic(model, v),
-                      elastic(model, state, q) + strut_maxwell_energy(model, v), gravity(model, q),
-                      contact(model, state, q)};
+                                        const double *q, const double *velocity) {
+  strut_energies e = {strut_energy_kinetic(model, velocity),
+                      elastic(model, state, q) + strut_maxwell_energy(model, velocity),
+                      gravity(model, q), contact(model, state, q)};
   if (model->terms & STRUT_TERM_SLIDING_MASS)
-    strut_sliding_masses_add_energies(model, state, q, v, &e.kinetic, &e.gravity);
+    strut_sliding_masses_add_energies(model, state, q, velocity, &e.kinetic, &e.gravity);
   return e;
 }
 

@@ -22,10 +22,10 @@ STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, const s
 /** The same at positions q and velocities v, with the state's rest lengths as they are. */
 STRUT_API strut_energies strut_energy_evaluate_at(const strut_model *model,
                                                   const strut_state *state, const double *q,
-                                                  const double *v);
+                                                  const double *velocity);
 
 /** The first of them alone, at velocities v (length) [J]. */
-STRUT_API double strut_energy_kinetic(const strut_model *model, const double *v);
+STRUT_API double strut_energy_kinetic(const strut_model *model, const double *velocity);
 
 /** Sum of constant load times position [J]: its change is the work of the loads (gravity is none). */
 STRUT_API double strut_energy_load_potential(const strut_model *model, const strut_state *state);

@@ -11,34 +11,35 @@
 #include "engine/forces/rubbing.h"
 
 void strut_forces_add_rare(const strut_model *model, const strut_state *state, double t,
-                           const double *q, const double *v) {
+                           const double *q, const double *velocity) {
   unsigned terms = model->terms;
-  if (terms & STRUT_TERM_FEEDBACK) strut_maxwell_apply(model, state, q, v, state->latest->force);
-  if (terms & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, v);
-  if (terms & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, v);
-  if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, v);
-  if (terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, v);
-  if (terms & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, v);
-  if (terms & STRUT_TERM_RUBBING) strut_rubbing_add_forces(model, state, q, v);
+  if (terms & STRUT_TERM_FEEDBACK)
+    strut_maxwell_apply(model, state, q, velocity, state->latest->force);
+  if (terms & STRUT_TERM_ACTUATOR_FORCES) strut_actuator_forces_apply(model, state, t, q, velocity);
+  if (terms & STRUT_TERM_UNBALANCE) strut_unbalance_apply(model, state, t, velocity);
+  if (terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, velocity);
+  if (terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_apply(model, state, t, q, velocity);
+  if (terms & STRUT_TERM_SUPPORT_MOTION) strut_support_motion_apply(model, state, t, velocity);
+  if (terms & STRUT_TERM_RUBBING) strut_rubbing_add_forces(model, state, q, velocity);
 }
 
 STRUT_CLONES
 static void sum_once(const strut_model *model, const strut_state *state, double t,
-                     const double *restrict q, const double *restrict v) {
+                     const double *restrict q, const double *restrict velocity) {
   if (state->balance)
-    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_ACCUMULATE_POWERS);
+    forces_sum(model, state, t, q, velocity, STRUT_TERMS_ALL, STRUT_ACCUMULATE_POWERS);
   else
-    forces_sum(model, state, t, q, v, STRUT_TERMS_ALL, STRUT_ACCUMULATE_NOTHING);
+    forces_sum(model, state, t, q, velocity, STRUT_TERMS_ALL, STRUT_ACCUMULATE_NOTHING);
 }
 
 void strut_forces_evaluate(const strut_model *model, const strut_state *state, double t,
-                           const double *restrict q, const double *restrict v) {
+                           const double *restrict q, const double *restrict velocity) {
   for (int32_t i = 0; i < model->contacts.count; i++)
     state->latest->normal[i] = state->latest->friction[i] =
         0.0; /* the sum fills those that touch, and only them */
-  sum_once(model, state, t, q, v);
-  if (model->rubbing.count) strut_rubbing_show_feet(model, state, q, v);
-  if (state->rigid) strut_rigid_constrain(model, state, q, v);
+  sum_once(model, state, t, q, velocity);
+  if (model->rubbing.count) strut_rubbing_show_feet(model, state, q, velocity);
+  if (state->rigid) strut_rigid_constrain(model, state, q, velocity);
 }
 
 bool strut_forces_show_held(const strut_model *model, const strut_state *state) {
@@ -59,13 +60,13 @@ void strut_forces_observe(const strut_model *model, const strut_state *state, do
 }
 
 void strut_forces_acceleration(const strut_model *model, const strut_state *state, double t,
-                               const double *restrict q, const double *restrict v,
-                               double *restrict a) {
+                               const double *restrict q, const double *restrict velocity,
+                               double *restrict acceleration) {
   assert(model->mass && "a model without mass is for statics only");
-  strut_forces_evaluate(model, state, t, q, v);
-  divide_by_mass(model, state, a, STRUT_TERMS_ALL);
+  strut_forces_evaluate(model, state, t, q, velocity);
+  divide_by_mass(model, state, acceleration, STRUT_TERMS_ALL);
   if (state->balance && model->terms & STRUT_TERM_SLIDING_MASS)
-    strut_sliding_masses_add_power(model, state, q, v, a);
+    strut_sliding_masses_add_power(model, state, q, velocity, acceleration);
 }
 
 /* Of the mass of a member at each of its ends, and between them. */
@@ -79,14 +80,15 @@ static mass_shares shares_of(const strut_model *model) {
 }
 
 /* Of masses that rest on their members; returns what is lost. */
-static double damp_sliding_masses(const strut_model *model, const double *v, double *force) {
+static double damp_sliding_masses(const strut_model *model, const double *velocity, double *force) {
   double lost = 0.0;
   for (int32_t i = 0; i < model->sliding.count; i++) {
-    const strut_sliding_item *s = &model->sliding.item[i];
-    double far = s->start, near = 1.0 - far;
-    for (int c = 0; c < 2 && s->signal < 0; c++) {
-      uint32_t a = s->at[0] + (uint32_t)c, b = s->at[1] + (uint32_t)c;
-      double u = near * v[a] + far * v[b], drag = model->mass_damping * s->mass * u;
+    const strut_sliding_item *item = &model->sliding.item[i];
+    double far = item->start, near = 1.0 - far;
+    for (int c = 0; c < 2 && item->signal < 0; c++) {
+      uint32_t a = item->at[0] + (uint32_t)c, b = item->at[1] + (uint32_t)c;
+      double u = near * velocity[a] + far * velocity[b],
+             drag = model->mass_damping * item->mass * u;
       force[a] -= near * drag;
       force[b] -= far * drag;
       lost += drag * u;
@@ -95,33 +97,35 @@ static double damp_sliding_masses(const strut_model *model, const double *v, dou
   return lost;
 }
 
-void strut_mass_damping_apply(const strut_model *model, const strut_state *state, const double *v) {
-  const strut_member_table *t = &model->members;
+void strut_mass_damping_apply(const strut_model *model, const strut_state *state,
+                              const double *velocity) {
+  const strut_member_table *members = &model->members;
   const mass_shares share = shares_of(model);
   double alpha = model->mass_damping, lost = 0.0, *force = state->latest->force;
-  for (int c = 0; c < 2; c++, v++, force++) {
+  for (int c = 0; c < 2; c++, velocity++, force++) {
     for (int32_t i = 0; i < model->node_count; i++) {
-      double drag = alpha * model->point_mass[i] * v[2 * i];
+      double drag = alpha * model->point_mass[i] * velocity[2 * i];
       force[2 * i] -= drag;
-      lost += drag * v[2 * i];
+      lost += drag * velocity[2 * i];
     }
-    for (int32_t j = 0; j < t->count; j++) {
-      double a = v[t->from[j]], b = v[t->to[j]], m = alpha * t->mass[j];
+    for (int32_t j = 0; j < members->count; j++) {
+      double a = velocity[members->from[j]], b = velocity[members->to[j]],
+             m = alpha * members->mass[j];
       double at_a = m * (share.own * a + share.other * b);
       double at_b = m * (share.other * a + share.own * b);
-      force[t->from[j]] -= at_a;
-      force[t->to[j]] -= at_b;
+      force[members->from[j]] -= at_a;
+      force[members->to[j]] -= at_b;
       lost += at_a * a + at_b * b;
     }
   }
-  if (model->sliding.count) lost += damp_sliding_masses(model, v - 2, force - 2);
+  if (model->sliding.count) lost += damp_sliding_masses(model, velocity - 2, force - 2);
   if (!state->balance) return;
   state->latest->power[STRUT_POWER_MEMBERS] += lost;
   state->latest->power[STRUT_POWER_EXCHANGED] += lost;
 }
 
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   const mass_shares share = shares_of(model);
   if (!(model->terms & STRUT_TERM_MASS_DAMPING)) return;
   for (int c = 0; c < 2; c++, row_of++) {
@@ -129,17 +133,17 @@ void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, str
       if (row_of[2 * i] >= 0)
         strut_triplets_add(sum, row_of[2 * i], row_of[2 * i],
                            model->mass_damping * model->point_mass[i]);
-    for (int32_t j = 0; j < t->count; j++) {
-      double m = model->mass_damping * t->mass[j];
-      int32_t a = row_of[t->from[j]], b = row_of[t->to[j]];
+    for (int32_t j = 0; j < members->count; j++) {
+      double m = model->mass_damping * members->mass[j];
+      int32_t a = row_of[members->from[j]], b = row_of[members->to[j]];
       if (a >= 0) strut_triplets_add(sum, a, a, share.own * m);
       if (b >= 0) strut_triplets_add(sum, b, b, share.own * m);
       if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, share.other * m);
     }
     for (int32_t i = 0; i < model->sliding.count; i++) {
-      const strut_sliding_item *s = &model->sliding.item[i];
-      int32_t a = row_of[s->at[0]], b = row_of[s->at[1]];
-      double m = model->mass_damping * s->mass, far = s->start, near = 1.0 - far;
+      const strut_sliding_item *item = &model->sliding.item[i];
+      int32_t a = row_of[item->at[0]], b = row_of[item->at[1]];
+      double m = model->mass_damping * item->mass, far = item->start, near = 1.0 - far;
       if (a >= 0) strut_triplets_add(sum, a, a, near * near * m);
       if (b >= 0) strut_triplets_add(sum, b, b, far * far * m);
       if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, near * far * m);

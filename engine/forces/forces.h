@@ -16,11 +16,12 @@
  */
 STRUT_API void strut_forces_acceleration(const strut_model *model, const strut_state *state,
                                          double t, const double *restrict q,
-                                         const double *restrict v, double *restrict a);
+                                         const double *restrict velocity,
+                                         double *restrict acceleration);
 
 /** The same without the mass: leaves the net forces in state->latest->force. */
 STRUT_API void strut_forces_evaluate(const strut_model *model, const strut_state *state, double t,
-                                     const double *restrict q, const double *restrict v);
+                                     const double *restrict q, const double *restrict velocity);
 
 /**
  * The forces at the state itself at time t [s], for recording and measuring: contact forces are those
@@ -39,7 +40,7 @@ typedef struct strut_member_values {
     bars and those of actuators. */
 STRUT_API strut_member_values strut_member_measure_at(const strut_model *model,
                                                       const strut_state *state, int32_t member,
-                                                      const double *q, const double *v);
+                                                      const double *q, const double *velocity);
 /** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);

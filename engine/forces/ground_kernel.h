@@ -36,62 +36,64 @@ STRUT_INLINE void ground_balance(const strut_state *state, strut_law_contact_pow
 }
 
 /* Within Karnopp's band at the ends of rigid bars friction is found with their forces: 0 here. */
-STRUT_INLINE double ground_friction(const strut_contact_entry *e, double normal, double slip,
+STRUT_INLINE double ground_friction(const strut_contact_entry *contact, double normal, double slip,
                                     double applied, bool bars_rigid) {
-  const strut_friction *f = &e->friction;
-  bool band = strut_friction_has_band(f->law);
-  if (bars_rigid && band && fabs(slip) < f->stick_velocity) return 0.0;
-  return strut_friction_force(f, normal, slip, applied);
+  const strut_friction *friction = &contact->friction;
+  bool band = strut_friction_has_band(friction->law);
+  if (bars_rigid && band && fabs(slip) < friction->stick_velocity) return 0.0;
+  return strut_friction_force(friction, normal, slip, applied);
 }
 
 /* One node in contact; f, v: its force and velocity; gap < 0. */
-STRUT_INLINE void ground_touch(const strut_contact_table *c, const strut_state *state, int32_t i,
-                               double gap, double *restrict f, const double *restrict v,
+STRUT_INLINE void ground_touch(const strut_contact_table *contacts, const strut_state *state,
+                               int32_t i, double gap, double *restrict f, const double *restrict v,
                                bool sloped, bool rough, bool laws, strut_accumulation balance,
                                strut_power_lanes *lanes, bool moves) {
-  const strut_contact_entry *e = &c->entry[i];
+  const strut_contact_entry *contact = &contacts->entry[i];
   strut_pair sum = strut_pair_load(f), reaction;
-  double into = sloped ? v[0] * c->normal[0] + v[1] * c->normal[1] : v[1];
-  double along = sloped ? v[0] * c->tangent[0] + v[1] * c->tangent[1] : v[0];
-  const strut_law_ground_numbers numbers = strut_contact_numbers(e);
-  double spring = strut_law_ground_spring(&numbers, gap), slip = along - c->belt_speed;
+  double into = sloped ? v[0] * contacts->normal[0] + v[1] * contacts->normal[1] : v[1];
+  double along = sloped ? v[0] * contacts->tangent[0] + v[1] * contacts->tangent[1] : v[0];
+  const strut_law_ground_numbers numbers = strut_contact_numbers(contact);
+  double spring = strut_law_ground_spring(&numbers, gap), slip = along - contacts->belt_speed;
   double damper = strut_law_ground_damper(&numbers, spring, into, laws);
   double normal = spring + damper, friction = 0.0;
   if (rough) {
-    double applied = sloped ? sum[0] * c->tangent[0] + sum[1] * c->tangent[1] : sum[0];
-    const strut_law_friction_numbers rubs = strut_friction_numbers(&e->friction);
-    friction = laws ? ground_friction(e, normal, slip, applied, state->rigid)
+    double applied =
+        sloped ? sum[0] * contacts->tangent[0] + sum[1] * contacts->tangent[1] : sum[0];
+    const strut_law_friction_numbers rubs = strut_friction_numbers(&contact->friction);
+    friction = laws ? ground_friction(contact, normal, slip, applied, state->rigid)
                     : strut_law_friction_karnopp(&rubs, normal, slip, applied);
   }
   if (sloped)
-    reaction = (strut_pair){friction * c->tangent[0] + normal * c->normal[0],
-                            friction * c->tangent[1] + normal * c->normal[1]};
+    reaction = (strut_pair){friction * contacts->tangent[0] + normal * contacts->normal[0],
+                            friction * contacts->tangent[1] + normal * contacts->normal[1]};
   else
     reaction = (strut_pair){friction, normal};
   strut_pair_store(f, sum + reaction);
   state->latest->normal[i] = normal;
   state->latest->friction[i] = friction;
   strut_law_contact_powers powers =
-      strut_law_contact_power(damper, into, friction, slip, c->belt_speed);
+      strut_law_contact_power(damper, into, friction, slip, contacts->belt_speed);
   if (balance == STRUT_ACCUMULATE_POWERS) ground_balance(state, powers);
-  if (balance == STRUT_ACCUMULATE_LANES) ground_accumulate_lanes(lanes, e->lane, moves, powers);
+  if (balance == STRUT_ACCUMULATE_LANES)
+    ground_accumulate_lanes(lanes, contact->lane, moves, powers);
 }
 
 STRUT_INLINE void ground_all(const strut_model *model, const strut_state *state,
                              const double *restrict q, const double *restrict v,
                              double *restrict force, int32_t begin, int32_t end, bool sloped,
                              bool rough, bool laws, strut_accumulation balance) {
-  const strut_contact_table *c = &model->contacts;
-  const uint32_t *restrict at = c->at;
-  const double height = c->height;
+  const strut_contact_table *contacts = &model->contacts;
+  const uint32_t *restrict at = contacts->at;
+  const double height = contacts->height;
   strut_power_lanes *lanes = state->latest->accumulated;
-  bool moves = c->belt_speed != 0.0;
+  bool moves = contacts->belt_speed != 0.0;
   for (int32_t i = begin; i < end; i++) {
     double gap = q[at[i] + 1] - height;
-    if (sloped) gap = q[at[i]] * c->normal[0] + gap * c->normal[1];
+    if (sloped) gap = q[at[i]] * contacts->normal[0] + gap * contacts->normal[1];
     if (gap < 0.0)
-      ground_touch(c, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, balance, lanes,
-                   moves);
+      ground_touch(contacts, state, i, gap, force + at[i], v + at[i], sloped, rough, laws, balance,
+                   lanes, moves);
   }
 }
 

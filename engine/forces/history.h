@@ -33,14 +33,14 @@ enum { STRUT_SLIDER_BACK, STRUT_SLIDER_HOLDS, STRUT_SLIDER_FORTH };
 static inline bool strut_element_is_gone(double natural) { return natural == STRUT_GONE; }
 
 /** k_1, F_1 and k_1 / k of an elastic-plastic element. */
-static inline double strut_slider_spring(const strut_element *e) {
-  return e->numbers.stiffness - e->numbers.second_stiffness;
+static inline double strut_slider_spring(const strut_element *element) {
+  return element->numbers.stiffness - element->numbers.second_stiffness;
 }
-static inline double strut_slider_share(const strut_element *e) {
-  return strut_slider_spring(e) / e->numbers.stiffness;
+static inline double strut_slider_share(const strut_element *element) {
+  return strut_slider_spring(element) / element->numbers.stiffness;
 }
-static inline double strut_slider_yield(const strut_element *e) {
-  return e->numbers.yield * strut_slider_share(e);
+static inline double strut_slider_yield(const strut_element *element) {
+  return element->numbers.yield * strut_slider_share(element);
 }
 
 /** A slider at some strain x = e - e0 of its element. */
@@ -52,7 +52,7 @@ typedef struct strut_slider {
 } strut_slider;
 /** Of elastic-plastic element i at q and v. */
 strut_slider strut_slider_at(const strut_model *model, const strut_state *state, int32_t i,
-                             const double *q, const double *v);
+                             const double *q, const double *velocity);
 /** Sets its mode; p follows from q where it holds from now on. */
 void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, int mode,
                       const double *q);
@@ -81,12 +81,12 @@ int strut_curve_pass(const strut_model *model, strut_state *state, int32_t i, st
 double strut_history_natural(const strut_model *model, const strut_state *state, int32_t i,
                              double e);
 /** Energy that is stored in the slider's spring against the one beside it, by the slots in `rest`. */
-double strut_history_locked_energy(const strut_element *e, const double *rest);
+double strut_history_locked_energy(const strut_element *element, const double *rest);
 
 /** As strut_elements_add_forces, for a block of elements with memory. */
 void strut_history_add_forces(const strut_model *model, const strut_state *state,
-                              const strut_element_block *block, const double *q, const double *v,
-                              double *force);
+                              const strut_element_block *block, const double *q,
+                              const double *velocity, double *force);
 /** Own slots after the slots that they follow have changed. */
 void strut_history_follow(const strut_model *model, const strut_state *state);
 
@@ -95,8 +95,8 @@ void strut_history_keep(const strut_model *model, strut_state *state);
 
 /** Size of what the elements of a model remember. */
 static inline size_t strut_history_count(const strut_model *model) {
-  const strut_element_table *t = &model->elements;
-  return (size_t)(t->history_slots + t->history_count + t->breakable_count);
+  const strut_element_table *elements = &model->elements;
+  return (size_t)(elements->history_slots + elements->history_count + elements->breakable_count);
 }
 /** Copies it from a state, and back. */
 STRUT_API void strut_history_store(const strut_model *model, const strut_state *state,
@@ -106,7 +106,7 @@ STRUT_API void strut_history_load(const strut_model *model, strut_state *state,
 
 /** Tension of a member, or size of a hinge's moment, that may break it [N], [N m]. */
 double strut_breakable_load(const strut_model *model, const strut_state *state, int32_t breakable,
-                            const double *q, const double *v);
+                            const double *q, const double *velocity);
 /** Takes it out from time t on. The energy that it held is lost. */
 void strut_breakable_break(const strut_model *model, strut_state *state, int32_t breakable,
                            double t);
@@ -150,10 +150,10 @@ STRUT_API void strut_history_begin(const strut_model *model, strut_state *state,
  * balance their powers. The driven rest lengths must be those of this instant.
  */
 void strut_maxwell_apply(const strut_model *model, const strut_state *state, const double *q,
-                         const double *v, double *force);
+                         const double *velocity, double *force);
 /** Force of the branch of a member, tension positive [N]; 0 without one. */
-double strut_maxwell_force(const strut_model *model, const double *v, int32_t member);
+double strut_maxwell_force(const strut_model *model, const double *velocity, int32_t member);
 /** Energy stored in all of them [J]. */
-double strut_maxwell_energy(const strut_model *model, const double *v);
+double strut_maxwell_energy(const strut_model *model, const double *velocity);
 
 #endif

@@ -7,7 +7,8 @@
 #include "engine/model/state.h"
 
 /** Subtracts alpha M v from state->latest->force and accumulates what that takes as lost in members. */
-void strut_mass_damping_apply(const strut_model *model, const strut_state *state, const double *v);
+void strut_mass_damping_apply(const strut_model *model, const strut_state *state,
+                              const double *velocity);
 
 /** Contributions of strut_mass_damping_add at most. */
 static inline size_t strut_mass_damping_entries(const strut_model *model) {

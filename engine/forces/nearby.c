@@ -122,9 +122,9 @@ static double least_of(const strut_model *model, const strut_nearby *list, const
   double least = HUGE_VAL, b[STRUT_MOST_GRADIENT];
   for (int32_t k = 0; k < count; k++) {
     int32_t i = list ? list->element[k] : k;
-    const strut_element *e = &model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_COLLISION) continue;
-    double gap = strut_element_strain(model, i, q, 0.0, b) - e->natural;
+    const strut_element *element = &model->elements.element[i];
+    if (element->role != STRUT_ELEMENT_COLLISION) continue;
+    double gap = strut_element_strain(model, i, q, 0.0, b) - element->natural;
     if (gap < least) least = gap, *which = i;
   }
   return least;

@@ -52,15 +52,15 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
                                     const strut_ground_motion *motion) {
   double least = HUGE_VAL;
   for (int32_t k = 0; k < t->surfaces; k++) {
-    const strut_surface *s = &t->surface[k];
-    const double *place = s->moves && motion ? motion[s->ground].place : NULL;
+    const strut_surface *surface = &t->surface[k];
+    const double *place = surface->moves && motion ? motion[surface->ground].place : NULL;
     double point[2] = {q[0] - (place ? place[0] : 0.0), q[1] - (place ? place[1] : 0.0)};
     strut_contact_pose pose;
-    if (s->index) {
-      strut_surface_lowest(s, point, &pose.gap);
-      k += s->pieces - 1;
+    if (surface->index) {
+      strut_surface_lowest(surface, point, &pose.gap);
+      k += surface->pieces - 1;
     } else {
-      strut_surface_find(s, point, -1, &pose);
+      strut_surface_find(surface, point, -1, &pose);
     }
     least = fmin(least, pose.gap);
   }
@@ -68,9 +68,11 @@ static double height_above_surfaces(const strut_contact_table *t, const double q
 }
 
 static double height_above_ground(const strut_instant *instant, const double *q) {
-  const strut_contact_table *t = &instant->model->contacts;
-  if (t->surface) return height_above_surfaces(t, q, instant->state->latest->ground_motion);
-  return q[0] * t->normal[0] + (q[1] - instant->model->scene->ground.height) * t->normal[1];
+  const strut_contact_table *contacts = &instant->model->contacts;
+  if (contacts->surface)
+    return height_above_surfaces(contacts, q, instant->state->latest->ground_motion);
+  return q[0] * contacts->normal[0] +
+         (q[1] - instant->model->scene->ground.height) * contacts->normal[1];
 }
 
 VALUE(HEIGHT, height_above_ground(instant, instant->q + 2 * item))
@@ -113,17 +115,17 @@ VALUE(TOUCHES, any_touches(instant, item, other))
 
 /* The normal force on contact i at the instant's positions and velocities. */
 static double press(const strut_instant *instant, int32_t i) {
-  const strut_contact_table *c = &instant->model->contacts;
+  const strut_contact_table *contacts = &instant->model->contacts;
   const strut_ground_motion *motion = instant->state->latest->ground_motion;
   int32_t element = element_of(instant->model, i);
   strut_element_pose pressed;
   if (element >= 0)
     return -strut_element_measure_at(instant->model, instant->state, element, instant->q,
                                      instant->v, &pressed);
-  const strut_contact_pose pose = strut_contact_pose_at(c, i, instant->q, motion, -1);
+  const strut_contact_pose pose = strut_contact_pose_at(contacts, i, instant->q, motion, -1);
   if (!(pose.gap < 0.0)) return 0.0;
-  strut_vec2 u = strut_contact_velocity(c, i, instant->v, motion);
-  const strut_law_ground_numbers numbers = strut_contact_numbers(&c->entry[i]);
+  strut_vec2 u = strut_contact_velocity(contacts, i, instant->v, motion);
+  const strut_law_ground_numbers numbers = strut_contact_numbers(&contacts->entry[i]);
   double spring = strut_law_ground_spring(&numbers, pose.gap);
   double into = strut_component(pose.axes.normal, u.x, u.y);
   return spring + strut_law_ground_damper(&numbers, spring, into, true);
@@ -168,16 +170,19 @@ RATE(RATE, LENGTH)
 VALUE(FORCE, member_of(instant, item).force)
 
 static double plastic_of(const strut_instant *instant, int32_t member) {
-  const strut_element_table *t = &instant->model->elements;
-  const strut_element *e = strut_element_of_member(t, member);
-  return e ? strut_element_plastic(instant->model, instant->state, (int32_t)(e - t->element)) : 0.0;
+  const strut_element_table *elements = &instant->model->elements;
+  const strut_element *element = strut_element_of_member(elements, member);
+  return element ? strut_element_plastic(instant->model, instant->state,
+                                         (int32_t)(element - elements->element))
+                 : 0.0;
 }
 
 static double last_force_of(const strut_instant *instant, int32_t member) {
-  const strut_element_table *t = &instant->model->elements;
-  const strut_element *e = strut_element_of_member(t, member);
-  if (!e || !(e->guide_friction > 0.0)) return member_of(instant, member).force;
-  return strut_element_last_force(instant->model, instant->state, (int32_t)(e - t->element));
+  const strut_element_table *elements = &instant->model->elements;
+  const strut_element *element = strut_element_of_member(elements, member);
+  if (!element || !(element->guide_friction > 0.0)) return member_of(instant, member).force;
+  return strut_element_last_force(instant->model, instant->state,
+                                  (int32_t)(element - elements->element));
 }
 
 VALUE(PLASTIC, plastic_of(instant, item))
@@ -236,17 +241,17 @@ static double force_of(const strut_instant *instant, int32_t element) {
 
 /* Pressure in a cell, or what all elements of a collision push with. */
 static double push_of(const strut_instant *instant, int32_t first) {
-  const strut_element_table *t = &instant->model->elements;
-  double push = t->element[first].numbers.outside;
-  for (int32_t i = first; i < strut_element_end(t, first); i++) push -= force_of(instant, i);
+  const strut_element_table *elements = &instant->model->elements;
+  double push = elements->element[first].numbers.outside;
+  for (int32_t i = first; i < strut_element_end(elements, first); i++) push -= force_of(instant, i);
   return push;
 }
 
 static double gap_of(const strut_instant *instant, int32_t first) {
-  const strut_element_table *t = &instant->model->elements;
+  const strut_element_table *elements = &instant->model->elements;
   const strut_state *state = instant->state;
   double least = HUGE_VAL;
-  for (int32_t i = first; i < strut_element_end(t, first); i++) {
+  for (int32_t i = first; i < strut_element_end(elements, first); i++) {
     strut_element_pose pose;
     strut_element_evaluate(instant->model, i, state->latest->rest, instant->q,
                            state->history.turn[i], &pose);
@@ -352,10 +357,10 @@ static double share_of(const strut_instant *instant, int32_t slider) {
 
 /* Place or velocity of a mass on a member, along x or y. */
 static double slide(const strut_instant *instant, int32_t slider, uint32_t axis, bool rate) {
-  const strut_sliding_item *s = &instant->model->sliding.item[slider];
+  const strut_sliding_item *item = &instant->model->sliding.item[slider];
   double far = share_of(instant, slider);
   const double *z = rate ? instant->v : instant->q, *q = instant->q;
-  uint32_t a = s->at[0] + axis, b = s->at[1] + axis;
+  uint32_t a = item->at[0] + axis, b = item->at[1] + axis;
   double place = (1.0 - far) * z[a] + far * z[b];
   return rate ? place + strut_sliding_mass_rate(instant->model->scene, (size_t)slider,
                                                 time_of(instant)) *
@@ -394,26 +399,26 @@ double strut_observe_item(strut_instant *instant, strut_column_kind kind, int32_
 static void multiply_by_mass(const strut_instant *instant, const double *u, const double *q,
                              double *momentum) {
   const strut_model *model = instant->model;
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   double own = consistent ? 1.0 / 3.0 : 0.5, other = consistent ? 1.0 / 6.0 : 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++) momentum[i] = model->point_mass[i / 2] * u[i];
-  for (int32_t j = 0; j < t->count; j++)
+  for (int32_t j = 0; j < members->count; j++)
     for (uint32_t c = 0; c < 2; c++) {
-      uint32_t a = t->from[j] + c, b = t->to[j] + c;
-      momentum[a] += t->mass[j] * (own * u[a] + other * u[b]);
-      momentum[b] += t->mass[j] * (own * u[b] + other * u[a]);
+      uint32_t a = members->from[j] + c, b = members->to[j] + c;
+      momentum[a] += members->mass[j] * (own * u[a] + other * u[b]);
+      momentum[b] += members->mass[j] * (own * u[b] + other * u[a]);
     }
   for (int32_t j = 0, k = 0; j < model->sliding.count; j++) {
-    const strut_sliding_item *s = &model->sliding.item[j];
-    strut_sliding_motion motion = {.share = s->start};
-    if (s->signal >= 0) motion = instant->state->latest->sliding[k++];
+    const strut_sliding_item *item = &model->sliding.item[j];
+    strut_sliding_motion motion = {.share = item->start};
+    if (item->signal >= 0) motion = instant->state->latest->sliding[k++];
     for (uint32_t c = 0; c < 2; c++) {
-      uint32_t a = s->at[0] + c, b = s->at[1] + c;
+      uint32_t a = item->at[0] + c, b = item->at[1] + c;
       double speed = (1.0 - motion.share) * u[a] + motion.share * u[b];
       if (q) speed += motion.rate * (q[b] - q[a]);
-      momentum[a] += (1.0 - motion.share) * s->mass * speed;
-      momentum[b] += motion.share * s->mass * speed;
+      momentum[a] += (1.0 - motion.share) * item->mass * speed;
+      momentum[b] += motion.share * item->mass * speed;
     }
   }
 }

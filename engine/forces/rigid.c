@@ -40,13 +40,13 @@ static void rigid_add_foot(const strut_model *model, strut_rigid *rigid, int32_t
 }
 
 /* J x of row r. */
-static double rigid_along(const strut_rigid *rigid, int32_t r, const double *x) {
+static double rigid_along(const strut_rigid *rigid, int32_t r, const double *vector) {
   assert(r >= 0 && r < rigid->most);
   const strut_vec2 u = rigid->direction[r];
-  const double *b = x + rigid->at[rigid->row[r][1]];
+  const double *b = vector + rigid->at[rigid->row[r][1]];
   double sum = b[0] * u.x + b[1] * u.y;
   if (rigid->row[r][0] < 0) return sum;
-  const double *a = x + rigid->at[rigid->row[r][0]];
+  const double *a = vector + rigid->at[rigid->row[r][0]];
   return sum - (a[0] * u.x + a[1] * u.y);
 }
 
@@ -124,71 +124,73 @@ static bool is_rigid(const strut_model *model, int32_t j) {
 }
 
 /* Numbers the nodes of bars and contacts; index: (node_count) scratch of zeros. */
-static void number_nodes(const strut_model *model, strut_rigid *g, int32_t *index) {
-  const strut_member_table *t = &model->members;
-  g->bars = g->nodes = 0;
-  for (int32_t j = 0; j < t->count; j++) {
+static void number_nodes(const strut_model *model, strut_rigid *rigid, int32_t *index) {
+  const strut_member_table *members = &model->members;
+  rigid->bars = rigid->nodes = 0;
+  for (int32_t j = 0; j < members->count; j++) {
     if (!is_rigid(model, j)) continue;
-    uint32_t at[2] = {t->from[j], t->to[j]};
+    uint32_t at[2] = {members->from[j], members->to[j]};
     for (int e = 0; e < 2; e++) {
-      if (!index[at[e] / 2]) g->at[g->nodes] = at[e], index[at[e] / 2] = ++g->nodes;
-      g->end[g->bars][e] = index[at[e] / 2] - 1;
+      if (!index[at[e] / 2]) rigid->at[rigid->nodes] = at[e], index[at[e] / 2] = ++rigid->nodes;
+      rigid->end[rigid->bars][e] = index[at[e] / 2] - 1;
     }
-    g->member[g->bars++] = j;
+    rigid->member[rigid->bars++] = j;
   }
   for (int32_t i = 0; i < model->contacts.count; i++) {
     uint32_t at = model->contacts.at[i];
-    if (!index[at / 2]) g->at[g->nodes] = at, index[at / 2] = ++g->nodes;
-    g->foot[i] = index[at / 2] - 1;
+    if (!index[at / 2]) rigid->at[rigid->nodes] = at, index[at / 2] = ++rigid->nodes;
+    rigid->foot[i] = index[at / 2] - 1;
   }
 }
 
 /* M^-1 between the nodes, a column at a time. */
-static void invert_mass(const strut_model *model, strut_rigid *g, double *scratch) {
-  size_t bytes = (size_t)model->length * sizeof(double), n = (size_t)g->nodes;
+static void invert_mass(const strut_model *model, strut_rigid *rigid, double *scratch) {
+  size_t bytes = (size_t)model->length * sizeof(double), n = (size_t)rigid->nodes;
   for (int c = 0; c < 2; c++)
     for (size_t j = 0; j < n; j++) {
-      memset(g->free, 0, bytes);
-      memset(g->push, 0, bytes);
-      g->push[g->at[j] + (uint32_t)c] = 1.0;
-      strut_mass_solve(model, g->push, g->free, scratch);
-      for (size_t i = 0; i < n; i++) g->inverse[c][i * n + j] = g->free[g->at[i] + (uint32_t)c];
+      memset(rigid->free, 0, bytes);
+      memset(rigid->push, 0, bytes);
+      rigid->push[rigid->at[j] + (uint32_t)c] = 1.0;
+      strut_mass_solve(model, rigid->push, rigid->free, scratch);
+      for (size_t i = 0; i < n; i++)
+        rigid->inverse[c][i * n + j] = rigid->free[rigid->at[i] + (uint32_t)c];
     }
-  memset(g->free, 0, bytes);
+  memset(rigid->free, 0, bytes);
 }
 
 static strut_rigid *create(const strut_model *model, strut_arena *arena, double *scratch) {
   size_t feet = (size_t)model->contacts.count, bars = 0;
   for (int32_t j = 0; j < model->members.count; j++) bars += is_rigid(model, j);
   size_t nodes = 2 * bars + feet, most = bars + feet;
-  strut_rigid *g = strut_arena_allocate(arena, 1, sizeof *g);
+  strut_rigid *rigid = strut_arena_allocate(arena, 1, sizeof *rigid);
   int32_t *index = strut_arena_allocate(arena, (size_t)model->node_count, sizeof *index);
-  if (!g || !index) return NULL;
-  g->most = (int32_t)most;
-  g->member = strut_arena_allocate(arena, bars, sizeof *g->member);
-  g->length = strut_arena_allocate(arena, bars, sizeof(double));
-  g->tension = strut_arena_allocate(arena, bars, sizeof(double));
-  g->at = strut_arena_allocate(arena, nodes, sizeof *g->at);
-  g->end = strut_arena_allocate(arena, bars, sizeof *g->end);
-  g->foot = strut_arena_allocate(arena, feet, sizeof *g->foot);
-  g->row = strut_arena_allocate(arena, most, sizeof *g->row);
-  g->direction = strut_arena_allocate(arena, most, sizeof *g->direction);
-  g->matrix = strut_arena_allocate(arena, most * most, sizeof(double));
-  g->right = strut_arena_allocate(arena, most, sizeof(double));
-  g->stuck = strut_arena_allocate(arena, feet, sizeof *g->stuck);
-  g->free = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
-  g->push = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
-  if (!g->member || !g->length || !g->tension || !g->at || !g->end || !g->foot || !g->row ||
-      !g->direction || !g->matrix || !g->right || !g->stuck || !g->free || !g->push)
+  if (!rigid || !index) return NULL;
+  rigid->most = (int32_t)most;
+  rigid->member = strut_arena_allocate(arena, bars, sizeof *rigid->member);
+  rigid->length = strut_arena_allocate(arena, bars, sizeof(double));
+  rigid->tension = strut_arena_allocate(arena, bars, sizeof(double));
+  rigid->at = strut_arena_allocate(arena, nodes, sizeof *rigid->at);
+  rigid->end = strut_arena_allocate(arena, bars, sizeof *rigid->end);
+  rigid->foot = strut_arena_allocate(arena, feet, sizeof *rigid->foot);
+  rigid->row = strut_arena_allocate(arena, most, sizeof *rigid->row);
+  rigid->direction = strut_arena_allocate(arena, most, sizeof *rigid->direction);
+  rigid->matrix = strut_arena_allocate(arena, most * most, sizeof(double));
+  rigid->right = strut_arena_allocate(arena, most, sizeof(double));
+  rigid->stuck = strut_arena_allocate(arena, feet, sizeof *rigid->stuck);
+  rigid->free = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  rigid->push = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  if (!rigid->member || !rigid->length || !rigid->tension || !rigid->at || !rigid->end ||
+      !rigid->foot || !rigid->row || !rigid->direction || !rigid->matrix || !rigid->right ||
+      !rigid->stuck || !rigid->free || !rigid->push)
     return NULL;
-  number_nodes(model, g, index);
+  number_nodes(model, rigid, index);
   for (int c = 0; c < 2; c++) {
-    size_t n = (size_t)g->nodes;
-    g->inverse[c] = strut_arena_allocate(arena, n * n, sizeof(double));
-    if (!g->inverse[c]) return NULL;
+    size_t n = (size_t)rigid->nodes;
+    rigid->inverse[c] = strut_arena_allocate(arena, n * n, sizeof(double));
+    if (!rigid->inverse[c]) return NULL;
   }
-  invert_mass(model, g, scratch);
-  return g;
+  invert_mass(model, rigid, scratch);
+  return rigid;
 }
 
 bool strut_rigid_create(const strut_model *model, strut_state *state) {
@@ -197,47 +199,48 @@ bool strut_rigid_create(const strut_model *model, strut_state *state) {
   return state->rigid;
 }
 
-static double distance(const strut_rigid *g, int32_t r, const double *q) {
-  assert(r >= 0 && r < g->most);
-  const double *a = q + g->at[g->end[r][0]], *b = q + g->at[g->end[r][1]];
+static double distance(const strut_rigid *rigid, int32_t r, const double *q) {
+  assert(r >= 0 && r < rigid->most);
+  const double *a = q + rigid->at[rigid->end[r][0]], *b = q + rigid->at[rigid->end[r][1]];
   return strut_distance(a, b);
 }
 
 /* x += M^-1 J' right. */
-static void move(const strut_model *model, double *scratch, strut_rigid *g, double *x) {
+static void move(const strut_model *model, double *scratch, strut_rigid *rigid, double *vector) {
   size_t bytes = (size_t)model->length * sizeof(double);
-  memset(g->push, 0, bytes);
-  memset(g->free, 0, bytes);
-  rigid_spread(g, g->push);
-  strut_mass_solve(model, g->push, g->free, scratch);
-  for (int32_t i = 0; i < 2 * model->node_count; i++) x[i] += g->free[i];
+  memset(rigid->push, 0, bytes);
+  memset(rigid->free, 0, bytes);
+  rigid_spread(rigid, rigid->push);
+  strut_mass_solve(model, rigid->push, rigid->free, scratch);
+  for (int32_t i = 0; i < 2 * model->node_count; i++) vector[i] += rigid->free[i];
 }
 
-void strut_rigid_filter(const strut_model *model, strut_rigid *g, double *v, double *scratch) {
-  for (int32_t r = 0; r < g->rows; r++) g->right[r] = -rigid_along(g, r, v);
-  rigid_solve(g);
-  move(model, scratch, g, v);
+void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *velocity,
+                        double *scratch) {
+  for (int32_t r = 0; r < rigid->rows; r++) rigid->right[r] = -rigid_along(rigid, r, velocity);
+  rigid_solve(rigid);
+  move(model, scratch, rigid, velocity);
 }
 
 strut_rigid *strut_rigid_standing(const strut_model *model, const double *q, strut_arena *arena) {
   double *scratch = strut_arena_allocate(arena, (size_t)model->length, sizeof *scratch);
-  strut_rigid *g = scratch ? create(model, arena, scratch) : NULL;
-  if (!g) return NULL;
-  rigid_rows(g, q);
-  rigid_factorise(g);
-  return g;
+  strut_rigid *rigid = scratch ? create(model, arena, scratch) : NULL;
+  if (!rigid) return NULL;
+  rigid_rows(rigid, q);
+  rigid_factorise(rigid);
+  return rigid;
 }
 
 void strut_rigid_begin(const strut_model *model, strut_state *state) {
-  strut_rigid *g = state->rigid;
-  for (int32_t r = 0; r < g->bars; r++) g->length[r] = distance(g, r, state->q);
-  memset(g->tension, 0, (size_t)g->bars * sizeof(double));
-  g->failed = false;
-  rigid_rows(g, state->q);
-  if (rigid_factorise(g) >= 0)
+  strut_rigid *rigid = state->rigid;
+  for (int32_t r = 0; r < rigid->bars; r++) rigid->length[r] = distance(rigid, r, state->q);
+  memset(rigid->tension, 0, (size_t)rigid->bars * sizeof(double));
+  rigid->failed = false;
+  rigid_rows(rigid, state->q);
+  if (rigid_factorise(rigid) >= 0)
     state->trouble = STRUT_FAILURE_RIGID;
   else
-    strut_rigid_filter(model, g, state->v, state->buffers->mass_solve);
+    strut_rigid_filter(model, rigid, state->v, state->buffers->mass_solve);
 }
 
 strut_status strut_rigid_check(const strut_model *model, strut_error *error) {
@@ -250,89 +253,97 @@ strut_status strut_rigid_check(const strut_model *model, strut_error *error) {
                       "bars: elastic",
                       (int)bars, (int)STRUT_MOST_RIGID);
   double *scratch = strut_arena_allocate(&arena, (size_t)model->length, sizeof *scratch);
-  strut_rigid *g = scratch ? create(model, &arena, scratch) : NULL;
-  strut_status status = g ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
-  if (g) {
-    rigid_rows(g, model->start);
-    bad = rigid_factorise(g);
+  strut_rigid *rigid = scratch ? create(model, &arena, scratch) : NULL;
+  strut_status status = rigid ? STRUT_OK : strut_fail(error, STRUT_NO_MEMORY, "out of memory");
+  if (rigid) {
+    rigid_rows(rigid, model->start);
+    bad = rigid_factorise(rigid);
   }
   if (bad >= 0)
     status = strut_fail(error, STRUT_SINGULAR,
                         "bar '%s' cannot be rigid: supports or other rigid bars hold its ends "
                         "already, always or where they start, as bars in one line do; start "
                         "elsewhere, make it a spring, or use bars: elastic",
-                        model->scene->members[g->member[bad]].name);
+                        model->scene->members[rigid->member[bad]].name);
   strut_arena_free(&arena);
   return status;
 }
 
 /* Contacts within Karnopp's band. Returns how many. */
-static int32_t find_stuck(const strut_model *model, strut_rigid *g, const double *q,
-                          const double *v) {
-  const strut_contact_table *c = &model->contacts;
+static int32_t find_stuck(const strut_model *model, strut_rigid *rigid, const double *q,
+                          const double *velocity) {
+  const strut_contact_table *contacts = &model->contacts;
   int32_t count = 0;
-  for (int32_t i = 0; i < c->count; i++) {
-    if (strut_contact_gap(c, i, q) < 0.0 && strut_friction_has_band(c->entry[i].friction.law) &&
-        fabs(strut_contact_slip(c, i, v)) < c->entry[i].friction.stick_velocity)
-      g->stuck[count++] = i;
+  for (int32_t i = 0; i < contacts->count; i++) {
+    if (strut_contact_gap(contacts, i, q) < 0.0 &&
+        strut_friction_has_band(contacts->entry[i].friction.law) &&
+        fabs(strut_contact_slip(contacts, i, velocity)) <
+            contacts->entry[i].friction.stick_velocity)
+      rigid->stuck[count++] = i;
   }
   return count;
 }
 
 /* Multipliers of bars and of `stuck` for the acceleration a; false: bars depend on each other. */
-static bool hold(const strut_model *model, strut_rigid *g, const double *q, const double *v,
-                 const double *a, int32_t stuck) {
-  rigid_rows(g, q);
-  for (int32_t r = 0; r < g->bars; r++) {
-    const double *va = v + g->at[g->end[r][0]], *vb = v + g->at[g->end[r][1]];
+static bool hold(const strut_model *model, strut_rigid *rigid, const double *q,
+                 const double *velocity, const double *acceleration, int32_t stuck) {
+  rigid_rows(rigid, q);
+  for (int32_t r = 0; r < rigid->bars; r++) {
+    const double *va = velocity + rigid->at[rigid->end[r][0]],
+                 *vb = velocity + rigid->at[rigid->end[r][1]];
     double wx = vb[0] - va[0], wy = vb[1] - va[1];
-    double turn = g->direction[r].x * wy - g->direction[r].y * wx, length = distance(g, r, q);
-    g->right[r] = -rigid_along(g, r, a) - (length > 0.0 ? turn * turn / length : 0.0);
+    double turn = rigid->direction[r].x * wy - rigid->direction[r].y * wx,
+           length = distance(rigid, r, q);
+    rigid->right[r] =
+        -rigid_along(rigid, r, acceleration) - (length > 0.0 ? turn * turn / length : 0.0);
   }
   for (int32_t k = 0; k < stuck; k++) {
-    rigid_add_foot(model, g, g->stuck[k]);
-    g->right[g->bars + k] = -rigid_along(g, g->bars + k, a);
+    rigid_add_foot(model, rigid, rigid->stuck[k]);
+    rigid->right[rigid->bars + k] = -rigid_along(rigid, rigid->bars + k, acceleration);
   }
-  if (rigid_factorise(g) >= 0) return false;
-  rigid_solve(g);
+  if (rigid_factorise(rigid) >= 0) return false;
+  rigid_solve(rigid);
   return true;
 }
 
 /* The contact whose stick is overtaxed most slides instead, pushed by what held it. */
-static bool release(const strut_model *model, const strut_state *state, strut_rigid *g,
+static bool release(const strut_model *model, const strut_state *state, strut_rigid *rigid,
                     int32_t *stuck) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   int32_t worst = -1;
   double most = 0.0;
   for (int32_t k = 0; k < *stuck; k++) {
-    int32_t i = g->stuck[k];
-    double held = g->right[g->bars + k];
-    double limit = strut_friction_static(&c->entry[i].friction, -held) * state->latest->normal[i];
+    int32_t i = rigid->stuck[k];
+    double held = rigid->right[rigid->bars + k];
+    double limit =
+        strut_friction_static(&contacts->entry[i].friction, -held) * state->latest->normal[i];
     double excess = fabs(held) - limit;
     if (excess >= 0.0 && (worst < 0 || excess > most)) worst = k, most = excess;
   }
   if (worst < 0) return false;
-  int32_t i = g->stuck[worst];
-  double hold = g->right[g->bars + worst],
-         slide = strut_friction_kinetic(&c->entry[i].friction, -hold) * state->latest->normal[i];
+  int32_t i = rigid->stuck[worst];
+  double hold = rigid->right[rigid->bars + worst],
+         slide =
+             strut_friction_kinetic(&contacts->entry[i].friction, -hold) * state->latest->normal[i];
   double friction = hold > 0.0 ? slide : hold < 0.0 ? -slide : 0.0;
   state->latest->friction[i] = friction;
   for (int k = 0; k < 2; k++)
-    state->latest->force[c->at[i] + (uint32_t)k] += friction * c->tangent[k];
-  g->stuck[worst] = g->stuck[--*stuck];
+    state->latest->force[contacts->at[i] + (uint32_t)k] += friction * contacts->tangent[k];
+  rigid->stuck[worst] = rigid->stuck[--*stuck];
   return true;
 }
 
 /* Friction's powers of the contacts within the band, which the kernel has left out. */
 static void accumulate(const strut_model *model, const strut_state *state, const double *q,
-                       const double *v) {
-  const strut_contact_table *c = &model->contacts;
-  strut_rigid *g = state->rigid;
-  int32_t count = find_stuck(model, g, q, v);
+                       const double *velocity) {
+  const strut_contact_table *contacts = &model->contacts;
+  strut_rigid *rigid = state->rigid;
+  int32_t count = find_stuck(model, rigid, q, velocity);
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = g->stuck[k];
-    double slip = strut_contact_slip(c, i, v), rubbed = -state->latest->friction[i] * slip;
-    double belt = state->latest->friction[i] * c->belt_speed;
+    int32_t i = rigid->stuck[k];
+    double slip = strut_contact_slip(contacts, i, velocity),
+           rubbed = -state->latest->friction[i] * slip;
+    double belt = state->latest->friction[i] * contacts->belt_speed;
     state->latest->power[STRUT_POWER_FRICTION] += rubbed;
     state->latest->power[STRUT_POWER_BELT] += belt;
     state->latest->power[STRUT_POWER_EXCHANGED] += fabs(rubbed) + fabs(belt);
@@ -340,60 +351,62 @@ static void accumulate(const strut_model *model, const strut_state *state, const
 }
 
 void strut_rigid_accelerate(const strut_model *model, const strut_state *state, const double *q,
-                            const double *v, double *a) {
-  strut_rigid *g = state->rigid;
-  int32_t stuck = find_stuck(model, g, q, v), before = stuck;
+                            const double *velocity, double *acceleration) {
+  strut_rigid *rigid = state->rigid;
+  int32_t stuck = find_stuck(model, rigid, q, velocity), before = stuck;
   for (;;) {
-    g->failed = !hold(model, g, q, v, a, stuck) || g->failed;
-    if (g->failed) return;
-    if (!release(model, state, g, &stuck)) break;
-    strut_mass_solve(model, state->latest->force, a, state->buffers->mass_solve);
+    rigid->failed = !hold(model, rigid, q, velocity, acceleration, stuck) || rigid->failed;
+    if (rigid->failed) return;
+    if (!release(model, state, rigid, &stuck)) break;
+    strut_mass_solve(model, state->latest->force, acceleration, state->buffers->mass_solve);
   }
-  for (int32_t r = 0; r < g->bars; r++) g->tension[r] = -g->right[r];
-  for (int32_t k = 0; k < stuck; k++) state->latest->friction[g->stuck[k]] = g->right[g->bars + k];
-  rigid_spread(g, state->latest->force);
-  strut_mass_solve(model, state->latest->force, a, state->buffers->mass_solve);
-  if (state->balance && before) accumulate(model, state, q, v);
+  for (int32_t r = 0; r < rigid->bars; r++) rigid->tension[r] = -rigid->right[r];
+  for (int32_t k = 0; k < stuck; k++)
+    state->latest->friction[rigid->stuck[k]] = rigid->right[rigid->bars + k];
+  rigid_spread(rigid, state->latest->force);
+  strut_mass_solve(model, state->latest->force, acceleration, state->buffers->mass_solve);
+  if (state->balance && before) accumulate(model, state, q, velocity);
 }
 
 void strut_rigid_constrain(const strut_model *model, const strut_state *state, const double *q,
-                           const double *v) {
+                           const double *velocity) {
   memset(state->rigid->free, 0, (size_t)model->length * sizeof(double));
   strut_mass_solve(model, state->latest->force, state->rigid->free, state->buffers->mass_solve);
-  strut_rigid_accelerate(model, state, q, v, state->rigid->free);
+  strut_rigid_accelerate(model, state, q, velocity, state->rigid->free);
 }
 
 /* The largest departure of a length, relative, beyond rounding of the coordinates; fills right. */
-static double departure(strut_rigid *g, const double *q) {
+static double departure(strut_rigid *rigid, const double *q) {
   double most = 0.0;
-  for (int32_t r = 0; r < g->bars; r++) {
-    const double *a = q + g->at[g->end[r][0]], *b = q + g->at[g->end[r][1]];
+  for (int32_t r = 0; r < rigid->bars; r++) {
+    const double *a = q + rigid->at[rigid->end[r][0]], *b = q + rigid->at[rigid->end[r][1]];
     double noise = ROUNDING * (fabs(a[0]) + fabs(a[1]) + fabs(b[0]) + fabs(b[1]));
-    g->right[r] = g->length[r] - distance(g, r, q);
-    double left = fabs(g->right[r]) - noise;
-    if (!(left <= most * g->length[r])) most = left / g->length[r];
+    rigid->right[r] = rigid->length[r] - distance(rigid, r, q);
+    double left = fabs(rigid->right[r]) - noise;
+    if (!(left <= most * rigid->length[r])) most = left / rigid->length[r];
   }
   return most;
 }
 
-bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *v) {
+bool strut_rigid_project(const strut_model *model, strut_state *state, double *q,
+                         double *velocity) {
   enum { MOST_ROUNDS = 8 };
-  strut_rigid *g = state->rigid;
-  double left = departure(g, q);
+  strut_rigid *rigid = state->rigid;
+  double left = departure(rigid, q);
   for (int round = 0; left > NEAR && round < MOST_ROUNDS; round++) {
-    rigid_rows(g, q);
-    if (rigid_factorise(g) >= 0) break;
-    departure(g, q);
-    rigid_solve(g);
-    move(model, state->buffers->mass_solve, g, q);
-    left = departure(g, q);
+    rigid_rows(rigid, q);
+    if (rigid_factorise(rigid) >= 0) break;
+    departure(rigid, q);
+    rigid_solve(rigid);
+    move(model, state->buffers->mass_solve, rigid, q);
+    left = departure(rigid, q);
   }
-  rigid_rows(g, q);
-  if (g->failed || !(left <= FAR) || rigid_factorise(g) >= 0) {
+  rigid_rows(rigid, q);
+  if (rigid->failed || !(left <= FAR) || rigid_factorise(rigid) >= 0) {
     state->trouble = STRUT_FAILURE_RIGID;
     return false;
   }
-  strut_rigid_filter(model, g, v, state->buffers->mass_solve);
+  strut_rigid_filter(model, rigid, velocity, state->buffers->mass_solve);
   return true;
 }
 

@@ -53,16 +53,17 @@ STRUT_API strut_status strut_rigid_check(const strut_model *model, strut_error *
  * accumulates them. Where it cannot be done rigid->failed is set, and strut_rigid_project says so.
  */
 void strut_rigid_accelerate(const strut_model *model, const strut_state *state, const double *q,
-                            const double *v, double *a);
+                            const double *velocity, double *acceleration);
 /** The same from state->latest->force, where only forces are wanted. */
 void strut_rigid_constrain(const strut_model *model, const strut_state *state, const double *q,
-                           const double *v);
+                           const double *velocity);
 /** Bars with their rows factorised at q, for the filter; NULL: out of memory. */
 strut_rigid *strut_rigid_standing(const strut_model *model, const double *q, strut_arena *arena);
 /** Takes out of accelerations a (length) what would stretch bars; scratch: (length). */
-void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *a, double *scratch);
+void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *acceleration,
+                        double *scratch);
 /** Puts q back onto the lengths, to 1e-12 of them, and takes stretching out of v. False: trouble. */
-bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *v);
+bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *velocity);
 /** Adds the bars' tensions to `force`, (members). */
 void strut_rigid_add_tensions(const strut_rigid *rigid, double *force);
 /** That of one member [N]; 0 where it is no rigid bar. */

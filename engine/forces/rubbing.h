@@ -18,7 +18,7 @@ int32_t strut_rubbing_slide(const strut_model *model, int32_t item, const double
                             double b[STRUT_MOST_RUBBING]);
 /** Adds all this friction to the state's force, and its power; after the elements. */
 void strut_rubbing_add_forces(const strut_model *model, const strut_state *state, const double *q,
-                              const double *v);
+                              const double *velocity);
 /** How fast an entry slides at the state [m/s], and the force that presses it [N]; 0 where it does not touch. */
 double strut_rubbing_slip(const strut_model *model, const strut_state *state, int32_t item,
                           double *normal);
@@ -27,6 +27,6 @@ double strut_rubbing_bristle_decay(const strut_model *model, const strut_state *
                                    int32_t item);
 /** Writes the forces of feet over those of their nodes' contacts, which touch nothing themselves. */
 void strut_rubbing_show_feet(const strut_model *model, const strut_state *state, const double *q,
-                             const double *v);
+                             const double *velocity);
 
 #endif

@@ -12,23 +12,23 @@ typedef struct touching {
 
 /* Normal forces of those contacts first .. end - 1, of one node, that touch. */
 static touching push(const strut_model *model, const strut_state *state, const double *q,
-                     const double *v, int32_t first, int32_t end) {
-  const strut_contact_table *c = &model->contacts;
+                     const double *velocity, int32_t first, int32_t end) {
+  const strut_contact_table *contacts = &model->contacts;
   touching all = {0, state->buffers->near};
-  int32_t near = strut_contacts_near(c, first, end, q, state->latest->ground_motion, 0.0,
+  int32_t near = strut_contacts_near(contacts, first, end, q, state->latest->ground_motion, 0.0,
                                      state->buffers->near);
   for (int32_t k = 0; k < near; k++) {
     int32_t i = state->buffers->near[k];
     strut_contact_pose *pose = &state->latest->pose[i];
-    *pose = strut_contact_pose_at(c, i, q, state->latest->ground_motion, -1);
+    *pose = strut_contact_pose_at(contacts, i, q, state->latest->ground_motion, -1);
     if (!(pose->gap < 0.0)) continue;
-    const strut_contact_entry *e = &c->entry[i];
-    strut_vec2 u = strut_contact_velocity(c, i, v, state->latest->ground_motion);
-    const strut_law_ground_numbers numbers = strut_contact_numbers(e);
+    const strut_contact_entry *contact = &contacts->entry[i];
+    strut_vec2 u = strut_contact_velocity(contacts, i, velocity, state->latest->ground_motion);
+    const strut_law_ground_numbers numbers = strut_contact_numbers(contact);
     double into = strut_component(pose->axes.normal, u.x, u.y);
     double spring = strut_law_ground_spring(&numbers, pose->gap);
     double normal = spring + strut_law_ground_damper(&numbers, spring, into, true);
-    double *f = state->latest->force + c->at[i];
+    double *f = state->latest->force + contacts->at[i];
     f[0] += normal * pose->axes.normal[0], f[1] += normal * pose->axes.normal[1];
     state->latest->normal[i] = normal;
     state->latest->friction[i] = 0.0;
@@ -37,24 +37,27 @@ static touching push(const strut_model *model, const strut_state *state, const d
   return all;
 }
 
-static double slip_of(const strut_model *model, const strut_state *state, const double *v,
+static double slip_of(const strut_model *model, const strut_state *state, const double *velocity,
                       int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
-  strut_vec2 u = strut_contact_velocity(c, i, v, state->latest->ground_motion);
-  return strut_component(state->latest->pose[i].axes.tangent, u.x, u.y) - strut_contact_belt(c, i);
+  const strut_contact_table *contacts = &model->contacts;
+  strut_vec2 u = strut_contact_velocity(contacts, i, velocity, state->latest->ground_motion);
+  return strut_component(state->latest->pose[i].axes.tangent, u.x, u.y) -
+         strut_contact_belt(contacts, i);
 }
 
 /* Friction of contact i under the other forces on its node; returns its change. */
-static double rub(const strut_model *model, const strut_state *state, const double *v, int32_t i) {
+static double rub(const strut_model *model, const strut_state *state, const double *velocity,
+                  int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = strut_contact_entry_now(model, state, i);
+  const strut_contact_table *contacts = &model->contacts;
+  const strut_contact_entry *contact = strut_contact_entry_now(model, state, i);
   const double *t = state->latest->pose[i].axes.tangent;
-  double *f = state->latest->force + c->at[i], before = state->latest->friction[i];
-  if (e->friction.law == STRUT_FRICTION_NONE) return 0.0;
-  double applied = strut_component(t, f[0], f[1]) - before, slip = slip_of(model, state, v, i);
-  double friction = ground_friction(e, state->latest->normal[i], slip, applied, state->rigid);
+  double *f = state->latest->force + contacts->at[i], before = state->latest->friction[i];
+  if (contact->friction.law == STRUT_FRICTION_NONE) return 0.0;
+  double applied = strut_component(t, f[0], f[1]) - before,
+         slip = slip_of(model, state, velocity, i);
+  double friction = ground_friction(contact, state->latest->normal[i], slip, applied, state->rigid);
   f[0] += (friction - before) * t[0], f[1] += (friction - before) * t[1];
   state->latest->friction[i] = friction;
   return friction - before;
@@ -68,13 +71,14 @@ static bool can_hold(const strut_model *model, const strut_state *state, int32_t
 }
 
 /* Is contact i within its band, and does it hold against the other forces as they are now? */
-static bool sticks(const strut_model *model, const strut_state *state, const double *v, int32_t i) {
+static bool sticks(const strut_model *model, const strut_state *state, const double *velocity,
+                   int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
   const strut_friction *law = &strut_contact_entry_now(model, state, i)->friction;
   const double *t = state->latest->pose[i].axes.tangent,
                *f = state->latest->force + model->contacts.at[i];
   bool has_band = strut_friction_has_band(law->law);
-  return has_band && fabs(slip_of(model, state, v, i)) < law->stick_velocity &&
+  return has_band && fabs(slip_of(model, state, velocity, i)) < law->stick_velocity &&
          can_hold(model, state, i, state->latest->friction[i] - strut_component(t, f[0], f[1]));
 }
 
@@ -103,8 +107,8 @@ static double way_to_break(const strut_model *model, const strut_state *state, i
  * directions, or one of them breaks loose on the way there. One after the other they would go it the more
  * slowly the more alike their directions are.
  */
-static void hold_together(const strut_model *model, const strut_state *state, const double *v,
-                          int32_t a, int32_t b) {
+static void hold_together(const strut_model *model, const strut_state *state,
+                          const double *velocity, int32_t a, int32_t b) {
   assert(a != b);
   const double *ta = state->latest->pose[a].axes.tangent, *tb = state->latest->pose[b].axes.tangent;
   const double *f = state->latest->force + model->contacts.at[a];
@@ -124,61 +128,62 @@ static void hold_together(const strut_model *model, const strut_state *state, co
   double kinetic =
       strut_friction_kinetic(&strut_contact_entry_now(model, state, loose)->friction, -side);
   set_friction(model, state, loose, side * kinetic * state->latest->normal[loose]);
-  rub(model, state, v, first ? b : a);
+  rub(model, state, velocity, first ? b : a);
 }
 
 /* The same of those two of all that stick whose directions differ most. */
-static void hold_node(const strut_model *model, const strut_state *state, const double *v,
+static void hold_node(const strut_model *model, const strut_state *state, const double *velocity,
                       const touching *all) {
   int32_t a = -1, b = -1;
   double most = 0.0;
   for (int32_t k = 0; k < all->count; k++) {
     int32_t i = all->contact[k];
-    if (!sticks(model, state, v, i)) continue;
+    if (!sticks(model, state, velocity, i)) continue;
     for (int32_t m = k + 1; m < all->count; m++) {
       int32_t j = all->contact[m];
       const double *ti = state->latest->pose[i].axes.tangent,
                    *tj = state->latest->pose[j].axes.tangent;
       double area = fabs(ti[0] * tj[1] - ti[1] * tj[0]);
-      if (area > most && sticks(model, state, v, j)) most = area, a = i, b = j;
+      if (area > most && sticks(model, state, velocity, j)) most = area, a = i, b = j;
     }
   }
-  if (a >= 0) hold_together(model, state, v, a, b);
+  if (a >= 0) hold_together(model, state, velocity, a, b);
 }
 
 /* Friction of all contacts of a node, until they agree. */
-static void rub_all(const strut_model *model, const strut_state *state, const double *v,
+static void rub_all(const strut_model *model, const strut_state *state, const double *velocity,
                     const touching *all) {
   enum { MOST_SWEEPS = 60 };
   for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
     double changed = 0.0, largest = 0.0;
     for (int32_t k = 0; k < all->count; k++) {
       int32_t i = all->contact[k];
-      changed = fmax(changed, fabs(rub(model, state, v, i)));
+      changed = fmax(changed, fabs(rub(model, state, velocity, i)));
       largest = fmax(largest, fabs(state->latest->friction[i]));
     }
     if (changed <= 1e-15 * largest) return;
-    hold_node(model, state, v, all);
+    hold_node(model, state, velocity, all);
   }
 }
 
 /* Damper, friction, and what the ground's own motion and belt give to the structure. */
-static void accumulate(const strut_model *model, const strut_state *state, const double *v,
+static void accumulate(const strut_model *model, const strut_state *state, const double *velocity,
                        int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const strut_contact_pose *pose = &state->latest->pose[i];
-  const strut_ground_motion *own = strut_contact_motion(c, i, state->latest->ground_motion);
-  strut_vec2 u = strut_contact_velocity(c, i, v, state->latest->ground_motion);
+  const strut_ground_motion *own = strut_contact_motion(contacts, i, state->latest->ground_motion);
+  strut_vec2 u = strut_contact_velocity(contacts, i, velocity, state->latest->ground_motion);
   double normal = state->latest->normal[i], friction = state->latest->friction[i];
   double into = strut_component(pose->axes.normal, u.x, u.y);
-  double belt = strut_contact_belt(c, i),
+  double belt = strut_contact_belt(contacts, i),
          slip = strut_component(pose->axes.tangent, u.x, u.y) - belt;
   double moved = friction * belt;
   if (own)
     moved += normal * strut_component(pose->axes.normal, own->rate[0], own->rate[1]) +
              friction * strut_component(pose->axes.tangent, own->rate[0], own->rate[1]);
-  double damped = -(normal + c->entry[i].stiffness * pose->gap) * into, rubbed = -friction * slip;
+  double damped = -(normal + contacts->entry[i].stiffness * pose->gap) * into,
+         rubbed = -friction * slip;
   state->latest->power[STRUT_POWER_CONTACT] += damped;
   state->latest->power[STRUT_POWER_FRICTION] += rubbed;
   state->latest->power[STRUT_POWER_BELT] += moved;
@@ -186,25 +191,25 @@ static void accumulate(const strut_model *model, const strut_state *state, const
 }
 
 void strut_surfaces_add_forces(const strut_model *model, const strut_state *state,
-                               const double *restrict q, const double *restrict v) {
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t first = 0, end; first < c->count; first = end) {
-    end = strut_contacts_end_of_node(c, first);
-    const touching all = push(model, state, q, v, first, end);
+                               const double *restrict q, const double *restrict velocity) {
+  const strut_contact_table *contacts = &model->contacts;
+  for (int32_t first = 0, end; first < contacts->count; first = end) {
+    end = strut_contacts_end_of_node(contacts, first);
+    const touching all = push(model, state, q, velocity, first, end);
     if (all.count == 1)
-      rub(model, state, v, all.contact[0]);
+      rub(model, state, velocity, all.contact[0]);
     else if (all.count)
-      rub_all(model, state, v, &all);
+      rub_all(model, state, velocity, &all);
     for (int32_t k = 0; k < all.count && state->balance; k++)
-      accumulate(model, state, v, all.contact[k]);
+      accumulate(model, state, velocity, all.contact[k]);
   }
 }
 
-void strut_contact_observe(const strut_contact_table *c, int32_t i, const strut_state *state,
+void strut_contact_observe(const strut_contact_table *contacts, int32_t i, const strut_state *state,
                            double *gap, double *slip) {
   const strut_contact_pose pose =
-      strut_contact_pose_at(c, i, state->q, state->latest->ground_motion, -1);
-  strut_vec2 u = strut_contact_velocity(c, i, state->v, state->latest->ground_motion);
+      strut_contact_pose_at(contacts, i, state->q, state->latest->ground_motion, -1);
+  strut_vec2 u = strut_contact_velocity(contacts, i, state->v, state->latest->ground_motion);
   *gap = pose.gap;
-  *slip = strut_component(pose.axes.tangent, u.x, u.y) - strut_contact_belt(c, i);
+  *slip = strut_component(pose.axes.tangent, u.x, u.y) - strut_contact_belt(contacts, i);
 }

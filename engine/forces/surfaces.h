@@ -16,15 +16,15 @@
  * where several contacts of a node stick within Karnopp's band it is found for all of them together.
  */
 void strut_surfaces_add_forces(const strut_model *model, const strut_state *state,
-                               const double *restrict q, const double *restrict v);
+                               const double *restrict q, const double *restrict velocity);
 
 /** Velocity of a node against the surface of contact i: what the ground itself moves by is taken off. */
-static inline strut_vec2 strut_contact_velocity(const strut_contact_table *c, int32_t i,
-                                                const double *v,
+static inline strut_vec2 strut_contact_velocity(const strut_contact_table *contacts, int32_t i,
+                                                const double *velocity,
                                                 const strut_ground_motion *motion) {
-  assert(i >= 0 && i < c->count);
-  const double *at = v + c->at[i];
-  const strut_ground_motion *own = strut_contact_motion(c, i, motion);
+  assert(i >= 0 && i < contacts->count);
+  const double *at = velocity + contacts->at[i];
+  const strut_ground_motion *own = strut_contact_motion(contacts, i, motion);
   return own ? (strut_vec2){at[0] - own->rate[0], at[1] - own->rate[1]}
              : (strut_vec2){at[0], at[1]};
 }
@@ -35,7 +35,7 @@ static inline double strut_component(const double unit[2], double x, double y) {
 }
 
 /** Gap and sliding speed of a contact as a state stands. */
-void strut_contact_observe(const strut_contact_table *c, int32_t i, const strut_state *state,
+void strut_contact_observe(const strut_contact_table *contacts, int32_t i, const strut_state *state,
                            double *gap, double *slip);
 
 #endif

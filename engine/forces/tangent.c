@@ -54,13 +54,15 @@ void strut_force_set_contact(double stiffness, const strut_contact_pose *pose, s
 
 /* Does the member carry a force, of more than `least` if it is a cable? */
 static bool visit_member(const strut_force_visit *visit, strut_force *force) {
-  const strut_member_table *t = &visit->model->members;
+  const strut_member_table *members = &visit->model->members;
   int32_t j = force->index;
-  strut_member_pose pose = strut_member_pose_at(t, visit->rest, j, visit->q);
-  if (!pose.taut || (t->slack[j] == 0.0 && t->stiffness[j] * pose.stretch <= visit->least))
+  strut_member_pose pose = strut_member_pose_at(members, visit->rest, j, visit->q);
+  if (!pose.taut ||
+      (members->slack[j] == 0.0 && members->stiffness[j] * pose.stretch <= visit->least))
     return false;
-  strut_force_set_member(t->stiffness[j], strut_member_across_stiffness(t, visit->rest, j, &pose),
-                         pose.unit, pose.length, pose.stretch, force);
+  strut_force_set_member(members->stiffness[j],
+                         strut_member_across_stiffness(members, visit->rest, j, &pose), pose.unit,
+                         pose.length, pose.stretch, force);
   return true;
 }
 
@@ -88,18 +90,18 @@ static bool visit_element(const strut_force_visit *visit, strut_force *force) {
 }
 
 static bool visit_contact(strut_force_visit *visit, strut_force *force) {
-  const strut_contact_table *c = &visit->model->contacts;
+  const strut_contact_table *contacts = &visit->model->contacts;
   int32_t i = force->index;
   bool touching = visit->closed == STRUT_CLOSED_TOUCHING;
-  if (c->surface && !touching) {
+  if (contacts->surface && !touching) {
     if (i == visit->surface_end)
-      visit->surface_end = strut_contacts_nearest(c, i, visit->q, visit->near);
+      visit->surface_end = strut_contacts_nearest(contacts, i, visit->q, visit->near);
     if (i != visit->near[0] && i != visit->near[1]) return false;
   }
-  strut_contact_pose pose = strut_contact_pose_at(c, i, visit->q, NULL, -1);
-  if (touching && (!(pose.gap < 0.0) || -c->entry[i].stiffness * pose.gap <= visit->least))
+  strut_contact_pose pose = strut_contact_pose_at(contacts, i, visit->q, NULL, -1);
+  if (touching && (!(pose.gap < 0.0) || -contacts->entry[i].stiffness * pose.gap <= visit->least))
     return false;
-  strut_force_set_contact(c->entry[i].stiffness, &pose, force);
+  strut_force_set_contact(contacts->entry[i].stiffness, &pose, force);
   return true;
 }
 
@@ -233,12 +235,12 @@ void strut_tangent_find_places(const strut_model *model, const int32_t *row_of, 
 
 /* Normal force of a contact at rest, for the largest step: a body rests on two of them. */
 static double resting_force(const strut_model *model) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const double *g = model->scene->gravity;
-  double mass = 0.0, down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
-  if (c->surface) down = hypot(g[0], g[1]);
+  double mass = 0.0, down = -(g[0] * contacts->normal[0] + g[1] * contacts->normal[1]);
+  if (contacts->surface) down = hypot(g[0], g[1]);
   for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
-  return down > 0.0 ? mass * down / (c->count > 1 ? 2.0 : 1.0) : 0.0;
+  return down > 0.0 ? mass * down / (contacts->count > 1 ? 2.0 : 1.0) : 0.0;
 }
 
 typedef struct assembly {
@@ -252,44 +254,45 @@ typedef struct assembly {
 } assembly;
 
 /* matrix: what damps a contact with the node's weight on it; false: nothing does. */
-static bool damp_contact(const assembly *a, const strut_force *contact, double *matrix) {
-  const strut_contact_entry *e = &a->model->contacts.entry[contact->index];
-  double damper = a->undamped ? 0.0 : contact->damping + a->weight * e->dissipation;
-  double slide = strut_friction_slope(&e->friction, a->weight);
+static bool damp_contact(const assembly *self, const strut_force *contact, double *matrix) {
+  const strut_contact_entry *e = &self->model->contacts.entry[contact->index];
+  double damper = self->undamped ? 0.0 : contact->damping + self->weight * e->dissipation;
+  double slide = strut_friction_slope(&e->friction, self->weight);
   const double *n = contact->pose.b, *t = contact->side;
   for (int r = 0; r < 2; r++)
     for (int c = 0; c < 2; c++) matrix[2 * r + c] = damper * (n[r] * n[c]) + slide * t[r] * t[c];
-  return !a->undamped || slide > 0.0;
+  return !self->undamped || slide > 0.0;
 }
 
-static void add_force(assembly *a, const strut_force *force) {
+static void add_force(assembly *self, const strut_force *force) {
   double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   const strut_element *element =
-      force->kind == STRUT_FORCE_ELEMENT ? &a->model->elements.element[force->index] : NULL;
-  strut_force_stiffness(a->model, force, a->q, matrix);
-  if (a->stiffest && element &&
+      force->kind == STRUT_FORCE_ELEMENT ? &self->model->elements.element[force->index] : NULL;
+  strut_force_stiffness(self->model, force, self->q, matrix);
+  if (self->stiffest && element &&
       strut_has_capstan(element)) { /* a cable that sticks at its guides */
-    strut_capstan_stiffness(a->model, force->index, a->q, matrix);
-    strut_force_bend(a->model, force, a->q, 1.0, matrix);
+    strut_capstan_stiffness(self->model, force->index, self->q, matrix);
+    strut_force_bend(self->model, force, self->q, 1.0, matrix);
   }
-  strut_force_add(force, matrix, a->row_of, &a->stiffness);
+  strut_force_add(force, matrix, self->row_of, &self->stiffness);
   bool damps =
-      force->kind == STRUT_FORCE_CONTACT ? damp_contact(a, force, matrix) : force->damping > 0.0;
+      force->kind == STRUT_FORCE_CONTACT ? damp_contact(self, force, matrix) : force->damping > 0.0;
   if (damps && force->kind != STRUT_FORCE_CONTACT)
     strut_force_square(force, force->damping, matrix);
-  if (damps) strut_force_add(force, matrix, a->row_of, &a->damping);
+  if (damps) strut_force_add(force, matrix, self->row_of, &self->damping);
 }
 
 /* Maxwell branches, as stiff as they are in fast motions. */
-static void add_maxwell(assembly *a, const double *rest) {
-  const strut_feedback_table *f = &a->model->feedback;
+static void add_maxwell(assembly *self, const double *rest) {
+  const strut_feedback_table *feedback = &self->model->feedback;
   strut_force force;
   double matrix[16];
-  for (int32_t i = 0; i < f->maxwell_count; i++) {
-    strut_force_begin(a->model, f->maxwell[i].member, &force);
-    strut_member_pose pose = strut_member_pose_at(&a->model->members, rest, force.index, a->q);
-    strut_member_stiffness(f->maxwell[i].stiffness, 0.0, pose.unit, matrix);
-    strut_force_add(&force, matrix, a->row_of, &a->stiffness);
+  for (int32_t i = 0; i < feedback->maxwell_count; i++) {
+    strut_force_begin(self->model, feedback->maxwell[i].member, &force);
+    strut_member_pose pose =
+        strut_member_pose_at(&self->model->members, rest, force.index, self->q);
+    strut_member_stiffness(feedback->maxwell[i].stiffness, 0.0, pose.unit, matrix);
+    strut_force_add(&force, matrix, self->row_of, &self->stiffness);
   }
 }
 
@@ -297,19 +300,19 @@ static void add_maxwell(assembly *a, const double *rest) {
 enum { RUBBING_ENTRIES = STRUT_MOST_RUBBING * (STRUT_MOST_RUBBING + 1) / 2 };
 
 /* Friction of feet, nodes and collisions that rest, as far as it is a damper or bristles. */
-static void add_rubbing(assembly *a) {
-  for (int32_t i = 0; i < a->model->rubbing.count; i++) {
-    const strut_rubbing_entry *f = &a->model->rubbing.item[i];
+static void add_rubbing(assembly *self) {
+  for (int32_t i = 0; i < self->model->rubbing.count; i++) {
+    const strut_rubbing_entry *entry = &self->model->rubbing.item[i];
     double b[STRUT_MOST_RUBBING], k[STRUT_MOST_RUBBING * STRUT_MOST_RUBBING];
-    double slide = strut_friction_slope(&f->friction, resting_force(a->model));
+    double slide = strut_friction_slope(&entry->friction, resting_force(self->model));
     strut_force force;
-    strut_force_begin(a->model, a->model->members.count + f->element, &force);
-    int32_t side = 2 * strut_rubbing_slide(a->model, i, a->q, b);
+    strut_force_begin(self->model, self->model->members.count + entry->element, &force);
+    int32_t side = 2 * strut_rubbing_slide(self->model, i, self->q, b);
     for (int32_t r = 0; r < side * side; r++) k[r] = slide * b[r / side] * b[r % side];
-    strut_force_add(&force, k, a->row_of, &a->damping);
-    double bend = strut_friction_stiffness(&f->friction, resting_force(a->model));
+    strut_force_add(&force, k, self->row_of, &self->damping);
+    double bend = strut_friction_stiffness(&entry->friction, resting_force(self->model));
     for (int32_t r = 0; r < side * side; r++) k[r] = bend * b[r / side] * b[r % side];
-    if (bend > 0.0) strut_force_add(&force, k, a->row_of, &a->stiffness);
+    if (bend > 0.0) strut_force_add(&force, k, self->row_of, &self->stiffness);
   }
 }
 
@@ -320,43 +323,43 @@ static void add_rubbing(assembly *a) {
 enum { MOST_AT_ONCE = 1 << 20 };
 
 /* Collects the contributions to the columns [first, end). */
-static void collect_columns(assembly *a, const double *rest, strut_closed closed, int32_t first,
+static void collect_columns(assembly *self, const double *rest, strut_closed closed, int32_t first,
                             int32_t end) {
-  a->stiffness.count = a->damping.count = 0;
-  a->stiffness.first = a->damping.first = first;
-  a->stiffness.end = a->damping.end = end;
+  self->stiffness.count = self->damping.count = 0;
+  self->stiffness.first = self->damping.first = first;
+  self->stiffness.end = self->damping.end = end;
   strut_force_visit visit = {
-      .model = a->model, .q = a->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
-  for (const strut_force *force; (force = strut_force_next(&visit));) add_force(a, force);
-  if (a->stiffest) add_maxwell(a, rest);
-  if (a->stiffest) add_rubbing(a);
-  strut_mass_damping_add(a->model, a->row_of, &a->damping);
+      .model = self->model, .q = self->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
+  for (const strut_force *force; (force = strut_force_next(&visit));) add_force(self, force);
+  if (self->stiffest) add_maxwell(self, rest);
+  if (self->stiffest) add_rubbing(self);
+  strut_mass_damping_add(self->model, self->row_of, &self->damping);
 }
 
 /* Builds both matrices a stretch of columns at a time. */
-static bool build_by_stretches(assembly *a, const double *rest, strut_closed closed,
+static bool build_by_stretches(assembly *self, const double *rest, strut_closed closed,
                                strut_arena *arena, strut_tangent *tangent) {
-  a->stiffness.counting = a->damping.counting = true;
-  collect_columns(a, rest, closed, 0, tangent->n);
-  a->stiffness.counting = a->damping.counting = false;
-  int32_t n = tangent->n, stretches = (int32_t)(a->stiffness.count / MOST_AT_ONCE) + 1;
+  self->stiffness.counting = self->damping.counting = true;
+  collect_columns(self, rest, closed, 0, tangent->n);
+  self->stiffness.counting = self->damping.counting = false;
+  int32_t n = tangent->n, stretches = (int32_t)(self->stiffness.count / MOST_AT_ONCE) + 1;
   int32_t columns = n / stretches + 1;
-  tangent->stiffness = strut_sparse_begin(n, a->stiffness.count, arena);
-  tangent->damping = strut_sparse_begin(n, a->damping.count, arena);
+  tangent->stiffness = strut_sparse_begin(n, self->stiffness.count, arena);
+  tangent->damping = strut_sparse_begin(n, self->damping.count, arena);
   if (!tangent->stiffness || !tangent->damping) return false;
   for (int32_t first = 0; first < n; first += columns) {
-    collect_columns(a, rest, closed, first, n - first < columns ? n : first + columns);
-    strut_sparse_append(tangent->stiffness, &a->stiffness);
-    strut_sparse_append(tangent->damping, &a->damping);
+    collect_columns(self, rest, closed, first, n - first < columns ? n : first + columns);
+    strut_sparse_append(tangent->stiffness, &self->stiffness);
+    strut_sparse_append(tangent->damping, &self->damping);
   }
   return true;
 }
 
-static bool build_at_once(assembly *a, const double *rest, strut_closed closed, strut_arena *arena,
-                          strut_tangent *tangent) {
-  collect_columns(a, rest, closed, 0, tangent->n);
-  tangent->stiffness = strut_sparse_build(tangent->n, &a->stiffness, arena);
-  tangent->damping = strut_sparse_build(tangent->n, &a->damping, arena);
+static bool build_at_once(assembly *self, const double *rest, strut_closed closed,
+                          strut_arena *arena, strut_tangent *tangent) {
+  collect_columns(self, rest, closed, 0, tangent->n);
+  tangent->stiffness = strut_sparse_build(tangent->n, &self->stiffness, arena);
+  tangent->damping = strut_sparse_build(tangent->n, &self->damping, arena);
   return tangent->stiffness && tangent->damping;
 }
 

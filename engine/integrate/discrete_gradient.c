@@ -34,19 +34,20 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
 void strut_discrete_gradient_begin(const strut_model *model, const strut_state *state,
                                    const double *q, double begin, double h,
                                    strut_discrete_gradient *step) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   step->begin = begin, step->h = h;
   if (model->terms & STRUT_TERM_FEEDBACK) {
     strut_feedback_apply(model, state, begin, q, state->v);
-    memcpy(step->rest0, state->latest->rest, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest0, state->latest->rest, (size_t)members->slots * sizeof(double));
   } else if (model->terms & STRUT_TERM_DRIVE) {
     if (begin != state->latest->drive_time) strut_drive_apply(model, state, begin);
-    memcpy(step->rest0, state->latest->rest, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest0, state->latest->rest, (size_t)members->slots * sizeof(double));
     strut_drive_apply(model, state, begin + 0.5 * h);
-    memcpy(step->rest_rate, state->latest->rest_rate, (size_t)t->slots * sizeof(double));
+    memcpy(step->rest_rate, state->latest->rest_rate, (size_t)members->slots * sizeof(double));
     strut_drive_apply(model, state, begin + h);
   }
-  for (int32_t j = 0; j < t->count; j++) step->length0[j] = strut_member_length(t, j, q);
+  for (int32_t j = 0; j < members->count; j++)
+    step->length0[j] = strut_member_length(members, j, q);
   for (int32_t i = 0; i < model->elements.count; i++) {
     strut_element_pose pose;
     strut_element_evaluate(model, i, step->rest0, q, state->history.turn[i], &pose);
@@ -65,35 +66,38 @@ typedef struct stretching {
   double s0, s1, stiffness, damping, rate, h;
 } stretching;
 
-static average of_taut(const stretching *m) {
-  double elastic = 0.5 * m->stiffness * (m->s0 + m->s1);
-  return (average){elastic + m->damping * m->rate, elastic, 0.5 * m->stiffness + m->damping / m->h};
+static average of_taut(const stretching *self) {
+  double elastic = 0.5 * self->stiffness * (self->s0 + self->s1);
+  return (average){elastic + self->damping * self->rate, elastic,
+                   0.5 * self->stiffness + self->damping / self->h};
 }
 
 /* Slack at one end it pulls for a part of the step, in which it has half of that end's stretch. */
-static average of_cable(const stretching *m) {
-  if (!(m->s0 > 0.0 || m->s1 > 0.0)) return (average){0.0, 0.0, 0.0};
+static average of_cable(const stretching *self) {
+  if (!(self->s0 > 0.0 || self->s1 > 0.0)) return (average){0.0, 0.0, 0.0};
   average a;
-  if (m->s0 > 0.0 && m->s1 > 0.0) {
-    a = of_taut(m);
+  if (self->s0 > 0.0 && self->s1 > 0.0) {
+    a = of_taut(self);
   } else {
-    bool tightens = m->s1 > 0.0;
-    double change = m->s1 - m->s0, end = tightens ? m->s1 : m->s0, part = end / fabs(change);
-    double elastic = 0.5 * m->stiffness * end * part;
+    bool tightens = self->s1 > 0.0;
+    double change = self->s1 - self->s0, end = tightens ? self->s1 : self->s0,
+           part = end / fabs(change);
+    double elastic = 0.5 * self->stiffness * end * part;
     double grows = tightens ? part * (2.0 - part) : part * part;
     double part_grows = (tightens ? 1.0 - part : -part) / change;
-    a = (average){elastic + m->damping * m->rate * part, elastic,
-                  0.5 * m->stiffness * grows + m->damping * (part / m->h + m->rate * part_grows)};
+    a = (average){
+        elastic + self->damping * self->rate * part, elastic,
+        0.5 * self->stiffness * grows + self->damping * (part / self->h + self->rate * part_grows)};
     a.slope = fmax(a.slope, 0.0);
   }
   return a.tension > 0.0 ? a : (average){0.0, a.elastic, 0.0};
 }
 
 /* The drive moves the spring's rest length by all of its change, the damper's by its rate. */
-static void add_powers(const strut_state *state, const average *a, const stretching *m,
+static void add_powers(const strut_state *state, const average *self, const stretching *m,
                        double change, double rest_rate) {
-  double damped = a->tension - a->elastic, lost = damped * m->rate;
-  double drive = -a->elastic * change / m->h - damped * rest_rate;
+  double damped = self->tension - self->elastic, lost = damped * m->rate;
+  double drive = -self->elastic * change / m->h - damped * rest_rate;
   state->latest->power[STRUT_POWER_DRIVE] += drive;
   state->latest->power[STRUT_POWER_MEMBERS] += lost;
   state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
@@ -102,19 +106,19 @@ static void add_powers(const strut_state *state, const average *a, const stretch
 static void add_members(const strut_model *model, const strut_state *state,
                         strut_discrete_gradient *step, const double *restrict q0,
                         const double *restrict q1) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   double *restrict force = state->latest->force;
-  for (int32_t j = 0; j < t->count; j++) {
-    uint32_t a = t->from[j], b = t->to[j];
-    strut_vec2 d = strut_member_span(t, j, q1);
+  for (int32_t j = 0; j < members->count; j++) {
+    uint32_t a = members->from[j], b = members->to[j];
+    strut_vec2 d = strut_member_span(members, j, q1);
     double length = strut_vec2_length(d);
     const stretching m = {.s0 = step->length0[j] - step->rest0[j],
                           .s1 = length - state->latest->rest[j],
-                          .stiffness = t->stiffness[j],
-                          .damping = t->damping[j],
+                          .stiffness = members->stiffness[j],
+                          .damping = members->damping[j],
                           .rate = (length - step->length0[j]) / step->h - step->rest_rate[j],
                           .h = step->h};
-    average now = t->slack[j] < 0.0 ? of_taut(&m) : of_cable(&m);
+    average now = members->slack[j] < 0.0 ? of_taut(&m) : of_cable(&m);
     double x = d.x + (q0[b] - q0[a]), y = d.y + (q0[b + 1] - q0[a + 1]);
     double lengths = step->length0[j] + length;
     double density = lengths > 0.0 ? now.tension / lengths : 0.0;
@@ -128,10 +132,10 @@ static void add_members(const strut_model *model, const strut_state *state,
 }
 
 /* Energy of an element at a stretch from a natural strain. */
-static double energy_at(const strut_element *e, double natural, double stretch) {
-  if (e->carries && !(e->carries * stretch > 0.0)) return 0.0;
-  double strain = strut_element_origin(e, natural) + stretch;
-  return strut_law_respond(e->law, &e->numbers, strain, natural, -1).energy;
+static double energy_at(const strut_element *element, double natural, double stretch) {
+  if (element->carries && !(element->carries * stretch > 0.0)) return 0.0;
+  double strain = strut_element_origin(element, natural) + stretch;
+  return strut_law_respond(element->law, &element->numbers, strain, natural, -1).energy;
 }
 
 /* Does the force depend on the natural strain beside the stretch? */
@@ -143,50 +147,51 @@ static bool law_scales(strut_law_kind law) {
  * The end of a step at which the element's force is averaged. A law that does not depend on the stretch alone
  * has the natural strain half-way, so that the method keeps its order.
  */
-static strut_element_pose averaged_end(const strut_element *e, const strut_element_pose *end,
+static strut_element_pose averaged_end(const strut_element *element, const strut_element_pose *end,
                                        double natural0) {
   strut_element_pose at = {.strain = end->strain,
                            .natural = end->natural,
                            .force = end->force,
                            .energy = end->energy,
                            .slope = end->slope};
-  if (!law_scales(e->law) || natural0 == end->natural) return at;
-  double stretch = end->strain - strut_element_origin(e, end->natural);
+  if (!law_scales(element->law) || natural0 == end->natural) return at;
+  double stretch = end->strain - strut_element_origin(element, end->natural);
   at.natural = 0.5 * (natural0 + end->natural);
-  at.strain = strut_element_origin(e, at.natural) + stretch;
-  strut_law_response r = strut_law_respond(e->law, &e->numbers, at.strain, at.natural, -1);
-  bool beyond = !e->carries || e->carries * stretch > 0.0;
-  bool acts = beyond && (!e->carries || e->carries * r.force > 0.0);
+  at.strain = strut_element_origin(element, at.natural) + stretch;
+  strut_law_response r =
+      strut_law_respond(element->law, &element->numbers, at.strain, at.natural, -1);
+  bool beyond = !element->carries || element->carries * stretch > 0.0;
+  bool acts = beyond && (!element->carries || element->carries * r.force > 0.0);
   at.energy = beyond ? r.energy : 0.0;
   at.force = acts ? r.force : 0.0, at.slope = acts ? r.slope : 0.0;
   return at;
 }
 
 /* The energy's change over the stretch's; where that is rounding, the force half-way. */
-static double average_force(const strut_element *e, const strut_element_pose *end, double stretch0,
-                            double energy0) {
-  double origin = strut_element_origin(e, end->natural);
+static double average_force(const strut_element *element, const strut_element_pose *end,
+                            double stretch0, double energy0) {
+  double origin = strut_element_origin(element, end->natural);
   double stretch1 = end->strain - origin, change = stretch1 - stretch0;
   double scale = fmax(fabs(stretch0), fabs(stretch1)) + 1e-300;
   if (fabs(change) > 1e-6 * scale) return (end->energy - energy0) / change;
   double middle = origin + 0.5 * (stretch0 + stretch1);
-  if (e->carries && !(e->carries * (middle - origin) > 0.0)) return 0.0;
-  return strut_law_respond(e->law, &e->numbers, middle, end->natural, -1).force;
+  if (element->carries && !(element->carries * (middle - origin) > 0.0)) return 0.0;
+  return strut_law_respond(element->law, &element->numbers, middle, end->natural, -1).force;
 }
 
 /* What that changes by with the strain at the end: exact, but where it would be rounding. */
-static double average_slope(const strut_element *e, const strut_element_pose *end, double stretch0,
-                            double elastic) {
-  double stretch1 = end->strain - strut_element_origin(e, end->natural);
+static double average_slope(const strut_element *element, const strut_element_pose *end,
+                            double stretch0, double elastic) {
+  double stretch1 = end->strain - strut_element_origin(element, end->natural);
   double change = stretch1 - stretch0;
   double scale = fmax(fabs(stretch0), fabs(stretch1));
   return fabs(change) > 1e-3 * scale ? (end->force - elastic) / change : 0.5 * end->slope;
 }
 
 /* The part of the step in which an element that carries one sign is beyond its natural strain. */
-static double part_beyond(const strut_element *e, double stretch0, double stretch1) {
-  double s0 = e->carries * stretch0, s1 = e->carries * stretch1;
-  if (!e->carries || (s0 > 0.0 && s1 > 0.0)) return 1.0;
+static double part_beyond(const strut_element *element, double stretch0, double stretch1) {
+  double s0 = element->carries * stretch0, s1 = element->carries * stretch1;
+  if (!element->carries || (s0 > 0.0 && s1 > 0.0)) return 1.0;
   return s0 > 0.0 || s1 > 0.0 ? fmax(s0, s1) / fabs(s1 - s0) : 0.0;
 }
 
@@ -198,36 +203,36 @@ static void add_element(const strut_model *model, const strut_state *state,
                         strut_discrete_gradient *step, int32_t i, const double *restrict q0,
                         const double *restrict q1) {
   assert(i >= 0 && i < model->elements.count);
-  const strut_element *e = &model->elements.element[i];
-  const uint32_t *at = model->elements.at + e->first;
+  const strut_element *element = &model->elements.element[i];
+  const uint32_t *at = model->elements.at + element->first;
   strut_element_pose end, middle;
   strut_element_evaluate(model, i, state->latest->rest, q1, step->strain0[i], &end);
   strut_element_evaluate(model, i, state->latest->rest, step->middle, step->strain0[i], &middle);
-  bool load = e->role == STRUT_ELEMENT_LOAD; /* its moment is that half-way */
-  double natural0 = e->slot >= 0 && !load ? step->rest0[e->slot] : end.natural;
+  bool load = element->role == STRUT_ELEMENT_LOAD; /* its moment is that half-way */
+  double natural0 = element->slot >= 0 && !load ? step->rest0[element->slot] : end.natural;
   double square = 0.0, work = 0.0;
-  double rest_rate = e->slot >= 0 ? step->rest_rate[e->slot] : 0.0;
-  double origin0 = strut_element_origin(e, natural0),
-         origin1 = strut_element_origin(e, end.natural);
-  if (strut_law_is_of_cells(e->law)) rest_rate = 0.0; /* its drive is all excess */
+  double rest_rate = element->slot >= 0 ? step->rest_rate[element->slot] : 0.0;
+  double origin0 = strut_element_origin(element, natural0),
+         origin1 = strut_element_origin(element, end.natural);
+  if (strut_law_is_of_cells(element->law)) rest_rate = 0.0; /* its drive is all excess */
   double change = end.strain - step->strain0[i], rate = change / step->h - rest_rate;
-  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+  for (int32_t k = 0; k < 2 * element->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
     double d = q1[c] - q0[c];
     square += d * d, work += middle.b[k] * d;
   }
   double more = square > 0.0 ? (change - work) / square : 0.0;
   double stretch0 = step->strain0[i] - origin0, stretch1 = end.strain - origin1;
-  strut_element_pose at1 = averaged_end(e, &end, natural0);
-  double energy0 = energy_at(e, at1.natural, stretch0);
-  double elastic = average_force(e, &at1, stretch0, energy0);
-  double damping = e->damping * part_beyond(e, stretch0, stretch1);
+  strut_element_pose at1 = averaged_end(element, &end, natural0);
+  double energy0 = energy_at(element, at1.natural, stretch0);
+  double elastic = average_force(element, &at1, stretch0, energy0);
+  double damping = element->damping * part_beyond(element, stretch0, stretch1);
   double force = elastic + damping * rate;
-  bool none = e->carries && !(e->carries * force > 0.0);
+  bool none = element->carries && !(element->carries * force > 0.0);
   if (none) force = 0.0;
-  double slope = average_slope(e, &at1, stretch0, elastic) + damping / step->h;
+  double slope = average_slope(element, &at1, stretch0, elastic) + damping / step->h;
   step->element_slope[i] = none ? 0.0 : fmax(slope, 0.0);
-  for (int32_t k = 0; k < 2 * e->nodes; k++) {
+  for (int32_t k = 0; k < 2 * element->nodes; k++) {
     uint32_t c = at[k / 2] + (uint32_t)(k % 2);
     state->latest->force[c] -= force * (middle.b[k] + more * (q1[c] - q0[c]));
   }
@@ -297,9 +302,9 @@ void strut_discrete_gradient_forces(const strut_model *model, const strut_state 
 
 void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,
                                       double *tension) {
-  const strut_member_table *t = &model->members;
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose pose = strut_member_pose_at(t, state->latest->rest, j, state->q);
-    tension[j] = strut_member_elastic_force(t, j, &pose);
+  const strut_member_table *members = &model->members;
+  for (int32_t j = 0; j < members->count; j++) {
+    strut_member_pose pose = strut_member_pose_at(members, state->latest->rest, j, state->q);
+    tension[j] = strut_member_elastic_force(members, j, &pose);
   }
 }

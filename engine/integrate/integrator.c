@@ -127,9 +127,9 @@ static void update_on_grid(const strut_integrator *method, const strut_model *mo
 
 void strut_integrator_advance(const strut_integrator *method, const strut_model *model,
                               strut_state *state, void *workspace, double dt, int64_t count) {
-  const strut_feedback_table *f = &model->feedback;
-  bool watched = (f->trigger_count || f->relay_count) && !method->events;
-  if (!watched && (!f->sampled_count || method->events)) {
+  const strut_feedback_table *feedback = &model->feedback;
+  bool watched = (feedback->trigger_count || feedback->relay_count) && !method->events;
+  if (!watched && (!feedback->sampled_count || method->events)) {
     method->advance(model, state, workspace, dt, count);
     return;
   }
@@ -147,15 +147,16 @@ strut_status strut_integrator_check_samples(const strut_integrator *method,
                                             const strut_model *model, double dt,
                                             strut_error *error) {
   for (int32_t i = 0; i < model->feedback.sampled_count && !method->events; i++) {
-    const strut_signal *s = &model->scene->signals[model->feedback.sampled[i]];
-    double steps = s->every / dt, whole = round(steps);
+    const strut_signal *signal = &model->scene->signals[model->feedback.sampled[i]];
+    double steps = signal->every / dt, whole = round(steps);
     if (whole >= 1.0 && fabs(steps - whole) <= 1e-9 * whole) continue;
     return strut_fail(
         error, STRUT_USAGE,
         "%s%s%s is sampled every %g s, which is no multiple of the step of %.9g s that %s "
         "takes; choose a step of %.9g s, or a method with events, such as rk4-events",
-        s->name ? "signal '" : "a signal", s->name ? s->name : "", s->name ? "'" : "", s->every, dt,
-        method->name, s->every / fmax(1.0, ceil(steps - 1e-9)));
+        signal->name ? "signal '" : "a signal", signal->name ? signal->name : "",
+        signal->name ? "'" : "", signal->every, dt, method->name,
+        signal->every / fmax(1.0, ceil(steps - 1e-9)));
   }
   return STRUT_OK;
 }

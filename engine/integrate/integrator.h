@@ -103,13 +103,14 @@ STRUT_API strut_status strut_integrator_check_samples(const strut_integrator *me
                                                       const strut_model *model, double dt,
                                                       strut_error *error);
 /** The settings of an experiment's method. */
-static inline strut_integrator_settings strut_integrator_settings_of(const strut_experiment *e) {
-  return (strut_integrator_settings){.step = e->step,
-                                     .tolerance = e->tolerance,
-                                     .refine = e->refine,
-                                     .refine_time = e->refine_time,
-                                     .refine_rate = e->refine_rate,
-                                     .refine_memory = e->refine_memory};
+static inline strut_integrator_settings strut_integrator_settings_of(
+    const strut_experiment *experiment) {
+  return (strut_integrator_settings){.step = experiment->step,
+                                     .tolerance = experiment->tolerance,
+                                     .refine = experiment->refine,
+                                     .refine_time = experiment->refine_time,
+                                     .refine_rate = experiment->refine_rate,
+                                     .refine_memory = experiment->refine_memory};
 }
 /**
  * Can the experiment's method run the model? STRUT_USAGE, with what to change, where there is no such

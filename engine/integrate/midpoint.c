@@ -43,7 +43,7 @@ static size_t mass_entries(const strut_model *model) {
 
 /* M with room for what members add: the pattern of the step's matrix. */
 static bool make_pattern(const strut_model *model, const int32_t *row_of, strut_arena *arena,
-                         strut_midpoint_matrix *m) {
+                         strut_midpoint_matrix *matrix) {
   strut_arena scratch = {0};
   strut_triplets sum = {0};
   size_t most = strut_tangent_entries(model, false) + mass_entries(model);
@@ -51,45 +51,48 @@ static bool make_pattern(const strut_model *model, const int32_t *row_of, strut_
   if (good) {
     add_masses(model, row_of, &sum);
     strut_tangent_add_pattern(model, row_of, false, &sum);
-    m->matrix = strut_sparse_build(m->n, &sum, arena);
+    matrix->matrix = strut_sparse_build(matrix->n, &sum, arena);
   }
   strut_arena_free(&scratch);
-  return good && m->matrix;
+  return good && matrix->matrix;
 }
 
-static bool make_members(const strut_model *model, strut_arena *arena, strut_midpoint_matrix *m) {
-  const strut_member_table *t = &model->members;
-  m->lightness = strut_arena_allocate(arena, (size_t)t->count, sizeof *m->lightness);
-  m->direction = strut_arena_allocate(arena, (size_t)t->count, sizeof *m->direction);
-  m->slope = strut_arena_allocate(arena, (size_t)t->count, sizeof *m->slope);
-  if (!m->lightness || !m->direction || !m->slope) return false;
-  for (int32_t j = 0; j < t->count; j++)
+static bool make_members(const strut_model *model, strut_arena *arena,
+                         strut_midpoint_matrix *matrix) {
+  const strut_member_table *members = &model->members;
+  matrix->lightness =
+      strut_arena_allocate(arena, (size_t)members->count, sizeof *matrix->lightness);
+  matrix->direction =
+      strut_arena_allocate(arena, (size_t)members->count, sizeof *matrix->direction);
+  matrix->slope = strut_arena_allocate(arena, (size_t)members->count, sizeof *matrix->slope);
+  if (!matrix->lightness || !matrix->direction || !matrix->slope) return false;
+  for (int32_t j = 0; j < members->count; j++)
     for (int e = 0; e < 2; e++) {
-      uint32_t at = e ? t->to[j] : t->from[j];
+      uint32_t at = e ? members->to[j] : members->from[j];
       if (!model->fixed[at] || !model->fixed[at + 1])
-        m->lightness[j] += 1.0 / model->weight[at / 2];
+        matrix->lightness[j] += 1.0 / model->weight[at / 2];
     }
   return true;
 }
 
 /* In the arena; false: out of memory. */
 static bool strut_midpoint_matrix_create(const strut_model *model, strut_arena *arena,
-                                         strut_midpoint_matrix *m) {
+                                         strut_midpoint_matrix *matrix) {
   size_t both = (size_t)model->length, entries_most = strut_tangent_entries(model, false);
   int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
-  m->coordinate = strut_arena_allocate(arena, both, sizeof *m->coordinate);
-  m->place = strut_arena_allocate(arena, entries_most, sizeof *m->place);
-  if (!row_of || !m->coordinate || !m->place) return false;
-  m->n = strut_number_free(model, NULL, row_of, m->coordinate);
-  if (m->n == 0) return true;
-  if (!make_members(model, arena, m)) return false;
-  if (!make_pattern(model, row_of, arena, m)) return false;
-  size_t entries = (size_t)m->matrix->start[m->n];
-  m->mass = strut_arena_allocate(arena, entries, sizeof *m->mass);
-  m->factor = strut_refactor_create(m->matrix, arena);
-  if (!m->mass || !m->factor) return false;
-  memcpy(m->mass, m->matrix->value, entries * sizeof *m->mass);
-  strut_tangent_find_places(model, row_of, false, m->matrix, m->place);
+  matrix->coordinate = strut_arena_allocate(arena, both, sizeof *matrix->coordinate);
+  matrix->place = strut_arena_allocate(arena, entries_most, sizeof *matrix->place);
+  if (!row_of || !matrix->coordinate || !matrix->place) return false;
+  matrix->n = strut_number_free(model, NULL, row_of, matrix->coordinate);
+  if (matrix->n == 0) return true;
+  if (!make_members(model, arena, matrix)) return false;
+  if (!make_pattern(model, row_of, arena, matrix)) return false;
+  size_t entries = (size_t)matrix->matrix->start[matrix->n];
+  matrix->mass = strut_arena_allocate(arena, entries, sizeof *matrix->mass);
+  matrix->factor = strut_refactor_create(matrix->matrix, arena);
+  if (!matrix->mass || !matrix->factor) return false;
+  memcpy(matrix->mass, matrix->matrix->value, entries * sizeof *matrix->mass);
+  strut_tangent_find_places(model, row_of, false, matrix->matrix, matrix->place);
   return true;
 }
 
@@ -101,22 +104,23 @@ static strut_vec2 force_direction(const strut_discrete_gradient *step, int32_t j
 
 /* Adds h^2/2 of what the forces of member j change by with its end: B, -B, B. */
 static void add_member(const strut_model *model, const strut_discrete_gradient *step, int32_t j,
-                       double tension, strut_midpoint_matrix *m) {
+                       double tension, strut_midpoint_matrix *matrix) {
   double half = 0.5 * step->h * step->h, lengths = step->lengths[j];
-  strut_vec2 u = m->direction[j] = force_direction(step, j);
+  strut_vec2 u = matrix->direction[j] = force_direction(step, j);
   bool shapeless = u.x == 0.0 && u.y == 0.0; /* as an isotropic spring */
-  m->slope[j] = step->slope[j];
+  matrix->slope[j] = step->slope[j];
   strut_force force;
   double k[16];
   strut_force_begin(model, j, &force);
   strut_member_stiffness(step->slope[j], shapeless ? step->slope[j] : tension / lengths, u, k);
   for (int i = 0; i < 16; i++) k[i] *= half;
-  strut_force_scatter(&force, k, m->place, m->matrix->value);
+  strut_force_scatter(&force, k, matrix->place, matrix->matrix->value);
 }
 
 /* What the average force changes by with the end; it turns with half of the force there. */
 static void add_element(const strut_model *model, const strut_discrete_gradient *step, int32_t i,
-                        const double *rest, const double *q, bool clip, strut_midpoint_matrix *m) {
+                        const double *rest, const double *q, bool clip,
+                        strut_midpoint_matrix *matrix) {
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   strut_force force;
   strut_force_begin(model, model->members.count + i, &force);
@@ -124,7 +128,7 @@ static void add_element(const strut_model *model, const strut_discrete_gradient 
   double half = 0.5 * step->h * step->h;
   strut_force_square(&force, half * step->element_slope[i], k);
   if (!clip) strut_force_bend(model, &force, q, 0.5 * half, k);
-  strut_force_scatter(&force, k, m->place, m->matrix->value);
+  strut_force_scatter(&force, k, matrix->place, matrix->matrix->value);
 }
 
 /*
@@ -136,15 +140,16 @@ static void add_element(const strut_model *model, const strut_discrete_gradient 
 static bool strut_midpoint_matrix_update(const strut_model *model,
                                          const strut_discrete_gradient *step, const double *rest,
                                          const double *q, const double *tension, bool stiff,
-                                         strut_midpoint_matrix *m) {
+                                         strut_midpoint_matrix *matrix) {
   for (bool clip = stiff;; clip = true) {
     double whole = 1.0 + 0.5 * step->h * model->mass_damping;
-    for (int32_t k = 0; k < m->matrix->start[m->n]; k++) m->matrix->value[k] = whole * m->mass[k];
+    for (int32_t k = 0; k < matrix->matrix->start[matrix->n]; k++)
+      matrix->matrix->value[k] = whole * matrix->mass[k];
     for (int32_t j = 0; j < model->members.count; j++)
-      add_member(model, step, j, clip ? fmax(tension[j], 0.0) : tension[j], m);
+      add_member(model, step, j, clip ? fmax(tension[j], 0.0) : tension[j], matrix);
     for (int32_t i = 0; i < model->elements.count; i++)
-      add_element(model, step, i, rest, q, clip, m);
-    if (strut_refactor_apply(m->factor, m->matrix) < 0) return true;
+      add_element(model, step, i, rest, q, clip, matrix);
+    if (strut_refactor_apply(matrix->factor, matrix->matrix) < 0) return true;
     if (clip) return false;
   }
 }
@@ -156,30 +161,30 @@ static bool strut_midpoint_matrix_update(const strut_model *model,
  */
 static bool strut_midpoint_matrix_stale(const strut_model *model,
                                         const strut_discrete_gradient *step,
-                                        const strut_midpoint_matrix *m) {
+                                        const strut_midpoint_matrix *matrix) {
   const double much = 1e-3;
   for (int32_t j = 0; j < model->members.count; j++) {
-    double per_mass = 0.5 * step->h * step->h * m->lightness[j];
-    strut_vec2 u = force_direction(step, j), before = m->direction[j];
+    double per_mass = 0.5 * step->h * step->h * matrix->lightness[j];
+    strut_vec2 u = force_direction(step, j), before = matrix->direction[j];
     double sine = u.x * before.y - u.y * before.x;
-    double change = fabs(step->slope[j] - m->slope[j]);
+    double change = fabs(step->slope[j] - matrix->slope[j]);
     if (per_mass * step->slope[j] * sine * sine > much) return true;
-    if (per_mass * change > much * (1.0 + per_mass * m->slope[j])) return true;
+    if (per_mass * change > much * (1.0 + per_mass * matrix->slope[j])) return true;
   }
   return false;
 }
 
 /* product (n) = M x (length). */
-static void strut_midpoint_matrix_mass(const strut_midpoint_matrix *m, const double *x,
+static void strut_midpoint_matrix_mass(const strut_midpoint_matrix *matrix, const double *vector,
                                        double *product) {
-  const strut_sparse *a = m->matrix;
-  for (int32_t i = 0; i < m->n; i++) product[i] = 0.0;
-  for (int32_t j = 0; j < m->n; j++) {
-    double xj = x[m->coordinate[j]];
-    product[j] += m->mass[a->start[j]] * xj;
+  const strut_sparse *a = matrix->matrix;
+  for (int32_t i = 0; i < matrix->n; i++) product[i] = 0.0;
+  for (int32_t j = 0; j < matrix->n; j++) {
+    double xj = vector[matrix->coordinate[j]];
+    product[j] += matrix->mass[a->start[j]] * xj;
     for (int32_t k = a->start[j] + 1; k < a->start[j + 1]; k++) {
-      product[a->row[k]] += m->mass[k] * xj;
-      product[j] += m->mass[k] * x[m->coordinate[a->row[k]]];
+      product[a->row[k]] += matrix->mass[k] * xj;
+      product[j] += matrix->mass[k] * vector[matrix->coordinate[a->row[k]]];
     }
   }
 }
@@ -218,21 +223,21 @@ typedef struct midpoint_workspace {
 
 /* Stiffness over mass at the worst node. */
 static double stiffest_of(const strut_model *model) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   double most = 0.0;
-  for (int32_t j = 0; j < t->count; j++)
+  for (int32_t j = 0; j < members->count; j++)
     for (int e = 0; e < 2; e++) {
-      uint32_t at = e ? t->to[j] : t->from[j];
+      uint32_t at = e ? members->to[j] : members->from[j];
       if (model->fixed[at] && model->fixed[at + 1]) continue;
-      most = fmax(most, 4.0 * t->stiffness[j] / model->weight[at / 2]);
+      most = fmax(most, 4.0 * members->stiffness[j] / model->weight[at / 2]);
     }
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    const uint32_t *at = model->elements.at + e->first;
+    const strut_element *element = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + element->first;
     strut_element_pose pose;
-    strut_element_evaluate(model, i, t->rest, model->start, (double)NAN, &pose);
-    double stiffness = fmax(pose.slope, e->numbers.stiffness);
-    for (int32_t k = 0; k < e->nodes; k++) {
+    strut_element_evaluate(model, i, members->rest, model->start, (double)NAN, &pose);
+    double stiffness = fmax(pose.slope, element->numbers.stiffness);
+    for (int32_t k = 0; k < element->nodes; k++) {
       if (model->fixed[at[k]] && model->fixed[at[k] + 1]) continue;
       double square = pose.b[2 * k] * pose.b[2 * k] + pose.b[2 * k + 1] * pose.b[2 * k + 1];
       most = fmax(most, 4.0 * stiffness * square / model->weight[at[k] / 2]);
@@ -245,25 +250,27 @@ static void *midpoint_create(const strut_model *model, strut_state *state,
                              const strut_integrator_settings *settings) {
   (void)settings;
   strut_arena *arena = &state->arena;
-  midpoint_workspace *w = strut_arena_allocate(arena, 1, sizeof *w);
+  midpoint_workspace *workspace = strut_arena_allocate(arena, 1, sizeof *workspace);
   size_t both = (size_t)model->length;
-  if (!w || !strut_discrete_gradient_create(model, state, &w->step) ||
-      !strut_midpoint_matrix_create(model, arena, &w->matrix))
+  if (!workspace || !strut_discrete_gradient_create(model, state, &workspace->step) ||
+      !strut_midpoint_matrix_create(model, arena, &workspace->matrix))
     return NULL;
-  double **all[] = {&w->u,       &w->q1,      &w->before[0], &w->before[1],
-                    &w->grid[0], &w->grid[1], &w->x,         &w->residual};
+  double **all[] = {&workspace->u,         &workspace->q1,      &workspace->before[0],
+                    &workspace->before[1], &workspace->grid[0], &workspace->grid[1],
+                    &workspace->x,         &workspace->residual};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     if (!(*all[i] = strut_arena_allocate(arena, both, sizeof(double)))) return NULL;
-  w->held = strut_arena_allocate(arena, (size_t)model->members.count, sizeof *w->held);
-  if (!w->held) return NULL;
+  workspace->held =
+      strut_arena_allocate(arena, (size_t)model->members.count, sizeof *workspace->held);
+  if (!workspace->held) return NULL;
   for (int k = 0; k < 3; k++) {
     size_t count = (size_t)model->support_motion.count;
-    w->moved[k] = strut_arena_allocate(arena, count, sizeof(double));
-    if (!w->moved[k]) return NULL;
+    workspace->moved[k] = strut_arena_allocate(arena, count, sizeof(double));
+    if (!workspace->moved[k]) return NULL;
   }
-  w->stiffest = stiffest_of(model);
-  w->factor_step = -1.0;
-  return w;
+  workspace->stiffest = stiffest_of(model);
+  workspace->factor_step = -1.0;
+  return workspace;
 }
 
 static void midpoint_restart(const strut_model *model, strut_state *state, void *workspace,
@@ -277,95 +284,102 @@ static void midpoint_restart(const strut_model *model, strut_state *state, void 
 
 /* Velocities of supports at both ends of the step and on average; they may jump within it. */
 static void move_supports(const strut_model *model, const strut_state *state,
-                          midpoint_workspace *w) {
-  double t = w->step.begin + w->step.h;
+                          midpoint_workspace *workspace) {
+  double t = workspace->step.begin + workspace->step.h;
   for (int32_t i = 0; i < model->support_motion.count; i++) {
-    const strut_moved_coordinate *m = &model->support_motion.item[i];
+    const strut_moved_coordinate *coordinate = &model->support_motion.item[i];
     double value;
-    strut_signal_evaluate(model->scene->signals, m->signal, t + state->time_offset, &value,
-                          &w->moved[1][i]);
-    w->moved[0][i] = state->v[m->at];
-    w->moved[2][i] = (m->base + value - state->q[m->at]) / w->step.h;
+    strut_signal_evaluate(model->scene->signals, coordinate->signal, t + state->time_offset, &value,
+                          &workspace->moved[1][i]);
+    workspace->moved[0][i] = state->v[coordinate->at];
+    workspace->moved[2][i] =
+        (coordinate->base + value - state->q[coordinate->at]) / workspace->step.h;
   }
 }
 
 /* The mean velocity is extrapolated, or else set to the velocity. */
-static void guess(const strut_model *model, const strut_state *state, midpoint_workspace *w,
+static void guess(const strut_model *model, const strut_state *state, midpoint_workspace *workspace,
                   bool plain) {
   for (int32_t i = 0; i < model->length; i++)
-    w->u[i] = w->known < 2 || plain ? state->v[i] : 2.0 * w->before[0][i] - w->before[1][i];
+    workspace->u[i] = workspace->known < 2 || plain
+                          ? state->v[i]
+                          : 2.0 * workspace->before[0][i] - workspace->before[1][i];
   for (int32_t i = 0; i < model->support_motion.count; i++)
-    w->u[model->support_motion.item[i].at] = w->moved[2][i];
+    workspace->u[model->support_motion.item[i].at] = workspace->moved[2][i];
 }
 
 /* Forces over the step that ends at q1 with velocity u on average. */
-static void evaluate(const strut_model *model, const strut_state *state, midpoint_workspace *w) {
-  for (int32_t i = 0; i < model->length; i++) w->q1[i] = state->q[i] + w->step.h * w->u[i];
-  strut_discrete_gradient_forces(model, state, &w->step, w->q1, w->u);
+static void evaluate(const strut_model *model, const strut_state *state,
+                     midpoint_workspace *workspace) {
+  for (int32_t i = 0; i < model->length; i++)
+    workspace->q1[i] = state->q[i] + workspace->step.h * workspace->u[i];
+  strut_discrete_gradient_forces(model, state, &workspace->step, workspace->q1, workspace->u);
   if (model->terms & STRUT_TERM_SUPPORT_MOTION)
-    strut_support_motion_apply_mean(model, state, w->step.h, w->moved[0], w->moved[1], w->u);
+    strut_support_motion_apply_mean(model, state, workspace->step.h, workspace->moved[0],
+                                    workspace->moved[1], workspace->u);
 }
 
 /* Mean values of the internal states, by their rates half-way: a fixed point of the iteration. */
 static bool correct_states(const strut_model *model, const strut_state *state,
-                           midpoint_workspace *w) {
-  const strut_feedback_table *f = &model->feedback;
+                           midpoint_workspace *workspace) {
+  const strut_feedback_table *feedback = &model->feedback;
   bool finite = true;
-  w->states_settled = true;
-  for (int32_t i = f->base; i < f->base + f->state_count; i++) {
-    double next = state->v[i] + 0.5 * w->step.h * state->latest->force[i];
+  workspace->states_settled = true;
+  for (int32_t i = feedback->base; i < feedback->base + feedback->state_count; i++) {
+    double next = state->v[i] + 0.5 * workspace->step.h * state->latest->force[i];
     double close = CLOSE * ROUNDING * (fabs(next) + fabs(state->v[i]));
-    if (!(fabs(next - w->u[i]) <= close)) w->states_settled = false;
+    if (!(fabs(next - workspace->u[i]) <= close)) workspace->states_settled = false;
     finite = finite && isfinite(next);
-    w->u[i] = next;
+    workspace->u[i] = next;
   }
   return finite;
 }
 
 /* Correction at u into x. False where there are no numbers. */
-static bool correct(const strut_model *model, const strut_state *state, midpoint_workspace *w,
-                    double *x) {
-  const strut_midpoint_matrix *m = &w->matrix;
-  double h = w->step.h;
-  evaluate(model, state, w);
-  for (int32_t i = 0; i < model->length; i++) w->u[i] -= state->v[i];
-  strut_midpoint_matrix_mass(m, w->u, x);
-  for (int32_t i = 0; i < model->length; i++) w->u[i] += state->v[i];
-  bool finite = correct_states(model, state, w);
-  for (int32_t i = 0; i < m->n; i++) {
-    x[i] = 0.5 * h * state->latest->force[m->coordinate[i]] - x[i];
-    finite = finite && isfinite(x[i]);
+static bool correct(const strut_model *model, const strut_state *state,
+                    midpoint_workspace *workspace, double *vector) {
+  const strut_midpoint_matrix *matrix = &workspace->matrix;
+  double h = workspace->step.h;
+  evaluate(model, state, workspace);
+  for (int32_t i = 0; i < model->length; i++) workspace->u[i] -= state->v[i];
+  strut_midpoint_matrix_mass(matrix, workspace->u, vector);
+  for (int32_t i = 0; i < model->length; i++) workspace->u[i] += state->v[i];
+  bool finite = correct_states(model, state, workspace);
+  for (int32_t i = 0; i < matrix->n; i++) {
+    vector[i] = 0.5 * h * state->latest->force[matrix->coordinate[i]] - vector[i];
+    finite = finite && isfinite(vector[i]);
   }
   return finite;
 }
 
-static double size_of(const strut_midpoint_matrix *m, const double *x) {
+static double size_of(const strut_midpoint_matrix *matrix, const double *vector) {
   double most = 0.0;
-  for (int32_t i = 0; i < m->n; i++) most = fmax(most, fabs(x[i]));
+  for (int32_t i = 0; i < matrix->n; i++) most = fmax(most, fabs(vector[i]));
   return most;
 }
 
 /* u += factor x */
-static void move(midpoint_workspace *w, const double *x, double factor) {
-  for (int32_t i = 0; i < w->matrix.n; i++) w->u[w->matrix.coordinate[i]] += factor * x[i];
+static void move(midpoint_workspace *workspace, const double *vector, double factor) {
+  for (int32_t i = 0; i < workspace->matrix.n; i++)
+    workspace->u[workspace->matrix.coordinate[i]] += factor * vector[i];
 }
 
 /* What rounding leaves of a correction [m/s]. */
 static double rounding_of(const strut_model *model, const strut_state *state,
-                          const midpoint_workspace *w) {
-  double speed = 0.0, reach = 0.0, h = w->step.h;
+                          const midpoint_workspace *workspace) {
+  double speed = 0.0, reach = 0.0, h = workspace->step.h;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    speed = fmax(speed, fabs(w->u[i]));
+    speed = fmax(speed, fabs(workspace->u[i]));
     reach = fmax(reach, fabs(state->q[i]));
   }
-  return ROUNDING * (speed + reach * fmin(1.0 / h, h * w->stiffest));
+  return ROUNDING * (speed + reach * fmin(1.0 / h, h * workspace->stiffest));
 }
 
-static bool renew(const strut_model *model, const strut_state *state, midpoint_workspace *w,
+static bool renew(const strut_model *model, const strut_state *state, midpoint_workspace *workspace,
                   bool stiff) {
-  w->factor_step = w->step.h;
-  return strut_midpoint_matrix_update(model, &w->step, state->latest->rest, w->q1, w->held, stiff,
-                                      &w->matrix);
+  workspace->factor_step = workspace->step.h;
+  return strut_midpoint_matrix_update(model, &workspace->step, state->latest->rest, workspace->q1,
+                                      workspace->held, stiff, &workspace->matrix);
 }
 
 /*
@@ -373,102 +387,107 @@ static bool renew(const strut_model *model, const strut_state *state, midpoint_w
  * that of an iterate, in which a stiff member is far too long or short until the next one. Where
  * corrections grow although the factor is new, only a part of each is taken.
  */
-static bool iterate(const strut_model *model, const strut_state *state, midpoint_workspace *w,
-                    bool stiff) {
+static bool iterate(const strut_model *model, const strut_state *state,
+                    midpoint_workspace *workspace, bool stiff) {
   double before = 0.0, part = 1.0;
-  size_t bytes = (size_t)w->matrix.n * sizeof *w->x;
+  size_t bytes = (size_t)workspace->matrix.n * sizeof *workspace->x;
   for (int turn = 0; turn < MOST_TURNS; turn++) {
-    if (!correct(model, state, w, w->x)) return false;
-    memcpy(w->residual, w->x, bytes);
-    bool missing = w->factor_step != w->step.h || (turn == 0 && stiff);
-    bool fresh = missing || strut_midpoint_matrix_stale(model, &w->step, &w->matrix);
-    if (fresh && !renew(model, state, w, stiff)) return false;
-    strut_refactor_solve(w->matrix.factor, w->x);
-    double size = size_of(&w->matrix, w->x), close = rounding_of(model, state, w);
+    if (!correct(model, state, workspace, workspace->x)) return false;
+    memcpy(workspace->residual, workspace->x, bytes);
+    bool missing = workspace->factor_step != workspace->step.h || (turn == 0 && stiff);
+    bool fresh =
+        missing || strut_midpoint_matrix_stale(model, &workspace->step, &workspace->matrix);
+    if (fresh && !renew(model, state, workspace, stiff)) return false;
+    strut_refactor_solve(workspace->matrix.factor, workspace->x);
+    double size = size_of(&workspace->matrix, workspace->x),
+           close = rounding_of(model, state, workspace);
     if (turn > 0 && size > SLOW * before && size > CLOSE * close) {
-      if (size <= STALLED * close && size > 0.5 * before && w->states_settled) return true;
-      if (!fresh && !renew(model, state, w, stiff)) return false;
-      memcpy(w->x, w->residual, bytes);
-      strut_refactor_solve(w->matrix.factor, w->x);
-      size = size_of(&w->matrix, w->x);
+      if (size <= STALLED * close && size > 0.5 * before && workspace->states_settled) return true;
+      if (!fresh && !renew(model, state, workspace, stiff)) return false;
+      memcpy(workspace->x, workspace->residual, bytes);
+      strut_refactor_solve(workspace->matrix.factor, workspace->x);
+      size = size_of(&workspace->matrix, workspace->x);
       part = size > 2.0 * before ? fmax(0.5 * part, 1.0 / 64.0) : fmin(1.0, 2.0 * part);
     } else {
       part = 1.0;
     }
     if (!isfinite(size)) return false;
-    move(w, w->x, part);
-    if (size <= CLOSE * close && w->states_settled) return true;
+    move(workspace, workspace->x, part);
+    if (size <= CLOSE * close && workspace->states_settled) return true;
     before = size;
   }
   return false;
 }
 
 /* The node that is farthest from having a solution. */
-static int32_t worst_node(const midpoint_workspace *w) {
+static int32_t worst_node(const midpoint_workspace *workspace) {
   int32_t worst = 0;
-  for (int32_t i = 0; i < w->matrix.n; i++)
-    if (!(fabs(w->residual[i]) <= fabs(w->residual[worst]))) worst = i;
-  return w->matrix.coordinate[worst] / 2;
+  for (int32_t i = 0; i < workspace->matrix.n; i++)
+    if (!(fabs(workspace->residual[i]) <= fabs(workspace->residual[worst]))) worst = i;
+  return workspace->matrix.coordinate[worst] / 2;
 }
 
 /* Is there a solution? It is left in u, q1 and the powers. */
-static bool solve(const strut_model *model, const strut_state *state, midpoint_workspace *w) {
-  if (w->matrix.n == 0) {
-    guess(model, state, w, true);
+static bool solve(const strut_model *model, const strut_state *state,
+                  midpoint_workspace *workspace) {
+  if (workspace->matrix.n == 0) {
+    guess(model, state, workspace, true);
     for (int turn = 0; turn < MOST_TURNS; turn++) {
-      evaluate(model, state, w);
-      if (!correct_states(model, state, w)) return false;
-      if (w->states_settled) return true;
+      evaluate(model, state, workspace);
+      if (!correct_states(model, state, workspace)) return false;
+      if (workspace->states_settled) return true;
     }
     return false;
   }
   for (int attempt = 0; attempt < 2; attempt++) {
-    guess(model, state, w, attempt > 0);
-    if (iterate(model, state, w, attempt > 0)) return true;
-    w->factor_step = 0.0;
+    guess(model, state, workspace, attempt > 0);
+    if (iterate(model, state, workspace, attempt > 0)) return true;
+    workspace->factor_step = 0.0;
   }
   return false;
 }
 
-static void finish(const strut_model *model, strut_state *state, midpoint_workspace *w) {
-  double h = w->step.h, *oldest = w->before[1];
-  for (int32_t i = 0; i < w->matrix.n; i++) {
-    int32_t at = w->matrix.coordinate[i];
-    state->q[at] += h * w->u[at];
-    state->v[at] = 2.0 * w->u[at] - state->v[at];
+static void finish(const strut_model *model, strut_state *state, midpoint_workspace *workspace) {
+  double h = workspace->step.h, *oldest = workspace->before[1];
+  for (int32_t i = 0; i < workspace->matrix.n; i++) {
+    int32_t at = workspace->matrix.coordinate[i];
+    state->q[at] += h * workspace->u[at];
+    state->v[at] = 2.0 * workspace->u[at] - state->v[at];
   }
-  const strut_feedback_table *f = &model->feedback;
-  for (int32_t at = f->base; at < f->base + f->state_count; at++) {
-    state->q[at] += h * w->u[at];
-    state->v[at] = 2.0 * w->u[at] - state->v[at];
+  const strut_feedback_table *feedback = &model->feedback;
+  for (int32_t at = feedback->base; at < feedback->base + feedback->state_count; at++) {
+    state->q[at] += h * workspace->u[at];
+    state->v[at] = 2.0 * workspace->u[at] - state->v[at];
   }
   if (model->terms & STRUT_TERM_SUPPORT_MOTION)
-    strut_support_motion_place(model, state, w->step.begin + h, state->q, state->v);
+    strut_support_motion_place(model, state, workspace->step.begin + h, state->q, state->v);
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
     state->work[p] += h * state->latest->power[p];
   strut_elements_keep_turns(model, state);
-  memcpy(w->held, w->step.tension, (size_t)model->members.count * sizeof *w->held);
-  w->before[1] = w->before[0], w->before[0] = w->u, w->u = oldest;
-  if (w->known < 2) w->known++;
+  memcpy(workspace->held, workspace->step.tension,
+         (size_t)model->members.count * sizeof *workspace->held);
+  workspace->before[1] = workspace->before[0], workspace->before[0] = workspace->u,
+  workspace->u = oldest;
+  if (workspace->known < 2) workspace->known++;
 }
 
 /*
  * A step, or where that has no solution its halves: cables that go slack and taut may chase Newton's
  * method round in circles, which seldom happens twice at one place.
  */
-static bool take(const strut_model *model, strut_state *state, midpoint_workspace *w, double begin,
-                 double h, int halvings) {
-  strut_discrete_gradient_begin(model, state, state->q, begin, h, &w->step);
-  move_supports(model, state, w);
-  if (solve(model, state, w)) {
-    finish(model, state, w);
+static bool take(const strut_model *model, strut_state *state, midpoint_workspace *workspace,
+                 double begin, double h, int halvings) {
+  strut_discrete_gradient_begin(model, state, state->q, begin, h, &workspace->step);
+  move_supports(model, state, workspace);
+  if (solve(model, state, workspace)) {
+    finish(model, state, workspace);
     return true;
   }
-  w->known = 0;
+  workspace->known = 0;
   if (halvings == 0) return false;
-  bool done = take(model, state, w, begin, 0.5 * h, halvings - 1) &&
-              take(model, state, w, begin + 0.5 * h, 0.5 * h, halvings - 1);
-  w->known = 0; /* mean velocities of other steps */
+  bool done = take(model, state, workspace, begin, 0.5 * h, halvings - 1) &&
+              take(model, state, workspace, begin + 0.5 * h, 0.5 * h, halvings - 1);
+  workspace->known = 0; /* mean velocities of other steps */
   return done;
 }
 

@@ -17,15 +17,16 @@ typedef struct rk4_workspace {
 static void *rk4_create(const strut_model *model, strut_state *state,
                         const strut_integrator_settings *settings) {
   (void)settings;
-  rk4_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
-  if (!w) return NULL;
+  rk4_workspace *self = strut_arena_allocate(&state->arena, 1, sizeof *self);
+  if (!self) return NULL;
   if ((model->terms & STRUT_TERM_RIGID) && !strut_rigid_create(model, state)) return NULL;
-  double **all[] = {&w->q, &w->v[1], &w->v[2], &w->v[3], &w->a[0], &w->a[1], &w->a[2], &w->a[3]};
+  double **all[] = {&self->q,    &self->v[1], &self->v[2], &self->v[3],
+                    &self->a[0], &self->a[1], &self->a[2], &self->a[3]};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     *all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
     if (!*all[i]) return NULL;
   }
-  return w;
+  return self;
 }
 
 /*
@@ -33,13 +34,13 @@ static void *rk4_create(const strut_model *model, strut_state *state,
  * (n + 1) dt, never sums. With the energy balance the powers enter the works with the stage's weight: those
  * of members and of level ground once for the whole step, see step_balance.h, all others stage by stage.
  */
-STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *w,
+STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *self,
                             double dt, int64_t count, unsigned terms, bool balance, bool rigid) {
   const double *ahead = STRUT_RK4_AHEAD, *weight = STRUT_RK4_WEIGHTS;
   strut_accumulation accumulation = balance ? STRUT_ACCUMULATE_LANES : STRUT_ACCUMULATE_NOTHING;
   double *restrict q = state->q, *restrict v = state->v;
-  const double *const at[4] = {q, w->q, w->q, w->q};
-  const double *const speed[4] = {v, w->v[1], w->v[2], w->v[3]};
+  const double *const at[4] = {q, self->q, self->q, self->q};
+  const double *const speed[4] = {v, self->v[1], self->v[2], self->v[3]};
   int32_t n = model->length;
   bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
   bool others = balance && model->terms & terms & ~STRUT_TERMS_IN_LANES;
@@ -52,19 +53,19 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
       if (balance) state->latest->accumulated = &state->latest->lanes[strut_weight_side(k)];
       double step = (double)state->step + ahead[k], t = step * dt;
       drives_ahead_apply(model, state, &drives, t, step, 0.5, dt, 2 * (end - state->step));
-      forces_kernel(model, state, t, at[k], speed[k], w->a[k], terms, accumulation);
-      if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], w->a[k]);
+      forces_kernel(model, state, t, at[k], speed[k], self->a[k], terms, accumulation);
+      if (rigid) strut_rigid_accelerate(model, state, at[k], speed[k], self->a[k]);
       for (int p = 0; p < STRUT_POWER_COUNT && others; p++)
         state->work[p] += weight[k] * (dt / 6.0) * state->latest->power[p];
       if (k == 3) break;
-      rk4_next_stage(n, ahead[k + 1] * dt, q, v, speed[k], w->a[k], w->q, w->v[k + 1]);
+      rk4_next_stage(n, ahead[k + 1] * dt, q, v, speed[k], self->a[k], self->q, self->v[k + 1]);
       if (moves)
-        strut_support_motion_place(model, state, ((double)state->step + ahead[k + 1]) * dt, w->q,
-                                   w->v[k + 1]);
+        strut_support_motion_place(model, state, ((double)state->step + ahead[k + 1]) * dt, self->q,
+                                   self->v[k + 1]);
     }
     if (balance) strut_step_balance_end(model, state, dt / 6.0);
-    rk4_end_of_step(n, dt, q, v, w->v[1], w->v[2], w->v[3], q);
-    rk4_end_of_step(n, dt, v, w->a[0], w->a[1], w->a[2], w->a[3], v);
+    rk4_end_of_step(n, dt, q, v, self->v[1], self->v[2], self->v[3], q);
+    rk4_end_of_step(n, dt, v, self->a[0], self->a[1], self->a[2], self->a[3], v);
     if (moves) end_moving_step(model, state, dt);
     if (rigid) strut_rigid_project(model, state, q, v);
     if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
@@ -73,9 +74,9 @@ STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_wo
   }
 }
 
-STRUT_INLINE void run_elastic(const strut_model *model, strut_state *state, rk4_workspace *w,
+STRUT_INLINE void run_elastic(const strut_model *model, strut_state *state, rk4_workspace *self,
                               double dt, int64_t count, unsigned terms, bool balance) {
-  run_steps(model, state, w, dt, count, terms, balance, false);
+  run_steps(model, state, self, dt, count, terms, balance, false);
 }
 
 STRUT_PLAIN_STEPS(rk4, rk4_workspace, run_elastic)

@@ -16,8 +16,9 @@ static void *euler_create(const strut_model *model, strut_state *state,
 }
 
 /* Powers enter the works as they are at the begin of a step. */
-STRUT_INLINE void euler_steps(const strut_model *model, strut_state *state, double *restrict a,
-                              double dt, int64_t count, unsigned terms, bool balance) {
+STRUT_INLINE void euler_steps(const strut_model *model, strut_state *state,
+                              double *restrict acceleration, double dt, int64_t count,
+                              unsigned terms, bool balance) {
   double *restrict q = state->q, *restrict v = state->v;
   bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
   strut_drives_ahead drives;
@@ -25,11 +26,11 @@ STRUT_INLINE void euler_steps(const strut_model *model, strut_state *state, doub
   for (int64_t end = state->step + count; state->step < end; state->step++) {
     double step = (double)state->step, t = step * dt;
     drives_ahead_apply(model, state, &drives, t, step, 1.0, dt, end - state->step);
-    forces_kernel(model, state, t, q, v, a, terms, balance);
+    forces_kernel(model, state, t, q, v, acceleration, terms, balance);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
       state->work[p] += dt * state->latest->power[p];
     for (int32_t i = 0; i < model->length; i += STRUT_LANES) {
-      strut_lanes next = strut_lanes_load(v + i) + dt * strut_lanes_load_pairs(a + i);
+      strut_lanes next = strut_lanes_load(v + i) + dt * strut_lanes_load_pairs(acceleration + i);
       strut_lanes_store(v + i, next);
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * next);
     }
@@ -73,33 +74,33 @@ typedef struct verlet_workspace {
 static void *verlet_create(const strut_model *model, strut_state *state,
                            const strut_integrator_settings *settings) {
   (void)settings;
-  verlet_workspace *w = strut_arena_allocate(&state->arena, 1, sizeof *w);
-  if (!w) return NULL;
-  double **all[] = {&w->a, &w->next, &w->predicted};
+  verlet_workspace *self = strut_arena_allocate(&state->arena, 1, sizeof *self);
+  if (!self) return NULL;
+  double **all[] = {&self->a, &self->next, &self->predicted};
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
     if (!(*all[i] = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double))))
       return NULL;
-  return w;
+  return self;
 }
 
 static void verlet_restart(const strut_model *model, strut_state *state, void *workspace,
                            double dt) {
-  verlet_workspace *w = workspace;
-  strut_forces_acceleration(model, state, (double)state->step * dt, state->q, state->v, w->a);
-  for (int p = 0; p < STRUT_POWER_COUNT; p++) w->power[p] = state->latest->power[p];
-  w->started = true;
+  verlet_workspace *self = workspace;
+  strut_forces_acceleration(model, state, (double)state->step * dt, state->q, state->v, self->a);
+  for (int p = 0; p < STRUT_POWER_COUNT; p++) self->power[p] = state->latest->power[p];
+  self->started = true;
 }
 
-STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, verlet_workspace *w,
+STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, verlet_workspace *self,
                                double dt, int64_t count, unsigned terms, bool balance) {
-  double *restrict q = state->q, *restrict v = state->v, *restrict predicted = w->predicted;
+  double *restrict q = state->q, *restrict v = state->v, *restrict predicted = self->predicted;
   double half = 0.5 * dt;
   int32_t n = model->length;
   bool moves = model->terms & terms & STRUT_TERMS_AT_STEP_END;
   strut_drives_ahead drives;
   drives_ahead_begin(model, terms, &drives);
   for (int64_t end = state->step + count; state->step < end; state->step++) {
-    double *a = w->a, *next = w->next;
+    double *a = self->a, *next = self->next;
     for (int32_t i = 0; i < n; i += STRUT_LANES) {
       strut_lanes rate = strut_lanes_load(v + i), bend = strut_lanes_load_pairs(a + i);
       strut_lanes_store(q + i, strut_lanes_load(q + i) + dt * (rate + half * bend));
@@ -115,13 +116,14 @@ STRUT_INLINE void verlet_steps(const strut_model *model, strut_state *state, ver
     if (moves) end_moving_step(model, state, dt);
     if (model->terms & STRUT_TERM_ELEMENTS) strut_elements_keep_turns(model, state);
     for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) {
-      state->work[p] += half * (w->power[p] + state->latest->power[p]);
-      w->power[p] = state->latest->power[p];
+      state->work[p] += half * (self->power[p] + state->latest->power[p]);
+      self->power[p] = state->latest->power[p];
     }
-    w->a = next, w->next = a;
+    self->a = next, self->next = a;
     if (model->terms & terms & STRUT_TERM_MEMORY && strut_history_renew(model, state, t)) {
-      forces_kernel(model, state, t, q, v, w->a, terms, balance);
-      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++) w->power[p] = state->latest->power[p];
+      forces_kernel(model, state, t, q, v, self->a, terms, balance);
+      for (int p = 0; p < STRUT_POWER_COUNT && balance; p++)
+        self->power[p] = state->latest->power[p];
     }
   }
 }
@@ -130,9 +132,9 @@ STRUT_PLAIN_STEPS(verlet, verlet_workspace, verlet_steps)
 
 static void verlet_advance(const strut_model *model, strut_state *state, void *workspace, double dt,
                            int64_t count) {
-  verlet_workspace *w = workspace;
-  if (!w->started) verlet_restart(model, state, workspace, dt);
-  verlet_plain(model, state, w, dt, count);
+  verlet_workspace *self = workspace;
+  if (!self->started) verlet_restart(model, state, workspace, dt);
+  verlet_plain(model, state, self, dt, count);
 }
 
 const strut_integrator strut_integrator_verlet = {

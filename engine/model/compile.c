@@ -155,21 +155,21 @@ static void compile_sliding_masses(strut_model *model, bool *failed) {
 
 /* Half of each member's mass at each of its ends (7), the point masses, and the sliding ones. */
 static void compile_weights(strut_model *model, bool *failed) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   double *weight = doubles(model, (size_t)model->node_count, failed);
   if (*failed) return;
   for (int32_t i = 0; i < model->node_count; i++) weight[i] = model->point_mass[i];
-  for (int32_t j = 0; j < t->count; j++) {
-    weight[t->from[j] / 2] += 0.5 * t->mass[j];
-    weight[t->to[j] / 2] += 0.5 * t->mass[j];
+  for (int32_t j = 0; j < members->count; j++) {
+    weight[members->from[j] / 2] += 0.5 * members->mass[j];
+    weight[members->to[j] / 2] += 0.5 * members->mass[j];
   }
   for (int32_t i = 0; i < model->node_count && model->sliding.count; i++)
     if (!(weight[i] > 0) && !(model->fixed[2 * i] && model->fixed[2 * i + 1]))
       model->sliding.massless_node = true;
   for (int32_t i = 0; i < model->sliding.count; i++) {
-    const strut_sliding_item *s = &model->sliding.item[i];
-    weight[s->at[0] / 2] += (1.0 - s->start) * s->mass;
-    weight[s->at[1] / 2] += s->start * s->mass;
+    const strut_sliding_item *item = &model->sliding.item[i];
+    weight[item->at[0] / 2] += (1.0 - item->start) * item->mass;
+    weight[item->at[1] / 2] += item->start * item->mass;
   }
   model->weight = weight;
 }
@@ -267,7 +267,7 @@ static double largest_value(const strut_scene *scene, int32_t signal) {
 static void compile_contacts(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t count = scene->contact_count;
-  strut_contact_table *t = &model->contacts;
+  strut_contact_table *contacts = &model->contacts;
   uint32_t *at = strut_arena_allocate(&model->arena, count, sizeof *at);
   strut_contact_entry *entry = strut_arena_allocate(&model->arena, count, sizeof *entry);
   if (!at || !entry) *failed = true;
@@ -295,24 +295,25 @@ static void compile_contacts(strut_model *model, bool *failed) {
     if (contact->friction.law != STRUT_FRICTION_KARNOPP) model->terms |= STRUT_TERM_LAWS;
     if (contact->friction.directional) model->terms |= STRUT_TERM_LAWS | STRUT_TERM_DIRECTION;
   }
-  *t = (strut_contact_table){.count = (int32_t)count,
-                             .at = at,
-                             .entry = entry,
-                             .tangent = {1, 0},
-                             .normal = {0, 1},
-                             .axes = {{1, 0}, {0, 1}},
-                             .grips = grips};
+  *contacts = (strut_contact_table){.count = (int32_t)count,
+                                    .at = at,
+                                    .entry = entry,
+                                    .tangent = {1, 0},
+                                    .normal = {0, 1},
+                                    .axes = {{1, 0}, {0, 1}},
+                                    .grips = grips};
   if (grips) model->terms |= STRUT_TERM_DRIVE; /* a function of time, too */
   if (scene->ground_count) {
     if (!strut_surfaces_compile(model)) *failed = true;
     return;
   }
-  t->height = scene->ground.height, t->belt_speed = scene->ground.belt_speed;
+  contacts->height = scene->ground.height, contacts->belt_speed = scene->ground.belt_speed;
   model->terms |= STRUT_TERM_CONTACT;
   if (scene->ground.slope == 0.0) return;
   double c = cos(scene->ground.slope), s = sin(scene->ground.slope);
-  t->tangent[0] = c, t->tangent[1] = s, t->normal[0] = -s, t->normal[1] = c;
-  t->axes = (strut_contact_axes){{c, s}, {-s, c}};
+  contacts->tangent[0] = c, contacts->tangent[1] = s, contacts->normal[0] = -s,
+  contacts->normal[1] = c;
+  contacts->axes = (strut_contact_axes){{c, s}, {-s, c}};
   model->terms |= STRUT_TERM_SLOPE;
 }
 
@@ -360,14 +361,15 @@ static double lightest_of(const strut_model *model, const uint32_t *at, int coun
 }
 
 double strut_model_fastest_spring(const strut_model *model) {
-  const strut_member_table *m = &model->members;
-  const strut_contact_table *c = &model->contacts;
+  const strut_member_table *members = &model->members;
+  const strut_contact_table *contacts = &model->contacts;
   double square = 0.0;
-  for (int32_t j = 0; j < m->count; j++)
-    square = fmax(
-        square, m->stiffness[j] / lightest_of(model, (const uint32_t[]){m->from[j], m->to[j]}, 2));
-  for (int32_t i = 0; i < c->count; i++)
-    square = fmax(square, c->entry[i].stiffness / lightest_of(model, &c->at[i], 1));
+  for (int32_t j = 0; j < members->count; j++)
+    square = fmax(square,
+                  members->stiffness[j] /
+                      lightest_of(model, (const uint32_t[]){members->from[j], members->to[j]}, 2));
+  for (int32_t i = 0; i < contacts->count; i++)
+    square = fmax(square, contacts->entry[i].stiffness / lightest_of(model, &contacts->at[i], 1));
   return sqrt(square);
 }
 
@@ -389,14 +391,14 @@ static strut_vec2 direction(const strut_scene *scene, int32_t a, int32_t b) {
 /* Mass against which a member as drawn changes its length: 1 / sum |de/dq|^2 / m over its nodes. */
 static double mass_of_length(const strut_model *model, size_t j) {
   const strut_scene *scene = model->scene;
-  const strut_member *m = &scene->members[j];
+  const strut_member *member = &scene->members[j];
   double sum = 0.0;
-  for (size_t k = 0; k < m->guide_count + 2; k++) {
-    int32_t node = strut_member_node(m, k);
+  for (size_t k = 0; k < member->guide_count + 2; k++) {
+    int32_t node = strut_member_node(member, k);
     strut_vec2 d = {0.0, 0.0};
-    if (k > 0) d = direction(scene, strut_member_node(m, k - 1), node);
-    if (k <= m->guide_count) {
-      strut_vec2 next = direction(scene, node, strut_member_node(m, k + 1));
+    if (k > 0) d = direction(scene, strut_member_node(member, k - 1), node);
+    if (k <= member->guide_count) {
+      strut_vec2 next = direction(scene, node, strut_member_node(member, k + 1));
       d.x -= next.x, d.y -= next.y;
     }
     sum += lightness(model, node, d);
@@ -406,14 +408,14 @@ static double mass_of_length(const strut_model *model, size_t j) {
 
 static void damp_member(strut_model *model, size_t j, double more) {
   assert(j < (size_t)model->members.count);
-  strut_member_table *t = &model->members;
+  strut_member_table *members = &model->members;
   if (!(more > 0.0)) return;
   if (strut_member_is_element(&model->elements, (int32_t)j)) {
     ((strut_element *)strut_element_of_member(&model->elements, (int32_t)j))->damping += more;
     return;
   }
-  ((double *)t->damping)[j] += more;
-  uint16_t *terms = (uint16_t *)t->block_terms;
+  ((double *)members->damping)[j] += more;
+  uint16_t *terms = (uint16_t *)members->block_terms;
   terms[j / STRUT_BLOCK] = (uint16_t)(terms[j / STRUT_BLOCK] | STRUT_TERM_DAMPING);
   model->terms |= STRUT_TERM_DAMPING;
 }
@@ -434,8 +436,9 @@ void strut_damping_compile(strut_model *model) {
     damp_member(model, j, share * c);
   }
   for (int32_t i = 0; i < model->elements.count && share > 0.0; i++) {
-    strut_element *e = (strut_element *)&model->elements.element[i];
-    if (e->role == STRUT_ELEMENT_HINGE) e->damping += share * fmax(0.0, e->numbers.stiffness);
+    strut_element *element = (strut_element *)&model->elements.element[i];
+    if (element->role == STRUT_ELEMENT_HINGE)
+      element->damping += share * fmax(0.0, element->numbers.stiffness);
   }
   model->mass_damping = scene->rayleigh_mass;
   if (model->mass_damping > 0.0) model->terms |= STRUT_TERM_MASS_DAMPING;

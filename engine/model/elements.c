@@ -15,9 +15,9 @@
 static const double USUAL_STOP = 100.0;
 
 /* `reeled`: see mark_reeled. */
-static size_t elements_of_member(const strut_member *m, bool reeled) {
-  return (size_t)(strut_member_is_special(m) || reeled) + (size_t)(m->longest > 0.0) +
-         (size_t)(m->shortest > 0.0);
+static size_t elements_of_member(const strut_member *member, bool reeled) {
+  return (size_t)(strut_member_is_special(member) || reeled) + (size_t)(member->longest > 0.0) +
+         (size_t)(member->shortest > 0.0);
 }
 
 /* Slots that a law with memory has: that of its natural strain, and those of a curve. */
@@ -27,7 +27,7 @@ static size_t memory_of_law(const strut_law *law) {
                                                   : 0;
 }
 
-static bool rubs(const strut_member *m) { return m->guide_friction > 0.0; }
+static bool rubs(const strut_member *member) { return member->guide_friction > 0.0; }
 
 /*
  * Slots of elements with memory: all of a member that breaks or is released, otherwise those whose law has
@@ -36,10 +36,10 @@ static bool rubs(const strut_member *m) { return m->guide_friction > 0.0; }
 static size_t count_history_slots(const strut_scene *scene) {
   size_t count = 0;
   for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *m = &scene->members[j];
-    count += memory_of_law(&m->law);
-    if (strut_member_ends(m)) count += elements_of_member(m, false);
-    if (rubs(m)) count += m->guide_count + 2;
+    const strut_member *member = &scene->members[j];
+    count += memory_of_law(&member->law);
+    if (strut_member_ends(member)) count += elements_of_member(member, false);
+    if (rubs(member)) count += member->guide_count + 2;
   }
   for (size_t i = 0; i < scene->hinge_count; i++)
     count += strut_hinge_ends(&scene->hinges[i]) + memory_of_law(&scene->hinges[i].law);
@@ -78,10 +78,10 @@ int32_t strut_couple_slot(const strut_model *model, size_t load) {
 
 int32_t strut_actuator_slot(const strut_model *model, size_t i) {
   assert(i < model->scene->actuator_count);
-  const strut_actuator *a = &model->scene->actuators[i];
-  return a->member >= 0  ? a->member
-         : a->hinge >= 0 ? hinge_slot(model, a->hinge)
-                         : cell_slot(model, a->cell);
+  const strut_actuator *actuator = &model->scene->actuators[i];
+  return actuator->member >= 0  ? actuator->member
+         : actuator->hinge >= 0 ? hinge_slot(model, actuator->hinge)
+                                : cell_slot(model, actuator->cell);
 }
 
 double strut_element_start(const strut_model *model, int32_t element) {
@@ -100,11 +100,13 @@ enum { MOST_PAIRS = 4 };
 static uint8_t *mark_reeled(const strut_scene *scene, bool *failed) {
   uint8_t *reeled = NULL;
   for (size_t i = 0; i < scene->actuator_count && !*failed; i++) {
-    const strut_actuator *a = &scene->actuators[i];
-    if (a->force || a->member < 0 || !(scene->members[a->member].axial_stiffness > 0.0)) continue;
+    const strut_actuator *actuator = &scene->actuators[i];
+    if (actuator->force || actuator->member < 0 ||
+        !(scene->members[actuator->member].axial_stiffness > 0.0))
+      continue;
     if (!reeled) reeled = strut_allocate(scene->member_count, sizeof *reeled);
     *failed = !reeled;
-    if (reeled) reeled[a->member] = 1;
+    if (reeled) reeled[actuator->member] = 1;
   }
   return reeled;
 }
@@ -168,12 +170,12 @@ static bool take_points(strut_arena *arena, strut_law *law, double **slope) {
 }
 
 /* The stable piece of a curve at x = 0 whose force is least. */
-static int find_start(const strut_law_curve *c) {
+static int find_start(const strut_law_curve *curve) {
   double least = HUGE_VAL;
   int start = 0;
-  for (int i = 0; i + 1 < (int)c->count; i++) {
-    if (strut_folding_way(c, i) < 0 || strut_folding_beyond(c, i, 0.0)) continue;
-    double force = fabs(strut_law_curve_piece(c, (size_t)i, 0.0).force);
+  for (int i = 0; i + 1 < (int)curve->count; i++) {
+    if (strut_folding_way(curve, i) < 0 || strut_folding_beyond(curve, i, 0.0)) continue;
+    double force = fabs(strut_law_curve_piece(curve, (size_t)i, 0.0).force);
     if (force < least) least = force, start = i;
   }
   return start;
@@ -233,51 +235,52 @@ typedef struct compilation {
   bool failed;
 } compilation;
 
-static strut_element *add_element(compilation *c, strut_element element) {
-  element.first = c->nodes;
+static strut_element *add_element(compilation *self, strut_element element) {
+  element.first = self->nodes;
   element.sibling = -1;
-  c->element[c->count] = element;
-  return &c->element[c->count++];
+  self->element[self->count] = element;
+  return &self->element[self->count++];
 }
 
-static void add_node(compilation *c, strut_element *element, int32_t node) {
-  c->at[c->nodes++] = 2 * (uint32_t)node;
+static void add_node(compilation *self, strut_element *element, int32_t node) {
+  self->at[self->nodes++] = 2 * (uint32_t)node;
   element->nodes++;
 }
 
-static strut_strain_kind strain_of_member(const strut_member *m) {
-  return !m->guide_count         ? STRUT_STRAIN_LENGTH
-         : m->guide_radius > 0.0 ? STRUT_STRAIN_WRAP
-                                 : STRUT_STRAIN_PATH;
+static strut_strain_kind strain_of_member(const strut_member *member) {
+  return !member->guide_count         ? STRUT_STRAIN_LENGTH
+         : member->guide_radius > 0.0 ? STRUT_STRAIN_WRAP
+                                      : STRUT_STRAIN_PATH;
 }
 
-static void add_way(compilation *c, strut_element *element, const strut_member *m) {
-  for (size_t k = 0; k < m->guide_count + 2; k++) add_node(c, element, strut_member_node(m, k));
-  element->radius = m->guide_radius;
-  element->axis = (double)strut_member_right_guides(c->model->scene, m);
+static void add_way(compilation *self, strut_element *element, const strut_member *member) {
+  for (size_t k = 0; k < member->guide_count + 2; k++)
+    add_node(self, element, strut_member_node(member, k));
+  element->radius = member->guide_radius;
+  element->axis = (double)strut_member_right_guides(self->model->scene, member);
 }
 
 /* Its slot keeps ends and rest length, but has no force; the mass of a running cable is lumped. */
-static void take_over(compilation *c, size_t j) {
-  strut_model *model = c->model;
-  strut_member_table *t = &model->members;
+static void take_over(compilation *self, size_t j) {
+  strut_model *model = self->model;
+  strut_member_table *members = &model->members;
   const strut_scene *scene = model->scene;
-  const strut_member *m = &scene->members[j];
-  ((double *)t->stiffness)[j] = 0.0;
-  ((double *)t->damping)[j] = 0.0;
-  ((double *)t->slack)[j] = -HUGE_VAL;
-  if (!m->guide_count) return;
-  ((double *)t->mass)[j] = 0.0;
+  const strut_member *member = &scene->members[j];
+  ((double *)members->stiffness)[j] = 0.0;
+  ((double *)members->damping)[j] = 0.0;
+  ((double *)members->slack)[j] = -HUGE_VAL;
+  if (!member->guide_count) return;
+  ((double *)members->mass)[j] = 0.0;
   double whole = 0.0;
   for (int pass = 0; pass < 2; pass++)
-    for (size_t k = 0; k <= m->guide_count; k++) {
-      int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+    for (size_t k = 0; k <= member->guide_count; k++) {
+      int32_t a = strut_member_node(member, k), b = strut_member_node(member, k + 1);
       double part = strut_distance(scene->nodes[a].position, scene->nodes[b].position);
       if (pass == 0) {
         whole += part;
         continue;
       }
-      double share = 0.5 * m->mass * (whole > 0.0 ? part / whole : 0.0);
+      double share = 0.5 * member->mass * (whole > 0.0 ? part / whole : 0.0);
       ((double *)model->point_mass)[a] += share;
       ((double *)model->point_mass)[b] += share;
     }
@@ -285,122 +288,127 @@ static void take_over(compilation *c, size_t j) {
 
 /* Gives an element a slot of its own, in which what it remembers shifts its natural strain, and a curve one
  * for the piece that it is on. */
-static void remember(compilation *c, strut_element *e) {
-  strut_model *model = c->model;
-  e->remembers = true;
-  e->base = e->slot;
-  e->memory = model->elements.history_count++;
-  strut_element_table *t = &model->elements;
-  t->history_slot = strut_couple_slot(model, model->scene->load_count);
-  e->slot = t->history_slot + t->history_slots++;
+static void remember(compilation *self, strut_element *element) {
+  strut_model *model = self->model;
+  element->remembers = true;
+  element->base = element->slot;
+  element->memory = model->elements.history_count++;
+  strut_element_table *elements = &model->elements;
+  elements->history_slot = strut_couple_slot(model, model->scene->load_count);
+  element->slot = elements->history_slot + elements->history_slots++;
   double *rest = (double *)model->members.rest;
-  rest[e->slot] = e->base >= 0 ? rest[e->base] : e->natural;
-  if (e->law == STRUT_LAW_FOLDING && !c->failed) {
-    rest[e->slot + STRUT_CURVE_PIECE] = e->numbers.curve->start;
-    t->history_slots += STRUT_CURVE_SLOTS - 1;
+  rest[element->slot] = element->base >= 0 ? rest[element->base] : element->natural;
+  if (element->law == STRUT_LAW_FOLDING && !self->failed) {
+    rest[element->slot + STRUT_CURVE_PIECE] = element->numbers.curve->start;
+    elements->history_slots += STRUT_CURVE_SLOTS - 1;
   }
-  for (int32_t k = 0; k + 1 < e->nodes && e->guide_friction > 0.0; k++)
-    rest[t->history_slot + t->history_slots++] = -1.0; /* nothing is remembered yet */
+  for (int32_t k = 0; k + 1 < element->nodes && element->guide_friction > 0.0; k++)
+    rest[elements->history_slot + elements->history_slots++] = -1.0; /* nothing is remembered yet */
 }
 
-static void add_stop(compilation *c, size_t j, strut_element_role role, double at,
+static void add_stop(compilation *self, size_t j, strut_element_role role, double at,
                      double stiffness) {
-  const strut_member *m = &c->model->scene->members[j];
-  strut_element *e =
-      add_element(c, (strut_element){.strain = strain_of_member(m),
-                                     .law = STRUT_LAW_LINEAR,
-                                     .role = role,
-                                     .item = (int32_t)j,
-                                     .slot = -1,
-                                     .carries = role == STRUT_ELEMENT_LONGEST ? 1 : -1,
-                                     .natural = at,
-                                     .damping = m->stop_damping,
-                                     .numbers = {.stiffness = stiffness}});
-  add_way(c, e, m);
-  if (strut_member_ends(m)) remember(c, e);
+  const strut_member *member = &self->model->scene->members[j];
+  strut_element *element =
+      add_element(self, (strut_element){.strain = strain_of_member(member),
+                                        .law = STRUT_LAW_LINEAR,
+                                        .role = role,
+                                        .item = (int32_t)j,
+                                        .slot = -1,
+                                        .carries = role == STRUT_ELEMENT_LONGEST ? 1 : -1,
+                                        .natural = at,
+                                        .damping = member->stop_damping,
+                                        .numbers = {.stiffness = stiffness}});
+  add_way(self, element, member);
+  if (strut_member_ends(member)) remember(self, element);
 }
 
-static void add_member(compilation *c, size_t j) {
-  assert(j < c->model->scene->member_count);
-  const strut_member *m = &c->model->scene->members[j];
-  double stiffness = c->model->members.stiffness[j];
-  bool reeled = c->reeled && c->reeled[j];
-  if (strut_member_is_special(m) || reeled) {
-    bool cable = m->kind == STRUT_CABLE;
-    strut_element *e =
-        add_element(c, (strut_element){.strain = strain_of_member(m),
-                                       .law = reeled ? STRUT_LAW_AXIAL : m->law.kind,
-                                       .role = STRUT_ELEMENT_MEMBER,
-                                       .item = (int32_t)j,
-                                       .slot = (int32_t)j,
-                                       .carries = cable ? 1 : sign_of(m->law.carries),
-                                       .damping = m->damping});
-    add_way(c, e, m);
-    if (!set_numbers(c->model, &m->law, stiffness, &e->numbers)) c->failed = true;
-    stiffness = e->numbers.stiffness;
-    if (reeled) e->numbers.axial = m->axial_stiffness, e->numbers.material = (int)m->law.kind;
-    e->guide_friction = m->guide_friction;
-    if (strut_member_ends(m) || memory_of_law(&m->law) || rubs(m)) remember(c, e);
-    take_over(c, j);
+static void add_member(compilation *self, size_t j) {
+  assert(j < self->model->scene->member_count);
+  const strut_member *member = &self->model->scene->members[j];
+  double stiffness = self->model->members.stiffness[j];
+  bool reeled = self->reeled && self->reeled[j];
+  if (strut_member_is_special(member) || reeled) {
+    bool cable = member->kind == STRUT_CABLE;
+    strut_element *element =
+        add_element(self, (strut_element){.strain = strain_of_member(member),
+                                          .law = reeled ? STRUT_LAW_AXIAL : member->law.kind,
+                                          .role = STRUT_ELEMENT_MEMBER,
+                                          .item = (int32_t)j,
+                                          .slot = (int32_t)j,
+                                          .carries = cable ? 1 : sign_of(member->law.carries),
+                                          .damping = member->damping});
+    add_way(self, element, member);
+    if (!set_numbers(self->model, &member->law, stiffness, &element->numbers)) self->failed = true;
+    stiffness = element->numbers.stiffness;
+    if (reeled)
+      element->numbers.axial = member->axial_stiffness,
+      element->numbers.material = (int)member->law.kind;
+    element->guide_friction = member->guide_friction;
+    if (strut_member_ends(member) || memory_of_law(&member->law) || rubs(member))
+      remember(self, element);
+    take_over(self, j);
   }
-  double stop = m->stop_stiffness > 0.0 ? m->stop_stiffness : USUAL_STOP * stiffness;
-  if (m->shortest > 0.0) add_stop(c, j, STRUT_ELEMENT_SHORTEST, m->shortest, stop);
-  if (m->longest > 0.0) add_stop(c, j, STRUT_ELEMENT_LONGEST, m->longest, stop);
+  double stop = member->stop_stiffness > 0.0 ? member->stop_stiffness : USUAL_STOP * stiffness;
+  if (member->shortest > 0.0) add_stop(self, j, STRUT_ELEMENT_SHORTEST, member->shortest, stop);
+  if (member->longest > 0.0) add_stop(self, j, STRUT_ELEMENT_LONGEST, member->longest, stop);
 }
 
-static void add_hinge(compilation *c, size_t i) {
-  assert(i < c->model->scene->hinge_count);
-  strut_model *model = c->model;
-  const strut_hinge *h = &model->scene->hinges[i];
+static void add_hinge(compilation *self, size_t i) {
+  assert(i < self->model->scene->hinge_count);
+  strut_model *model = self->model;
+  const strut_hinge *hinge = &model->scene->hinges[i];
   int32_t slot = hinge_slot(model, (int32_t)i);
-  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_ANGLE,
-                                                    .law = h->law.kind,
-                                                    .role = STRUT_ELEMENT_HINGE,
-                                                    .item = (int32_t)i,
-                                                    .slot = slot,
-                                                    .carries = sign_of(h->law.carries),
-                                                    .damping = h->damping});
-  for (int k = 0; k < 3; k++) add_node(c, e, h->node[k]);
+  strut_element *element = add_element(self, (strut_element){.strain = STRUT_STRAIN_ANGLE,
+                                                             .law = hinge->law.kind,
+                                                             .role = STRUT_ELEMENT_HINGE,
+                                                             .item = (int32_t)i,
+                                                             .slot = slot,
+                                                             .carries = sign_of(hinge->law.carries),
+                                                             .damping = hinge->damping});
+  for (int k = 0; k < 3; k++) add_node(self, element, hinge->node[k]);
   ((double *)model->members.rest)[slot] = strut_hinge_rest(model->scene, i);
-  if (!set_numbers(model, &h->law, h->stiffness, &e->numbers)) c->failed = true;
-  if (strut_hinge_ends(h) || memory_of_law(&h->law)) remember(c, e);
+  if (!set_numbers(model, &hinge->law, hinge->stiffness, &element->numbers)) self->failed = true;
+  if (strut_hinge_ends(hinge) || memory_of_law(&hinge->law)) remember(self, element);
 }
 
 /* The block of an element: by strain, law and memory. */
-static int kind_of(const strut_element *e) {
-  return 2 * ((int)e->strain * STRUT_LAW_COUNT + (int)e->law) + e->remembers;
+static int kind_of(const strut_element *element) {
+  return 2 * ((int)element->strain * STRUT_LAW_COUNT + (int)element->law) + element->remembers;
 }
 
 /* Their nodes run counter-clockwise, so that their area is positive. */
-static void add_corners(compilation *c, strut_element *e, const strut_cell *cell, double area) {
+static void add_corners(compilation *self, strut_element *element, const strut_cell *cell,
+                        double area) {
   for (size_t k = 0; k < cell->node_count; k++)
-    add_node(c, e, cell->node[area < 0.0 ? cell->node_count - 1 - k : k]);
+    add_node(self, element, cell->node[area < 0.0 ? cell->node_count - 1 - k : k]);
 }
 
-static void add_elastic_cell(compilation *c, size_t i, double area) {
-  const strut_cell *cell = &c->model->scene->cells[i];
-  strut_element *e = add_element(
-      c, (strut_element){.strain = STRUT_STRAIN_AREA,
-                         .law = cell->elastic.kind,
-                         .role = STRUT_ELEMENT_CELL,
-                         .item = (int32_t)i,
-                         .slot = -1,
-                         .carries = sign_of(cell->elastic.carries),
-                         .natural = isnan(cell->rest_area) ? fabs(area) : cell->rest_area,
-                         .damping = cell->damping});
-  add_corners(c, e, cell, area);
-  if (!set_numbers(c->model, &cell->elastic, cell->stiffness, &e->numbers)) c->failed = true;
-  e->numbers.area = fabs(area);
-  if (memory_of_law(&cell->elastic)) remember(c, e);
+static void add_elastic_cell(compilation *self, size_t i, double area) {
+  const strut_cell *cell = &self->model->scene->cells[i];
+  strut_element *element = add_element(
+      self, (strut_element){.strain = STRUT_STRAIN_AREA,
+                            .law = cell->elastic.kind,
+                            .role = STRUT_ELEMENT_CELL,
+                            .item = (int32_t)i,
+                            .slot = -1,
+                            .carries = sign_of(cell->elastic.carries),
+                            .natural = isnan(cell->rest_area) ? fabs(area) : cell->rest_area,
+                            .damping = cell->damping});
+  add_corners(self, element, cell, area);
+  if (!set_numbers(self->model, &cell->elastic, cell->stiffness, &element->numbers))
+    self->failed = true;
+  element->numbers.area = fabs(area);
+  if (memory_of_law(&cell->elastic)) remember(self, element);
 }
 
-static void add_cell(compilation *c, size_t i) {
-  assert(i < c->model->scene->cell_count);
-  strut_model *model = c->model;
+static void add_cell(compilation *self, size_t i) {
+  assert(i < self->model->scene->cell_count);
+  strut_model *model = self->model;
   const strut_cell *cell = &model->scene->cells[i];
   double area = strut_cell_drawn(model->scene, i);
   if (strut_cell_is_elastic(cell)) {
-    add_elastic_cell(c, i, area);
+    add_elastic_cell(self, i, area);
     return;
   }
   int32_t slot = cell_slot(model, (int32_t)i);
@@ -410,89 +418,91 @@ static void add_cell(compilation *c, size_t i) {
                                                             .outside = cell->outside},
                                        fabs(area), cell->pressure, -1)
                          .slope;
-  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_AREA,
-                                                    .law = cell->law,
-                                                    .role = STRUT_ELEMENT_CELL,
-                                                    .item = (int32_t)i,
-                                                    .slot = slot,
-                                                    .numbers = {.stiffness = stiffness,
-                                                                .area = fabs(area),
-                                                                .exponent = cell->exponent,
-                                                                .outside = cell->outside}});
-  add_corners(c, e, cell, area);
+  strut_element *element =
+      add_element(self, (strut_element){.strain = STRUT_STRAIN_AREA,
+                                        .law = cell->law,
+                                        .role = STRUT_ELEMENT_CELL,
+                                        .item = (int32_t)i,
+                                        .slot = slot,
+                                        .numbers = {.stiffness = stiffness,
+                                                    .area = fabs(area),
+                                                    .exponent = cell->exponent,
+                                                    .outside = cell->outside}});
+  add_corners(self, element, cell, area);
   ((double *)model->members.rest)[slot] = cell->pressure;
 }
 
 /* Of a node with the segment from a to b, or with the node a where b is -1. */
-static void add_pair(compilation *c, size_t i, int32_t node, int32_t a, int32_t b) {
-  const strut_collision *s = &c->model->scene->collisions[i];
-  strut_element *e =
-      add_element(c, (strut_element){.strain = b < 0 ? STRUT_STRAIN_LENGTH : STRUT_STRAIN_REACH,
-                                     .law = STRUT_LAW_LINEAR,
-                                     .role = STRUT_ELEMENT_COLLISION,
-                                     .item = (int32_t)i,
-                                     .slot = -1,
-                                     .carries = -1,
-                                     .natural = s->thickness,
-                                     .damping = s->damping,
-                                     .numbers = {.stiffness = s->stiffness}});
-  add_node(c, e, node);
-  add_node(c, e, a);
-  if (b >= 0) add_node(c, e, b);
+static void add_pair(compilation *self, size_t i, int32_t node, int32_t a, int32_t b) {
+  const strut_collision *collision = &self->model->scene->collisions[i];
+  strut_element *element =
+      add_element(self, (strut_element){.strain = b < 0 ? STRUT_STRAIN_LENGTH : STRUT_STRAIN_REACH,
+                                        .law = STRUT_LAW_LINEAR,
+                                        .role = STRUT_ELEMENT_COLLISION,
+                                        .item = (int32_t)i,
+                                        .slot = -1,
+                                        .carries = -1,
+                                        .natural = collision->thickness,
+                                        .damping = collision->damping,
+                                        .numbers = {.stiffness = collision->stiffness}});
+  add_node(self, element, node);
+  add_node(self, element, a);
+  if (b >= 0) add_node(self, element, b);
 }
 
-static void add_collision(compilation *c, size_t i) {
-  assert(i < c->model->scene->collision_count);
-  const strut_scene *scene = c->model->scene;
-  const strut_collision *s = &scene->collisions[i];
+static void add_collision(compilation *self, size_t i) {
+  assert(i < self->model->scene->collision_count);
+  const strut_scene *scene = self->model->scene;
+  const strut_collision *collision = &scene->collisions[i];
   const strut_member *m[2] = {NULL, NULL};
   for (int k = 0; k < 2; k++)
-    if (s->member[k] >= 0) m[k] = &scene->members[s->member[k]];
-  if (!m[0]) add_pair(c, i, s->node[0], s->node[1], -1);
-  if (m[0] && !m[1]) add_pair(c, i, s->node[0], m[0]->node[0], m[0]->node[1]);
+    if (collision->member[k] >= 0) m[k] = &scene->members[collision->member[k]];
+  if (!m[0]) add_pair(self, i, collision->node[0], collision->node[1], -1);
+  if (m[0] && !m[1]) add_pair(self, i, collision->node[0], m[0]->node[0], m[0]->node[1]);
   for (int k = 0; k < MOST_PAIRS && m[0] && m[1]; k++)
-    add_pair(c, i, m[k / 2]->node[k % 2], m[1 - k / 2]->node[0], m[1 - k / 2]->node[1]);
+    add_pair(self, i, m[k / 2]->node[k % 2], m[1 - k / 2]->node[0], m[1 - k / 2]->node[1]);
 }
 
 /* Against a direction that points to -x the nodes change places, so that the half angle has a tangent. */
-static void add_distance(compilation *c, size_t i) {
-  const strut_distance_spring *d = &c->model->scene->distances[i];
-  bool line = d->line[0] >= 0, back = !line && cos(d->along) < 0.0;
+static void add_distance(compilation *self, size_t i) {
+  const strut_distance_spring *spring = &self->model->scene->distances[i];
+  bool line = spring->line[0] >= 0, back = !line && cos(spring->along) < 0.0;
   double sign = back ? -1.0 : 1.0;
-  strut_element *e =
-      add_element(c, (strut_element){.strain = line ? STRUT_STRAIN_OFFSET : STRUT_STRAIN_ALONG,
-                                     .law = d->law.kind,
-                                     .role = STRUT_ELEMENT_DISTANCE,
-                                     .item = (int32_t)i,
-                                     .slot = -1,
-                                     .carries = sign_of(d->law.carries),
-                                     .natural = strut_distance_rest(c->model->scene, i),
-                                     .axis = sign * sin(d->along) / (1.0 + sign * cos(d->along)),
-                                     .damping = d->damping});
-  add_node(c, e, line ? d->node[0] : d->node[back]);
-  add_node(c, e, line ? d->line[0] : d->node[!back]);
-  if (line) add_node(c, e, d->line[1]);
-  if (!set_numbers(c->model, &d->law, d->stiffness, &e->numbers)) c->failed = true;
-  if (memory_of_law(&d->law)) remember(c, e);
+  strut_element *element = add_element(
+      self, (strut_element){.strain = line ? STRUT_STRAIN_OFFSET : STRUT_STRAIN_ALONG,
+                            .law = spring->law.kind,
+                            .role = STRUT_ELEMENT_DISTANCE,
+                            .item = (int32_t)i,
+                            .slot = -1,
+                            .carries = sign_of(spring->law.carries),
+                            .natural = strut_distance_rest(self->model->scene, i),
+                            .axis = sign * sin(spring->along) / (1.0 + sign * cos(spring->along)),
+                            .damping = spring->damping});
+  add_node(self, element, line ? spring->node[0] : spring->node[back]);
+  add_node(self, element, line ? spring->line[0] : spring->node[!back]);
+  if (line) add_node(self, element, spring->line[1]);
+  if (!set_numbers(self->model, &spring->law, spring->stiffness, &element->numbers))
+    self->failed = true;
+  if (memory_of_law(&spring->law)) remember(self, element);
 }
 
 /* Its law is that of a given pressure, with the drawn angle for the area. */
-static void add_couple(compilation *c, size_t i) {
-  strut_model *model = c->model;
+static void add_couple(compilation *self, size_t i) {
+  strut_model *model = self->model;
   const strut_load *load = &model->scene->loads[i];
   int32_t slot = strut_couple_slot(model, i);
-  strut_element *e = add_element(c, (strut_element){.strain = STRUT_STRAIN_ANGLE,
-                                                    .law = STRUT_LAW_PRESSURE,
-                                                    .role = STRUT_ELEMENT_LOAD,
-                                                    .item = (int32_t)i,
-                                                    .slot = slot});
+  strut_element *element = add_element(self, (strut_element){.strain = STRUT_STRAIN_ANGLE,
+                                                             .law = STRUT_LAW_PRESSURE,
+                                                             .role = STRUT_ELEMENT_LOAD,
+                                                             .item = (int32_t)i,
+                                                             .slot = slot});
   const int32_t *node = load->hinge >= 0 ? model->scene->hinges[load->hinge].node
                                          : model->scene->members[load->member].node;
-  for (int k = 0; k < (load->hinge >= 0 ? 3 : 2); k++) add_node(c, e, node[k]);
+  for (int k = 0; k < (load->hinge >= 0 ? 3 : 2); k++) add_node(self, element, node[k]);
   strut_vec2 span = strut_vec2_between(model->scene->nodes[node[0]].position,
                                        model->scene->nodes[node[1]].position);
-  e->numbers.area = load->hinge >= 0 ? strut_hinge_drawn(model->scene, (size_t)load->hinge)
-                                     : atan2(span.y, span.x);
+  element->numbers.area = load->hinge >= 0 ? strut_hinge_drawn(model->scene, (size_t)load->hinge)
+                                           : atan2(span.y, span.x);
   ((double *)model->members.rest)[slot] = load->signal < 0 ? load->moment : 0.0;
   model->elements.couples++;
 }
@@ -501,26 +511,26 @@ static void add_couple(compilation *c, size_t i) {
  * Contacts that are elements press as the scene says: a foot, or a node alone, which is one without an arc.
  * strut_rubbing_compile places them on their grounds.
  */
-static void add_feet(compilation *c) {
-  const strut_scene *scene = c->model->scene;
+static void add_feet(compilation *self) {
+  const strut_scene *scene = self->model->scene;
   for (size_t i = 0; i < scene->contact_count; i++) {
     int32_t k = strut_foot_of_contact(scene, i);
     if (!strut_contact_is_element(scene, i)) continue;
-    strut_element *e =
-        add_element(c, (strut_element){.strain = STRUT_STRAIN_FOOT,
-                                       .law = STRUT_LAW_LINEAR,
-                                       .role = k < 0 ? STRUT_ELEMENT_CONTACT : STRUT_ELEMENT_FOOT,
-                                       .item = k < 0 ? (int32_t)i : k,
-                                       .slot = -1,
-                                       .carries = -1,
-                                       .contact = (int32_t)i,
-                                       .radius = k < 0 ? 0.0 : scene->feet[k].radius,
-                                       .damping = scene->contacts[i].damping,
-                                       .numbers.stiffness = scene->contacts[i].stiffness});
-    add_node(c, e, scene->contacts[i].node);
+    strut_element *element = add_element(
+        self, (strut_element){.strain = STRUT_STRAIN_FOOT,
+                              .law = STRUT_LAW_LINEAR,
+                              .role = k < 0 ? STRUT_ELEMENT_CONTACT : STRUT_ELEMENT_FOOT,
+                              .item = k < 0 ? (int32_t)i : k,
+                              .slot = -1,
+                              .carries = -1,
+                              .contact = (int32_t)i,
+                              .radius = k < 0 ? 0.0 : scene->feet[k].radius,
+                              .damping = scene->contacts[i].damping,
+                              .numbers.stiffness = scene->contacts[i].stiffness});
+    add_node(self, element, scene->contacts[i].node);
     if (k < 0) continue;
-    const strut_member *m = &scene->members[scene->feet[k].member];
-    add_node(c, e, m->node[m->node[0] == scene->feet[k].node]);
+    const strut_member *member = &scene->members[scene->feet[k].member];
+    add_node(self, element, member->node[member->node[0] == scene->feet[k].node]);
   }
 }
 
@@ -528,39 +538,40 @@ static void add_feet(compilation *c) {
 enum { MANY_COLLISIONS = 64, FAR_MORE = 4 };
 
 /* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
-static bool sort_elements(compilation *c, strut_element_table *t) {
-  strut_arena *arena = &c->model->arena;
-  strut_element *sorted = strut_arena_allocate(arena, (size_t)c->count, sizeof *sorted);
+static bool sort_elements(compilation *self, strut_element_table *elements) {
+  strut_arena *arena = &self->model->arena;
+  strut_element *sorted = strut_arena_allocate(arena, (size_t)self->count, sizeof *sorted);
   strut_element_block *block =
       strut_arena_allocate(arena, 2 * (size_t)STRUT_STRAIN_COUNT * STRUT_LAW_COUNT, sizeof *block);
   if (!sorted || !block) return false;
   int32_t all = 0, of_kind[2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT] = {0};
-  for (int32_t i = 0; i < c->count; i++) of_kind[kind_of(&c->element[i])]++;
+  for (int32_t i = 0; i < self->count; i++) of_kind[kind_of(&self->element[i])]++;
   for (int kind = 0; kind < 2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT; kind++) {
-    int32_t begin = t->count;
+    int32_t begin = elements->count;
     if (!of_kind[kind]) continue;
-    for (int32_t i = 0; i < c->count; i++)
-      if (kind_of(&c->element[i]) == kind) sorted[t->count++] = c->element[i];
+    for (int32_t i = 0; i < self->count; i++)
+      if (kind_of(&self->element[i]) == kind) sorted[elements->count++] = self->element[i];
     bool both = true;
     int32_t collisions = 0;
-    for (int32_t i = begin; i < t->count; i++) {
+    for (int32_t i = begin; i < elements->count; i++) {
       both = both && !sorted[i].carries;
       collisions += sorted[i].role == STRUT_ELEMENT_COLLISION;
     }
-    const strut_element *e = &sorted[begin];
-    block[t->block_count++] = (strut_element_block){
-        e->strain, e->law, begin, t->count, both, e->remembers, collisions > 0};
+    const strut_element *element = &sorted[begin];
+    block[elements->block_count++] =
+        (strut_element_block){element->strain,    element->law,  begin, elements->count, both,
+                              element->remembers, collisions > 0};
     all += collisions;
-    c->model->strains |= UINT32_C(1) << e->strain;
+    self->model->strains |= UINT32_C(1) << element->strain;
   }
-  for (int32_t i = 0; i < t->count; i++) {
+  for (int32_t i = 0; i < elements->count; i++) {
     int32_t rows = 2 * sorted[i].nodes;
-    sorted[i].place = t->entries;
-    t->entries += rows * (rows + 1) / 2;
-    if (sorted[i].nodes > t->most_nodes) t->most_nodes = sorted[i].nodes;
+    sorted[i].place = elements->entries;
+    elements->entries += rows * (rows + 1) / 2;
+    if (sorted[i].nodes > elements->most_nodes) elements->most_nodes = sorted[i].nodes;
   }
-  t->element = sorted, t->block = block;
-  t->scattered = all >= MANY_COLLISIONS + FAR_MORE * (int32_t)c->model->node_count;
+  elements->element = sorted, elements->block = block;
+  elements->scattered = all >= MANY_COLLISIONS + FAR_MORE * (int32_t)self->model->node_count;
   return true;
 }
 
@@ -570,23 +581,23 @@ static bool sort_elements(compilation *c, strut_element_table *t) {
  */
 static bool mark_crowd(strut_model *model) {
   enum { CROWD = 4 };
-  strut_element_table *t = &model->elements;
-  if (!t->scattered) return true;
+  strut_element_table *elements = &model->elements;
+  if (!elements->scattered) return true;
   uint8_t *at_node = strut_allocate((size_t)model->node_count, sizeof *at_node);
   double *stiffest = strut_allocate((size_t)model->node_count, sizeof *stiffest);
   bool done = at_node && stiffest;
   /* where there is room, then what is stiffer */
-  for (int32_t n = 0; n < 2 * t->count && done; n++) {
-    strut_element *e = (strut_element *)&t->element[n % t->count];
-    if (e->role != STRUT_ELEMENT_COLLISION || e->crowds) continue;
-    const uint32_t *at = t->at + e->first;
+  for (int32_t n = 0; n < 2 * elements->count && done; n++) {
+    strut_element *element = (strut_element *)&elements->element[n % elements->count];
+    if (element->role != STRUT_ELEMENT_COLLISION || element->crowds) continue;
+    const uint32_t *at = elements->at + element->first;
     bool room = true;
-    for (int32_t k = 0; k < e->nodes; k++) room = room && at_node[at[k] / 2] < CROWD;
-    e->crowds = n < t->count ? room : e->numbers.stiffness > stiffest[at[0] / 2];
-    if (!e->crowds) continue;
-    for (int32_t k = 0; k < e->nodes; k++) {
+    for (int32_t k = 0; k < element->nodes; k++) room = room && at_node[at[k] / 2] < CROWD;
+    element->crowds = n < elements->count ? room : element->numbers.stiffness > stiffest[at[0] / 2];
+    if (!element->crowds) continue;
+    for (int32_t k = 0; k < element->nodes; k++) {
       uint32_t node = at[k] / 2;
-      stiffest[node] = fmax(stiffest[node], e->numbers.stiffness);
+      stiffest[node] = fmax(stiffest[node], element->numbers.stiffness);
       if (at_node[node] < CROWD) at_node[node]++;
     }
   }
@@ -597,40 +608,42 @@ static bool mark_crowd(strut_model *model) {
 
 /* Node lists in the elements' order, and numbers side by side, so that vector loops read on. */
 static bool lay_out(strut_model *model, int32_t nodes) {
-  strut_element_table *t = &model->elements;
-  size_t count = (size_t)t->count;
+  strut_element_table *elements = &model->elements;
+  size_t count = (size_t)elements->count;
   uint32_t *at = strut_arena_allocate(&model->arena, (size_t)nodes, sizeof *at);
   double *stiffness = strut_arena_allocate(&model->arena, count, sizeof *stiffness);
   double *damping = strut_arena_allocate(&model->arena, count, sizeof *damping);
   int32_t *slot = strut_arena_allocate(&model->arena, count, sizeof *slot), next = 0;
   if (!at || !stiffness || !damping || !slot) return false;
-  for (int32_t i = 0; i < t->count; i++) {
-    strut_element *e = (strut_element *)&t->element[i];
-    for (int32_t k = 0; k < e->nodes; k++) at[next + k] = t->at[e->first + k];
-    e->first = next;
-    next += e->nodes;
-    stiffness[i] = e->numbers.stiffness, damping[i] = e->damping, slot[i] = e->slot;
+  for (int32_t i = 0; i < elements->count; i++) {
+    strut_element *element = (strut_element *)&elements->element[i];
+    for (int32_t k = 0; k < element->nodes; k++) at[next + k] = elements->at[element->first + k];
+    element->first = next;
+    next += element->nodes;
+    stiffness[i] = element->numbers.stiffness, damping[i] = element->damping,
+    slot[i] = element->slot;
   }
-  t->at = at, t->stiffness = stiffness, t->damping = damping, t->slot = slot;
+  elements->at = at, elements->stiffness = stiffness, elements->damping = damping,
+  elements->slot = slot;
   return true;
 }
 
 /* Chains the elements of each member, its own force first. */
 static bool link_members(strut_model *model) {
-  strut_element_table *t = &model->elements;
-  strut_element *element = (strut_element *)t->element;
+  strut_element_table *elements = &model->elements;
+  strut_element *element = (strut_element *)elements->element;
   size_t members = model->scene->member_count;
   int32_t *of_member = strut_arena_allocate(&model->arena, members, sizeof *of_member);
   if (!of_member) return false;
   for (size_t j = 0; j < members; j++) of_member[j] = -1;
   for (int own = 0; own < 2; own++)
-    for (int32_t i = 0; i < t->count; i++) {
+    for (int32_t i = 0; i < elements->count; i++) {
       strut_element *e = &element[i];
       if (!strut_element_is_of_member(e) || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
       e->sibling = of_member[e->item];
       of_member[e->item] = i;
     }
-  t->of_member = of_member;
+  elements->of_member = of_member;
   return true;
 }
 
@@ -646,36 +659,37 @@ static strut_breakable breakable(strut_element_role role, size_t item, int32_t f
 
 static bool list_breakables(strut_model *model) {
   const strut_scene *scene = model->scene;
-  strut_element_table *t = &model->elements;
+  strut_element_table *elements = &model->elements;
   strut_breakable *list =
-      strut_arena_allocate(&model->arena, (size_t)t->history_count, sizeof *list);
+      strut_arena_allocate(&model->arena, (size_t)elements->history_count, sizeof *list);
   if (!list) return false;
   for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *m = &scene->members[j];
-    if (!strut_member_ends(m)) continue;
-    list[t->breakable_count++] =
-        breakable(STRUT_ELEMENT_MEMBER, j, t->of_member[j], m->breaks_at, m->released_at);
+    const strut_member *member = &scene->members[j];
+    if (!strut_member_ends(member)) continue;
+    list[elements->breakable_count++] = breakable(STRUT_ELEMENT_MEMBER, j, elements->of_member[j],
+                                                  member->breaks_at, member->released_at);
   }
   for (size_t i = 0; i < scene->hinge_count; i++) {
-    const strut_hinge *h = &scene->hinges[i];
-    if (!strut_hinge_ends(h)) continue;
-    int32_t first = strut_element_find(t, STRUT_ELEMENT_HINGE, (int32_t)i);
-    list[t->breakable_count++] =
-        breakable(STRUT_ELEMENT_HINGE, i, first, h->breaks_at, h->released_at);
+    const strut_hinge *hinge = &scene->hinges[i];
+    if (!strut_hinge_ends(hinge)) continue;
+    int32_t first = strut_element_find(elements, STRUT_ELEMENT_HINGE, (int32_t)i);
+    list[elements->breakable_count++] =
+        breakable(STRUT_ELEMENT_HINGE, i, first, hinge->breaks_at, hinge->released_at);
   }
-  t->breakable = list;
+  elements->breakable = list;
   return true;
 }
 
 /* After the elements have been sorted. */
 static bool list_memories(strut_model *model) {
-  strut_element_table *t = &model->elements;
-  if (!t->history_count) return true;
-  int32_t *memory = strut_arena_allocate(&model->arena, (size_t)t->history_count, sizeof *memory);
+  strut_element_table *elements = &model->elements;
+  if (!elements->history_count) return true;
+  int32_t *memory =
+      strut_arena_allocate(&model->arena, (size_t)elements->history_count, sizeof *memory);
   if (!memory) return false;
-  for (int32_t i = 0; i < t->count; i++)
-    if (t->element[i].remembers) memory[t->element[i].memory] = i;
-  t->memory = memory;
+  for (int32_t i = 0; i < elements->count; i++)
+    if (elements->element[i].remembers) memory[elements->element[i].memory] = i;
+  elements->memory = memory;
   model->terms |= STRUT_TERM_MEMORY;
   return list_breakables(model);
 }
@@ -713,13 +727,13 @@ bool strut_elements_compile(strut_model *model) {
   return done;
 }
 
-static int32_t nodes_of(const strut_scene *scene, const strut_actuator *a) {
-  return a->member >= 0 ? (int32_t)scene->members[a->member].guide_count + 2 : 3;
+static int32_t nodes_of(const strut_scene *scene, const strut_actuator *actuator) {
+  return actuator->member >= 0 ? (int32_t)scene->members[actuator->member].guide_count + 2 : 3;
 }
 
-static int32_t node_of(const strut_scene *scene, const strut_actuator *a, int32_t k) {
-  return a->member >= 0 ? strut_member_node(&scene->members[a->member], (size_t)k)
-                        : scene->hinges[a->hinge].node[k];
+static int32_t node_of(const strut_scene *scene, const strut_actuator *actuator, int32_t k) {
+  return actuator->member >= 0 ? strut_member_node(&scene->members[actuator->member], (size_t)k)
+                               : scene->hinges[actuator->hinge].node[k];
 }
 
 bool strut_actuator_forces_compile(strut_model *model) {
@@ -736,19 +750,19 @@ bool strut_actuator_forces_compile(strut_model *model) {
   if (!item || !at) return false;
   int32_t filled = 0, first = 0;
   for (size_t i = 0; i < scene->actuator_count; i++) {
-    const strut_actuator *a = &scene->actuators[i];
-    if (!a->force) continue;
-    int32_t n = nodes_of(scene, a);
-    bool member = a->member >= 0;
+    const strut_actuator *actuator = &scene->actuators[i];
+    if (!actuator->force) continue;
+    int32_t n = nodes_of(scene, actuator);
+    bool member = actuator->member >= 0;
     item[filled++] = (strut_actuator_force){.strain = !member ? STRUT_STRAIN_ANGLE
                                                       : n > 2 ? STRUT_STRAIN_PATH
                                                               : STRUT_STRAIN_LENGTH,
-                                            .member = member ? a->member : -1,
-                                            .hinge = member ? -1 : a->hinge,
-                                            .signal = a->signal,
+                                            .member = member ? actuator->member : -1,
+                                            .hinge = member ? -1 : actuator->hinge,
+                                            .signal = actuator->signal,
                                             .first = first,
                                             .nodes = n};
-    for (int32_t k = 0; k < n; k++) at[first + k] = 2 * (uint32_t)node_of(scene, a, k);
+    for (int32_t k = 0; k < n; k++) at[first + k] = 2 * (uint32_t)node_of(scene, actuator, k);
     first += n;
   }
   model->actuator_forces = (strut_actuator_force_table){(int32_t)count, item, at};

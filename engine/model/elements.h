@@ -130,38 +130,40 @@ typedef struct strut_element_table {
 } strut_element_table;
 
 /** The first element of member j, or NULL for a plain member without stops. */
-static inline const strut_element *strut_element_of_member(const strut_element_table *t,
+static inline const strut_element *strut_element_of_member(const strut_element_table *elements,
                                                            int32_t j) {
-  return t->of_member && t->of_member[j] >= 0 ? &t->element[t->of_member[j]] : NULL;
+  return elements->of_member && elements->of_member[j] >= 0
+             ? &elements->element[elements->of_member[j]]
+             : NULL;
 }
 
 /** Index of the first element of an item in that role, looked for from element `near` on; -1: it has none. */
-static inline int32_t strut_element_find_near(const strut_element_table *t, strut_element_role role,
-                                              int32_t item, int32_t near) {
-  for (int32_t i = 0, k = near; i < t->count; i++, k = k + 1 < t->count ? k + 1 : 0)
-    if (t->element[k].role == role && t->element[k].item == item) return k;
+static inline int32_t strut_element_find_near(const strut_element_table *elements,
+                                              strut_element_role role, int32_t item, int32_t near) {
+  for (int32_t i = 0, k = near; i < elements->count; i++, k = k + 1 < elements->count ? k + 1 : 0)
+    if (elements->element[k].role == role && elements->element[k].item == item) return k;
   return -1;
 }
 
-static inline int32_t strut_element_find(const strut_element_table *t, strut_element_role role,
-                                         int32_t item) {
-  return strut_element_find_near(t, role, item, 0);
+static inline int32_t strut_element_find(const strut_element_table *elements,
+                                         strut_element_role role, int32_t item) {
+  return strut_element_find_near(elements, role, item, 0);
 }
 
 /** The element behind the last one of the same item; elements of a collision follow each other. */
-static inline int32_t strut_element_end(const strut_element_table *t, int32_t first) {
-  assert(first >= 0 && first < t->count);
+static inline int32_t strut_element_end(const strut_element_table *elements, int32_t first) {
+  assert(first >= 0 && first < elements->count);
   int32_t k = first;
-  while (k < t->count && t->element[k].role == t->element[first].role &&
-         t->element[k].item == t->element[first].item)
+  while (k < elements->count && elements->element[k].role == elements->element[first].role &&
+         elements->element[k].item == elements->element[first].item)
     k++;
   return k;
 }
 
 /** Is it the force or a stop of a member? */
-static inline bool strut_element_is_of_member(const strut_element *e) {
-  return e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_LONGEST ||
-         e->role == STRUT_ELEMENT_SHORTEST;
+static inline bool strut_element_is_of_member(const strut_element *element) {
+  return element->role == STRUT_ELEMENT_MEMBER || element->role == STRUT_ELEMENT_LONGEST ||
+         element->role == STRUT_ELEMENT_SHORTEST;
 }
 
 /** The kind of thing that elements of a role belong to. */
@@ -182,25 +184,28 @@ static inline strut_thing strut_element_thing(strut_element_role role) {
 }
 
 /** The name of the thing that the element belongs to. */
-static inline const char *strut_element_name(const strut_scene *scene, const strut_element *e) {
-  if (e->role == STRUT_ELEMENT_CONTACT) return scene->nodes[scene->contacts[e->item].node].name;
-  return strut_thing_name(scene, strut_element_thing(e->role), (size_t)e->item);
+static inline const char *strut_element_name(const strut_scene *scene,
+                                             const strut_element *element) {
+  if (element->role == STRUT_ELEMENT_CONTACT)
+    return scene->nodes[scene->contacts[element->item].node].name;
+  return strut_thing_name(scene, strut_element_thing(element->role), (size_t)element->item);
 }
 
 /** The natural strain in the unit of the strain: the laws of cells have a pressure there instead. */
-static inline double strut_element_origin(const strut_element *e, double natural) {
-  return strut_law_is_of_cells(e->law) ? 0.0 : natural;
+static inline double strut_element_origin(const strut_element *element, double natural) {
+  return strut_law_is_of_cells(element->law) ? 0.0 : natural;
 }
 
 /** The angle near which an element's is taken at first. A couple leans, so that it may turn by just half a turn. */
-static inline double strut_element_near(const strut_element *e, double natural) {
-  return e->role == STRUT_ELEMENT_LOAD ? e->numbers.area + copysign(0.1, natural) : natural;
+static inline double strut_element_near(const strut_element *element, double natural) {
+  return element->role == STRUT_ELEMENT_LOAD ? element->numbers.area + copysign(0.1, natural)
+                                             : natural;
 }
 
 /** Does an element take the place of the plain member j? */
-static inline bool strut_member_is_element(const strut_element_table *t, int32_t j) {
-  const strut_element *e = strut_element_of_member(t, j);
-  return e && e->role == STRUT_ELEMENT_MEMBER;
+static inline bool strut_member_is_element(const strut_element_table *elements, int32_t j) {
+  const strut_element *element = strut_element_of_member(elements, j);
+  return element && element->role == STRUT_ELEMENT_MEMBER;
 }
 
 /* Actuators that give a force or a moment instead of a rest length or a rest angle.

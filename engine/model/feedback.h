@@ -45,8 +45,9 @@ typedef struct strut_feedback_table {
 } strut_feedback_table;
 
 /** Does the motion depend on more of the past than positions and velocities hold? */
-static inline bool strut_feedback_remembers(const strut_feedback_table *f) {
-  return f->state_count || f->sampled_count || f->trigger_count || f->relay_count;
+static inline bool strut_feedback_remembers(const strut_feedback_table *feedback) {
+  return feedback->state_count || feedback->sampled_count || feedback->trigger_count ||
+         feedback->relay_count;
 }
 
 struct strut_model;

@@ -15,29 +15,29 @@ static int32_t find_root(int32_t *parent, int32_t i) {
   return i;
 }
 
-static void join_coupled(const strut_sparse *m, int32_t *parent) {
-  for (int32_t i = 0; i < m->n; i++) parent[i] = i;
-  for (int32_t j = 0; j < m->n; j++)
-    for (int32_t k = m->start[j] + 1; k < m->start[j + 1]; k++) {
-      int32_t a = find_root(parent, j), b = find_root(parent, m->row[k]);
+static void join_coupled(const strut_sparse *matrix, int32_t *parent) {
+  for (int32_t i = 0; i < matrix->n; i++) parent[i] = i;
+  for (int32_t j = 0; j < matrix->n; j++)
+    for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
+      int32_t a = find_root(parent, j), b = find_root(parent, matrix->row[k]);
       if (a < b) parent[b] = a;
       if (b < a) parent[a] = b;
     }
-  for (int32_t i = 0; i < m->n; i++) parent[i] = find_root(parent, i);
+  for (int32_t i = 0; i < matrix->n; i++) parent[i] = find_root(parent, i);
 }
 
 /* Inverse of a small positive definite matrix in place, by Gauss-Jordan; false if it is not one. */
-static bool invert_small(int32_t n, double *a) {
+static bool invert_small(int32_t n, double *acceleration) {
   for (int32_t p = 0; p < n; p++) {
-    double pivot = a[p * n + p];
+    double pivot = acceleration[p * n + p];
     if (!(pivot > 0)) return false;
-    a[p * n + p] = 1.0;
-    for (int32_t j = 0; j < n; j++) a[p * n + j] /= pivot;
+    acceleration[p * n + p] = 1.0;
+    for (int32_t j = 0; j < n; j++) acceleration[p * n + j] /= pivot;
     for (int32_t i = 0; i < n; i++) {
       if (i == p) continue;
-      double factor = a[i * n + p];
-      a[i * n + p] = 0.0;
-      for (int32_t j = 0; j < n; j++) a[i * n + j] -= factor * a[p * n + j];
+      double factor = acceleration[i * n + p];
+      acceleration[i * n + p] = 0.0;
+      for (int32_t j = 0; j < n; j++) acceleration[i * n + j] -= factor * acceleration[p * n + j];
     }
   }
   return true;
@@ -50,37 +50,37 @@ typedef struct sorting {
   int32_t *place;       /* scratch */
 } sorting;
 
-static bool sort_rows(const strut_sparse *m, strut_arena *scratch, sorting *s) {
-  size_t n = (size_t)m->n;
-  s->root = strut_arena_allocate(scratch, n, sizeof *s->root);
-  s->size = strut_arena_allocate(scratch, n, sizeof *s->size);
-  s->order = strut_arena_allocate(scratch, n, sizeof *s->order);
-  s->place = strut_arena_allocate(scratch, n + 1, sizeof *s->place);
-  if (!s->root || !s->size || !s->order || !s->place) return false;
-  join_coupled(m, s->root);
-  for (int32_t i = 0; i < m->n; i++) s->size[s->root[i]]++;
-  for (int32_t i = 0, at = 0; i < m->n; at += s->size[i++]) s->place[i] = at;
-  for (int32_t i = 0; i < m->n; i++) s->order[s->place[s->root[i]]++] = i;
+static bool sort_rows(const strut_sparse *matrix, strut_arena *scratch, sorting *self) {
+  size_t n = (size_t)matrix->n;
+  self->root = strut_arena_allocate(scratch, n, sizeof *self->root);
+  self->size = strut_arena_allocate(scratch, n, sizeof *self->size);
+  self->order = strut_arena_allocate(scratch, n, sizeof *self->order);
+  self->place = strut_arena_allocate(scratch, n + 1, sizeof *self->place);
+  if (!self->root || !self->size || !self->order || !self->place) return false;
+  join_coupled(matrix, self->root);
+  for (int32_t i = 0; i < matrix->n; i++) self->size[self->root[i]]++;
+  for (int32_t i = 0, at = 0; i < matrix->n; at += self->size[i++]) self->place[i] = at;
+  for (int32_t i = 0; i < matrix->n; i++) self->order[self->place[self->root[i]]++] = i;
   return true;
 }
 
-static double entry(const strut_sparse *m, int32_t i, int32_t j) {
+static double entry(const strut_sparse *matrix, int32_t i, int32_t j) {
   int32_t column = i < j ? i : j, row = i < j ? j : i;
-  for (int32_t k = m->start[column]; k < m->start[column + 1]; k++)
-    if (m->row[k] == row) return m->value[k];
+  for (int32_t k = matrix->start[column]; k < matrix->start[column + 1]; k++)
+    if (matrix->row[k] == row) return matrix->value[k];
   return 0.0;
 }
 
 /* Dense inverses of all sets of 2 to STRUT_DENSE_BLOCK rows. */
-static strut_status make_blocks(strut_model *model, const sorting *s, strut_mass_operator *op,
+static strut_status make_blocks(strut_model *model, const sorting *self, strut_mass_operator *op,
                                 strut_mass *mass, strut_error *error) {
-  const strut_sparse *m = op->matrix;
+  const strut_sparse *matrix = op->matrix;
   size_t nodes = 0, entries = 0;
-  for (int32_t i = 0; i < m->n; i++)
-    if (s->size[i] > 1 && s->size[i] <= STRUT_DENSE_BLOCK) {
+  for (int32_t i = 0; i < matrix->n; i++)
+    if (self->size[i] > 1 && self->size[i] <= STRUT_DENSE_BLOCK) {
       op->block_count++;
-      nodes += (size_t)s->size[i];
-      entries += (size_t)(s->size[i] * s->size[i]);
+      nodes += (size_t)self->size[i];
+      entries += (size_t)(self->size[i] * self->size[i]);
     }
   if (!op->block_count) return STRUT_OK;
   int32_t *size = strut_arena_allocate(&model->arena, (size_t)op->block_count, sizeof *size);
@@ -89,13 +89,13 @@ static strut_status make_blocks(strut_model *model, const sorting *s, strut_mass
   if (!size || !at || !inverse) return strut_no_memory(error, "for the model");
   op->block_size = size, op->block_at = at, op->block_inverse = inverse;
   mass->dense_entries += entries;
-  for (int32_t first = 0; first < m->n;) {
-    const int32_t *rows = s->order + first;
-    int32_t n = s->size[s->root[rows[0]]];
+  for (int32_t first = 0; first < matrix->n;) {
+    const int32_t *rows = self->order + first;
+    int32_t n = self->size[self->root[rows[0]]];
     first += n;
     if (n < 2 || n > STRUT_DENSE_BLOCK) continue;
     for (int32_t i = 0; i < n; i++)
-      for (int32_t j = 0; j < n; j++) inverse[i * n + j] = entry(m, rows[i], rows[j]);
+      for (int32_t j = 0; j < n; j++) inverse[i * n + j] = entry(matrix, rows[i], rows[j]);
     if (!invert_small(n, inverse))
       return strut_fail(error, STRUT_SINGULAR, "the mass matrix of node '%s' is singular",
                         model->scene->nodes[op->matrix_node[rows[0]]].name);
@@ -107,37 +107,38 @@ static strut_status make_blocks(strut_model *model, const sorting *s, strut_mass
 }
 
 /* The rows of large sets as one matrix of their own; its node list is returned in *node. */
-static strut_status take_rest(strut_arena *scratch, const sorting *s, const strut_sparse *m,
+static strut_status take_rest(strut_arena *scratch, const sorting *self, const strut_sparse *matrix,
                               const int32_t *matrix_node, strut_sparse *rest, int32_t **node) {
-  int32_t *map = strut_arena_allocate(scratch, (size_t)m->n, sizeof *map);
-  *node = strut_arena_allocate(scratch, (size_t)m->n, sizeof **node);
-  rest->start = strut_arena_allocate(scratch, (size_t)m->n + 1, sizeof *rest->start);
-  rest->row = strut_arena_allocate(scratch, (size_t)m->start[m->n], sizeof *rest->row);
-  rest->value = strut_arena_allocate(scratch, (size_t)m->start[m->n], sizeof *rest->value);
+  int32_t *map = strut_arena_allocate(scratch, (size_t)matrix->n, sizeof *map);
+  *node = strut_arena_allocate(scratch, (size_t)matrix->n, sizeof **node);
+  rest->start = strut_arena_allocate(scratch, (size_t)matrix->n + 1, sizeof *rest->start);
+  rest->row = strut_arena_allocate(scratch, (size_t)matrix->start[matrix->n], sizeof *rest->row);
+  rest->value =
+      strut_arena_allocate(scratch, (size_t)matrix->start[matrix->n], sizeof *rest->value);
   if (!map || !*node || !rest->start || !rest->row || !rest->value) return STRUT_NO_MEMORY;
   int32_t nonzeros = 0;
-  for (int32_t i = 0; i < m->n; i++)
-    if (s->size[s->root[i]] > STRUT_DENSE_BLOCK) {
+  for (int32_t i = 0; i < matrix->n; i++)
+    if (self->size[self->root[i]] > STRUT_DENSE_BLOCK) {
       (*node)[rest->n] = matrix_node[i];
       map[i] = rest->n++;
     }
-  for (int32_t j = 0, column = 0; j < m->n; j++) {
-    if (s->size[s->root[j]] <= STRUT_DENSE_BLOCK) continue;
-    for (int32_t k = m->start[j]; k < m->start[j + 1]; k++, nonzeros++) {
-      rest->row[nonzeros] = map[m->row[k]];
-      rest->value[nonzeros] = m->value[k];
+  for (int32_t j = 0, column = 0; j < matrix->n; j++) {
+    if (self->size[self->root[j]] <= STRUT_DENSE_BLOCK) continue;
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++, nonzeros++) {
+      rest->row[nonzeros] = map[matrix->row[k]];
+      rest->value[nonzeros] = matrix->value[k];
     }
     rest->start[++column] = nonzeros;
   }
   return STRUT_OK;
 }
 
-static strut_status make_factor(strut_model *model, strut_arena *scratch, const sorting *s,
+static strut_status make_factor(strut_model *model, strut_arena *scratch, const sorting *self,
                                 strut_mass_operator *op, strut_mass *mass, int coordinate,
                                 strut_error *error) {
   strut_sparse rest = {0};
   int32_t *node = NULL;
-  if (take_rest(scratch, s, op->matrix, op->matrix_node, &rest, &node))
+  if (take_rest(scratch, self, op->matrix, op->matrix_node, &rest, &node))
     return strut_no_memory(error, "for the model");
   if (!rest.n) return STRUT_OK;
   strut_factor *factor = NULL;
@@ -239,15 +240,15 @@ void strut_mass_free(strut_mass *mass) {
 }
 
 static void add_members(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
-  for (int32_t j = 0; j < t->count; j++) {
-    if (!(t->mass[j] > 0)) continue;
-    int32_t a = row_of[t->from[j] / 2], b = row_of[t->to[j] / 2];
-    double share = consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
+  for (int32_t j = 0; j < members->count; j++) {
+    if (!(members->mass[j] > 0)) continue;
+    int32_t a = row_of[members->from[j] / 2], b = row_of[members->to[j] / 2];
+    double share = consistent ? members->mass[j] / 3.0 : members->mass[j] / 2.0;
     if (a >= 0) strut_triplets_add(sum, a, a, share);
     if (b >= 0) strut_triplets_add(sum, b, b, share);
-    if (consistent && a >= 0 && b >= 0) strut_triplets_add(sum, a, b, t->mass[j] / 6.0);
+    if (consistent && a >= 0 && b >= 0) strut_triplets_add(sum, a, b, members->mass[j] / 6.0);
   }
 }
 
@@ -255,13 +256,13 @@ static void add_members(const strut_model *model, const int32_t *row_of, strut_t
 static void add_sliding_masses(const strut_model *model, const int32_t *row_of,
                                strut_triplets *sum) {
   for (int32_t i = 0; i < model->sliding.count; i++) {
-    const strut_sliding_item *s = &model->sliding.item[i];
-    int32_t a = row_of[s->at[0] / 2], b = row_of[s->at[1] / 2];
-    double far = s->start, near = 1.0 - far;
-    if (s->signal >= 0) continue;
-    if (a >= 0) strut_triplets_add(sum, a, a, s->mass * near * near);
-    if (b >= 0) strut_triplets_add(sum, b, b, s->mass * far * far);
-    if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, s->mass * near * far);
+    const strut_sliding_item *item = &model->sliding.item[i];
+    int32_t a = row_of[item->at[0] / 2], b = row_of[item->at[1] / 2];
+    double far = item->start, near = 1.0 - far;
+    if (item->signal >= 0) continue;
+    if (a >= 0) strut_triplets_add(sum, a, a, item->mass * near * near);
+    if (b >= 0) strut_triplets_add(sum, b, b, item->mass * far * far);
+    if (a >= 0 && b >= 0) strut_triplets_add(sum, a, b, item->mass * near * far);
   }
 }
 
@@ -305,19 +306,19 @@ void strut_mass_solve(const strut_model *model, const double *restrict force,
 /* The sparse part of the mass solve, long enough to be called. See mass.h. */
 
 void strut_mass_factor_pair(const strut_mass_operator *op, const double *restrict f,
-                            double *restrict a, double *restrict work) {
+                            double *restrict acceleration, double *restrict work) {
   int32_t n = op->factor->n;
   for (int32_t i = 0; i < n; i++)
     strut_pair_store(work + 2 * i, strut_pair_load(f + 2 * op->factor_node[i]));
   strut_factor_solve_pair(op->factor, work);
   for (int32_t i = 0; i < n; i++)
-    strut_pair_store(a + 2 * op->factor_node[i], strut_pair_load(work + 2 * i));
+    strut_pair_store(acceleration + 2 * op->factor_node[i], strut_pair_load(work + 2 * i));
 }
 
 void strut_mass_factor_single(const strut_mass_operator *op, const double *restrict f,
-                              double *restrict a, double *restrict work) {
+                              double *restrict acceleration, double *restrict work) {
   int32_t n = op->factor->n;
   for (int32_t i = 0; i < n; i++) work[i] = f[2 * op->factor_node[i]];
   strut_factor_solve(op->factor, work);
-  for (int32_t i = 0; i < n; i++) a[2 * op->factor_node[i]] = work[i];
+  for (int32_t i = 0; i < n; i++) acceleration[2 * op->factor_node[i]] = work[i];
 }

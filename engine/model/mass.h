@@ -60,9 +60,9 @@ void strut_mass_solve(const struct strut_model *model, const double *restrict fo
 
 /* The sparse part of it: both coordinates at once, or the one that f and a point at. */
 void strut_mass_factor_pair(const strut_mass_operator *op, const double *restrict f,
-                            double *restrict a, double *restrict work);
+                            double *restrict acceleration, double *restrict work);
 void strut_mass_factor_single(const strut_mass_operator *op, const double *restrict f,
-                              double *restrict a, double *restrict work);
+                              double *restrict acceleration, double *restrict work);
 
 /* Assembly of the sparse mass matrix of one coordinate, supports eliminated. */
 

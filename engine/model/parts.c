@@ -23,10 +23,10 @@ void strut_connected_parts_find(const strut_model *model, const double *force, i
                                 strut_connected_part *part) {
   connect_nodes(model, part_of);
   for (int32_t i = 0; i < model->node_count; i++) {
-    strut_connected_part *p = &part[part_of[i] = root(part_of, i)];
+    strut_connected_part *connected_part = &part[part_of[i] = root(part_of, i)];
     for (int c = 0; c < 2; c++) {
-      p->held[c] = p->held[c] || model->fixed[2 * i + c];
-      if (!model->fixed[2 * i + c]) p->force[c] += force[2 * i + c];
+      connected_part->held[c] = connected_part->held[c] || model->fixed[2 * i + c];
+      if (!model->fixed[2 * i + c]) connected_part->force[c] += force[2 * i + c];
     }
   }
   for (int32_t i = 0; i < model->contacts.count; i++)

@@ -25,112 +25,118 @@ typedef struct strut_member_pose {
 } strut_member_pose;
 
 /** From member j's first node to its second [m]. */
-static inline strut_vec2 strut_member_span(const strut_member_table *t, int32_t j,
-                                           const double *q) {
-  assert(j >= 0 && j < t->slots);
-  return strut_vec2_between(q + t->from[j], q + t->to[j]);
+static inline strut_vec2 strut_member_span(const strut_member_table *members, int32_t j,
+                                           const double *positions) {
+  assert(j >= 0 && j < members->slots);
+  return strut_vec2_between(positions + members->from[j], positions + members->to[j]);
 }
 
-static inline double strut_member_length(const strut_member_table *t, int32_t j, const double *q) {
-  return strut_vec2_length(strut_member_span(t, j, q));
+static inline double strut_member_length(const strut_member_table *members, int32_t j,
+                                         const double *positions) {
+  return strut_vec2_length(strut_member_span(members, j, positions));
 }
 
 /** Pose of member j with rest lengths `rest` (slots): the table's own, or a state's driven ones. */
-static inline strut_member_pose strut_member_pose_at(const strut_member_table *t,
+static inline strut_member_pose strut_member_pose_at(const strut_member_table *members,
                                                      const double *rest, int32_t j,
-                                                     const double *q) {
-  assert(j >= 0 && j < t->count);
-  strut_member_pose pose = {.span = strut_member_span(t, j, q)};
+                                                     const double *positions) {
+  assert(j >= 0 && j < members->count);
+  strut_member_pose pose = {.span = strut_member_span(members, j, positions)};
   pose.length = strut_vec2_length(pose.span);
   pose.unit = strut_vec2_unit(pose.span, pose.length);
   pose.stretch = pose.length - rest[j];
-  pose.taut = strut_law_member_is_taut(pose.stretch, t->slack[j]);
+  pose.taut = strut_law_member_is_taut(pose.stretch, members->slack[j]);
   return pose;
 }
 
 /** Rate of the length at velocities v [m/s]; 0 where it has no length. */
-static inline double strut_member_rate(const strut_member_table *t, int32_t j,
-                                       const strut_member_pose *pose, const double *v) {
-  strut_vec2 w = strut_member_span(t, j, v);
+static inline double strut_member_rate(const strut_member_table *members, int32_t j,
+                                       const strut_member_pose *pose, const double *velocity) {
+  strut_vec2 w = strut_member_span(members, j, velocity);
   double inverse = pose->length > 0.0 ? 1.0 / pose->length : 0.0;
   return (w.x * pose->span.x + w.y * pose->span.y) * inverse;
 }
 
 /** Force of the spring, tension positive [N]; 0 of a slack cable. */
-static inline double strut_member_elastic_force(const strut_member_table *t, int32_t j,
+static inline double strut_member_elastic_force(const strut_member_table *members, int32_t j,
                                                 const strut_member_pose *pose) {
-  return pose->taut ? t->stiffness[j] * pose->stretch : 0.0;
+  return pose->taut ? members->stiffness[j] * pose->stretch : 0.0;
 }
 
 /** Energy of the spring [J]; 0 of a slack cable. */
-static inline double strut_member_elastic_energy(const strut_member_table *t, int32_t j,
+static inline double strut_member_elastic_energy(const strut_member_table *members, int32_t j,
                                                  const strut_member_pose *pose) {
-  return strut_law_member_energy(t->stiffness[j], pose->stretch, pose->taut);
+  return strut_law_member_energy(members->stiffness[j], pose->stretch, pose->taut);
 }
 
 /**
  * Stiffness of a taut member across its direction: tension over length [N/m]. Without length it is an
  * isotropic spring if its rest length is zero too, and has no direction to be stiff across otherwise.
  */
-static inline double strut_member_across_stiffness(const strut_member_table *t, const double *rest,
-                                                   int32_t j, const strut_member_pose *pose) {
-  if (pose->length > 0.0) return t->stiffness[j] * pose->stretch / pose->length;
-  return rest[j] > 0.0 ? 0.0 : t->stiffness[j];
+static inline double strut_member_across_stiffness(const strut_member_table *members,
+                                                   const double *rest, int32_t j,
+                                                   const strut_member_pose *pose) {
+  if (pose->length > 0.0) return members->stiffness[j] * pose->stretch / pose->length;
+  return rest[j] > 0.0 ? 0.0 : members->stiffness[j];
 }
 
 /** The largest rounding error of a coordinate of points a and b [m]. */
-static inline double strut_coordinate_rounding(const double *a, const double *b) {
-  return DBL_EPSILON * fmax(fmax(fabs(a[0]), fabs(a[1])), fmax(fabs(b[0]), fabs(b[1])));
+static inline double strut_coordinate_rounding(const double *first, const double *second) {
+  return DBL_EPSILON *
+         fmax(fmax(fabs(first[0]), fabs(first[1])), fmax(fabs(second[0]), fabs(second[1])));
 }
 
 /** Height of a point above the ground's line, along its normal; the ground touches below 0 [m]. */
-static inline double strut_ground_gap(const strut_contact_table *c, const double *point) {
-  return point[0] * c->normal[0] + (point[1] - c->height) * c->normal[1];
+static inline double strut_ground_gap(const strut_contact_table *contacts, const double *point) {
+  return point[0] * contacts->normal[0] + (point[1] - contacts->height) * contacts->normal[1];
 }
 
 /**
  * Contact i in q: against the nearest facet of its surface, or against `facet` alone where that is not
  * negative. motion: of the grounds, or NULL where they are as drawn.
  */
-static inline strut_contact_pose strut_contact_pose_at(const strut_contact_table *c, int32_t i,
-                                                       const double *q,
+static inline strut_contact_pose strut_contact_pose_at(const strut_contact_table *contacts,
+                                                       int32_t i, const double *positions,
                                                        const strut_ground_motion *motion,
                                                        int32_t facet) {
-  assert(i >= 0 && i < c->count);
-  strut_contact_pose pose = {.axes = c->axes};
-  const double *at = q + c->at[i];
-  if (!c->surface) {
-    pose.gap = strut_ground_gap(c, at);
+  assert(i >= 0 && i < contacts->count);
+  strut_contact_pose pose = {.axes = contacts->axes};
+  const double *at = positions + contacts->at[i];
+  if (!contacts->surface) {
+    pose.gap = strut_ground_gap(contacts, at);
     return pose;
   }
-  const strut_surface *s = &c->surface[c->surface_of[i]];
-  const double *place = s->moves && motion ? motion[s->ground].place : NULL;
+  const strut_surface *surface = &contacts->surface[contacts->surface_of[i]];
+  const double *place = surface->moves && motion ? motion[surface->ground].place : NULL;
   const double point[2] = {at[0] - (place ? place[0] : 0.0), at[1] - (place ? place[1] : 0.0)};
-  strut_surface_find(s, point, facet, &pose);
+  strut_surface_find(surface, point, facet, &pose);
   return pose;
 }
 
 /** The contact after those of the node of contact `first`. */
-STRUT_API int32_t strut_contacts_end_of_node(const strut_contact_table *c, int32_t first);
+STRUT_API int32_t strut_contacts_end_of_node(const strut_contact_table *contacts, int32_t first);
 /**
  * Contacts first .. end - 1, of one node, without those whose gap in q exceeds `margin` [m] for certain and
  * is not negative: few of the many pieces of a long profile. Ascending, into list; returns their number.
  */
-STRUT_API int32_t strut_contacts_near(const strut_contact_table *c, int32_t first, int32_t end,
-                                      const double *q, const strut_ground_motion *motion,
-                                      double margin, int32_t *list);
+STRUT_API int32_t strut_contacts_near(const strut_contact_table *contacts, int32_t first,
+                                      int32_t end, const double *positions,
+                                      const strut_ground_motion *motion, double margin,
+                                      int32_t *list);
 
 /** The gap alone. */
-static inline double strut_contact_gap_at(const strut_contact_table *c, int32_t i, const double *q,
+static inline double strut_contact_gap_at(const strut_contact_table *contacts, int32_t i,
+                                          const double *positions,
                                           const strut_ground_motion *motion) {
-  assert(i >= 0 && i < c->count);
-  if (!c->surface) return strut_ground_gap(c, q + c->at[i]);
-  return strut_contact_pose_at(c, i, q, motion, -1).gap;
+  assert(i >= 0 && i < contacts->count);
+  if (!contacts->surface) return strut_ground_gap(contacts, positions + contacts->at[i]);
+  return strut_contact_pose_at(contacts, i, positions, motion, -1).gap;
 }
 
 /** The same where the grounds are as drawn. */
-static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, const double *q) {
-  return strut_contact_gap_at(c, i, q, NULL);
+static inline double strut_contact_gap(const strut_contact_table *contacts, int32_t i,
+                                       const double *positions) {
+  return strut_contact_gap_at(contacts, i, positions, NULL);
 }
 
 /**
@@ -138,61 +144,63 @@ static inline double strut_contact_gap(const strut_contact_table *c, int32_t i, 
  * ground: a node hardly touches more of them at once. near[1] is near[0] where there is only one. Returns the
  * contact after these.
  */
-STRUT_API int32_t strut_contacts_nearest(const strut_contact_table *c, int32_t first,
-                                         const double *q, int32_t near[2]);
+STRUT_API int32_t strut_contacts_nearest(const strut_contact_table *contacts, int32_t first,
+                                         const double *positions, int32_t near[2]);
 
 /** Is a displacement of the whole structure along x no change to any contact? */
-static inline bool strut_contacts_are_level(const strut_contact_table *c) {
-  return c->normal[0] == 0.0 && (!c->surface || c->parallel);
+static inline bool strut_contacts_are_level(const strut_contact_table *contacts) {
+  return contacts->normal[0] == 0.0 && (!contacts->surface || contacts->parallel);
 }
 
 /** Is there a direction, `tangent`, along which the whole structure may travel over the ground? */
-static inline bool strut_contacts_allow_travel(const strut_contact_table *c) {
-  return c->count > 0 && (!c->surface || c->parallel);
+static inline bool strut_contacts_allow_travel(const strut_contact_table *contacts) {
+  return contacts->count > 0 && (!contacts->surface || contacts->parallel);
 }
 
 /** Speed of the belt of contact i [m/s]. */
-static inline double strut_contact_belt(const strut_contact_table *c, int32_t i) {
-  assert(i >= 0 && i < c->count);
-  return c->surface ? c->surface[c->surface_of[i]].belt_speed : c->belt_speed;
+static inline double strut_contact_belt(const strut_contact_table *contacts, int32_t i) {
+  assert(i >= 0 && i < contacts->count);
+  return contacts->surface ? contacts->surface[contacts->surface_of[i]].belt_speed
+                           : contacts->belt_speed;
 }
 
 /** Motion of the ground of contact i, or NULL where it is at rest. */
-static inline const strut_ground_motion *strut_contact_motion(const strut_contact_table *c,
+static inline const strut_ground_motion *strut_contact_motion(const strut_contact_table *contacts,
                                                               int32_t i,
                                                               const strut_ground_motion *motion) {
-  assert(i >= 0 && i < c->count);
-  if (!c->surface || !motion) return NULL;
-  const strut_surface *s = &c->surface[c->surface_of[i]];
-  return s->moves ? &motion[s->ground] : NULL;
+  assert(i >= 0 && i < contacts->count);
+  if (!contacts->surface || !motion) return NULL;
+  const strut_surface *surface = &contacts->surface[contacts->surface_of[i]];
+  return surface->moves ? &motion[surface->ground] : NULL;
 }
 
 /** Component out of a single straight ground of what x (length) holds at contact i. */
-static inline double strut_contact_along_normal(const strut_contact_table *c, int32_t i,
-                                                const double *x) {
-  assert(i >= 0 && i < c->count);
-  const double *at = x + c->at[i];
-  return at[0] * c->normal[0] + at[1] * c->normal[1];
+static inline double strut_contact_along_normal(const strut_contact_table *contacts, int32_t i,
+                                                const double *vector) {
+  assert(i >= 0 && i < contacts->count);
+  const double *at = vector + contacts->at[i];
+  return at[0] * contacts->normal[0] + at[1] * contacts->normal[1];
 }
 
 /** Component along a single straight ground of what x (length) holds at contact i. */
-static inline double strut_contact_along_ground(const strut_contact_table *c, int32_t i,
-                                                const double *x) {
-  assert(i >= 0 && i < c->count);
-  const double *at = x + c->at[i];
-  return at[0] * c->tangent[0] + at[1] * c->tangent[1];
+static inline double strut_contact_along_ground(const strut_contact_table *contacts, int32_t i,
+                                                const double *vector) {
+  assert(i >= 0 && i < contacts->count);
+  const double *at = vector + contacts->at[i];
+  return at[0] * contacts->tangent[0] + at[1] * contacts->tangent[1];
 }
 
 /** Sliding speed of contact i against the belt of a single straight ground at velocities v [m/s]. */
-static inline double strut_contact_slip(const strut_contact_table *c, int32_t i, const double *v) {
-  return strut_contact_along_ground(c, i, v) - c->belt_speed;
+static inline double strut_contact_slip(const strut_contact_table *contacts, int32_t i,
+                                        const double *velocity) {
+  return strut_contact_along_ground(contacts, i, velocity) - contacts->belt_speed;
 }
 
 /* The law of the ground for single contacts: the text of scene/laws/ground.h for doubles. */
 
 /** The numbers of a contact as the law takes them. */
-static inline strut_law_ground_numbers strut_contact_numbers(const strut_contact_entry *e) {
-  return (strut_law_ground_numbers){-e->stiffness, -e->damping, e->dissipation};
+static inline strut_law_ground_numbers strut_contact_numbers(const strut_contact_entry *contact) {
+  return (strut_law_ground_numbers){-contact->stiffness, -contact->damping, contact->dissipation};
 }
 
 #endif

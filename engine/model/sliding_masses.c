@@ -12,30 +12,30 @@ static const double NEGLIGIBLE = 1e-18;
 
 bool strut_sliding_masses_compile(strut_model *model) {
   const strut_scene *scene = model->scene;
-  strut_sliding_table *t = &model->sliding;
+  strut_sliding_table *table = &model->sliding;
   size_t count = scene->sliding_count;
   if (!count) return true;
   strut_sliding_item *item = strut_arena_allocate(&model->arena, count, sizeof *item);
   int32_t *moving = strut_arena_allocate(&model->arena, count, sizeof *moving);
   if (!item || !moving) return false;
   for (size_t i = 0; i < count; i++) {
-    const strut_sliding_mass *s = &scene->sliding_masses[i];
-    const int32_t *node = scene->members[s->member].node;
-    item[i] = (strut_sliding_item){.member = s->member,
+    const strut_sliding_mass *mass = &scene->sliding_masses[i];
+    const int32_t *node = scene->members[mass->member].node;
+    item[i] = (strut_sliding_item){.member = mass->member,
                                    .at = {2 * (uint32_t)node[0], 2 * (uint32_t)node[1]},
-                                   .mass = s->mass,
+                                   .mass = mass->mass,
                                    .start = strut_sliding_mass_share(scene, i, 0.0),
-                                   .base = s->share,
+                                   .base = mass->share,
                                    .scale = strut_sliding_mass_scale(scene, i),
-                                   .signal = s->signal};
-    if (s->signal < 0) continue;
-    moving[t->moving_count++] = (int32_t)i;
-    t->corners = t->corners || strut_signal_has_corners(scene->signals, s->signal);
+                                   .signal = mass->signal};
+    if (mass->signal < 0) continue;
+    moving[table->moving_count++] = (int32_t)i;
+    table->corners = table->corners || strut_signal_has_corners(scene->signals, mass->signal);
     model->terms |= STRUT_TERM_SLIDING_MASS;
   }
-  t->count = (int32_t)count;
-  t->item = item;
-  t->moving = moving;
+  table->count = (int32_t)count;
+  table->item = item;
+  table->moving = moving;
   return true;
 }
 
@@ -66,45 +66,45 @@ static bool keep_answer(strut_model *model, double *const *column, strut_sliding
 }
 
 /* Entries of M^-1 between the nodes of moving mass l and those of all others, by its columns. */
-static void keep_entries(const strut_sliding_table *t, int32_t l, double *const *column,
+static void keep_entries(const strut_sliding_table *table, int32_t l, double *const *column,
                          double *between) {
-  int32_t n = 2 * t->moving_count;
+  int32_t n = 2 * table->moving_count;
   for (int32_t i = 0; i < n; i++)
     for (int32_t e = 0; e < 2; e++)
       for (int32_t c = 0; c < 2; c++)
         between[(c * n + i) * n + 2 * l + e] =
-            column[e][t->item[t->moving[i / 2]].at[i % 2] + (uint32_t)c];
+            column[e][table->item[table->moving[i / 2]].at[i % 2] + (uint32_t)c];
 }
 
-double strut_sliding_moment(const strut_model *model, double t, int axis, const double *q) {
+double strut_sliding_moment(const strut_model *model, double t, int axis, const double *positions) {
   const strut_sliding_table *table = &model->sliding;
   double sum = 0.0;
   for (int32_t k = 0; k < table->moving_count; k++) {
-    const strut_sliding_item *s = &table->item[table->moving[k]];
-    double span = q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis];
+    const strut_sliding_item *item = &table->item[table->moving[k]];
+    double span = positions[item->at[1] + (uint32_t)axis] - positions[item->at[0] + (uint32_t)axis];
     double share = strut_sliding_mass_share(model->scene, (size_t)table->moving[k], t);
-    sum += s->mass * (share - s->start) * span;
+    sum += item->mass * (share - item->start) * span;
   }
   return sum;
 }
 
 strut_status strut_sliding_masses_solve(strut_model *model) {
-  strut_sliding_table *t = &model->sliding;
-  size_t count = (size_t)t->moving_count, length = (size_t)model->length;
+  strut_sliding_table *table = &model->sliding;
+  size_t count = (size_t)table->moving_count, length = (size_t)model->length;
   if (!count || !model->mass) return STRUT_OK;
   strut_sliding_answer *answer = strut_arena_allocate(&model->arena, count, sizeof *answer);
   double *between = strut_arena_allocate(&model->arena, 8 * count * count, sizeof *between);
   double *scratch = strut_allocate(4 * length, sizeof *scratch);
   bool good = answer && between && scratch;
-  for (int32_t l = 0; l < t->moving_count && good; l++) {
+  for (int32_t l = 0; l < table->moving_count && good; l++) {
     double *column[2] = {scratch, scratch + length}, *force = scratch + 2 * length;
     for (int e = 0; e < 2; e++)
-      solve_column(model, t->item[t->moving[l]].at[e], column[e], force, force + length);
+      solve_column(model, table->item[table->moving[l]].at[e], column[e], force, force + length);
     good = keep_answer(model, column, &answer[l]);
-    keep_entries(t, l, column, between);
+    keep_entries(table, l, column, between);
   }
   strut_release(scratch);
-  t->answer = answer;
-  t->between = between;
+  table->answer = answer;
+  table->between = between;
   return good ? STRUT_OK : STRUT_NO_MEMORY;
 }

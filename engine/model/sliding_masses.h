@@ -53,6 +53,6 @@ typedef struct strut_sliding_table {
 
 /** Mass moment beyond that of the weights at time t [s], sum of m x, of one coordinate at positions q [kg m]. */
 STRUT_API double strut_sliding_moment(const struct strut_model *model, double t, int axis,
-                                      const double *q);
+                                      const double *positions);
 
 #endif

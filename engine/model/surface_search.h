@@ -11,13 +11,15 @@
 #include "engine/model/surfaces.h"
 
 /** Signed distance of a point from the line of a facet [m]. */
-static inline double strut_facet_across(const strut_facet *f, const double p[2]) {
-  return (p[0] - f->point[0]) * f->axes.normal[0] + (p[1] - f->point[1]) * f->axes.normal[1];
+static inline double strut_facet_across(const strut_facet *facet, const double p[2]) {
+  return (p[0] - facet->point[0]) * facet->axes.normal[0] +
+         (p[1] - facet->point[1]) * facet->axes.normal[1];
 }
 
 /** Position of a point along a facet, from where that begins [m]. */
-static inline double strut_facet_along(const strut_facet *f, const double p[2]) {
-  return (p[0] - f->point[0]) * f->axes.tangent[0] + (p[1] - f->point[1]) * f->axes.tangent[1];
+static inline double strut_facet_along(const strut_facet *facet, const double p[2]) {
+  return (p[0] - facet->point[0]) * facet->axes.tangent[0] +
+         (p[1] - facet->point[1]) * facet->axes.tangent[1];
 }
 
 /** The point of a facet that is nearest to some point. */
@@ -45,12 +47,13 @@ bool strut_surface_bound_pieces(strut_arena *arena, strut_surface *pieces, size_
  */
 int32_t strut_contacts_of_profile(const strut_contact_table *contacts, int32_t first);
 /** The contact of these whose gap in q is least, the first of several; *gap: that [m]. */
-int32_t strut_contacts_lowest(const strut_contact_table *contacts, int32_t first, const double *q,
-                              const strut_ground_motion *motion, double *gap);
+int32_t strut_contacts_lowest(const strut_contact_table *contacts, int32_t first,
+                              const double *positions, const strut_ground_motion *motion,
+                              double *gap);
 /** Of the pieces of a long profile, `first` on, the one whose gap from p is least; its number. */
 int32_t strut_surface_lowest(const strut_surface *first, const double p[2], double *gap);
 /** strut_contacts_near of all nodes, with no margin; all contacts where there is one straight line at rest. */
-int32_t strut_contacts_all_near(const strut_contact_table *contacts, const double *q,
+int32_t strut_contacts_all_near(const strut_contact_table *contacts, const double *positions,
                                 const strut_ground_motion *motion, int32_t *list);
 
 #endif

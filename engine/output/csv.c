@@ -51,13 +51,13 @@ static bool is_in_table(const strut_record_channel *channel, int owner) {
 }
 
 /* Adds the columns of one item, channel by channel, so that the columns of a node are adjacent. */
-static void add_item(table *t, strut_buffer *header, const strut_record_layout *layout, int owner,
-                     size_t item) {
+static void add_item(table *self, strut_buffer *header, const strut_record_layout *layout,
+                     int owner, size_t item) {
   for (size_t i = 0; i < layout->channel_count; i++) {
     const strut_record_channel *channel = &layout->channels[i];
     if (!is_in_table(channel, owner) || item >= channel->items) continue;
     for (size_t j = 0; j < channel->components; j++) {
-      t->columns[t->column_count++] = channel->offset + item * channel->components + j;
+      self->columns[self->column_count++] = channel->offset + item * channel->components + j;
       add_name(header, channel, item, j);
     }
   }

@@ -149,24 +149,24 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
 }
 
 /* Appends the rows gathered to the dataset. */
-static bool flush_series(series *s) {
-  if (s->held == 0) return true;
+static bool flush_series(series *self) {
+  if (self->held == 0) return true;
   if (!strut_hdf5_has_memory()) {
     errno = ENOMEM;
     return false;
   }
-  hsize_t start[STRUT_HDF5_RANK] = {s->shape[0]};
-  hsize_t count[STRUT_HDF5_RANK] = {s->held, s->shape[1], s->shape[2]};
-  s->shape[0] += s->held;
-  if (H5Dset_extent(s->dataset, s->shape) < 0) return false;
-  hid_t file_space = H5Dget_space(s->dataset);
-  hid_t memory_space = H5Screate_simple(s->rank, count, NULL);
-  bool good =
-      H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-      H5Dwrite(s->dataset, H5T_NATIVE_DOUBLE, memory_space, file_space, H5P_DEFAULT, s->rows) >= 0;
+  hsize_t start[STRUT_HDF5_RANK] = {self->shape[0]};
+  hsize_t count[STRUT_HDF5_RANK] = {self->held, self->shape[1], self->shape[2]};
+  self->shape[0] += self->held;
+  if (H5Dset_extent(self->dataset, self->shape) < 0) return false;
+  hid_t file_space = H5Dget_space(self->dataset);
+  hid_t memory_space = H5Screate_simple(self->rank, count, NULL);
+  bool good = H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+              H5Dwrite(self->dataset, H5T_NATIVE_DOUBLE, memory_space, file_space, H5P_DEFAULT,
+                       self->rows) >= 0;
   H5Sclose(memory_space);
   H5Sclose(file_space);
-  s->held = 0;
+  self->held = 0;
   return good;
 }
 

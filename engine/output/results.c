@@ -161,32 +161,33 @@ static int measure_at(int folder, const char *name, uint64_t *size, uint64_t *su
 }
 
 /* Reads the list of a folder; an empty one if none can be read. */
-static strut_status read_list(int folder, list *l, strut_error *error) {
+static strut_status read_list(int folder, list *self, strut_error *error) {
   struct stat found;
-  *l = (list){.text = NULL};
+  *self = (list){.text = NULL};
   int file = openat(folder, STRUT_OWNERSHIP_LIST, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   size_t capacity = 0;
   if (file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_size < LIST_MOST)
     capacity = (size_t)found.st_size;
-  l->text = strut_allocate(capacity + 1, 1);
+  self->text = strut_allocate(capacity + 1, 1);
   ssize_t got = 1;
-  while (l->text && l->length < capacity && got > 0) {
-    got = read(file, l->text + l->length, capacity - l->length);
-    if (got > 0) l->length += (size_t)got;
+  while (self->text && self->length < capacity && got > 0) {
+    got = read(file, self->text + self->length, capacity - self->length);
+    if (got > 0) self->length += (size_t)got;
   }
   if (file >= 0) close(file);
-  return l->text ? STRUT_OK : strut_no_memory(error, "while writing files");
+  return self->text ? STRUT_OK : strut_no_memory(error, "while writing files");
 }
 
 /* Finds the next entry of that name, cyclically from the current place; false: none is left. */
-static bool next_entry(list *l, const char *name, size_t *visited, uint64_t *size, uint64_t *sum) {
+static bool next_entry(list *self, const char *name, size_t *visited, uint64_t *size,
+                       uint64_t *sum) {
   size_t wanted = strlen(name);
-  while (*visited < l->length) {
-    if (l->at >= l->length) l->at = 0;
-    const char *line = l->text + l->at, *end = memchr(line, '\n', l->length - l->at);
-    size_t length = end ? (size_t)(end - line) : l->length - l->at;
+  while (*visited < self->length) {
+    if (self->at >= self->length) self->at = 0;
+    const char *line = self->text + self->at, *end = memchr(line, '\n', self->length - self->at);
+    size_t length = end ? (size_t)(end - line) : self->length - self->at;
     int numbers = 0;
-    l->at += length + 1;
+    self->at += length + 1;
     *visited += length + 1;
     if (!end || length <= wanted || line[length - wanted - 1] != ' ' ||
         memcmp(line + length - wanted, name, wanted) != 0)
@@ -199,15 +200,15 @@ static bool next_entry(list *l, const char *name, size_t *visited, uint64_t *siz
 }
 
 /* Is an entry of this name, size and checksum in the list? */
-static bool is_listed(list *l, const char *name, uint64_t size, uint64_t sum) {
+static bool is_listed(list *self, const char *name, uint64_t size, uint64_t sum) {
   uint64_t listed_size, listed_sum;
-  for (size_t visited = 0; next_entry(l, name, &visited, &listed_size, &listed_sum);)
+  for (size_t visited = 0; next_entry(self, name, &visited, &listed_size, &listed_sum);)
     if (listed_size == size && listed_sum == sum) return true;
   return false;
 }
 
 /* May the file be replaced? 0, EEXIST if strut did not write it, or another errno. */
-static int check_one(int folder, list *l, const char *name) {
+static int check_one(int folder, list *self, const char *name) {
   struct stat found;
   uint64_t size = 0, sum = 0;
   if (fstatat(folder, name, &found, AT_SYMLINK_NOFOLLOW) != 0) return errno == ENOENT ? 0 : errno;
@@ -217,11 +218,11 @@ static int check_one(int folder, list *l, const char *name) {
   int code = measure_at(folder, name, &size, &sum);
   if (code == EACCES || code == ENOMEM) return code;
   if (code) return EEXIST;
-  if (is_listed(l, name, size, sum)) return 0;
+  if (is_listed(self, name, size, sum)) return 0;
   /* another process may have listed it, and moved it here, since the list was read */
-  strut_release(l->text);
-  if (read_list(folder, l, NULL) != STRUT_OK) return ENOMEM;
-  return is_listed(l, name, size, sum) ? 0 : EEXIST;
+  strut_release(self->text);
+  if (read_list(folder, self, NULL) != STRUT_OK) return ENOMEM;
+  return is_listed(self, name, size, sum) ? 0 : EEXIST;
 }
 
 strut_status strut_ownership_check(const char *directory, const char *const *names,
@@ -272,11 +273,11 @@ static int append(int folder, const char *name, uint64_t size, uint64_t sum) {
 }
 
 /* Lists directory/name, whose bytes are those of from/source. */
-static int claim_one(int folder, list *l, int from, const char *source, const char *name) {
+static int claim_one(int folder, list *self, int from, const char *source, const char *name) {
   uint64_t size, sum;
   int code = measure_at(from, source, &size, &sum);
   if (code == ENOENT) return 0; /* not written this time */
-  return code || is_listed(l, name, size, sum) ? code : append(folder, name, size, sum);
+  return code || is_listed(self, name, size, sum) ? code : append(folder, name, size, sum);
 }
 
 /* Files `sources` of the directory `stage` as files `names` of `directory`. */

@@ -29,122 +29,131 @@ static strut_rounded_quantity in(double value, const char *unit) {
 }
 
 /* What the numbers are worth, in one line; then why, where that is not what was asked for. */
-static void add_worth(strut_buffer *table, const strut_summary *s) {
-  const strut_accuracy_summary *a = &s->accuracy;
+static void add_worth(strut_buffer *table, const strut_summary *summary) {
+  const strut_accuracy_summary *accuracy_summary = &summary->accuracy;
   char worth[200];
-  strut_summary_worth(s, worth, sizeof worth);
+  strut_summary_worth(summary, worth, sizeof worth);
   if (*worth) strut_buffer_add(table, "  accuracy    %s\n", worth);
-  if (a->wanted > 0.0 && !a->kept) strut_buffer_add(table, "              %s\n", a->why);
+  if (accuracy_summary->wanted > 0.0 && !accuracy_summary->kept)
+    strut_buffer_add(table, "              %s\n", accuracy_summary->why);
 }
 
 /* Steady motion, and what is known of it. */
-static void add_claims(strut_buffer *table, const strut_summary *s) {
-  const strut_steady_summary *m = &s->steady;
-  bool checked = s->accuracy.wanted > 0.0;
-  if (m->kind == STRUT_MOTION_PERIODIC) {
-    strut_buffer_add(table, "  steady      after %" PRId64 " periods, every ", m->periods);
-    if (m->repeats > 1)
-      strut_buffer_add(table, "%d of them repeating", (int)m->repeats);
+static void add_claims(strut_buffer *table, const strut_summary *summary) {
+  const strut_steady_summary *steady_summary = &summary->steady;
+  bool checked = summary->accuracy.wanted > 0.0;
+  if (steady_summary->kind == STRUT_MOTION_PERIODIC) {
+    strut_buffer_add(table, "  steady      after %" PRId64 " periods, every ",
+                     steady_summary->periods);
+    if (steady_summary->repeats > 1)
+      strut_buffer_add(table, "%d of them repeating", (int)steady_summary->repeats);
     else
       strut_buffer_add(table, "one repeating");
     strut_buffer_add(table, checked ? "; velocity known within %s\n" : " within %s\n",
-                     in(m->interval, "m/s").text);
-  } else if (m->kind == STRUT_MOTION_TRANSIENT) {
-    strut_buffer_add(table, "  steady      not within %" PRId64 " periods\n", m->periods);
-  } else if (m->kind == STRUT_MOTION_IRREGULAR) {
+                     in(steady_summary->interval, "m/s").text);
+  } else if (steady_summary->kind == STRUT_MOTION_TRANSIENT) {
+    strut_buffer_add(table, "  steady      not within %" PRId64 " periods\n",
+                     steady_summary->periods);
+  } else if (steady_summary->kind == STRUT_MOTION_IRREGULAR) {
     strut_buffer_add(table, "  irregular   mean velocity known within %s\n",
-                     in(m->interval, "m/s").text);
-  } else if (m->kind == STRUT_MOTION_CREEPING) {
+                     in(steady_summary->interval, "m/s").text);
+  } else if (steady_summary->kind == STRUT_MOTION_CREEPING) {
     strut_buffer_add(table,
                      "  creeping    over %" PRId64 " periods; mean velocity known within %s\n",
-                     m->periods, in(m->interval, "m/s").text);
+                     steady_summary->periods, in(steady_summary->interval, "m/s").text);
   }
-  add_worth(table, s);
+  add_worth(table, summary);
 }
 
-static void add_head(strut_buffer *table, const strut_summary *s, const strut_scene *scene) {
+static void add_head(strut_buffer *table, const strut_summary *summary, const strut_scene *scene) {
   strut_buffer_add(table, "%s%s%s", scene->name, *scene->name ? ": " : "",
-                   strut_status_text(s->status));
-  if (s->reason[0]) strut_buffer_add(table, ": %s", s->reason);
-  strut_buffer_add(table, "\n  velocity    %s%s along x, of %s", s->velocity > 0.0 ? "+" : "",
-                   in(s->velocity, "m/s").text,
-                   s->measured_node ? s->measured_node : "the centre of mass");
-  if (isfinite(s->velocity_spread)) {
-    strut_buffer_add(table, ", spread %s", in(s->velocity_spread, "m/s").text);
+                   strut_status_text(summary->status));
+  if (summary->reason[0]) strut_buffer_add(table, ": %s", summary->reason);
+  strut_buffer_add(table, "\n  velocity    %s%s along x, of %s", summary->velocity > 0.0 ? "+" : "",
+                   in(summary->velocity, "m/s").text,
+                   summary->measured_node ? summary->measured_node : "the centre of mass");
+  if (isfinite(summary->velocity_spread)) {
+    strut_buffer_add(table, ", spread %s", in(summary->velocity_spread, "m/s").text);
   }
-  strut_buffer_add(table, ", from %s%s\n", in(s->window.start, "s").text,
-                   s->velocity_zero && s->velocity != 0.0 && !(s->accuracy.wanted > 0.0)
-                       ? ", zero up to rounding"
-                       : "");
-  strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(s->duration, "s").text,
-                   s->spent.steps);
-  if (s->settle_time > 0.0) {
-    strut_buffer_add(table, ", after %s of settling", in(s->settle_time, "s").text);
+  strut_buffer_add(
+      table, ", from %s%s\n", in(summary->window.start, "s").text,
+      summary->velocity_zero && summary->velocity != 0.0 && !(summary->accuracy.wanted > 0.0)
+          ? ", zero up to rounding"
+          : "");
+  strut_buffer_add(table, "  duration    %s, %" PRId64 " steps", in(summary->duration, "s").text,
+                   summary->spent.steps);
+  if (summary->settle_time > 0.0) {
+    strut_buffer_add(table, ", after %s of settling", in(summary->settle_time, "s").text);
   }
-  if (s->settle.unstable)
+  if (summary->settle.unstable)
     strut_buffer_add(table,
                      "\n  start       settled on an UNSTABLE equilibrium; node %s moves most in "
                      "the unstable direction",
-                     s->settle.node);
-  strut_buffer_add(table, "\n  step        %s", in(s->step, "s").text);
-  if (isinf(s->step_limit))
+                     summary->settle.node);
+  strut_buffer_add(table, "\n  step        %s", in(summary->step, "s").text);
+  if (isinf(summary->step_limit))
     strut_buffer_add(table, ", no stability limit\n");
   else
-    strut_buffer_add(table, ", stable up to %s%s\n", in(s->step_limit, "s").text,
-                     s->feedback ? " without feedback" : "");
-  if (s->limit_fell.limit > 0.0)
+    strut_buffer_add(table, ", stable up to %s%s\n", in(summary->step_limit, "s").text,
+                     summary->feedback ? " without feedback" : "");
+  if (summary->limit_fell.limit > 0.0)
     strut_buffer_add(table, "              TOO LARGE since %s: the stability limit fell to %s\n",
-                     in(s->limit_fell.since, "s").text, in(s->limit_fell.limit, "s").text);
-  strut_buffer_add(table, "  computed    %" PRId64 " force evaluations in %s", s->spent.evaluations,
-                   in(s->spent.wall_time, "s").text);
-  if (s->spent.steps > 0) {
+                     in(summary->limit_fell.since, "s").text,
+                     in(summary->limit_fell.limit, "s").text);
+  strut_buffer_add(table, "  computed    %" PRId64 " force evaluations in %s",
+                   summary->spent.evaluations, in(summary->spent.wall_time, "s").text);
+  if (summary->spent.steps > 0) {
     strut_buffer_add(table, ", %s per step",
-                     in(s->spent.wall_time / (double)s->spent.steps, "s").text);
+                     in(summary->spent.wall_time / (double)summary->spent.steps, "s").text);
   }
-  if (s->spent.events > 0) strut_buffer_add(table, ", %" PRId64 " events located", s->spent.events);
+  if (summary->spent.events > 0)
+    strut_buffer_add(table, ", %" PRId64 " events located", summary->spent.events);
   strut_buffer_add(table, "\n");
-  add_claims(table, s);
+  add_claims(table, summary);
 }
 
 /* Why a quantity has no value. */
-static const char *missing(const strut_summary *s, const strut_measured *m) {
-  if (strut_measured_arrival(m) && s->status == STRUT_OK) return "the target was not reached";
-  return s->status == STRUT_OK ? "not finite" : "the window was not reached";
+static const char *missing(const strut_summary *summary, const strut_measured *measured) {
+  if (strut_measured_arrival(measured) && summary->status == STRUT_OK)
+    return "the target was not reached";
+  return summary->status == STRUT_OK ? "not finite" : "the window was not reached";
 }
 
-static void add_measured(strut_buffer *table, const strut_summary *s) {
-  if (s->measured_count)
+static void add_measured(strut_buffer *table, const strut_summary *summary) {
+  if (summary->measured_count)
     strut_buffer_add(table, "\n  %-16s %14s %14s\n", "measured", "value", "spread");
-  for (size_t i = 0; i < s->measured_count; i++) {
-    const strut_measured *m = &s->measured[i];
-    strut_buffer_add(table, "  %-16s %14s", m->name,
-                     strut_quantity_of_any(m->value, DIGITS, m->unit).text);
-    if (isfinite(m->spread))
-      strut_buffer_add(table, " %14s", strut_quantity_of_any(m->spread, DIGITS, m->unit).text);
-    if (m->undecided)
+  for (size_t i = 0; i < summary->measured_count; i++) {
+    const strut_measured *measured = &summary->measured[i];
+    strut_buffer_add(table, "  %-16s %14s", measured->name,
+                     strut_quantity_of_any(measured->value, DIGITS, measured->unit).text);
+    if (isfinite(measured->spread))
+      strut_buffer_add(table, " %14s",
+                       strut_quantity_of_any(measured->spread, DIGITS, measured->unit).text);
+    if (measured->undecided)
       strut_buffer_add(table, "  not decided");
-    else if (isnan(m->value))
-      strut_buffer_add(table, "  %s", missing(s, m));
-    if (m->zero) strut_buffer_add(table, "  zero up to rounding");
-    if (m->member) strut_buffer_add(table, "  in %.40s", m->member);
-    if (isfinite(m->expected))
+    else if (isnan(measured->value))
+      strut_buffer_add(table, "  %s", missing(summary, measured));
+    if (measured->zero) strut_buffer_add(table, "  zero up to rounding");
+    if (measured->member) strut_buffer_add(table, "  in %.40s", measured->member);
+    if (isfinite(measured->expected))
       strut_buffer_add(table, "  %s within %s",
-                       m->kept ? "known" : "NOT as accurate as requested, but",
-                       strut_quantity_of_any(m->expected, 2, m->unit).text);
+                       measured->kept ? "known" : "NOT as accurate as requested, but",
+                       strut_quantity_of_any(measured->expected, 2, measured->unit).text);
     strut_buffer_add(table, "\n");
   }
 }
 
 /* The residual of the balance and what it means, in one statement. */
-static void add_balance(strut_buffer *table, const strut_summary *s) {
-  const strut_energy *e = &s->energy;
-  strut_rounded_quantity residual = in(e->residual, "J");
-  if (s->balance == STRUT_BALANCE_NOT_KEPT || !(e->moved > 0.0)) {
-    if (e->residual != 0.0) strut_buffer_add(table, "  %-16s %14s\n", "residual", residual.text);
+static void add_balance(strut_buffer *table, const strut_summary *summary) {
+  const strut_energy *energy = &summary->energy;
+  strut_rounded_quantity residual = in(energy->residual, "J");
+  if (summary->balance == STRUT_BALANCE_NOT_KEPT || !(energy->moved > 0.0)) {
+    if (energy->residual != 0.0)
+      strut_buffer_add(table, "  %-16s %14s\n", "residual", residual.text);
     return;
   }
-  double part = fabs(e->residual) / e->moved;
-  if (s->balance == STRUT_BALANCE_OPEN)
+  double part = fabs(energy->residual) / energy->moved;
+  if (summary->balance == STRUT_BALANCE_OPEN)
     strut_buffer_add(table, "  %-16s %14s   balance NOT closed: %.2g %% of the energy exchanged\n",
                      "residual", residual.text, 100.0 * part);
   else
@@ -156,20 +165,20 @@ static void add_balance(strut_buffer *table, const strut_summary *s) {
 /* Energies below this part of all of them are rounding. */
 static const double ENERGY_ROUNDING = 4.0 * DBL_EPSILON;
 
-static void add_energy(strut_buffer *table, const strut_summary *s) {
-  const strut_energy *e = &s->energy;
+static void add_energy(strut_buffer *table, const strut_summary *summary) {
+  const strut_energy *energy = &summary->energy;
   const struct {
     const char *name;
     double value;
   } rows[] = {
-#define ENERGY_ROW(name, kind, label) {label, e->name},
+#define ENERGY_ROW(name, kind, label) {label, energy->name},
       STRUT_ENERGY_TABLE(ENERGY_ROW)
 #undef ENERGY_ROW
   };
-  double most = e->moved + fabs(e->initial);
+  double most = energy->moved + fabs(energy->initial);
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) most = fmax(most, fabs(rows[i].value));
   strut_buffer_add(table, "\n  energy after %s, works and losses until then\n",
-                   in(s->duration, "s").text);
+                   in(summary->duration, "s").text);
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
     if (!(fabs(rows[i].value) > ENERGY_ROUNDING * most)) continue; /* not in this scene */
     strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);

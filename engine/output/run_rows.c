@@ -45,53 +45,54 @@ static const char *text(const cJSON *from, const char *key) {
   return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(from, key));
 }
 
-static void show_quantity(rows *r, const char *label, const char *key, const char *unit) {
-  double value = number(r->from, key);
-  if (isfinite(value)) strut_show(r->to, label, in(value, unit).text);
+static void show_quantity(rows *self, const char *label, const char *key, const char *unit) {
+  double value = number(self->from, key);
+  if (isfinite(value)) strut_show(self->to, label, in(value, unit).text);
 }
 
-static void show_status(rows *r) {
-  const char *status = text(r->from, "status"), *reason = text(r->from, "reason");
+static void show_status(rows *self) {
+  const char *status = text(self->from, "status"), *reason = text(self->from, "reason");
   char value[VALUE];
   if (!status) return;
   bool twice = reason && strncmp(reason, status, strlen(status)) == 0;
   snprintf(value, sizeof value, "%s%s%s", twice ? "" : status, reason && !twice ? ": " : "",
            reason ? reason : "");
-  strut_show(r->to, "run", value);
+  strut_show(self->to, "run", value);
 }
 
-static void show_warnings(rows *r) {
-  const cJSON *warnings = cJSON_GetObjectItemCaseSensitive(r->from, "warnings"), *warning;
+static void show_warnings(rows *self) {
+  const cJSON *warnings = cJSON_GetObjectItemCaseSensitive(self->from, "warnings"), *warning;
   cJSON_ArrayForEach(warning, warnings) {
     const char *said = text(warning, "text");
-    if (said) strut_show(r->to, "warning", said);
+    if (said) strut_show(self->to, "warning", said);
   }
 }
 
 /* What the numbers are worth, and why; of version 0.1 only the latter. */
-static void show_worth(rows *r) {
-  const cJSON *accuracy = cJSON_GetObjectItemCaseSensitive(r->from, "accuracy");
-  const char *worth = text(r->from, "worth"), *caveat = text(r->from, "caveat");
+static void show_worth(rows *self) {
+  const cJSON *accuracy = cJSON_GetObjectItemCaseSensitive(self->from, "accuracy");
+  const char *worth = text(self->from, "worth"), *caveat = text(self->from, "caveat");
   const char *why = accuracy ? text(accuracy, "why") : caveat;
-  if (worth) strut_show(r->to, "accuracy", worth);
-  if (why) strut_show(r->to, worth ? "because" : "accuracy", why);
+  if (worth) strut_show(self->to, "accuracy", worth);
+  if (why) strut_show(self->to, worth ? "because" : "accuracy", why);
 }
 
-static void show_velocity(rows *r, const strut_experiment *experiment, const strut_scene *scene) {
+static void show_velocity(rows *self, const strut_experiment *experiment,
+                          const strut_scene *scene) {
   int32_t node = experiment->measure_node;
   char label[LABEL], value[VALUE];
-  double spread = number(r->from, "velocity_spread"), from = number(r->from, "window_start");
-  if (!isfinite(number(r->from, "velocity"))) return;
+  double spread = number(self->from, "velocity_spread"), from = number(self->from, "window_start");
+  if (!isfinite(number(self->from, "velocity"))) return;
   snprintf(label, sizeof label, "mean velocity of %s",
            node >= 0 ? scene->nodes[node].name : "the centre of mass");
-  snprintf(value, sizeof value, "%s%s%s, from %s", in(number(r->from, "velocity"), "m/s").text,
+  snprintf(value, sizeof value, "%s%s%s, from %s", in(number(self->from, "velocity"), "m/s").text,
            isfinite(spread) ? ", spread " : "", isfinite(spread) ? in(spread, "m/s").text : "",
            isfinite(from) ? in(from, "s").text : "the start");
-  strut_show(r->to, label, value);
+  strut_show(self->to, label, value);
 }
 
 /* What is known of a measured value: spread, member, error. */
-static void show_measured_value(rows *r, const cJSON *item, const char *unit) {
+static void show_measured_value(rows *self, const cJSON *item, const char *unit) {
   const char *member = text(item, "member"), *arrival = text(item, "arrival");
   double value = number(item, "value"), spread = number(item, "spread");
   double expected = number(item, "expected");
@@ -109,34 +110,34 @@ static void show_measured_value(rows *r, const cJSON *item, const char *unit) {
                      kept ? "known" : "not as accurate as requested, but known",
                      strut_quantity_of_any(expected, 2, unit).text);
   char *row = strut_buffer_take(&shown);
-  if (row) strut_show(r->to, item->string, row);
-  if (!row) r->to->failed = true;
+  if (row) strut_show(self->to, item->string, row);
+  if (!row) self->to->failed = true;
   strut_release(row);
 }
 
 /* A value that there is not, such as an arrival that did not happen, is "none". */
-static void show_measured(rows *r) {
-  const cJSON *measured = cJSON_GetObjectItemCaseSensitive(r->from, "measured"), *item;
+static void show_measured(rows *self) {
+  const cJSON *measured = cJSON_GetObjectItemCaseSensitive(self->from, "measured"), *item;
   cJSON_ArrayForEach(item, measured) {
     const char *unit = text(item, "unit");
-    if (unit && item->string) show_measured_value(r, item, unit);
+    if (unit && item->string) show_measured_value(self, item, unit);
   }
 }
 
-static void show_steps(rows *r) {
+static void show_steps(rows *self) {
   char value[VALUE];
-  double step = number(r->from, "step"), limit = number(r->from, "step_limit");
-  double steps = number(r->from, "steps"), settled = number(r->from, "settle_time");
-  show_quantity(r, "duration", "duration", "s");
-  if (settled > 0) strut_show(r->to, "settling time", in(settled, "s").text);
+  double step = number(self->from, "step"), limit = number(self->from, "step_limit");
+  double steps = number(self->from, "steps"), settled = number(self->from, "settle_time");
+  show_quantity(self, "duration", "duration", "s");
+  if (settled > 0) strut_show(self->to, "settling time", in(settled, "s").text);
   if (!isfinite(step) || !isfinite(steps)) return;
   snprintf(value, sizeof value, "%.0f of %s", steps, in(step, "s").text);
-  strut_show(r->to, "steps", value);
-  strut_show(r->to, "largest stable step", isfinite(limit) ? in(limit, "s").text : "no limit");
+  strut_show(self->to, "steps", value);
+  strut_show(self->to, "largest stable step", isfinite(limit) ? in(limit, "s").text : "no limit");
 }
 
-static void show_contacts(rows *r) {
-  const cJSON *contacts = cJSON_GetObjectItemCaseSensitive(r->from, "contacts"), *contact;
+static void show_contacts(rows *self) {
+  const cJSON *contacts = cJSON_GetObjectItemCaseSensitive(self->from, "contacts"), *contact;
   char label[LABEL], value[VALUE];
   int shown = 0;
   cJSON_ArrayForEach(contact, contacts) {
@@ -144,18 +145,18 @@ static void show_contacts(rows *r) {
     if (!isfinite(duty) || !contact->string) continue;
     if (shown++ == MOST_CONTACTS) {
       snprintf(value, sizeof value, "%d more", cJSON_GetArraySize(contacts) - MOST_CONTACTS);
-      strut_show(r->to, "contacts", value);
+      strut_show(self->to, "contacts", value);
       return;
     }
     snprintf(label, sizeof label, "contact of %s", contact->string);
     snprintf(value, sizeof value, "%.1f %% of the time, at most %s high", 100 * duty,
              in(height, "m").text);
-    strut_show(r->to, label, value);
+    strut_show(self->to, label, value);
   }
 }
 
 /* Works and losses that are not zero, and the residual of the balance. */
-static void show_energy(rows *r) {
+static void show_energy(rows *self) {
   enum { ENERGY, WORK, LOSSES };
   static const struct {
     int kind;
@@ -165,12 +166,12 @@ static void show_energy(rows *r) {
       STRUT_ENERGY_TABLE(PART_ROW)
 #undef PART_ROW
   };
-  const cJSON *energy = cJSON_GetObjectItemCaseSensitive(r->from, "energy");
+  const cJSON *energy = cJSON_GetObjectItemCaseSensitive(self->from, "energy");
   char value[VALUE];
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
     double amount = number(energy, parts[i].key);
     if (parts[i].kind != ENERGY && isfinite(amount) && amount != 0)
-      strut_show(r->to, parts[i].label, in(amount, "J").text);
+      strut_show(self->to, parts[i].label, in(amount, "J").text);
   }
   double residual = number(energy, "residual"), moved = number(energy, "exchanged");
   if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */
@@ -185,7 +186,7 @@ static void show_energy(rows *r) {
                                              : "");
   else
     snprintf(value, sizeof value, "%s", in(residual, "J").text);
-  strut_show(r->to, "energy residual", value);
+  strut_show(self->to, "energy residual", value);
 }
 
 void strut_summary_rows(strut_shown *to, const char *summary, const strut_experiment *experiment,

@@ -40,144 +40,147 @@ static size_t place_of(strut_channels id) {
   return place;
 }
 
-double **strut_trajectory_array(strut_trajectory *t, strut_channels id) {
-  return &t->channel[place_of(id)];
+double **strut_trajectory_array(strut_trajectory *trajectory, strut_channels id) {
+  return &trajectory->channel[place_of(id)];
 }
 
-const double *strut_trajectory_channel(const strut_trajectory *t, strut_channels id) {
-  return t->channel[place_of(id)];
+const double *strut_trajectory_channel(const strut_trajectory *trajectory, strut_channels id) {
+  return trajectory->channel[place_of(id)];
 }
 
 /* Memory for `capacity` frames. */
-static bool grow(keeper *k, size_t capacity) {
-  for (size_t i = 0; i < k->array_count; i++) {
-    trajectory_array *a = &k->arrays[i];
+static bool grow(keeper *self, size_t capacity) {
+  for (size_t i = 0; i < self->array_count; i++) {
+    trajectory_array *a = &self->arrays[i];
     double *more = strut_reallocate(*a->values, capacity, a->size * sizeof *more);
     if (!more) return false;
     *a->values = more;
   }
-  k->capacity = capacity;
+  self->capacity = capacity;
   return true;
 }
 
 /* Drops every second frame; the others remain evenly spaced. */
-static void thin(keeper *k) {
-  strut_trajectory *t = k->t;
-  size_t kept = (t->frames + 1) / 2;
-  for (size_t i = 0; i < k->array_count; i++) {
-    double *values = *k->arrays[i].values;
-    size_t size = k->arrays[i].size;
+static void thin(keeper *self) {
+  strut_trajectory *trajectory = self->t;
+  size_t kept = (trajectory->frames + 1) / 2;
+  for (size_t i = 0; i < self->array_count; i++) {
+    double *values = *self->arrays[i].values;
+    size_t size = self->arrays[i].size;
     for (size_t f = 1; f < kept; f++)
       memcpy(values + f * size, values + 2 * f * size, size * sizeof *values);
   }
-  t->frames = kept;
-  t->every *= 2;
+  trajectory->frames = kept;
+  trajectory->every *= 2;
 }
 
-static void store(keeper *k, const double *row) {
-  for (size_t i = 0; i < k->array_count; i++) {
-    const trajectory_array *a = &k->arrays[i];
-    memcpy(*a->values + k->t->frames * a->size, row + a->offset, a->size * sizeof *row);
+static void store(keeper *self, const double *row) {
+  for (size_t i = 0; i < self->array_count; i++) {
+    const trajectory_array *a = &self->arrays[i];
+    memcpy(*a->values + self->t->frames * a->size, row + a->offset, a->size * sizeof *row);
   }
-  k->t->frames++;
+  self->t->frames++;
 }
 
-static bool take_row(keeper *k, const double *row) {
-  strut_trajectory *t = k->t;
-  if (t->recorded % t->every == 0 && t->frames == k->capacity) {
-    if (k->capacity == k->most) {
-      thin(k);
+static bool take_row(keeper *self, const double *row) {
+  strut_trajectory *trajectory = self->t;
+  if (trajectory->recorded % trajectory->every == 0 && trajectory->frames == self->capacity) {
+    if (self->capacity == self->most) {
+      thin(self);
     } else {
-      size_t more = 2 * k->capacity < k->most ? 2 * k->capacity : k->most;
-      if (!grow(k, more)) return false;
+      size_t more = 2 * self->capacity < self->most ? 2 * self->capacity : self->most;
+      if (!grow(self, more)) return false;
     }
   }
-  k->waiting = t->recorded % t->every != 0;
-  if (k->waiting) {
-    memcpy(k->last, row, k->width * sizeof *row);
+  self->waiting = trajectory->recorded % trajectory->every != 0;
+  if (self->waiting) {
+    memcpy(self->last, row, self->width * sizeof *row);
   } else {
-    store(k, row);
+    store(self, row);
   }
-  t->recorded++;
+  trajectory->recorded++;
   return true;
 }
 
-static bool trajectory_contacts(strut_trajectory *t, const strut_scene *scene) {
-  t->contact_count = scene->contact_count;
-  t->contact_node = strut_arena_allocate(&t->arena, scene->contact_count, sizeof *t->contact_node);
-  for (size_t i = 0; i < scene->contact_count && t->contact_node; i++)
-    t->contact_node[i] = scene->contacts[i].node;
-  return t->contact_node;
+static bool trajectory_contacts(strut_trajectory *trajectory, const strut_scene *scene) {
+  trajectory->contact_count = scene->contact_count;
+  trajectory->contact_node = strut_arena_allocate(&trajectory->arena, scene->contact_count,
+                                                  sizeof *trajectory->contact_node);
+  for (size_t i = 0; i < scene->contact_count && trajectory->contact_node; i++)
+    trajectory->contact_node[i] = scene->contacts[i].node;
+  return trajectory->contact_node;
 }
 
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
-  keeper *k = context;
-  strut_trajectory *t = k->t;
-  *t = (strut_trajectory){.every = 1,
-                          .node_count = k->scene->node_count,
-                          .member_count = k->scene->member_count,
-                          .hinge_count = k->scene->hinge_count,
-                          .cell_count = k->scene->cell_count};
-  k->width = layout->width;
-  k->arrays[0] = (trajectory_array){.values = &t->time, .size = 1};
-  k->array_count = k->frame_size = 1;
+  keeper *self = context;
+  strut_trajectory *trajectory = self->t;
+  *trajectory = (strut_trajectory){.every = 1,
+                                   .node_count = self->scene->node_count,
+                                   .member_count = self->scene->member_count,
+                                   .hinge_count = self->scene->hinge_count,
+                                   .cell_count = self->scene->cell_count};
+  self->width = layout->width;
+  self->arrays[0] = (trajectory_array){.values = &trajectory->time, .size = 1};
+  self->array_count = self->frame_size = 1;
   for (size_t i = 0; i < layout->channel_count; i++) {
-    const strut_record_channel *c = &layout->channels[i];
-    k->arrays[k->array_count++] = (trajectory_array){.values = strut_trajectory_array(t, c->id),
-                                                     .size = c->items * c->components,
-                                                     .offset = c->offset};
-    k->frame_size += c->items * c->components;
+    const strut_record_channel *channel = &layout->channels[i];
+    self->arrays[self->array_count++] =
+        (trajectory_array){.values = strut_trajectory_array(trajectory, channel->id),
+                           .size = channel->items * channel->components,
+                           .offset = channel->offset};
+    self->frame_size += channel->items * channel->components;
   }
-  k->most = k->room / k->frame_size;
-  if (k->most < 4) k->most = 4;
-  k->last = strut_allocate(k->width, sizeof *k->last);
-  bool ready = k->last && trajectory_contacts(t, k->scene) &&
-               grow(k, k->most < FIRST_FRAMES ? k->most : FIRST_FRAMES);
+  self->most = self->room / self->frame_size;
+  if (self->most < 4) self->most = 4;
+  self->last = strut_allocate(self->width, sizeof *self->last);
+  bool ready = self->last && trajectory_contacts(trajectory, self->scene) &&
+               grow(self, self->most < FIRST_FRAMES ? self->most : FIRST_FRAMES);
   return ready ? STRUT_OK : strut_no_memory(error, "for the recorded motion");
 }
 
 static strut_status take_rows(void *context, const double *rows, size_t count, strut_error *error) {
-  keeper *k = context;
+  keeper *self = context;
   for (size_t i = 0; i < count; i++)
-    if (!take_row(k, rows + i * k->width)) return strut_no_memory(error, "for the recorded motion");
+    if (!take_row(self, rows + i * self->width))
+      return strut_no_memory(error, "for the recorded motion");
   return STRUT_OK;
 }
 
 /* The last frame is always kept. */
 static strut_status end(void *context, strut_status run_status, strut_error *error) {
-  keeper *k = context;
-  k->t->status = run_status;
-  if (!k->waiting) return STRUT_OK;
-  if (k->t->frames == k->capacity && !grow(k, k->capacity + 1))
+  keeper *self = context;
+  self->t->status = run_status;
+  if (!self->waiting) return STRUT_OK;
+  if (self->t->frames == self->capacity && !grow(self, self->capacity + 1))
     return strut_no_memory(error, "for the recorded motion");
-  store(k, k->last);
-  k->waiting = false;
+  store(self, self->last);
+  self->waiting = false;
   return STRUT_OK;
 }
 
 strut_sink *strut_trajectory_sink(strut_trajectory *trajectory, const strut_scene *scene,
                                   strut_channels channels, size_t room) {
-  keeper *k = strut_allocate(1, sizeof *k);
-  if (!k) return NULL;
-  k->t = trajectory;
-  k->scene = scene;
-  k->room = room;
-  k->sink = (strut_sink){k, begin, take_rows, end, channels};
-  return &k->sink;
+  keeper *self = strut_allocate(1, sizeof *self);
+  if (!self) return NULL;
+  self->t = trajectory;
+  self->scene = scene;
+  self->room = room;
+  self->sink = (strut_sink){self, begin, take_rows, end, channels};
+  return &self->sink;
 }
 
 void strut_trajectory_sink_free(strut_sink *sink) {
   if (!sink) return;
-  keeper *k = sink->context;
-  strut_release(k->last);
-  strut_release(k);
+  keeper *self = sink->context;
+  strut_release(self->last);
+  strut_release(self);
 }
 
-void strut_trajectory_free(strut_trajectory *t) {
-  strut_release(t->time);
-  for (size_t k = 0; k < STRUT_CHANNEL_COUNT; k++) strut_release(t->channel[k]);
-  strut_arena_free(&t->arena);
-  *t = (strut_trajectory){0};
+void strut_trajectory_free(strut_trajectory *trajectory) {
+  strut_release(trajectory->time);
+  for (size_t k = 0; k < STRUT_CHANNEL_COUNT; k++) strut_release(trajectory->channel[k]);
+  strut_arena_free(&trajectory->arena);
+  *trajectory = (strut_trajectory){0};
 }
 
 /* ---- reading back ---- */

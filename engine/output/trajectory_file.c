@@ -15,12 +15,12 @@ typedef struct reader {
   strut_error *error;
 } reader;
 
-static strut_status trouble(const reader *r, const char *what) {
-  return strut_trajectory_trouble(r->path, what, r->error);
+static strut_status trouble(const reader *self, const char *what) {
+  return strut_trajectory_trouble(self->path, what, self->error);
 }
 
-static strut_status report_no_memory(const reader *r) {
-  return strut_no_memory(r->error, "for the recorded motion");
+static strut_status report_no_memory(const reader *self) {
+  return strut_no_memory(self->error, "for the recorded motion");
 }
 
 /* The shape of a dataset of that rank; false where it has another, or no doubles. */
@@ -58,12 +58,12 @@ static bool read_rows(hid_t dataset, int rank, const hsize_t *shape, size_t fram
 }
 
 /* Is the file's list of the names of such things the scene's? A missing list counts as such. */
-static bool same_names(const reader *r, const strut_channel_row *row) {
+static bool same_names(const reader *self, const strut_channel_row *row) {
   const strut_owner_row *owner = strut_owner_row_of(row->owner);
   const char *list = row->total ? owner->axis_with_total : owner->axis;
-  size_t count = strut_channel_items(row, r->scene);
-  if (H5Lexists(r->file, list, H5P_DEFAULT) <= 0) return true;
-  hid_t dataset = H5Dopen2(r->file, list, H5P_DEFAULT);
+  size_t count = strut_channel_items(row, self->scene);
+  if (H5Lexists(self->file, list, H5P_DEFAULT) <= 0) return true;
+  hid_t dataset = H5Dopen2(self->file, list, H5P_DEFAULT);
   hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
   size_t longest = H5Tget_size(type);
   bool good = H5Tget_class(type) == H5T_STRING && !H5Tis_variable_str(type) &&
@@ -71,7 +71,7 @@ static bool same_names(const reader *r, const strut_channel_row *row) {
   char *texts = good ? strut_allocate(count, longest) : NULL;
   good = texts && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) >= 0;
   for (size_t i = 0; i < count && good; i++) {
-    const char *name = strut_channel_item(row, r->scene, i);
+    const char *name = strut_channel_item(row, self->scene, i);
     good = strlen(name) <= longest && strncmp(name, texts + i * longest, longest) == 0;
   }
   strut_release(texts);
@@ -81,53 +81,61 @@ static bool same_names(const reader *r, const strut_channel_row *row) {
   return good;
 }
 
-static strut_status read_channel(reader *r, const strut_channel_row *row) {
-  if (H5Lexists(r->file, row->name, H5P_DEFAULT) <= 0) return STRUT_OK;
-  hid_t dataset = H5Dopen2(r->file, row->name, H5P_DEFAULT);
+static strut_status read_channel(reader *self, const strut_channel_row *row) {
+  if (H5Lexists(self->file, row->name, H5P_DEFAULT) <= 0) return STRUT_OK;
+  hid_t dataset = H5Dopen2(self->file, row->name, H5P_DEFAULT);
   hsize_t shape[STRUT_HDF5_RANK] = {0};
-  size_t items = strut_channel_items(row, r->scene), size = items * row->components;
-  bool fits = dataset >= 0 && shape_of(dataset, 3, shape) && shape[0] == r->t->recorded &&
+  size_t items = strut_channel_items(row, self->scene), size = items * row->components;
+  bool fits = dataset >= 0 && shape_of(dataset, 3, shape) && shape[0] == self->t->recorded &&
               shape[1] == items && shape[2] == row->components;
-  double *values = fits ? strut_allocate(r->t->frames, size * sizeof *values) : NULL;
-  bool good = values && read_rows(dataset, 3, shape, r->t->frames, r->t->every, size, values);
-  *strut_trajectory_array(r->t, row->id) = values;
+  double *values = fits ? strut_allocate(self->t->frames, size * sizeof *values) : NULL;
+  bool good = values && read_rows(dataset, 3, shape, self->t->frames, self->t->every, size, values);
+  *strut_trajectory_array(self->t, row->id) = values;
   if (dataset >= 0) H5Dclose(dataset);
-  if (!fits) return trouble(r, "it belongs to another structure than the scene beside it");
-  return good ? STRUT_OK : values ? trouble(r, "it is damaged") : report_no_memory(r);
+  if (!fits) return trouble(self, "it belongs to another structure than the scene beside it");
+  return good ? STRUT_OK : values ? trouble(self, "it is damaged") : report_no_memory(self);
 }
 
 /* Chooses the number of frames and reads their times. */
-static strut_status read_time(reader *r, size_t room) {
+static strut_status read_time(reader *self, size_t room) {
   hsize_t shape[STRUT_HDF5_RANK] = {0};
-  hid_t dataset =
-      H5Lexists(r->file, "time", H5P_DEFAULT) > 0 ? H5Dopen2(r->file, "time", H5P_DEFAULT) : -1;
+  hid_t dataset = H5Lexists(self->file, "time", H5P_DEFAULT) > 0
+                      ? H5Dopen2(self->file, "time", H5P_DEFAULT)
+                      : -1;
   if (dataset < 0 || !shape_of(dataset, 1, shape)) {
     if (dataset >= 0) H5Dclose(dataset);
-    return trouble(r, "not a trajectory of strut");
+    return trouble(self, "not a trajectory of strut");
   }
-  strut_trajectory *t = r->t;
+  strut_trajectory *trajectory = self->t;
   size_t frame = 1;
   const strut_channel_row *row;
   for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
-    if (H5Lexists(r->file, row->name, H5P_DEFAULT) > 0)
-      frame += strut_channel_items(row, r->scene) * row->components;
-  t->recorded = shape[0];
-  t->every = 1;
-  while (t->recorded / t->every > 4 && (t->recorded / t->every + 2) * frame > room) t->every *= 2;
-  t->frames = (t->recorded + t->every - 1) / t->every;
-  t->frames += t->recorded > 0 && (t->recorded - 1) % t->every != 0;
-  t->time = strut_allocate(t->frames, sizeof *t->time);
-  bool good =
-      t->time && (!t->frames || read_rows(dataset, 1, shape, t->frames, t->every, 1, t->time));
+    if (H5Lexists(self->file, row->name, H5P_DEFAULT) > 0)
+      frame += strut_channel_items(row, self->scene) * row->components;
+  trajectory->recorded = shape[0];
+  trajectory->every = 1;
+  while (trajectory->recorded / trajectory->every > 4 &&
+         (trajectory->recorded / trajectory->every + 2) * frame > room)
+    trajectory->every *= 2;
+  trajectory->frames = (trajectory->recorded + trajectory->every - 1) / trajectory->every;
+  trajectory->frames +=
+      trajectory->recorded > 0 && (trajectory->recorded - 1) % trajectory->every != 0;
+  trajectory->time = strut_allocate(trajectory->frames, sizeof *trajectory->time);
+  bool good = trajectory->time &&
+              (!trajectory->frames || read_rows(dataset, 1, shape, trajectory->frames,
+                                                trajectory->every, 1, trajectory->time));
   H5Dclose(dataset);
-  return good ? STRUT_OK : t->time ? trouble(r, "it is damaged") : report_no_memory(r);
+  return good               ? STRUT_OK
+         : trajectory->time ? trouble(self, "it is damaged")
+                            : report_no_memory(self);
 }
 
 /* The run's status from its text. */
-static strut_status run_status(const reader *r) {
+static strut_status run_status(const reader *self) {
   char *text = NULL;
   strut_status found = STRUT_OK;
-  hid_t attribute = H5Aexists(r->file, "status") > 0 ? H5Aopen(r->file, "status", H5P_DEFAULT) : -1;
+  hid_t attribute =
+      H5Aexists(self->file, "status") > 0 ? H5Aopen(self->file, "status", H5P_DEFAULT) : -1;
   if (attribute < 0) return STRUT_INTERRUPTED; /* it was never written */
   hid_t type = H5Aget_type(attribute);
   if (H5Tis_variable_str(type) > 0 && H5Aread(attribute, type, &text) >= 0 && text) {
@@ -140,16 +148,17 @@ static strut_status run_status(const reader *r) {
   return found;
 }
 
-static strut_status read_file(reader *r, size_t room) {
-  strut_trajectory *t = r->t;
+static strut_status read_file(reader *self, size_t room) {
+  strut_trajectory *trajectory = self->t;
   const strut_channel_row *row;
   for (size_t i = 0; (row = strut_channel_at(i)) != NULL; i++)
-    if (!strut_channel_is_whole(row) && !same_names(r, row))
-      return trouble(r, "it belongs to another structure than the scene beside it");
-  t->status = run_status(r);
-  strut_status status = read_time(r, room);
-  for (size_t i = 0; status == STRUT_OK && t->frames && (row = strut_channel_at(i)) != NULL; i++)
-    status = read_channel(r, row);
+    if (!strut_channel_is_whole(row) && !same_names(self, row))
+      return trouble(self, "it belongs to another structure than the scene beside it");
+  trajectory->status = run_status(self);
+  strut_status status = read_time(self, room);
+  for (size_t i = 0;
+       status == STRUT_OK && trajectory->frames && (row = strut_channel_at(i)) != NULL; i++)
+    status = read_channel(self, row);
   return status;
 }
 

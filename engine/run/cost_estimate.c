@@ -16,11 +16,11 @@ static void count_elements(const strut_model *model, strut_cost_estimate *estima
     estimate->count.cables += scene->members[j].kind == STRUT_CABLE;
   }
   for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *m = &scene->members[j];
-    estimate->count.running_cables += m->guide_count > 0;
+    const strut_member *member = &scene->members[j];
+    estimate->count.running_cables += member->guide_count > 0;
     estimate->count.laws +=
-        m->law.kind != STRUT_LAW_LINEAR || m->law.carries == STRUT_CARRIES_COMPRESSION;
-    estimate->count.stops += (size_t)(m->shortest > 0.0) + (size_t)(m->longest > 0.0);
+        member->law.kind != STRUT_LAW_LINEAR || member->law.carries == STRUT_CARRIES_COMPRESSION;
+    estimate->count.stops += (size_t)(member->shortest > 0.0) + (size_t)(member->longest > 0.0);
   }
   estimate->count.hinges = scene->hinge_count;
   estimate->count.cells = scene->cell_count;

@@ -15,52 +15,56 @@ static const char *const *item_names(const strut_model *model, const strut_chann
   return names;
 }
 
-static bool create_layout(const strut_model *model, strut_channels wanted, strut_recording *r) {
-  if (!strut_instant_create(model, &r->arena, &r->instant)) return false;
+static bool create_layout(const strut_model *model, strut_channels wanted,
+                          strut_recording *recording) {
+  if (!strut_instant_create(model, &recording->arena, &recording->instant)) return false;
   const strut_channel_row *row;
-  r->layout.width = 1;
+  recording->layout.width = 1;
   for (size_t k = 0; (row = strut_channel_at(k)) != NULL; k++) {
     size_t items = strut_channel_items(row, model->scene);
     if (!(wanted & row->id) || items <= row->total) continue; /* a total of nothing is left out */
-    strut_record_channel *c = &r->channel[r->layout.channel_count++];
-    *c = (strut_record_channel){.id = row->id,
-                                .name = row->name,
-                                .unit = row->unit,
-                                .items = items,
-                                .components = row->components,
-                                .component_names = row->component_names,
-                                .offset = r->layout.width};
-    c->item_names = item_names(model, row, items, &r->arena);
-    if (!c->item_names) return false;
-    r->layout.width += c->items * c->components;
+    strut_record_channel *channel = &recording->channel[recording->layout.channel_count++];
+    *channel = (strut_record_channel){.id = row->id,
+                                      .name = row->name,
+                                      .unit = row->unit,
+                                      .items = items,
+                                      .components = row->components,
+                                      .component_names = row->component_names,
+                                      .offset = recording->layout.width};
+    channel->item_names = item_names(model, row, items, &recording->arena);
+    if (!channel->item_names) return false;
+    recording->layout.width += channel->items * channel->components;
   }
-  r->layout.channels = r->channel;
+  recording->layout.channels = recording->channel;
   return true;
 }
 
 /* Where each number of a row comes from. */
-static bool find_columns(strut_recording *r) {
-  const strut_model *model = r->instant.model;
-  r->column = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->column);
-  r->observe = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->observe);
-  for (size_t k = 0; k < r->layout.channel_count && r->column && r->observe; k++) {
-    const strut_record_channel *c = &r->channel[k];
-    const strut_channel_row *row = strut_channel_row_of(c->id);
+static bool find_columns(strut_recording *recording) {
+  const strut_model *model = recording->instant.model;
+  recording->column =
+      strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->column);
+  recording->observe =
+      strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->observe);
+  for (size_t k = 0; k < recording->layout.channel_count && recording->column && recording->observe;
+       k++) {
+    const strut_record_channel *channel = &recording->channel[k];
+    const strut_channel_row *row = strut_channel_row_of(channel->id);
     int32_t near = 0;
-    for (size_t i = 0; i < (c->items - row->total) * c->components; i++) {
-      size_t item = i / c->components, to = c->offset + i;
-      strut_column column = {(strut_column_kind)(row->first + i % c->components),
+    for (size_t i = 0; i < (channel->items - row->total) * channel->components; i++) {
+      size_t item = i / channel->components, to = channel->offset + i;
+      strut_column column = {(strut_column_kind)(row->first + i % channel->components),
                              (int32_t)strut_owner_index(row->owner, model->scene, item), -1};
-      r->observe[to] = strut_observe_at(column.kind);
+      recording->observe[to] = strut_observe_at(column.kind);
       if (row->owner == STRUT_OWNER_CONTACT)
         column.other = column.item + 1; /* each by itself, also of a node on several grounds */
       else
         column = strut_column_find(model, column, near);
       near = column.item >= 0 && column.item < model->elements.count ? column.item : 0;
-      r->column[to] = column;
+      recording->column[to] = column;
     }
   }
-  return r->column && r->observe;
+  return recording->column && recording->observe;
 }
 
 static strut_channels requested_channels(const strut_experiment *experiment,
@@ -69,168 +73,194 @@ static strut_channels requested_channels(const strut_experiment *experiment,
 }
 
 /* Selects the channels of one sink from the full layout. */
-static void create_part_layout(const strut_recording *r, strut_channels wanted,
+static void create_part_layout(const strut_recording *recording, strut_channels wanted,
                                strut_recording_part *part) {
   part->layout = (strut_record_layout){
-      .width = 1, .channels = part->channel, .expected_rows = r->layout.expected_rows};
-  for (size_t k = 0; k < r->layout.channel_count; k++) {
-    if (!(wanted & r->channel[k].id)) continue;
-    strut_record_channel *c = &part->channel[part->layout.channel_count];
-    *c = r->channel[k];
-    part->from[part->layout.channel_count++] = c->offset;
-    c->offset = part->layout.width;
-    part->layout.width += c->items * c->components;
+      .width = 1, .channels = part->channel, .expected_rows = recording->layout.expected_rows};
+  for (size_t k = 0; k < recording->layout.channel_count; k++) {
+    if (!(wanted & recording->channel[k].id)) continue;
+    strut_record_channel *channel = &part->channel[part->layout.channel_count];
+    *channel = recording->channel[k];
+    part->from[part->layout.channel_count++] = channel->offset;
+    channel->offset = part->layout.width;
+    part->layout.width += channel->items * channel->components;
   }
-  part->whole = part->layout.channel_count == r->layout.channel_count;
+  part->whole = part->layout.channel_count == recording->layout.channel_count;
 }
 
-static bool create_parts(const strut_experiment *experiment, strut_recording *r) {
+static bool create_parts(const strut_experiment *experiment, strut_recording *recording) {
   bool all_whole = true;
-  r->parts = strut_arena_allocate(&r->arena, r->sink_count, sizeof *r->parts);
-  for (size_t s = 0; s < r->sink_count && r->parts; s++) {
-    create_part_layout(r, requested_channels(experiment, r->sinks[s]), &r->parts[s]);
-    all_whole = all_whole && r->parts[s].whole;
+  recording->parts =
+      strut_arena_allocate(&recording->arena, recording->sink_count, sizeof *recording->parts);
+  for (size_t s = 0; s < recording->sink_count && recording->parts; s++) {
+    create_part_layout(recording, requested_channels(experiment, recording->sinks[s]),
+                       &recording->parts[s]);
+    all_whole = all_whole && recording->parts[s].whole;
   }
-  if (r->parts && !all_whole)
-    r->picked = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
-  return r->parts && (all_whole || r->picked);
+  if (recording->parts && !all_whole)
+    recording->picked = strut_arena_allocate(
+        &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
+  return recording->parts && (all_whole || recording->picked);
 }
 
-static strut_status begin_sinks(strut_recording *r, strut_error *error) {
-  for (; r->begun < r->sink_count; r->begun++) {
-    strut_sink *sink = r->sinks[r->begun];
+static strut_status begin_sinks(strut_recording *recording, strut_error *error) {
+  for (; recording->begun < recording->sink_count; recording->begun++) {
+    strut_sink *sink = recording->sinks[recording->begun];
     strut_status status =
-        !sink->begin ? STRUT_OK : sink->begin(sink->context, &r->parts[r->begun].layout, error);
+        !sink->begin
+            ? STRUT_OK
+            : sink->begin(sink->context, &recording->parts[recording->begun].layout, error);
     if (status) return status;
   }
   return STRUT_OK;
 }
 
 strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
-                                    double begin, strut_recording *r, strut_error *error) {
-  *r = (strut_recording){
-      .sinks = r->sinks, .sink_count = r->sink_count, .grid = r->grid, .last = -1};
-  if (!r->sink_count) return STRUT_OK;
+                                    double begin, strut_recording *recording, strut_error *error) {
+  *recording = (strut_recording){.sinks = recording->sinks,
+                                 .sink_count = recording->sink_count,
+                                 .grid = recording->grid,
+                                 .last = -1};
+  if (!recording->sink_count) return STRUT_OK;
   strut_span span = strut_experiment_span(experiment, model->scene);
-  r->start = begin + span.record_start;
-  r->every = span.record_every;
+  recording->start = begin + span.record_start;
+  recording->every = span.record_every;
   strut_channels wanted = 0;
-  for (size_t s = 0; s < r->sink_count; s++) wanted |= requested_channels(experiment, r->sinks[s]);
-  bool ready = create_layout(model, wanted, r) && find_columns(r);
+  for (size_t s = 0; s < recording->sink_count; s++)
+    wanted |= requested_channels(experiment, recording->sinks[s]);
+  bool ready = create_layout(model, wanted, recording) && find_columns(recording);
   double expected =
-      (span.duration - span.record_start) / fmax(span.record_every, r->grid.step) + 1.0;
-  r->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
+      (span.duration - span.record_start) / fmax(span.record_every, recording->grid.step) + 1.0;
+  recording->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   if (ready) {
-    r->capacity = 1 + 65536 / r->layout.width;
-    r->rows = strut_arena_allocate(&r->arena, r->capacity * r->layout.width, sizeof(double));
-    ready = r->rows && create_parts(experiment, r);
+    recording->capacity = 1 + 65536 / recording->layout.width;
+    recording->rows = strut_arena_allocate(
+        &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
+    ready = recording->rows && create_parts(experiment, recording);
   }
   if (!ready) return strut_no_memory(error, "for the recording");
-  return begin_sinks(r, error);
+  return begin_sinks(recording, error);
 }
 
-int64_t strut_recording_next_step(const strut_recording *r) {
-  if (!r->sink_count) return INT64_MAX;
-  double step = ceil((r->start + (double)r->sampled * r->every) / r->grid.step - 1e-6);
+int64_t strut_recording_next_step(const strut_recording *recording) {
+  if (!recording->sink_count) return INT64_MAX;
+  double step = ceil((recording->start + (double)recording->sampled * recording->every) /
+                         recording->grid.step -
+                     1e-6);
   if (!(step < 9e18)) return INT64_MAX; /* never: beyond the integers */
   int64_t due = (int64_t)step;
-  return due > r->last ? due : r->last + 1;
+  return due > recording->last ? due : recording->last + 1;
 }
 
-bool strut_recording_lacks(const strut_recording *r, int64_t n) {
-  return r->sink_count && r->last < n;
+bool strut_recording_lacks(const strut_recording *recording, int64_t n) {
+  return recording->sink_count && recording->last < n;
 }
 
 /* Rows of one sink: the full ones, or a copy of its channels. */
-static const double *select_rows(strut_recording *r, const strut_recording_part *part,
+static const double *select_rows(strut_recording *recording, const strut_recording_part *part,
                                  size_t count) {
-  if (part->whole) return r->rows;
+  if (part->whole) return recording->rows;
   for (size_t i = 0; i < count; i++) {
-    const double *row = r->rows + i * r->layout.width;
-    double *out = r->picked + i * part->layout.width;
+    const double *row = recording->rows + i * recording->layout.width;
+    double *out = recording->picked + i * part->layout.width;
     out[0] = row[0];
     for (size_t k = 0; k < part->layout.channel_count; k++) {
-      const strut_record_channel *c = &part->channel[k];
-      memcpy(out + c->offset, row + part->from[k], c->items * c->components * sizeof *out);
+      const strut_record_channel *channel = &part->channel[k];
+      memcpy(out + channel->offset, row + part->from[k],
+             channel->items * channel->components * sizeof *out);
     }
   }
-  return r->picked;
+  return recording->picked;
 }
 
 /* Passes all rows to the sinks; rows that a sink refuses are not offered again. */
-static strut_status flush_rows(strut_recording *r, strut_error *error) {
-  size_t count = r->row_count;
-  r->row_count = 0;
-  for (size_t s = 0; s < r->begun && count; s++) {
-    const double *rows = select_rows(r, &r->parts[s], count);
-    if (!r->sinks[s]->rows) continue;
-    strut_status status = r->sinks[s]->rows(r->sinks[s]->context, rows, count, error);
+static strut_status flush_rows(strut_recording *recording, strut_error *error) {
+  size_t count = recording->row_count;
+  recording->row_count = 0;
+  for (size_t s = 0; s < recording->begun && count; s++) {
+    const double *rows = select_rows(recording, &recording->parts[s], count);
+    if (!recording->sinks[s]->rows) continue;
+    strut_status status =
+        recording->sinks[s]->rows(recording->sinks[s]->context, rows, count, error);
     if (status) return status;
   }
   return STRUT_OK;
 }
 
-static unsigned needs_of(const strut_recording *r, strut_channels wanted) {
+static unsigned needs_of(const strut_recording *recording, strut_channels wanted) {
   unsigned needs = 0;
-  for (size_t k = 0; k < r->layout.channel_count; k++)
-    for (size_t c = 0; c < r->channel[k].components && (wanted & r->channel[k].id); c++)
-      needs |= 1u << strut_observable_at(r->column[r->channel[k].offset + c].kind)->need;
+  for (size_t k = 0; k < recording->layout.channel_count; k++)
+    for (size_t c = 0; c < recording->channel[k].components && (wanted & recording->channel[k].id);
+         c++)
+      needs |=
+          1u << strut_observable_at(recording->column[recording->channel[k].offset + c].kind)->need;
   return needs;
 }
 
-static void fill_row(strut_state *state, strut_recording *r, strut_channels wanted, double *row) {
-  strut_instant_show(&r->instant, state, needs_of(r, wanted),
-                     strut_time_grid_at(&r->grid, state->step));
-  row[0] = strut_time_grid_real(&r->grid, state->step);
-  for (size_t k = 0; k < r->layout.channel_count; k++) {
-    const strut_record_channel *c = &r->channel[k];
+static void fill_row(strut_state *state, strut_recording *recording, strut_channels wanted,
+                     double *row) {
+  strut_instant_show(&recording->instant, state, needs_of(recording, wanted),
+                     strut_time_grid_at(&recording->grid, state->step));
+  row[0] = strut_time_grid_real(&recording->grid, state->step);
+  for (size_t k = 0; k < recording->layout.channel_count; k++) {
+    const strut_record_channel *channel = &recording->channel[k];
     double sum = 0.0;
-    for (size_t i = c->offset; i < c->offset + c->items * c->components && (wanted & c->id); i++) {
-      const strut_column *from = &r->column[i];
-      row[i] = r->observe[i] ? r->observe[i](&r->instant, from->item, from->other).value : sum;
+    for (size_t i = channel->offset;
+         i < channel->offset + channel->items * channel->components && (wanted & channel->id);
+         i++) {
+      const strut_column *from = &recording->column[i];
+      row[i] = recording->observe[i]
+                   ? recording->observe[i](&recording->instant, from->item, from->other).value
+                   : sum;
       sum += row[i];
     }
   }
 }
 
-strut_status strut_recording_sample(strut_state *state, strut_recording *r, strut_error *error) {
-  assert(r->sink_count && r->row_count < r->capacity && state->step > r->last);
-  fill_row(state, r, ALL_CHANNELS, r->rows + r->row_count++ * r->layout.width);
-  r->last = state->step;
-  r->sampled++;
-  return r->row_count == r->capacity ? flush_rows(r, error) : STRUT_OK;
+strut_status strut_recording_sample(strut_state *state, strut_recording *recording,
+                                    strut_error *error) {
+  assert(recording->sink_count && recording->row_count < recording->capacity &&
+         state->step > recording->last);
+  fill_row(state, recording, ALL_CHANNELS,
+           recording->rows + recording->row_count++ * recording->layout.width);
+  recording->last = state->step;
+  recording->sampled++;
+  return recording->row_count == recording->capacity ? flush_rows(recording, error) : STRUT_OK;
 }
 
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
-                                          strut_recording *r, strut_error *error) {
-  *r = (strut_recording){.grid = *grid, .last = -1};
-  if (create_layout(model, ALL_CHANNELS, r) && find_columns(r))
-    r->rows = strut_arena_allocate(&r->arena, r->layout.width, sizeof *r->rows);
-  return r->rows ? STRUT_OK : strut_no_memory(error, "");
+                                          strut_recording *recording, strut_error *error) {
+  *recording = (strut_recording){.grid = *grid, .last = -1};
+  if (create_layout(model, ALL_CHANNELS, recording) && find_columns(recording))
+    recording->rows =
+        strut_arena_allocate(&recording->arena, recording->layout.width, sizeof *recording->rows);
+  return recording->rows ? STRUT_OK : strut_no_memory(error, "");
 }
 
-void strut_recording_observe(strut_state *state, strut_recording *r, strut_channels wanted) {
-  if (wanted) fill_row(state, r, wanted, r->rows);
+void strut_recording_observe(strut_state *state, strut_recording *recording,
+                             strut_channels wanted) {
+  if (wanted) fill_row(state, recording, wanted, recording->rows);
 }
 
-strut_status strut_recording_finish(strut_recording *r, strut_status run_status,
+strut_status strut_recording_finish(strut_recording *recording, strut_status run_status,
                                     strut_error *error) {
-  strut_status status = flush_rows(r, error);
+  strut_status status = flush_rows(recording, error);
   if (status) run_status = status;
-  for (size_t s = 0; s < r->begun; s++) {
+  for (size_t s = 0; s < recording->begun; s++) {
     strut_error own = {0};
-    if (!r->sinks[s]->end) continue;
-    strut_status ended = r->sinks[s]->end(r->sinks[s]->context, run_status, &own);
+    if (!recording->sinks[s]->end) continue;
+    strut_status ended = recording->sinks[s]->end(recording->sinks[s]->context, run_status, &own);
     if (!ended || status) continue;
     status = ended;
     if (error) *error = own;
   }
-  r->begun = 0;
+  recording->begun = 0;
   return status;
 }
 
-void strut_recording_free(strut_recording *r) {
-  for (size_t s = 0; s < r->begun; s++)
-    if (r->sinks[s]->end) r->sinks[s]->end(r->sinks[s]->context, STRUT_FILE_TROUBLE, NULL);
-  strut_arena_free(&r->arena);
+void strut_recording_free(strut_recording *recording) {
+  for (size_t s = 0; s < recording->begun; s++)
+    if (recording->sinks[s]->end)
+      recording->sinks[s]->end(recording->sinks[s]->context, STRUT_FILE_TROUBLE, NULL);
+  strut_arena_free(&recording->arena);
 }

@@ -24,225 +24,231 @@ int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *st
   return lost;
 }
 
-strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node) {
-  double limit = strut_step_limit_monitor_last_limit(r->model, &r->watch.limit),
-         least = r->summary->step_limit;
-  double seen = (double)r->watch.limit.last * r->dt;
-  const char *remedy = r->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
-                       : r->summary->feedback
+strut_status strut_run_fail_lost_node(const strut_run *run, int32_t node) {
+  double limit = strut_step_limit_monitor_last_limit(run->model, &run->watch.limit),
+         least = run->summary->step_limit;
+  double seen = (double)run->watch.limit.last * run->dt;
+  const char *remedy = run->dt > 0.5 * fmin(limit, least) ? "use a smaller step"
+                       : run->summary->feedback
                            ? "look for a loop of sensors and drives that is unstable, of which the "
                              "largest step knows nothing; a smaller step may also help"
                            : "look for a member or contact that is far too stiff, or a load that "
                              "grows without bound; a smaller step may also help";
-  if (r->watch.limit.lowest > 0.0 && !r->options->force)
-    return strut_step_limit_monitor_fail(&r->watch.limit, r->state, least, r->error);
+  if (run->watch.limit.lowest > 0.0 && !run->options->force)
+    return strut_step_limit_monitor_fail(&run->watch.limit, run->state, least, run->error);
   if (limit < 0.99 * least)
-    return strut_fail(r->error, STRUT_DIVERGED,
+    return strut_fail(run->error, STRUT_DIVERGED,
                       "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                       "at the start: %.4g s, at t = %.9g s: %.4g s); %s",
-                      r->summary->end.node_names[node], strut_run_time(r), r->dt, least, seen,
+                      run->summary->end.node_names[node], strut_run_time(run), run->dt, least, seen,
                       limit, remedy);
-  return strut_fail(r->error, STRUT_DIVERGED,
+  return strut_fail(run->error, STRUT_DIVERGED,
                     "node '%s' left all bounds at t = %.9g s with dt = %g s (largest stable step "
                     "at the start: %.4g s); %s",
-                    r->summary->end.node_names[node], strut_run_time(r), r->dt, least, remedy);
+                    run->summary->end.node_names[node], strut_run_time(run), run->dt, least,
+                    remedy);
 }
 
 /* Bodies this near to each other beside their thickness may soon have passed through each other. */
 static const double DEEP = 0.5;
 
-static double speed_of(const strut_run *r, uint32_t at) {
-  return hypot(r->state->v[at], r->state->v[at + 1]);
+static double speed_of(const strut_run *run, uint32_t at) {
+  return hypot(run->state->v[at], run->state->v[at + 1]);
 }
 
-void strut_run_watch_collisions(strut_run *r) {
-  const strut_element_table *t = &r->model->elements;
-  const strut_nearby *near = t->scattered ? strut_nearby_at(r->model, r->state, r->state->q) : NULL;
-  int32_t count = near ? near->count : t->count;
-  for (int32_t k = 0; k < count && !r->tunnel.element; k++) {
+void strut_run_watch_collisions(strut_run *run) {
+  const strut_element_table *elements = &run->model->elements;
+  const strut_nearby *near =
+      elements->scattered ? strut_nearby_at(run->model, run->state, run->state->q) : NULL;
+  int32_t count = near ? near->count : elements->count;
+  for (int32_t k = 0; k < count && !run->tunnel.element; k++) {
     int32_t i = near ? near->element[k] : k;
-    const strut_element *e = &t->element[i];
-    const uint32_t *at = t->at + e->first;
-    if (e->role != STRUT_ELEMENT_COLLISION) continue;
-    double other = speed_of(r, at[1]);
-    if (e->nodes > 2) other = fmax(other, speed_of(r, at[2]));
-    double speed = speed_of(r, at[0]) + other;
-    bool fast = !r->method->events && speed * r->dt > e->natural;
+    const strut_element *element = &elements->element[i];
+    const uint32_t *at = elements->at + element->first;
+    if (element->role != STRUT_ELEMENT_COLLISION) continue;
+    double other = speed_of(run, at[1]);
+    if (element->nodes > 2) other = fmax(other, speed_of(run, at[2]));
+    double speed = speed_of(run, at[0]) + other;
+    bool fast = !run->method->events && speed * run->dt > element->natural;
     strut_element_pose pose;
-    strut_element_evaluate(r->model, i, r->state->latest->rest, r->state->q, (double)NAN, &pose);
-    if (!fast && !(pose.strain < DEEP * e->natural)) continue;
-    r->tunnel.element = i + 1;
-    r->tunnel.speed = fast ? speed : 0.0;
+    strut_element_evaluate(run->model, i, run->state->latest->rest, run->state->q, (double)NAN,
+                           &pose);
+    if (!fast && !(pose.strain < DEEP * element->natural)) continue;
+    run->tunnel.element = i + 1;
+    run->tunnel.speed = fast ? speed : 0.0;
   }
 }
 
-void strut_run_watch_bristles(strut_run *r) {
-  for (int32_t i = 0; i < r->model->rubbing.count; i++) {
-    double decay = strut_rubbing_bristle_decay(r->model, r->state, i);
-    if (decay > r->bristles.decay) r->bristles.item = i, r->bristles.decay = decay;
+void strut_run_watch_bristles(strut_run *run) {
+  for (int32_t i = 0; i < run->model->rubbing.count; i++) {
+    double decay = strut_rubbing_bristle_decay(run->model, run->state, i);
+    if (decay > run->bristles.decay) run->bristles.item = i, run->bristles.decay = decay;
   }
 }
 
 /* What fixed steps can follow of a decay [1/s]: as far as each method is stable on the real axis. */
-static double longest_step(const strut_run *r, double decay) {
+static double longest_step(const strut_run *run, double decay) {
   static const double most[STRUT_REGIONS] = {HUGE_VAL, 2.7, 2.0, 2.0};
-  return most[r->method->region] / decay;
+  return most[run->method->region] / decay;
 }
 
 /* The limit of steps that is known knows nothing of internal states, such as the gas of pipes. */
-strut_status strut_run_check_rates(const strut_run *r) {
-  const strut_scene *scene = r->model->scene;
+strut_status strut_run_check_rates(const strut_run *run) {
+  const strut_scene *scene = run->model->scene;
   int32_t state;
-  if (!r->model->feedback.state_count || r->options->force) return STRUT_OK;
-  double *work = strut_allocate(3 * (size_t)r->model->length, sizeof *work);
-  if (!work) return strut_no_memory(r->error, "for the model");
-  double rate = strut_states_rate(r->model, r->state, strut_time_grid_at(&r->grid, r->state->step),
-                                  work, &state);
-  double step = longest_step(r, rate);
+  if (!run->model->feedback.state_count || run->options->force) return STRUT_OK;
+  double *work = strut_allocate(3 * (size_t)run->model->length, sizeof *work);
+  if (!work) return strut_no_memory(run->error, "for the model");
+  double rate = strut_states_rate(run->model, run->state,
+                                  strut_time_grid_at(&run->grid, run->state->step), work, &state);
+  double step = longest_step(run, rate);
   strut_release(work);
-  if (!(r->dt > step)) return STRUT_OK;
+  if (!(run->dt > step)) return STRUT_OK;
   size_t lag = (size_t)state - scene->state_count;
   const char *name = (size_t)state < scene->state_count
                          ? scene->states[state].name
-                         : scene->signals[r->model->feedback.lagged[lag]].name;
-  return strut_fail(r->error, STRUT_STEP_TOO_LARGE,
+                         : scene->signals[run->model->feedback.lagged[lag]].name;
+  return strut_fail(run->error, STRUT_STEP_TOO_LARGE,
                     "%s '%s' settles within %.3g s at t = %.9g s, too fast for a step of %g s of "
                     "%s; use solver.step <= %.2g s, adaptive, or --force to run anyway",
                     (size_t)state < scene->state_count ? "pipe or state" : "the lag of signal",
-                    name ? name : "", 1.0 / rate, strut_run_time(r), r->dt, r->method->name,
+                    name ? name : "", 1.0 / rate, strut_run_time(run), run->dt, run->method->name,
                     0.9 * step);
 }
 
-static void warn_of_bristles(const strut_run *r) {
-  double step = longest_step(r, r->bristles.decay);
-  if (!(r->dt > step)) return;
-  int32_t contact = r->model->rubbing.item[r->bristles.item].contact;
+static void warn_of_bristles(const strut_run *run) {
+  double step = longest_step(run, run->bristles.decay);
+  if (!(run->dt > step)) return;
+  int32_t contact = run->model->rubbing.item[run->bristles.item].contact;
   strut_summary_warn(
-      r->summary, "bristles",
+      run->summary, "bristles",
       "the bristles that hold '%s' straighten within %.3g s as they slide, too fast for a step of "
       "%g s; use one below %.2g s, or adaptive",
-      r->model->scene->nodes[r->model->contacts.entry[contact].node].name, 1.0 / r->bristles.decay,
-      r->dt, step);
+      run->model->scene->nodes[run->model->contacts.entry[contact].node].name,
+      1.0 / run->bristles.decay, run->dt, step);
 }
 
-static void warn_of_tunnelling(const strut_run *r) {
-  if (!r->tunnel.element) return;
-  const strut_element *e = &r->model->elements.element[r->tunnel.element - 1];
-  const strut_collision *c = &r->model->scene->collisions[e->item];
-  if (r->tunnel.speed == 0.0) {
+static void warn_of_tunnelling(const strut_run *run) {
+  if (!run->tunnel.element) return;
+  const strut_element *element = &run->model->elements.element[run->tunnel.element - 1];
+  const strut_collision *collision = &run->model->scene->collisions[element->item];
+  if (run->tunnel.speed == 0.0) {
     strut_summary_warn(
-        r->summary, "tunnelling",
+        run->summary, "tunnelling",
         "the sides of collision '%s' were pressed into each other by more than half "
         "its thickness of %.3g m, and may have passed through; use a larger stiffness",
-        c->name, c->thickness);
+        collision->name, collision->thickness);
     return;
   }
-  strut_summary_warn(r->summary, "tunnelling",
+  strut_summary_warn(run->summary, "tunnelling",
                      "the sides of collision '%s' moved at up to %.3g m/s, which is more than its "
                      "thickness of %.3g m in a step of %g s: they may have passed through each "
                      "other; use a smaller step",
-                     c->name, r->tunnel.speed, c->thickness, r->dt);
+                     collision->name, run->tunnel.speed, collision->thickness, run->dt);
 }
 
-strut_status strut_run_check_collapse(const strut_run *r) {
-  const strut_scene *scene = r->model->scene;
-  int32_t cell = strut_cell_that_collapsed(r->model, r->state->q);
-  int32_t member = strut_member_that_is_wound_in(r->model, r->state->latest->rest);
-  strut_status rates = cell >= 0 ? strut_run_check_rates(r) : STRUT_OK;
+strut_status strut_run_check_collapse(const strut_run *run) {
+  const strut_scene *scene = run->model->scene;
+  int32_t cell = strut_cell_that_collapsed(run->model, run->state->q);
+  int32_t member = strut_member_that_is_wound_in(run->model, run->state->latest->rest);
+  strut_status rates = cell >= 0 ? strut_run_check_rates(run) : STRUT_OK;
   if (rates) return rates;
   if (cell >= 0)
     return strut_fail(
-        r->error, STRUT_DIVERGED,
+        run->error, STRUT_DIVERGED,
         "the area of cell '%s' reached zero at t = %.9g s, so that it encloses nothing; "
         "keep its nodes apart, or use a smaller step if they should not meet",
-        scene->cells[cell].name, strut_run_time(r));
+        scene->cells[cell].name, strut_run_time(run));
   if (member >= 0)
     return strut_fail(
-        r->error, STRUT_DIVERGED,
+        run->error, STRUT_DIVERGED,
         "the rest length of member '%s' reached zero at t = %.9g s, where its stiffness, "
         "axial_stiffness / rest length, has no bound; shorten it by less",
-        scene->members[member].name, strut_run_time(r));
+        scene->members[member].name, strut_run_time(run));
   return STRUT_OK;
 }
 
 /* The node that moves fastest, of those that touch a ground or of all. */
-static const char *fastest_node(const strut_run *r, bool of_contacts) {
-  const strut_contact_table *c = &r->model->contacts;
-  int32_t count = of_contacts ? c->count : r->model->node_count, found = 0;
+static const char *fastest_node(const strut_run *run, bool of_contacts) {
+  const strut_contact_table *contacts = &run->model->contacts;
+  int32_t count = of_contacts ? contacts->count : run->model->node_count, found = 0;
   double most = -1.0;
   for (int32_t i = 0; i < count; i++) {
-    uint32_t at = of_contacts ? c->at[i] : 2 * (uint32_t)i;
-    if (speed_of(r, at) > most) most = speed_of(r, at), found = (int32_t)at / 2;
+    uint32_t at = of_contacts ? contacts->at[i] : 2 * (uint32_t)i;
+    if (speed_of(run, at) > most) most = speed_of(run, at), found = (int32_t)at / 2;
   }
-  return r->model->scene->nodes[found].name;
+  return run->model->scene->nodes[found].name;
 }
 
-static strut_status check_losses(const strut_run *r) {
+static strut_status check_losses(const strut_run *run) {
   static const char *const names[] = {[STRUT_LOSS_MEMBERS] = "the dampers of members",
                                       [STRUT_LOSS_CONTACT] = "the ground's dampers",
                                       [STRUT_LOSS_FRICTION] = "friction"};
-  const strut_balance_monitor *b = &r->watch.balance;
-  if (!(b->given > 0.0) || r->options->force || r->state->trouble) return STRUT_OK;
-  bool contacts = b->giver != STRUT_LOSS_MEMBERS;
+  const strut_balance_monitor *monitor = &run->watch.balance;
+  if (!(monitor->given > 0.0) || run->options->force || run->state->trouble) return STRUT_OK;
+  bool contacts = monitor->giver != STRUT_LOSS_MEMBERS;
   return strut_fail(
-      r->error, STRUT_DIVERGED,
+      run->error, STRUT_DIVERGED,
       "by t = %.9g s %s gave %.3g J, which they can only take: the step of %s cannot follow the "
       "motion, which is fastest at node '%s'; use a smaller step%s, or --force to continue anyway",
-      b->time + r->grid.offset, names[b->giver], b->given, r->method->name,
-      fastest_node(r, contacts), b->giver == STRUT_LOSS_FRICTION ? " or a smaller friction" : "");
+      monitor->time + run->grid.offset, names[monitor->giver], monitor->given, run->method->name,
+      fastest_node(run, contacts),
+      monitor->giver == STRUT_LOSS_FRICTION ? " or a smaller friction" : "");
 }
 
 /* What the balance sums, in its order. */
-static const char *first_not_finite(const strut_energy *e) {
+static const char *first_not_finite(const strut_energy *energy) {
   const struct {
     const char *name;
     double value;
-  } parts[] = {{"kinetic energy", e->kinetic},
-               {"energy of the members", e->elastic},
-               {"energy of the ground's springs", e->contact},
-               {"work of the drives", e->drive_work},
-               {"work of the loads", e->load_work},
-               {"work of moving supports", e->support_work},
-               {"loss of the members' dampers", e->dissipated_members},
-               {"loss of the ground's dampers", e->dissipated_contact},
-               {"loss of friction", e->dissipated_friction}};
+  } parts[] = {{"kinetic energy", energy->kinetic},
+               {"energy of the members", energy->elastic},
+               {"energy of the ground's springs", energy->contact},
+               {"work of the drives", energy->drive_work},
+               {"work of the loads", energy->load_work},
+               {"work of moving supports", energy->support_work},
+               {"loss of the members' dampers", energy->dissipated_members},
+               {"loss of the ground's dampers", energy->dissipated_contact},
+               {"loss of friction", energy->dissipated_friction}};
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++)
     if (!isfinite(parts[i].value)) return parts[i].name;
   return "energy";
 }
 
-strut_status strut_run_check_states(const strut_run *r) {
-  const strut_feedback_table *f = &r->model->feedback;
-  const strut_scene *scene = r->model->scene;
-  for (int32_t i = 0; i < f->state_count; i++) {
-    if (isfinite(r->state->v[f->base + i])) continue;
-    bool own = (size_t)i < scene->state_count, bent = i >= f->state_count - f->bristle_count;
+strut_status strut_run_check_states(const strut_run *run) {
+  const strut_feedback_table *feedback = &run->model->feedback;
+  const strut_scene *scene = run->model->scene;
+  for (int32_t i = 0; i < feedback->state_count; i++) {
+    if (isfinite(run->state->v[feedback->base + i])) continue;
+    bool own = (size_t)i < scene->state_count,
+         bent = i >= feedback->state_count - feedback->bristle_count;
     return strut_fail(
-        r->error, STRUT_DIVERGED,
+        run->error, STRUT_DIVERGED,
         "%s%s%s is no longer a finite number at t = %.9g s with dt = %g s; look at its "
         "rate, or use a smaller step",
         own    ? "state '"
         : bent ? "the bend of bristles"
                : "the lag of a signal or the force of a Maxwell branch",
-        own ? scene->states[i].name : "", own ? "'" : "", strut_run_time(r), r->dt);
+        own ? scene->states[i].name : "", own ? "'" : "", strut_run_time(run), run->dt);
   }
   return STRUT_OK;
 }
 
-strut_status strut_run_check_balance(const strut_run *r) {
-  const strut_energy *e = &r->summary->energy;
-  strut_status states = strut_run_check_states(r);
+strut_status strut_run_check_balance(const strut_run *run) {
+  const strut_energy *energy = &run->summary->energy;
+  strut_status states = strut_run_check_states(run);
   if (states) return states;
-  int32_t lost = strut_run_find_lost_node(r->model, r->state);
-  if (lost >= 0) return strut_run_fail_lost_node(r, lost);
-  if (isfinite(e->residual) && isfinite(e->moved)) return check_losses(r);
-  return strut_fail(r->error, STRUT_DIVERGED,
+  int32_t lost = strut_run_find_lost_node(run->model, run->state);
+  if (lost >= 0) return strut_run_fail_lost_node(run, lost);
+  if (isfinite(energy->residual) && isfinite(energy->moved)) return check_losses(run);
+  return strut_fail(run->error, STRUT_DIVERGED,
                     "the %s is no longer a finite number at t = %.9g s with dt = %g s, and fastest "
                     "is node '%s'; look for a stiffness, law or drive that is far too large there",
-                    first_not_finite(e), strut_run_time(r), r->dt, fastest_node(r, false));
+                    first_not_finite(energy), strut_run_time(run), run->dt,
+                    fastest_node(run, false));
 }
 
-strut_status strut_run_fail_method(const strut_run *r) {
+strut_status strut_run_fail_method(const strut_run *run) {
   static const char *const why[] = {
       [STRUT_FAILURE_STEP] =
           "the step needed for the tolerance became too small to advance the time; use a larger "
@@ -253,80 +259,81 @@ strut_status strut_run_fail_method(const strut_run *r) {
           "the lengths of rigid bars cannot be kept; use a smaller step, or look for bars that "
           "constrain each other",
       [STRUT_FAILURE_INTERRUPT] = "it was interrupted"};
-  if (r->state->trouble == STRUT_FAILURE_IMPLICIT)
+  if (run->state->trouble == STRUT_FAILURE_IMPLICIT)
     return strut_fail(
-        r->error, STRUT_DIVERGED,
+        run->error, STRUT_DIVERGED,
         "%s found no solution of its step at t = %.9g s, near node '%s', with dt = %g s; use a "
         "smaller step, or look there for a member whose length passes through zero",
-        r->method->name, strut_run_time(r), r->summary->end.node_names[r->state->trouble_node],
-        r->dt);
-  if (r->state->trouble == STRUT_FAILURE_RELAY)
+        run->method->name, strut_run_time(run),
+        run->summary->end.node_names[run->state->trouble_node], run->dt);
+  if (run->state->trouble == STRUT_FAILURE_RELAY)
     return strut_fail(
-        r->error, STRUT_DIVERGED,
+        run->error, STRUT_DIVERGED,
         "relay '%s' switches at t = %.9g s, and what it drives takes its own input past the other "
         "threshold at once, so that it would switch back without end; set the thresholds further "
         "apart, or sample it ('every')",
-        r->model->scene->signals[r->state->trouble_node].name, strut_run_time(r));
-  if (r->state->trouble == STRUT_FAILURE_GUIDE) {
-    const uint32_t *at = r->model->elements.at + r->state->trouble_node;
-    const char *const *name = r->summary->end.node_names;
+        run->model->scene->signals[run->state->trouble_node].name, strut_run_time(run));
+  if (run->state->trouble == STRUT_FAILURE_GUIDE) {
+    const uint32_t *at = run->model->elements.at + run->state->trouble_node;
+    const char *const *name = run->summary->end.node_names;
     return strut_fail(
-        r->error, STRUT_DIVERGED,
+        run->error, STRUT_DIVERGED,
         "'%s' and '%s' meet at (%.6g, %.6g) m at t = %.9g s: the cable that runs there would be "
         "pulled through its guide; end the run before, or keep the two apart by a collision",
-        name[at[0] / 2], name[at[1] / 2], r->state->q[at[0]], r->state->q[at[0] + 1],
-        r->state->trouble_time);
+        name[at[0] / 2], name[at[1] / 2], run->state->q[at[0]], run->state->q[at[0] + 1],
+        run->state->trouble_time);
   }
-  return strut_fail(r->error, STRUT_DIVERGED, "%s failed at t = %.9g s: %s", r->method->name,
-                    strut_run_time(r), why[r->state->trouble]);
+  return strut_fail(run->error, STRUT_DIVERGED, "%s failed at t = %.9g s: %s", run->method->name,
+                    strut_run_time(run), why[run->state->trouble]);
 }
 
 /*
  * Has most of the exchanged energy appeared without a source? This happens where motions grow by
  * numerical instability, also those that slack cables and open contacts bound.
  */
-static bool has_spurious_energy(const strut_run *r) {
+static bool has_spurious_energy(const strut_run *run) {
   strut_energy e;
-  if (!r->state->balance) return false;
-  if (!(r->dt > 0.5 * r->summary->step_limit))
+  if (!run->state->balance) return false;
+  if (!(run->dt > 0.5 * run->summary->step_limit))
     return false; /* far below the limit, the step is not the cause */
-  strut_balance_fill(r->model, r->state, &r->watch.initial,
-                     strut_time_grid_at(&r->grid, r->state->step), &e);
+  strut_balance_fill(run->model, run->state, &run->watch.initial,
+                     strut_time_grid_at(&run->grid, run->state->step), &e);
   double there = e.kinetic + e.elastic + fabs(e.gravity) + e.contact;
   return e.residual > 0.5 * (e.moved + fabs(e.initial) + there);
 }
 
-strut_status strut_run_check_step_limit(strut_run *r) {
-  if (r->state->step < r->watch.limit.next) return STRUT_OK;
-  strut_stick_band_sample(r->model, r->state, &r->watch.band);
-  bool unstable = !r->options->force && has_spurious_energy(r);
-  if (unstable && !(r->watch.limit.lowest > 0.0))
-    strut_step_limit_monitor_check(r->model, r->state, &r->watch.limit);
-  if (!unstable) strut_step_limit_monitor_sample(r->model, r->state, &r->watch.limit);
-  if (r->options->force) return STRUT_OK;
-  if (!r->watch.limit.motion_lost && !unstable) return STRUT_OK;
-  return strut_step_limit_monitor_fail(&r->watch.limit, r->state, r->summary->step_limit, r->error);
+strut_status strut_run_check_step_limit(strut_run *run) {
+  if (run->state->step < run->watch.limit.next) return STRUT_OK;
+  strut_stick_band_sample(run->model, run->state, &run->watch.band);
+  bool unstable = !run->options->force && has_spurious_energy(run);
+  if (unstable && !(run->watch.limit.lowest > 0.0))
+    strut_step_limit_monitor_check(run->model, run->state, &run->watch.limit);
+  if (!unstable) strut_step_limit_monitor_sample(run->model, run->state, &run->watch.limit);
+  if (run->options->force) return STRUT_OK;
+  if (!run->watch.limit.motion_lost && !unstable) return STRUT_OK;
+  return strut_step_limit_monitor_fail(&run->watch.limit, run->state, run->summary->step_limit,
+                                       run->error);
 }
 
 /* ---- warnings ---- */
 
 /* Warns of contacts whose stick band is too narrow for the step. */
-static void warn_of_narrow_bands(const strut_run *r) {
-  strut_summary *s = r->summary;
+static void warn_of_narrow_bands(const strut_run *run) {
+  strut_summary *summary = run->summary;
   const char *first = NULL;
   size_t count = 0;
   double needed = 0.0, times = 0.0;
-  for (size_t i = 0; i < s->end.contact_count; i++) {
-    if (!(s->end.contacts[i].band_needed > 0.0)) continue;
-    if (!count++) first = s->end.contacts[i].node;
-    needed = fmax(needed, s->end.contacts[i].band_needed);
-    double band = r->model->contacts.entry[i].friction.stick_velocity;
-    times = fmax(times, s->end.contacts[i].band_needed / band);
+  for (size_t i = 0; i < summary->end.contact_count; i++) {
+    if (!(summary->end.contacts[i].band_needed > 0.0)) continue;
+    if (!count++) first = summary->end.contacts[i].node;
+    needed = fmax(needed, summary->end.contacts[i].band_needed);
+    double band = run->model->contacts.entry[i].friction.stick_velocity;
+    times = fmax(times, summary->end.contacts[i].band_needed / band);
   }
   char more[40] = "";
   if (count > 1) snprintf(more, sizeof more, " and %zu more", count - 1);
   if (count)
-    strut_summary_warn(s, "stick_band",
+    strut_summary_warn(summary, "stick_band",
                        "node '%s'%s stuck only by chance, if at all: a step changes the slip "
                        "velocity by %.2g m/s, %.3g times the band; use stick_velocity >= %.2g m/s, "
                        "a smaller step, or a method with events",
@@ -334,73 +341,74 @@ static void warn_of_narrow_bands(const strut_run *r) {
 }
 
 /* Warns of feet that creep at different speeds and so strain a member. */
-static void warn_of_creep(const strut_run *r) {
-  const strut_band_tie *tie = strut_stick_band_strained(&r->watch.band);
+static void warn_of_creep(const strut_run *run) {
+  const strut_band_tie *tie = strut_stick_band_strained(&run->watch.band);
   if (!tie) return;
-  const strut_scene *scene = r->model->scene;
-  const strut_contact_entry *e = r->model->contacts.entry;
-  strut_summary_warn(r->summary, "stick_creep",
+  const strut_scene *scene = run->model->scene;
+  const strut_contact_entry *contact = run->model->contacts.entry;
+  strut_summary_warn(run->summary, "stick_creep",
                      "nodes '%s' and '%s' stick, but creep within their stick bands at different "
                      "speeds: this strained member '%s' by up to %.2g of the static friction of "
                      "one of them, which may slip too early; use a method with events, such as "
                      "rk4-events, or a narrower band with a smaller step",
-                     scene->nodes[e[tie->contact[0]].node].name,
-                     scene->nodes[e[tie->contact[1]].node].name, scene->members[tie->member].name,
-                     tie->worst);
+                     scene->nodes[contact[tie->contact[0]].node].name,
+                     scene->nodes[contact[tie->contact[1]].node].name,
+                     scene->members[tie->member].name, tie->worst);
 }
 
 /* Feet that creep faster than this part of the structure's mean speed change its motion. */
 static const double WIDE = 0.1;
 
 /* Warns of friction that gave energy, and of bands so wide that creeping is much of the motion. */
-static void warn_of_wide_bands(const strut_run *r) {
-  const strut_balance_monitor *b = &r->watch.balance;
+static void warn_of_wide_bands(const strut_run *run) {
+  const strut_balance_monitor *monitor = &run->watch.balance;
   static const char *const remedy =
       "use 'law: coulomb' with a method with events, such as rk4-events, or a far smaller "
       "stick_velocity";
-  if (r->summary->energy.rubbed > 0.0)
+  if (run->summary->energy.rubbed > 0.0)
     strut_summary_warn(
-        r->summary, "friction_gives",
+        run->summary, "friction_gives",
         "friction gave %.3g J, which it can only take: within its band Karnopp's law "
         "balances the other forces whatever the speed, so that what should rest "
         "creeps, even uphill; %s",
-        b->rubbed, remedy);
-  if (b->crept > WIDE * b->speed)
-    strut_summary_warn(r->summary, "wide_band",
+        monitor->rubbed, remedy);
+  if (monitor->crept > WIDE * monitor->speed)
+    strut_summary_warn(run->summary, "wide_band",
                        "feet that should stick creep within their stick bands, at %.2g %% of the "
                        "mean speed of the structure, which changes its motion; %s",
-                       100.0 * b->crept / b->speed, remedy);
+                       100.0 * monitor->crept / monitor->speed, remedy);
 }
 
-static void warn_of_limit(const strut_run *r) {
-  const strut_step_limit_violation *violation = &r->summary->limit_fell;
-  if (r->summary->status != STRUT_OK || !(violation->limit > 0.0)) return;
-  strut_summary_warn(r->summary, "step_limit",
+static void warn_of_limit(const strut_run *run) {
+  const strut_step_limit_violation *violation = &run->summary->limit_fell;
+  if (run->summary->status != STRUT_OK || !(violation->limit > 0.0)) return;
+  strut_summary_warn(run->summary, "step_limit",
                      "the largest stable step fell to %.4g s at t = %.9g s, below the step %g s; "
                      "use solver.step <= %.2g s",
-                     violation->limit, violation->time, r->summary->step, 0.9 * violation->limit);
+                     violation->limit, violation->time, run->summary->step, 0.9 * violation->limit);
 }
 
 /* Quantities are not followed between steps where interpolation leaves more than this part of their size. */
 static const double COARSE = 0.01;
 
 /* Names the quantity that fixed steps follow worst between their ends. */
-static void warn_of_coarse_steps(const strut_run *r) {
-  const strut_summary *s = r->summary;
+static void warn_of_coarse_steps(const strut_run *run) {
+  const strut_summary *summary = run->summary;
   const strut_measured *worst = NULL;
   double most = COARSE;
-  for (size_t i = 0; i < s->measured_count && s->status == STRUT_OK && !r->options->chosen; i++) {
-    const strut_measured *q = &s->measured[i];
-    if (!(q->doubt > most * q->scale)) continue;
-    most = q->doubt / q->scale;
-    worst = q;
+  for (size_t i = 0;
+       i < summary->measured_count && summary->status == STRUT_OK && !run->options->chosen; i++) {
+    const strut_measured *measured = &summary->measured[i];
+    if (!(measured->doubt > most * measured->scale)) continue;
+    most = measured->doubt / measured->scale;
+    worst = measured;
   }
   if (!worst) return;
   strut_summary_warn(
-      r->summary, "coarse_step",
+      run->summary, "coarse_step",
       "quantity '%s' is known only within some %.2g %%: steps of %g s are too coarse "
       "to follow it from one to the next; use a smaller step, or --accuracy 1%%",
-      worst->name, 100.0 * most, s->step);
+      worst->name, 100.0 * most, summary->step);
 }
 
 /* A drive that changes by more than this part of its member within a step jumps. */
@@ -413,30 +421,33 @@ typedef struct jump {
 } jump;
 
 /* What actuator i drives, and a value beside which its changes are large or small. */
-static jump describe_drive(const strut_model *model, const strut_actuator *a, double *scale) {
+static jump describe_drive(const strut_model *model, const strut_actuator *actuator,
+                           double *scale) {
   const strut_scene *scene = model->scene;
-  if (a->member >= 0) {
-    *scale = model->members.rest[a->member];
-    return (jump){scene->members[a->member].name, "member", "length", "m", 0.0, 0.0};
+  if (actuator->member >= 0) {
+    *scale = model->members.rest[actuator->member];
+    return (jump){scene->members[actuator->member].name, "member", "length", "m", 0.0, 0.0};
   }
   *scale = 1.0;
-  if (a->hinge >= 0) return (jump){scene->hinges[a->hinge].name, "hinge", "angle", "rad", 0.0, 0.0};
-  *scale = fmax(fabs(scene->cells[a->cell].pressure), fabs(scene->signals[a->signal].amplitude));
+  if (actuator->hinge >= 0)
+    return (jump){scene->hinges[actuator->hinge].name, "hinge", "angle", "rad", 0.0, 0.0};
+  *scale = fmax(fabs(scene->cells[actuator->cell].pressure),
+                fabs(scene->signals[actuator->signal].amplitude));
   *scale = fmax(*scale, DBL_MIN);
-  return (jump){scene->cells[a->cell].name, "cell", "pressure", "N/m", 0.0, 0.0};
+  return (jump){scene->cells[actuator->cell].name, "cell", "pressure", "N/m", 0.0, 0.0};
 }
 
 /* Finds the largest jump of a drive between two times, relative to its member. */
-static jump find_jump(const strut_run *r, double from, double to) {
-  const strut_scene *scene = r->model->scene;
+static jump find_jump(const strut_run *run, double from, double to) {
+  const strut_scene *scene = run->model->scene;
   jump found = {.name = NULL};
   double worst = JUMP;
   for (size_t i = 0; i < scene->actuator_count; i++) {
-    const strut_actuator *a = &scene->actuators[i];
-    if (a->force) continue;
+    const strut_actuator *actuator = &scene->actuators[i];
+    if (actuator->force) continue;
     double when = 0.0, length;
-    jump drive = describe_drive(r->model, a, &length);
-    double change = strut_signal_jump(scene->signals, a->signal, r->dt, from, to, &when);
+    jump drive = describe_drive(run->model, actuator, &length);
+    double change = strut_signal_jump(scene->signals, actuator->signal, run->dt, from, to, &when);
     if (!(change > worst * length)) continue;
     worst = change / length;
     found = drive;
@@ -445,16 +456,16 @@ static jump find_jump(const strut_run *r, double from, double to) {
   return found;
 }
 
-static bool has_touchdowns(const strut_run *r) {
-  for (size_t i = 0; i < r->summary->end.contact_count; i++)
-    if (r->summary->end.contacts[i].max_height > 0.0) return true;
+static bool has_touchdowns(const strut_run *run) {
+  for (size_t i = 0; i < run->summary->end.contact_count; i++)
+    if (run->summary->end.contacts[i].max_height > 0.0) return true;
   return false;
 }
 
 static bool has_switches(const strut_model *model) {
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->carries || strut_law_kinks(e->law, &e->numbers)) return true;
+    const strut_element *element = &model->elements.element[i];
+    if (element->carries || strut_law_kinks(element->law, &element->numbers)) return true;
   }
   return false;
 }
@@ -469,27 +480,28 @@ static bool has_stick(const strut_model *model) {
 }
 
 /* Events that fixed steps pass over, or NULL. */
-static const char *describe_missed_events(const strut_run *r) {
-  if (r->method->events || r->method->region == STRUT_REGION_ALL) return NULL;
-  bool friction = has_stick(r->model), cables = r->model->terms & STRUT_TERM_SLACK;
-  bool bounces = has_touchdowns(r);
+static const char *describe_missed_events(const strut_run *run) {
+  if (run->method->events || run->method->region == STRUT_REGION_ALL) return NULL;
+  bool friction = has_stick(run->model), cables = run->model->terms & STRUT_TERM_SLACK;
+  bool bounces = has_touchdowns(run);
   if (bounces && friction) return "touchdowns and changes between sticking and slipping";
   if (bounces) return "touchdowns";
   if (friction) return "changes between sticking and slipping";
   if (cables) return "cables that become taut";
-  if (r->model->terms & STRUT_TERM_MEMORY) return "what breaks, is released, yields or folds";
-  return has_switches(r->model) ? "stops, cables or kinks of laws" : NULL;
+  if (run->model->terms & STRUT_TERM_MEMORY) return "what breaks, is released, yields or folds";
+  return has_switches(run->model) ? "stops, cables or kinks of laws" : NULL;
 }
 
 /* Explains an open balance: likely cause and remedy. */
-static void explain_balance(const strut_run *r, char *text, size_t size) {
-  const strut_balance_monitor *b = &r->watch.balance;
-  bool sudden = fabs(b->worst) > 0.5 * fabs(r->summary->energy.residual);
-  double offset = r->grid.offset, from = b->from + offset, to = b->to + offset;
-  double begin = (double)r->first * r->dt + offset, now = strut_run_time(r);
-  jump j = sudden ? find_jump(r, from - r->dt, to) : find_jump(r, begin + 1e-3 * r->dt, now);
-  const char *over = describe_missed_events(r);
-  if (r->options->chosen) {
+static void explain_balance(const strut_run *run, char *text, size_t size) {
+  const strut_balance_monitor *monitor = &run->watch.balance;
+  bool sudden = fabs(monitor->worst) > 0.5 * fabs(run->summary->energy.residual);
+  double offset = run->grid.offset, from = monitor->from + offset, to = monitor->to + offset;
+  double begin = (double)run->first * run->dt + offset, now = strut_run_time(run);
+  jump j =
+      sudden ? find_jump(run, from - run->dt, to) : find_jump(run, begin + 1e-3 * run->dt, now);
+  const char *over = describe_missed_events(run);
+  if (run->options->chosen) {
     snprintf(text, size, "%s", STRUT_BALANCE_CHOSEN);
     return;
   }
@@ -505,21 +517,21 @@ static void explain_balance(const strut_run *r, char *text, size_t size) {
              "; likely because fixed steps pass over %s; use rk4-events, a smaller step, or "
              "--accuracy 1%%",
              over);
-  else if (r->method->lag == 0.0)
+  else if (run->method->lag == 0.0)
     snprintf(text, size,
              "; the tolerance of %g allows that; use a smaller solver.tolerance, or --accuracy 1%%",
-             r->experiment->tolerance);
+             run->experiment->tolerance);
   else
     snprintf(text, size,
              "; likely because the step of %g s is too large for the fastest motion; use a smaller "
              "step, or --accuracy 1%%",
-             r->dt);
+             run->dt);
 }
 
-static void warn_of_balance(const strut_run *r) {
+static void warn_of_balance(const strut_run *run) {
   char why[400] = "";
-  if (r->summary->balance == STRUT_BALANCE_OPEN) explain_balance(r, why, sizeof why);
-  strut_balance_warn(r->summary, why);
+  if (run->summary->balance == STRUT_BALANCE_OPEN) explain_balance(run, why, sizeof why);
+  strut_balance_warn(run->summary, why);
 }
 
 /* Phase errors of vibrations matter from here on [rad]: they are errors relative to the amplitude. */
@@ -531,48 +543,51 @@ static const double AT_REST = 1e-6;
  * The largest error from the phase that fixed steps lose, relative to a vibration's first amplitude, which
  * dampers and friction reduce as exp(-decay t / 2); *rate: its frequency [rad/s].
  */
-static double shifted_phase(const strut_run *r, double *rate) {
-  const strut_motion_frequency *w = &r->watch.frequency;
-  const strut_energy *e = &r->summary->energy;
-  double time = r->summary->duration;
-  if (!(w->movement > AT_REST * e->moved && w->curvature > 0.0)) return 0.0;
-  *rate = sqrt(w->curvature / w->movement);
-  double rubbed = fmax(0.0, e->dissipated_friction) * (double)w->samples / time;
-  double decay = (w->damping + rubbed) / w->movement, lasts = fmin(time, 2.0 / decay);
-  double z = *rate * r->dt, lag = r->method->lag * z * z * (r->method->order > 2 ? z * z : 1.0);
+static double shifted_phase(const strut_run *run, double *rate) {
+  const strut_motion_frequency *frequency = &run->watch.frequency;
+  const strut_energy *energy = &run->summary->energy;
+  double time = run->summary->duration;
+  if (!(frequency->movement > AT_REST * energy->moved && frequency->curvature > 0.0)) return 0.0;
+  *rate = sqrt(frequency->curvature / frequency->movement);
+  double rubbed = fmax(0.0, energy->dissipated_friction) * (double)frequency->samples / time;
+  double decay = (frequency->damping + rubbed) / frequency->movement,
+         lasts = fmin(time, 2.0 / decay);
+  double z = *rate * run->dt,
+         lag = run->method->lag * z * z * (run->method->order > 2 ? z * z : 1.0);
   return lag * *rate * lasts * exp(-0.5 * decay * lasts);
 }
 
 /* States that the error is unknown where steps pass over events, or lose the phase of vibrations. */
-static void add_caveat(const strut_run *r) {
-  strut_summary *s = r->summary;
-  const char *events = describe_missed_events(r);
-  double rate = 0.0, shift = shifted_phase(r, &rate);
-  s->caveat[0] = '\0';
-  if (r->options->chosen || s->status != STRUT_OK) return;
+static void add_caveat(const strut_run *run) {
+  strut_summary *summary = run->summary;
+  const char *events = describe_missed_events(run);
+  double rate = 0.0, shift = shifted_phase(run, &rate);
+  summary->caveat[0] = '\0';
+  if (run->options->chosen || summary->status != STRUT_OK) return;
   if (events)
-    snprintf(s->caveat, sizeof s->caveat, "fixed steps of %s pass over %s", s->method, events);
-  else if (s->spent.forced)
-    snprintf(s->caveat, sizeof s->caveat,
+    snprintf(summary->caveat, sizeof summary->caveat, "fixed steps of %s pass over %s",
+             summary->method, events);
+  else if (summary->spent.forced)
+    snprintf(summary->caveat, sizeof summary->caveat,
              "contacts or laws switch too often to be followed in %lld steps, first at t = %.6g s; "
              "use a smaller solver.step",
-             (long long)s->spent.forced, r->state->forced.first + r->grid.offset);
+             (long long)summary->spent.forced, run->state->forced.first + run->grid.offset);
   else if (shift > SHIFTED)
-    snprintf(s->caveat, sizeof s->caveat,
+    snprintf(summary->caveat, sizeof summary->caveat,
              "steps of %.3g s shift the phase of vibrations at %.3g Hz, where most of the kinetic "
              "energy is, by some %.2g rad",
-             r->dt, rate / STRUT_TAU, shift);
+             run->dt, rate / STRUT_TAU, shift);
 }
 
-void strut_run_warn(const strut_run *r) {
-  add_caveat(r);
-  strut_summary_warn_of_start(r->summary);
-  warn_of_balance(r);
-  warn_of_narrow_bands(r);
-  warn_of_creep(r);
-  warn_of_wide_bands(r);
-  warn_of_limit(r);
-  warn_of_coarse_steps(r);
-  warn_of_tunnelling(r);
-  if (r->bristles.decay > 0.0) warn_of_bristles(r);
+void strut_run_warn(const strut_run *run) {
+  add_caveat(run);
+  strut_summary_warn_of_start(run->summary);
+  warn_of_balance(run);
+  warn_of_narrow_bands(run);
+  warn_of_creep(run);
+  warn_of_wide_bands(run);
+  warn_of_limit(run);
+  warn_of_coarse_steps(run);
+  warn_of_tunnelling(run);
+  if (run->bristles.decay > 0.0) warn_of_bristles(run);
 }

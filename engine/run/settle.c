@@ -69,166 +69,178 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
 }
 
 /* The largest absolute entry of x and its node; infinite where x has a NaN. */
-static double find_largest(const double *x, int32_t n, int32_t *node) {
+static double find_largest(const double *vector, int32_t n, int32_t *node) {
   double most = 0.0;
   *node = 0;
   for (int32_t i = 0; i < n; i++) {
-    if (!(fabs(x[i]) <= most)) most = fabs(x[i]), *node = i / 2;
-    if (isnan(x[i])) return HUGE_VAL;
+    if (!(fabs(vector[i]) <= most)) most = fabs(vector[i]), *node = i / 2;
+    if (isnan(vector[i])) return HUGE_VAL;
   }
   return most;
 }
 
 /* The last bits of strains and positions, through slope and gradient, as forces on the nodes. */
-static void add_element_rounding(const strut_relaxation *r, double *force) {
-  const strut_element_table *t = &r->model->elements;
-  const double *q = r->state->q;
+static void add_element_rounding(const strut_relaxation *relaxation, double *force) {
+  const strut_element_table *elements = &relaxation->model->elements;
+  const double *q = relaxation->state->q;
   strut_element_pose pose;
-  for (int32_t i = 0; i < t->count; i++) {
-    const strut_element *e = &t->element[i];
-    const uint32_t *at = t->at + e->first;
-    strut_element_evaluate(r->model, i, r->state->latest->rest, q, r->state->history.turn[i],
-                           &pose);
+  for (int32_t i = 0; i < elements->count; i++) {
+    const strut_element *element = &elements->element[i];
+    const uint32_t *at = elements->at + element->first;
+    strut_element_evaluate(relaxation->model, i, relaxation->state->latest->rest, q,
+                           relaxation->state->history.turn[i], &pose);
     double bits = fabs(pose.strain) * DBL_EPSILON;
-    for (int32_t k = 0; k < e->nodes; k++)
+    for (int32_t k = 0; k < element->nodes; k++)
       bits +=
           hypot(pose.b[2 * k], pose.b[2 * k + 1]) * strut_coordinate_rounding(q + at[k], q + at[k]);
-    for (int32_t k = 0; k < e->nodes; k++)
+    for (int32_t k = 0; k < element->nodes; k++)
       force[at[k]] += fabs(pose.slope) * bits * hypot(pose.b[2 * k], pose.b[2 * k + 1]);
   }
 }
 
 /* The acceleration that rounding of the positions may cause at a node of stiff members. */
-static double rounding_acceleration(const strut_relaxation *r) {
-  const strut_model *model = r->model;
-  const strut_member_table *t = &model->members;
-  double worst = 0.0, *force = r->acceleration;
+static double rounding_acceleration(const strut_relaxation *relaxation) {
+  const strut_model *model = relaxation->model;
+  const strut_member_table *members = &model->members;
+  double worst = 0.0, *force = relaxation->acceleration;
   memset(force, 0, (size_t)model->length * sizeof *force);
-  for (int32_t j = 0; j < t->count; j++) {
-    const double *a = r->state->q + t->from[j], *b = r->state->q + t->to[j];
+  for (int32_t j = 0; j < members->count; j++) {
+    const double *a = relaxation->state->q + members->from[j],
+                 *b = relaxation->state->q + members->to[j];
     double far = strut_coordinate_rounding(a, b);
-    force[t->from[j]] += t->stiffness[j] * far;
-    force[t->to[j]] += t->stiffness[j] * far;
+    force[members->from[j]] += members->stiffness[j] * far;
+    force[members->to[j]] += members->stiffness[j] * far;
   }
-  add_element_rounding(r, force);
+  add_element_rounding(relaxation, force);
   for (int32_t i = 0; i < model->node_count; i++)
     if (model->weight[i] > 0.0) worst = fmax(worst, force[2 * i] / model->weight[i]);
   return 4.0 * worst;
 }
 
 /* With friction, the last bit of a speed is sliding; what comes to rest stands. */
-static void accelerate(const strut_relaxation *r) {
-  const double *v = r->experiment->settle.friction ? r->still : r->state->v;
-  strut_forces_acceleration(r->model, r->state, 0.0, r->state->q, v, r->acceleration);
+static void accelerate(const strut_relaxation *relaxation) {
+  const double *v =
+      relaxation->experiment->settle.friction ? relaxation->still : relaxation->state->v;
+  strut_forces_acceleration(relaxation->model, relaxation->state, 0.0, relaxation->state->q, v,
+                            relaxation->acceleration);
 }
 
-static strut_status fail_not_settled(const strut_relaxation *r, strut_error *error) {
-  const strut_settle *wanted = &r->experiment->settle;
-  int32_t fastest, pushed, length = r->model->length;
-  double speed = find_largest(r->state->v, length, &fastest);
-  accelerate(r);
-  double push = find_largest(r->acceleration, length, &pushed);
-  bool late = r->time >= wanted->limit, moves = !(speed < wanted->speed);
-  bool slides = r->scene.contact_count && !wanted->friction;
+static strut_status fail_not_settled(const strut_relaxation *relaxation, strut_error *error) {
+  const strut_settle *wanted = &relaxation->experiment->settle;
+  int32_t fastest, pushed, length = relaxation->model->length;
+  double speed = find_largest(relaxation->state->v, length, &fastest);
+  accelerate(relaxation);
+  double push = find_largest(relaxation->acceleration, length, &pushed);
+  bool late = relaxation->time >= wanted->limit, moves = !(speed < wanted->speed);
+  bool slides = relaxation->scene.contact_count && !wanted->friction;
   char within[60];
   snprintf(within, sizeof within, late ? "%g s" : "%g evaluations of the forces",
-           late ? wanted->limit : (double)r->evaluations);
+           late ? wanted->limit : (double)relaxation->evaluations);
   return strut_fail(error, STRUT_NOT_SETTLED,
                     "the structure did not come to rest within %s: largest speed %.3g m/s, "
                     "largest acceleration %.3g m/s^2, node '%.60s' %s most; give a larger "
                     "initial.settle.%s or looser speed and acceleration%s",
-                    within, speed, push, r->scene.nodes[moves ? fastest : pushed].name,
+                    within, speed, push, relaxation->scene.nodes[moves ? fastest : pushed].name,
                     moves ? "moving" : "accelerating", late ? "limit" : "evaluations",
                     slides ? ", or let it hold by initial.settle.friction: kept" : "");
 }
 
-static strut_status fail_diverged(const strut_relaxation *r, double time, strut_error *error) {
-  if (r->state->trouble)
+static strut_status fail_diverged(const strut_relaxation *relaxation, double time,
+                                  strut_error *error) {
+  if (relaxation->state->trouble)
     return strut_fail(error, STRUT_DIVERGED,
                       "%s failed while settling, after %g s; look for a member of zero length",
-                      r->method->name, time);
+                      relaxation->method->name, time);
   return strut_fail(error, STRUT_DIVERGED,
                     "settling before the run diverged after %g s with a step of %g s; use a "
                     "smaller initial.settle.step",
-                    time, r->step);
+                    time, relaxation->step);
 }
 
 /* Sets all velocities to zero: at the start and whenever the kinetic energy has passed a peak. */
-static void stop_motion(strut_relaxation *r) {
-  memset(r->state->v, 0, (size_t)r->model->length * sizeof(double));
-  if (r->method->restart) r->method->restart(r->model, r->state, r->workspace, r->step);
+static void stop_motion(strut_relaxation *relaxation) {
+  memset(relaxation->state->v, 0, (size_t)relaxation->model->length * sizeof(double));
+  if (relaxation->method->restart)
+    relaxation->method->restart(relaxation->model, relaxation->state, relaxation->workspace,
+                                relaxation->step);
 }
 
 /* Steps until at rest; adds to r->time and r->evaluations. */
-static strut_status relax_until_rest(strut_relaxation *r, strut_error *error) {
-  const strut_settle *wanted = &r->experiment->settle;
-  strut_state *state = r->state;
-  double dt = r->step, previous = 0.0, before = r->time, enough = wanted->acceleration;
+static strut_status relax_until_rest(strut_relaxation *relaxation, strut_error *error) {
+  const strut_settle *wanted = &relaxation->experiment->settle;
+  strut_state *state = relaxation->state;
+  double dt = relaxation->step, previous = 0.0, before = relaxation->time,
+         enough = wanted->acceleration;
   double most = wanted->evaluations > 0.0 ? wanted->evaluations : STRUT_SETTLE_EVALUATIONS;
-  int64_t spent = r->evaluations;
-  int32_t length = r->model->length, node;
+  int64_t spent = relaxation->evaluations;
+  int32_t length = relaxation->model->length, node;
   bool strict = true;
-  stop_motion(r);
-  while (r->time < wanted->limit && (double)r->evaluations < most) {
-    if (r->interrupt && *r->interrupt)
+  stop_motion(relaxation);
+  while (relaxation->time < wanted->limit && (double)relaxation->evaluations < most) {
+    if (relaxation->interrupt && *relaxation->interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
-    r->method->advance(r->model, state, r->workspace, dt, 1);
-    r->time = before + (double)state->step * dt;
-    r->evaluations = spent + state->latest->evaluations;
+    relaxation->method->advance(relaxation->model, state, relaxation->workspace, dt, 1);
+    relaxation->time = before + (double)state->step * dt;
+    relaxation->evaluations = spent + state->latest->evaluations;
     if (state->trouble == STRUT_FAILURE_INTERRUPT) continue;
-    double kinetic = strut_energy_kinetic(r->model, state->v);
-    if (state->trouble || !isfinite(kinetic)) return fail_diverged(r, r->time - before, error);
+    double kinetic = strut_energy_kinetic(relaxation->model, state->v);
+    if (state->trouble || !isfinite(kinetic))
+      return fail_diverged(relaxation, relaxation->time - before, error);
     if (kinetic < previous) {
-      stop_motion(r);
+      stop_motion(relaxation);
       kinetic = 0.0;
     }
     previous = kinetic;
-    if (strict && r->evaluations > ROUNDING_EVALUATIONS) {
+    if (strict && relaxation->evaluations > ROUNDING_EVALUATIONS) {
       strict = false;
-      enough = fmax(enough, rounding_acceleration(r));
+      enough = fmax(enough, rounding_acceleration(relaxation));
     }
     if (!(find_largest(state->v, length, &node) < wanted->speed)) continue;
-    accelerate(r);
-    if (find_largest(r->acceleration, length, &node) < enough) return STRUT_OK;
+    accelerate(relaxation);
+    if (find_largest(relaxation->acceleration, length, &node) < enough) return STRUT_OK;
   }
-  return fail_not_settled(r, error);
+  return fail_not_settled(relaxation, error);
 }
 
-strut_status strut_relaxation_run(strut_relaxation *r, strut_error *error) {
-  r->state->limits.interrupt = r->interrupt;
-  return relax_until_rest(r, error);
+strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error) {
+  relaxation->state->limits.interrupt = relaxation->interrupt;
+  return relax_until_rest(relaxation, error);
 }
 
 strut_status strut_relaxation_create(const strut_model *model, const strut_experiment *experiment,
-                                     strut_relaxation *r, strut_error *error) {
+                                     strut_relaxation *relaxation, strut_error *error) {
   const strut_settle *settle = &experiment->settle;
-  *r = (strut_relaxation){.experiment = experiment};
+  *relaxation = (strut_relaxation){.experiment = experiment};
   if (settle->friction && strut_bristle_count(model->scene))
     return strut_fail(error, STRUT_BAD_SCENE,
                       "initial.settle.friction: kept is for friction that sticks by itself, not by "
                       "bristles (lugre), which settling would straighten again and again; use "
                       "settle: true, or another law");
-  strut_status status = copy_passive_scene(model->scene, settle->friction, &r->scene, &r->arena);
-  r->step = settle->step > 0.0 ? settle->step : experiment->step;
-  r->acceleration = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
-  r->still = strut_arena_allocate(&r->arena, (size_t)model->length, sizeof(double));
-  if (!r->acceleration || !r->still) status = STRUT_NO_MEMORY;
+  strut_status status =
+      copy_passive_scene(model->scene, settle->friction, &relaxation->scene, &relaxation->arena);
+  relaxation->step = settle->step > 0.0 ? settle->step : experiment->step;
+  relaxation->acceleration =
+      strut_arena_allocate(&relaxation->arena, (size_t)model->length, sizeof(double));
+  relaxation->still =
+      strut_arena_allocate(&relaxation->arena, (size_t)model->length, sizeof(double));
+  if (!relaxation->acceleration || !relaxation->still) status = STRUT_NO_MEMORY;
   if (status) return strut_fail(error, status, "out of memory");
-  status = strut_model_compile(&r->scene, &r->model, error);
-  if (!status) status = strut_state_create(r->model, &r->state, error);
+  status = strut_model_compile(&relaxation->scene, &relaxation->model, error);
+  if (!status) status = strut_state_create(relaxation->model, &relaxation->state, error);
   if (status) return status;
-  r->state->forgetful = true;
-  r->method = strut_integrator_for_settling(r->model);
+  relaxation->state->forgetful = true;
+  relaxation->method = strut_integrator_for_settling(relaxation->model);
   const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
-  r->workspace = r->method->create(r->model, r->state, &settings);
-  return r->workspace ? STRUT_OK : strut_no_memory(error, "");
+  relaxation->workspace =
+      relaxation->method->create(relaxation->model, relaxation->state, &settings);
+  return relaxation->workspace ? STRUT_OK : strut_no_memory(error, "");
 }
 
-void strut_relaxation_free(strut_relaxation *r) {
-  strut_state_free(r->state);
-  strut_model_free(r->model);
-  strut_arena_free(&r->arena);
-  *r = (strut_relaxation){.model = NULL};
+void strut_relaxation_free(strut_relaxation *relaxation) {
+  strut_state_free(relaxation->state);
+  strut_model_free(relaxation->model);
+  strut_arena_free(&relaxation->arena);
+  *relaxation = (strut_relaxation){.model = NULL};
 }
 
 strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
@@ -274,33 +286,33 @@ typedef struct shifted_matrix {
  * Counts the negative eigenvalues of the matrix plus shift; moves a shift that hits an eigenvalue a
  * little.
  */
-static int32_t count_negative(shifted_matrix *s, double *shift) {
+static int32_t count_negative(shifted_matrix *self, double *shift) {
   strut_inertia inertia = {0};
   for (int i = 0; i < 4; i++, *shift *= 1.001) {
-    s->status = strut_ldl_factorise(s->ldl, s->matrix, *shift, &inertia);
-    if (s->status != STRUT_SINGULAR) break;
+    self->status = strut_ldl_factorise(self->ldl, self->matrix, *shift, &inertia);
+    if (self->status != STRUT_SINGULAR) break;
   }
-  return s->status ? 0 : inertia.negative;
+  return self->status ? 0 : inertia.negative;
 }
 
 /*
  * Finds approximately the smallest shift that makes the matrix positive definite, and factorises it
  * there.
  */
-static double find_definite_shift(shifted_matrix *s, double low) {
+static double find_definite_shift(shifted_matrix *self, double low) {
   double high = low;
   do {
     low = high;
     high *= 16.0;
-  } while (count_negative(s, &high) > 0 && isfinite(high) && !s->status);
-  while (high - low > SHIFT_ACCURACY * high && !s->status) {
+  } while (count_negative(self, &high) > 0 && isfinite(high) && !self->status);
+  while (high - low > SHIFT_ACCURACY * high && !self->status) {
     double middle = sqrt(low * high);
-    if (count_negative(s, &middle) > 0)
+    if (count_negative(self, &middle) > 0)
       low = middle;
     else
       high = middle;
   }
-  count_negative(s, &high);
+  count_negative(self, &high);
   return high;
 }
 
@@ -313,12 +325,12 @@ static double pseudo_random(uint64_t i) {
 }
 
 /* Scales x to length 1; false where it is zero or not finite. */
-static bool normalise(double *x, int32_t n) {
+static bool normalise(double *vector, int32_t n) {
   double most = 0.0, sum = 0.0;
-  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(x[i]));
+  for (int32_t i = 0; i < n; i++) most = fmax(most, fabs(vector[i]));
   if (!(most > 0.0) || !isfinite(most)) return false;
-  for (int32_t i = 0; i < n; i++) x[i] /= most, sum += x[i] * x[i];
-  for (int32_t i = 0; i < n; i++) x[i] /= sqrt(sum);
+  for (int32_t i = 0; i < n; i++) vector[i] /= most, sum += vector[i] * vector[i];
+  for (int32_t i = 0; i < n; i++) vector[i] /= sqrt(sum);
   return true;
 }
 
@@ -336,44 +348,46 @@ static int32_t find_row(const strut_tangent *tangent, int32_t coordinate) {
 }
 
 /* Adds the ground stiffness along the ground for contacts that touch and may stick. */
-static void add_stick_stiffness(const strut_model *model, const double *q, strut_tangent *tangent) {
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t i = 0; i < c->count; i++) {
-    const strut_contact_entry *e = &c->entry[i];
-    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+static void add_stick_stiffness(const strut_model *model, const double *positions,
+                                strut_tangent *tangent) {
+  const strut_contact_table *contacts = &model->contacts;
+  for (int32_t i = 0; i < contacts->count; i++) {
+    const strut_contact_entry *contact = &contacts->entry[i];
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, positions, NULL, -1);
     const double *t = pose.axes.tangent;
     bool touches = pose.gap < 0.0;
-    bool sticks =
-        strut_friction_has_band(e->friction.law) || strut_friction_is_exact(e->friction.law);
+    bool sticks = strut_friction_has_band(contact->friction.law) ||
+                  strut_friction_is_exact(contact->friction.law);
     if (!touches || !sticks ||
-        !(e->friction.mu_static > 0.0 || e->friction.mu_static_backward > 0.0))
+        !(contact->friction.mu_static > 0.0 || contact->friction.mu_static_backward > 0.0))
       continue;
-    strut_sparse *k = tangent->stiffness;
-    const int32_t row[2] = {find_row(tangent, (int32_t)c->at[i]),
-                            find_row(tangent, (int32_t)c->at[i] + 1)};
+    strut_sparse *matrix = tangent->stiffness;
+    const int32_t row[2] = {find_row(tangent, (int32_t)contacts->at[i]),
+                            find_row(tangent, (int32_t)contacts->at[i] + 1)};
     for (int a = 0; a < 2; a++) {
       if (row[a] < 0) continue;
-      k->value[k->start[row[a]]] += e->stiffness * t[a] * t[a];
-      for (int32_t p = k->start[row[a]] + 1; a == 0 && p < k->start[row[a] + 1]; p++)
-        if (k->row[p] == row[1]) k->value[p] += e->stiffness * t[0] * t[1];
+      matrix->value[matrix->start[row[a]]] += contact->stiffness * t[a] * t[a];
+      for (int32_t p = matrix->start[row[a]] + 1; a == 0 && p < matrix->start[row[a] + 1]; p++)
+        if (matrix->row[p] == row[1]) matrix->value[p] += contact->stiffness * t[0] * t[1];
     }
   }
 }
 
 /* Threshold below which a stiffness is rounding or due to forces not quite in balance. */
 static double find_stiffness_threshold(const strut_model *model, double acceleration,
-                                       const strut_sparse *k) {
+                                       const strut_sparse *matrix) {
   double stiffest = 0.0, heaviest = 0.0;
-  for (int32_t i = 0; i < k->n; i++) stiffest = fmax(stiffest, fabs(k->value[k->start[i]]));
+  for (int32_t i = 0; i < matrix->n; i++)
+    stiffest = fmax(stiffest, fabs(matrix->value[matrix->start[i]]));
   for (int32_t i = 0; i < model->node_count; i++) heaviest = fmax(heaviest, model->weight[i]);
   return ROUNDING * stiffest + 10.0 * acceleration * heaviest / model->size;
 }
 
 /* Describes the eigenvector x (n): the node that moves most, its direction, and the growth rate. */
 static void describe_direction(const strut_model *model, const strut_tangent *tangent,
-                               const double *x, instability *found) {
+                               const double *vector, instability *found) {
   double *d = found->direction, most = -1.0;
-  for (int32_t i = 0; i < tangent->n; i++) d[tangent->coordinate[i]] = x[i];
+  for (int32_t i = 0; i < tangent->n; i++) d[tangent->coordinate[i]] = vector[i];
   for (int32_t i = 0; i < model->node_count; i++) {
     double moved = hypot(d[2 * i], d[2 * i + 1]);
     if (moved > most * (1.0 + 1e-9)) most = moved, found->node = i;
@@ -386,21 +400,21 @@ static void describe_direction(const strut_model *model, const strut_tangent *ta
 }
 
 /* Finds the lowest eigenvector by inverse iteration with the shifted matrix. */
-static void find_unstable_direction(shifted_matrix *s, const strut_model *model,
-                                    const strut_tangent *tangent, double least, double *x,
+static void find_unstable_direction(shifted_matrix *self, const strut_model *model,
+                                    const strut_tangent *tangent, double least, double *vector,
                                     double *product, instability *found) {
   int32_t n = tangent->n;
-  find_definite_shift(s, least);
-  for (int32_t i = 0; i < n; i++) x[i] = pseudo_random((uint64_t)i);
-  for (int turn = 0; turn < ITERATIONS && !s->status; turn++) {
-    if (!normalise(x, n)) return;
-    strut_ldl_solve(s->ldl, x);
+  find_definite_shift(self, least);
+  for (int32_t i = 0; i < n; i++) vector[i] = pseudo_random((uint64_t)i);
+  for (int turn = 0; turn < ITERATIONS && !self->status; turn++) {
+    if (!normalise(vector, n)) return;
+    strut_ldl_solve(self->ldl, vector);
   }
-  if (s->status || !normalise(x, n)) return;
-  strut_sparse_multiply(s->matrix, x, product);
+  if (self->status || !normalise(vector, n)) return;
+  strut_sparse_multiply(self->matrix, vector, product);
   found->stiffness = 0.0;
-  for (int32_t i = 0; i < n; i++) found->stiffness += x[i] * product[i];
-  if (found->stiffness < -0.5 * least) describe_direction(model, tangent, x, found);
+  for (int32_t i = 0; i < n; i++) found->stiffness += vector[i] * product[i];
+  if (found->stiffness < -0.5 * least) describe_direction(model, tangent, vector, found);
 }
 
 /*
@@ -409,14 +423,15 @@ static void find_unstable_direction(shifted_matrix *s, const strut_model *model,
  * such as those of a free structure, are no instability; nor is a stiffness within the residual
  * `acceleration` [m/s^2] of rest. STRUT_NO_MEMORY.
  */
-static strut_status find_instability(const strut_model *model, double acceleration, const double *q,
-                                     strut_arena *arena, instability *found, strut_error *error) {
+static strut_status find_instability(const strut_model *model, double acceleration,
+                                     const double *positions, strut_arena *arena,
+                                     instability *found, strut_error *error) {
   strut_arena scratch = {0};
   strut_tangent tangent;
   shifted_matrix s = {.status = STRUT_OK};
   *found = (instability){.node = -1};
-  strut_status status = strut_tangent_assemble(model, q, model->members.rest, STRUT_CLOSED_TOUCHING,
-                                               &scratch, &tangent);
+  strut_status status = strut_tangent_assemble(model, positions, model->members.rest,
+                                               STRUT_CLOSED_TOUCHING, &scratch, &tangent);
   double *x = NULL;
   if (!status) {
     x = strut_arena_allocate(&scratch, 2 * (size_t)tangent.n + 1, sizeof *x);
@@ -426,7 +441,7 @@ static strut_status find_instability(const strut_model *model, double accelerati
   if (status) strut_fail(error, status, "out of memory");
   if (!status && tangent.n > 0) {
     s.matrix = tangent.stiffness;
-    add_stick_stiffness(model, q, &tangent);
+    add_stick_stiffness(model, positions, &tangent);
     double least = find_stiffness_threshold(model, acceleration, s.matrix), shift = least;
     status = strut_ldl_create(s.matrix, &s.ldl, error);
     if (!status && least > 0.0 && isfinite(least) && count_negative(&s, &shift) > 0)
@@ -450,85 +465,90 @@ enum { HALVINGS = 6, MOST_PERTURBATIONS = 8 };
 /* Perturbation of the node that moves most, in model sizes. */
 static const double PUSH = 1e-4;
 
-static strut_status choose_settle_step(strut_relaxation *r, strut_error *error) {
-  const strut_settle *settle = &r->experiment->settle;
-  double given = settle->step == 0.0 ? r->experiment->step : settle->step, limit = 0.0;
-  if (!r->model->mass) return strut_fail(error, STRUT_SINGULAR, "a free node has no mass");
-  strut_status status = strut_step_limit_for_method(r->model, r->method, &limit, error);
+static strut_status choose_settle_step(strut_relaxation *relaxation, strut_error *error) {
+  const strut_settle *settle = &relaxation->experiment->settle;
+  double given = settle->step == 0.0 ? relaxation->experiment->step : settle->step, limit = 0.0;
+  if (!relaxation->model->mass) return strut_fail(error, STRUT_SINGULAR, "a free node has no mass");
+  strut_status status =
+      strut_step_limit_for_method(relaxation->model, relaxation->method, &limit, error);
   if (status) return status;
   if (given > 0.0 && given <= limit)
-    r->step = given;
+    relaxation->step = given;
   else
-    r->step = isfinite(limit) ? LIMIT_FRACTION * limit : 1e-4 * settle->limit;
+    relaxation->step = isfinite(limit) ? LIMIT_FRACTION * limit : 1e-4 * settle->limit;
   return STRUT_OK;
 }
 
 /* Relaxes from `from` (length), with a smaller step where it diverges. */
-static strut_status relax_from(strut_relaxation *r, const double *from, strut_error *error) {
+static strut_status relax_from(strut_relaxation *relaxation, const double *from,
+                               strut_error *error) {
   strut_status status = STRUT_DIVERGED;
   for (int i = 0; i <= HALVINGS && status == STRUT_DIVERGED; i++) {
-    if (i > 0) r->step *= 0.5;
-    strut_state_reset(r->model, r->state);
-    memcpy(r->state->q, from, (size_t)r->model->length * sizeof *from);
-    memset(r->state->v, 0, 2 * (size_t)r->model->node_count * sizeof *r->state->v);
-    status = strut_relaxation_run(r, error);
+    if (i > 0) relaxation->step *= 0.5;
+    strut_state_reset(relaxation->model, relaxation->state);
+    memcpy(relaxation->state->q, from, (size_t)relaxation->model->length * sizeof *from);
+    memset(relaxation->state->v, 0,
+           2 * (size_t)relaxation->model->node_count * sizeof *relaxation->state->v);
+    status = strut_relaxation_run(relaxation, error);
   }
   return status;
 }
 
-static void perturb_start(const strut_relaxation *r, const instability *unstable, double *q) {
-  for (int32_t i = 0; i < 2 * r->model->node_count; i++)
-    q[i] = r->state->q[i] + PUSH * r->model->size * unstable->direction[i];
+static void perturb_start(const strut_relaxation *relaxation, const instability *unstable,
+                          double *positions) {
+  for (int32_t i = 0; i < 2 * relaxation->model->node_count; i++)
+    positions[i] =
+        relaxation->state->q[i] + PUSH * relaxation->model->size * unstable->direction[i];
 }
 
 /*
  * Settles, and leaves unstable equilibria where requested. q (length): start positions in, settled
  * positions out.
  */
-static strut_status settle_and_perturb(strut_relaxation *r, double *q, strut_settle_summary *how,
-                                       strut_error *error) {
+static strut_status settle_and_perturb(strut_relaxation *relaxation, double *positions,
+                                       strut_settle_summary *how, strut_error *error) {
   instability unstable;
   for (;;) {
-    strut_status status = relax_from(r, q, error);
+    strut_status status = relax_from(relaxation, positions, error);
     if (!status)
-      status = find_instability(r->model, r->experiment->settle.acceleration, r->state->q,
-                                &r->arena, &unstable, error);
+      status = find_instability(relaxation->model, relaxation->experiment->settle.acceleration,
+                                relaxation->state->q, &relaxation->arena, &unstable, error);
     if (status) return status;
-    if (unstable.node < 0 || !r->experiment->settle.perturb ||
+    if (unstable.node < 0 || !relaxation->experiment->settle.perturb ||
         how->perturbations == MOST_PERTURBATIONS)
       break;
-    perturb_start(r, &unstable, q);
+    perturb_start(relaxation, &unstable, positions);
     how->perturbations++;
   }
-  memcpy(q, r->state->q, (size_t)r->model->length * sizeof *q);
-  how->step = r->step;
-  how->evaluations = r->evaluations;
+  memcpy(positions, relaxation->state->q, (size_t)relaxation->model->length * sizeof *positions);
+  how->step = relaxation->step;
+  how->evaluations = relaxation->evaluations;
   how->unstable = unstable.node >= 0;
   if (!how->unstable) return STRUT_OK;
   how->stiffness = unstable.stiffness;
   how->growth_rate = unstable.growth_rate;
-  how->node = r->scene.nodes[unstable.node].name;
+  how->node = relaxation->scene.nodes[unstable.node].name;
   return STRUT_OK;
 }
 
 strut_status strut_settle_experiment(const strut_model *model, const strut_experiment *experiment,
-                                     const strut_flag *interrupt, double *q,
+                                     const strut_flag *interrupt, double *positions,
                                      strut_settle_summary *how, strut_error *error) {
   strut_relaxation r;
   strut_status status = strut_relaxation_create(model, experiment, &r, error);
   *how = (strut_settle_summary){0};
   r.interrupt = interrupt;
-  memcpy(q, model->start, (size_t)model->length * sizeof *q);
+  memcpy(positions, model->start, (size_t)model->length * sizeof *positions);
   if (!status) status = strut_relaxation_check(&r, error);
   if (!status) status = choose_settle_step(&r, error);
-  if (!status) status = settle_and_perturb(&r, q, how, error);
+  if (!status) status = settle_and_perturb(&r, positions, how, error);
   how->time = r.time;
   strut_relaxation_free(&r);
   return status;
 }
 
 /* Copies the scene with its nodes in the positions q (length). */
-static strut_status move_start(const strut_scene *scene, const double *q,
+static strut_status move_start(const strut_scene *scene, const double *positions,
                                strut_settled_start *start) {
   strut_scene *settled = start->scene = strut_arena_allocate(&start->arena, 1, sizeof *settled);
   if (!settled) return STRUT_NO_MEMORY;
@@ -538,7 +558,7 @@ static strut_status move_start(const strut_scene *scene, const double *q,
   memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
   for (size_t i = 0; i < scene->node_count; i++)
     for (size_t c = 0; c < 2; c++)
-      if (!scene->nodes[i].fixed[c]) settled->nodes[i].start[c] = q[2 * i + c];
+      if (!scene->nodes[i].fixed[c]) settled->nodes[i].start[c] = positions[2 * i + c];
   return STRUT_OK;
 }
 

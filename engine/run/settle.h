@@ -65,7 +65,7 @@ strut_status strut_settle_state(const strut_model *model, const strut_experiment
  */
 STRUT_API strut_status strut_settle_experiment(const strut_model *model,
                                                const strut_experiment *experiment,
-                                               const strut_flag *interrupt, double *q,
+                                               const strut_flag *interrupt, double *positions,
                                                strut_settle_summary *how, strut_error *error);
 
 /** A settled start shared by several experiments, so that all start from the same bits. */

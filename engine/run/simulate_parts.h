@@ -88,11 +88,11 @@ strut_status strut_run_end(strut_run *run, strut_status status);
 /* ---- run_diagnosis.c ---- */
 
 /** Checks at intervals that the step is still stable for the present shape. */
-strut_status strut_run_check_step_limit(strut_run *r);
+strut_status strut_run_check_step_limit(strut_run *run);
 /** First node with a NaN or runaway position, or -1. */
 int32_t strut_run_find_lost_node(const strut_model *model, const strut_state *state);
 /** Reports a lost node: STRUT_DIVERGED. */
-strut_status strut_run_fail_lost_node(const strut_run *r, int32_t node);
+strut_status strut_run_fail_lost_node(const strut_run *run, int32_t node);
 /** Notes collisions whose sides move by more than their thickness in a step, or are deeper than half. */
 void strut_run_watch_collisions(strut_run *run);
 /** Notes how fast bristles straighten. */
@@ -100,15 +100,15 @@ void strut_run_watch_bristles(strut_run *run);
 /** STRUT_DIVERGED with the name of a cell without area, or of a member that is wound in. */
 strut_status strut_run_check_collapse(const strut_run *run);
 /** STRUT_DIVERGED where a loss has given energy, or an energy is no longer finite. */
-strut_status strut_run_check_balance(const strut_run *r);
+strut_status strut_run_check_balance(const strut_run *run);
 /** STRUT_DIVERGED with the name of an internal state that is no longer a finite number. */
-strut_status strut_run_check_states(const strut_run *r);
+strut_status strut_run_check_states(const strut_run *run);
 /** STRUT_STEP_TOO_LARGE with the internal state that settles too fast for the step. */
-strut_status strut_run_check_rates(const strut_run *r);
+strut_status strut_run_check_rates(const strut_run *run);
 /** Reports a method that failed: STRUT_DIVERGED. */
-strut_status strut_run_fail_method(const strut_run *r);
+strut_status strut_run_fail_method(const strut_run *run);
 
 /** Adds all warnings about the result to the summary, which must be complete. */
-void strut_run_warn(const strut_run *r);
+void strut_run_warn(const strut_run *run);
 
 #endif

@@ -114,46 +114,46 @@ static bool inputs_changed(const stepping_inputs *in) {
 }
 
 static strut_status check_inputs(const stepping_inputs *in, strut_error *error) {
-  const strut_scene *s = in->scene;
+  const strut_scene *scene = in->scene;
   const double *actuators = in->given + in->members, *loads = actuators + in->actuators;
   for (size_t i = 0; i < in->members; i++) {
-    bool changed = in->given[i] != in->applied[i], rigid = s->bar_model == STRUT_BARS_RIGID;
+    bool changed = in->given[i] != in->applied[i], rigid = scene->bar_model == STRUT_BARS_RIGID;
     if (!(in->given[i] >= 0.0) || !isfinite(in->given[i]))
       return strut_fail(error, STRUT_USAGE,
                         "input 'rest': the rest length of member '%s' must be a number from 0 on",
-                        s->members[i].name);
-    if (changed && !(in->given[i] > 0.0) && s->members[i].axial_stiffness > 0.0)
+                        scene->members[i].name);
+    if (changed && !(in->given[i] > 0.0) && scene->members[i].axial_stiffness > 0.0)
       return strut_fail(error, STRUT_USAGE,
                         "input 'rest': the rest length of member '%s', which has an "
                         "axial_stiffness, must be above zero",
-                        s->members[i].name);
-    if (changed && rigid && s->members[i].kind == STRUT_BAR)
+                        scene->members[i].name);
+    if (changed && rigid && scene->members[i].kind == STRUT_BAR)
       return strut_fail(error, STRUT_USAGE,
                         "input 'rest': member '%s' is a rigid bar, which keeps its length",
-                        s->members[i].name);
+                        scene->members[i].name);
   }
   for (size_t i = 0; i < in->actuators; i++)
     if (isinf(actuators[i]))
       return strut_fail(error, STRUT_USAGE,
                         "input 'actuators': the value of '%s' must be a number, or NAN for the "
                         "scene's signal",
-                        s->actuators[i].name);
+                        scene->actuators[i].name);
   for (size_t i = 0; i < 2 * in->nodes; i++)
     if (!isfinite(loads[i]))
       return strut_fail(error, STRUT_USAGE, "input 'load': the force on '%s.%c' must be a number",
-                        s->nodes[i / 2].name, i % 2 ? 'y' : 'x');
+                        scene->nodes[i / 2].name, i % 2 ? 'y' : 'x');
   return STRUT_OK;
 }
 
 /* EA over the rest length, of a member that no actuator drives: there the law follows by itself. */
 static void write_stiffness(const strut_model *model, int32_t member, double stiffness) {
-  const strut_element_table *t = &model->elements;
-  strut_element *e = (strut_element *)(uintptr_t)strut_element_of_member(t, member);
+  const strut_element_table *elements = &model->elements;
+  strut_element *e = (strut_element *)(uintptr_t)strut_element_of_member(elements, member);
   bool element = e && e->role == STRUT_ELEMENT_MEMBER;
   if (element && e->law == STRUT_LAW_AXIAL) return;
   if (element) {
     e->numbers.stiffness = stiffness;
-    ((double *)(uintptr_t)t->stiffness)[e - t->element] = stiffness;
+    ((double *)(uintptr_t)elements->stiffness)[e - elements->element] = stiffness;
     return;
   }
   ((double *)(uintptr_t)model->members.stiffness)[member] = stiffness;
@@ -172,16 +172,16 @@ static void write_rest(const stepping_inputs *in, const strut_model *model) {
 
 /* Actuators of rest lengths and those of forces stand in two tables, each in the scene's order. */
 static void write_actuators(const stepping_inputs *in, const strut_model *model) {
-  const strut_scene *s = in->scene;
+  const strut_scene *scene = in->scene;
   int32_t *signal = (int32_t *)(uintptr_t)model->drives.signal;
   strut_actuator_force *force = (strut_actuator_force *)(uintptr_t)model->actuator_forces.item;
   size_t drives = 0, forces = 0;
   for (size_t i = 0; i < in->actuators; i++) {
     double value = in->applied[in->members + i];
     int32_t held = in->first_signal + (int32_t)i;
-    int32_t now = isnan(value) ? s->actuators[i].signal : held;
-    s->signals[held].amplitude = isnan(value) ? 0.0 : value;
-    if (s->actuators[i].force)
+    int32_t now = isnan(value) ? scene->actuators[i].signal : held;
+    scene->signals[held].amplitude = isnan(value) ? 0.0 : value;
+    if (scene->actuators[i].force)
       force[forces++].signal = now;
     else
       signal[drives++] = now;
@@ -283,17 +283,17 @@ static uint64_t next_identity(void) {
 }
 
 /* Without measurements, and without an end. */
-static strut_status make_endless(strut_experiment *e, strut_error *error) {
-  if (!(e->step > 0.0))
+static strut_status make_endless(strut_experiment *experiment, strut_error *error) {
+  if (!(experiment->step > 0.0))
     return strut_fail(error, STRUT_USAGE,
                       "the scene leaves its step to be chosen: a simulation needs the option "
                       "'step', such as 0.1 ms");
-  e->accuracy = 0.0;
-  e->steady.wanted = false;
-  e->quantity_count = 0;
-  e->periods = 0.0;
-  e->duration = ENDLESS * e->step;
-  e->measure_last = e->step;
+  experiment->accuracy = 0.0;
+  experiment->steady.wanted = false;
+  experiment->quantity_count = 0;
+  experiment->periods = 0.0;
+  experiment->duration = ENDLESS * experiment->step;
+  experiment->measure_last = experiment->step;
   return STRUT_OK;
 }
 
@@ -325,103 +325,107 @@ strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_f
   return status;
 }
 
-void strut_stepping_free(strut_stepping *s) {
-  if (!s) return;
-  s->run.error = &s->error;
-  if (s->begun) strut_run_end(&s->run, STRUT_OK);
-  strut_summary_free(&s->summary);
-  strut_recording_free(&s->live);
-  inputs_free(&s->inputs);
-  strut_model_free(s->model);
-  strut_release(s);
+void strut_stepping_free(strut_stepping *stepping) {
+  if (!stepping) return;
+  stepping->run.error = &stepping->error;
+  if (stepping->begun) strut_run_end(&stepping->run, STRUT_OK);
+  strut_summary_free(&stepping->summary);
+  strut_recording_free(&stepping->live);
+  inputs_free(&stepping->inputs);
+  strut_model_free(stepping->model);
+  strut_release(stepping);
 }
 
-double strut_stepping_time(const strut_stepping *s) { return strut_run_time(&s->run); }
-double strut_stepping_step(const strut_stepping *s) { return s->run.dt; }
+double strut_stepping_time(const strut_stepping *stepping) {
+  return strut_run_time(&stepping->run);
+}
+double strut_stepping_step(const strut_stepping *stepping) { return stepping->run.dt; }
 
-static void refresh(strut_stepping *s) {
-  if (s->shown) strut_recording_observe(s->run.state, &s->live, s->shown);
+static void refresh(strut_stepping *stepping) {
+  if (stepping->shown)
+    strut_recording_observe(stepping->run.state, &stepping->live, stepping->shown);
 }
 
 /* ---- steps ---- */
 
 /* Checks the state as a run does between its steps. */
-static strut_status check(strut_stepping *s) {
+static strut_status check(strut_stepping *stepping) {
   int64_t stop;
-  s->checked = s->run.check = s->run.state->step;
-  return strut_run_sample(&s->run, &stop);
+  stepping->checked = stepping->run.check = stepping->run.state->step;
+  return strut_run_sample(&stepping->run, &stop);
 }
 
-static strut_status step_to(strut_stepping *s, int64_t last) {
-  strut_run *r = &s->run;
+static strut_status step_to(strut_stepping *stepping, int64_t last) {
+  strut_run *run = &stepping->run;
   strut_status status = STRUT_OK;
-  while (status == STRUT_OK && r->state->step < last) {
-    if (s->checked < 0 || r->state->step - s->checked >= r->chunk) status = check(s);
-    int64_t stop = s->checked + r->chunk;
-    if (status == STRUT_OK) strut_run_step(r, stop < last ? stop : last);
-    if (status == STRUT_OK && r->state->trouble) status = check(s);
+  while (status == STRUT_OK && run->state->step < last) {
+    if (stepping->checked < 0 || run->state->step - stepping->checked >= run->chunk)
+      status = check(stepping);
+    int64_t stop = stepping->checked + run->chunk;
+    if (status == STRUT_OK) strut_run_step(run, stop < last ? stop : last);
+    if (status == STRUT_OK && run->state->trouble) status = check(stepping);
   }
   return status;
 }
 
-strut_status strut_stepping_advance(strut_stepping *s, int64_t steps, strut_error *error) {
-  if (s->status != STRUT_OK) {
-    if (error) *error = s->error;
-    return s->status;
+strut_status strut_stepping_advance(strut_stepping *stepping, int64_t steps, strut_error *error) {
+  if (stepping->status != STRUT_OK) {
+    if (error) *error = stepping->error;
+    return stepping->status;
   }
   if (steps < 0) return strut_fail(error, STRUT_USAGE, "a simulation cannot go back");
-  const strut_flag *interrupt = s->options.interrupt;
+  const strut_flag *interrupt = stepping->options.interrupt;
   if (interrupt && *interrupt)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
-                      strut_run_time(&s->run));
-  if (inputs_changed(&s->inputs)) {
-    strut_status valid = inputs_apply(&s->inputs, s->model, &s->run, error);
+                      strut_run_time(&stepping->run));
+  if (inputs_changed(&stepping->inputs)) {
+    strut_status valid = inputs_apply(&stepping->inputs, stepping->model, &stepping->run, error);
     if (valid != STRUT_OK) return valid;
   }
-  int64_t done = s->run.state->step, most = INT64_MAX - done;
-  strut_status status = step_to(s, done + (steps < most ? steps : most));
-  refresh(s);
+  int64_t done = stepping->run.state->step, most = INT64_MAX - done;
+  strut_status status = step_to(stepping, done + (steps < most ? steps : most));
+  refresh(stepping);
   if (status == STRUT_OK) return STRUT_OK;
-  if (error) *error = s->error;
-  if (status != STRUT_INTERRUPTED) s->status = status;
-  if (status == STRUT_INTERRUPTED) s->run.state->trouble = STRUT_FAILURE_NONE;
+  if (error) *error = stepping->error;
+  if (status != STRUT_INTERRUPTED) stepping->status = status;
+  if (status == STRUT_INTERRUPTED) stepping->run.state->trouble = STRUT_FAILURE_NONE;
   return status;
 }
 
 /* ---- what it shows ---- */
 
-const strut_record_channel *strut_stepping_channel(strut_stepping *s, strut_channels id,
+const strut_record_channel *strut_stepping_channel(strut_stepping *stepping, strut_channels id,
                                                    const double **data) {
-  for (size_t k = 0; k < s->live.layout.channel_count; k++) {
-    const strut_record_channel *c = &s->live.channel[k];
-    if (c->id != id) continue;
-    s->shown |= id;
-    refresh(s);
-    *data = s->live.rows + c->offset;
-    return c;
+  for (size_t k = 0; k < stepping->live.layout.channel_count; k++) {
+    const strut_record_channel *channel = &stepping->live.channel[k];
+    if (channel->id != id) continue;
+    stepping->shown |= id;
+    refresh(stepping);
+    *data = stepping->live.rows + channel->offset;
+    return channel;
   }
   return NULL;
 }
 
-double *strut_stepping_input(strut_stepping *s, strut_input input, size_t *count) {
-  return inputs_show(&s->inputs, s->model, &s->run, input, count);
+double *strut_stepping_input(strut_stepping *stepping, strut_input input, size_t *count) {
+  return inputs_show(&stepping->inputs, stepping->model, &stepping->run, input, count);
 }
 
-double strut_stepping_input_work(const strut_stepping *s) { return s->inputs.work; }
+double strut_stepping_input_work(const strut_stepping *stepping) { return stepping->inputs.work; }
 
 /* ---- snapshots ---- */
 
-strut_stepping_snapshot *strut_stepping_store(const strut_stepping *s) {
+strut_stepping_snapshot *strut_stepping_store(const strut_stepping *stepping) {
   strut_stepping_snapshot *snapshot = strut_allocate(1, sizeof *snapshot);
   if (!snapshot) return NULL;
-  const strut_state *state = s->run.state;
-  *snapshot = (strut_stepping_snapshot){.identity = s->identity,
-                                        .run = s->run,
+  const strut_state *state = stepping->run.state;
+  *snapshot = (strut_stepping_snapshot){.identity = stepping->identity,
+                                        .run = stepping->run,
                                         .state = *state,
-                                        .checked = s->checked,
-                                        .status = s->status};
+                                        .checked = stepping->checked,
+                                        .status = stepping->status};
   snapshot->arena = strut_allocate(strut_arena_stored_size(&state->arena), 1);
-  snapshot->inputs = inputs_store(&s->inputs);
+  snapshot->inputs = inputs_store(&stepping->inputs);
   if (!snapshot->arena || !snapshot->inputs) {
     strut_stepping_snapshot_free(snapshot);
     return NULL;
@@ -430,18 +434,18 @@ strut_stepping_snapshot *strut_stepping_store(const strut_stepping *s) {
   return snapshot;
 }
 
-bool strut_stepping_restore(strut_stepping *s, const strut_stepping_snapshot *snapshot) {
-  if (snapshot->identity != s->identity) return false;
-  strut_state *state = s->run.state;
+bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snapshot *snapshot) {
+  if (snapshot->identity != stepping->identity) return false;
+  strut_state *state = stepping->run.state;
   strut_arena arena = state->arena; /* may have grown since */
-  inputs_restore(&s->inputs, s->model, snapshot->inputs);
-  s->run = snapshot->run;
-  s->checked = snapshot->checked;
-  s->status = snapshot->status;
+  inputs_restore(&stepping->inputs, stepping->model, snapshot->inputs);
+  stepping->run = snapshot->run;
+  stepping->checked = snapshot->checked;
+  stepping->status = snapshot->status;
   *state = snapshot->state;
   state->arena = arena;
   strut_arena_restore(&state->arena, snapshot->arena);
-  refresh(s);
+  refresh(stepping);
   return true;
 }
 

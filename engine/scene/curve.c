@@ -34,32 +34,32 @@ static double along(const double *control, size_t count, double t, double *rate)
   return a[0] + t * (a[1] - a[0]);
 }
 
-static double x_rate(const bezier *b, double t) {
+static double x_rate(const bezier *self, double t) {
   double rate;
-  along(b->x, b->count, t, &rate);
+  along(self->x, self->count, t, &rate);
   return rate;
 }
 
-static strut_curve_point point_at(const bezier *b, double t, bool fold) {
+static strut_curve_point point_at(const bezier *self, double t, bool fold) {
   double dx, df;
-  strut_curve_point p = {.x = along(b->x, b->count, t, &dx),
-                         .force = along(b->force, b->count, t, &df)};
+  strut_curve_point p = {.x = along(self->x, self->count, t, &dx),
+                         .force = along(self->force, self->count, t, &df)};
   p.slope = fold || dx == 0.0 ? (double)NAN : df / dx;
   return p;
 }
 
 /* Where x turns, by bisection between points that show a change of its way; ascending. */
-static size_t find_folds(const bezier *b, double fold[MOST_FOLDS]) {
-  size_t count = 0, scanned = b->count > 3 ? SCANNED : 1;
-  double before = x_rate(b, 0.0);
+static size_t find_folds(const bezier *self, double fold[MOST_FOLDS]) {
+  size_t count = 0, scanned = self->count > 3 ? SCANNED : 1;
+  double before = x_rate(self, 0.0);
   for (size_t i = 1; i <= scanned && count < MOST_FOLDS; i++) {
     double low = (double)(i - 1) / (double)scanned, high = (double)i / (double)scanned;
-    double now = x_rate(b, high);
+    double now = x_rate(self, high);
     if (before * now < 0.0) {
       while (high - low > FOUND) {
         double middle = 0.5 * (low + high);
         if (middle <= low || middle >= high) break;
-        *(x_rate(b, middle) * before > 0.0 ? &low : &high) = middle;
+        *(x_rate(self, middle) * before > 0.0 ? &low : &high) = middle;
       }
       fold[count++] = 0.5 * (low + high);
     }
@@ -72,16 +72,16 @@ static size_t find_folds(const bezier *b, double fold[MOST_FOLDS]) {
  * Points from the begin of a curve to its end, close to each other beside folds, where the slope is infinite:
  * there the pieces at a fold are so short that they may be straight.
  */
-static size_t trace(const bezier *b, int pieces, strut_curve_point *point) {
+static size_t trace(const bezier *self, int pieces, strut_curve_point *point) {
   double fold[MOST_FOLDS + 1], from = 0.0;
-  size_t folds = find_folds(b, fold), count = 0;
+  size_t folds = find_folds(self, fold), count = 0;
   fold[folds] = 1.0;
-  point[count++] = point_at(b, 0.0, false);
+  point[count++] = point_at(self, 0.0, false);
   for (size_t f = 0; f <= folds; from = fold[f++])
     for (int i = 1; i <= pieces; i++) {
       double share = 0.5 * (1.0 - cos(STRUT_PI * i / pieces)), end = fold[f];
       double t = i == pieces ? end : from + share * (end - from);
-      point[count++] = point_at(b, t, i == pieces && f < folds);
+      point[count++] = point_at(self, t, i == pieces && f < folds);
     }
   return count;
 }
@@ -155,10 +155,10 @@ size_t strut_curve_trace(const strut_law *law, strut_curve_point *point) {
 }
 
 /* Folds turn by the way on which the force falls: clockwise from the right to the left, and back. */
-static const char *fault_of_folds(const strut_curve_point *p, size_t count) {
+static const char *fault_of_folds(const strut_curve_point *point, size_t count) {
   double before[2] = {0.0, 0.0};
   for (size_t i = 1; i < count; i++) {
-    double step[2] = {p[i].x - p[i - 1].x, p[i].force - p[i - 1].force};
+    double step[2] = {point[i].x - point[i - 1].x, point[i].force - point[i - 1].force};
     if (step[0] == 0.0) return "has two points with the same x one after the other";
     if ((i == 1 || i == count - 1) && step[0] < 0.0)
       return "begins or ends backwards; x must grow along its first and its last piece, which go "

@@ -36,7 +36,7 @@ typedef struct strut_profile_index {
 /** Segment k of a profile, with the line beyond its ends. */
 strut_stretch strut_profile_stretch(const strut_ground *ground, size_t k);
 /** Where a meets b, in lengths of a; NAN: nowhere. */
-double strut_stretches_meet(const strut_stretch *a, const strut_stretch *b);
+double strut_stretches_meet(const strut_stretch *first, const strut_stretch *second);
 
 /** Do all segments advance along one direction, so that no two of them can meet? */
 bool strut_profile_is_monotone(const strut_ground *ground);

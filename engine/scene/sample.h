@@ -57,9 +57,10 @@ STRUT_API bool strut_sample_make(strut_sample_scheme scheme, uint32_t seed, int6
 enum { STRUT_SENSITIVITY_MOST = STRUT_SAMPLE_MOST_NUMBERS / 2 };
 
 /** Points of one analysis of `count` parameters. */
-STRUT_API int64_t strut_sensitivity_points(const strut_study_sensitivity *s, size_t count);
+STRUT_API int64_t strut_sensitivity_points(const strut_study_sensitivity *sensitivity,
+                                           size_t count);
 /** First point of base sample `j`: A; then the mixed points in the order of parameters; then B. */
-STRUT_API int64_t strut_sensitivity_sample(const strut_study_sensitivity *s, size_t count,
+STRUT_API int64_t strut_sensitivity_sample(const strut_study_sensitivity *sensitivity, size_t count,
                                            int64_t j);
 /**
  * Point at which parameter `i` is moved: k 0 a step up, 1 a step down, 2 and 3 half a step. Point 0 is
@@ -71,7 +72,7 @@ STRUT_API int64_t strut_sensitivity_moved(size_t i, int k);
  * between the median and the 84th percentile, at which the error of a difference of numbers with that
  * relative accuracy balances the curvature of the curve. False: memory is out.
  */
-STRUT_API bool strut_sensitivity_fill(const strut_study_sensitivity *s, size_t count,
+STRUT_API bool strut_sensitivity_fill(const strut_study_sensitivity *sensitivity, size_t count,
                                       const strut_distribution *distributions,
                                       double *const *values);
 

@@ -41,14 +41,14 @@ void strut_scene_free(strut_scene *scene) {
 
 void strut_scene_hold_supports(strut_scene *scene, bool shapes) {
   for (size_t i = 0; i < scene->support_motion_count; i++) {
-    const strut_support_motion *m = &scene->support_motions[i];
+    const strut_support_motion *motion = &scene->support_motions[i];
     double value, rate;
-    strut_signal_evaluate(scene->signals, m->signal, 0.0, &value, &rate);
-    scene->nodes[m->node].start[m->axis] += value;
-    if (shapes) scene->nodes[m->node].position[m->axis] += value;
+    strut_signal_evaluate(scene->signals, motion->signal, 0.0, &value, &rate);
+    scene->nodes[motion->node].start[motion->axis] += value;
+    if (shapes) scene->nodes[motion->node].position[motion->axis] += value;
     for (size_t k = 0; k < scene->configuration_count && shapes; k++)
       if (scene->configurations[k].position)
-        scene->configurations[k].position[m->node][m->axis] += value;
+        scene->configurations[k].position[motion->node][motion->axis] += value;
   }
   scene->support_motion_count = 0;
 }
@@ -60,51 +60,52 @@ void strut_scene_stop_unbalances(strut_scene *scene) {
 }
 
 /* Twice the area of a triangle, counted counter-clockwise: its last corner is to the left of the first two. */
-static double turn_over(const double *a, const double *b, const double *c) {
-  return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+static double turn_over(const double *first, const double *second, const double *c) {
+  return (second[0] - first[0]) * (c[1] - second[1]) - (second[1] - first[1]) * (c[0] - second[0]);
 }
 
-static double turn_at(const strut_scene *scene, const strut_member *m, size_t k) {
-  return turn_over(scene->nodes[strut_member_node(m, k - 1)].position,
-                   scene->nodes[strut_member_node(m, k)].position,
-                   scene->nodes[strut_member_node(m, k + 1)].position);
+static double turn_at(const strut_scene *scene, const strut_member *member, size_t k) {
+  return turn_over(scene->nodes[strut_member_node(member, k - 1)].position,
+                   scene->nodes[strut_member_node(member, k)].position,
+                   scene->nodes[strut_member_node(member, k + 1)].position);
 }
 
 double strut_scene_last_signal_event(const strut_scene *scene) {
   double last = 0.0;
   for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *s = &scene->signals[i];
-    last = fmax(last, s->start);
-    if (isfinite(s->stop)) last = fmax(last, s->stop);
-    if (s->kind == STRUT_HALF_SINE) last = fmax(last, s->start + 0.5 / s->frequency);
-    if (s->kind == STRUT_TABLE) last = fmax(last, s->start + s->time[s->point_count - 1]);
+    const strut_signal *signal = &scene->signals[i];
+    last = fmax(last, signal->start);
+    if (isfinite(signal->stop)) last = fmax(last, signal->stop);
+    if (signal->kind == STRUT_HALF_SINE) last = fmax(last, signal->start + 0.5 / signal->frequency);
+    if (signal->kind == STRUT_TABLE)
+      last = fmax(last, signal->start + signal->time[signal->point_count - 1]);
   }
   return last;
 }
 
-bool strut_member_is_straight_at(const strut_scene *scene, const strut_member *m, size_t k) {
-  return turn_at(scene, m, k) == 0.0;
+bool strut_member_is_straight_at(const strut_scene *scene, const strut_member *member, size_t k) {
+  return turn_at(scene, member, k) == 0.0;
 }
 
-uint32_t strut_member_right_guides(const strut_scene *scene, const strut_member *m) {
+uint32_t strut_member_right_guides(const strut_scene *scene, const strut_member *member) {
   uint32_t right = 0;
-  for (size_t k = 1; k <= m->guide_count; k++) {
-    double turn = turn_at(scene, m, k);
-    bool to_right =
-        m->guide_side == STRUT_GUIDE_RIGHT || (m->guide_side == STRUT_GUIDE_AS_DRAWN && turn < 0.0);
+  for (size_t k = 1; k <= member->guide_count; k++) {
+    double turn = turn_at(scene, member, k);
+    bool to_right = member->guide_side == STRUT_GUIDE_RIGHT ||
+                    (member->guide_side == STRUT_GUIDE_AS_DRAWN && turn < 0.0);
     right |= (uint32_t)to_right << k;
   }
   return right;
 }
 
-static double wrapped_length(const strut_scene *scene, const strut_member *m) {
+static double wrapped_length(const strut_scene *scene, const strut_member *member) {
   double p[STRUT_MOST_WRAPPED][2];
-  int n = (int)m->guide_count + 2;
+  int n = (int)member->guide_count + 2;
   strut_wrap way;
   for (int k = 0; k < n; k++)
-    memcpy(p[k], scene->nodes[strut_member_node(m, (size_t)k)].position, sizeof p[k]);
-  return strut_wrap_find((const double(*)[2])p, n, strut_member_right_guides(scene, m),
-                         m->guide_radius, &way);
+    memcpy(p[k], scene->nodes[strut_member_node(member, (size_t)k)].position, sizeof p[k]);
+  return strut_wrap_find((const double(*)[2])p, n, strut_member_right_guides(scene, member),
+                         member->guide_radius, &way);
 }
 
 static double drawn_length(const strut_scene *scene, const strut_member *member) {
@@ -130,13 +131,13 @@ double strut_hinge_rest(const strut_scene *scene, size_t index) {
 }
 
 double strut_distance_drawn(const strut_scene *scene, size_t index) {
-  const strut_distance_spring *d = &scene->distances[index];
-  bool line = d->line[0] >= 0;
-  const double *from = scene->nodes[line ? d->line[0] : d->node[0]].position,
-               *to = scene->nodes[line ? d->node[0] : d->node[1]].position;
+  const strut_distance_spring *spring = &scene->distances[index];
+  bool line = spring->line[0] >= 0;
+  const double *from = scene->nodes[line ? spring->line[0] : spring->node[0]].position,
+               *to = scene->nodes[line ? spring->node[0] : spring->node[1]].position;
   strut_vec2 u = strut_vec2_between(from, to);
-  if (!line) return u.x * cos(d->along) + u.y * sin(d->along);
-  strut_vec2 w = strut_vec2_between(from, scene->nodes[d->line[1]].position);
+  if (!line) return u.x * cos(spring->along) + u.y * sin(spring->along);
+  strut_vec2 w = strut_vec2_between(from, scene->nodes[spring->line[1]].position);
   return (w.x * u.y - w.y * u.x) / hypot(w.x, w.y);
 }
 
@@ -229,19 +230,21 @@ void strut_setup_free(strut_setup *setup) {
   memset(&setup->experiment, 0, sizeof setup->experiment);
 }
 
-strut_span strut_experiment_span(const strut_experiment *e, const strut_scene *scene) {
-  strut_span span = {.duration = e->duration};
+strut_span strut_experiment_span(const strut_experiment *experiment, const strut_scene *scene) {
+  strut_span span = {.duration = experiment->duration};
   double unit = 1.0; /* of the windows: one period, or one second */
-  if (e->periods > 0.0) {
-    unit = span.period = strut_signal_period(scene->signals, e->period_signal);
-    span.duration = e->periods * span.period;
+  if (experiment->periods > 0.0) {
+    unit = span.period = strut_signal_period(scene->signals, experiment->period_signal);
+    span.duration = experiment->periods * span.period;
   }
-  if (e->measure_last > 0.0) span.window_start = span.duration - e->measure_last * unit;
-  if (e->output_last > 0.0) span.record_start = span.duration - e->output_last * unit;
+  if (experiment->measure_last > 0.0)
+    span.window_start = span.duration - experiment->measure_last * unit;
+  if (experiment->output_last > 0.0)
+    span.record_start = span.duration - experiment->output_last * unit;
   if (span.window_start < 0.0) span.window_start = 0.0;
   if (span.record_start < 0.0) span.record_start = 0.0;
-  span.record_every =
-      e->output_every > 0.0 ? e->output_every : (span.duration - span.record_start) / 1000.0;
+  span.record_every = experiment->output_every > 0.0 ? experiment->output_every
+                                                     : (span.duration - span.record_start) / 1000.0;
   return span;
 }
 
@@ -258,23 +261,26 @@ bool strut_experiment_is_adaptive(const char *integrator) {
   return integrator && steps_per_period(integrator) > 0.0;
 }
 
-void strut_experiment_choose_step(strut_experiment *e, const strut_scene *scene) {
-  if (e->step != 0.0 || e->accuracy > 0.0 || !strut_experiment_is_adaptive(e->integrator)) return;
-  strut_span span = strut_experiment_span(e, scene);
-  e->step = (span.period > 0.0 ? span.period : span.duration) / steps_per_period(e->integrator);
-  e->step_chosen = true;
+void strut_experiment_choose_step(strut_experiment *experiment, const strut_scene *scene) {
+  if (experiment->step != 0.0 || experiment->accuracy > 0.0 ||
+      !strut_experiment_is_adaptive(experiment->integrator))
+    return;
+  strut_span span = strut_experiment_span(experiment, scene);
+  experiment->step =
+      (span.period > 0.0 ? span.period : span.duration) / steps_per_period(experiment->integrator);
+  experiment->step_chosen = true;
 }
 
 /* Moves the shape of a ground. */
-static bool shift_ground(strut_ground *g, const double place[2], strut_arena *arena) {
-  if (!g->placed) g->through[0] = 0.0, g->through[1] = g->height;
-  g->placed = g->placed || g->shape == STRUT_GROUND_LINE;
-  for (int c = 0; c < 2; c++) g->through[c] += place[c], g->centre[c] += place[c];
-  if (g->shape != STRUT_GROUND_PROFILE) return true;
-  double(*points)[2] = strut_arena_allocate(arena, g->point_count, sizeof *points);
-  for (size_t k = 0; points && k < g->point_count; k++)
-    for (int c = 0; c < 2; c++) points[k][c] = g->points[k][c] + place[c];
-  g->points = points;
+static bool shift_ground(strut_ground *ground, const double place[2], strut_arena *arena) {
+  if (!ground->placed) ground->through[0] = 0.0, ground->through[1] = ground->height;
+  ground->placed = ground->placed || ground->shape == STRUT_GROUND_LINE;
+  for (int c = 0; c < 2; c++) ground->through[c] += place[c], ground->centre[c] += place[c];
+  if (ground->shape != STRUT_GROUND_PROFILE) return true;
+  double(*points)[2] = strut_arena_allocate(arena, ground->point_count, sizeof *points);
+  for (size_t k = 0; points && k < ground->point_count; k++)
+    for (int c = 0; c < 2; c++) points[k][c] = ground->points[k][c] + place[c];
+  ground->points = points;
   return points;
 }
 
@@ -291,14 +297,15 @@ bool strut_scene_stop_grounds(strut_scene *scene, strut_arena *arena) {
   strut_ground *grounds = strut_arena_allocate(arena, scene->ground_count, sizeof *grounds);
   bool good = grounds;
   for (size_t i = 0; i < scene->ground_count && good; i++) {
-    strut_ground *g = &grounds[i];
+    strut_ground *ground = &grounds[i];
     double place[2] = {0.0, 0.0}, rate;
-    *g = scene->grounds[i];
+    *ground = scene->grounds[i];
     for (int c = 0; c < 2; c++)
-      if (g->moves[c]) strut_signal_evaluate(scene->signals, g->motion[c], 0.0, &place[c], &rate);
-    g->belt_speed = 0.0;
-    g->moves[0] = g->moves[1] = false;
-    if (place[0] != 0.0 || place[1] != 0.0) good = shift_ground(g, place, arena);
+      if (ground->moves[c])
+        strut_signal_evaluate(scene->signals, ground->motion[c], 0.0, &place[c], &rate);
+    ground->belt_speed = 0.0;
+    ground->moves[0] = ground->moves[1] = false;
+    if (place[0] != 0.0 || place[1] != 0.0) good = shift_ground(ground, place, arena);
   }
   scene->grounds = grounds;
   return good;
@@ -322,26 +329,26 @@ bool strut_scene_shift(strut_scene *scene, const double by[2], strut_arena *aren
 /* ---- masses that slide ---- */
 
 double strut_sliding_mass_scale(const strut_scene *scene, size_t index) {
-  const strut_sliding_mass *s = &scene->sliding_masses[index];
-  const int32_t *node = scene->members[s->member].node;
-  if (!s->travel) return 1.0;
+  const strut_sliding_mass *mass = &scene->sliding_masses[index];
+  const int32_t *node = scene->members[mass->member].node;
+  if (!mass->travel) return 1.0;
   double drawn = strut_distance(scene->nodes[node[0]].position, scene->nodes[node[1]].position);
   return drawn > 0.0 ? 1.0 / drawn : 0.0;
 }
 
 double strut_sliding_mass_share(const strut_scene *scene, size_t index, double t) {
-  const strut_sliding_mass *s = &scene->sliding_masses[index];
+  const strut_sliding_mass *mass = &scene->sliding_masses[index];
   double value, rate;
-  if (s->signal < 0) return s->share;
-  strut_signal_evaluate(scene->signals, s->signal, t, &value, &rate);
-  return s->share + strut_sliding_mass_scale(scene, index) * value;
+  if (mass->signal < 0) return mass->share;
+  strut_signal_evaluate(scene->signals, mass->signal, t, &value, &rate);
+  return mass->share + strut_sliding_mass_scale(scene, index) * value;
 }
 
 double strut_sliding_mass_rate(const strut_scene *scene, size_t index, double t) {
-  const strut_sliding_mass *s = &scene->sliding_masses[index];
+  const strut_sliding_mass *mass = &scene->sliding_masses[index];
   double value, rate;
-  if (s->signal < 0) return 0.0;
-  strut_signal_evaluate(scene->signals, s->signal, t, &value, &rate);
+  if (mass->signal < 0) return 0.0;
+  strut_signal_evaluate(scene->signals, mass->signal, t, &value, &rate);
   return strut_sliding_mass_scale(scene, index) * rate;
 }
 

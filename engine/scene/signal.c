@@ -14,29 +14,30 @@ strut_signal strut_signal_default(strut_signal_kind kind) {
   return (strut_signal){.kind = kind, .stop = (double)INFINITY};
 }
 
-static inline void evaluate_wave(const strut_signal *s, double turns, double *value, double *rate) {
+static inline void evaluate_wave(const strut_signal *signal, double turns, double *value,
+                                 double *rate) {
   double sine, cosine;
   strut_sincos_turns(turns, &sine, &cosine);
-  *value = s->amplitude * sine;
-  *rate = s->amplitude * STRUT_TAU * s->frequency * cosine;
+  *value = signal->amplitude * sine;
+  *rate = signal->amplitude * STRUT_TAU * signal->frequency * cosine;
 }
 
-static void evaluate_ramp(const strut_signal *s, double t, double *value, double *rate) {
+static void evaluate_ramp(const strut_signal *signal, double t, double *value, double *rate) {
   *value = *rate = 0.0;
-  if (t >= s->stop) {
-    *value = s->amplitude;
-  } else if (t >= s->start) {
-    *value = s->amplitude * ((t - s->start) / (s->stop - s->start));
-    *rate = s->amplitude / (s->stop - s->start);
+  if (t >= signal->stop) {
+    *value = signal->amplitude;
+  } else if (t >= signal->start) {
+    *value = signal->amplitude * ((t - signal->start) / (signal->stop - signal->start));
+    *rate = signal->amplitude / (signal->stop - signal->start);
   }
 }
 
 /* Number of a table's points at or before t. */
-static size_t count_points(const strut_signal *s, double t) {
-  size_t low = 0, high = s->point_count;
+static size_t count_points(const strut_signal *signal, double t) {
+  size_t low = 0, high = signal->point_count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
-    if (s->time[middle] <= t)
+    if (signal->time[middle] <= t)
       low = middle + 1;
     else
       high = middle;
@@ -44,44 +45,50 @@ static size_t count_points(const strut_signal *s, double t) {
   return low;
 }
 
-static void evaluate_table(const strut_signal *s, double t, double *value, double *rate) {
-  size_t low = count_points(s, t);
+static void evaluate_table(const strut_signal *signal, double t, double *value, double *rate) {
+  size_t low = count_points(signal, t);
   *rate = 0.0;
-  *value = s->value[low ? low - 1 : 0];
-  if (low == 0 || low == s->point_count) return;
-  double span = s->time[low] - s->time[low - 1], rise = s->value[low] - s->value[low - 1];
-  *value += rise * ((t - s->time[low - 1]) / span);
+  *value = signal->value[low ? low - 1 : 0];
+  if (low == 0 || low == signal->point_count) return;
+  double span = signal->time[low] - signal->time[low - 1],
+         rise = signal->value[low] - signal->value[low - 1];
+  *value += rise * ((t - signal->time[low - 1]) / span);
   *rate = rise / span;
 }
 
 /* Evaluates all kinds but the sine, which strut_signal_evaluate handles first. */
 static void evaluate_other(const strut_signal *signals, const strut_signal_inputs *in,
                            int32_t index, double t, double turns, double *value, double *rate) {
-  const strut_signal *s = &signals[index];
+  const strut_signal *signal = &signals[index];
   *value = *rate = 0.0;
   /* a value outside its time */
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || strut_signal_has_program(s);
-  if (!holds && (t < s->start || t >= s->stop)) return;
-  switch (s->kind) {
+  bool holds =
+      signal->kind == STRUT_RAMP || signal->kind == STRUT_TABLE || strut_signal_has_program(signal);
+  if (!holds && (t < signal->start || t >= signal->stop)) return;
+  switch (signal->kind) {
     case STRUT_SINE: break;
-    case STRUT_RAMP: evaluate_ramp(s, t, value, rate); break;
-    case STRUT_TABLE: evaluate_table(s, t, value, rate); break;
-    case STRUT_CONSTANT: *value = s->amplitude; break;
+    case STRUT_RAMP: evaluate_ramp(signal, t, value, rate); break;
+    case STRUT_TABLE: evaluate_table(signal, t, value, rate); break;
+    case STRUT_CONSTANT: *value = signal->amplitude; break;
     case STRUT_HALF_SINE:
-      if (turns < 0.5) evaluate_wave(s, turns, value, rate);
+      if (turns < 0.5) evaluate_wave(signal, turns, value, rate);
       break;
-    case STRUT_SQUARE: *value = turns - floor(turns) < 0.5 ? s->amplitude : -s->amplitude; break;
+    case STRUT_SQUARE:
+      *value = turns - floor(turns) < 0.5 ? signal->amplitude : -signal->amplitude;
+      break;
     case STRUT_SUM:
-      for (size_t i = 0; i < s->term_count; i++) {
+      for (size_t i = 0; i < signal->term_count; i++) {
         double part, part_rate;
-        strut_signal_follow(signals, in, s->terms[i], t, &part, &part_rate);
+        strut_signal_follow(signals, in, signal->terms[i], t, &part, &part_rate);
         *value += part;
         *rate += part_rate;
       }
       break;
-    case STRUT_EXPRESSION: strut_program_evaluate(&s->program, signals, in, t, value, rate); break;
+    case STRUT_EXPRESSION:
+      strut_program_evaluate(&signal->program, signals, in, t, value, rate);
+      break;
     case STRUT_RELAY:
-      *value = in ? strut_relay_value(s, in->relay_side[index]) : (double)NAN;
+      *value = in ? strut_relay_value(signal, in->relay_side[index]) : (double)NAN;
       break;
     case STRUT_SIGNAL_KINDS: break;
   }
@@ -89,34 +96,34 @@ static void evaluate_other(const strut_signal *signals, const strut_signal_input
 
 void strut_signal_evaluate(const strut_signal *signals, int32_t index, double t, double *value,
                            double *rate) {
-  const strut_signal *s = &signals[index];
-  double turns = s->frequency * (t - s->start) + s->phase;
-  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
-    evaluate_wave(s, turns, value, rate);
+  const strut_signal *signal = &signals[index];
+  double turns = signal->frequency * (t - signal->start) + signal->phase;
+  if (signal->kind == STRUT_SINE && t >= signal->start && t < signal->stop)
+    evaluate_wave(signal, turns, value, rate);
   else
     evaluate_other(signals, NULL, index, t, turns, value, rate);
 }
 
 void strut_signal_follow_unlagged(const strut_signal *signals, const strut_signal_inputs *in,
                                   int32_t index, double t, double *value, double *rate) {
-  const strut_signal *s = &signals[index];
-  if (s->trigger.kind != STRUT_TRIGGER_NONE) {
+  const strut_signal *signal = &signals[index];
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE) {
     double since = in ? in->started[index] : (double)NAN;
     *value = *rate = in ? 0.0 : (double)NAN;
     if (!(t >= since)) return;
     t -= since;
   }
-  double turns = s->frequency * (t - s->start) + s->phase;
-  if (s->kind == STRUT_SINE && t >= s->start && t < s->stop)
-    evaluate_wave(s, turns, value, rate);
+  double turns = signal->frequency * (t - signal->start) + signal->phase;
+  if (signal->kind == STRUT_SINE && t >= signal->start && t < signal->stop)
+    evaluate_wave(signal, turns, value, rate);
   else
     evaluate_other(signals, in, index, t, turns, value, rate);
 }
 
 void strut_signal_follow_unsampled(const strut_signal *signals, const strut_signal_inputs *in,
                                    int32_t index, double t, double *value, double *rate) {
-  const strut_signal *s = &signals[index];
-  if (!(s->lag > 0.0)) {
+  const strut_signal *signal = &signals[index];
+  if (!(signal->lag > 0.0)) {
     strut_signal_follow_unlagged(signals, in, index, t, value, rate);
     return;
   }
@@ -127,7 +134,7 @@ void strut_signal_follow_unsampled(const strut_signal *signals, const strut_sign
   double wanted, unused;
   values.values_only = true;
   strut_signal_follow_unlagged(signals, &values, index, t, &wanted, &unused);
-  *rate = (wanted - *value) / s->lag;
+  *rate = (wanted - *value) / signal->lag;
 }
 
 void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs *in, int32_t index,
@@ -141,17 +148,18 @@ void strut_signal_follow(const strut_signal *signals, const strut_signal_inputs 
 }
 
 /* The first multiple of half a period after t, counted from where the phase is 0. */
-static double next_half_period(const strut_signal *s, double t) {
-  double halves = 2.0 * (s->frequency * (t - s->start) + s->phase);
+static double next_half_period(const strut_signal *signal, double t) {
+  double halves = 2.0 * (signal->frequency * (t - signal->start) + signal->phase);
   double next = floor(halves) + 1.0;
-  double at = s->start + (0.5 * next - s->phase) / s->frequency;
-  if (!(at > t)) at = s->start + (0.5 * (next + 1.0) - s->phase) / s->frequency;
+  double at = signal->start + (0.5 * next - signal->phase) / signal->frequency;
+  if (!(at > t)) at = signal->start + (0.5 * (next + 1.0) - signal->phase) / signal->frequency;
   return at;
 }
 
 /* Does the instruction read a signal? */
-static bool is_signal(const strut_instruction *p) {
-  return p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
+static bool is_signal(const strut_instruction *instruction) {
+  return instruction->operation == STRUT_OPERATION_COLUMN &&
+         instruction->column.kind == STRUT_COLUMN_SIGNAL;
 }
 
 double strut_program_next_break(const strut_signal *signals, const double *started,
@@ -165,23 +173,23 @@ double strut_program_next_break(const strut_signal *signals, const double *start
 }
 
 static double next_break_inside(const strut_signal *signals, const double *started,
-                                const strut_signal *s, double t, double until) {
+                                const strut_signal *signal, double t, double until) {
   double first = (double)INFINITY;
   size_t past;
-  switch (s->kind) {
-    case STRUT_SQUARE: return next_half_period(s, t);
-    case STRUT_HALF_SINE: return s->start + 0.5 / s->frequency;
+  switch (signal->kind) {
+    case STRUT_SQUARE: return next_half_period(signal, t);
+    case STRUT_HALF_SINE: return signal->start + 0.5 / signal->frequency;
     case STRUT_TABLE:
-      past = count_points(s, t);
-      return past < s->point_count ? s->time[past] : first;
+      past = count_points(signal, t);
+      return past < signal->point_count ? signal->time[past] : first;
     case STRUT_SUM:
-      for (size_t i = 0; i < s->term_count; i++)
-        first = fmin(first, strut_signal_next_break_since(signals, started, s->terms[i], t,
+      for (size_t i = 0; i < signal->term_count; i++)
+        first = fmin(first, strut_signal_next_break_since(signals, started, signal->terms[i], t,
                                                           fmin(first, until)));
       return first;
     case STRUT_EXPRESSION:
     case STRUT_RELAY: /* its input's: there it may switch */
-      return strut_program_next_break(signals, started, &s->program, t, until);
+      return strut_program_next_break(signals, started, &signal->program, t, until);
     case STRUT_CONSTANT:
     case STRUT_SINE:
     case STRUT_RAMP:
@@ -193,19 +201,19 @@ static double next_break_inside(const strut_signal *signals, const double *start
 /* Of a signal in its own time. */
 static double next_break_of(const strut_signal *signals, const double *started, int32_t index,
                             double t, double until) {
-  const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_TABLE || strut_signal_has_program(s))
-    return next_break_inside(signals, started, s, t, until);
-  if (t < s->start) return s->start;
-  double first = next_break_inside(signals, started, s, t, until);
+  const strut_signal *signal = &signals[index];
+  if (signal->kind == STRUT_TABLE || strut_signal_has_program(signal))
+    return next_break_inside(signals, started, signal, t, until);
+  if (t < signal->start) return signal->start;
+  double first = next_break_inside(signals, started, signal, t, until);
   if (!(first > t)) first = (double)INFINITY;
-  return t < s->stop ? fmin(first, s->stop) : (double)INFINITY;
+  return t < signal->stop ? fmin(first, signal->stop) : (double)INFINITY;
 }
 
 double strut_signal_next_break_since(const strut_signal *signals, const double *started,
                                      int32_t index, double t, double until) {
-  const strut_signal *s = &signals[index];
-  if (s->trigger.kind != STRUT_TRIGGER_NONE && started) {
+  const strut_signal *signal = &signals[index];
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE && started) {
     double since = started[index];
     if (!(since < (double)INFINITY)) return (double)INFINITY;
     if (t < since) return since;
@@ -220,24 +228,24 @@ double strut_signal_next_break(const strut_signal *signals, int32_t index, doubl
 
 /* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */
 static double longest_period(const strut_signal *signals, int32_t index, bool pulses) {
-  const strut_signal *s = &signals[index];
-  bool repeats = s->kind == STRUT_SINE || s->kind == STRUT_SQUARE;
-  if (pulses ? s->kind == STRUT_HALF_SINE : repeats) return 1.0 / s->frequency;
+  const strut_signal *signal = &signals[index];
+  bool repeats = signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE;
+  if (pulses ? signal->kind == STRUT_HALF_SINE : repeats) return 1.0 / signal->frequency;
   double longest = 0.0;
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    longest = fmax(longest, longest_period(signals, s->terms[i], pulses));
+  for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
+    longest = fmax(longest, longest_period(signals, signal->terms[i], pulses));
   return longest;
 }
 
 /* True where every repeating part of the signal fits a whole number of times into `period`. */
 static bool repeats_within(const strut_signal *signals, int32_t index, double period) {
-  const strut_signal *s = &signals[index];
-  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE) {
-    double times = period * s->frequency;
+  const strut_signal *signal = &signals[index];
+  if (signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE) {
+    double times = period * signal->frequency;
     return fabs(times - floor(times + 0.5)) <= 1e-9 * times;
   }
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    if (!repeats_within(signals, s->terms[i], period)) return false;
+  for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
+    if (!repeats_within(signals, signal->terms[i], period)) return false;
   return true;
 }
 
@@ -257,27 +265,29 @@ typedef struct times {
   size_t count, capacity;
 } times;
 
-static void add_time(times *t, double time) {
-  if (time >= t->from && time <= t->to && t->count < t->capacity) t->time[t->count++] = time;
+static void add_time(times *self, double time) {
+  if (time >= self->from && time <= self->to && self->count < self->capacity)
+    self->time[self->count++] = time;
 }
 
 /* Adds zeros and turns, a quarter of a period apart. */
-static void add_wave(const strut_signal *s, times *t) {
-  double begin = fmax(t->from, s->start);
-  double quarter = floor(4.0 * (s->frequency * (begin - s->start) + s->phase));
+static void add_wave(const strut_signal *signal, times *self) {
+  double begin = fmax(self->from, signal->start);
+  double quarter = floor(4.0 * (signal->frequency * (begin - signal->start) + signal->phase));
   for (int k = 0; k < 2 * WAVES; k++)
-    add_time(t, s->start + (0.25 * (quarter + k) - s->phase) / s->frequency);
+    add_time(self, signal->start + (0.25 * (quarter + k) - signal->phase) / signal->frequency);
 }
 
-static void add_signal(const strut_signal *signals, int32_t index, times *t) {
-  const strut_signal *s = &signals[index];
-  add_time(t, s->start);
-  add_time(t, s->stop);
-  if (s->kind == STRUT_SINE || s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE)
-    add_wave(s, t);
-  for (size_t i = 0; s->kind == STRUT_TABLE && i < s->point_count; i++) add_time(t, s->time[i]);
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    add_signal(signals, s->terms[i], t);
+static void add_signal(const strut_signal *signals, int32_t index, times *self) {
+  const strut_signal *signal = &signals[index];
+  add_time(self, signal->start);
+  add_time(self, signal->stop);
+  if (signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE || signal->kind == STRUT_HALF_SINE)
+    add_wave(signal, self);
+  for (size_t i = 0; signal->kind == STRUT_TABLE && i < signal->point_count; i++)
+    add_time(self, signal->time[i]);
+  for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
+    add_signal(signals, signal->terms[i], self);
 }
 
 size_t strut_signal_times(const strut_signal *signals, int32_t index, double from, double to,
@@ -307,22 +317,22 @@ double strut_signal_jump(const strut_signal *signals, int32_t index, double step
 /* Values below this part of the amplitude are zero but for rounding. */
 static const double ROUNDING = 1e-9;
 
-static double wave_acceleration(const strut_signal *s, double turns) {
-  double sine, cosine, omega = STRUT_TAU * s->frequency;
+static double wave_acceleration(const strut_signal *signal, double turns) {
+  double sine, cosine, omega = STRUT_TAU * signal->frequency;
   strut_sincos_turns(turns, &sine, &cosine);
-  return -s->amplitude * omega * omega * sine;
+  return -signal->amplitude * omega * omega * sine;
 }
 
 double strut_signal_acceleration(const strut_signal *signals, int32_t index, double t) {
-  const strut_signal *s = &signals[index];
-  double turns = s->frequency * (t - s->start) + s->phase, sum = 0.0;
-  bool on = t >= s->start && t < s->stop;
-  switch (s->kind) {
-    case STRUT_SINE: return on ? wave_acceleration(s, turns) : 0.0;
-    case STRUT_HALF_SINE: return on && turns < 0.5 ? wave_acceleration(s, turns) : 0.0;
+  const strut_signal *signal = &signals[index];
+  double turns = signal->frequency * (t - signal->start) + signal->phase, sum = 0.0;
+  bool on = t >= signal->start && t < signal->stop;
+  switch (signal->kind) {
+    case STRUT_SINE: return on ? wave_acceleration(signal, turns) : 0.0;
+    case STRUT_HALF_SINE: return on && turns < 0.5 ? wave_acceleration(signal, turns) : 0.0;
     case STRUT_SUM:
-      for (size_t i = 0; i < s->term_count && on; i++)
-        sum += strut_signal_acceleration(signals, s->terms[i], t);
+      for (size_t i = 0; i < signal->term_count && on; i++)
+        sum += strut_signal_acceleration(signals, signal->terms[i], t);
       return sum;
     case STRUT_CONSTANT:
     case STRUT_SQUARE:
@@ -336,13 +346,14 @@ double strut_signal_acceleration(const strut_signal *signals, int32_t index, dou
 }
 
 /* Is the signal away from zero at its time `at`, where it is switched on or off? */
-static bool is_cut(const strut_signal *s, double at) {
+static bool is_cut(const strut_signal *signal, double at) {
   double sine, cosine;
-  if (s->kind == STRUT_CONSTANT || s->kind == STRUT_SQUARE) return s->amplitude != 0.0;
-  double turns = s->frequency * (at - s->start) + s->phase;
-  if (s->kind == STRUT_HALF_SINE && turns >= 0.5) return false;
+  if (signal->kind == STRUT_CONSTANT || signal->kind == STRUT_SQUARE)
+    return signal->amplitude != 0.0;
+  double turns = signal->frequency * (at - signal->start) + signal->phase;
+  if (signal->kind == STRUT_HALF_SINE && turns >= 0.5) return false;
   strut_sincos_turns(turns, &sine, &cosine);
-  return s->amplitude != 0.0 && fabs(sine) > ROUNDING * (1.0 + fabs(turns));
+  return signal->amplitude != 0.0 && fabs(sine) > ROUNDING * (1.0 + fabs(turns));
 }
 
 /* A start or stop of the signal after 0 and up to `last`, if there is one. */
@@ -352,22 +363,22 @@ static bool switches_within(double time, double last) {
 
 bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double last,
                               double *when) {
-  const strut_signal *s = &signals[index];
-  switch (s->kind) {
+  const strut_signal *signal = &signals[index];
+  switch (signal->kind) {
     case STRUT_RAMP: return false;
     case STRUT_TABLE:
-      for (size_t i = 1; i < s->point_count; i++)
-        if (s->time[i] == s->time[i - 1] && s->value[i] != s->value[i - 1] &&
-            switches_within(*when = s->time[i], last))
+      for (size_t i = 1; i < signal->point_count; i++)
+        if (signal->time[i] == signal->time[i - 1] && signal->value[i] != signal->value[i - 1] &&
+            switches_within(*when = signal->time[i], last))
           return true;
       return false;
     case STRUT_SUM:
-      for (size_t i = 0; i < s->term_count; i++)
-        if (strut_signal_value_jumps(signals, s->terms[i], last, when)) return true;
+      for (size_t i = 0; i < signal->term_count; i++)
+        if (strut_signal_value_jumps(signals, signal->terms[i], last, when)) return true;
       return false;
     case STRUT_SQUARE:
       *when = strut_signal_next_break(signals, index, 0.0);
-      if (s->amplitude != 0.0 && *when <= last) return true;
+      if (signal->amplitude != 0.0 && *when <= last) return true;
       break;
     case STRUT_CONSTANT:
     case STRUT_SINE:
@@ -376,16 +387,16 @@ bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double
     case STRUT_RELAY:
     case STRUT_SIGNAL_KINDS: break;
   }
-  if (switches_within(*when = s->start, last) && is_cut(s, s->start)) return true;
-  return switches_within(*when = s->stop, last) && is_cut(s, s->stop);
+  if (switches_within(*when = signal->start, last) && is_cut(signal, signal->start)) return true;
+  return switches_within(*when = signal->stop, last) && is_cut(signal, signal->stop);
 }
 
 bool strut_signal_is_wave(const strut_signal *signals, int32_t index) {
-  const strut_signal *s = &signals[index];
-  if (strut_signal_has_program(s) || s->lag > 0.0 || s->every > 0.0) return false;
-  if (s->trigger.kind != STRUT_TRIGGER_NONE) return false;
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    if (!strut_signal_is_wave(signals, s->terms[i])) return false;
+  const strut_signal *signal = &signals[index];
+  if (strut_signal_has_program(signal) || signal->lag > 0.0 || signal->every > 0.0) return false;
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE) return false;
+  for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
+    if (!strut_signal_is_wave(signals, signal->terms[i])) return false;
   return true;
 }
 

@@ -111,23 +111,23 @@ static strut_range chain(strut_range slope, strut_range rate) {
   return rate.low == 0.0 && rate.high == 0.0 ? ZERO : times(slope, rate);
 }
 
-static void note_branch(bounder *b, uint64_t side) {
-  b->branches = (b->branches ^ side) * UINT64_C(0x100000001b3);
+static void note_branch(bounder *self, uint64_t side) {
+  self->branches = (self->branches ^ side) * UINT64_C(0x100000001b3);
 }
 
 /* Notes the side of 0 on which x is. 1 above, -1 below, 0: not known. */
-static int side_of(bounder *b, strut_range x, bool follows, bool still) {
+static int side_of(bounder *self, strut_range x, bool follows, bool still) {
   int side = x.low > 0.0 ? 1 : x.high < 0.0 ? -1 : 0;
-  note_branch(b, side < 0 ? 1 : 2);
-  if (side == 0 && !follows && !still) b->undecided = true;
+  note_branch(self, side < 0 ? 1 : 2);
+  if (side == 0 && !follows && !still) self->undecided = true;
   return side;
 }
 
 static bool is_still(strut_signal_bounds a) { return a.rate.low == 0.0 && a.rate.high == 0.0; }
 
-static strut_signal_bounds least_of(bounder *b, strut_signal_bounds x, strut_signal_bounds y) {
+static strut_signal_bounds least_of(bounder *self, strut_signal_bounds x, strut_signal_bounds y) {
   strut_range above = plus(y.value, negative(x.value));
-  int side = side_of(b, above, x.follows || y.follows, is_still(x) && is_still(y));
+  int side = side_of(self, above, x.follows || y.follows, is_still(x) && is_still(y));
   strut_signal_bounds both = {{fmin(x.value.low, y.value.low), fmin(x.value.high, y.value.high)},
                               hull(x.rate, y.rate),
                               false};
@@ -138,26 +138,26 @@ static strut_signal_bounds opposite(strut_signal_bounds x) {
   return (strut_signal_bounds){negative(x.value), negative(x.rate), x.follows};
 }
 
-static strut_signal_bounds size(bounder *b, strut_signal_bounds x) {
-  int side = side_of(b, x.value, x.follows, is_still(x));
+static strut_signal_bounds size(bounder *self, strut_signal_bounds x) {
+  int side = side_of(self, x.value, x.follows, is_still(x));
   if (side != 0) return side > 0 ? x : opposite(x);
   return (strut_signal_bounds){magnitude(x.value), hull(x.rate, negative(x.rate)), false};
 }
 
-static strut_signal_bounds stairs(bounder *b, strut_signal_bounds x, double (*f)(double)) {
+static strut_signal_bounds stairs(bounder *self, strut_signal_bounds x, double (*f)(double)) {
   strut_range value = {f(x.value.low), f(x.value.high)};
-  note_branch(b, (uint64_t)(int64_t)fmax(fmin(value.high, 1e15), -1e15));
-  if (value.low != value.high && !x.follows && !is_still(x)) b->undecided = true;
+  note_branch(self, (uint64_t)(int64_t)fmax(fmin(value.high, 1e15), -1e15));
+  if (value.low != value.high && !x.follows && !is_still(x)) self->undecided = true;
   return (strut_signal_bounds){isnan(width(value)) ? ANY : value, ZERO, false};
 }
 
-static strut_signal_bounds angle(bounder *b, strut_signal_bounds y, strut_signal_bounds x) {
+static strut_signal_bounds angle(bounder *self, strut_signal_bounds y, strut_signal_bounds x) {
   strut_range far = plus(square(x.value), square(y.value));
   strut_range turn = plus(times(x.value, y.rate), negative(times(y.value, x.rate)));
   strut_signal_bounds result = {
       {-0.5 * STRUT_TAU, 0.5 * STRUT_TAU}, chain(inverse(far), turn), false};
   bool follows = x.follows || y.follows;
-  int side = x.value.low > 0.0 ? 1 : side_of(b, y.value, follows, is_still(y));
+  int side = x.value.low > 0.0 ? 1 : side_of(self, y.value, follows, is_still(y));
   if (side == 0) return result;
   double c[4] = {atan2(y.value.low, x.value.low), atan2(y.value.low, x.value.high),
                  atan2(y.value.high, x.value.low), atan2(y.value.high, x.value.high)};
@@ -187,7 +187,7 @@ static strut_signal_bounds raise(strut_signal_bounds x, strut_signal_bounds y) {
   return result;
 }
 
-static strut_signal_bounds combine(bounder *b, strut_operation operation, strut_signal_bounds x,
+static strut_signal_bounds combine(bounder *self, strut_operation operation, strut_signal_bounds x,
                                    strut_signal_bounds y) {
   strut_signal_bounds result = ANYTHING;
   switch ((int)operation) {
@@ -208,9 +208,9 @@ static strut_signal_bounds combine(bounder *b, strut_operation operation, strut_
       result.rate = chain(inverse(y.value), result.rate);
       break;
     case STRUT_OPERATION_POWER: result = raise(x, y); break;
-    case STRUT_OPERATION_MIN: result = least_of(b, x, y); break;
-    case STRUT_OPERATION_MAX: result = opposite(least_of(b, opposite(x), opposite(y))); break;
-    case STRUT_OPERATION_ATAN2: result = angle(b, x, y); break;
+    case STRUT_OPERATION_MIN: result = least_of(self, x, y); break;
+    case STRUT_OPERATION_MAX: result = opposite(least_of(self, opposite(x), opposite(y))); break;
+    case STRUT_OPERATION_ATAN2: result = angle(self, x, y); break;
     case STRUT_OPERATION_HYPOT: result = distance(x, y); break;
     default: break;
   }
@@ -218,7 +218,7 @@ static strut_signal_bounds combine(bounder *b, strut_operation operation, strut_
   return result;
 }
 
-static strut_signal_bounds apply(bounder *b, strut_operation operation, strut_signal_bounds a) {
+static strut_signal_bounds apply(bounder *self, strut_operation operation, strut_signal_bounds a) {
   const double ten = 2.30258509299404568402; /* log 10 */
   const strut_range x = a.value, one = {1.0, 1.0};
   strut_range y = ANY, slope = ANY;
@@ -226,19 +226,19 @@ static strut_signal_bounds apply(bounder *b, strut_operation operation, strut_si
   switch ((int)operation) {
     case STRUT_OPERATION_NEGATE: return opposite(a);
     case STRUT_OPERATION_ABS:
-      result = size(b, a);
+      result = size(self, a);
       result.follows = a.follows;
       return result;
     case STRUT_OPERATION_FLOOR:
-      result = stairs(b, a, floor);
+      result = stairs(self, a, floor);
       result.follows = a.follows;
       return result;
     case STRUT_OPERATION_CEIL:
-      result = stairs(b, a, ceil);
+      result = stairs(self, a, ceil);
       result.follows = a.follows;
       return result;
     case STRUT_OPERATION_ROUND:
-      result = stairs(b, a, round);
+      result = stairs(self, a, round);
       result.follows = a.follows;
       return result;
     case STRUT_OPERATION_SIN: y = sine(x, 0.0), slope = sine(x, 0.25); break;
@@ -272,123 +272,135 @@ static strut_signal_bounds apply(bounder *b, strut_operation operation, strut_si
 /* ---- signals ---- */
 
 /* A value that stays while the motion does; any where none is known. */
-static strut_signal_bounds held(const bounder *b, double value) {
-  if (!b->in) return ANYTHING;
+static strut_signal_bounds held(const bounder *self, double value) {
+  if (!self->in) return ANYTHING;
   return (strut_signal_bounds){exactly(value), ZERO, true};
 }
 
-static strut_signal_bounds bound_wave(const strut_signal *s, double from, double to) {
-  double begin = s->frequency * (from - s->start) + s->phase;
-  double end = s->frequency * (to - s->start) + s->phase;
-  if (s->kind == STRUT_HALF_SINE) begin = fmax(begin, 0.0), end = fmin(end, 0.5);
+static strut_signal_bounds bound_wave(const strut_signal *signal, double from, double to) {
+  double begin = signal->frequency * (from - signal->start) + signal->phase;
+  double end = signal->frequency * (to - signal->start) + signal->phase;
+  if (signal->kind == STRUT_HALF_SINE) begin = fmax(begin, 0.0), end = fmin(end, 0.5);
   if (!(begin <= end)) return (strut_signal_bounds){ZERO, ZERO, false};
   strut_range turns = {begin, end}, later = {begin + 0.25, end + 0.25};
   return (strut_signal_bounds){
-      times(exactly(s->amplitude), sine_of_turns(turns)),
-      times(exactly(s->amplitude * STRUT_TAU * s->frequency), sine_of_turns(later)), false};
+      times(exactly(signal->amplitude), sine_of_turns(turns)),
+      times(exactly(signal->amplitude * STRUT_TAU * signal->frequency), sine_of_turns(later)),
+      false};
 }
 
 /* Of a signal that is linear between its points. */
-static strut_signal_bounds bound_pieces(const bounder *b, int32_t index, double from, double to) {
+static strut_signal_bounds bound_pieces(const bounder *self, int32_t index, double from,
+                                        double to) {
   double value, rate;
-  strut_signal_evaluate(b->signals, index, from, &value, &rate);
+  strut_signal_evaluate(self->signals, index, from, &value, &rate);
   strut_signal_bounds result = {exactly(value), exactly(rate), false};
   for (double t = from; t < to;) {
-    t = strut_signal_next_break(b->signals, index, t);
-    strut_signal_evaluate(b->signals, index, nextafter(fmin(t, to), from), &value, &rate);
+    t = strut_signal_next_break(self->signals, index, t);
+    strut_signal_evaluate(self->signals, index, nextafter(fmin(t, to), from), &value, &rate);
     result.value = hull(result.value, exactly(value)); /* before a jump */
-    strut_signal_evaluate(b->signals, index, fmin(t, to), &value, &rate);
+    strut_signal_evaluate(self->signals, index, fmin(t, to), &value, &rate);
     result.value = hull(result.value, exactly(value));
     if (t < to) result.rate = hull(result.rate, exactly(rate));
   }
   return result;
 }
 
-static strut_signal_bounds bound_signal(bounder *b, int32_t index, double from, double to);
+static strut_signal_bounds bound_signal(bounder *self, int32_t index, double from, double to);
 
-static strut_signal_bounds bound_program(bounder *b, const strut_program *program, double from,
+static strut_signal_bounds bound_program(bounder *self, const strut_program *program, double from,
                                          double to);
 
-static strut_signal_bounds bound_kind(bounder *b, int32_t index, double from, double to) {
-  const strut_signal *s = &b->signals[index];
-  bool holds = s->kind == STRUT_RAMP || s->kind == STRUT_TABLE || strut_signal_has_program(s);
+static strut_signal_bounds bound_kind(bounder *self, int32_t index, double from, double to) {
+  const strut_signal *signal = &self->signals[index];
+  bool holds =
+      signal->kind == STRUT_RAMP || signal->kind == STRUT_TABLE || strut_signal_has_program(signal);
   strut_signal_bounds result = {ZERO, ZERO, false};
-  double half = 2.0 * (s->frequency * (from - s->start) + s->phase);
-  if (!holds && (to < s->start || from >= s->stop)) return result;
-  switch (s->kind) {
-    case STRUT_CONSTANT: result.value = exactly(s->amplitude); break;
+  double half = 2.0 * (signal->frequency * (from - signal->start) + signal->phase);
+  if (!holds && (to < signal->start || from >= signal->stop)) return result;
+  switch (signal->kind) {
+    case STRUT_CONSTANT: result.value = exactly(signal->amplitude); break;
     case STRUT_SINE:
-    case STRUT_HALF_SINE: result = bound_wave(s, fmax(from, s->start), fmin(to, s->stop)); break;
+    case STRUT_HALF_SINE:
+      result = bound_wave(signal, fmax(from, signal->start), fmin(to, signal->stop));
+      break;
     case STRUT_SQUARE:
-      if (from >= s->start && floor(half) == floor(half + 2.0 * s->frequency * (to - from)))
-        result.value = exactly(fmod(floor(half), 2.0) == 0.0 ? s->amplitude : -s->amplitude);
+      if (from >= signal->start &&
+          floor(half) == floor(half + 2.0 * signal->frequency * (to - from)))
+        result.value =
+            exactly(fmod(floor(half), 2.0) == 0.0 ? signal->amplitude : -signal->amplitude);
       else
-        result.value = (strut_range){-fabs(s->amplitude), fabs(s->amplitude)};
+        result.value = (strut_range){-fabs(signal->amplitude), fabs(signal->amplitude)};
       break;
     case STRUT_RAMP:
-    case STRUT_TABLE: return bound_pieces(b, index, from, to);
+    case STRUT_TABLE: return bound_pieces(self, index, from, to);
     case STRUT_SUM:
-      for (size_t i = 0; i < s->term_count; i++) {
-        strut_signal_bounds part = bound_signal(b, s->terms[i], from, to);
+      for (size_t i = 0; i < signal->term_count; i++) {
+        strut_signal_bounds part = bound_signal(self, signal->terms[i], from, to);
         result.value = plus(result.value, part.value), result.rate = plus(result.rate, part.rate);
         result.follows = result.follows || part.follows;
       }
       break;
-    case STRUT_EXPRESSION: return bound_program(b, &s->program, from, to);
+    case STRUT_EXPRESSION: return bound_program(self, &signal->program, from, to);
     case STRUT_RELAY:
-      return held(b, b->in ? strut_relay_value(s, b->in->relay_side[index]) : (double)NAN);
+      return held(self,
+                  self->in ? strut_relay_value(signal, self->in->relay_side[index]) : (double)NAN);
     case STRUT_SIGNAL_KINDS: break;
   }
-  if (from < s->start || to >= s->stop) result.value = hull(result.value, ZERO);
+  if (from < signal->start || to >= signal->stop) result.value = hull(result.value, ZERO);
   return result;
 }
 
-static strut_signal_bounds bound_signal(bounder *b, int32_t index, double from, double to) {
-  const strut_signal *s = &b->signals[index];
-  const bounder outside = *b;
-  if (s->every > 0.0) return held(b, b->in ? b->in->held[index] : (double)NAN);
-  if (s->lag > 0.0) return held(b, b->in ? b->in->state[b->in->lag_of[index]] : (double)NAN);
-  if (s->trigger.kind != STRUT_TRIGGER_NONE) {
-    double since = b->started ? b->started[index] : (double)NAN;
+static strut_signal_bounds bound_signal(bounder *self, int32_t index, double from, double to) {
+  const strut_signal *signal = &self->signals[index];
+  const bounder outside = *self;
+  if (signal->every > 0.0) return held(self, self->in ? self->in->held[index] : (double)NAN);
+  if (signal->lag > 0.0)
+    return held(self, self->in ? self->in->state[self->in->lag_of[index]] : (double)NAN);
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE) {
+    double since = self->started ? self->started[index] : (double)NAN;
     if (isnan(since)) return ANYTHING;
     if (to < since) return (strut_signal_bounds){ZERO, ZERO, false};
     from = fmax(from - since, 0.0), to -= since;
   }
-  strut_signal_bounds result = bound_kind(b, index, from, to);
-  b->undecided = outside.undecided; /* of its own kinks strut_signal_next_break knows */
-  b->branches = outside.branches;
+  strut_signal_bounds result = bound_kind(self, index, from, to);
+  self->undecided = outside.undecided; /* of its own kinks strut_signal_next_break knows */
+  self->branches = outside.branches;
   return result;
 }
 
-static strut_signal_bounds bound_column(bounder *b, strut_column column, double from, double to) {
+static strut_signal_bounds bound_column(bounder *self, strut_column column, double from,
+                                        double to) {
   switch ((int)column.kind) {
     case STRUT_COLUMN_TIME: return (strut_signal_bounds){{from, to}, {1.0, 1.0}, false};
-    case STRUT_COLUMN_SIGNAL: return bound_signal(b, column.item, from, to);
-    case STRUT_COLUMN_SENSOR: return held(b, b->in ? b->in->sensor[column.item] : (double)NAN);
+    case STRUT_COLUMN_SIGNAL: return bound_signal(self, column.item, from, to);
+    case STRUT_COLUMN_SENSOR:
+      return held(self, self->in ? self->in->sensor[column.item] : (double)NAN);
     case STRUT_COLUMN_SENSOR_RATE:
-      return held(b, b->in ? b->in->sensor_rate[column.item] : (double)NAN);
-    case STRUT_COLUMN_STATE: return held(b, b->in ? b->in->state[column.item] : (double)NAN);
+      return held(self, self->in ? self->in->sensor_rate[column.item] : (double)NAN);
+    case STRUT_COLUMN_STATE:
+      return held(self, self->in ? self->in->state[column.item] : (double)NAN);
     default: return ANYTHING;
   }
 }
 
-static strut_signal_bounds bound_program(bounder *b, const strut_program *program, double from,
+static strut_signal_bounds bound_program(bounder *self, const strut_program *program, double from,
                                          double to) {
   strut_signal_bounds stack[STRUT_MOST_PROGRAM_DEPTH];
   size_t top = 0;
   for (size_t i = 0; i < program->length; i++) {
-    const strut_instruction *p = &program->instruction[i];
-    int operands = strut_operation_operands(p->operation);
+    const strut_instruction *instruction = &program->instruction[i];
+    int operands = strut_operation_operands(instruction->operation);
     assert(top >= (size_t)operands && top < STRUT_MOST_PROGRAM_DEPTH + (size_t)operands);
-    if (p->operation == STRUT_OPERATION_NUMBER) {
-      stack[top++] = (strut_signal_bounds){exactly(p->number), ZERO, false};
+    if (instruction->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = (strut_signal_bounds){exactly(instruction->number), ZERO, false};
     } else if (operands == 0) {
-      stack[top++] = bound_column(b, p->column, from, to);
+      stack[top++] = bound_column(self, instruction->column, from, to);
     } else if (operands == 1) {
-      stack[top - 1] = apply(b, p->operation, stack[top - 1]);
+      stack[top - 1] = apply(self, instruction->operation, stack[top - 1]);
     } else {
       top--;
-      stack[top - 1] = combine(b, p->operation, stack[top - 1], stack[top]);
+      stack[top - 1] = combine(self, instruction->operation, stack[top - 1], stack[top]);
     }
   }
   assert(top == 1);
@@ -423,20 +435,20 @@ static bool may_kink(const strut_program *program) {
   return false;
 }
 
-static uint64_t branches_at(const bounder *b, const strut_program *program, double t) {
-  bounder at = *b;
+static uint64_t branches_at(const bounder *self, const strut_program *program, double t) {
+  bounder at = *self;
   at.branches = 0;
   bound_program(&at, program, t, t);
   return at.branches;
 }
 
 /* The end of a short time, between t and `end`, over which the branches change as they do from t to `end`. */
-static double narrow(const bounder *b, const strut_program *program, double t, double end) {
-  uint64_t before = branches_at(b, program, t);
+static double narrow(const bounder *self, const strut_program *program, double t, double end) {
+  uint64_t before = branches_at(self, program, t);
   while (end - t > RESOLUTION * fabs(t) + LEAST_WIDTH) {
     double middle = t + 0.5 * (end - t);
     if (!(middle > t && middle < end)) break;
-    if (branches_at(b, program, middle) == before)
+    if (branches_at(self, program, middle) == before)
       t = middle;
     else
       end = middle;
@@ -492,10 +504,11 @@ typedef struct look {
   double faint;
 } look;
 
-static strut_signal_bounds bound_between(const look *l, double from, double to) {
-  bounder b = {.signals = l->signals, .in = l->in, .started = l->in ? l->in->started : NULL};
-  if (l->program) return strut_program_bound(l->program, l->signals, l->in, from, to);
-  return bound_kind(&b, l->signal, from, to);
+static strut_signal_bounds bound_between(const look *self, double from, double to) {
+  bounder b = {
+      .signals = self->signals, .in = self->in, .started = self->in ? self->in->started : NULL};
+  if (self->program) return strut_program_bound(self->program, self->signals, self->in, from, to);
+  return bound_kind(&b, self->signal, from, to);
 }
 
 /* `seen`: hulls of values and rates at begin, middle and end; `all`: of the whole step; `faint`: what may be missed. */
@@ -510,30 +523,30 @@ static strut_signal_bounds hull_of(strut_signal_bounds a, strut_signal_bounds b)
   return (strut_signal_bounds){hull(a.value, b.value), hull(a.rate, b.rate), false};
 }
 
-static bool resolves(const look *l, double t, double h) {
-  strut_signal_bounds all = bound_between(l, t, t + h);
+static bool resolves(const look *self, double t, double h) {
+  strut_signal_bounds all = bound_between(self, t, t + h);
   if (is_still(all)) return true;
-  strut_signal_bounds seen = bound_between(l, t, t);
+  strut_signal_bounds seen = bound_between(self, t, t);
   for (int k = 1; k <= 2; k++)
-    seen = hull_of(seen, bound_between(l, t + 0.5 * k * h, t + 0.5 * k * h));
+    seen = hull_of(seen, bound_between(self, t + 0.5 * k * h, t + 0.5 * k * h));
   if (is_shown(seen, all, h, 0.0)) return true;
-  double largest = size_of(bound_between(l, 0.0, HUGE_VAL).value);
-  double faint = l->faint * (largest < HUGE_VAL ? largest : size_of(all.value));
+  double largest = size_of(bound_between(self, 0.0, HUGE_VAL).value);
+  double faint = self->faint * (largest < HUGE_VAL ? largest : size_of(all.value));
   if (!(faint < HUGE_VAL)) faint = 0.0;
   if (is_shown(seen, all, h, faint)) return true;
   all = seen;
   for (int k = 0; k < PIECES; k++)
-    all = hull_of(all, bound_between(l, t + k * h / PIECES, t + (k + 1) * h / PIECES));
+    all = hull_of(all, bound_between(self, t + k * h / PIECES, t + (k + 1) * h / PIECES));
   return is_shown(seen, all, h, faint);
 }
 
-static double longest_step(const look *l, double t, double h, double least) {
+static double longest_step(const look *self, double t, double h, double least) {
   double shorter = h;
-  for (int k = 0; k < MOST_HALVINGS && !resolves(l, t, shorter); k++) {
+  for (int k = 0; k < MOST_HALVINGS && !resolves(self, t, shorter); k++) {
     shorter *= 0.5;
     if (shorter > least) continue;
     /* a place that is passed; or the bounds say nothing of this program */
-    return resolves(l, t + least, least) ? fmin(least, h) : h;
+    return resolves(self, t + least, least) ? fmin(least, h) : h;
   }
   return shorter;
 }
@@ -542,8 +555,9 @@ static bool reads_time(const strut_program *program) {
   return strut_program_reads(program, STRUT_COLUMN_TIME, STRUT_COLUMN_SIGNAL);
 }
 
-bool strut_signal_is_looked_at(const strut_signal *s) {
-  return s->kind == STRUT_HALF_SINE || (strut_signal_has_program(s) && reads_time(&s->program));
+bool strut_signal_is_looked_at(const strut_signal *signal) {
+  return signal->kind == STRUT_HALF_SINE ||
+         (strut_signal_has_program(signal) && reads_time(&signal->program));
 }
 
 double strut_program_longest_step(const strut_program *program, const strut_signal *signals,
@@ -555,15 +569,15 @@ double strut_program_longest_step(const strut_program *program, const strut_sign
 
 double strut_signal_longest_step(const strut_signal *signals, const strut_signal_inputs *in,
                                  int32_t index, double t, double h, double faint, double least) {
-  const strut_signal *s = &signals[index];
+  const strut_signal *signal = &signals[index];
   const look l = {NULL, index, signals, in, faint};
-  if (s->every > 0.0 || !strut_signal_is_looked_at(s)) return h;
-  if (s->trigger.kind != STRUT_TRIGGER_NONE) {
+  if (signal->every > 0.0 || !strut_signal_is_looked_at(signal)) return h;
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE) {
     double since = in ? in->started[index] : HUGE_VAL;
     if (!(t >= since)) return h;
     t -= since;
   }
-  if (strut_signal_has_program(s))
-    return strut_program_longest_step(&s->program, signals, in, t, h, faint, least);
+  if (strut_signal_has_program(signal))
+    return strut_program_longest_step(&signal->program, signals, in, t, h, faint, least);
   return longest_step(&l, t, h, least);
 }

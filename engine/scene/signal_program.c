@@ -101,17 +101,17 @@ static bool has_kink(strut_operation operation) {
  * The result of an instruction, which is `free` by its operands, where a side is held; and notes the margin. What min
  * and max leave out may be too steep for a step without error control.
  */
-static dual hold_side(const strut_kinks *kinks, const strut_instruction *p, dual a, dual b,
-                      dual free) {
+static dual hold_side(const strut_kinks *kinks, const strut_instruction *instruction, dual a,
+                      dual b, dual free) {
   int32_t i = 0;
-  while (i < kinks->count && kinks->at[i] != p) i++;
+  while (i < kinks->count && kinks->at[i] != instruction) i++;
   if (i == kinks->count) return free;
   double side = kinks->side[i], sign = side < 0.0 ? -1.0 : 1.0;
   kinks->margin[i] = sign * (a.value - b.value), kinks->rate[i] = sign * (a.rate - b.rate);
   if (side == 0.0) return free;
-  if (p->operation == STRUT_OPERATION_ABS) return (dual){side * a.value, side * a.rate};
+  if (instruction->operation == STRUT_OPERATION_ABS) return (dual){side * a.value, side * a.rate};
   if (!kinks->controlled) return free;
-  return (p->operation == STRUT_OPERATION_MIN) == (side > 0.0) ? b : a;
+  return (instruction->operation == STRUT_OPERATION_MIN) == (side > 0.0) ? b : a;
 }
 
 /* An internal state and its rate, which takes the values of others only. */
@@ -147,19 +147,20 @@ void strut_program_evaluate(const strut_program *program, const strut_signal *si
   dual stack[STRUT_MOST_PROGRAM_DEPTH];
   size_t top = 0;
   for (size_t i = 0; i < program->length; i++) {
-    const strut_instruction *p = &program->instruction[i];
-    int operands = strut_operation_operands(p->operation);
+    const strut_instruction *instruction = &program->instruction[i];
+    int operands = strut_operation_operands(instruction->operation);
     assert(top >= (size_t)operands && top < STRUT_MOST_PROGRAM_DEPTH + (size_t)operands);
-    if (p->operation == STRUT_OPERATION_NUMBER) {
-      stack[top++] = (dual){p->number, 0.0};
+    if (instruction->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = (dual){instruction->number, 0.0};
     } else if (operands == 0) {
-      stack[top++] = read_column(p->column, signals, in, t);
+      stack[top++] = read_column(instruction->column, signals, in, t);
     } else {
       top -= (size_t)operands - 1;
       dual a = stack[top - 1], b = operands == 1 ? (dual){0.0, 0.0} : stack[top];
-      stack[top - 1] = operands == 1 ? apply(p->operation, a) : combine(p->operation, a, b);
-      if (in && in->kinks && has_kink(p->operation))
-        stack[top - 1] = hold_side(in->kinks, p, a, b, stack[top - 1]);
+      stack[top - 1] =
+          operands == 1 ? apply(instruction->operation, a) : combine(instruction->operation, a, b);
+      if (in && in->kinks && has_kink(instruction->operation))
+        stack[top - 1] = hold_side(in->kinks, instruction, a, b, stack[top - 1]);
     }
   }
   assert(top == 1);
@@ -174,11 +175,11 @@ static void describe_signal(const strut_scene *scene, int32_t index, passage thr
 
 static void describe_sensor(const strut_scene *scene, int32_t index, bool rate, passage through,
                             strut_signal_traits *traits) {
-  const strut_sensor *s = &scene->sensors[index];
-  strut_column seen = strut_sensor_column(s);
+  const strut_sensor *sensor = &scene->sensors[index];
+  strut_column seen = strut_sensor_column(sensor);
   traits->follows = true;
   if (through == DIRECT) {
-    if (rate || !strut_sensor_has_rate(s)) traits->sensor = index;
+    if (rate || !strut_sensor_has_rate(sensor)) traits->sensor = index;
   } else if (seen.kind == STRUT_COLUMN_FORCE && scene->members[seen.item].damping > 0.0) {
     traits->damped = index;
   }
@@ -187,30 +188,34 @@ static void describe_sensor(const strut_scene *scene, int32_t index, bool rate, 
 static void describe_program(const strut_scene *scene, const strut_program *program,
                              passage through, strut_signal_traits *traits) {
   for (size_t i = 0; i < program->length; i++) {
-    const strut_instruction *p = &program->instruction[i];
-    if (p->operation != STRUT_OPERATION_COLUMN) continue;
-    strut_column_kind kind = p->column.kind;
-    if (kind == STRUT_COLUMN_SIGNAL) describe_signal(scene, p->column.item, through, traits);
+    const strut_instruction *instruction = &program->instruction[i];
+    if (instruction->operation != STRUT_OPERATION_COLUMN) continue;
+    strut_column_kind kind = instruction->column.kind;
+    if (kind == STRUT_COLUMN_SIGNAL)
+      describe_signal(scene, instruction->column.item, through, traits);
     if (kind == STRUT_COLUMN_SENSOR || kind == STRUT_COLUMN_SENSOR_RATE)
-      describe_sensor(scene, p->column.item, kind == STRUT_COLUMN_SENSOR_RATE, through, traits);
+      describe_sensor(scene, instruction->column.item, kind == STRUT_COLUMN_SENSOR_RATE, through,
+                      traits);
     if (kind != STRUT_COLUMN_STATE) continue;
     traits->follows = true;
     if (through == DIRECT)
-      describe_program(scene, &scene->states[p->column.item].rate, INTEGRATED, traits);
+      describe_program(scene, &scene->states[instruction->column.item].rate, INTEGRATED, traits);
   }
 }
 
 static void describe_signal(const strut_scene *scene, int32_t index, passage through,
                             strut_signal_traits *traits) {
-  const strut_signal *s = &scene->signals[index];
-  if (s->every > 0.0 || s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+  const strut_signal *signal = &scene->signals[index];
+  if (signal->every > 0.0 || signal->lag > 0.0 || signal->trigger.kind != STRUT_TRIGGER_NONE)
     traits->follows = true;
-  if (s->kind == STRUT_RELAY) traits->follows = true;
-  if (s->kind == STRUT_RELAY || s->every > 0.0 || (s->lag > 0.0 && through == INTEGRATED)) return;
-  if (s->lag > 0.0) through = INTEGRATED;
-  for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
-    describe_signal(scene, s->terms[i], through, traits);
-  if (s->kind == STRUT_EXPRESSION) describe_program(scene, &s->program, through, traits);
+  if (signal->kind == STRUT_RELAY) traits->follows = true;
+  if (signal->kind == STRUT_RELAY || signal->every > 0.0 ||
+      (signal->lag > 0.0 && through == INTEGRATED))
+    return;
+  if (signal->lag > 0.0) through = INTEGRATED;
+  for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
+    describe_signal(scene, signal->terms[i], through, traits);
+  if (signal->kind == STRUT_EXPRESSION) describe_program(scene, &signal->program, through, traits);
 }
 
 strut_signal_traits strut_signal_describe(const strut_scene *scene, int32_t index) {
@@ -237,9 +242,10 @@ int32_t strut_scene_kinks(const strut_scene *scene, const strut_instruction **at
 bool strut_program_reads(const strut_program *program, strut_column_kind one,
                          strut_column_kind other) {
   for (size_t i = 0; i < program->length; i++) {
-    const strut_instruction *p = &program->instruction[i];
-    bool column = p->operation == STRUT_OPERATION_COLUMN;
-    if (column && (p->column.kind == one || p->column.kind == other)) return true;
+    const strut_instruction *instruction = &program->instruction[i];
+    bool column = instruction->operation == STRUT_OPERATION_COLUMN;
+    if (column && (instruction->column.kind == one || instruction->column.kind == other))
+      return true;
   }
   return false;
 }
@@ -297,14 +303,14 @@ static double turns_of_program(const strut_scene *scene, const strut_program *pr
   return most;
 }
 
-static double turns_of_signal(const strut_scene *scene, const strut_signal *s, double last,
+static double turns_of_signal(const strut_scene *scene, const strut_signal *signal, double last,
                               bool stops) {
-  if (s->every > 0.0) return 0.0;
-  if (strut_signal_has_program(s)) /* within a step such methods look for what it does */
-    return stops ? 0.0 : turns_of_program(scene, &s->program, last);
-  bool jumps = s->kind == STRUT_SQUARE || s->kind == STRUT_HALF_SINE;
-  bool turns = s->kind == STRUT_SINE || (jumps && !stops);
-  return turns && s->amplitude != 0.0 ? s->frequency : 0.0;
+  if (signal->every > 0.0) return 0.0;
+  if (strut_signal_has_program(signal)) /* within a step such methods look for what it does */
+    return stops ? 0.0 : turns_of_program(scene, &signal->program, last);
+  bool jumps = signal->kind == STRUT_SQUARE || signal->kind == STRUT_HALF_SINE;
+  bool turns = signal->kind == STRUT_SINE || (jumps && !stops);
+  return turns && signal->amplitude != 0.0 ? signal->frequency : 0.0;
 }
 
 /* An oscillator's own rate is the number that its program begins with. */
@@ -324,9 +330,10 @@ static void note_user(const strut_scene *scene, double last, bool stops, int32_t
   for (size_t i = 0; s->kind == STRUT_SUM && i < s->term_count; i++)
     note_user(scene, last, stops, s->terms[i], kind, name, fastest);
   for (size_t i = 0; strut_signal_has_program(s) && i < s->program.length; i++) {
-    const strut_instruction *p = &s->program.instruction[i];
-    if (p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL)
-      note_user(scene, last, stops, p->column.item, kind, name, fastest);
+    const strut_instruction *instruction = &s->program.instruction[i];
+    if (instruction->operation == STRUT_OPERATION_COLUMN &&
+        instruction->column.kind == STRUT_COLUMN_SIGNAL)
+      note_user(scene, last, stops, instruction->column.item, kind, name, fastest);
   }
 }
 
@@ -352,12 +359,12 @@ strut_turning strut_scene_fastest_turn(const strut_scene *scene, double last, bo
     if (scene->contacts[i].friction.driven)
       note_user(scene, last, stops, scene->contacts[i].friction.signal, "friction", NULL, &fastest);
   for (size_t i = 0; i < scene->unbalance_count; i++) {
-    const strut_unbalance *u = &scene->unbalances[i];
-    note_turn(&fastest, u->speed / STRUT_TAU, "unbalance", u->name);
+    const strut_unbalance *unbalance = &scene->unbalances[i];
+    note_turn(&fastest, unbalance->speed / STRUT_TAU, "unbalance", unbalance->name);
     double value, rate;
-    for (int k = 0; k <= MOMENTS && u->signal >= 0; k++) {
-      strut_signal_evaluate(scene->signals, u->signal, last * k / MOMENTS, &value, &rate);
-      note_turn(&fastest, rate / STRUT_TAU, "unbalance", u->name);
+    for (int k = 0; k <= MOMENTS && unbalance->signal >= 0; k++) {
+      strut_signal_evaluate(scene->signals, unbalance->signal, last * k / MOMENTS, &value, &rate);
+      note_turn(&fastest, rate / STRUT_TAU, "unbalance", unbalance->name);
     }
   }
   for (size_t i = 0; i < scene->state_count; i++)

@@ -261,11 +261,11 @@ static void put_things(const numbers *to, const strut_scene *scene, strut_thing 
 static void put_configurations(const numbers *to, const strut_scene *scene) {
   put(to, (double)scene->configuration_count);
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    const strut_configuration *c = &scene->configurations[i];
-    put(to, c->shaped);
-    for (size_t k = 0; c->position && k < scene->node_count; k++)
-      for (int d = 0; d < 2; d++) put(to, c->position[k][d]);
-    put_sets(to, c->sets, c->set_count);
+    const strut_configuration *configuration = &scene->configurations[i];
+    put(to, configuration->shaped);
+    for (size_t k = 0; configuration->position && k < scene->node_count; k++)
+      for (int d = 0; d < 2; d++) put(to, configuration->position[k][d]);
+    put_sets(to, configuration->sets, configuration->set_count);
   }
 }
 
@@ -278,10 +278,10 @@ static void put_loads(const numbers *to, const strut_scene *scene) {
 /* What moves is where its signal has it at t = 0. */
 static void put_moved(const numbers *to, const strut_scene *scene) {
   for (size_t i = 0; i < scene->support_motion_count; i++) {
-    const strut_support_motion *m = &scene->support_motions[i];
+    const strut_support_motion *motion = &scene->support_motions[i];
     double value, rate;
-    strut_signal_evaluate(scene->signals, m->signal, 0.0, &value, &rate);
-    put(to, m->node), put(to, m->axis), put(to, value);
+    strut_signal_evaluate(scene->signals, motion->signal, 0.0, &value, &rate);
+    put(to, motion->node), put(to, motion->axis), put(to, value);
   }
   for (size_t i = 0; i < scene->sliding_count; i++) {
     put_thing(to, STRUT_THING_SLIDER, &scene->sliding_masses[i]);

@@ -30,6 +30,7 @@ const char *strut_name_of_parameter(const strut_result_object *of, size_t i) {
 }
 
 strut_value strut_value_of_parameter(const strut_result_object *of, size_t i) {
-  const strut_parameter *p = &of->scene->parameters[i];
-  return isnan(p->value) ? STRUT_VALUE_AS_TEXT(p->text) : STRUT_VALUE_AS_NUMBER(p->value);
+  const strut_parameter *parameter = &of->scene->parameters[i];
+  return isnan(parameter->value) ? STRUT_VALUE_AS_TEXT(parameter->text)
+                                 : STRUT_VALUE_AS_NUMBER(parameter->value);
 }

@@ -29,23 +29,24 @@ typedef struct strut_wrap {
 static inline double strut_wrap_side(uint32_t right, int k) { return right >> k & 1 ? -1.0 : 1.0; }
 
 /** Segment k of w, and by how far the circles at its ends are apart across it. */
-static inline void strut_wrap_lay(strut_wrap *w, int k, const double (*p)[2], int n, uint32_t right,
-                                  double radius) {
-  int a = w->node[k], b = w->node[k + 1];
+static inline void strut_wrap_lay(strut_wrap *wrap, int k, const double (*p)[2], int n,
+                                  uint32_t right, double radius) {
+  int a = wrap->node[k], b = wrap->node[k + 1];
   double x = p[b][0] - p[a][0], y = p[b][1] - p[a][1], square = x * x + y * y;
   double before = a > 0 ? strut_wrap_side(right, a) : 0.0;
   double behind = b < n - 1 ? strut_wrap_side(right, b) : 0.0;
   double across = radius * (behind - before), rest = square - across * across;
   double along = rest > 0.0 ? sqrt(rest) : 0.0, inverse = square > 0.0 ? 1.0 / square : 0.0;
-  w->free[k] = along;
-  w->ux[k] = (along * x + across * y) * inverse, w->uy[k] = (along * y - across * x) * inverse;
+  wrap->free[k] = along;
+  wrap->ux[k] = (along * x + across * y) * inverse,
+  wrap->uy[k] = (along * y - across * x) * inverse;
 }
 
 /** Angle by which the cable winds round touched node k; slightly negative where it would have to be pulled round. */
-static inline double strut_wrap_turn(const strut_wrap *w, int k, uint32_t right) {
-  double cross = w->ux[k - 1] * w->uy[k] - w->uy[k - 1] * w->ux[k];
-  double turn = strut_wrap_side(right, w->node[k]) *
-                atan2(cross, w->ux[k - 1] * w->ux[k] + w->uy[k - 1] * w->uy[k]);
+static inline double strut_wrap_turn(const strut_wrap *wrap, int k, uint32_t right) {
+  double cross = wrap->ux[k - 1] * wrap->uy[k] - wrap->uy[k - 1] * wrap->ux[k];
+  double turn = strut_wrap_side(right, wrap->node[k]) *
+                atan2(cross, wrap->ux[k - 1] * wrap->ux[k] + wrap->uy[k - 1] * wrap->uy[k]);
   return turn < -1.5707963267948966 ? turn + 6.283185307179586 : turn;
 }
 
@@ -54,28 +55,29 @@ static inline double strut_wrap_turn(const strut_wrap *w, int k, uint32_t right)
  * right. Returns its length [m].
  */
 static inline double strut_wrap_find(const double (*p)[2], int n, uint32_t right, double radius,
-                                     strut_wrap *w) {
+                                     strut_wrap *wrap) {
   double sum = 0.0;
   assert(n >= 2 && n <= STRUT_MOST_WRAPPED);
-  w->count = n;
-  for (int k = 0; k < n; k++) w->node[k] = k;
-  for (int k = 0; k + 1 < n; k++) strut_wrap_lay(w, k, p, n, right, radius);
-  while (w->count > 2) { /* leave aside the guide that it is pulled round the most */
+  wrap->count = n;
+  for (int k = 0; k < n; k++) wrap->node[k] = k;
+  for (int k = 0; k + 1 < n; k++) strut_wrap_lay(wrap, k, p, n, right, radius);
+  while (wrap->count > 2) { /* leave aside the guide that it is pulled round the most */
     int worst = 0;
     double least = 0.0;
-    for (int k = 1; k + 1 < w->count; k++) {
-      double turn = strut_wrap_turn(w, k, right);
+    for (int k = 1; k + 1 < wrap->count; k++) {
+      double turn = strut_wrap_turn(wrap, k, right);
       if (turn < least) least = turn, worst = k;
     }
     if (!worst) break;
-    w->count--;
-    for (int k = worst; k < w->count; k++) w->node[k] = w->node[k + 1];
-    for (int k = worst; k + 1 < w->count; k++)
-      w->ux[k] = w->ux[k + 1], w->uy[k] = w->uy[k + 1], w->free[k] = w->free[k + 1];
-    strut_wrap_lay(w, worst - 1, p, n, right, radius);
+    wrap->count--;
+    for (int k = worst; k < wrap->count; k++) wrap->node[k] = wrap->node[k + 1];
+    for (int k = worst; k + 1 < wrap->count; k++)
+      wrap->ux[k] = wrap->ux[k + 1], wrap->uy[k] = wrap->uy[k + 1],
+      wrap->free[k] = wrap->free[k + 1];
+    strut_wrap_lay(wrap, worst - 1, p, n, right, radius);
   }
-  for (int k = 0; k + 1 < w->count; k++) sum += w->free[k];
-  for (int k = 1; k + 1 < w->count; k++) sum += radius * strut_wrap_turn(w, k, right);
+  for (int k = 0; k + 1 < wrap->count; k++) sum += wrap->free[k];
+  for (int k = 1; k + 1 < wrap->count; k++) sum += radius * strut_wrap_turn(wrap, k, right);
   return sum;
 }
 

@@ -45,19 +45,20 @@ typedef struct strut_tridiagonal {
 } strut_tridiagonal;
 
 /** False: out of memory. */
-STRUT_API bool strut_tridiagonal_create(strut_tridiagonal *t, int32_t n, strut_arena *arena);
+STRUT_API bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t n,
+                                        strut_arena *arena);
 /** z, symmetric and finite, becomes Q and T. */
-STRUT_API void strut_tridiagonal_reduce(strut_tridiagonal *t);
+STRUT_API void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal);
 /** Once after each reduction: what strut_eigen computes, eigenvectors in z. T remains, Q does not. */
-STRUT_API bool strut_tridiagonal_eigen(strut_tridiagonal *t, double *value);
+STRUT_API bool strut_tridiagonal_eigen(strut_tridiagonal *tridiagonal, double *value);
 /** x (n) becomes Q'x, or Qx. */
-STRUT_API void strut_tridiagonal_enter(const strut_tridiagonal *t, double *x);
-STRUT_API void strut_tridiagonal_leave(const strut_tridiagonal *t, double *x);
+STRUT_API void strut_tridiagonal_enter(const strut_tridiagonal *tridiagonal, double *vector);
+STRUT_API void strut_tridiagonal_leave(const strut_tridiagonal *tridiagonal, double *vector);
 /** Factors T + shift; returns how many eigenvalues of H lie below -shift. */
-STRUT_API int32_t strut_tridiagonal_factor(strut_tridiagonal *t, double shift);
+STRUT_API int32_t strut_tridiagonal_factor(strut_tridiagonal *tridiagonal, double shift);
 /** x'(T + shift)^-1 x; x becomes (T + shift)^-1 x. */
-STRUT_API double strut_tridiagonal_form(const strut_tridiagonal *t, const double *x);
-STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *t, double *x);
+STRUT_API double strut_tridiagonal_form(const strut_tridiagonal *tridiagonal, const double *vector);
+STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, double *vector);
 
 /**
  * Of matrix (n, n), which it overwrites: value (n) ascending, and the unit vector of value i as row
@@ -71,10 +72,11 @@ gsl_vector *strut_arena_vector(strut_arena *arena, size_t size);
 gsl_permutation *strut_arena_order(strut_arena *arena, size_t size);
 
 /** Takes out of x (n) its shares in `count` orthonormal rows (count, n), twice for rounding; returns what is left, x.x. */
-double strut_remove_shares(const double *rows, size_t count, size_t n, double *x);
+double strut_remove_shares(const double *rows, size_t count, size_t n, double *vector);
 
 /** Solves A x = right, with its rows brought to one size first; both are overwritten. False: singular. */
-bool strut_solve_rows(gsl_matrix *a, gsl_vector *right, gsl_permutation *order, gsl_vector *x);
+bool strut_solve_rows(gsl_matrix *matrix, gsl_vector *right, gsl_permutation *order,
+                      gsl_vector *vector);
 
 /* What statics needs of SPQR and ARPACK: a rank-revealing A E = Q R of a sparse matrix, and the lowest eigenpairs
  * of K x = z M x by shift-invert Lanczos.
@@ -90,8 +92,8 @@ typedef struct strut_lanczos_problem {
   int32_t n;
   double shift; /* below all eigenvalues */
   void *context;
-  void (*solve)(void *context, double *x);                 /* x becomes (K - shift M)^-1 x */
-  void (*mass)(void *context, const double *x, double *y); /* y = M x */
+  void (*solve)(void *context, double *vector);                 /* x becomes (K - shift M)^-1 x */
+  void (*mass)(void *context, const double *vector, double *y); /* y = M x */
   const strut_flag *interrupt; /* ends it with STRUT_INTERRUPTED; or NULL */
 } strut_lanczos_problem;
 
@@ -109,8 +111,8 @@ typedef struct strut_sparse_algebra_library {
    * of `tolerance` or less beside those before them count as dependent. STRUT_NO_MEMORY, or
    * STRUT_SINGULAR where SPQR fails for another reason.
    */
-  strut_status (*create_qr)(const strut_sparse_columns *a, double tolerance, strut_sparse_qr **qr,
-                            strut_error *error);
+  strut_status (*create_qr)(const strut_sparse_columns *columns, double tolerance,
+                            strut_sparse_qr **qr, strut_error *error);
   void (*free_qr)(strut_sparse_qr *qr);
   int32_t (*rank)(const strut_sparse_qr *qr);
   /** Smallest and largest diagonal entry of R, absolute; 0 where the rank is 0. */
@@ -123,7 +125,7 @@ typedef struct strut_sparse_algebra_library {
    * The i-th vector of a basis of what A maps to zero, 0 <= i < columns - rank: x (columns), 1 at a
    * dependent column of its own, 0 at the other dependent ones.
    */
-  void (*null)(const strut_sparse_qr *qr, int32_t i, double *x);
+  void (*null)(const strut_sparse_qr *qr, int32_t i, double *vector);
   /**
    * The `count` eigenvalues next above the shift, ascending, and their vectors (count, n) with
    * x'Mx = 1. count < n. The start vector is always the same. STRUT_SINGULAR where it does not
@@ -167,8 +169,8 @@ bool strut_linear_program_create(strut_linear_program *program, int32_t rows, in
 void strut_linear_program_add(strut_linear_program *program, int32_t row, int32_t column,
                               double value);
 /** x (columns) and the sum, filled where optimal; STRUT_NO_MEMORY, STRUT_INTERRUPTED or STRUT_OK. */
-strut_status strut_linear_program_solve(const strut_linear_program *program, double *x, double *sum,
-                                        strut_linear_program_end *end);
+strut_status strut_linear_program_solve(const strut_linear_program *program, double *vector,
+                                        double *sum, strut_linear_program_end *end);
 
 /* All eigenvalues and eigenvectors of a small Hessian, the soft ones to their own last digits.
  *
@@ -195,8 +197,8 @@ void strut_spectrum_free(strut_spectrum_workspace *room);
  * Reduces the Hessian at q, valid until the next call of a function of this room. *singular: some
  * eigenvalue may be all rounding, and steps need the modes. False if the Hessian is not finite.
  */
-bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q, strut_tridiagonal **t,
-                           bool *singular);
+bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q,
+                           strut_tridiagonal **tridiagonals, bool *singular);
 /** The spectrum of what was reduced last, at q; not refined if it was not singular, without q then. */
 bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool careful,
                            strut_spectrum *spectrum);
@@ -212,16 +214,16 @@ bool strut_spectrum_compute(strut_spectrum_workspace *room, const double *q, dou
 /* Steps put together from modes. Arrays are (n). */
 
 /** part: shares of g in the modes; idle: 1 where a mode has neither stiffness nor a share beyond `still` [N]. */
-void strut_spectrum_split(const strut_spectrum *spectrum, const double *g, double still,
+void strut_spectrum_split(const strut_spectrum *spectrum, const double *gradient, double still,
                           double *part, uint8_t *idle);
 /** step = the sum of the modes times x; returns its length. */
-double strut_spectrum_combine(const strut_spectrum *spectrum, const double *x, double *step);
+double strut_spectrum_combine(const strut_spectrum *spectrum, const double *vector, double *step);
 /**
  * Corrects a step by Newton's method, with the gradient g at its end, in modes whose eigenvalue and `value` exceed
  * `stiff`. False: there are none.
  */
 bool strut_spectrum_rebalance(const strut_spectrum *spectrum, const double *value, double stiff,
-                              const double *g, double *step);
+                              const double *gradient, double *step);
 
 /** The stiffness that forces give to some modes, summed force by force: stiff ones that a mode does not strain do not
     blur it. Mode i's row r is vector[i mode_step + r row_step]. */

@@ -43,32 +43,36 @@ static double solve_secular(double (*step_length)(const void *r, double mu, doub
 }
 
 /* x at the multiplier mu; returns mu. */
-static double shares_at(const strut_quadratic *r, double mu, double *x) {
-  for (int32_t i = 0; i < r->n; i++)
-    x[i] = r->idle[i] || r->part[i] == 0.0 ? 0.0 : -r->part[i] / (r->value[i] + mu);
+static double shares_at(const strut_quadratic *quadratic, double mu, double *vector) {
+  for (int32_t i = 0; i < quadratic->n; i++)
+    vector[i] = quadratic->idle[i] || quadratic->part[i] == 0.0
+                    ? 0.0
+                    : -quadratic->part[i] / (quadratic->value[i] + mu);
   return mu;
 }
 
-double strut_trust_step(const strut_quadratic *r, double radius, double *x) {
+double strut_trust_step(const strut_quadratic *quadratic, double radius, double *vector) {
   assert(radius > 0.0);
   double size = 0.0, slope;
   int32_t low = -1;
-  for (int32_t i = 0; i < r->n; i++) {
-    if (r->idle[i]) continue;
-    if (low < 0 || r->value[i] < r->value[low]) low = i;
-    size += r->part[i] * r->part[i];
+  for (int32_t i = 0; i < quadratic->n; i++) {
+    if (quadratic->idle[i]) continue;
+    if (low < 0 || quadratic->value[i] < quadratic->value[low]) low = i;
+    size += quadratic->part[i] * quadratic->part[i];
   }
   size = sqrt(size);
-  if (low < 0) return shares_at(r, 0.0, x); /* no mode has a force */
-  double lowest = r->value[low];
-  double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * r->scale + 1e-300 : 0.0);
-  double length = step_length_at(r, floor, &slope);
+  if (low < 0) return shares_at(quadratic, 0.0, vector); /* no mode has a force */
+  double lowest = quadratic->value[low];
+  double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * quadratic->scale + 1e-300 : 0.0);
+  double length = step_length_at(quadratic, floor, &slope);
   if (length > radius)
-    return shares_at(r, solve_secular(step_length_at, r, floor, floor + size / radius, radius), x);
-  shares_at(r, floor, x);
-  if (lowest > -r->noise) return floor;
+    return shares_at(quadratic,
+                     solve_secular(step_length_at, quadratic, floor, floor + size / radius, radius),
+                     vector);
+  shares_at(quadratic, floor, vector);
+  if (lowest > -quadratic->noise) return floor;
   double rest = sqrt(fmax(radius * radius - length * length, 0.0)); /* the hard case */
-  x[low] += r->part[low] > 0 ? -rest : rest;
+  vector[low] += quadratic->part[low] > 0 ? -rest : rest;
   return floor;
 }
 
@@ -91,113 +95,119 @@ typedef struct dense_curvature {
 } dense_curvature;
 
 static void dense_free(void *memory) {
-  dense_curvature *r = memory;
-  if (!r) return;
-  strut_spectrum_free(r->spectra);
-  strut_release(r->part);
-  strut_release(r->x);
-  strut_release(r->idle);
-  strut_release(r);
+  dense_curvature *curvature = memory;
+  if (!curvature) return;
+  strut_spectrum_free(curvature->spectra);
+  strut_release(curvature->part);
+  strut_release(curvature->x);
+  strut_release(curvature->idle);
+  strut_release(curvature);
 }
 
 void *strut_curvature_dense_create(const strut_potential *potential) {
-  dense_curvature *r = strut_allocate(1, sizeof *r);
-  if (!r) return NULL;
-  r->spectra = strut_spectrum_create(potential);
-  r->part = strut_allocate((size_t)potential->n, sizeof *r->part);
-  r->x = strut_allocate((size_t)potential->n, sizeof *r->x);
-  r->idle = strut_allocate((size_t)potential->n, sizeof *r->idle);
-  if (r->spectra && r->part && r->x && r->idle) return r;
-  dense_free(r);
+  dense_curvature *curvature = strut_allocate(1, sizeof *curvature);
+  if (!curvature) return NULL;
+  curvature->spectra = strut_spectrum_create(potential);
+  curvature->part = strut_allocate((size_t)potential->n, sizeof *curvature->part);
+  curvature->x = strut_allocate((size_t)potential->n, sizeof *curvature->x);
+  curvature->idle = strut_allocate((size_t)potential->n, sizeof *curvature->idle);
+  if (curvature->spectra && curvature->part && curvature->x && curvature->idle) return curvature;
+  dense_free(curvature);
   return NULL;
 }
 
 /* The modes of what was reduced last, at q; NULL where it is not singular, which refines nothing. */
-static bool find_modes(dense_curvature *r, const double *q) {
-  if (r->has_modes) return true;
-  r->has_modes = strut_spectrum_finish(r->spectra, q, false, &r->now);
-  if (r->has_modes && r->now.n)
-    r->scale = fmax(fabs(r->now.value[0]), fabs(r->now.value[r->now.n - 1]));
-  return r->has_modes;
+static bool find_modes(dense_curvature *curvature, const double *q) {
+  if (curvature->has_modes) return true;
+  curvature->has_modes = strut_spectrum_finish(curvature->spectra, q, false, &curvature->now);
+  if (curvature->has_modes && curvature->now.n)
+    curvature->scale =
+        fmax(fabs(curvature->now.value[0]), fabs(curvature->now.value[curvature->now.n - 1]));
+  return curvature->has_modes;
 }
 
 static bool dense_decompose(void *memory, const double *q) {
-  dense_curvature *r = memory;
+  dense_curvature *curvature = memory;
   bool singular;
-  r->has_modes = false;
-  if (!strut_spectrum_reduce(r->spectra, q, &r->reduced, &singular)) return false;
-  r->scale = r->reduced->bound;
-  return (!singular && r->reduced->n > FEW_MODES) || find_modes(r, q);
+  curvature->has_modes = false;
+  if (!strut_spectrum_reduce(curvature->spectra, q, &curvature->reduced, &singular)) return false;
+  curvature->scale = curvature->reduced->bound;
+  return (!singular && curvature->reduced->n > FEW_MODES) || find_modes(curvature, q);
 }
 
-static bool is_definite(dense_curvature *r) {
-  return !r->has_modes && strut_tridiagonal_factor(r->reduced, 0.0) == 0;
+static bool is_definite(dense_curvature *curvature) {
+  return !curvature->has_modes && strut_tridiagonal_factor(curvature->reduced, 0.0) == 0;
 }
 
 /* |x| of x = -(T + mu)^-1 part, and d|x|/dmu; infinite where T + mu is not positive definite. */
 static double reduced_length_at(const void *memory, double mu, double *slope) {
-  const dense_curvature *r = memory;
-  int32_t n = r->reduced->n;
+  const dense_curvature *curvature = memory;
+  int32_t n = curvature->reduced->n;
   *slope = 0.0;
-  if (strut_tridiagonal_factor(r->reduced, mu) > 0) return HUGE_VAL;
-  for (int32_t i = 0; i < n; i++) r->x[i] = -r->part[i];
-  strut_tridiagonal_solve(r->reduced, r->x);
-  double length = sqrt(strut_dot(r->x, r->x, n));
-  if (length > 0) *slope = -strut_tridiagonal_form(r->reduced, r->x) / length;
+  if (strut_tridiagonal_factor(curvature->reduced, mu) > 0) return HUGE_VAL;
+  for (int32_t i = 0; i < n; i++) curvature->x[i] = -curvature->part[i];
+  strut_tridiagonal_solve(curvature->reduced, curvature->x);
+  double length = sqrt(strut_dot(curvature->x, curvature->x, n));
+  if (length > 0) *slope = -strut_tridiagonal_form(curvature->reduced, curvature->x) / length;
   return length;
 }
 
-static void enter_basis(dense_curvature *r, const double *g) {
-  memcpy(r->part, g, (size_t)r->reduced->n * sizeof *g);
-  strut_tridiagonal_enter(r->reduced, r->part);
+static void enter_basis(dense_curvature *curvature, const double *gradient) {
+  memcpy(curvature->part, gradient, (size_t)curvature->reduced->n * sizeof *gradient);
+  strut_tridiagonal_enter(curvature->reduced, curvature->part);
 }
 
 /* False in the hard case, which needs the lowest mode: g has next to no share of it. */
-static bool step_in_basis(dense_curvature *r, const double *g, double radius, double *s,
-                          strut_model_step *step) {
-  int32_t n = r->reduced->n;
-  enter_basis(r, g);
-  double slope, mu = 0.0, length = reduced_length_at(r, mu, &slope);
+static bool step_in_basis(dense_curvature *curvature, const double *gradient, double radius,
+                          double *s, strut_model_step *step) {
+  int32_t n = curvature->reduced->n;
+  enter_basis(curvature, gradient);
+  double slope, mu = 0.0, length = reduced_length_at(curvature, mu, &slope);
   if (length > radius) {
-    double size = sqrt(strut_dot(r->part, r->part, n)), lowest = isfinite(length) ? 0.0 : r->scale;
-    mu = solve_secular(reduced_length_at, r, 0.0, lowest + size / radius, radius);
-    length = reduced_length_at(r, mu, &slope);
+    double size = sqrt(strut_dot(curvature->part, curvature->part, n)),
+           lowest = isfinite(length) ? 0.0 : curvature->scale;
+    mu = solve_secular(reduced_length_at, curvature, 0.0, lowest + size / radius, radius);
+    length = reduced_length_at(curvature, mu, &slope);
     if (!(fabs(length - radius) <= 1e-5 * radius)) return false;
   }
-  r->multiplier = mu;
-  *step = (strut_model_step){length, 0.5 * (mu * length * length - strut_dot(r->part, r->x, n))};
-  memcpy(s, r->x, (size_t)n * sizeof *s);
-  strut_tridiagonal_leave(r->reduced, s);
+  curvature->multiplier = mu;
+  *step = (strut_model_step){
+      length, 0.5 * (mu * length * length - strut_dot(curvature->part, curvature->x, n))};
+  memcpy(s, curvature->x, (size_t)n * sizeof *s);
+  strut_tridiagonal_leave(curvature->reduced, s);
   return true;
 }
 
 /* s from its shares; its length and what the model gains by it. */
-static strut_model_step assemble_step(const dense_curvature *r, double *s) {
-  strut_model_step step = {.length = strut_spectrum_combine(&r->now, r->x, s)};
-  for (int32_t i = 0; i < r->now.n; i++)
-    if (r->x[i] != 0.0) step.reduction -= r->x[i] * (r->part[i] + 0.5 * r->now.value[i] * r->x[i]);
+static strut_model_step assemble_step(const dense_curvature *curvature, double *s) {
+  strut_model_step step = {.length = strut_spectrum_combine(&curvature->now, curvature->x, s)};
+  for (int32_t i = 0; i < curvature->now.n; i++)
+    if (curvature->x[i] != 0.0)
+      step.reduction -=
+          curvature->x[i] * (curvature->part[i] + 0.5 * curvature->now.value[i] * curvature->x[i]);
   return step;
 }
 
-static strut_model_step dense_trust_step(void *memory, const double *g, double radius, double still,
-                                         double *s) {
-  dense_curvature *r = memory;
+static strut_model_step dense_trust_step(void *memory, const double *gradient, double radius,
+                                         double still, double *s) {
+  dense_curvature *curvature = memory;
   strut_model_step step = {0};
-  if (!r->has_modes && step_in_basis(r, g, radius, s, &step)) return step;
-  if (!find_modes(r, NULL)) return step;
-  strut_spectrum_split(&r->now, g, still, r->part, r->idle);
-  strut_quadratic model = {r->now.n, r->now.value, r->part, r->idle, r->scale, 0.0};
-  if (r->now.n > 0) model.noise = 4.0 * r->now.noise[0];
-  r->multiplier = strut_trust_step(&model, radius, r->x);
-  return assemble_step(r, s);
+  if (!curvature->has_modes && step_in_basis(curvature, gradient, radius, s, &step)) return step;
+  if (!find_modes(curvature, NULL)) return step;
+  strut_spectrum_split(&curvature->now, gradient, still, curvature->part, curvature->idle);
+  strut_quadratic model = {curvature->now.n, curvature->now.value, curvature->part,
+                           curvature->idle,  curvature->scale,     0.0};
+  if (curvature->now.n > 0) model.noise = 4.0 * curvature->now.noise[0];
+  curvature->multiplier = strut_trust_step(&model, radius, curvature->x);
+  return assemble_step(curvature, s);
 }
 
 /* A border in the middle of the gap above `stiff`; 0: no mode is stiffer. */
-static double find_border(dense_curvature *r, double stiff) {
-  int32_t soft = strut_tridiagonal_factor(r->reduced, -stiff);
+static double find_border(dense_curvature *curvature, double stiff) {
+  int32_t soft = strut_tridiagonal_factor(curvature->reduced, -stiff);
   double high = stiff;
-  if (soft == r->reduced->n) return 0.0;
-  while (strut_tridiagonal_factor(r->reduced, -10.0 * high) == soft) high *= 10.0;
+  if (soft == curvature->reduced->n) return 0.0;
+  while (strut_tridiagonal_factor(curvature->reduced, -10.0 * high) == soft) high *= 10.0;
   return sqrt(stiff * high);
 }
 
@@ -205,45 +215,49 @@ static double find_border(dense_curvature *r, double stiff) {
  * Newton's step weighed mode by mode by 1 - 5 u^4 + 4 u^5, u = c / (value + c): 1 for stiff modes, to
  * (c / value)^4, and 0 for soft ones, to (value / c)^2. A border within a gap is as good as a sharp one.
  */
-static bool rebalance_in_basis(dense_curvature *r, const double *g, double stiff, double *s) {
-  int32_t n = r->reduced->n;
-  double c = 2.0 * find_border(r, stiff);
-  if (c == 0.0 || strut_tridiagonal_factor(r->reduced, c) > 0) return false;
-  enter_basis(r, g);
-  memset(r->x, 0, (size_t)n * sizeof *r->x);
+static bool rebalance_in_basis(dense_curvature *curvature, const double *gradient, double stiff,
+                               double *step) {
+  int32_t n = curvature->reduced->n;
+  double c = 2.0 * find_border(curvature, stiff);
+  if (c == 0.0 || strut_tridiagonal_factor(curvature->reduced, c) > 0) return false;
+  enter_basis(curvature, gradient);
+  memset(curvature->x, 0, (size_t)n * sizeof *curvature->x);
   for (int k = 1; k <= 5; k++) {
-    strut_tridiagonal_solve(r->reduced, r->part);
-    for (int32_t i = 0; i < n; i++) r->x[i] += (k < 5 ? 1.0 : -4.0) * r->part[i];
-    for (int32_t i = 0; i < n; i++) r->part[i] *= c;
+    strut_tridiagonal_solve(curvature->reduced, curvature->part);
+    for (int32_t i = 0; i < n; i++) curvature->x[i] += (k < 5 ? 1.0 : -4.0) * curvature->part[i];
+    for (int32_t i = 0; i < n; i++) curvature->part[i] *= c;
   }
-  strut_tridiagonal_leave(r->reduced, r->x);
-  for (int32_t i = 0; i < n; i++) s[i] -= r->x[i];
+  strut_tridiagonal_leave(curvature->reduced, curvature->x);
+  for (int32_t i = 0; i < n; i++) step[i] -= curvature->x[i];
   return true;
 }
 
-static bool dense_rebalance(void *memory, const double *g, double *s) {
-  dense_curvature *r = memory;
-  double stiff = r->multiplier > 0 ? 10.0 * r->multiplier : 1e-3 * r->scale;
-  if (!r->has_modes) return rebalance_in_basis(r, g, stiff, s);
-  return strut_spectrum_rebalance(&r->now, r->now.value, stiff, g, s);
+static bool dense_rebalance(void *memory, const double *gradient, double *step) {
+  dense_curvature *curvature = memory;
+  double stiff = curvature->multiplier > 0 ? 10.0 * curvature->multiplier : 1e-3 * curvature->scale;
+  if (!curvature->has_modes) return rebalance_in_basis(curvature, gradient, stiff, step);
+  return strut_spectrum_rebalance(&curvature->now, curvature->now.value, stiff, gradient, step);
 }
 
-static double dense_newton_step(void *memory, const double *g, double *s) {
-  dense_curvature *r = memory;
+static double dense_newton_step(void *memory, const double *gradient, double *s) {
+  dense_curvature *curvature = memory;
   strut_model_step step;
-  if (is_definite(r) && step_in_basis(r, g, HUGE_VAL, s, &step)) return step.length;
-  if (!find_modes(r, NULL)) return HUGE_VAL;
-  strut_spectrum_split(&r->now, g, HUGE_VAL, r->part, r->idle);
-  for (int32_t i = 0; i < r->now.n; i++) r->x[i] = r->idle[i] ? 0.0 : -r->part[i] / r->now.value[i];
-  return assemble_step(r, s).length;
+  if (is_definite(curvature) && step_in_basis(curvature, gradient, HUGE_VAL, s, &step))
+    return step.length;
+  if (!find_modes(curvature, NULL)) return HUGE_VAL;
+  strut_spectrum_split(&curvature->now, gradient, HUGE_VAL, curvature->part, curvature->idle);
+  for (int32_t i = 0; i < curvature->now.n; i++)
+    curvature->x[i] = curvature->idle[i] ? 0.0 : -curvature->part[i] / curvature->now.value[i];
+  return assemble_step(curvature, s).length;
 }
 
-static bool dense_unstable_direction(void *memory, double *s) {
-  dense_curvature *r = memory;
-  if (is_definite(r)) return false;
-  if (!find_modes(r, NULL) || r->now.n == 0 || !(r->now.value[0] < -4.0 * r->now.noise[0]))
+static bool dense_unstable_direction(void *memory, double *step) {
+  dense_curvature *curvature = memory;
+  if (is_definite(curvature)) return false;
+  if (!find_modes(curvature, NULL) || curvature->now.n == 0 ||
+      !(curvature->now.value[0] < -4.0 * curvature->now.noise[0]))
     return false;
-  memcpy(s, r->now.vector, (size_t)r->now.n * sizeof *s);
+  memcpy(step, curvature->now.vector, (size_t)curvature->now.n * sizeof *step);
   return true;
 }
 
@@ -266,27 +280,31 @@ typedef struct sparse_curvature {
 } sparse_curvature;
 
 static void sparse_free(void *memory) {
-  sparse_curvature *r = memory;
-  if (!r) return;
-  strut_ldl_free(r->ldl);
-  strut_arena_free(&r->arena);
-  strut_release(r);
+  sparse_curvature *curvature = memory;
+  if (!curvature) return;
+  strut_ldl_free(curvature->ldl);
+  strut_arena_free(&curvature->arena);
+  strut_release(curvature);
 }
 
 void *strut_curvature_sparse_create(const strut_potential *potential) {
-  sparse_curvature *r = strut_allocate(1, sizeof *r);
-  if (!r) return NULL;
-  r->potential = potential;
-  r->hessian = strut_potential_matrix(potential, &r->arena);
-  r->work = strut_arena_allocate(&r->arena, (size_t)potential->n, sizeof *r->work);
-  r->scratch = strut_arena_allocate(&r->arena, (size_t)potential->n, sizeof *r->scratch);
-  size_t nonzeros = r->hessian ? (size_t)r->hessian->start[r->hessian->n] : 0;
-  r->factored = strut_arena_allocate(&r->arena, nonzeros, sizeof *r->factored);
-  r->shift = (double)NAN;
-  if (r->hessian && r->work && r->scratch && r->factored &&
-      strut_ldl_create(potential->pattern, &r->ldl, NULL) == STRUT_OK)
-    return r;
-  sparse_free(r);
+  sparse_curvature *curvature = strut_allocate(1, sizeof *curvature);
+  if (!curvature) return NULL;
+  curvature->potential = potential;
+  curvature->hessian = strut_potential_matrix(potential, &curvature->arena);
+  curvature->work =
+      strut_arena_allocate(&curvature->arena, (size_t)potential->n, sizeof *curvature->work);
+  curvature->scratch =
+      strut_arena_allocate(&curvature->arena, (size_t)potential->n, sizeof *curvature->scratch);
+  size_t nonzeros =
+      curvature->hessian ? (size_t)curvature->hessian->start[curvature->hessian->n] : 0;
+  curvature->factored =
+      strut_arena_allocate(&curvature->arena, nonzeros, sizeof *curvature->factored);
+  curvature->shift = (double)NAN;
+  if (curvature->hessian && curvature->work && curvature->scratch && curvature->factored &&
+      strut_ldl_create(potential->pattern, &curvature->ldl, NULL) == STRUT_OK)
+    return curvature;
+  sparse_free(curvature);
   return NULL;
 }
 
@@ -294,76 +312,80 @@ void *strut_curvature_sparse_create(const strut_potential *potential) {
 static const double NOISE = 32 * DBL_EPSILON;
 
 /* Factorises H + shift, unless that was done last; true where it is positive definite beyond rounding. */
-static bool factorise(sparse_curvature *r, double shift) {
-  bool good =
-      r->shift == shift || strut_ldl_factorise(r->ldl, r->hessian, shift, &r->inertia) == STRUT_OK;
-  r->shift = good ? shift : (double)NAN;
-  return good && r->inertia.negative == 0 && r->inertia.smallest > NOISE;
+static bool factorise(sparse_curvature *curvature, double shift) {
+  bool good = curvature->shift == shift ||
+              strut_ldl_factorise(curvature->ldl, curvature->hessian, shift, &curvature->inertia) ==
+                  STRUT_OK;
+  curvature->shift = good ? shift : (double)NAN;
+  return good && curvature->inertia.negative == 0 && curvature->inertia.smallest > NOISE;
 }
 
 static bool sparse_decompose(void *memory, const double *q) {
-  sparse_curvature *r = memory;
-  const strut_sparse *h = r->hessian;
-  size_t bytes = (size_t)h->start[h->n] * sizeof *h->value;
-  strut_potential_hessian(r->potential, q, r->hessian);
-  bool same = memcmp(r->factored, h->value, bytes) == 0;
-  r->scale = 0.0;
-  for (int32_t k = 0; k < h->start[h->n]; k++)
-    if (!isfinite(h->value[k])) return false;
-  for (int32_t j = 0; j < h->n; j++) r->scale = fmax(r->scale, fabs(h->value[h->start[j]]));
+  sparse_curvature *curvature = memory;
+  const strut_sparse *matrix = curvature->hessian;
+  size_t bytes = (size_t)matrix->start[matrix->n] * sizeof *matrix->value;
+  strut_potential_hessian(curvature->potential, q, curvature->hessian);
+  bool same = memcmp(curvature->factored, matrix->value, bytes) == 0;
+  curvature->scale = 0.0;
+  for (int32_t k = 0; k < matrix->start[matrix->n]; k++)
+    if (!isfinite(matrix->value[k])) return false;
+  for (int32_t j = 0; j < matrix->n; j++)
+    curvature->scale = fmax(curvature->scale, fabs(matrix->value[matrix->start[j]]));
   if (same) return true;
-  memcpy(r->factored, h->value, bytes);
-  r->shift = (double)NAN;
+  memcpy(curvature->factored, matrix->value, bytes);
+  curvature->shift = (double)NAN;
   return true;
 }
 
 /* s = -(H + shift)^-1 g; its length. */
-static double solve_shifted(sparse_curvature *r, const double *g, double *s) {
-  int32_t n = r->hessian->n;
-  for (int32_t i = 0; i < n; i++) s[i] = -g[i];
-  strut_ldl_solve(r->ldl, s);
-  return sqrt(strut_dot(s, s, n));
+static double solve_shifted(sparse_curvature *curvature, const double *gradient, double *step) {
+  int32_t n = curvature->hessian->n;
+  for (int32_t i = 0; i < n; i++) step[i] = -gradient[i];
+  strut_ldl_solve(curvature->ldl, step);
+  return sqrt(strut_dot(step, step, n));
 }
 
-static strut_model_step evaluate_step(sparse_curvature *r, const double *g, const double *s) {
-  int32_t n = r->hessian->n;
-  strut_sparse_multiply(r->hessian, s, r->work);
-  return (strut_model_step){sqrt(strut_dot(s, s, n)),
-                            -strut_dot(g, s, n) - 0.5 * strut_dot(s, r->work, n)};
+static strut_model_step evaluate_step(sparse_curvature *curvature, const double *gradient,
+                                      const double *step) {
+  int32_t n = curvature->hessian->n;
+  strut_sparse_multiply(curvature->hessian, step, curvature->work);
+  return (strut_model_step){
+      sqrt(strut_dot(step, step, n)),
+      -strut_dot(gradient, step, n) - 0.5 * strut_dot(step, curvature->work, n)};
 }
 
 /* The smallest of the shifts tried at which H + shift is positive definite; false: none is. */
-static bool find_shift(sparse_curvature *r, double *low, double *shift) {
+static bool find_shift(sparse_curvature *curvature, double *low, double *shift) {
   *low = 0.0;
-  if (factorise(r, 0.0)) {
+  if (factorise(curvature, 0.0)) {
     *shift = 0.0;
     return true;
   }
-  double next = 1e-14 * r->scale + 1e-300;
+  double next = 1e-14 * curvature->scale + 1e-300;
   for (int i = 0; i < 40; i++, next *= 10.0) {
-    if (factorise(r, next)) {
+    if (factorise(curvature, next)) {
       *shift = next;
       return true;
     }
-    if (!isnan(r->shift)) *low = next;
+    if (!isnan(curvature->shift)) *low = next;
   }
   return false;
 }
 
 /* Reduces a shift that is larger than necessary towards `low`, which is too small: a longer step. */
-static double lengthen_step(sparse_curvature *r, const double *g, double radius, double low,
-                            double shift, double length, double *s) {
+static double lengthen_step(sparse_curvature *curvature, const double *gradient, double radius,
+                            double low, double shift, double length, double *step) {
   for (int i = 0; i < 3 && low > 0 && length < 0.7 * radius; i++) {
     double between = sqrt(low * shift);
-    bool good = factorise(r, between);
-    double longer = good ? solve_shifted(r, g, s) : HUGE_VAL;
+    bool good = factorise(curvature, between);
+    double longer = good ? solve_shifted(curvature, gradient, step) : HUGE_VAL;
     if (longer <= radius) {
       shift = between, length = longer;
       continue;
     }
     low = between;
-    factorise(r, shift);
-    length = solve_shifted(r, g, s);
+    factorise(curvature, shift);
+    length = solve_shifted(curvature, gradient, step);
   }
   return length;
 }
@@ -371,74 +393,75 @@ static double lengthen_step(sparse_curvature *r, const double *g, double radius,
 /*
  * From a shift whose step is too long upwards: Newton's method on 1/|s|, each trial a new factor.
  */
-static void shorten_step(sparse_curvature *r, const double *g, double radius, double low,
-                         double length, double *s) {
-  int32_t n = r->hessian->n;
+static void shorten_step(sparse_curvature *curvature, const double *gradient, double radius,
+                         double low, double length, double *step) {
+  int32_t n = curvature->hessian->n;
   double high = HUGE_VAL, shift = low;
   for (int i = 0; i < 30 && !(length <= radius && length > 0.7 * radius); i++) {
-    memcpy(r->scratch, s, (size_t)n * sizeof *s);
-    strut_ldl_solve(r->ldl, r->scratch);
-    double slope = strut_dot(s, r->scratch, n); /* -|s| d|s|/dshift */
+    memcpy(curvature->scratch, step, (size_t)n * sizeof *step);
+    strut_ldl_solve(curvature->ldl, curvature->scratch);
+    double slope = strut_dot(step, curvature->scratch, n); /* -|s| d|s|/dshift */
     double next = shift + length * length * (length / (0.85 * radius) - 1.0) / slope;
     if (!(next > low && next < high))
-      next = high == HUGE_VAL ? fmax(10.0 * low, 1e-14 * r->scale) : 0.5 * (low + high);
+      next = high == HUGE_VAL ? fmax(10.0 * low, 1e-14 * curvature->scale) : 0.5 * (low + high);
     if (high - low <= 1e-3 * high && length <= radius) break;
-    if (!factorise(r, next)) break;
+    if (!factorise(curvature, next)) break;
     shift = next;
-    length = solve_shifted(r, g, s);
+    length = solve_shifted(curvature, gradient, step);
     *(length > radius ? &low : &high) = shift;
   }
   if (length <= radius) return;
-  for (int32_t i = 0; i < n; i++) s[i] *= radius / length;
+  for (int32_t i = 0; i < n; i++) step[i] *= radius / length;
 }
 
 /* A step of 0.7 to 1 radius is good enough, or a shorter one where Newton's is. */
-static strut_model_step sparse_trust_step(void *memory, const double *g, double radius,
-                                          double still, double *s) {
-  sparse_curvature *r = memory;
+static strut_model_step sparse_trust_step(void *memory, const double *gradient, double radius,
+                                          double still, double *step) {
+  sparse_curvature *curvature = memory;
   double low, shift;
   (void)still;
-  if (!find_shift(r, &low, &shift)) return (strut_model_step){0};
-  double length = solve_shifted(r, g, s);
+  if (!find_shift(curvature, &low, &shift)) return (strut_model_step){0};
+  double length = solve_shifted(curvature, gradient, step);
   if (length > radius)
-    shorten_step(r, g, radius, shift, length, s);
+    shorten_step(curvature, gradient, radius, shift, length, step);
   else if (shift > 0)
-    lengthen_step(r, g, radius, low, shift, length, s);
-  return evaluate_step(r, g, s);
+    lengthen_step(curvature, gradient, radius, low, shift, length, step);
+  return evaluate_step(curvature, gradient, step);
 }
 
 /* A factor does not know its stiff modes. */
-static bool sparse_rebalance(void *memory, const double *g, double *s) {
-  (void)memory, (void)g, (void)s;
+static bool sparse_rebalance(void *memory, const double *gradient, double *step) {
+  (void)memory, (void)gradient, (void)step;
   return false;
 }
 
-static double sparse_newton_step(void *memory, const double *g, double *s) {
-  sparse_curvature *r = memory;
-  factorise(r, 0.0);
-  if (isnan(r->shift) || r->inertia.smallest <= NOISE) factorise(r, 1e-13 * r->scale);
-  return isnan(r->shift) ? HUGE_VAL : solve_shifted(r, g, s);
+static double sparse_newton_step(void *memory, const double *gradient, double *step) {
+  sparse_curvature *curvature = memory;
+  factorise(curvature, 0.0);
+  if (isnan(curvature->shift) || curvature->inertia.smallest <= NOISE)
+    factorise(curvature, 1e-13 * curvature->scale);
+  return isnan(curvature->shift) ? HUGE_VAL : solve_shifted(curvature, gradient, step);
 }
 
 /*
  * Inverse iteration from a start that leans on no motion, shifted to just below the lowest value.
  */
-static bool sparse_unstable_direction(void *memory, double *s) {
-  sparse_curvature *r = memory;
-  int32_t n = r->hessian->n;
+static bool sparse_unstable_direction(void *memory, double *step) {
+  sparse_curvature *curvature = memory;
+  int32_t n = curvature->hessian->n;
   double low, shift, quotient = 0.0;
-  if (!find_shift(r, &low, &shift)) return false;
-  if (shift <= 1e-13 * r->scale) return false;
-  for (int32_t i = 0; i < n; i++) s[i] = sin(1.0 + 12.9898 * i);
+  if (!find_shift(curvature, &low, &shift)) return false;
+  if (shift <= 1e-13 * curvature->scale) return false;
+  for (int32_t i = 0; i < n; i++) step[i] = sin(1.0 + 12.9898 * i);
   for (int turn = 0; turn < 20; turn++) {
-    strut_ldl_solve(r->ldl, s);
-    double length = sqrt(strut_dot(s, s, n));
-    for (int32_t i = 0; i < n; i++) s[i] /= length;
-    strut_sparse_multiply(r->hessian, s, r->work);
-    quotient = strut_dot(s, r->work, n);
+    strut_ldl_solve(curvature->ldl, step);
+    double length = sqrt(strut_dot(step, step, n));
+    for (int32_t i = 0; i < n; i++) step[i] /= length;
+    strut_sparse_multiply(curvature->hessian, step, curvature->work);
+    quotient = strut_dot(step, curvature->work, n);
     if (turn > 3 && quotient < 0) break;
   }
-  return quotient < -1e-13 * r->scale;
+  return quotient < -1e-13 * curvature->scale;
 }
 
 const strut_curvature strut_curvature_sparse = {sparse_decompose,          sparse_trust_step,
@@ -457,11 +480,11 @@ static frame frame_of(const strut_model *model, const double *q) {
   return f;
 }
 
-static void motion_at(const frame *f, const double *q, int32_t at, double row[3]) {
+static void motion_at(const frame *self, const double *q, int32_t at, double row[3]) {
   int32_t node = at / 2;
   row[0] = at % 2 == 0, row[1] = at % 2 == 1;
-  row[2] = at % 2 == 0 ? -(q[2 * node + 1] - f->centre[1]) / f->size
-                       : (q[2 * node] - f->centre[0]) / f->size;
+  row[2] = at % 2 == 0 ? -(q[2 * node + 1] - self->centre[1]) / self->size
+                       : (q[2 * node] - self->centre[0]) / self->size;
 }
 
 /* Takes the directions of the earlier ones out of row `count`; false where nothing is left. */
@@ -479,14 +502,14 @@ static void hold(const double row[3], double held[9]) {
     for (int k = 0; k < 3; k++) held[3 * i + k] += row[i] * row[k];
 }
 
-int32_t strut_rigid_motions(const strut_potential *p, const double *q, const uint8_t *closed,
-                            double *motion) {
-  const strut_model *model = p->model;
+int32_t strut_rigid_motions(const strut_potential *potential, const double *q,
+                            const uint8_t *closed, double *motion) {
+  const strut_model *model = potential->model;
   frame f = frame_of(model, q);
   double held[9] = {0}, value[3], vector[9], row[3], beside[3];
   if (!strut_model_may_turn(model)) held[8] = 1.0;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
-    if (p->row_of[at] >= 0) continue;
+    if (potential->row_of[at] >= 0) continue;
     motion_at(&f, q, at, row);
     hold(row, held);
   }
@@ -501,14 +524,14 @@ int32_t strut_rigid_motions(const strut_potential *p, const double *q, const uin
   }
   if (!strut_symmetric_eigen(held, 3, value, vector)) return 0;
   int32_t count = 0;
-  for (int i = 0; i < 3 && p->n > 0; i++) {
+  for (int i = 0; i < 3 && potential->n > 0; i++) {
     if (value[i] > 1e-14 * (1.0 + value[2])) continue;
-    double *to = motion + (size_t)count * (size_t)p->n;
-    for (int32_t k = 0; k < p->n; k++) {
-      motion_at(&f, q, p->coordinate[k], row);
+    double *to = motion + (size_t)count * (size_t)potential->n;
+    for (int32_t k = 0; k < potential->n; k++) {
+      motion_at(&f, q, potential->coordinate[k], row);
       to[k] = vector[3 * i] * row[0] + vector[3 * i + 1] * row[1] + vector[3 * i + 2] * row[2];
     }
-    if (make_orthonormal(motion, p->n, count)) count++;
+    if (make_orthonormal(motion, potential->n, count)) count++;
   }
   return count;
 }

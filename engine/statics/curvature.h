@@ -24,17 +24,17 @@ typedef struct strut_curvature {
   /** Decomposes the Hessian at q; false: not finite, or out of memory. */
   bool (*decompose)(void *workspace, const double *q);
   /** The lowest point of the model within |s| <= radius. still [N]: a force within rounding. */
-  strut_model_step (*trust_step)(void *workspace, const double *g, double radius, double still,
-                                 double *s);
+  strut_model_step (*trust_step)(void *workspace, const double *gradient, double radius,
+                                 double still, double *step);
   /**
    * Corrects the step s that trust_step returned last by Newton's method in the stiff modes only,
    * with the gradient g at its end: turning bars stretch to second order. False: no stiff modes.
    */
-  bool (*rebalance)(void *workspace, const double *g, double *s);
+  bool (*rebalance)(void *workspace, const double *gradient, double *step);
   /** The Newton step without the directions that have no stiffness; returns its length. */
-  double (*newton_step)(void *workspace, const double *g, double *s);
+  double (*newton_step)(void *workspace, const double *gradient, double *step);
   /** The unit direction of most negative curvature; false if none is negative beyond rounding. */
-  bool (*unstable_direction)(void *workspace, double *s);
+  bool (*unstable_direction)(void *workspace, double *step);
   void (*free)(void *workspace);
 } strut_curvature;
 
@@ -57,6 +57,6 @@ typedef struct strut_quadratic {
  * x (n): the step's share of each mode; |x| <= radius. Returns the multiplier mu >= 0: the step is
  * that of Newton for the values + mu, and modes much stiffer than mu do not feel the radius.
  */
-double strut_trust_step(const strut_quadratic *quadratic, double radius, double *x);
+double strut_trust_step(const strut_quadratic *quadratic, double radius, double *vector);
 
 #endif

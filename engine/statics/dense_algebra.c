@@ -14,77 +14,78 @@
 enum { MOST_STEPS = 80 };
 
 /* Row i becomes the vector of the reflection that clears it, by way of d (its entries) and e. */
-STRUT_INLINE void reflect_row(double *z, size_t n, size_t i, double scale, double *d, double *e) {
+STRUT_INLINE void reflect_row(double *z, size_t n, size_t i, double scale, double *change,
+                              double *e) {
   double h = 0.0, f, g;
-  for (size_t k = 0; k < i; k++) d[k] /= scale, h += d[k] * d[k];
-  f = d[i - 1];
+  for (size_t k = 0; k < i; k++) change[k] /= scale, h += change[k] * change[k];
+  f = change[i - 1];
   g = f > 0 ? -sqrt(h) : sqrt(h);
   e[i] = scale * g;
   h -= f * g;
-  d[i - 1] = f - g;
+  change[i - 1] = f - g;
   for (size_t j = 0; j < i; j++) e[j] = 0.0;
   for (size_t j = 0; j < i; j++) {
     const double *row = z + j * n;
-    f = z[i * n + j] = d[j];
+    f = z[i * n + j] = change[j];
     g = e[j] + row[j] * f;
     for (size_t k = j + 1; k < i; k++) {
-      g += row[k] * d[k];
+      g += row[k] * change[k];
       e[k] += row[k] * f;
     }
     e[j] = g;
   }
   f = 0.0;
-  for (size_t j = 0; j < i; j++) e[j] /= h, f += e[j] * d[j];
-  for (size_t j = 0; j < i; j++) e[j] -= f / (h + h) * d[j];
+  for (size_t j = 0; j < i; j++) e[j] /= h, f += e[j] * change[j];
+  for (size_t j = 0; j < i; j++) e[j] -= f / (h + h) * change[j];
   for (size_t j = 0; j < i; j++) {
     double *row = z + j * n;
-    f = d[j], g = e[j];
-    for (size_t k = j; k < i; k++) row[k] -= f * e[k] + g * d[k];
-    d[j] = row[i - 1];
+    f = change[j], g = e[j];
+    for (size_t k = j; k < i; k++) row[k] -= f * e[k] + g * change[k];
+    change[j] = row[i - 1];
     row[i] = 0.0;
   }
-  d[i] = h;
+  change[i] = h;
 }
 
 /* The matrix as diagonal d and off-diagonal e[1..n-1]; z keeps the reflections. */
 STRUT_CLONES
-static void reduce(double *z, size_t n, double *d, double *e) {
-  for (size_t j = 0; j < n; j++) d[j] = z[j * n + n - 1];
+static void reduce(double *z, size_t n, double *change, double *e) {
+  for (size_t j = 0; j < n; j++) change[j] = z[j * n + n - 1];
   for (size_t i = n - 1; i > 0; i--) {
     double scale = 0.0;
-    for (size_t k = 0; k < i; k++) scale += fabs(d[k]);
+    for (size_t k = 0; k < i; k++) scale += fabs(change[k]);
     if (scale > 0) {
-      reflect_row(z, n, i, scale, d, e);
+      reflect_row(z, n, i, scale, change, e);
       continue;
     }
-    e[i] = d[i - 1];
+    e[i] = change[i - 1];
     for (size_t j = 0; j < i; j++) {
-      d[j] = z[j * n + i - 1];
+      change[j] = z[j * n + i - 1];
       z[j * n + i] = z[i * n + j] = 0.0;
     }
-    d[i] = 0.0;
+    change[i] = 0.0;
   }
 }
 
 /* The product of the reflections into z, transposed; d becomes the diagonal. */
 STRUT_CLONES
-static void accumulate(double *z, size_t n, double *d, double *e) {
+static void accumulate(double *z, size_t n, double *change, double *e) {
   for (size_t i = 0; i + 1 < n; i++) {
-    double h = d[i + 1], *next = z + (i + 1) * n;
+    double h = change[i + 1], *next = z + (i + 1) * n;
     z[i * n + n - 1] = z[i * n + i];
     z[i * n + i] = 1.0;
     if (h != 0.0) {
-      for (size_t k = 0; k <= i; k++) d[k] = next[k] / h;
+      for (size_t k = 0; k <= i; k++) change[k] = next[k] / h;
       for (size_t j = 0; j <= i; j++) {
         double g = 0.0, *row = z + j * n;
         for (size_t k = 0; k <= i; k++) g += next[k] * row[k];
-        for (size_t k = 0; k <= i; k++) row[k] -= g * d[k];
+        for (size_t k = 0; k <= i; k++) row[k] -= g * change[k];
       }
     }
     for (size_t k = 0; k <= i; k++) next[k] = 0.0;
   }
   for (size_t j = 0; j < n; j++) {
-    d[j] = z[j * n + n - 1];
+    change[j] = z[j * n + n - 1];
     z[j * n + n - 1] = 0.0;
   }
   z[n * n - 1] = 1.0;
@@ -101,17 +102,17 @@ STRUT_INLINE void rotate(double *lower, double *upper, size_t n, double c, doubl
 }
 
 /* One QL step on rows l to m; `shift` gathers what was taken off the diagonal. */
-STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *d, double *e,
+STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *change, double *e,
                        double *shift) {
-  double g = d[l], p = (d[l + 1] - g) / (2.0 * e[l]), r = sqrt(p * p + 1.0);
+  double g = change[l], p = (change[l + 1] - g) / (2.0 * e[l]), r = sqrt(p * p + 1.0);
   if (!(r <= DBL_MAX)) r = fabs(p);
   if (p < 0) r = -r;
-  d[l] = e[l] / (p + r);
-  d[l + 1] = e[l] * (p + r);
-  double beside = d[l + 1], off = e[l + 1], h = g - d[l];
-  for (size_t i = l + 2; i < n; i++) d[i] -= h;
+  change[l] = e[l] / (p + r);
+  change[l + 1] = e[l] * (p + r);
+  double beside = change[l + 1], off = e[l + 1], h = g - change[l];
+  for (size_t i = l + 2; i < n; i++) change[i] -= h;
   *shift += h;
-  p = d[m];
+  p = change[m];
   double c = 1.0, c2 = 1.0, c3 = 1.0, s = 0.0, s2 = 0.0;
   for (size_t i = m; i-- > l;) {
     c3 = c2, c2 = c, s2 = s;
@@ -119,27 +120,27 @@ STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *d, doubl
     r = sqrt(p * p + e[i] * e[i]);
     e[i + 1] = s * r;
     s = r > 0 ? e[i] / r : 0.0, c = r > 0 ? p / r : 1.0;
-    p = c * d[i] - s * g;
-    d[i + 1] = h + s * (c * g + s * d[i]);
+    p = c * change[i] - s * g;
+    change[i + 1] = h + s * (c * g + s * change[i]);
     rotate(z + i * n, z + (i + 1) * n, n, c, s);
   }
   p = -s * s2 * c3 * off * e[l] / beside;
   e[l] = s * p;
-  d[l] = c * p;
+  change[l] = c * p;
 }
 
 STRUT_CLONES
-static bool diagonalise(double *z, size_t n, double *d, double *e) {
+static bool diagonalise(double *z, size_t n, double *change, double *e) {
   double shift = 0.0, largest = 0.0;
   for (size_t l = 0; l < n; l++) {
-    largest = fmax(largest, fabs(d[l]) + fabs(e[l]));
+    largest = fmax(largest, fabs(change[l]) + fabs(e[l]));
     size_t m = l;
     while (fabs(e[m]) > DBL_EPSILON * largest) m++; /* the last one is 0 */
     for (int k = 0; m > l && fabs(e[l]) > DBL_EPSILON * largest; k++) {
       if (k == MOST_STEPS) return false;
-      step(z, n, l, m, d, e, &shift);
+      step(z, n, l, m, change, e, &shift);
     }
-    d[l] += shift;
+    change[l] += shift;
     e[l] = 0.0;
   }
   return true;
@@ -169,83 +170,87 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   return true;
 }
 
-bool strut_tridiagonal_create(strut_tridiagonal *t, int32_t rows, strut_arena *arena) {
+bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t rows, strut_arena *arena) {
   size_t n = (size_t)rows;
-  *t = (strut_tridiagonal){.n = rows, .z = strut_arena_allocate(arena, n * n, sizeof *t->z)};
-  double **line[] = {&t->height, &t->work, &t->diagonal, &t->beside, &t->pivot, &t->ratio};
-  bool good = t->z != NULL;
+  *tridiagonal = (strut_tridiagonal){
+      .n = rows, .z = strut_arena_allocate(arena, n * n, sizeof *tridiagonal->z)};
+  double **line[] = {&tridiagonal->height, &tridiagonal->work,  &tridiagonal->diagonal,
+                     &tridiagonal->beside, &tridiagonal->pivot, &tridiagonal->ratio};
+  bool good = tridiagonal->z != NULL;
   for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
     good = good && (*line[i] = strut_arena_allocate(arena, n, sizeof(double)));
   return good;
 }
 
-void strut_tridiagonal_reduce(strut_tridiagonal *t) {
-  size_t n = (size_t)t->n;
+void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal) {
+  size_t n = (size_t)tridiagonal->n;
   double before = 0.0;
-  t->bound = 0.0;
+  tridiagonal->bound = 0.0;
   if (n == 0) return;
-  t->power = scale_matrix(t->z, n);
-  reduce(t->z, n, t->height, t->work);
+  tridiagonal->power = scale_matrix(tridiagonal->z, n);
+  reduce(tridiagonal->z, n, tridiagonal->height, tridiagonal->work);
   for (size_t i = 0; i < n; i++) {
-    t->diagonal[i] = ldexp(t->z[i * n + i], t->power);
-    t->beside[i] = i + 1 < n ? ldexp(t->work[i + 1], t->power) : 0.0;
-    t->bound = fmax(t->bound, fabs(t->diagonal[i]) + fabs(t->beside[i]) + before);
-    before = fabs(t->beside[i]);
+    tridiagonal->diagonal[i] = ldexp(tridiagonal->z[i * n + i], tridiagonal->power);
+    tridiagonal->beside[i] = i + 1 < n ? ldexp(tridiagonal->work[i + 1], tridiagonal->power) : 0.0;
+    tridiagonal->bound = fmax(
+        tridiagonal->bound, fabs(tridiagonal->diagonal[i]) + fabs(tridiagonal->beside[i]) + before);
+    before = fabs(tridiagonal->beside[i]);
   }
 }
 
-bool strut_tridiagonal_eigen(strut_tridiagonal *t, double *value) {
-  size_t n = (size_t)t->n;
+bool strut_tridiagonal_eigen(strut_tridiagonal *tridiagonal, double *value) {
+  size_t n = (size_t)tridiagonal->n;
   if (n == 0) return true;
-  accumulate(t->z, n, t->height, t->work);
-  if (!diagonalise(t->z, n, t->height, t->work)) return false;
-  for (size_t i = 0; i < n; i++) value[i] = ldexp(t->height[i], t->power);
+  accumulate(tridiagonal->z, n, tridiagonal->height, tridiagonal->work);
+  if (!diagonalise(tridiagonal->z, n, tridiagonal->height, tridiagonal->work)) return false;
+  for (size_t i = 0; i < n; i++) value[i] = ldexp(tridiagonal->height[i], tridiagonal->power);
   return true;
 }
 
 /* x without twice its share along the reflection of row i. */
-STRUT_INLINE void reflect(const strut_tridiagonal *t, size_t i, double *x) {
-  const double *row = t->z + i * (size_t)t->n;
-  if (t->height[i] == 0.0) return;
-  double share = strut_dot(row, x, (ptrdiff_t)i) / t->height[i];
-  for (size_t k = 0; k < i; k++) x[k] -= share * row[k];
+STRUT_INLINE void reflect(const strut_tridiagonal *tridiagonal, size_t i, double *vector) {
+  const double *row = tridiagonal->z + i * (size_t)tridiagonal->n;
+  if (tridiagonal->height[i] == 0.0) return;
+  double share = strut_dot(row, vector, (ptrdiff_t)i) / tridiagonal->height[i];
+  for (size_t k = 0; k < i; k++) vector[k] -= share * row[k];
 }
 
-void strut_tridiagonal_enter(const strut_tridiagonal *t, double *x) {
-  for (size_t i = (size_t)t->n; i-- > 1;) reflect(t, i, x);
+void strut_tridiagonal_enter(const strut_tridiagonal *tridiagonal, double *vector) {
+  for (size_t i = (size_t)tridiagonal->n; i-- > 1;) reflect(tridiagonal, i, vector);
 }
 
-void strut_tridiagonal_leave(const strut_tridiagonal *t, double *x) {
-  for (size_t i = 1; i < (size_t)t->n; i++) reflect(t, i, x);
+void strut_tridiagonal_leave(const strut_tridiagonal *tridiagonal, double *vector) {
+  for (size_t i = 1; i < (size_t)tridiagonal->n; i++) reflect(tridiagonal, i, vector);
 }
 
-int32_t strut_tridiagonal_factor(strut_tridiagonal *t, double shift) {
+int32_t strut_tridiagonal_factor(strut_tridiagonal *tridiagonal, double shift) {
   int32_t negative = 0;
   double taken = 0.0;
-  for (int32_t i = 0; i < t->n; i++) {
-    double pivot = t->diagonal[i] + shift - taken;
+  for (int32_t i = 0; i < tridiagonal->n; i++) {
+    double pivot = tridiagonal->diagonal[i] + shift - taken;
     if (pivot == 0.0) pivot = -DBL_MIN;
     negative += !(pivot > 0.0);
-    t->pivot[i] = pivot;
-    t->ratio[i] = t->beside[i] / pivot;
-    taken = t->ratio[i] * t->beside[i];
+    tridiagonal->pivot[i] = pivot;
+    tridiagonal->ratio[i] = tridiagonal->beside[i] / pivot;
+    taken = tridiagonal->ratio[i] * tridiagonal->beside[i];
   }
   return negative;
 }
 
-double strut_tridiagonal_form(const strut_tridiagonal *t, const double *x) {
+double strut_tridiagonal_form(const strut_tridiagonal *tridiagonal, const double *vector) {
   double sum = 0.0, y = 0.0;
-  for (int32_t i = 0; i < t->n; i++) {
-    y = x[i] - (i > 0 ? t->ratio[i - 1] * y : 0.0);
-    sum += y * y / t->pivot[i];
+  for (int32_t i = 0; i < tridiagonal->n; i++) {
+    y = vector[i] - (i > 0 ? tridiagonal->ratio[i - 1] * y : 0.0);
+    sum += y * y / tridiagonal->pivot[i];
   }
   return sum;
 }
 
-void strut_tridiagonal_solve(const strut_tridiagonal *t, double *x) {
-  for (int32_t i = 1; i < t->n; i++) x[i] -= t->ratio[i - 1] * x[i - 1];
-  for (int32_t i = 0; i < t->n; i++) x[i] /= t->pivot[i];
-  for (int32_t i = t->n - 1; i-- > 0;) x[i] -= t->ratio[i] * x[i + 1];
+void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, double *vector) {
+  for (int32_t i = 1; i < tridiagonal->n; i++)
+    vector[i] -= tridiagonal->ratio[i - 1] * vector[i - 1];
+  for (int32_t i = 0; i < tridiagonal->n; i++) vector[i] /= tridiagonal->pivot[i];
+  for (int32_t i = tridiagonal->n - 1; i-- > 0;) vector[i] -= tridiagonal->ratio[i] * vector[i + 1];
 }
 
 /* Fixes the sign of a vector, so that results do not depend on how it was computed. */
@@ -296,26 +301,27 @@ gsl_permutation *strut_arena_order(strut_arena *arena, size_t size) {
   return order;
 }
 
-double strut_remove_shares(const double *rows, size_t count, size_t n, double *x) {
+double strut_remove_shares(const double *rows, size_t count, size_t n, double *vector) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < count; k++) {
-      double share = strut_dot(rows + k * n, x, (ptrdiff_t)n);
-      for (size_t i = 0; i < n; i++) x[i] -= share * rows[k * n + i];
+      double share = strut_dot(rows + k * n, vector, (ptrdiff_t)n);
+      for (size_t i = 0; i < n; i++) vector[i] -= share * rows[k * n + i];
     }
-  return strut_dot(x, x, (ptrdiff_t)n);
+  return strut_dot(vector, vector, (ptrdiff_t)n);
 }
 
-bool strut_solve_rows(gsl_matrix *a, gsl_vector *right, gsl_permutation *order, gsl_vector *x) {
+bool strut_solve_rows(gsl_matrix *matrix, gsl_vector *right, gsl_permutation *order,
+                      gsl_vector *vector) {
   int sign;
-  for (size_t i = 0; i < a->size1; i++) {
-    gsl_vector_view row = gsl_matrix_row(a, i);
+  for (size_t i = 0; i < matrix->size1; i++) {
+    gsl_vector_view row = gsl_matrix_row(matrix, i);
     double most = fmax(-gsl_vector_min(&row.vector), gsl_vector_max(&row.vector));
     if (!(most > 0) || !isfinite(most)) return false;
-    for (size_t j = 0; j < a->size2; j++) *gsl_matrix_ptr(a, i, j) /= most;
+    for (size_t j = 0; j < matrix->size2; j++) *gsl_matrix_ptr(matrix, i, j) /= most;
     *gsl_vector_ptr(right, i) /= most;
   }
-  gsl_linalg_LU_decomp(a, order, &sign);
-  for (size_t i = 0; i < a->size1; i++)
-    if (gsl_matrix_get(a, i, i) == 0.0) return false;
-  return gsl_linalg_LU_solve(a, order, right, x) == 0;
+  gsl_linalg_LU_decomp(matrix, order, &sign);
+  for (size_t i = 0; i < matrix->size1; i++)
+    if (gsl_matrix_get(matrix, i, i) == 0.0) return false;
+  return gsl_linalg_LU_solve(matrix, order, right, vector) == 0;
 }

@@ -12,10 +12,11 @@ static const int scalings[SCALINGS] = {GLP_SF_AUTO, GLP_SF_EQ, 0};
 
 static const double TOLERANCE = 1e-10; /* of bounds and of reduced costs */
 
-bool strut_linear_program_create(strut_linear_program *p, int32_t rows, int32_t columns,
+bool strut_linear_program_create(strut_linear_program *program, int32_t rows, int32_t columns,
                                  size_t entries, strut_arena *arena) {
-  *p = (strut_linear_program){.rows = rows, .columns = columns, .entry_room = entries};
-  double **by_row[] = {&p->row_low, &p->row_high}, **by_column[] = {&p->low, &p->high, &p->cost};
+  *program = (strut_linear_program){.rows = rows, .columns = columns, .entry_room = entries};
+  double **by_row[] = {&program->row_low, &program->row_high},
+         **by_column[] = {&program->low, &program->high, &program->cost};
   bool good = true;
   for (int i = 0; i < 2; i++) {
     *by_row[i] = strut_arena_allocate(arena, (size_t)rows, sizeof(double));
@@ -25,22 +26,23 @@ bool strut_linear_program_create(strut_linear_program *p, int32_t rows, int32_t 
     *by_column[i] = strut_arena_allocate(arena, (size_t)columns, sizeof(double));
     good = good && *by_column[i];
   }
-  p->entry_row = strut_arena_allocate(arena, entries, sizeof *p->entry_row);
-  p->entry_column = strut_arena_allocate(arena, entries, sizeof *p->entry_column);
-  p->entry = strut_arena_allocate(arena, entries, sizeof *p->entry);
-  if (!good || !p->entry_row || !p->entry_column || !p->entry) return false;
-  for (int32_t j = 0; j < columns; j++) p->high[j] = HUGE_VAL;
+  program->entry_row = strut_arena_allocate(arena, entries, sizeof *program->entry_row);
+  program->entry_column = strut_arena_allocate(arena, entries, sizeof *program->entry_column);
+  program->entry = strut_arena_allocate(arena, entries, sizeof *program->entry);
+  if (!good || !program->entry_row || !program->entry_column || !program->entry) return false;
+  for (int32_t j = 0; j < columns; j++) program->high[j] = HUGE_VAL;
   return true;
 }
 
-void strut_linear_program_add(strut_linear_program *p, int32_t row, int32_t column, double value) {
-  assert(row >= 0 && row < p->rows);
-  assert(column >= 0 && column < p->columns);
+void strut_linear_program_add(strut_linear_program *program, int32_t row, int32_t column,
+                              double value) {
+  assert(row >= 0 && row < program->rows);
+  assert(column >= 0 && column < program->columns);
   if (value == 0) return;
-  assert(p->entry_count < p->entry_room);
-  p->entry_row[p->entry_count] = row;
-  p->entry_column[p->entry_count] = column;
-  p->entry[p->entry_count++] = value;
+  assert(program->entry_count < program->entry_room);
+  program->entry_row[program->entry_count] = row;
+  program->entry_column[program->entry_count] = column;
+  program->entry[program->entry_count++] = value;
 }
 
 static int kind_of(double low, double high) {
@@ -55,24 +57,24 @@ typedef struct entries {
   double *value;
 } entries;
 
-static bool make_entries(const strut_linear_program *p, entries *e) {
-  size_t count = p->entry_count;
-  e->row = strut_allocate(count + 1, sizeof *e->row);
-  e->column = strut_allocate(count + 1, sizeof *e->column);
-  e->value = strut_allocate(count + 1, sizeof *e->value);
-  if (!e->row || !e->column || !e->value) return false;
+static bool make_entries(const strut_linear_program *program, entries *self) {
+  size_t count = program->entry_count;
+  self->row = strut_allocate(count + 1, sizeof *self->row);
+  self->column = strut_allocate(count + 1, sizeof *self->column);
+  self->value = strut_allocate(count + 1, sizeof *self->value);
+  if (!self->row || !self->column || !self->value) return false;
   for (size_t i = 0; i < count; i++) {
-    e->row[i + 1] = p->entry_row[i] + 1;
-    e->column[i + 1] = p->entry_column[i] + 1;
-    e->value[i + 1] = p->entry[i];
+    self->row[i + 1] = program->entry_row[i] + 1;
+    self->column[i + 1] = program->entry_column[i] + 1;
+    self->value[i + 1] = program->entry[i];
   }
   return true;
 }
 
-static void free_entries(entries *e) {
-  strut_release(e->row);
-  strut_release(e->column);
-  strut_release(e->value);
+static void free_entries(entries *self) {
+  strut_release(self->row);
+  strut_release(self->column);
+  strut_release(self->value);
 }
 
 static strut_linear_program_end end_of(int code, int status) {
@@ -98,27 +100,28 @@ static int run_simplex(glp_prob *problem, int scaling) {
   return glp_simplex(problem, &how);
 }
 
-static void solve(const strut_linear_program *p, const entries *e, double *x, double *sum,
-                  strut_linear_program_end *end) {
+static void solve(const strut_linear_program *program, const entries *self, double *vector,
+                  double *sum, strut_linear_program_end *end) {
   glp_prob *problem = glp_create_prob();
   glp_set_obj_dir(problem, GLP_MIN);
-  if (p->rows > 0) glp_add_rows(problem, p->rows);
-  if (p->columns > 0) glp_add_cols(problem, p->columns);
-  for (int32_t i = 0; i < p->rows; i++)
-    glp_set_row_bnds(problem, i + 1, kind_of(p->row_low[i], p->row_high[i]), p->row_low[i],
-                     p->row_high[i]);
-  for (int32_t j = 0; j < p->columns; j++) {
-    glp_set_col_bnds(problem, j + 1, kind_of(p->low[j], p->high[j]), p->low[j], p->high[j]);
-    glp_set_obj_coef(problem, j + 1, p->cost[j]);
+  if (program->rows > 0) glp_add_rows(problem, program->rows);
+  if (program->columns > 0) glp_add_cols(problem, program->columns);
+  for (int32_t i = 0; i < program->rows; i++)
+    glp_set_row_bnds(problem, i + 1, kind_of(program->row_low[i], program->row_high[i]),
+                     program->row_low[i], program->row_high[i]);
+  for (int32_t j = 0; j < program->columns; j++) {
+    glp_set_col_bnds(problem, j + 1, kind_of(program->low[j], program->high[j]), program->low[j],
+                     program->high[j]);
+    glp_set_obj_coef(problem, j + 1, program->cost[j]);
   }
-  glp_load_matrix(problem, (int)p->entry_count, e->row, e->column, e->value);
+  glp_load_matrix(problem, (int)program->entry_count, self->row, self->column, self->value);
   *end = STRUT_PROGRAM_FAILED;
   for (int i = 0; i < SCALINGS && *end != STRUT_PROGRAM_OPTIMAL; i++) {
     int code = run_simplex(problem, scalings[i]);
     *end = end_of(code, glp_get_status(problem));
   }
   *sum = glp_get_obj_val(problem);
-  for (int32_t j = 0; j < p->columns; j++) x[j] = glp_get_col_prim(problem, j + 1);
+  for (int32_t j = 0; j < program->columns; j++) vector[j] = glp_get_col_prim(problem, j + 1);
   glp_delete_prob(problem);
 }
 
@@ -138,12 +141,12 @@ static int look_up(void *context, const char *text) {
   return 1;
 }
 
-strut_status strut_linear_program_solve(const strut_linear_program *p, double *x, double *sum,
-                                        strut_linear_program_end *end) {
-  assert(p->entry_count <= p->entry_room);
-  way_out out = {.interrupt = p->interrupt};
+strut_status strut_linear_program_solve(const strut_linear_program *program, double *vector,
+                                        double *sum, strut_linear_program_end *end) {
+  assert(program->entry_count <= program->entry_room);
+  way_out out = {.interrupt = program->interrupt};
   entries e = {0};
-  if (!make_entries(p, &e) || glp_init_env() > 1) {
+  if (!make_entries(program, &e) || glp_init_env() > 1) {
     free_entries(&e);
     return STRUT_NO_MEMORY;
   }
@@ -161,7 +164,7 @@ strut_status strut_linear_program_solve(const strut_linear_program *p, double *x
   glp_term_out(GLP_ON);
   glp_term_hook(look_up, &out);
   glp_error_hook(leave, &out);
-  solve(p, &e, x, sum, end);
+  solve(program, &e, vector, sum, end);
   glp_error_hook(NULL, NULL);
   glp_term_hook(NULL, NULL);
   free_entries(&e);

@@ -71,37 +71,39 @@ void strut_minimiser_free(strut_minimiser *minimiser) {
   strut_release(minimiser);
 }
 
-int64_t strut_minimiser_hessian_count(const strut_minimiser *m) { return m->hessian_count; }
+int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser) {
+  return minimiser->hessian_count;
+}
 
-static bool decompose_hessian(strut_minimiser *m, const double *q) {
-  m->hessian_count++;
-  return m->curvature->decompose(m->workspace, q);
+static bool decompose_hessian(strut_minimiser *minimiser, const double *q) {
+  minimiser->hessian_count++;
+  return minimiser->curvature->decompose(minimiser->workspace, q);
 }
 
 /* trial = q + factor * step. */
-static void set_trial(strut_minimiser *m, const double *q, double factor) {
-  strut_potential_move(m->potential, m->step, factor, q, m->trial);
+static void set_trial(strut_minimiser *minimiser, const double *q, double factor) {
+  strut_potential_move(minimiser->potential, minimiser->step, factor, q, minimiser->trial);
 }
 
-static void keep_trial(strut_minimiser *m, double *q) {
-  memcpy(q, m->trial, (size_t)m->potential->model->length * sizeof *q);
-  double *swap = m->g;
-  m->g = m->g_trial, m->g_trial = swap;
+static void keep_trial(strut_minimiser *minimiser, double *q) {
+  memcpy(q, minimiser->trial, (size_t)minimiser->potential->model->length * sizeof *q);
+  double *swap = minimiser->g;
+  minimiser->g = minimiser->g_trial, minimiser->g_trial = swap;
 }
 
 /* The largest coordinate, in sizes of the structure: beyond some thousands nothing comes back. */
-static bool ran_away(const strut_minimiser *m, const double *q, const double *start) {
+static bool ran_away(const strut_minimiser *minimiser, const double *q, const double *start) {
   double largest = 0.0;
-  for (int32_t i = 0; i < m->potential->n; i++) {
-    int32_t at = m->potential->coordinate[i];
+  for (int32_t i = 0; i < minimiser->potential->n; i++) {
+    int32_t at = minimiser->potential->coordinate[i];
     largest = fmax(largest, fabs(q[at] - start[at]));
   }
-  return !(largest <= 1e4 * m->size);
+  return !(largest <= 1e4 * minimiser->size);
 }
 
-static double residual_allowed(const strut_minimiser *m, const double *q, double tolerance,
+static double residual_allowed(const strut_minimiser *minimiser, const double *q, double tolerance,
                                double *rounding) {
-  *rounding = strut_potential_rounding(m->potential, q);
+  *rounding = strut_potential_rounding(minimiser->potential, q);
   return fmax(tolerance, 8.0 * *rounding);
 }
 
@@ -109,52 +111,56 @@ static double residual_allowed(const strut_minimiser *m, const double *q, double
  * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may
  * be all rounding long before soft directions have converged. Ends with the last residual.
  */
-static void polish_point(strut_minimiser *m, double *q, double tolerance, double reach,
+static void polish_point(strut_minimiser *minimiser, double *q, double tolerance, double reach,
                          strut_descent *end) {
-  int32_t n = m->potential->n;
+  int32_t n = minimiser->potential->n;
   double earlier = HUGE_VAL;
   for (int i = 0; i < MOST_POLISH; i++) {
     double length =
-        decompose_hessian(m, q) ? m->curvature->newton_step(m->workspace, m->g, m->step) : HUGE_VAL;
+        decompose_hessian(minimiser, q)
+            ? minimiser->curvature->newton_step(minimiser->workspace, minimiser->g, minimiser->step)
+            : HUGE_VAL;
     if (!(length < 0.9 * earlier) || length > reach) break;
-    set_trial(m, q, 1.0);
-    strut_potential_gradient(m->potential, m->trial, m->g_trial);
-    double residual = strut_largest_magnitude(m->g_trial, n);
-    double allowed = residual_allowed(m, m->trial, tolerance, &end->rounding);
+    set_trial(minimiser, q, 1.0);
+    strut_potential_gradient(minimiser->potential, minimiser->trial, minimiser->g_trial);
+    double residual = strut_largest_magnitude(minimiser->g_trial, n);
+    double allowed = residual_allowed(minimiser, minimiser->trial, tolerance, &end->rounding);
     if (!(residual <= fmax(allowed, end->residual))) break;
-    keep_trial(m, q);
+    keep_trial(minimiser, q);
     end->residual = residual;
     end->step = earlier = length;
     end->iterations++;
-    if (length <= 4.0 * DBL_EPSILON * m->size) break;
+    if (length <= 4.0 * DBL_EPSILON * minimiser->size) break;
   }
 }
 
 /* Leaves a stationary point that is no minimum along the unstable direction, on its lower side. */
-static bool leave_ridge(strut_minimiser *m, double *q, double radius) {
-  double here = strut_potential_value(m->potential, q);
-  if (!m->curvature->unstable_direction(m->workspace, m->step)) return false;
-  for (double far = radius; far > 1e-6 * m->size; far *= 0.25) {
-    set_trial(m, q, far);
-    double up = strut_potential_value_near(m->potential, m->trial, q);
-    set_trial(m, q, -far);
-    double down = strut_potential_value_near(m->potential, m->trial, q);
+static bool leave_ridge(strut_minimiser *minimiser, double *q, double radius) {
+  double here = strut_potential_value(minimiser->potential, q);
+  if (!minimiser->curvature->unstable_direction(minimiser->workspace, minimiser->step))
+    return false;
+  for (double far = radius; far > 1e-6 * minimiser->size; far *= 0.25) {
+    set_trial(minimiser, q, far);
+    double up = strut_potential_value_near(minimiser->potential, minimiser->trial, q);
+    set_trial(minimiser, q, -far);
+    double down = strut_potential_value_near(minimiser->potential, minimiser->trial, q);
     if (!(up < here) && !(down < here)) continue;
-    if (!(down < up)) set_trial(m, q, far);
-    strut_potential_gradient(m->potential, m->trial, m->g_trial);
-    keep_trial(m, q);
+    if (!(down < up)) set_trial(minimiser, q, far);
+    strut_potential_gradient(minimiser->potential, minimiser->trial, minimiser->g_trial);
+    keep_trial(minimiser, q);
     return true;
   }
   return false;
 }
 
 /* Moves a free end of a straight member aside; false if both are held. */
-static bool move_end(const strut_potential *p, uint32_t from, uint32_t to, double far, double *q) {
-  bool free = p->row_of[to] >= 0 || p->row_of[to + 1] >= 0;
+static bool move_end(const strut_potential *potential, uint32_t from, uint32_t to, double far,
+                     double *q) {
+  bool free = potential->row_of[to] >= 0 || potential->row_of[to + 1] >= 0;
   uint32_t end = free ? to : from;
   bool any = false;
-  if (p->row_of[end] >= 0) q[end] += far, any = true;
-  if (p->row_of[end + 1] >= 0) q[end + 1] += 0.7 * far, any = true;
+  if (potential->row_of[end] >= 0) q[end] += far, any = true;
+  if (potential->row_of[end + 1] >= 0) q[end + 1] += 0.7 * far, any = true;
   return any;
 }
 
@@ -162,17 +168,17 @@ static bool move_end(const strut_potential *p, uint32_t from, uint32_t to, doubl
  * A member that has shrunk to a point pushes its ends apart, but its gradient is undefined: moves
  * its free end aside. False if there is no such member.
  */
-static bool leave_collapse(strut_minimiser *m, double *q) {
-  const strut_potential *p = m->potential;
+static bool leave_collapse(strut_minimiser *minimiser, double *q) {
+  const strut_potential *potential = minimiser->potential;
   strut_force force;
   bool any = false;
-  for (int32_t i = 0; i < strut_force_count(p->model, false); i++) {
-    strut_force_begin(p->model, i, &force);
-    if (strut_force_has_collapsed(p->model, 1e-8, q, &force) &&
-        move_end(p, force.at[0], force.at[1], 1e-3 * m->size, q))
+  for (int32_t i = 0; i < strut_force_count(potential->model, false); i++) {
+    strut_force_begin(potential->model, i, &force);
+    if (strut_force_has_collapsed(potential->model, 1e-8, q, &force) &&
+        move_end(potential, force.at[0], force.at[1], 1e-3 * minimiser->size, q))
       any = true;
   }
-  if (any) strut_potential_gradient(p, q, m->g);
+  if (any) strut_potential_gradient(potential, q, minimiser->g);
   return any;
 }
 
@@ -180,11 +186,12 @@ static bool leave_collapse(strut_minimiser *m, double *q) {
  * The energy lost from q to the trial. Where it drowns in the rounding of the energies themselves,
  * it is the work of the mean of both gradients.
  */
-static double energy_lost(const strut_minimiser *m, double here, double there, double expected) {
+static double energy_lost(const strut_minimiser *minimiser, double here, double there,
+                          double expected) {
   if (expected > 1e-9 * (fabs(here) + fabs(there))) return here - there;
   double work = 0.0;
-  for (int32_t i = 0; i < m->potential->n; i++)
-    work -= 0.5 * (m->g[i] + m->g_trial[i]) * m->step[i];
+  for (int32_t i = 0; i < minimiser->potential->n; i++)
+    work -= 0.5 * (minimiser->g[i] + minimiser->g_trial[i]) * minimiser->step[i];
   return work;
 }
 
@@ -192,56 +199,59 @@ static double energy_lost(const strut_minimiser *m, double here, double there, d
  * The trial and its energy; where the quadratic did not hold, again with the stiff modes brought
  * back into balance, as long as that leads lower. Returns the share of the reduction expected.
  */
-static double try_step(strut_minimiser *m, const double *q, double here, double expected,
+static double try_step(strut_minimiser *minimiser, const double *q, double here, double expected,
                        double *there) {
-  size_t bytes = (size_t)m->potential->n * sizeof *m->step;
-  set_trial(m, q, 1.0);
-  *there = strut_potential_value_near(m->potential, m->trial, q);
-  strut_potential_gradient(m->potential, m->trial, m->g_trial);
-  double ratio = energy_lost(m, here, *there, expected) / expected;
+  size_t bytes = (size_t)minimiser->potential->n * sizeof *minimiser->step;
+  set_trial(minimiser, q, 1.0);
+  *there = strut_potential_value_near(minimiser->potential, minimiser->trial, q);
+  strut_potential_gradient(minimiser->potential, minimiser->trial, minimiser->g_trial);
+  double ratio = energy_lost(minimiser, here, *there, expected) / expected;
   for (int i = 0; i < MOST_BENDS && !(ratio > 0.75); i++) {
-    memcpy(m->unbent, m->step, bytes);
-    if (!m->curvature->rebalance(m->workspace, m->g_trial, m->step)) break;
-    set_trial(m, q, 1.0);
-    double lower = strut_potential_value_near(m->potential, m->trial, q);
+    memcpy(minimiser->unbent, minimiser->step, bytes);
+    if (!minimiser->curvature->rebalance(minimiser->workspace, minimiser->g_trial, minimiser->step))
+      break;
+    set_trial(minimiser, q, 1.0);
+    double lower = strut_potential_value_near(minimiser->potential, minimiser->trial, q);
     bool better = lower < *there;
     if (better) *there = lower;
-    if (!better) memcpy(m->step, m->unbent, bytes);
-    if (!better) set_trial(m, q, 1.0);
-    strut_potential_gradient(m->potential, m->trial, m->g_trial);
+    if (!better) memcpy(minimiser->step, minimiser->unbent, bytes);
+    if (!better) set_trial(minimiser, q, 1.0);
+    strut_potential_gradient(minimiser->potential, minimiser->trial, minimiser->g_trial);
     if (!better) break;
-    ratio = energy_lost(m, here, *there, expected) / expected;
+    ratio = energy_lost(minimiser, here, *there, expected) / expected;
   }
   return ratio;
 }
 
 /* Growth factor of the next step. Short steps grow while the quadratic model holds. */
-static double radius_growth(const strut_minimiser *m, double ratio) {
-  if (!m->short_steps) return 2.5;
+static double radius_growth(const strut_minimiser *minimiser, double ratio) {
+  if (!minimiser->short_steps) return 2.5;
   return fabs(ratio - 1.0) < 0.01 ? 10.0 : fabs(ratio - 1.0) < 0.25 ? 2.5 : 1.0;
 }
 
 /* One trust-region step; false where the radius has shrunk to nothing. */
-static bool descend_once(strut_minimiser *m, double *q, double still, double *radius,
+static bool descend_once(strut_minimiser *minimiser, double *q, double still, double *radius,
                          double *energy) {
-  strut_model_step step = m->curvature->trust_step(m->workspace, m->g, *radius, still, m->step);
+  strut_model_step step = minimiser->curvature->trust_step(minimiser->workspace, minimiser->g,
+                                                           *radius, still, minimiser->step);
   if (!(step.length > 0)) return false;
   for (int tries = 0; tries < 60; tries++) {
-    double there, ratio = try_step(m, q, *energy, step.reduction, &there);
+    double there, ratio = try_step(minimiser, q, *energy, step.reduction, &there);
     /* far more than expected: it may have left the valley it was in */
-    bool astray = m->short_steps && ratio > 1.75 && step.length > 1e-6 * m->size;
+    bool astray = minimiser->short_steps && ratio > 1.75 && step.length > 1e-6 * minimiser->size;
     if (ratio > 1e-4 && !astray) {
       if (ratio > 0.75 && step.length > 0.99 * *radius)
-        *radius = fmin(radius_growth(m, ratio) * *radius, m->longest_step);
+        *radius = fmin(radius_growth(minimiser, ratio) * *radius, minimiser->longest_step);
       if (ratio < 0.25) *radius = 0.5 * step.length;
-      keep_trial(m, q);
-      bool couples = m->potential->model->elements.couples > 0;
-      *energy = couples ? strut_potential_value(m->potential, q) : there;
+      keep_trial(minimiser, q);
+      bool couples = minimiser->potential->model->elements.couples > 0;
+      *energy = couples ? strut_potential_value(minimiser->potential, q) : there;
       return true;
     }
     *radius = (ratio > -1.0 ? 0.25 : 0.1) * step.length;
-    if (!(*radius > DBL_EPSILON * m->size)) return false;
-    step = m->curvature->trust_step(m->workspace, m->g, *radius, still, m->step);
+    if (!(*radius > DBL_EPSILON * minimiser->size)) return false;
+    step = minimiser->curvature->trust_step(minimiser->workspace, minimiser->g, *radius, still,
+                                            minimiser->step);
   }
   return false;
 }
@@ -250,57 +260,59 @@ static bool descend_once(strut_minimiser *m, double *q, double still, double *ra
  * A gradient within rounding ends the descent only if the Newton step is short too: beside very
  * stiff members rounding hides forces that soft members still yield to.
  */
-void strut_minimiser_watch(strut_minimiser *m, const strut_flag *interrupt) {
-  m->interrupt = interrupt;
+void strut_minimiser_watch(strut_minimiser *minimiser, const strut_flag *interrupt) {
+  minimiser->interrupt = interrupt;
 }
 
-void strut_minimiser_stay(strut_minimiser *m) { m->stays = true; }
+void strut_minimiser_stay(strut_minimiser *minimiser) { minimiser->stays = true; }
 
-void strut_minimiser_visit(strut_minimiser *m, void (*visit)(void *context, const double *q),
-                           void *context) {
-  m->visit = visit;
-  m->visitor = context;
+void strut_minimiser_visit(strut_minimiser *minimiser,
+                           void (*visit)(void *context, const double *q), void *context) {
+  minimiser->visit = visit;
+  minimiser->visitor = context;
 }
 
-static void visit(const strut_minimiser *m, const double *q) {
-  if (m->visit) m->visit(m->visitor, q);
+static void visit(const strut_minimiser *minimiser, const double *q) {
+  if (minimiser->visit) minimiser->visit(minimiser->visitor, q);
 }
 
-strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
+strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
-  int32_t n = m->potential->n, extra = 0;
-  double radius = fmin(m->first_step, m->longest_step),
-         energy = strut_potential_value(m->potential, q);
-  memcpy(m->before, q, (size_t)m->potential->model->length * sizeof *q);
-  strut_potential_gradient(m->potential, q, m->g);
+  int32_t n = minimiser->potential->n, extra = 0;
+  double radius = fmin(minimiser->first_step, minimiser->longest_step),
+         energy = strut_potential_value(minimiser->potential, q);
+  memcpy(minimiser->before, q, (size_t)minimiser->potential->model->length * sizeof *q);
+  strut_potential_gradient(minimiser->potential, q, minimiser->g);
   for (; end.iterations < MOST_STEPS; end.iterations++) {
-    end.residual = strut_largest_magnitude(m->g, n);
-    double allowed = residual_allowed(m, q, tolerance, &end.rounding);
+    end.residual = strut_largest_magnitude(minimiser->g, n);
+    double allowed = residual_allowed(minimiser, q, tolerance, &end.rounding);
     end.end = STRUT_DESCENT_EXHAUSTED;
-    visit(m, q);
-    if (ran_away(m, q, m->before)) {
+    visit(minimiser, q);
+    if (ran_away(minimiser, q, minimiser->before)) {
       end.end = STRUT_DESCENT_RUNAWAY;
       return end;
     }
-    if (m->interrupt && *m->interrupt) return end;
-    if (!decompose_hessian(m, q)) return end;
+    if (minimiser->interrupt && *minimiser->interrupt) return end;
+    if (!decompose_hessian(minimiser, q)) return end;
     if (end.residual <= allowed) {
-      if (!m->stays &&
-          ((extra < 3 && leave_collapse(m, q) && ++extra) || leave_ridge(m, q, radius))) {
-        energy = strut_potential_value(m->potential, q);
+      if (!minimiser->stays && ((extra < 3 && leave_collapse(minimiser, q) && ++extra) ||
+                                leave_ridge(minimiser, q, radius))) {
+        energy = strut_potential_value(minimiser->potential, q);
         continue;
       }
       end.end = STRUT_DESCENT_REACHED;
-      double left = m->curvature->newton_step(m->workspace, m->g, m->step);
+      double left =
+          minimiser->curvature->newton_step(minimiser->workspace, minimiser->g, minimiser->step);
       end.step = left;
-      if (left <= 1e-3 * m->size || extra++ == MOST_EXTRA) break;
+      if (left <= 1e-3 * minimiser->size || extra++ == MOST_EXTRA) break;
     }
-    if (!descend_once(m, q, sqrt((double)n) * allowed, &radius, &energy)) break;
+    if (!descend_once(minimiser, q, sqrt((double)n) * allowed, &radius, &energy)) break;
   }
   if (end.end != STRUT_DESCENT_REACHED) return end;
-  polish_point(m, q, tolerance, 1e-3 * m->size, &end);
-  visit(m, q);
-  if (end.step > 1e-5 * m->size || strut_shape_has_collapsed(m->potential->model, q))
+  polish_point(minimiser, q, tolerance, 1e-3 * minimiser->size, &end);
+  visit(minimiser, q);
+  if (end.step > 1e-5 * minimiser->size ||
+      strut_shape_has_collapsed(minimiser->potential->model, q))
     end.end = STRUT_DESCENT_EXHAUSTED;
   return end;
 }
@@ -309,48 +321,52 @@ strut_descent strut_minimise(strut_minimiser *m, double *q, double tolerance) {
  * Returns the distance from the saddle at which the force along the step exceeds rounding. A well
  * about to vanish may lie that close to its saddle.
  */
-static double leave_saddle(strut_minimiser *m, const double *q, double side) {
-  const strut_potential *p = m->potential;
-  double far = 1e-7 * m->size, enough = 100.0 * strut_potential_rounding(p, q);
-  for (; far < 0.02 * m->size; far *= 4.0) {
+static double leave_saddle(strut_minimiser *minimiser, const double *q, double side) {
+  const strut_potential *potential = minimiser->potential;
+  double far = 1e-7 * minimiser->size, enough = 100.0 * strut_potential_rounding(potential, q);
+  for (; far < 0.02 * minimiser->size; far *= 4.0) {
     double down = 0.0;
-    set_trial(m, q, side * far);
-    strut_potential_gradient(p, m->trial, m->g_trial);
-    for (int32_t i = 0; i < p->n; i++) down -= side * m->step[i] * m->g_trial[i];
+    set_trial(minimiser, q, side * far);
+    strut_potential_gradient(potential, minimiser->trial, minimiser->g_trial);
+    for (int32_t i = 0; i < potential->n; i++)
+      down -= side * minimiser->step[i] * minimiser->g_trial[i];
     if (down > enough) break;
   }
-  set_trial(m, q, side * far);
+  set_trial(minimiser, q, side * far);
   return far;
 }
 
 /* Down by steps that begin no longer than `first_step` and stay in the valley they are in. */
-static strut_descent_end descend_shortly(strut_minimiser *m, double first_step, double *q) {
-  double usual = m->first_step;
-  m->first_step = first_step, m->longest_step = 0.03 * m->size, m->short_steps = true;
-  strut_descent end = strut_minimise(m, q, 0.0);
-  m->first_step = usual, m->longest_step = HUGE_VAL, m->short_steps = false;
+static strut_descent_end descend_shortly(strut_minimiser *minimiser, double first_step, double *q) {
+  double usual = minimiser->first_step;
+  minimiser->first_step = first_step, minimiser->longest_step = 0.03 * minimiser->size,
+  minimiser->short_steps = true;
+  strut_descent end = strut_minimise(minimiser, q, 0.0);
+  minimiser->first_step = usual, minimiser->longest_step = HUGE_VAL, minimiser->short_steps = false;
   return end.end;
 }
 
-strut_descent_end strut_descend_gently(strut_minimiser *m, double *q) {
-  return descend_shortly(m, 0.005 * m->size, q);
+strut_descent_end strut_descend_gently(strut_minimiser *minimiser, double *q) {
+  return descend_shortly(minimiser, 0.005 * minimiser->size, q);
 }
 
-bool strut_descend_along(strut_minimiser *m, const double *direction, double side, double *q) {
-  const strut_potential *p = m->potential;
-  for (int32_t i = 0; i < p->n; i++) m->step[i] = direction[p->coordinate[i]];
-  double first_step = leave_saddle(m, q, side);
-  memcpy(q, m->trial, (size_t)p->model->length * sizeof *q);
-  return descend_shortly(m, first_step, q) == STRUT_DESCENT_REACHED;
+bool strut_descend_along(strut_minimiser *minimiser, const double *direction, double side,
+                         double *q) {
+  const strut_potential *potential = minimiser->potential;
+  for (int32_t i = 0; i < potential->n; i++)
+    minimiser->step[i] = direction[potential->coordinate[i]];
+  double first_step = leave_saddle(minimiser, q, side);
+  memcpy(q, minimiser->trial, (size_t)potential->model->length * sizeof *q);
+  return descend_shortly(minimiser, first_step, q) == STRUT_DESCENT_REACHED;
 }
 
-strut_descent strut_polish(strut_minimiser *m, double *q, double tolerance) {
+strut_descent strut_polish(strut_minimiser *minimiser, double *q, double tolerance) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
-  strut_potential_gradient(m->potential, q, m->g);
-  end.residual = strut_largest_magnitude(m->g, m->potential->n);
-  polish_point(m, q, tolerance, 0.1 * m->size, &end);
-  end.residual = strut_largest_magnitude(m->g, m->potential->n);
-  if (end.residual <= residual_allowed(m, q, tolerance, &end.rounding))
+  strut_potential_gradient(minimiser->potential, q, minimiser->g);
+  end.residual = strut_largest_magnitude(minimiser->g, minimiser->potential->n);
+  polish_point(minimiser, q, tolerance, 0.1 * minimiser->size, &end);
+  end.residual = strut_largest_magnitude(minimiser->g, minimiser->potential->n);
+  if (end.residual <= residual_allowed(minimiser, q, tolerance, &end.rounding))
     end.end = STRUT_DESCENT_REACHED;
   return end;
 }

@@ -8,32 +8,34 @@
 
 #include "engine/model/compile_parts.h"
 
-static void sum_forces(strut_potential *p) {
-  const strut_model *model = p->model;
+static void sum_forces(strut_potential *potential) {
+  const strut_model *model = potential->model;
   const strut_scene *scene = model->scene;
   double g = hypot(scene->gravity[0], scene->gravity[1]);
   if (model->constant_force)
-    memcpy(p->force, model->constant_force, (size_t)model->length * sizeof *p->force);
-  for (int32_t i = 0; i < model->node_count; i++) p->force_scale += g * model->weight[i];
+    memcpy(potential->force, model->constant_force,
+           (size_t)model->length * sizeof *potential->force);
+  for (int32_t i = 0; i < model->node_count; i++) potential->force_scale += g * model->weight[i];
   for (size_t i = 0; i < scene->load_count; i++)
     if (scene->loads[i].signal < 0)
-      p->force_scale += hypot(scene->loads[i].force[0], scene->loads[i].force[1]) +
-                        fabs(scene->loads[i].moment) / (model->size > 0 ? model->size : 1.0);
+      potential->force_scale +=
+          hypot(scene->loads[i].force[0], scene->loads[i].force[1]) +
+          fabs(scene->loads[i].moment) / (model->size > 0 ? model->size : 1.0);
 }
 
-static bool make_pattern(strut_potential *p) {
-  const strut_model *model = p->model;
+static bool make_pattern(strut_potential *potential) {
+  const strut_model *model = potential->model;
   size_t most = strut_tangent_entries(model, true);
   strut_arena scratch = {0};
   strut_triplets sum = {0};
-  p->place = strut_arena_allocate(&p->arena, most, sizeof *p->place);
-  if (p->place && strut_triplets_reserve(&sum, most, &scratch)) {
-    strut_tangent_add_pattern(model, p->row_of, true, &sum);
-    p->pattern = strut_sparse_build(p->n, &sum, &p->arena);
+  potential->place = strut_arena_allocate(&potential->arena, most, sizeof *potential->place);
+  if (potential->place && strut_triplets_reserve(&sum, most, &scratch)) {
+    strut_tangent_add_pattern(model, potential->row_of, true, &sum);
+    potential->pattern = strut_sparse_build(potential->n, &sum, &potential->arena);
   }
   strut_arena_free(&scratch);
-  if (!p->pattern) return false;
-  strut_tangent_find_places(model, p->row_of, true, p->pattern, p->place);
+  if (!potential->pattern) return false;
+  strut_tangent_find_places(model, potential->row_of, true, potential->pattern, potential->place);
   return true;
 }
 
@@ -70,10 +72,10 @@ strut_status strut_potential_create_tied(const strut_model *model, const int32_t
   return create(model, NULL, rows, n, false, potential, error);
 }
 
-void strut_potential_move(const strut_potential *p, const double *step, double factor,
+void strut_potential_move(const strut_potential *potential, const double *step, double factor,
                           const double *q, double *to) {
-  for (int32_t at = 0; at < p->model->length; at++)
-    to[at] = p->row_of[at] < 0 ? q[at] : q[at] + factor * step[p->row_of[at]];
+  for (int32_t at = 0; at < potential->model->length; at++)
+    to[at] = potential->row_of[at] < 0 ? q[at] : q[at] + factor * step[potential->row_of[at]];
 }
 
 void strut_potential_free(strut_potential *potential) {
@@ -87,8 +89,8 @@ static double couples_potential(const strut_model *model, const double *near, co
   double sum = 0.0, b[STRUT_MOST_GRADIENT];
   strut_element_pose pose;
   for (int32_t i = 0; i < model->elements.count && model->elements.couples; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_LOAD) continue;
+    const strut_element *element = &model->elements.element[i];
+    if (element->role != STRUT_ELEMENT_LOAD) continue;
     double at = strut_element_strain(model, i, near, strut_element_start(model, i), b);
     strut_element_evaluate(model, i, model->members.rest, q, at, &pose);
     sum += pose.energy;
@@ -96,75 +98,80 @@ static double couples_potential(const strut_model *model, const double *near, co
   return sum;
 }
 
-static double elastic_energy(const strut_potential *p, const double *q) {
-  const strut_member_table *t = &p->model->members;
+static double elastic_energy(const strut_potential *potential, const double *q) {
+  const strut_member_table *members = &potential->model->members;
   double sum = 0.0;
-  for (int32_t j = 0; j < t->count; j++) {
-    strut_member_pose m = strut_member_pose_at(t, t->rest, j, q);
-    sum += strut_member_elastic_energy(t, j, &m);
+  for (int32_t j = 0; j < members->count; j++) {
+    strut_member_pose m = strut_member_pose_at(members, members->rest, j, q);
+    sum += strut_member_elastic_energy(members, j, &m);
   }
-  if (p->model->elements.count) sum += strut_elements_energy(p->model, t->rest, NULL, q, NULL);
+  if (potential->model->elements.count)
+    sum += strut_elements_energy(potential->model, members->rest, NULL, q, NULL);
   return sum;
 }
 
-double strut_potential_value(const strut_potential *p, const double *q) {
-  return strut_potential_value_near(p, q, q);
+double strut_potential_value(const strut_potential *potential, const double *q) {
+  return strut_potential_value_near(potential, q, q);
 }
 
-double strut_potential_value_near(const strut_potential *p, const double *q, const double *near) {
-  const strut_contact_table *c = &p->model->contacts;
-  double sum = elastic_energy(p, q), work = 0.0;
-  for (int32_t at = 0; at < 2 * p->model->node_count; at++) work += p->force[at] * q[at];
-  for (int32_t i = 0; i < c->count && p->ground; i++) {
-    double gap = strut_contact_gap(c, i, q);
-    if (gap < 0.0) sum += 0.5 * c->entry[i].stiffness * gap * gap;
+double strut_potential_value_near(const strut_potential *potential, const double *q,
+                                  const double *near) {
+  const strut_contact_table *contacts = &potential->model->contacts;
+  double sum = elastic_energy(potential, q), work = 0.0;
+  for (int32_t at = 0; at < 2 * potential->model->node_count; at++)
+    work += potential->force[at] * q[at];
+  for (int32_t i = 0; i < contacts->count && potential->ground; i++) {
+    double gap = strut_contact_gap(contacts, i, q);
+    if (gap < 0.0) sum += 0.5 * contacts->entry[i].stiffness * gap * gap;
   }
-  return sum - work + couples_potential(p->model, near, q);
+  return sum - work + couples_potential(potential->model, near, q);
 }
 
-double strut_potential_energy(const strut_potential *p, const double *q) {
-  const double *g = p->model->scene->gravity, *weight = p->model->weight;
+double strut_potential_energy(const strut_potential *potential, const double *q) {
+  const double *g = potential->model->scene->gravity, *weight = potential->model->weight;
   double sum = 0.0;
-  for (int32_t i = 0; i < p->model->node_count; i++)
+  for (int32_t i = 0; i < potential->model->node_count; i++)
     sum += weight[i] * (g[0] * q[2 * i] + g[1] * q[2 * i + 1]);
-  return elastic_energy(p, q) - sum;
+  return elastic_energy(potential, q) - sum;
 }
 
-strut_force_visit strut_potential_visit(const strut_potential *p, const double *q, double least) {
-  return (strut_force_visit){.model = p->model,
-                             .q = q,
-                             .rest = p->model->members.rest,
-                             .least = least,
-                             .closed = p->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE};
+strut_force_visit strut_potential_visit(const strut_potential *potential, const double *q,
+                                        double least) {
+  return (strut_force_visit){
+      .model = potential->model,
+      .q = q,
+      .rest = potential->model->members.rest,
+      .least = least,
+      .closed = potential->ground ? STRUT_CLOSED_TOUCHING : STRUT_CLOSED_NONE};
 }
 
-void strut_potential_force(const strut_potential *p, const double *q, double *sum) {
-  strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
-  memcpy(sum, p->force, (size_t)p->model->length * sizeof *sum);
+void strut_potential_force(const strut_potential *potential, const double *q, double *sum) {
+  strut_force_visit visit = strut_potential_visit(potential, q, -HUGE_VAL);
+  memcpy(sum, potential->force, (size_t)potential->model->length * sizeof *sum);
   for (const strut_force *force; (force = strut_force_next(&visit));)
     for (int32_t k = 0; k < 2 * force->nodes; k++)
       sum[strut_force_coordinate(force, k)] -= force->pose.force * force->pose.b[k];
 }
 
 /* The same sums in the same order as the force, kept where they are free. */
-void strut_potential_gradient(const strut_potential *p, const double *q, double *g) {
-  strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
-  for (int32_t i = 0; i < p->n; i++) g[i] = 0.0;
-  for (int32_t at = 0; at < p->model->length; at++)
-    if (p->row_of[at] >= 0) g[p->row_of[at]] -= p->force[at];
+void strut_potential_gradient(const strut_potential *potential, const double *q, double *gradient) {
+  strut_force_visit visit = strut_potential_visit(potential, q, -HUGE_VAL);
+  for (int32_t i = 0; i < potential->n; i++) gradient[i] = 0.0;
+  for (int32_t at = 0; at < potential->model->length; at++)
+    if (potential->row_of[at] >= 0) gradient[potential->row_of[at]] -= potential->force[at];
   for (const strut_force *force; (force = strut_force_next(&visit));)
     for (int32_t k = 0; k < 2 * force->nodes; k++) {
-      int32_t row = p->row_of[strut_force_coordinate(force, k)];
-      if (row >= 0) g[row] += force->pose.force * force->pose.b[k];
+      int32_t row = potential->row_of[strut_force_coordinate(force, k)];
+      if (row >= 0) gradient[row] += force->pose.force * force->pose.b[k];
     }
 }
 
 /* The last bits of the coordinates, through the gradient to the strain, and back to a force. */
-double strut_potential_rounding(const strut_potential *p, const double *q) {
-  strut_force_visit visit = strut_potential_visit(p, q, -HUGE_VAL);
+double strut_potential_rounding(const strut_potential *potential, const double *q) {
+  strut_force_visit visit = strut_potential_visit(potential, q, -HUGE_VAL);
   double largest = 0.0, forces = 0.0;
-  for (int32_t at = 0; at < 2 * p->model->node_count; at++)
-    if (p->row_of[at] >= 0) forces = fmax(forces, fabs(p->force[at]));
+  for (int32_t at = 0; at < 2 * potential->model->node_count; at++)
+    if (potential->row_of[at] >= 0) forces = fmax(forces, fabs(potential->force[at]));
   for (const strut_force *force; (force = strut_force_next(&visit));) {
     double bits = force->kind == STRUT_FORCE_ELEMENT ? fabs(force->pose.strain) * DBL_EPSILON : 0.0;
     double steepest = 0.0;
@@ -173,7 +180,8 @@ double strut_potential_rounding(const strut_potential *p, const double *q) {
       const double *at = q + force->at[k], *b = &force->pose.b[2 * k];
       double slope = fmax(fabs(b[0]), fabs(b[1]));
       if (force->kind != STRUT_FORCE_ELEMENT) slope = 1.0; /* a length in any direction */
-      free = free || p->row_of[force->at[k]] >= 0 || p->row_of[force->at[k] + 1] >= 0;
+      free =
+          free || potential->row_of[force->at[k]] >= 0 || potential->row_of[force->at[k] + 1] >= 0;
       bits = fmax(bits, slope * strut_coordinate_rounding(at, at));
       steepest = fmax(steepest, slope);
     }
@@ -189,14 +197,15 @@ double strut_force_stiffest(const strut_model *model, int32_t number) {
   strut_force_begin(model, number, &force);
   if (force.kind == STRUT_FORCE_MEMBER) return model->members.stiffness[force.index];
   if (force.kind == STRUT_FORCE_CONTACT) return model->contacts.entry[force.index].stiffness;
-  const strut_element *e = &model->elements.element[force.index];
+  const strut_element *element = &model->elements.element[force.index];
   double natural = strut_element_start(model, force.index), stiffest = 0.0;
   double size = model->size > 0.0 ? model->size : 1.0;
-  bool angle = e->strain == STRUT_STRAIN_ANGLE;
-  if (e->strain == STRUT_STRAIN_AREA) return e->numbers.stiffness * size * size;
+  bool angle = element->strain == STRUT_STRAIN_ANGLE;
+  if (element->strain == STRUT_STRAIN_AREA) return element->numbers.stiffness * size * size;
   for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
     double x = places[k] * (angle ? 1.0 : natural > 0.0 ? natural : size);
-    double slope = strut_law_respond(e->law, &e->numbers, natural + x, natural, -1).slope;
+    double slope =
+        strut_law_respond(element->law, &element->numbers, natural + x, natural, -1).slope;
     stiffest = fmax(stiffest, fabs(slope));
   }
   return angle ? stiffest / (size * size) : stiffest;
@@ -209,43 +218,44 @@ double strut_stiffest(const strut_model *model) {
   return stiffest;
 }
 
-strut_sparse *strut_potential_matrix(const strut_potential *p, strut_arena *arena) {
-  const strut_sparse *pattern = p->pattern;
+strut_sparse *strut_potential_matrix(const strut_potential *potential, strut_arena *arena) {
+  const strut_sparse *pattern = potential->pattern;
   strut_sparse *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);
   if (!matrix) return NULL;
   *matrix = *pattern; /* rows and columns are shared: they never change */
-  matrix->value = strut_arena_allocate(arena, (size_t)pattern->start[p->n], sizeof(double));
+  matrix->value = strut_arena_allocate(arena, (size_t)pattern->start[potential->n], sizeof(double));
   return matrix->value ? matrix : NULL;
 }
 
-void strut_potential_hessian(const strut_potential *p, const double *q, strut_sparse *hessian) {
-  strut_potential_hessian_above(p, q, 0.0, hessian);
+void strut_potential_hessian(const strut_potential *potential, const double *q,
+                             strut_sparse *hessian) {
+  strut_potential_hessian_above(potential, q, 0.0, hessian);
 }
 
-void strut_potential_hessian_above(const strut_potential *p, const double *q, double least,
+void strut_potential_hessian_above(const strut_potential *potential, const double *q, double least,
                                    strut_sparse *hessian) {
-  assert(hessian->n == p->n);
+  assert(hessian->n == potential->n);
   double matrix[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
-  strut_force_visit visit = strut_potential_visit(p, q, least);
+  strut_force_visit visit = strut_potential_visit(potential, q, least);
   memset(hessian->value, 0, (size_t)hessian->start[hessian->n] * sizeof *hessian->value);
   for (const strut_force *force; (force = strut_force_next(&visit));) {
-    strut_force_stiffness(p->model, force, q, matrix);
-    strut_force_scatter(force, matrix, p->place, hessian->value);
+    strut_force_stiffness(potential->model, force, q, matrix);
+    strut_force_scatter(force, matrix, potential->place, hessian->value);
   }
 }
 
 bool strut_force_has_collapsed(const strut_model *model, double share, const double *q,
                                strut_force *force) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   const strut_element_pose *pose = &force->pose;
   int32_t i = force->index;
   if (force->kind == STRUT_FORCE_MEMBER)
-    return t->slack[i] != 0.0 && t->rest[i] * t->stiffness[i] > 0.0 &&
-           strut_member_length(t, i, q) < share * t->rest[i];
+    return members->slack[i] != 0.0 && members->rest[i] * members->stiffness[i] > 0.0 &&
+           strut_member_length(members, i, q) < share * members->rest[i];
   if (force->kind == STRUT_FORCE_CONTACT) return false;
   const strut_element *own = &model->elements.element[i];
   if (own->strain != STRUT_STRAIN_LENGTH || own->carries > 0) return false;
-  strut_element_evaluate(model, i, t->rest, q, (double)NAN, &force->pose);
+  strut_element_evaluate(model, i, members->rest, q, (double)NAN, &force->pose);
   return pose->strain < share * pose->natural && pose->force < 0.0;
 }
 
@@ -253,9 +263,9 @@ bool strut_force_has_collapsed(const strut_model *model, double share, const dou
 static bool have_hinges_collapsed(const strut_model *model, const double *q) {
   const double gone = 1e-4; /* of the arm at the start */
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    const uint32_t *at = model->elements.at + e->first;
-    for (int k = 1; k < e->nodes && e->strain == STRUT_STRAIN_ANGLE; k++)
+    const strut_element *element = &model->elements.element[i];
+    const uint32_t *at = model->elements.at + element->first;
+    for (int k = 1; k < element->nodes && element->strain == STRUT_STRAIN_ANGLE; k++)
       if (strut_distance(q + at[k], q + at[k - 1]) <
           gone * strut_distance(model->start + at[k], model->start + at[k - 1]))
         return true;

@@ -54,7 +54,7 @@ STRUT_API double strut_potential_energy(const strut_potential *potential, const 
 
 /** g (n) = dE/dq [N]: minus the net force. */
 STRUT_API void strut_potential_gradient(const strut_potential *potential, const double *q,
-                                        double *g);
+                                        double *gradient);
 
 /** Net force on every coordinate (length), held ones too [N]: minus the support reactions there. */
 STRUT_API void strut_potential_force(const strut_potential *potential, const double *q,

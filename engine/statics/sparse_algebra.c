@@ -57,20 +57,20 @@ struct strut_sparse_qr {
 static cholmod_sparse *copy_matrix(strut_sparse_qr *qr, const int32_t *start, const int32_t *row,
                                    const double *value) {
   size_t count = (size_t)start[qr->columns];
-  cholmod_sparse *a = cholmod_l_allocate_sparse(
+  cholmod_sparse *matrix = cholmod_l_allocate_sparse(
       (size_t)qr->rows, (size_t)qr->columns, count ? count : 1, 1, 1, 0, CHOLMOD_REAL, &qr->common);
-  if (!a) return NULL;
-  int64_t *p = a->p, *i = a->i;
+  if (!matrix) return NULL;
+  int64_t *p = matrix->p, *i = matrix->i;
   for (int32_t j = 0; j <= qr->columns; j++) p[j] = start[j];
   for (size_t k = 0; k < count; k++) i[k] = row[k];
-  memcpy(a->x, value, count * sizeof *value);
-  return a;
+  memcpy(matrix->x, value, count * sizeof *value);
+  return matrix;
 }
 
 /* Row of the last entry of a column of R, -1 where it is empty; rows need not be sorted. */
-static int64_t last_entry(const cholmod_sparse *r, int32_t column, double *value) {
-  const int64_t *p = r->p, *i = r->i;
-  const double *x = r->x;
+static int64_t last_entry(const cholmod_sparse *matrix, int32_t column, double *value) {
+  const int64_t *p = matrix->p, *i = matrix->i;
+  const double *x = matrix->x;
   int64_t last = -1;
   for (int64_t k = p[column]; k < p[column + 1]; k++)
     if (i[k] > last) last = i[k], *value = x[k];
@@ -89,9 +89,10 @@ static void sort_columns(strut_sparse_qr *qr) {
   }
 }
 
-static bool factorise(strut_sparse_qr *qr, cholmod_sparse *a, double tolerance) {
-  int64_t rank = SuiteSparseQR_C(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, a, NULL, NULL, NULL, NULL,
-                                 &qr->r, &qr->order, &qr->h, &qr->place, &qr->tau, &qr->common);
+static bool factorise(strut_sparse_qr *qr, cholmod_sparse *matrix, double tolerance) {
+  int64_t rank =
+      SuiteSparseQR_C(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, matrix, NULL, NULL, NULL, NULL,
+                      &qr->r, &qr->order, &qr->h, &qr->place, &qr->tau, &qr->common);
   if (rank < 0 || !qr->r || !qr->h || !qr->tau) return false;
   qr->rank = (int32_t)rank;
   qr->live = strut_allocate((size_t)rank + 1, sizeof *qr->live);
@@ -174,16 +175,16 @@ static void find_left_null(const strut_sparse_qr *qr, int32_t i, double *y) {
 }
 
 /* Back substitution: R of the live columns times x is minus the dead column. */
-static void find_null(const strut_sparse_qr *qr, int32_t i, double *x) {
+static void find_null(const strut_sparse_qr *qr, int32_t i, double *vector) {
   assert(i >= 0 && i < qr->columns - qr->rank);
   const int64_t *p = qr->r->p, *at = qr->r->i;
   const double *r = qr->r->x;
   double *w = qr->work;
   int32_t dead = qr->dead[i];
   memset(w, 0, (size_t)qr->rows * sizeof *w);
-  memset(x, 0, (size_t)qr->columns * sizeof *x);
+  memset(vector, 0, (size_t)qr->columns * sizeof *vector);
   for (int64_t k = p[dead]; k < p[dead + 1]; k++) w[at[k]] = -r[k];
-  x[qr->order ? qr->order[dead] : dead] = 1.0;
+  vector[qr->order ? qr->order[dead] : dead] = 1.0;
   for (int32_t k = qr->rank - 1; k >= 0; k--) {
     int32_t column = qr->live[k];
     double pivot = 1.0;
@@ -192,7 +193,7 @@ static void find_null(const strut_sparse_qr *qr, int32_t i, double *x) {
     if (value == 0.0) continue;
     for (int64_t m = p[column]; m < p[column + 1]; m++)
       if (at[m] != k) w[at[m]] -= value * r[m];
-    x[qr->order ? qr->order[column] : column] = value;
+    vector[qr->order ? qr->order[column] : column] = value;
   }
 }
 
@@ -223,38 +224,41 @@ static double stirred(uint64_t i) {
   return (double)((z ^ (z >> 27)) >> 11) * 0x1p-53 - 0.5;
 }
 
-static bool allocate_search(search *s, strut_arena *arena) {
-  size_t n = (size_t)s->n, p = (size_t)s->vectors;
-  s->residual = strut_arena_allocate(arena, n, sizeof(double));
-  s->basis = strut_arena_allocate(arena, n * p, sizeof(double));
-  s->work = strut_arena_allocate(arena, 3 * n, sizeof(double));
-  s->small = strut_arena_allocate(arena, p * (p + 8), sizeof(double));
-  s->value = strut_arena_allocate(arena, p, sizeof(double));
-  s->select = strut_arena_allocate(arena, p, sizeof *s->select);
-  if (!s->residual || !s->basis || !s->work || !s->small || !s->value || !s->select) return false;
-  for (int32_t i = 0; i < s->n; i++) s->residual[i] = stirred((uint64_t)i);
-  s->parameter[0] = 1; /* ARPACK chooses the shifts of its restarts */
-  s->parameter[2] = MOST_RESTARTS;
-  s->parameter[6] = SHIFT_INVERT;
+static bool allocate_search(search *self, strut_arena *arena) {
+  size_t n = (size_t)self->n, p = (size_t)self->vectors;
+  self->residual = strut_arena_allocate(arena, n, sizeof(double));
+  self->basis = strut_arena_allocate(arena, n * p, sizeof(double));
+  self->work = strut_arena_allocate(arena, 3 * n, sizeof(double));
+  self->small = strut_arena_allocate(arena, p * (p + 8), sizeof(double));
+  self->value = strut_arena_allocate(arena, p, sizeof(double));
+  self->select = strut_arena_allocate(arena, p, sizeof *self->select);
+  if (!self->residual || !self->basis || !self->work || !self->small || !self->value ||
+      !self->select)
+    return false;
+  for (int32_t i = 0; i < self->n; i++) self->residual[i] = stirred((uint64_t)i);
+  self->parameter[0] = 1; /* ARPACK chooses the shifts of its restarts */
+  self->parameter[2] = MOST_RESTARTS;
+  self->parameter[6] = SHIFT_INVERT;
   return true;
 }
 
 /* ARPACK asks for products until it is done; its pointers count from 1. */
-static a_int iterate(const strut_lanczos_problem *problem, search *s) {
+static a_int iterate(const strut_lanczos_problem *problem, search *self) {
   a_int task = 0, info = 1; /* the residual is ours */
-  a_int small = s->vectors * (s->vectors + 8);
+  a_int small = self->vectors * (self->vectors + 8);
   for (;;) {
     if (problem->interrupt && *problem->interrupt) return INTERRUPTED;
-    dsaupd_c(&task, "G", s->n, "LM", s->wanted, GOOD, s->residual, s->vectors, s->basis, s->n,
-             s->parameter, s->pointer, s->work, s->small, small, &info);
-    double *x = s->work + s->pointer[0] - 1, *y = s->work + s->pointer[1] - 1;
+    dsaupd_c(&task, "G", self->n, "LM", self->wanted, GOOD, self->residual, self->vectors,
+             self->basis, self->n, self->parameter, self->pointer, self->work, self->small, small,
+             &info);
+    double *x = self->work + self->pointer[0] - 1, *y = self->work + self->pointer[1] - 1;
     if (task == 2) {
       problem->mass(problem->context, x, y);
     } else if (task == -1) {
       problem->mass(problem->context, x, y);
       problem->solve(problem->context, y);
     } else if (task == 1) {
-      memcpy(y, s->work + s->pointer[2] - 1, (size_t)s->n * sizeof *y);
+      memcpy(y, self->work + self->pointer[2] - 1, (size_t)self->n * sizeof *y);
       problem->solve(problem->context, y);
     } else {
       return info;
@@ -262,22 +266,22 @@ static a_int iterate(const strut_lanczos_problem *problem, search *s) {
   }
 }
 
-static a_int extract_pairs(const strut_lanczos_problem *problem, search *s) {
-  a_int info = 0, small = s->vectors * (s->vectors + 8);
-  dseupd_c(1, "A", s->select, s->value, s->basis, s->n, problem->shift, "G", s->n, "LM", s->wanted,
-           GOOD, s->residual, s->vectors, s->basis, s->n, s->parameter, s->pointer, s->work,
-           s->small, small, &info);
+static a_int extract_pairs(const strut_lanczos_problem *problem, search *self) {
+  a_int info = 0, small = self->vectors * (self->vectors + 8);
+  dseupd_c(1, "A", self->select, self->value, self->basis, self->n, problem->shift, "G", self->n,
+           "LM", self->wanted, GOOD, self->residual, self->vectors, self->basis, self->n,
+           self->parameter, self->pointer, self->work, self->small, small, &info);
   return info;
 }
 
-static void copy_sorted(const search *s, double *value, double *vector) {
-  for (int32_t i = 0; i < s->wanted; i++) {
+static void copy_sorted(const search *self, double *value, double *vector) {
+  for (int32_t i = 0; i < self->wanted; i++) {
     int32_t rank = 0;
-    for (int32_t k = 0; k < s->wanted; k++)
-      rank += s->value[k] < s->value[i] || (s->value[k] == s->value[i] && k < i);
-    value[rank] = s->value[i];
-    memcpy(vector + (size_t)rank * (size_t)s->n, s->basis + (size_t)i * (size_t)s->n,
-           (size_t)s->n * sizeof *vector);
+    for (int32_t k = 0; k < self->wanted; k++)
+      rank += self->value[k] < self->value[i] || (self->value[k] == self->value[i] && k < i);
+    value[rank] = self->value[i];
+    memcpy(vector + (size_t)rank * (size_t)self->n, self->basis + (size_t)i * (size_t)self->n,
+           (size_t)self->n * sizeof *vector);
   }
 }
 

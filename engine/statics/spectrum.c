@@ -73,14 +73,14 @@ static void sort_order(const double *value, int32_t n, int32_t *order) {
 }
 
 static bool fill_dense(strut_spectrum_workspace *room) {
-  const strut_sparse *h = room->hessian;
-  size_t n = (size_t)h->n;
+  const strut_sparse *matrix = room->hessian;
+  size_t n = (size_t)matrix->n;
   memset(room->dense.z, 0, n * n * sizeof *room->dense.z);
   for (size_t j = 0; j < n; j++)
-    for (int32_t k = h->start[j]; k < h->start[j + 1]; k++) {
-      size_t i = (size_t)h->row[k];
-      if (!isfinite(h->value[k])) return false;
-      room->dense.z[i * n + j] = room->dense.z[j * n + i] = h->value[k];
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++) {
+      size_t i = (size_t)matrix->row[k];
+      if (!isfinite(matrix->value[k])) return false;
+      room->dense.z[i * n + j] = room->dense.z[j * n + i] = matrix->value[k];
     }
   return true;
 }
@@ -248,9 +248,9 @@ bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool
   return refine(room, q, soft);
 }
 
-bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q, strut_tridiagonal **t,
-                           bool *singular) {
-  *t = &room->dense;
+bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q,
+                           strut_tridiagonal **tridiagonals, bool *singular) {
+  *tridiagonals = &room->dense;
   if (!reduce(room, q, 0.0)) return false;
   double noise = fmax(8.0 * room->dense.n * DBL_EPSILON, room->uneven ? LOST : 0.0);
   double shift = noise * room->dense.bound + DBL_MIN;
@@ -268,32 +268,32 @@ static const double *mode_of(const strut_spectrum *spectrum, int32_t i) {
   return spectrum->vector + (size_t)i * (size_t)spectrum->n;
 }
 
-void strut_spectrum_split(const strut_spectrum *spectrum, const double *g, double still,
+void strut_spectrum_split(const strut_spectrum *spectrum, const double *gradient, double still,
                           double *part, uint8_t *idle) {
   for (int32_t i = 0; i < spectrum->n; i++) {
-    part[i] = strut_dot(mode_of(spectrum, i), g, spectrum->n);
+    part[i] = strut_dot(mode_of(spectrum, i), gradient, spectrum->n);
     idle[i] = fabs(spectrum->value[i]) <= 4.0 * spectrum->noise[i] && fabs(part[i]) <= still;
   }
 }
 
-double strut_spectrum_combine(const strut_spectrum *spectrum, const double *x, double *step) {
+double strut_spectrum_combine(const strut_spectrum *spectrum, const double *vector, double *step) {
   double square = 0.0;
   memset(step, 0, (size_t)spectrum->n * sizeof *step);
   for (int32_t i = 0; i < spectrum->n; i++) {
-    if (x[i] == 0.0) continue;
-    square += x[i] * x[i];
-    for (int32_t k = 0; k < spectrum->n; k++) step[k] += x[i] * mode_of(spectrum, i)[k];
+    if (vector[i] == 0.0) continue;
+    square += vector[i] * vector[i];
+    for (int32_t k = 0; k < spectrum->n; k++) step[k] += vector[i] * mode_of(spectrum, i)[k];
   }
   return sqrt(square);
 }
 
 bool strut_spectrum_rebalance(const strut_spectrum *spectrum, const double *value, double stiff,
-                              const double *g, double *step) {
+                              const double *gradient, double *step) {
   bool any = false;
   for (int32_t i = 0; i < spectrum->n; i++) {
     const double *mode = mode_of(spectrum, i);
     if (!(value[i] > stiff && spectrum->value[i] > stiff)) continue;
-    double far = strut_dot(mode, g, spectrum->n) / spectrum->value[i];
+    double far = strut_dot(mode, gradient, spectrum->n) / spectrum->value[i];
     for (int32_t k = 0; k < spectrum->n; k++) step[k] -= far * mode[k];
     any = true;
   }

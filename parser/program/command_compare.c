@@ -316,17 +316,17 @@ static strut_status print_comparison(const strut_arguments *arguments,
 static strut_status report_failures(const strut_compare *result) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < result->count; i++) {
-    const strut_compare_column *c = &result->columns[i];
+    const strut_compare_column *column = &result->columns[i];
     strut_error error = {0};
-    if (c->inaccurate) {
+    if (column->inaccurate) {
       fprintf(stderr, "strut: warning: %s: the velocity is less accurate than requested: %s\n",
-              c->input->label, c->how);
+              column->input->label, column->how);
       if (status == STRUT_OK) status = STRUT_INACCURATE;
     }
-    if (c->status == STRUT_OK) continue;
-    strut_fail(&error, c->status, "%s: %s", c->input->label, c->message);
+    if (column->status == STRUT_OK) continue;
+    strut_fail(&error, column->status, "%s: %s", column->input->label, column->message);
     strut_print_error(&error);
-    if (status == STRUT_OK || status == STRUT_INACCURATE) status = c->status;
+    if (status == STRUT_OK || status == STRUT_INACCURATE) status = column->status;
   }
   return status;
 }

@@ -122,18 +122,19 @@ static strut_status read_figure(const strut_arguments *arguments, const strut_ta
 }
 
 /* Refuses options that belong to the other kind of diagram. */
-static strut_status check_kind(const strut_arguments *a) {
-  const bool map = a->kind.index == 1;
-  const char *other = map ? (a->by         ? "by"
-                             : a->band     ? "band"
-                             : a->log.text ? "log"
-                                           : NULL)
-                          : (a->label         ? "label"
-                             : a->doubt       ? "doubt"
-                             : a->colors.text ? "colors"
-                                              : NULL);
+static strut_status check_kind(const strut_arguments *arguments) {
+  const bool map = arguments->kind.index == 1;
+  const char *other = map ? (arguments->by         ? "by"
+                             : arguments->band     ? "band"
+                             : arguments->log.text ? "log"
+                                                   : NULL)
+                          : (arguments->label         ? "label"
+                             : arguments->doubt       ? "doubt"
+                             : arguments->colors.text ? "colors"
+                                                      : NULL);
   if (!other) return STRUT_OK;
-  return strut_usage_error(a, "--kind %s has no option --%s", map ? "map" : "curves", other);
+  return strut_usage_error(arguments, "--kind %s has no option --%s", map ? "map" : "curves",
+                           other);
 }
 
 static strut_status run_plot(const strut_arguments *arguments) {

@@ -22,33 +22,34 @@ static strut_status write_files(const char *directory, const char *const *names,
 }
 
 /* Writes the files of -o and prints the JSON or the table. */
-static strut_status report(const strut_arguments *arguments, const strut_analysis *a,
+static strut_status report(const strut_arguments *arguments, const strut_analysis *analysis,
                            strut_error *error) {
-  const strut_analysis_kind *kind = a->kind;
+  const strut_analysis_kind *kind = analysis->kind;
   strut_status status = STRUT_OK;
   /* Of large structures the JSON takes long to make. */
-  char *json = arguments->json || arguments->output ? strut_analysis_json(a) : NULL, *csv = NULL;
-  if (arguments->output && kind->csv) csv = kind->csv(a);
+  char *json = arguments->json || arguments->output ? strut_analysis_json(analysis) : NULL,
+       *csv = NULL;
+  if (arguments->output && kind->csv) csv = kind->csv(analysis);
   if (arguments->output) status = write_files(arguments->output, kind->files, json, csv, error);
   strut_release(csv);
   if (status == STRUT_OK && arguments->json) return strut_print_report(arguments, json);
   strut_release(json);
   return status == STRUT_OK
-             ? strut_print_report(arguments, strut_analysis_text(a, strut_report_width()))
+             ? strut_print_report(arguments, strut_analysis_text(analysis, strut_report_width()))
              : status;
 }
 
 static strut_status compute_and_report(const strut_arguments *arguments, const strut_plot *plot,
-                                       strut_analysis *a, strut_error *error) {
-  const strut_analysis_kind *kind = a->kind;
-  strut_progress *progress = a->setup->experiment.progress_context;
-  strut_status status = strut_analysis_compute(a, error);
+                                       strut_analysis *analysis, strut_error *error) {
+  const strut_analysis_kind *kind = analysis->kind;
+  strut_progress *progress = analysis->setup->experiment.progress_context;
+  strut_status status = strut_analysis_compute(analysis, error);
   strut_progress_end(progress);
-  a->setup->experiment.progress = NULL;
-  if (status == STRUT_OK) status = report(arguments, a, error);
-  if (status == STRUT_OK && kind->warn) kind->warn(a, arguments->listener);
-  if (status == STRUT_OK && plot->path) status = kind->draw(a, plot, error);
-  if (status == STRUT_OK && kind->verdict) status = kind->verdict(a, error);
+  analysis->setup->experiment.progress = NULL;
+  if (status == STRUT_OK) status = report(arguments, analysis, error);
+  if (status == STRUT_OK && kind->warn) kind->warn(analysis, arguments->listener);
+  if (status == STRUT_OK && plot->path) status = kind->draw(analysis, plot, error);
+  if (status == STRUT_OK && kind->verdict) status = kind->verdict(analysis, error);
   return status;
 }
 
@@ -192,27 +193,29 @@ static const strut_option form_options[] = {
 };
 
 /* The new model, in the words of the file where that can be; `flat`: the model before. NULL: it was reported. */
-static char *write_model(const strut_arguments *arguments, const strut_analysis *a,
+static char *write_model(const strut_arguments *arguments, const strut_analysis *analysis,
                          const char *flat) {
   char *model;
-  if (strut_write_short(arguments, a->scenes.text, a->scenes.length, flat, a->setup, false, &model))
+  if (strut_write_short(arguments, analysis->scenes.text, analysis->scenes.length, flat,
+                        analysis->setup, false, &model))
     return NULL;
-  if (!model) model = strut_setup_write(a->setup);
+  if (!model) model = strut_setup_write(analysis->setup);
   if (!model) strut_print_out_of_memory();
   return model;
 }
 
 /* With -o the model goes there, and a report to stdout, else the model. */
-static strut_status report_form(const strut_arguments *arguments, const strut_analysis *a,
+static strut_status report_form(const strut_arguments *arguments, const strut_analysis *analysis,
                                 const char *flat, strut_error *error) {
   bool silent = arguments->quiet && arguments->output && !arguments->json;
   bool wanted = arguments->output || !arguments->json;
-  char *model = wanted ? write_model(arguments, a, flat) : NULL, *text = NULL;
+  char *model = wanted ? write_model(arguments, analysis, flat) : NULL, *text = NULL;
   strut_status status = wanted && !model ? STRUT_NO_MEMORY : STRUT_OK;
   if (status == STRUT_OK && arguments->output)
     status = strut_file_write_path(arguments->output, model, error);
   if (arguments->json || arguments->output)
-    text = arguments->json ? strut_analysis_json(a) : strut_analysis_text(a, strut_report_width());
+    text = arguments->json ? strut_analysis_json(analysis)
+                           : strut_analysis_text(analysis, strut_report_width());
   if (status == STRUT_OK && !text && (arguments->json || arguments->output))
     status = strut_print_out_of_memory();
   if (status == STRUT_OK && !silent) status = strut_print(text ? text : model);

@@ -180,7 +180,7 @@ typedef struct tradeoff_request {
   uint64_t seed;
 } tradeoff_request;
 
-static strut_status read_methods(const strut_arguments *arguments, tradeoff_request *w) {
+static strut_status read_methods(const strut_arguments *arguments, tradeoff_request *self) {
   const char *text = arguments->integrator.text;
   char list[500];
   while (text) {
@@ -191,29 +191,32 @@ static strut_status read_methods(const strut_arguments *arguments, tradeoff_requ
       if (strlen(name) == length && strncmp(name, text, length) == 0)
         found = strut_integrator_at(i);
     }
-    if (!found || w->study.method_count == MOST_METHODS)
+    if (!found || self->study.method_count == MOST_METHODS)
       return strut_usage_error(arguments, "--integrator: unknown method '%.*s'; expected %s",
                                (int)length, text,
                                strut_words_text(STRUT_INTEGRATOR_WORDS, list, sizeof list));
-    w->methods[w->study.method_count++] = found;
+    self->methods[self->study.method_count++] = found;
     text = text[length] ? text + length + 1 : NULL;
   }
-  w->study.methods = w->methods;
+  self->study.methods = self->methods;
   return STRUT_OK;
 }
 
-static strut_status read_options(const strut_arguments *a, tradeoff_request *w) {
-  w->study.steps = (int)a->step_sizes.value;
-  w->study.measure = (strut_tradeoff_measure)(a->measure.text ? a->measure.index + 1 : 0);
-  w->study.periods = a->periods.value;
-  w->study.budget = a->cpu_time.value;
-  w->study.accuracy = a->accuracy.value;
-  w->study.own_model = a->own_model;
-  w->points = a->varied_count == 0 ? 1 : a->points.text ? (size_t)a->points.value : USUAL_POINTS;
-  w->seed = a->seed.text ? (uint64_t)a->seed.value : USUAL_SEED;
-  if (a->varied_count == 0 && (a->points.text || a->seed.text))
-    return strut_usage_error(a, "--points and --seed need --vary");
-  return read_methods(a, w);
+static strut_status read_options(const strut_arguments *arguments, tradeoff_request *self) {
+  self->study.steps = (int)arguments->step_sizes.value;
+  self->study.measure =
+      (strut_tradeoff_measure)(arguments->measure.text ? arguments->measure.index + 1 : 0);
+  self->study.periods = arguments->periods.value;
+  self->study.budget = arguments->cpu_time.value;
+  self->study.accuracy = arguments->accuracy.value;
+  self->study.own_model = arguments->own_model;
+  self->points = arguments->varied_count == 0 ? 1
+                 : arguments->points.text     ? (size_t)arguments->points.value
+                                              : USUAL_POINTS;
+  self->seed = arguments->seed.text ? (uint64_t)arguments->seed.value : USUAL_SEED;
+  if (arguments->varied_count == 0 && (arguments->points.text || arguments->seed.text))
+    return strut_usage_error(arguments, "--points and --seed need --vary");
+  return read_methods(arguments, self);
 }
 
 /* Writes all three files, or none. */
@@ -259,19 +262,19 @@ static strut_status report_study(const strut_arguments *arguments, strut_results
 }
 
 static strut_status run_study(const strut_arguments *arguments, const strut_plot *plot,
-                              tradeoff_request *w, const operating_points *points) {
+                              tradeoff_request *self, const operating_points *points) {
   strut_results files = {0};
   strut_tradeoff result = {.name = ""};
   strut_error error = {0};
-  w->study.interrupt = strut_interrupt_watch(); /* before there are files */
+  self->study.interrupt = strut_interrupt_watch(); /* before there are files */
   strut_status status = STRUT_OK;
   if (arguments->output)
     status = strut_results_begin_named(&files, arguments->output, file_names, &error);
   if (status == STRUT_OK) {
     strut_progress progress = strut_progress_begin(arguments->quiet);
-    w->study.progress = progress.wanted ? strut_progress_show : NULL;
-    w->study.progress_context = &progress;
-    status = strut_tradeoff_make(points->list, points->count, &w->study, &result, &error);
+    self->study.progress = progress.wanted ? strut_progress_show : NULL;
+    self->study.progress_context = &progress;
+    status = strut_tradeoff_make(points->list, points->count, &self->study, &result, &error);
     strut_progress_end(&progress);
   }
   if (status == STRUT_OK)

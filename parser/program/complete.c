@@ -17,24 +17,25 @@ typedef struct completion {
 } completion;
 
 /* Prints the text if it begins as the word does. */
-static void offer(const completion *c, const char *text) {
-  if (strncmp(text, c->word, strlen(c->word)) == 0 && !strpbrk(text, "\t\n"))
-    printf("%.*s%s\n", c->kept, c->before, text);
+static void offer(const completion *self, const char *text) {
+  if (strncmp(text, self->word, strlen(self->word)) == 0 && !strpbrk(text, "\t\n"))
+    printf("%.*s%s\n", self->kept, self->before, text);
 }
 
-static void offer_commands(const completion *c) {
-  for (size_t i = 0; strut_command_at(i); i++) offer(c, strut_command_at(i)->name);
+static void offer_commands(const completion *self) {
+  for (size_t i = 0; strut_command_at(i); i++) offer(self, strut_command_at(i)->name);
 }
 
-static void offer_options(const completion *c, const strut_command *command) {
+static void offer_options(const completion *self, const strut_command *command) {
   char name[64];
   for (size_t i = 0; strut_option_at(command, i); i++) {
     snprintf(name, sizeof name, "--%s", strut_option_at(command, i)->name);
-    offer(c, name);
+    offer(self, name);
   }
-  for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
-    snprintf(name, sizeof name, "--%s", f->selector);
-    offer(c, name);
+  for (const strut_command_variant *variant = command->forms; variant && variant->selector;
+       variant++) {
+    snprintf(name, sizeof name, "--%s", variant->selector);
+    offer(self, name);
   }
 }
 
@@ -43,24 +44,24 @@ static void offer_example(void *context, const char *model) { offer(context, mod
 /* ---- the command line ---- */
 
 /* What fits the value of an option; returns the last line. */
-static const char *complete_value(const strut_option *option, completion *c) {
-  const char *comma = strrchr(c->word, ',');
+static const char *complete_value(const strut_option *option, completion *self) {
+  const char *comma = strrchr(self->word, ',');
   if (comma) { /* only what is behind the last comma is completed */
-    c->kept += (int)(comma + 1 - c->word);
-    c->word = comma + 1;
+    self->kept += (int)(comma + 1 - self->word);
+    self->word = comma + 1;
   }
   char word[40];
-  for (int i = 0; strut_option_word(option, i, word, sizeof word); i++) offer(c, word);
+  for (int i = 0; strut_option_word(option, i, word, sizeof word); i++) offer(self, word);
   if (strcmp(option->argument, "DIR") == 0) return ":folders";
   return strncmp(option->argument, "FILE", 4) == 0 ? ":files" : ":";
 }
 
-static const char *complete_argument(const strut_command *command, completion *c) {
+static const char *complete_argument(const strut_command *command, completion *self) {
   const char *model = command->model ? command->model : "";
-  if (strncmp(model, "COMMAND", 7) == 0) offer_commands(c);
+  if (strncmp(model, "COMMAND", 7) == 0) offer_commands(self);
   for (int i = 0; i < STRUT_SECTION_COUNT && strncmp(model, "SECTION", 7) == 0; i++)
-    offer(c, strut_section_name((strut_section)i));
-  if (strcmp(model, "EXAMPLE") == 0) strut_examples_list(offer_example, c);
+    offer(self, strut_section_name((strut_section)i));
+  if (strcmp(model, "EXAMPLE") == 0) strut_examples_list(offer_example, self);
   if (strcmp(model, "DIR") == 0) return ":folders";
   if (strcmp(model, "TABLE") == 0) return ":files csv";
   if (strstr(model, "RUN") || strncmp(model, "FILE", 4) == 0) return ":files";

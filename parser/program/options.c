@@ -61,9 +61,9 @@ static strut_status unknown_option(const strut_arguments *to, const char *word) 
   const char *meant = NULL; /* the first that it abbreviates, or one that is near */
   char name[64];
   snprintf(name, sizeof name, "%.*s", (int)length, word + 2);
-  for (const strut_refused_option *r = to->command->refused; r && r->name; r++)
-    if (strcmp(r->name, name) == 0)
-      return strut_usage_error(to, "--%s cannot be used here: %s", name, r->reason);
+  for (const strut_refused_option *option = to->command->refused; option && option->name; option++)
+    if (strcmp(option->name, name) == 0)
+      return strut_usage_error(to, "--%s cannot be used here: %s", name, option->reason);
   for (size_t i = 0; length && !meant && (row = strut_option_at(to->command, i)); i++)
     if (strncmp(row->name, name, length) == 0) meant = row->name;
   if (!meant) meant = strut_did_you_mean(name, option_name_at, to->command);
@@ -170,21 +170,24 @@ void strut_command_help(const strut_command *command) {
   if (command->details) printf("%s", command->details);
   printf("\nOptions:\n");
   for (size_t i = 0; strut_option_at(command, i); i++) print_option(strut_option_at(command, i));
-  for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
-    if (f > command->forms && f->command == f[-1].command) continue;
-    printf("\n'strut %s' %s; see 'strut %s --help'.\n", f->command->name, f->command->summary,
-           f->command->name);
+  for (const strut_command_variant *variant = command->forms; variant && variant->selector;
+       variant++) {
+    if (variant > command->forms && variant->command == variant[-1].command) continue;
+    printf("\n'strut %s' %s; see 'strut %s --help'.\n", variant->command->name,
+           variant->command->summary, variant->command->name);
   }
 }
 
 const strut_command *strut_command_variant_of(const strut_command *command, int count,
                                               char **words) {
-  for (const strut_command_variant *f = command->forms; f && f->selector; f++) {
-    size_t length = strlen(f->selector);
+  for (const strut_command_variant *variant = command->forms; variant && variant->selector;
+       variant++) {
+    size_t length = strlen(variant->selector);
     for (int i = 0; i < count && strcmp(words[i], "--") != 0; i++)
-      if (strncmp(words[i], "--", 2) == 0 && strncmp(words[i] + 2, f->selector, length) == 0 &&
+      if (strncmp(words[i], "--", 2) == 0 &&
+          strncmp(words[i] + 2, variant->selector, length) == 0 &&
           (!words[i][2 + length] || words[i][2 + length] == '='))
-        return f->command;
+        return variant->command;
   }
   return command;
 }

@@ -23,44 +23,49 @@ const strut_option strut_film_options[] = {
      .low = 1, .high = 120},
     {.name = NULL}};
 
-strut_status strut_run_pictures_read(const strut_arguments *arguments, strut_run_pictures *p) {
-  strut_status status = strut_plot_read(arguments, 0, &p->plot);
-  if (!status) status = strut_run_figure_read(arguments, &p->plot, &p->figure, p->times);
-  p->quiet = arguments->quiet;
-  p->silent = arguments->quiet || arguments->json;
-  p->film = (strut_film){.path = arguments->animate,
-                         .speed = arguments->speed.text ? arguments->speed.value : 1,
-                         .fps = arguments->fps.value};
-  if (!status && !p->film.path && (arguments->speed.text || arguments->fps.text))
+strut_status strut_run_pictures_read(const strut_arguments *arguments,
+                                     strut_run_pictures *pictures) {
+  strut_status status = strut_plot_read(arguments, 0, &pictures->plot);
+  if (!status)
+    status = strut_run_figure_read(arguments, &pictures->plot, &pictures->figure, pictures->times);
+  pictures->quiet = arguments->quiet;
+  pictures->silent = arguments->quiet || arguments->json;
+  pictures->film = (strut_film){.path = arguments->animate,
+                                .speed = arguments->speed.text ? arguments->speed.value : 1,
+                                .fps = arguments->fps.value};
+  if (!status && !pictures->film.path && (arguments->speed.text || arguments->fps.text))
     return strut_usage_error(arguments, "--speed and --fps need --animate FILE");
   return status;
 }
 
-strut_status strut_run_pictures_check(strut_run_pictures *p, const strut_experiment *experiment,
-                                      const strut_model *model, strut_error *error) {
-  p->figure.experiment = p->film.experiment = experiment;
+strut_status strut_run_pictures_check(strut_run_pictures *pictures,
+                                      const strut_experiment *experiment, const strut_model *model,
+                                      strut_error *error) {
+  pictures->figure.experiment = pictures->film.experiment = experiment;
   strut_span span = strut_experiment_span(experiment, model->scene);
   strut_status status = STRUT_OK;
-  if (p->film.path) status = strut_film_check(&p->film, span.duration - span.record_start, error);
-  if (status != STRUT_OK || !p->plot.path) return status;
-  return strut_run_figure_check(&p->figure, model, error);
+  if (pictures->film.path)
+    status = strut_film_check(&pictures->film, span.duration - span.record_start, error);
+  if (status != STRUT_OK || !pictures->plot.path) return status;
+  return strut_run_figure_check(&pictures->figure, model, error);
 }
 
-strut_sink *strut_run_pictures_sink(strut_run_pictures *p, const strut_scene *scene,
+strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_scene *scene,
                                     strut_status *status) {
   *status = STRUT_OK;
-  if (!p->plot.path && !p->film.path) return NULL;
-  unsigned channels = p->plot.path ? strut_run_figure_channels(p->figure.view) : 0;
-  if (p->film.path) channels |= strut_run_figure_channels(STRUT_RUN_SNAPSHOTS);
-  p->sink = strut_trajectory_sink(&p->motion, scene, channels, STRUT_TRAJECTORY_ROOM);
-  if (!p->sink) *status = STRUT_NO_MEMORY;
-  return p->sink;
+  if (!pictures->plot.path && !pictures->film.path) return NULL;
+  unsigned channels = pictures->plot.path ? strut_run_figure_channels(pictures->figure.view) : 0;
+  if (pictures->film.path) channels |= strut_run_figure_channels(STRUT_RUN_SNAPSHOTS);
+  pictures->sink = strut_trajectory_sink(&pictures->motion, scene, channels, STRUT_TRAJECTORY_ROOM);
+  if (!pictures->sink) *status = STRUT_NO_MEMORY;
+  return pictures->sink;
 }
 
-strut_status strut_run_pictures_draw(strut_run_pictures *p, const strut_model *model,
+strut_status strut_run_pictures_draw(strut_run_pictures *pictures, const strut_model *model,
                                      const strut_summary *summary, strut_error *error) {
-  if (!p->plot.path) return STRUT_OK;
-  return strut_run_figure_draw(p->plot.path, &p->figure, model, &p->motion, summary, error);
+  if (!pictures->plot.path) return STRUT_OK;
+  return strut_run_figure_draw(pictures->plot.path, &pictures->figure, model, &pictures->motion,
+                               summary, error);
 }
 
 /* And what would make it better: a speed at which it lasts five seconds, more recorded frames. */
@@ -81,24 +86,24 @@ static void print_film(const strut_film *film) {
         strut_quantity_of(shown, DIGITS, "s").text);
 }
 
-strut_status strut_run_pictures_film(strut_run_pictures *p, const strut_model *model) {
+strut_status strut_run_pictures_film(strut_run_pictures *pictures, const strut_model *model) {
   strut_error error = {0};
-  if (!p->film.path) return STRUT_OK;
+  if (!pictures->film.path) return STRUT_OK;
   fflush(stdout);
-  strut_progress progress = strut_progress_begin(p->quiet);
+  strut_progress progress = strut_progress_begin(pictures->quiet);
   /* After an interrupted run the film still shows what was recorded. */
   const strut_flag *interrupt = strut_interrupt_watch();
-  p->film.interrupt = *interrupt ? NULL : interrupt;
-  p->film.progress = progress.wanted ? strut_progress_show : NULL;
-  p->film.progress_context = &progress;
-  strut_status status = strut_film_make(&p->film, model, &p->motion, &error);
+  pictures->film.interrupt = *interrupt ? NULL : interrupt;
+  pictures->film.progress = progress.wanted ? strut_progress_show : NULL;
+  pictures->film.progress_context = &progress;
+  strut_status status = strut_film_make(&pictures->film, model, &pictures->motion, &error);
   strut_progress_end(&progress);
   if (status != STRUT_OK) strut_print_error(&error);
-  if (status == STRUT_OK && !p->silent) print_film(&p->film);
+  if (status == STRUT_OK && !pictures->silent) print_film(&pictures->film);
   return status;
 }
 
-void strut_run_pictures_free(strut_run_pictures *p) {
-  strut_trajectory_sink_free(p->sink);
-  strut_trajectory_free(&p->motion);
+void strut_run_pictures_free(strut_run_pictures *pictures) {
+  strut_trajectory_sink_free(pictures->sink);
+  strut_trajectory_free(&pictures->motion);
 }

@@ -28,25 +28,25 @@ typedef struct reading {
 } reading;
 
 /* May the held bytes become a character? */
-static bool is_begun(const reading *r) {
-  unsigned char lead = (unsigned char)r->held[0];
+static bool is_begun(const reading *self) {
+  unsigned char lead = (unsigned char)self->held[0];
   size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC2 ? 2 : 1;
-  for (size_t i = 1; i < r->count; i++)
-    if (((unsigned char)r->held[i] & 0xC0) != 0x80) return false;
-  return lead <= 0xF4 && r->count < size;
+  for (size_t i = 1; i < self->count; i++)
+    if (((unsigned char)self->held[i] & 0xC0) != 0x80) return false;
+  return lead <= 0xF4 && self->count < size;
 }
 
 /* Moves the first held character, or bad byte, to `to`, where there is space for 16 bytes. */
-static size_t show_character(reading *r, char *to) {
+static size_t show_character(reading *self, char *to) {
   uint32_t code;
-  size_t size = strut_text_decode(r->held, r->count, &code);
+  size_t size = strut_text_decode(self->held, self->count, &code);
   int shown = (int)size;
   if (code != STRUT_BAD_CODE && strut_text_hidden(code))
     shown = snprintf(to, 16, code > 0xFFFF ? "\\U%08X" : "\\u%04X", (unsigned)code);
   else
-    memcpy(to, r->held, size);
-  r->count -= size;
-  memmove(r->held, r->held + size, r->count);
+    memcpy(to, self->held, size);
+  self->count -= size;
+  memmove(self->held, self->held + size, self->count);
   return (size_t)shown;
 }
 
@@ -60,23 +60,23 @@ static bool write_whole(int descriptor, const char *bytes, size_t size) {
 }
 
 static ssize_t write_shown(void *cookie, const char *bytes, size_t size) {
-  reading *r = cookie;
+  reading *self = cookie;
   char out[1024];
   size_t used = 0;
   bool whole = true;
   for (size_t i = 0; i < size && whole; i++) {
-    r->held[r->count++] = bytes[i];
-    while (r->count && !is_begun(r)) used += show_character(r, out + used);
+    self->held[self->count++] = bytes[i];
+    while (self->count && !is_begun(self)) used += show_character(self, out + used);
     if (used + 4 * 16 <= sizeof out) continue;
-    whole = write_whole(r->descriptor, out, used);
+    whole = write_whole(self->descriptor, out, used);
     used = 0;
   }
-  return whole && write_whole(r->descriptor, out, used) ? (ssize_t)size : 0;
+  return whole && write_whole(self->descriptor, out, used) ? (ssize_t)size : 0;
 }
 
 /* A stream in place of a standard one; NULL: that one stays. */
-static FILE *open_reading(reading *r, int mode) {
-  FILE *stream = fopencookie(r, "w", (cookie_io_functions_t){.write = write_shown});
+static FILE *open_reading(reading *self, int mode) {
+  FILE *stream = fopencookie(self, "w", (cookie_io_functions_t){.write = write_shown});
   if (stream) setvbuf(stream, NULL, mode, BUFSIZ);
   return stream;
 }

@@ -11,32 +11,32 @@
 
 enum { MOST_MESSAGES = 20 };
 
-static bool fill_column(const strut_csv *csv, strut_table *t, size_t i) {
-  const char **text = strut_arena_allocate(&t->arena, t->row_count, sizeof *text);
-  double *value = strut_arena_allocate(&t->arena, t->row_count, sizeof *value);
+static bool fill_column(const strut_csv *csv, strut_table *table, size_t i) {
+  const char **text = strut_arena_allocate(&table->arena, table->row_count, sizeof *text);
+  double *value = strut_arena_allocate(&table->arena, table->row_count, sizeof *value);
   bool numbers = true, some = false;
   if (!text || !value) return false;
-  for (size_t k = 0; k < t->row_count; k++) {
-    text[k] = csv->cell[(k + 1) * t->column_count + i];
+  for (size_t k = 0; k < table->row_count; k++) {
+    text[k] = csv->cell[(k + 1) * table->column_count + i];
     numbers = numbers && strut_csv_number(text[k], &value[k]);
     some = some || (numbers && !isnan(value[k]));
   }
-  t->columns[i].name = csv->titles[i].name;
-  t->columns[i].unit = csv->titles[i].unit;
-  t->columns[i].text = text;
-  t->columns[i].value = numbers && some ? value : NULL;
+  table->columns[i].name = csv->titles[i].name;
+  table->columns[i].unit = csv->titles[i].unit;
+  table->columns[i].text = text;
+  table->columns[i].value = numbers && some ? value : NULL;
   return true;
 }
 
 /* The table takes over the cells. */
-static bool make_columns(strut_csv *csv, strut_table *t) {
-  t->arena = csv->arena;
+static bool make_columns(strut_csv *csv, strut_table *table) {
+  table->arena = csv->arena;
   csv->arena = (strut_arena){0};
-  t->column_count = csv->column_count;
-  t->row_count = csv->row_count;
-  t->columns = strut_arena_allocate(&t->arena, t->column_count, sizeof *t->columns);
-  bool good = t->columns;
-  for (size_t i = 0; i < t->column_count && good; i++) good = fill_column(csv, t, i);
+  table->column_count = csv->column_count;
+  table->row_count = csv->row_count;
+  table->columns = strut_arena_allocate(&table->arena, table->column_count, sizeof *table->columns);
+  bool good = table->columns;
+  for (size_t i = 0; i < table->column_count && good; i++) good = fill_column(csv, table, i);
   return good;
 }
 

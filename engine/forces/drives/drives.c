@@ -14,10 +14,10 @@
 #include "engine/scene/signal_motion.h"
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
-                                       const double *v) {
+                                       const double *velocity) {
   return (strut_signal_inputs){.sensor = state->latest->sensor,
                                .sensor_rate = state->latest->sensor_rate,
-                               .state = v + model->feedback.base,
+                               .state = velocity + model->feedback.base,
                                .states = model->scene->states,
                                .lag_of = model->feedback.lag_of,
                                .held = state->signals.held,
@@ -27,40 +27,40 @@ strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_sta
 }
 
 /* The signal of a drive or a load now. */
-static void evaluate(const strut_model *model, const strut_state *state, const double *v,
+static void evaluate(const strut_model *model, const strut_state *state, const double *velocity,
                      int32_t signal, double t, double *value, double *rate) {
   const strut_signal *signals = model->scene->signals;
   if (!(model->terms & STRUT_TERM_FEEDBACK)) {
     strut_signal_evaluate(signals, signal, t, value, rate);
     return;
   }
-  const strut_signal_inputs in = strut_drive_inputs(model, state, v);
+  const strut_signal_inputs in = strut_drive_inputs(model, state, velocity);
   strut_signal_follow(signals, &in, signal, t, value, rate);
 }
 
-double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
-                          int32_t signal, double t) {
+double strut_drive_signal(const strut_model *model, const strut_state *state,
+                          const double *velocity, int32_t signal, double t) {
   double value, rate;
-  evaluate(model, state, v, signal, t, &value, &rate);
+  evaluate(model, state, velocity, signal, t, &value, &rate);
   return value;
 }
 
 /* Rest lengths as the signals ask; `sensed`: they may read sensors. */
 static inline void drive_rest_lengths(const strut_model *model, const strut_state *state, double t,
-                                      const double *v, bool sensed) {
-  const strut_drive_table *d = &model->drives;
+                                      const double *velocity, bool sensed) {
+  const strut_drive_table *table = &model->drives;
   const strut_signal *signals = model->scene->signals;
   double *restrict rest = state->latest->rest, *restrict rest_rate = state->latest->rest_rate;
-  for (int32_t i = 0; i < d->count; i++) {
+  for (int32_t i = 0; i < table->count; i++) {
     double value, rate;
-    int32_t member = d->member[i];
+    int32_t member = table->member[i];
     if (sensed)
-      evaluate(model, state, v, d->signal[i], t + state->time_offset, &value, &rate);
+      evaluate(model, state, velocity, table->signal[i], t + state->time_offset, &value, &rate);
     else
-      strut_signal_evaluate(signals, d->signal[i], t + state->time_offset, &value, &rate);
+      strut_signal_evaluate(signals, table->signal[i], t + state->time_offset, &value, &rate);
     /* the first actuator of a member starts from its own rest length, further ones add */
-    rest[member] = (d->first[i] ? model->members.rest[member] : rest[member]) + value;
-    rest_rate[member] = d->first[i] ? rate : rest_rate[member] + rate;
+    rest[member] = (table->first[i] ? model->members.rest[member] : rest[member]) + value;
+    rest_rate[member] = table->first[i] ? rate : rest_rate[member] + rate;
   }
 }
 
@@ -77,23 +77,23 @@ void strut_drive_apply(const strut_model *model, const strut_state *state, doubl
 
 /* Friction as the signals ask. */
 static void drive_grips(const strut_model *model, const strut_state *state, double t,
-                        const double *v) {
+                        const double *velocity) {
   for (int32_t i = 0; i < model->contacts.count; i++) {
-    strut_friction *f = &state->latest->grip[i].friction;
-    if (f->driven)
-      strut_friction_drive(f,
-                           strut_drive_signal(model, state, v, f->signal, t + state->time_offset));
+    strut_friction *friction = &state->latest->grip[i].friction;
+    if (friction->driven)
+      strut_friction_drive(friction, strut_drive_signal(model, state, velocity, friction->signal,
+                                                        t + state->time_offset));
   }
 }
 
 void strut_drive_apply_sensed(const strut_model *model, const strut_state *state, double t,
-                              const double *v) {
+                              const double *velocity) {
   state->latest->drive_time = t;
   if (model->terms & STRUT_TERM_SLIDING_MASS) strut_sliding_masses_place(model, state, t);
   if (state->latest->ground_motion)
     strut_grounds_move(model, t + state->time_offset, state->latest->ground_motion);
-  if (state->latest->grip) drive_grips(model, state, t, v);
-  drive_rest_lengths(model, state, t, v, true);
+  if (state->latest->grip) drive_grips(model, state, t, velocity);
+  drive_rest_lengths(model, state, t, velocity, true);
   if (model->terms & STRUT_TERM_MEMORY) strut_history_follow(model, state);
 }
 
@@ -101,21 +101,22 @@ void strut_grounds_move(const strut_model *model, double t, strut_ground_motion 
   const strut_scene *scene = model->scene;
   for (size_t g = 0; g < scene->ground_count; g++)
     for (int c = 0; c < 2; c++) {
-      strut_ground_motion *m = &motion[g];
+      strut_ground_motion *ground_motion = &motion[g];
       const strut_ground *ground = &scene->grounds[g];
-      m->place[c] = m->rate[c] = m->bend[c] = 0.0;
+      ground_motion->place[c] = ground_motion->rate[c] = ground_motion->bend[c] = 0.0;
       if (!ground->moves[c]) continue;
-      strut_signal_evaluate(scene->signals, ground->motion[c], t, &m->place[c], &m->rate[c]);
-      m->bend[c] = strut_signal_acceleration(scene->signals, ground->motion[c], t);
+      strut_signal_evaluate(scene->signals, ground->motion[c], t, &ground_motion->place[c],
+                            &ground_motion->rate[c]);
+      ground_motion->bend[c] = strut_signal_acceleration(scene->signals, ground->motion[c], t);
     }
 }
 
 void strut_loads_apply(const strut_model *model, const strut_state *state, double t,
-                       const double *restrict v) {
+                       const double *restrict velocity) {
   const strut_load_table *loads = &model->loads;
   for (int32_t i = 0; i < loads->count; i++) {
     double factor, rate;
-    evaluate(model, state, v, loads->signal[i], t + state->time_offset, &factor, &rate);
+    evaluate(model, state, velocity, loads->signal[i], t + state->time_offset, &factor, &rate);
     if (loads->slot[i] >= 0) { /* its element exerts it */
       state->latest->rest[loads->slot[i]] = factor * loads->x[i];
       continue;
@@ -125,7 +126,7 @@ void strut_loads_apply(const strut_model *model, const strut_state *state, doubl
     state->latest->force[at] += px;
     state->latest->force[at + 1] += py;
     if (!state->balance) continue;
-    double power = px * v[at] + py * v[at + 1];
+    double power = px * velocity[at] + py * velocity[at + 1];
     state->latest->power[STRUT_POWER_LOAD] += power;
     state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
   }
@@ -200,28 +201,28 @@ double strut_drive_longest_step(const strut_model *model, const strut_state *sta
 }
 
 /* de/dq of the strain that the force works on. */
-static void gradient_of(const strut_actuator_force *a, const uint32_t *at, const double *q,
-                        double *b) {
-  if (a->strain == STRUT_STRAIN_ANGLE)
-    strut_strain_angle(at, a->nodes, q, 0.0, b);
+static void gradient_of(const strut_actuator_force *force, const uint32_t *at, const double *q,
+                        double *second) {
+  if (force->strain == STRUT_STRAIN_ANGLE)
+    strut_strain_angle(at, force->nodes, q, 0.0, second);
   else
-    strut_strain_path(at, a->nodes, q, 0.0, b);
+    strut_strain_path(at, force->nodes, q, 0.0, second);
 }
 
 void strut_actuator_forces_apply(const strut_model *model, const strut_state *state, double t,
-                                 const double *q, const double *v) {
+                                 const double *q, const double *velocity) {
   const strut_actuator_force_table *table = &model->actuator_forces;
   for (int32_t i = 0; i < table->count; i++) {
-    const strut_actuator_force *a = &table->item[i];
-    const uint32_t *at = table->at + a->first;
+    const strut_actuator_force *force = &table->item[i];
+    const uint32_t *at = table->at + force->first;
     double b[2 * STRUT_MOST_ELEMENT_NODES], size, speed = 0.0;
-    size = strut_drive_signal(model, state, v, a->signal, t + state->time_offset);
-    gradient_of(a, at, q, b);
+    size = strut_drive_signal(model, state, velocity, force->signal, t + state->time_offset);
+    gradient_of(force, at, q, b);
     state->latest->actuator_force[i] = size;
-    for (int32_t k = 0; k < a->nodes; k++) {
+    for (int32_t k = 0; k < force->nodes; k++) {
       state->latest->force[at[k]] -= size * b[2 * k];
       state->latest->force[at[k] + 1] -= size * b[2 * k + 1];
-      speed += b[2 * k] * v[at[k]] + b[2 * k + 1] * v[at[k] + 1];
+      speed += b[2 * k] * velocity[at[k]] + b[2 * k + 1] * velocity[at[k] + 1];
     }
     if (!state->balance) continue;
     state->latest->power[STRUT_POWER_DRIVE] -= size * speed;
@@ -249,9 +250,9 @@ void strut_actuator_forces_add_tensions(const strut_model *model, const strut_st
 
 STRUT_CLONES
 static void evaluate_ahead(const strut_model *model, strut_drives_ahead *drives) {
-  const strut_drive_table *d = &model->drives;
-  for (int32_t i = 0; i < d->count; i++)
-    signal_at_times(model->scene->signals, d->signal[i], drives->time, drives->count,
+  const strut_drive_table *table = &model->drives;
+  for (int32_t i = 0; i < table->count; i++)
+    signal_at_times(model->scene->signals, table->signal[i], drives->time, drives->count,
                     drives->value[i], drives->rate[i]);
 }
 

@@ -17,16 +17,16 @@
 void strut_drive_apply(const strut_model *model, const strut_state *state, double t);
 /** The same with the sensors as they were evaluated last: the second half of strut_feedback_apply. */
 void strut_drive_apply_sensed(const strut_model *model, const strut_state *state, double t,
-                              const double *v);
+                              const double *velocity);
 /** Inputs of signals: the sensors as they were evaluated last, and the states at velocities v. */
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
-                                       const double *v);
+                                       const double *velocity);
 /** A signal at time t [s], with the sensors as they were evaluated last, and states at velocities v. */
-double strut_drive_signal(const strut_model *model, const strut_state *state, const double *v,
-                          int32_t signal, double t);
+double strut_drive_signal(const strut_model *model, const strut_state *state,
+                          const double *velocity, int32_t signal, double t);
 /** Adds the loads that change with time at velocities v (for their power). */
 void strut_loads_apply(const strut_model *model, const strut_state *state, double t,
-                       const double *restrict v);
+                       const double *restrict velocity);
 
 /** Motion of every ground (grounds) at time t of the signals: 0 of those at rest. */
 void strut_grounds_move(const strut_model *model, double t, strut_ground_motion *motion);
@@ -54,7 +54,7 @@ double strut_drive_longest_step(const strut_model *model, const strut_state *sta
  * velocities v to the drive's. Notes their sizes in state->latest->actuator_force.
  */
 void strut_actuator_forces_apply(const strut_model *model, const strut_state *state, double t,
-                                 const double *q, const double *v);
+                                 const double *q, const double *velocity);
 
 /** Sum of what actuators add to a member's own force or a hinge's moment, when last applied; the other one is -1. */
 double strut_actuator_force_on(const strut_model *model, const strut_state *state, int32_t member,
@@ -113,16 +113,16 @@ STRUT_INLINE void drives_ahead_put(double *row, uint32_t j, double x) {
 /* Rest lengths at the next instant, which is time t of the state. */
 STRUT_INLINE void drives_ahead_place(const strut_model *model, const strut_state *state,
                                      strut_drives_ahead *drives, double t) {
-  const strut_drive_table *d = &model->drives;
+  const strut_drive_table *table = &model->drives;
   int32_t h = drives->next++;
-  for (int32_t i = 0; i < d->count; i++) {
-    uint32_t j = (uint32_t)d->member[i];
+  for (int32_t i = 0; i < table->count; i++) {
+    uint32_t j = (uint32_t)table->member[i];
     /* the first actuator of a member starts from its own rest length, further ones add */
-    double rest = d->first[i] ? model->members.rest[j] : state->latest->rest[j];
+    double rest = table->first[i] ? model->members.rest[j] : state->latest->rest[j];
     double rate = drives->rate[i][h];
     drives_ahead_put(state->latest->rest, j, rest + drives->value[i][h]);
     drives_ahead_put(state->latest->rest_rate, j,
-                     d->first[i] ? rate : state->latest->rest_rate[j] + rate);
+                     table->first[i] ? rate : state->latest->rest_rate[j] + rate);
   }
   state->latest->drive_time = t;
 }

@@ -11,11 +11,11 @@
  * the start of the motion, takes the first samples and the sides of relays; no later one writes signal memory.
  */
 void strut_feedback_apply(const strut_model *model, const strut_state *state, double t,
-                          const double *q, const double *v);
+                          const double *q, const double *velocity);
 
 /** Rates of the internal states at velocities v into `force`, after strut_feedback_apply. */
 void strut_feedback_add_rates(const strut_model *model, const strut_state *state, double t,
-                              const double *v, double *force);
+                              const double *velocity, double *force);
 
 /** The first sample after t [s]; INFINITY: there is none. */
 double strut_feedback_next_sample(const strut_model *model, double t);
@@ -44,7 +44,7 @@ void strut_threshold_begin(const strut_model *model, strut_state *state);
 /** How far the signal's input is from its threshold, of sensors and internal states as strut_relay_margin has them;
     1 where it has none any more. Negative beyond it. And its rate, where that is known; else 0. */
 double strut_threshold_margin(const strut_model *model, const strut_state *state, int32_t signal,
-                              double now, const double *v, double *rate);
+                              double now, const double *velocity, double *rate);
 /** Passes it at time t [s] of the steps: a relay switches, a signal starts, or may start again. */
 void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t signal, double t);
 
@@ -59,13 +59,13 @@ void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t 
 
 /** Sets the side of a relay at t = 0. */
 void strut_relay_start(const strut_model *model, const strut_state *state, int32_t signal,
-                       double now, const double *v);
+                       double now, const double *velocity);
 /** How far the input is from the threshold that switches the relay; negative beyond it. */
 double strut_relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
-                          double now, const double *v);
+                          double now, const double *velocity);
 /** Switches a relay whose input is beyond its threshold, as when it is sampled. True if it was. */
 bool strut_relay_sample(const strut_model *model, strut_state *state, int32_t signal, double now,
-                        const double *v);
+                        const double *velocity);
 
 /**
  * Switches a relay at time t [s] of the steps and the state's positions and velocities. Where what it

@@ -21,55 +21,56 @@ typedef struct slide {
 } slide;
 
 static slide slide_at(const strut_model *model, const strut_state *state, int32_t k,
-                      const double *q, const double *v) {
+                      const double *q, const double *velocity) {
   assert(k >= 0 && k < model->sliding.moving_count);
-  const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
+  const strut_sliding_item *item = &model->sliding.item[model->sliding.moving[k]];
   const strut_sliding_motion *at = &state->latest->sliding[k];
-  return (slide){.item = s,
+  return (slide){.item = item,
                  .at = at,
                  .near = 1.0 - at->share,
-                 .span = strut_vec2_between(q + s->at[0], q + s->at[1]),
-                 .span_rate = strut_vec2_between(v + s->at[0], v + s->at[1])};
+                 .span = strut_vec2_between(q + item->at[0], q + item->at[1]),
+                 .span_rate = strut_vec2_between(velocity + item->at[0], velocity + item->at[1])};
 }
 
 /* N z at a mass, for x and y. */
-static strut_vec2 interpolate(const slide *s, const double *z) {
-  const double *a = z + s->item->at[0], *b = z + s->item->at[1];
-  return (strut_vec2){s->near * a[0] + s->at->share * b[0], s->near * a[1] + s->at->share * b[1]};
+static strut_vec2 interpolate(const slide *self, const double *z) {
+  const double *a = z + self->item->at[0], *b = z + self->item->at[1];
+  return (strut_vec2){self->near * a[0] + self->at->share * b[0],
+                      self->near * a[1] + self->at->share * b[1]};
 }
 
-static strut_vec2 velocity(const slide *s, const double *v) {
-  strut_vec2 u = interpolate(s, v);
-  return (strut_vec2){u.x + s->at->rate * s->span.x, u.y + s->at->rate * s->span.y};
+static strut_vec2 velocity(const slide *self, const double *velocity) {
+  strut_vec2 u = interpolate(self, velocity);
+  return (strut_vec2){u.x + self->at->rate * self->span.x, u.y + self->at->rate * self->span.y};
 }
 
 /* Acceleration of the mass but for that of the nodes. */
-static strut_vec2 drift(const slide *s) {
-  double twice = 2.0 * s->at->rate, bend = s->at->bend;
-  return (strut_vec2){twice * s->span_rate.x + bend * s->span.x,
-                      twice * s->span_rate.y + bend * s->span.y};
+static strut_vec2 drift(const slide *self) {
+  double twice = 2.0 * self->at->rate, bend = self->at->bend;
+  return (strut_vec2){twice * self->span_rate.x + bend * self->span.x,
+                      twice * self->span_rate.y + bend * self->span.y};
 }
 
 /* Adds N' (x, y) to a coordinate array. */
-static void spread(const slide *s, double x, double y, double *z) {
-  double *a = z + s->item->at[0], *b = z + s->item->at[1];
-  a[0] += s->near * x;
-  a[1] += s->near * y;
-  b[0] += s->at->share * x;
-  b[1] += s->at->share * y;
+static void spread(const slide *self, double x, double y, double *z) {
+  double *a = z + self->item->at[0], *b = z + self->item->at[1];
+  a[0] += self->near * x;
+  a[1] += self->near * y;
+  b[0] += self->at->share * x;
+  b[1] += self->at->share * y;
 }
 
 /* 1/m + N M^-1 N' of all moving masses, lower triangle, for one coordinate. */
-static void fill(const strut_sliding_table *t, const strut_sliding_motion *at,
+static void fill(const strut_sliding_table *table, const strut_sliding_motion *at,
                  const double *between, double *matrix) {
-  int32_t n = t->moving_count;
+  int32_t n = table->moving_count;
   for (int32_t i = 0; i < n; i++)
     for (int32_t j = 0; j <= i; j++) {
       const double *row = between + 4 * i * n + 2 * j;
       double by_first = (1.0 - at[j].share) * row[0] + at[j].share * row[1];
       double by_second = (1.0 - at[j].share) * row[2 * n] + at[j].share * row[2 * n + 1];
       matrix[i * n + j] = (1.0 - at[i].share) * by_first + at[i].share * by_second;
-      if (i == j) matrix[i * n + j] += 1.0 / t->item[t->moving[i]].mass;
+      if (i == j) matrix[i * n + j] += 1.0 / table->item[table->moving[i]].mass;
     }
 }
 
@@ -79,13 +80,13 @@ void strut_sliding_masses_place(const strut_model *model, const strut_state *sta
   int32_t n = table->moving_count;
   double when = t + state->time_offset;
   for (int32_t k = 0; k < n; k++) {
-    const strut_sliding_item *s = &table->item[table->moving[k]];
+    const strut_sliding_item *item = &table->item[table->moving[k]];
     strut_sliding_motion *at = &state->latest->sliding[k];
     double value, rate;
-    strut_signal_evaluate(signals, s->signal, when, &value, &rate);
-    at->share = s->base + s->scale * value;
-    at->rate = s->scale * rate;
-    at->bend = s->scale * strut_signal_acceleration(signals, s->signal, when);
+    strut_signal_evaluate(signals, item->signal, when, &value, &rate);
+    at->share = item->base + item->scale * value;
+    at->rate = item->scale * rate;
+    at->bend = item->scale * strut_signal_acceleration(signals, item->signal, when);
   }
   for (int c = 0; c < 2 && table->between; c++) {
     double *matrix = state->buffers->sliding_factor + c * n * n;
@@ -94,24 +95,26 @@ void strut_sliding_masses_place(const strut_model *model, const strut_state *sta
   }
 }
 
-void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a) {
+void strut_sliding_masses_correct(const strut_model *model, const strut_state *state,
+                                  double *acceleration) {
   const strut_sliding_table *table = &model->sliding;
   int32_t n = table->moving_count;
   double *push[2] = {state->buffers->sliding_push, state->buffers->sliding_push + n};
   for (int32_t k = 0; k < n; k++) {
-    const strut_sliding_item *s = &table->item[table->moving[k]];
+    const strut_sliding_item *item = &table->item[table->moving[k]];
     double far = state->latest->sliding[k].share, near = 1.0 - far;
-    for (uint32_t c = 0; c < 2; c++) push[c][k] = near * a[s->at[0] + c] + far * a[s->at[1] + c];
+    for (uint32_t c = 0; c < 2; c++)
+      push[c][k] = near * acceleration[item->at[0] + c] + far * acceleration[item->at[1] + c];
   }
   for (int c = 0; c < 2; c++)
     strut_cholesky_solve(n, state->buffers->sliding_factor + c * n * n, push[c]);
   for (int32_t k = 0; k < n; k++) {
-    const strut_sliding_answer *r = &table->answer[k];
+    const strut_sliding_answer *answer = &table->answer[k];
     double far = state->latest->sliding[k].share, near = 1.0 - far;
-    for (int32_t i = 0; i < r->count; i++) {
-      const double *xy = r->xy + 4 * i;
-      a[r->at[i]] -= push[0][k] * (near * xy[0] + far * xy[2]);
-      a[r->at[i] + 1] -= push[1][k] * (near * xy[1] + far * xy[3]);
+    for (int32_t i = 0; i < answer->count; i++) {
+      const double *xy = answer->xy + 4 * i;
+      acceleration[answer->at[i]] -= push[0][k] * (near * xy[0] + far * xy[2]);
+      acceleration[answer->at[i] + 1] -= push[1][k] * (near * xy[1] + far * xy[3]);
     }
   }
 }
@@ -138,11 +141,11 @@ void strut_sliding_masses_apply(const strut_model *model, const strut_state *sta
 }
 
 void strut_sliding_masses_add_power(const strut_model *model, const strut_state *state,
-                                    const double *q, const double *v, const double *a) {
+                                    const double *q, const double *v, const double *acceleration) {
   const double *g = model->scene->gravity, alpha = model->mass_damping;
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     slide s = slide_at(model, state, k, q, v);
-    strut_vec2 d = drift(&s), u = velocity(&s, v), bend = interpolate(&s, a);
+    strut_vec2 d = drift(&s), u = velocity(&s, v), bend = interpolate(&s, acceleration);
     double x = bend.x + d.x + alpha * u.x - g[0], y = bend.y + d.y + alpha * u.y - g[1];
     double power = s.item->mass * s.at->rate * (x * s.span.x + y * s.span.y);
     state->latest->power[STRUT_POWER_DRIVE] += power;
@@ -164,17 +167,17 @@ void strut_sliding_masses_add_energies(const strut_model *model, const strut_sta
 }
 
 /* Sum of the jumps of the rate of a mass's share after `from` and up to `to`. */
-static double jump_of_rate(const strut_model *model, const strut_sliding_item *s, double from,
+static double jump_of_rate(const strut_model *model, const strut_sliding_item *item, double from,
                            double to) {
   const strut_signal *signals = model->scene->signals;
-  double sum = 0.0, at = strut_signal_next_break(signals, s->signal, from);
-  for (; at <= to; at = strut_signal_next_break(signals, s->signal, at)) {
+  double sum = 0.0, at = strut_signal_next_break(signals, item->signal, from);
+  for (; at <= to; at = strut_signal_next_break(signals, item->signal, at)) {
     double value, before, after, moment = 8.0 * DBL_EPSILON * fmax(fabs(at), to - from);
-    strut_signal_evaluate(signals, s->signal, at - moment, &value, &before);
-    strut_signal_evaluate(signals, s->signal, at + moment, &value, &after);
+    strut_signal_evaluate(signals, item->signal, at - moment, &value, &before);
+    strut_signal_evaluate(signals, item->signal, at + moment, &value, &after);
     sum += after - before;
   }
-  return sum * s->scale;
+  return sum * item->scale;
 }
 
 /* Impulses of the jumps into state->latest->force, the jumps into their motions. True if there are any. */
@@ -227,20 +230,20 @@ double strut_sliding_masses_moment(const strut_model *model, const strut_state *
                                    const double *q) {
   double sum = 0.0;
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
-    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-    double span = q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis];
-    sum += s->mass * (state->latest->sliding[k].share - s->start) * span;
+    const strut_sliding_item *item = &model->sliding.item[model->sliding.moving[k]];
+    double span = q[item->at[1] + (uint32_t)axis] - q[item->at[0] + (uint32_t)axis];
+    sum += item->mass * (state->latest->sliding[k].share - item->start) * span;
   }
   return sum;
 }
 
 double strut_sliding_masses_momentum(const strut_model *model, const strut_state *state, int axis,
-                                     const double *q, const double *v) {
-  double sum = strut_sliding_masses_moment(model, state, axis, v);
+                                     const double *q, const double *velocity) {
+  double sum = strut_sliding_masses_moment(model, state, axis, velocity);
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
-    const strut_sliding_item *s = &model->sliding.item[model->sliding.moving[k]];
-    sum += s->mass * state->latest->sliding[k].rate *
-           (q[s->at[1] + (uint32_t)axis] - q[s->at[0] + (uint32_t)axis]);
+    const strut_sliding_item *item = &model->sliding.item[model->sliding.moving[k]];
+    sum += item->mass * state->latest->sliding[k].rate *
+           (q[item->at[1] + (uint32_t)axis] - q[item->at[0] + (uint32_t)axis]);
   }
   return sum;
 }
@@ -250,70 +253,74 @@ typedef struct rotation {
   double cosine, sine, rate, acceleration;
 } rotation;
 
-static rotation rotate_by_signal(const strut_signal *signals, const strut_unbalance *u, double t) {
+static rotation rotate_by_signal(const strut_signal *signals, const strut_unbalance *unbalance,
+                                 double t) {
   rotation r;
   double angle;
-  strut_signal_evaluate(signals, u->signal, t, &angle, &r.rate);
-  strut_sincos_turns((u->phase + angle) / STRUT_TAU, &r.sine, &r.cosine);
-  r.acceleration = strut_signal_acceleration(signals, u->signal, t);
+  strut_signal_evaluate(signals, unbalance->signal, t, &angle, &r.rate);
+  strut_sincos_turns((unbalance->phase + angle) / STRUT_TAU, &r.sine, &r.cosine);
+  r.acceleration = strut_signal_acceleration(signals, unbalance->signal, t);
   return r;
 }
 
-static rotation rotate(const strut_signal *signals, const strut_unbalance *u, double t) {
-  if (u->signal >= 0) return rotate_by_signal(signals, u, t);
-  rotation r = {.rate = u->speed};
-  strut_sincos_turns(u->phase / STRUT_TAU + u->speed / STRUT_TAU * t, &r.sine, &r.cosine);
+static rotation rotate(const strut_signal *signals, const strut_unbalance *unbalance, double t) {
+  if (unbalance->signal >= 0) return rotate_by_signal(signals, unbalance, t);
+  rotation r = {.rate = unbalance->speed};
+  strut_sincos_turns(unbalance->phase / STRUT_TAU + unbalance->speed / STRUT_TAU * t, &r.sine,
+                     &r.cosine);
   return r;
 }
 
-static void push(const strut_state *state, const strut_unbalance *u, double fx, double fy,
-                 const double *v) {
-  int32_t at = 2 * u->node;
+static void push(const strut_state *state, const strut_unbalance *unbalance, double fx, double fy,
+                 const double *velocity) {
+  int32_t at = 2 * unbalance->node;
   state->latest->force[at] += fx;
   state->latest->force[at + 1] += fy;
   if (!state->balance) return;
-  double power = fx * v[at] + fy * v[at + 1];
+  double power = fx * velocity[at] + fy * velocity[at + 1];
   state->latest->power[STRUT_POWER_DRIVE] += power;
   state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
 }
 
 void strut_unbalance_apply(const strut_model *model, const strut_state *state, double t,
-                           const double *v) {
+                           const double *velocity) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
-    const strut_unbalance *u = &scene->unbalances[i];
-    rotation r = rotate(scene->signals, u, t + state->time_offset);
-    double arm = u->mass * u->radius, square = r.rate * r.rate;
-    push(state, u, arm * (square * r.cosine + r.acceleration * r.sine),
-         arm * (square * r.sine - r.acceleration * r.cosine), v);
+    const strut_unbalance *unbalance = &scene->unbalances[i];
+    rotation r = rotate(scene->signals, unbalance, t + state->time_offset);
+    double arm = unbalance->mass * unbalance->radius, square = r.rate * r.rate;
+    push(state, unbalance, arm * (square * r.cosine + r.acceleration * r.sine),
+         arm * (square * r.sine - r.acceleration * r.cosine), velocity);
   }
 }
 
 void strut_unbalance_apply_mean(const strut_model *model, const strut_state *state, double t,
-                                double h, const double *v) {
+                                double h, const double *velocity) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
-    const strut_unbalance *u = &scene->unbalances[i];
-    rotation a = rotate(scene->signals, u, t + state->time_offset);
-    rotation b = rotate(scene->signals, u, t + h + state->time_offset);
-    double arm = u->mass * u->radius / h;
-    push(state, u, arm * (b.rate * b.sine - a.rate * a.sine),
-         -arm * (b.rate * b.cosine - a.rate * a.cosine), v);
+    const strut_unbalance *unbalance = &scene->unbalances[i];
+    rotation a = rotate(scene->signals, unbalance, t + state->time_offset);
+    rotation b = rotate(scene->signals, unbalance, t + h + state->time_offset);
+    double arm = unbalance->mass * unbalance->radius / h;
+    push(state, unbalance, arm * (b.rate * b.sine - a.rate * a.sine),
+         -arm * (b.rate * b.cosine - a.rate * a.cosine), velocity);
   }
 }
 
 /* Adds to state->latest->force the impulses of one mass. True if there are any. */
 static bool add_impulses(const strut_model *model, const strut_state *state,
-                         const strut_unbalance *u, double from, double to) {
+                         const strut_unbalance *unbalance, double from, double to) {
   const strut_signal *signals = model->scene->signals;
   bool any = false;
-  double at = u->signal >= 0 ? strut_signal_next_break(signals, u->signal, from) : HUGE_VAL;
-  for (; at <= to; at = strut_signal_next_break(signals, u->signal, at)) {
+  double at =
+      unbalance->signal >= 0 ? strut_signal_next_break(signals, unbalance->signal, from) : HUGE_VAL;
+  for (; at <= to; at = strut_signal_next_break(signals, unbalance->signal, at)) {
     double moment = 8.0 * DBL_EPSILON * fmax(fabs(at), to - from);
-    rotation before = rotate(signals, u, at - moment), after = rotate(signals, u, at + moment);
-    double jump = u->mass * u->radius * (after.rate - before.rate);
-    state->latest->force[2 * u->node] += jump * after.sine;
-    state->latest->force[2 * u->node + 1] -= jump * after.cosine;
+    rotation before = rotate(signals, unbalance, at - moment),
+             after = rotate(signals, unbalance, at + moment);
+    double jump = unbalance->mass * unbalance->radius * (after.rate - before.rate);
+    state->latest->force[2 * unbalance->node] += jump * after.sine;
+    state->latest->force[2 * unbalance->node + 1] -= jump * after.cosine;
     any = any || jump != 0.0;
   }
   return any;

@@ -17,15 +17,17 @@
 void strut_sliding_masses_place(const strut_model *model, const strut_state *state, double t);
 /** Does that, and adds their forces at positions q and velocities v to state->latest->force. */
 void strut_sliding_masses_apply(const strut_model *model, const strut_state *state, double t,
-                                const double *q, const double *v);
+                                const double *q, const double *velocity);
 /** From a = M^-1 f (length) to the acceleration with the moving masses, as they have been placed. */
-void strut_sliding_masses_correct(const strut_model *model, const strut_state *state, double *a);
+void strut_sliding_masses_correct(const strut_model *model, const strut_state *state,
+                                  double *acceleration);
 /** Adds the power of what drives them along their members, with the acceleration a. */
 void strut_sliding_masses_add_power(const strut_model *model, const strut_state *state,
-                                    const double *q, const double *v, const double *a);
+                                    const double *q, const double *velocity,
+                                    const double *acceleration);
 /** Adds what kinetic and gravity energies of the moving masses are more than at their start. */
 void strut_sliding_masses_add_energies(const strut_model *model, const strut_state *state,
-                                       const double *q, const double *v, double *kinetic,
+                                       const double *q, const double *velocity, double *kinetic,
                                        double *gravity);
 /**
  * The impulse of velocities along members that jump after the time `from` and up to `to` [s], on state->v.
@@ -40,7 +42,7 @@ double strut_sliding_masses_moment(const strut_model *model, const strut_state *
                                    const double *q);
 /** Its rate [kg m/s]. */
 double strut_sliding_masses_momentum(const strut_model *model, const strut_state *state, int axis,
-                                     const double *q, const double *v);
+                                     const double *q, const double *velocity);
 
 /* Rotating masses. A mass m at the distance r from its node, at the angle p from +x, adds m to the node's
  * mass and the force -m r d2e/dt2 with e = (cos p, sin p). Its work is the drive's: what the motor does
@@ -49,7 +51,7 @@ double strut_sliding_masses_momentum(const strut_model *model, const strut_state
 
 /** Adds the forces at time t [s] to state->latest->force, and their power at velocities v. */
 void strut_unbalance_apply(const strut_model *model, const strut_state *state, double t,
-                           const double *v);
+                           const double *velocity);
 /** Adds the forces on average over the time from t on for h [s], impulses within it too; u: mean velocity. */
 void strut_unbalance_apply_mean(const strut_model *model, const strut_state *state, double t,
                                 double h, const double *u);

@@ -25,19 +25,20 @@ STRUT_INLINE void signal_vector_sincos(strut_lanes turns, strut_lanes *sine, str
 }
 
 /* Is the signal a sine, and on, at all of these times? */
-STRUT_INLINE bool signal_is_wave(const strut_signal *s, const double *time, int32_t count) {
-  double first = s->frequency * (time[0] - s->start) + s->phase;
-  double last = s->frequency * (time[count - 1] - s->start) + s->phase;
-  return s->kind == STRUT_SINE && time[0] >= s->start && time[count - 1] < s->stop &&
+STRUT_INLINE bool signal_is_wave(const strut_signal *signal, const double *time, int32_t count) {
+  double first = signal->frequency * (time[0] - signal->start) + signal->phase;
+  double last = signal->frequency * (time[count - 1] - signal->start) + signal->phase;
+  return signal->kind == STRUT_SINE && time[0] >= signal->start && time[count - 1] < signal->stop &&
          fabs(first) < 0x1p48 && fabs(last) < 0x1p48;
 }
 
 /* The same of a sum of nothing but sines. */
-STRUT_INLINE bool signal_is_sum_of_waves(const strut_signal *signals, const strut_signal *s,
+STRUT_INLINE bool signal_is_sum_of_waves(const strut_signal *signals, const strut_signal *signal,
                                          const double *time, int32_t count) {
-  bool all = s->kind == STRUT_SUM && time[0] >= s->start && time[count - 1] < s->stop;
-  for (size_t i = 0; all && i < s->term_count; i++) {
-    const strut_signal *term = &signals[s->terms[i]];
+  bool all =
+      signal->kind == STRUT_SUM && time[0] >= signal->start && time[count - 1] < signal->stop;
+  for (size_t i = 0; all && i < signal->term_count; i++) {
+    const strut_signal *term = &signals[signal->terms[i]];
     all = signal_is_wave(term, time, count) && term->trigger.kind == STRUT_TRIGGER_NONE &&
           !(term->lag > 0.0) && !(term->every > 0.0);
   }
@@ -45,14 +46,15 @@ STRUT_INLINE bool signal_is_sum_of_waves(const strut_signal *signals, const stru
 }
 
 /* Adds a wave at `count` times, in whole vectors, to values and rates; or begins them. */
-STRUT_INLINE void signal_add_wave(const strut_signal *s, const double *time, int32_t count,
+STRUT_INLINE void signal_add_wave(const strut_signal *signal, const double *time, int32_t count,
                                   bool begin, double *value, double *rate) {
-  double fast = s->amplitude * STRUT_TAU * s->frequency;
+  double fast = signal->amplitude * STRUT_TAU * signal->frequency;
   for (int32_t h = 0; h < count; h += STRUT_LANES) {
     strut_lanes sine, cosine;
-    strut_lanes turns = s->frequency * (strut_lanes_load(time + h) - s->start) + s->phase;
+    strut_lanes turns =
+        signal->frequency * (strut_lanes_load(time + h) - signal->start) + signal->phase;
     signal_vector_sincos(turns, &sine, &cosine);
-    sine = s->amplitude * sine, cosine = fast * cosine;
+    sine = signal->amplitude * sine, cosine = fast * cosine;
     if (!begin) sine = strut_lanes_load(value + h) + sine;
     if (!begin) cosine = strut_lanes_load(rate + h) + cosine;
     strut_lanes_store(value + h, sine);
@@ -64,8 +66,8 @@ STRUT_INLINE void signal_add_wave(const strut_signal *s, const double *time, int
 static __attribute__((noinline, unused)) void signal_at_times_otherwise(
     const strut_signal *signals, int32_t index, const double *time, int32_t count, double *value,
     double *rate) {
-  const strut_signal *s = &signals[index];
-  if (!signal_is_sum_of_waves(signals, s, time, count)) {
+  const strut_signal *signal = &signals[index];
+  if (!signal_is_sum_of_waves(signals, signal, time, count)) {
     for (int32_t h = 0; h < count; h++)
       strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
     return;
@@ -74,8 +76,8 @@ static __attribute__((noinline, unused)) void signal_at_times_otherwise(
     strut_lanes_store(value + h, (strut_lanes){0.0});
     strut_lanes_store(rate + h, (strut_lanes){0.0});
   }
-  for (size_t i = 0; i < s->term_count; i++)
-    signal_add_wave(&signals[s->terms[i]], time, count, false, value, rate);
+  for (size_t i = 0; i < signal->term_count; i++)
+    signal_add_wave(&signals[signal->terms[i]], time, count, false, value, rate);
 }
 
 /* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for

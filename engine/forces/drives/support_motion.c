@@ -9,28 +9,28 @@
 #include "engine/scene/signal_motion.h"
 
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
-                                double *q, double *v) {
+                                double *q, double *velocity) {
   const strut_support_motion_table *table = &model->support_motion;
   for (int32_t i = 0; i < table->count; i++) {
-    const strut_moved_coordinate *m = &table->item[i];
+    const strut_moved_coordinate *coordinate = &table->item[i];
     double value;
-    strut_signal_evaluate(model->scene->signals, m->signal, t + state->time_offset, &value,
-                          &v[m->at]);
-    q[m->at] = m->base + value;
+    strut_signal_evaluate(model->scene->signals, coordinate->signal, t + state->time_offset, &value,
+                          &velocity[coordinate->at]);
+    q[coordinate->at] = coordinate->base + value;
   }
 }
 
 static void add_reaction_power(const strut_model *model, const strut_state *state, double power,
-                               const double *v) {
+                               const double *velocity) {
   const strut_support_motion_table *table = &model->support_motion;
   for (int32_t i = 0; i < table->count; i++)
-    power -= state->latest->force[table->item[i].at] * v[table->item[i].at];
+    power -= state->latest->force[table->item[i].at] * velocity[table->item[i].at];
   state->latest->power[STRUT_POWER_SUPPORT] += power;
   state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
 }
 
 void strut_support_motion_apply(const strut_model *model, const strut_state *state, double t,
-                                const double *v) {
+                                const double *velocity) {
   const strut_support_motion_table *table = &model->support_motion;
   const strut_signal *signals = model->scene->signals;
   double power = 0.0, *acceleration = state->buffers->support_rates;
@@ -38,12 +38,12 @@ void strut_support_motion_apply(const strut_model *model, const strut_state *sta
     acceleration[i] =
         strut_signal_acceleration(signals, table->item[i].signal, t + state->time_offset);
   for (int32_t k = 0; k < table->coupling_count; k++) {
-    const strut_support_coupling *c = &table->coupling[k];
-    double push = -c->mass * acceleration[c->item];
-    state->latest->force[c->at] += push;
-    power += push * v[c->at];
+    const strut_support_coupling *coupling = &table->coupling[k];
+    double push = -coupling->mass * acceleration[coupling->item];
+    state->latest->force[coupling->at] += push;
+    power += push * velocity[coupling->at];
   }
-  if (state->balance) add_reaction_power(model, state, power, v);
+  if (state->balance) add_reaction_power(model, state, power, velocity);
 }
 
 void strut_support_motion_apply_mean(const strut_model *model, const strut_state *state, double h,
@@ -51,10 +51,10 @@ void strut_support_motion_apply_mean(const strut_model *model, const strut_state
   const strut_support_motion_table *table = &model->support_motion;
   double power = 0.0;
   for (int32_t k = 0; k < table->coupling_count; k++) {
-    const strut_support_coupling *c = &table->coupling[k];
-    double push = -c->mass * (after[c->item] - before[c->item]) / h;
-    state->latest->force[c->at] += push;
-    power += push * u[c->at];
+    const strut_support_coupling *coupling = &table->coupling[k];
+    double push = -coupling->mass * (after[coupling->item] - before[coupling->item]) / h;
+    state->latest->force[coupling->at] += push;
+    power += push * u[coupling->at];
   }
   if (state->balance) add_reaction_power(model, state, power, u);
 }
@@ -85,8 +85,9 @@ static bool find_impulses(const strut_model *model, const strut_state *state, do
   if (!any) return false;
   memset(state->latest->force, 0, (size_t)model->length * sizeof *state->latest->force);
   for (int32_t k = 0; k < table->coupling_count; k++) {
-    const strut_support_coupling *c = &table->coupling[k];
-    state->latest->force[c->at] -= c->mass * state->buffers->support_rates[c->item];
+    const strut_support_coupling *coupling = &table->coupling[k];
+    state->latest->force[coupling->at] -=
+        coupling->mass * state->buffers->support_rates[coupling->item];
   }
   return true;
 }

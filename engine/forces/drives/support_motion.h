@@ -13,13 +13,13 @@
 
 /** Puts the moved coordinates of q and v (length) where their signals are at time t [s]. */
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
-                                double *q, double *v);
+                                double *q, double *velocity);
 /**
  * Adds -M_fc a_c at time t to state->latest->force, and the power of the supports at velocities v. Comes after
  * all forces that act on moved coordinates.
  */
 void strut_support_motion_apply(const strut_model *model, const strut_state *state, double t,
-                                const double *v);
+                                const double *velocity);
 /** The same on average over a step of h [s] that changes the moved velocities from `before` to `after`
     (moved coordinates), with mean velocities u. */
 void strut_support_motion_apply_mean(const strut_model *model, const strut_state *state, double h,

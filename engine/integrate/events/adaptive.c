@@ -30,21 +30,26 @@ STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int co
 }
 
 /* Stage k, or the end: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
-STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now, double *const *v,
-                           double *const *a, const double *weight, int k, double *restrict q) {
-  double *restrict speed = v[k];
+STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now,
+                           double *const *velocities, double *const *accelerations,
+                           const double *weight, int k, double *restrict q) {
+  double *restrict speed = velocities[k];
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i, strut_lanes_load(now->q + i) + h * weighted(v, weight, k, false, i));
-    strut_lanes_store(speed + i,
-                      strut_lanes_load(now->v + i) + h * weighted(a, weight, k, true, i));
+    strut_lanes_store(q + i,
+                      strut_lanes_load(now->q + i) + h * weighted(velocities, weight, k, false, i));
+    strut_lanes_store(
+        speed + i, strut_lanes_load(now->v + i) + h * weighted(accelerations, weight, k, true, i));
   }
 }
 
 /* The same; the stages of the usual pair with the weights as constants. */
-STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *v,
-                        double *const *a, const strut_tableau *tableau, int k, double *restrict q) {
+STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *velocities,
+                        double *const *accelerations, const strut_tableau *tableau, int k,
+                        double *restrict q) {
 #define STRUT_CASE(k)                                                                              \
-  case k: stage_of(n, h, now, v, a, strut_dormand_prince.weight[k], k, q); break
+  case k:                                                                                          \
+    stage_of(n, h, now, velocities, accelerations, strut_dormand_prince.weight[k], k, q);          \
+    break
   switch (tableau == &strut_dormand_prince ? k : 0) {
     STRUT_CASE(1);
     STRUT_CASE(2);
@@ -52,7 +57,7 @@ STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *
     STRUT_CASE(4);
     STRUT_CASE(5);
     STRUT_CASE(6);
-    default: stage_of(n, h, now, v, a, tableau->weight[k], k, q);
+    default: stage_of(n, h, now, velocities, accelerations, tableau->weight[k], k, q);
   }
 #undef STRUT_CASE
 }
@@ -82,12 +87,12 @@ typedef struct difference {
 } difference;
 
 STRUT_INLINE difference difference_of(int32_t n, double h, const strut_event_stepper *stepper,
-                                      double *const *v, double *const *a, const double *weight,
-                                      int count) {
+                                      double *const *velocities, double *const *accelerations,
+                                      const double *weight, int count) {
   difference d = {.speed = {.most = {0}}};
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    d.position = larger_of(d.position, h * weighted(v, weight, count, false, i));
-    d.velocity = larger_of(d.velocity, h * weighted(a, weight, count, true, i));
+    d.position = larger_of(d.position, h * weighted(velocities, weight, count, false, i));
+    d.velocity = larger_of(d.velocity, h * weighted(accelerations, weight, count, true, i));
     d.speed = larger_of(d.speed, strut_lanes_load(stepper->now->v + i));
     d.speed = larger_of(d.speed, strut_lanes_load(stepper->next->v + i));
   }
@@ -96,13 +101,14 @@ STRUT_INLINE difference difference_of(int32_t n, double h, const strut_event_ste
 
 /* Local error over what is allowed, by the difference of the pair. */
 STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *stepper, double h,
-                             double *const *v, double *const *a) {
+                             double *const *velocities, double *const *accelerations) {
   const strut_tableau *tableau = stepper->formula->tableau, *usual = &strut_dormand_prince;
   int32_t n = model->length;
-  difference d =
-      tableau == usual
-          ? difference_of(n, h, stepper, v, a, usual->difference, STRUT_DORMAND_PRINCE_STAGES + 1)
-          : difference_of(n, h, stepper, v, a, tableau->difference, tableau->stages + 1);
+  difference d = tableau == usual
+                     ? difference_of(n, h, stepper, velocities, accelerations, usual->difference,
+                                     STRUT_DORMAND_PRINCE_STAGES + 1)
+                     : difference_of(n, h, stepper, velocities, accelerations, tableau->difference,
+                                     tableau->stages + 1);
   double fast = largest_of(d.speed), off = largest_of(d.velocity);
   stepper->control.own_speed = fast;
   if (fast > stepper->control.speed) stepper->control.speed = fast;
@@ -110,17 +116,18 @@ STRUT_INLINE double error_of(const strut_model *model, strut_event_stepper *step
 }
 
 /* The margin at whose zero the mode of contact i, at o, ends; HUGE_VAL for modes that need no look at stages. */
-static double kept_margin(const strut_event_stepper *stepper, int32_t i, const strut_touch *o) {
-  const strut_contact_entry *e = &stepper->contacts.entry[i];
+static double kept_margin(const strut_event_stepper *stepper, int32_t i, const strut_touch *touch) {
+  const strut_contact_entry *contact = &stepper->contacts.entry[i];
   switch ((strut_contact_mode)stepper->modes.of[i]) {
-    case STRUT_MODE_STICK: return margin_of_stick(e, o);
+    case STRUT_MODE_STICK: return margin_of_stick(contact, touch);
     case STRUT_MODE_CREEP:
-      return fmin(margin_of_creep_out(e, o, stepper->modes.side[i]),
-                  margin_of_creep_in(e, o, stepper->modes.side[i]));
+      return fmin(margin_of_creep_out(contact, touch, stepper->modes.side[i]),
+                  margin_of_creep_in(contact, touch, stepper->modes.side[i]));
     case STRUT_MODE_BAND:
-      if (!strut_friction_drops(&e->friction)) break;
-      return margin_of_push(e, o, STRUT_MODE_BAND, stepper->modes.side[i]);
-    case STRUT_MODE_PUSH: return margin_of_push(e, o, STRUT_MODE_PUSH, stepper->modes.side[i]);
+      if (!strut_friction_drops(&contact->friction)) break;
+      return margin_of_push(contact, touch, STRUT_MODE_BAND, stepper->modes.side[i]);
+    case STRUT_MODE_PUSH:
+      return margin_of_push(contact, touch, STRUT_MODE_PUSH, stepper->modes.side[i]);
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_SLIP: /* by earliest_dip */
@@ -136,9 +143,9 @@ static void note(strut_least_margin *least, double margin, double at, bool first
 void strut_event_note_stage(const strut_event_stepper *stepper, double at, bool first) {
   for (int32_t k = 0; k < stepper->active.closed_count; k++) {
     int32_t i = stepper->active.closed[k];
-    const strut_touch *o = &stepper->next->touch[i];
-    note(&stepper->control.least[i], o->normal > 0.0 ? kept_margin(stepper, i, o) : HUGE_VAL, at,
-         first);
+    const strut_touch *touch = &stepper->next->touch[i];
+    note(&stepper->control.least[i],
+         touch->normal > 0.0 ? kept_margin(stepper, i, touch) : HUGE_VAL, at, first);
   }
 }
 

@@ -18,11 +18,12 @@
 #include "engine/model/pose.h"
 
 /* Kinematics of contact i of a single straight ground at q, v. */
-STRUT_INLINE void measure_on_line(const strut_contact_table *c, int32_t i, const double *restrict q,
-                                  const double *restrict v, strut_touch *touch) {
-  touch->gap = strut_ground_gap(c, q + c->at[i]);
-  touch->into = strut_contact_along_normal(c, i, v);
-  touch->slip = strut_contact_slip(c, i, v);
+STRUT_INLINE void measure_on_line(const strut_contact_table *contacts, int32_t i,
+                                  const double *restrict q, const double *restrict v,
+                                  strut_touch *touch) {
+  touch->gap = strut_ground_gap(contacts, q + contacts->at[i]);
+  touch->into = strut_contact_along_normal(contacts, i, v);
+  touch->slip = strut_contact_slip(contacts, i, v);
 }
 
 /*
@@ -34,14 +35,14 @@ STRUT_INLINE strut_contact_frame *frames_of(const strut_step_end *end, unsigned 
 }
 
 /* Kinematics of contact i at an end of a step. */
-STRUT_INLINE void measure_at_end(const strut_contact_table *c, const strut_contact_modes *modes,
-                                 const strut_step_end *end, int32_t i, unsigned terms,
-                                 strut_touch *touch) {
+STRUT_INLINE void measure_at_end(const strut_contact_table *contacts,
+                                 const strut_contact_modes *modes, const strut_step_end *end,
+                                 int32_t i, unsigned terms, strut_touch *touch) {
   strut_contact_frame frame;
   if (frames_of(end, terms))
-    strut_surface_measure(c, modes, end->motion, i, end->q, end->v, touch, &frame);
+    strut_surface_measure(contacts, modes, end->motion, i, end->q, end->v, touch, &frame);
   else
-    measure_on_line(c, i, end->q, end->v, touch);
+    measure_on_line(contacts, i, end->q, end->v, touch);
 }
 
 /* Adds the forces of the closed contacts at q, v to `force` and notes them at an end. */
@@ -73,17 +74,17 @@ STRUT_LOOP void add_contact_forces(const strut_model *model, const strut_event_s
 /* Rates of speed of the closed contacts from the acceleration. */
 STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_active_set *active,
                                         const strut_step_end *end, unsigned terms) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const double *restrict a = end->a;
   strut_touch *restrict touch = end->touch;
   const strut_contact_frame *frame = frames_of(end, terms);
   for (int32_t k = 0; k < active->closed_count && frame; k++)
-    strut_surface_measure_rates(c, active->closed[k], a, &touch[active->closed[k]],
+    strut_surface_measure_rates(contacts, active->closed[k], a, &touch[active->closed[k]],
                                 &frame[active->closed[k]]);
   for (int32_t k = 0; k < active->closed_count && !frame; k++) {
     int32_t i = active->closed[k];
-    touch[i].into_rate = strut_contact_along_normal(c, i, a);
-    touch[i].slip_rate = strut_contact_along_ground(c, i, a);
+    touch[i].into_rate = strut_contact_along_normal(contacts, i, a);
+    touch[i].slip_rate = strut_contact_along_ground(contacts, i, a);
   }
 }
 
@@ -91,7 +92,7 @@ STRUT_INLINE void measure_contact_rates(const strut_model *model, const strut_ac
 STRUT_INLINE void add_contact_powers(const strut_model *model, const strut_state *state,
                                      const strut_active_set *active, const strut_step_end *end,
                                      unsigned terms) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const strut_touch *restrict touch = end->touch;
   const strut_contact_frame *frame = frames_of(end, terms);
   double *power = state->latest->power, contact = power[STRUT_POWER_CONTACT],
@@ -100,10 +101,11 @@ STRUT_INLINE void add_contact_powers(const strut_model *model, const strut_state
   for (int32_t k = 0; k < active->closed_count; k++) {
     int32_t i = active->closed[k];
     const strut_touch *o = &touch[i];
-    double damped = -(o->normal + c->entry[i].stiffness * o->gap) * o->into;
-    double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
+    double damped = -(o->normal + contacts->entry[i].stiffness * o->gap) * o->into;
+    double rubbed = -o->friction * o->slip, carried = o->friction * contacts->belt_speed;
     if (frame)
-      carried = o->friction * strut_contact_belt(c, i) + strut_surface_moving_power(o, &frame[i]);
+      carried =
+          o->friction * strut_contact_belt(contacts, i) + strut_surface_moving_power(o, &frame[i]);
     contact += damped, friction += rubbed, belt += carried;
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }
@@ -335,11 +337,12 @@ STRUT_INLINE void advance_within_grid(strut_state *state, strut_event_stepper *s
 }
 
 /* The gap of a contact at an end of a step; of a closed contact over its facet. */
-STRUT_INLINE double gap_at_end(const strut_contact_table *c, const strut_contact_modes *modes,
-                               int32_t i, const strut_step_end *end, unsigned terms) {
-  if (!frames_of(end, terms)) return strut_ground_gap(c, end->q + c->at[i]);
+STRUT_INLINE double gap_at_end(const strut_contact_table *contacts,
+                               const strut_contact_modes *modes, int32_t i,
+                               const strut_step_end *end, unsigned terms) {
+  if (!frames_of(end, terms)) return strut_ground_gap(contacts, end->q + contacts->at[i]);
   int32_t facet = modes->of[i] == STRUT_MODE_OPEN ? -1 : modes->facet[i];
-  return strut_contact_pose_at(c, i, end->q, end->motion, facet).gap;
+  return strut_contact_pose_at(contacts, i, end->q, end->motion, facet).gap;
 }
 
 /* The value that the switch of a law ends at 0. */

@@ -58,11 +58,12 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
 /* Contact forces in the present modes at an instant within a step. */
 STRUT_CLONES
 static void hold_contacts(const strut_motion_piece *piece, const strut_model *model,
-                          const strut_state *state, double t, const double *q, const double *v) {
+                          const strut_state *state, double t, const double *q,
+                          const double *velocity) {
   strut_event_stepper *stepper = piece->workspace;
   strut_step_end *at = &stepper->view->instant;
   int64_t evaluations = state->latest->evaluations;
-  accelerate_in_modes(model, state, stepper, t, q, v, at->a, at, STRUT_TERMS_ALL, false);
+  accelerate_in_modes(model, state, stepper, t, q, velocity, at->a, at, STRUT_TERMS_ALL, false);
   state->latest->evaluations = evaluations; /* observing is not part of the run's cost */
   show_contacts(model, state, stepper, at);
 }
@@ -93,11 +94,11 @@ static void find_next_break(const strut_model *model, const strut_state *state,
 /* On which side of their thresholds sensors begin; nodes that just touch when the run begins have touched down. */
 static void begin_triggers(const strut_model *model, strut_state *state,
                            strut_event_stepper *stepper, double t, double dt) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   strut_drive_apply(model, state, t);
   strut_threshold_begin(model, state);
-  for (int32_t i = 0; i < c->count && state->step == 0; i++)
-    if (strut_contact_gap_at(c, i, state->q, state->latest->ground_motion) == 0.0 &&
+  for (int32_t i = 0; i < contacts->count && state->step == 0; i++)
+    if (strut_contact_gap_at(contacts, i, state->q, state->latest->ground_motion) == 0.0 &&
         strut_feedback_touch(model, state, i, t))
       find_next_break(model, state, stepper, t, dt);
 }
@@ -183,9 +184,10 @@ static int32_t touched_by(const strut_model *model, const strut_event_stepper *s
   if (event->kind == STRUT_EVENT_TOUCH) return event->index;
   if (event->kind != STRUT_EVENT_ACTS || !stepper->laws.acting[event->index]) return -1;
   int32_t i = stepper->laws.item[event->index].element;
-  const strut_element *e = i >= 0 ? &model->elements.element[i] : NULL;
-  bool ground = e && (e->role == STRUT_ELEMENT_FOOT || e->role == STRUT_ELEMENT_CONTACT);
-  return ground ? e->contact : -1;
+  const strut_element *element = i >= 0 ? &model->elements.element[i] : NULL;
+  bool ground =
+      element && (element->role == STRUT_ELEMENT_FOOT || element->role == STRUT_ELEMENT_CONTACT);
+  return ground ? element->contact : -1;
 }
 
 /* At a threshold at time t the drives jump likewise. */
@@ -227,16 +229,17 @@ static int32_t place_of(const strut_model *model, const strut_event *event) {
   return event->index + (strut_event_is_of_law(event->kind) ? model->contacts.count : 0);
 }
 
-static void count_switch(const strut_model *model, strut_chatter *c, const step_piece *piece) {
-  c->switches++;
-  if (piece->h > 0.0 || c->at_once == 1) { /* after a step: that of the count before */
-    for (int32_t k = 0; k < c->count; k++) c->times[c->switched[k]] = 0;
-    c->count = c->most = 0;
+static void count_switch(const strut_model *model, strut_chatter *chatter,
+                         const step_piece *piece) {
+  chatter->switches++;
+  if (piece->h > 0.0 || chatter->at_once == 1) { /* after a step: that of the count before */
+    for (int32_t k = 0; k < chatter->count; k++) chatter->times[chatter->switched[k]] = 0;
+    chatter->count = chatter->most = 0;
   }
   int32_t i = place_of(model, &piece->event);
-  if (!c->times[i]) c->switched[c->count++] = i;
-  if (c->times[i] < UINT8_MAX) c->times[i]++;
-  if (c->times[i] > c->most) c->most = c->times[i];
+  if (!chatter->times[i]) chatter->switched[chatter->count++] = i;
+  if (chatter->times[i] < UINT8_MAX) chatter->times[i]++;
+  if (chatter->times[i] > chatter->most) chatter->most = chatter->times[i];
 }
 
 /* A kink that switches back and forth where the piece begins, as where a signal's sign leads back to it from both sides,
@@ -251,8 +254,9 @@ static void release_kink(const strut_model *model, strut_state *state, strut_eve
 }
 
 /* Must a step be taken whatever the modes say? */
-static bool must_step(const strut_chatter *c) {
-  return (c->at_once > 0 && c->most >= MOST_AT_ONCE) || c->switches >= MOST_SWITCHES;
+static bool must_step(const strut_chatter *chatter) {
+  return (chatter->at_once > 0 && chatter->most >= MOST_AT_ONCE) ||
+         chatter->switches >= MOST_SWITCHES;
 }
 
 /*
@@ -330,9 +334,10 @@ static double past_opening(const strut_model *model, const strut_event_stepper *
   const strut_active_set *active = &stepper->active;
   double moment = 10.0 * AT_ONCE * piece->dt;
   for (int32_t k = 0; k < active->closed_count && 2.0 * moment < piece->h; k++) {
-    const strut_touch *o = &stepper->now->touch[active->closed[k]];
+    const strut_touch *touch = &stepper->now->touch[active->closed[k]];
     const strut_friction *friction = &model->contacts.entry[active->closed[k]].friction;
-    if (strut_friction_largest(friction) > 0.0 && o->gap > -moment * o->into) return 2.0 * moment;
+    if (strut_friction_largest(friction) > 0.0 && touch->gap > -moment * touch->into)
+      return 2.0 * moment;
   }
   return 0.0;
 }

@@ -358,10 +358,11 @@ void strut_refresh_compliances(const strut_model *model, const strut_state *stat
                                strut_event_stepper *stepper);
 /** Multipliers that hold the stuck contacts: adds to a, writes end->touch[].friction. */
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *stepper,
-                                   double *a, strut_step_end *end);
+                                   double *acceleration, strut_step_end *end);
 /** a += acceleration by the force (normal, tangential) on a contact's node, along these axes. */
-void strut_apply_contact_impulse(const strut_contact_compliance *r, const strut_contact_axes *axes,
-                                 double normal, double tangential, double *a);
+void strut_apply_contact_impulse(const strut_contact_compliance *compliance,
+                                 const strut_contact_axes *axes, double normal, double tangential,
+                                 double *acceleration);
 /** Acceleration, contact forces and powers of stepper->now at time t, in the present modes. */
 void strut_evaluate_acceleration(const strut_model *model, const strut_state *state,
                                  strut_event_stepper *stepper, double t);
@@ -423,7 +424,7 @@ void strut_turns_keep(const strut_model *model, const strut_state *state,
                       strut_event_stepper *stepper);
 /** To the forces of the structure: those that have turned since the step began go on as before. */
 void strut_turns_hold(const strut_model *model, const strut_state *state,
-                      const strut_event_stepper *stepper, const double *q, const double *v);
+                      const strut_event_stepper *stepper, const double *q, const double *velocity);
 /** Does law k, whose second node is no longer ahead, pass through nothing, not beside it? */
 bool strut_turn_passes(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                        double h);

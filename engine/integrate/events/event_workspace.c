@@ -28,18 +28,19 @@ static double *make_doubles(strut_arena *arena, size_t count, bool *failed) {
 
 void strut_step_end_create(const strut_model *model, strut_arena *arena, bool borrowed,
                            strut_step_end *end, bool *failed) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   size_t length = (size_t)model->length, switches = most_law_switches(model) + 1;
   if (!borrowed) end->q = make_doubles(arena, length, failed);
   if (!borrowed) end->v = make_doubles(arena, length, failed);
   end->a = make_doubles(arena, length, failed);
   end->structure = make_doubles(arena, length, failed);
-  end->touch = make(arena, (size_t)c->count, sizeof *end->touch, failed);
+  end->touch = make(arena, (size_t)contacts->count, sizeof *end->touch, failed);
   end->tension = make_doubles(arena, switches, failed);
   end->stretch = make_doubles(arena, switches, failed);
   end->stretch_rate = make_doubles(arena, switches, failed);
-  if (c->surface) end->frame = make(arena, (size_t)c->count, sizeof *end->frame, failed);
-  if (c->surface && c->moves)
+  if (contacts->surface)
+    end->frame = make(arena, (size_t)contacts->count, sizeof *end->frame, failed);
+  if (contacts->surface && contacts->moves)
     end->motion = make(arena, model->scene->ground_count, sizeof *end->motion, failed);
 }
 
@@ -68,33 +69,34 @@ static void make_contacts(const strut_model *model, strut_state *state,
 }
 
 static void list_cables(const strut_model *model, strut_law_switches *laws) {
-  const strut_member_table *t = &model->members;
-  for (int32_t j = 0; j < t->count; j++)
-    if (t->slack[j] == 0.0)
+  const strut_member_table *members = &model->members;
+  for (int32_t j = 0; j < members->count; j++)
+    if (members->slack[j] == 0.0)
       laws->item[laws->count++] = (strut_law_switch){.event = STRUT_EVENT_ACTS,
                                                      .member = j,
                                                      .element = -1,
-                                                     .stiffness = t->stiffness[j],
-                                                     .damping = t->damping[j]};
+                                                     .stiffness = members->stiffness[j],
+                                                     .damping = members->damping[j]};
   laws->cable_count = laws->count;
 }
 
 static void list_elements(const strut_model *model, const strut_state *state,
                           strut_law_switches *laws) {
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
+    const strut_element *element = &model->elements.element[i];
     double natural = strut_element_start(model, i);
-    strut_law_response rest = strut_law_respond(e->law, &e->numbers, natural, natural, -1);
-    bool abrupt = e->carries * rest.force > 0.0 || (rest.force == 0.0 && !(rest.slope > 0.0));
+    strut_law_response rest =
+        strut_law_respond(element->law, &element->numbers, natural, natural, -1);
+    bool abrupt = element->carries * rest.force > 0.0 || (rest.force == 0.0 && !(rest.slope > 0.0));
     const strut_law_switch own = {.event = STRUT_EVENT_ACTS,
                                   .member = -1,
                                   .element = i,
                                   .abrupt = abrupt,
-                                  .stiffness = e->numbers.stiffness,
-                                  .damping = e->damping};
-    bool rubs = e->guide_friction > 0.0 && !state->forgetful;
-    if (e->carries && !rubs) laws->item[laws->count++] = own;
-    if (!strut_law_kinks(e->law, &e->numbers)) continue;
+                                  .stiffness = element->numbers.stiffness,
+                                  .damping = element->damping};
+    bool rubs = element->guide_friction > 0.0 && !state->forgetful;
+    if (element->carries && !rubs) laws->item[laws->count++] = own;
+    if (!strut_law_kinks(element->law, &element->numbers)) continue;
     laws->item[laws->count] = own;
     laws->item[laws->count++].event = STRUT_EVENT_KINK;
   }

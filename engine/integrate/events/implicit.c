@@ -66,130 +66,136 @@ typedef struct trial {
   double behind; /* what jumps where the step begins: signals are evaluated a moment before [s] */
 } trial;
 
-static void evaluate(const trial *c, double t) {
-  double **w = c->stepper->stage;
-  if (c->model->terms & STRUT_TERM_SUPPORT_MOTION)
-    strut_support_motion_place(c->model, c->state, t, w[Q], w[V]);
-  accelerate_in_modes(c->model, c->state, c->stepper, t, w[Q], w[V], w[A], c->stepper->next,
-                      STRUT_TERMS_ALL, c->state->balance);
+static void evaluate(const trial *self, double t) {
+  double **w = self->stepper->stage;
+  if (self->model->terms & STRUT_TERM_SUPPORT_MOTION)
+    strut_support_motion_place(self->model, self->state, t, w[Q], w[V]);
+  accelerate_in_modes(self->model, self->state, self->stepper, t, w[Q], w[V], w[A],
+                      self->stepper->next, STRUT_TERMS_ALL, self->state->balance);
 }
 
-static void add_column(const trial *c, int k, int32_t j, double step, double *gain) {
-  const strut_implicit *m = c->m;
-  const strut_step_end *now = c->stepper->now;
-  double *at = &c->stepper->stage[k ? V : Q][m->coordinate[j]], before = *at;
+static void add_column(const trial *self, int k, int32_t j, double step, double *gain) {
+  const strut_implicit *implicit = self->m;
+  const strut_step_end *now = self->stepper->now;
+  double *at = &self->stepper->stage[k ? V : Q][implicit->coordinate[j]], before = *at;
   *at += step;
   step = *at - before;
-  evaluate(c, c->t + c->behind);
-  for (int32_t i = 0; i < m->n; i++)
-    m->slope[k][i * m->n + j] =
-        (c->stepper->stage[A][m->coordinate[i]] - now->a[m->coordinate[i]]) / step;
-  for (int p = 0; p < POWERS; p++) gain[p] = (c->state->latest->power[p] - now->power[p]) / step;
+  evaluate(self, self->t + self->behind);
+  for (int32_t i = 0; i < implicit->n; i++)
+    implicit->slope[k][i * implicit->n + j] =
+        (self->stepper->stage[A][implicit->coordinate[i]] - now->a[implicit->coordinate[i]]) / step;
+  for (int p = 0; p < POWERS; p++) gain[p] = (self->state->latest->power[p] - now->power[p]) / step;
   *at = before;
 }
 
-static void copy_now(const trial *c, double *const to[2]) {
-  size_t bytes = (size_t)c->model->length * sizeof(double);
-  memcpy(to[0], c->stepper->now->q, bytes);
-  memcpy(to[1], c->stepper->now->v, bytes);
+static void copy_now(const trial *self, double *const to[2]) {
+  size_t bytes = (size_t)self->model->length * sizeof(double);
+  memcpy(to[0], self->stepper->now->q, bytes);
+  memcpy(to[1], self->stepper->now->v, bytes);
 }
 
 /* Slopes at now, unless they are known. */
-static void differentiate(const trial *c) {
-  strut_implicit *m = c->m;
-  const strut_step_end *now = c->stepper->now;
-  size_t bytes = (size_t)c->model->length * sizeof(double);
-  bool same = m->time == c->t && m->events == c->state->events;
-  if (same && !memcmp(m->known, now->a, bytes)) return;
-  double size = c->model->size, later = fmax(OF_STEP * c->h, 2.0 * c->behind);
-  double speed = fmax(c->stepper->control.speed, size * 1e-3);
-  copy_now(c, &c->stepper->stage[Q]);
+static void differentiate(const trial *self) {
+  strut_implicit *implicit = self->m;
+  const strut_step_end *now = self->stepper->now;
+  size_t bytes = (size_t)self->model->length * sizeof(double);
+  bool same = implicit->time == self->t && implicit->events == self->state->events;
+  if (same && !memcmp(implicit->known, now->a, bytes)) return;
+  double size = self->model->size, later = fmax(OF_STEP * self->h, 2.0 * self->behind);
+  double speed = fmax(self->stepper->control.speed, size * 1e-3);
+  copy_now(self, &self->stepper->stage[Q]);
   for (int k = 0; k < 2; k++)
-    for (int32_t j = 0; j < m->n; j++)
-      add_column(c, k, j, k ? OF_SPEED * speed : OF_SIZE * size, m->gain[k] + j * POWERS);
-  evaluate(c, c->t + later);
-  for (int32_t i = 0; i < m->n; i++)
-    m->drift[i] = (c->stepper->stage[A][m->coordinate[i]] - now->a[m->coordinate[i]]) / later;
+    for (int32_t j = 0; j < implicit->n; j++)
+      add_column(self, k, j, k ? OF_SPEED * speed : OF_SIZE * size, implicit->gain[k] + j * POWERS);
+  evaluate(self, self->t + later);
+  for (int32_t i = 0; i < implicit->n; i++)
+    implicit->drift[i] =
+        (self->stepper->stage[A][implicit->coordinate[i]] - now->a[implicit->coordinate[i]]) /
+        later;
   for (int p = 0; p < POWERS; p++)
-    m->drift_power[p] = (c->state->latest->power[p] - now->power[p]) / later;
-  memcpy(m->known, now->a, bytes);
-  m->time = c->t, m->events = c->state->events;
+    implicit->drift_power[p] = (self->state->latest->power[p] - now->power[p]) / later;
+  memcpy(implicit->known, now->a, bytes);
+  implicit->time = self->t, implicit->events = self->state->events;
 }
 
 /* Factors 1/(gamma h) - J, with positions eliminated. False: it is singular. */
-static bool factorise(const trial *c, double rate, gsl_matrix_view *view, gsl_permutation *order) {
-  strut_implicit *m = c->m;
-  size_t n = (size_t)m->n;
+static bool factorise(const trial *self, double rate, gsl_matrix_view *view,
+                      gsl_permutation *order) {
+  strut_implicit *implicit = self->m;
+  size_t n = (size_t)implicit->n;
   int sign;
-  for (size_t k = 0; k < n * n; k++) m->matrix[k] = -m->slope[1][k] - m->slope[0][k] / rate;
-  for (size_t i = 0; i < n; i++) m->matrix[i * n + i] += rate;
-  *view = gsl_matrix_view_array(m->matrix, n, n);
-  *order = (gsl_permutation){n, m->pivot};
+  for (size_t k = 0; k < n * n; k++)
+    implicit->matrix[k] = -implicit->slope[1][k] - implicit->slope[0][k] / rate;
+  for (size_t i = 0; i < n; i++) implicit->matrix[i * n + i] += rate;
+  *view = gsl_matrix_view_array(implicit->matrix, n, n);
+  *order = (gsl_permutation){n, implicit->pivot};
   gsl_linalg_LU_decomp(&view->matrix, order, &sign);
   for (size_t i = 0; i < n; i++)
-    if (!(fabs(m->matrix[i * n + i]) > 0.0)) return false;
+    if (!(fabs(implicit->matrix[i * n + i]) > 0.0)) return false;
   return true;
 }
 
 /* start + the weighted results of `count` stages. */
-static void combine(const trial *c, const double *weight, int count, double *q, double *v) {
-  double **w = c->stepper->stage;
-  copy_now(c, (double *[]){q, v});
+static void combine(const trial *self, const double *weight, int count, double *q,
+                    double *velocity) {
+  double **w = self->stepper->stage;
+  copy_now(self, (double *[]){q, velocity});
   for (int j = 0; j < count; j++)
-    for (int32_t i = 0; i < c->model->length && weight[j] != 0.0; i++)
-      q[i] += weight[j] * w[RESULT_Q + j][i], v[i] += weight[j] * w[RESULT_V + j][i];
+    for (int32_t i = 0; i < self->model->length && weight[j] != 0.0; i++)
+      q[i] += weight[j] * w[RESULT_Q + j][i], velocity[i] += weight[j] * w[RESULT_V + j][i];
 }
 
-static void solve_stage(const trial *c, int i, double rate, const gsl_matrix_view *view,
+static void solve_stage(const trial *self, int i, double rate, const gsl_matrix_view *view,
                         const gsl_permutation *order) {
-  strut_implicit *m = c->m;
-  double **w = c->stepper->stage, *kq = w[RESULT_Q + i], *kv = w[RESULT_V + i];
-  gsl_vector_view x = gsl_vector_view_array(m->x, (size_t)m->n);
-  for (int32_t r = 0; r < m->n; r++) {
-    int32_t at = m->coordinate[r];
-    kq[at] = w[V][at], m->x[r] = w[A][at] + c->h * OF_DRIFT[i] * m->drift[r];
+  strut_implicit *implicit = self->m;
+  double **w = self->stepper->stage, *kq = w[RESULT_Q + i], *kv = w[RESULT_V + i];
+  gsl_vector_view x = gsl_vector_view_array(implicit->x, (size_t)implicit->n);
+  for (int32_t r = 0; r < implicit->n; r++) {
+    int32_t at = implicit->coordinate[r];
+    kq[at] = w[V][at], implicit->x[r] = w[A][at] + self->h * OF_DRIFT[i] * implicit->drift[r];
     for (int j = 0; j < i; j++) {
-      kq[at] += OF_RATES[i][j] / c->h * w[RESULT_Q + j][at];
-      m->x[r] += OF_RATES[i][j] / c->h * w[RESULT_V + j][at];
+      kq[at] += OF_RATES[i][j] / self->h * w[RESULT_Q + j][at];
+      implicit->x[r] += OF_RATES[i][j] / self->h * w[RESULT_V + j][at];
     }
   }
-  for (int32_t r = 0; r < m->n; r++)
-    for (int32_t s = 0; s < m->n; s++)
-      m->x[r] += m->slope[0][r * m->n + s] * kq[m->coordinate[s]] / rate;
+  for (int32_t r = 0; r < implicit->n; r++)
+    for (int32_t s = 0; s < implicit->n; s++)
+      implicit->x[r] +=
+          implicit->slope[0][r * implicit->n + s] * kq[implicit->coordinate[s]] / rate;
   gsl_linalg_LU_svx(&view->matrix, order, &x.vector);
-  for (int32_t r = 0; r < m->n; r++) {
-    int32_t at = m->coordinate[r];
-    kv[at] = m->x[r], kq[at] = (kq[at] + kv[at]) / rate;
+  for (int32_t r = 0; r < implicit->n; r++) {
+    int32_t at = implicit->coordinate[r];
+    kv[at] = implicit->x[r], kq[at] = (kq[at] + kv[at]) / rate;
   }
 }
 
 /* Works of stage i, as its positions. */
-static void solve_works(const trial *c, int i, double rate, const double *power,
+static void solve_works(const trial *self, int i, double rate, const double *power,
                         double (*work)[POWERS]) {
-  const strut_implicit *m = c->m;
-  double **w = c->stepper->stage;
+  const strut_implicit *implicit = self->m;
+  double **w = self->stepper->stage;
   for (int p = 0; p < POWERS; p++) {
-    double sum = power[p] + c->h * OF_DRIFT[i] * m->drift_power[p];
-    for (int j = 0; j < i; j++) sum += OF_RATES[i][j] / c->h * work[j][p];
-    for (int32_t r = 0; r < m->n; r++)
-      sum += m->gain[0][r * POWERS + p] * w[RESULT_Q + i][m->coordinate[r]] +
-             m->gain[1][r * POWERS + p] * w[RESULT_V + i][m->coordinate[r]];
+    double sum = power[p] + self->h * OF_DRIFT[i] * implicit->drift_power[p];
+    for (int j = 0; j < i; j++) sum += OF_RATES[i][j] / self->h * work[j][p];
+    for (int32_t r = 0; r < implicit->n; r++)
+      sum += implicit->gain[0][r * POWERS + p] * w[RESULT_Q + i][implicit->coordinate[r]] +
+             implicit->gain[1][r * POWERS + p] * w[RESULT_V + i][implicit->coordinate[r]];
     work[i][p] = sum / rate;
   }
 }
 
 /* Local error over what is allowed. */
-static double estimate_error(const trial *c) {
-  strut_step_control *control = &c->stepper->control;
-  double **w = c->stepper->stage, q = 0.0, v = 0.0, fast = 0.0, whole = 0.0;
-  for (int32_t i = 0; i < c->model->length; i++) {
+static double estimate_error(const trial *self) {
+  strut_step_control *control = &self->stepper->control;
+  double **w = self->stepper->stage, q = 0.0, v = 0.0, fast = 0.0, whole = 0.0;
+  for (int32_t i = 0; i < self->model->length; i++) {
     q = fmax(q, fabs(w[RESULT_Q + STAGES - 1][i])), v = fmax(v, fabs(w[RESULT_V + STAGES - 1][i]));
-    fast = fmax(fast, fmax(fabs(c->stepper->now->v[i]), fabs(c->stepper->next->v[i])));
-    whole += c->stepper->next->q[i] + c->stepper->next->v[i];
+    fast = fmax(fast, fmax(fabs(self->stepper->now->v[i]), fabs(self->stepper->next->v[i])));
+    whole += self->stepper->next->q[i] + self->stepper->next->v[i];
   }
   control->own_speed = fast;
   control->speed = fmax(control->speed, fast);
-  return isfinite(whole) ? relative_error(c->model, control, c->h, q, v) : HUGE_VAL;
+  return isfinite(whole) ? relative_error(self->model, control, self->h, q, v) : HUGE_VAL;
 }
 
 static void implicit_once(const strut_model *model, const strut_state *state,
@@ -239,23 +245,24 @@ static void *implicit_create(const strut_model *model, strut_state *state,
   strut_event_stepper *stepper = strut_event_stepper_create(model, state, &formula, settings);
   strut_arena *arena = &state->arena;
   size_t both = (size_t)model->length;
-  strut_implicit *m = strut_arena_allocate(arena, 1, sizeof *m);
+  strut_implicit *implicit = strut_arena_allocate(arena, 1, sizeof *implicit);
   int32_t *row_of = strut_arena_allocate(arena, both, sizeof *row_of);
-  if (!stepper || !m || !row_of) return NULL;
-  if (!(m->coordinate = strut_arena_allocate(arena, both, sizeof *row_of))) return NULL;
-  m->n = strut_number_free(model, NULL, row_of, m->coordinate);
+  if (!stepper || !implicit || !row_of) return NULL;
+  if (!(implicit->coordinate = strut_arena_allocate(arena, both, sizeof *row_of))) return NULL;
+  implicit->n = strut_number_free(model, NULL, row_of, implicit->coordinate);
   for (int32_t k = 0; k < model->feedback.state_count; k++) /* internal ones are velocities, too */
-    m->coordinate[m->n++] = model->feedback.base + k;
-  m->time = (double)NAN;
-  size_t n = (size_t)m->n;
-  double **const arrays[] = {&m->slope[0], &m->slope[1], &m->matrix, &m->gain[0],
-                             &m->gain[1],  &m->drift,    &m->x,      &m->known};
+    implicit->coordinate[implicit->n++] = model->feedback.base + k;
+  implicit->time = (double)NAN;
+  size_t n = (size_t)implicit->n;
+  double **const arrays[] = {&implicit->slope[0], &implicit->slope[1], &implicit->matrix,
+                             &implicit->gain[0],  &implicit->gain[1],  &implicit->drift,
+                             &implicit->x,        &implicit->known};
   const size_t sizes[] = {n * n, n * n, n * n, n * POWERS, n * POWERS, n, n, both};
   for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
     if (!(*arrays[k] = strut_arena_allocate(arena, sizes[k], sizeof(double)))) return NULL;
-  stepper->implicit = m;
-  m->pivot = strut_arena_allocate(arena, n, sizeof *m->pivot);
-  return m->pivot ? stepper : NULL;
+  stepper->implicit = implicit;
+  implicit->pivot = strut_arena_allocate(arena, n, sizeof *implicit->pivot);
+  return implicit->pivot ? stepper : NULL;
 }
 
 const strut_integrator strut_integrator_implicit = {

@@ -21,12 +21,14 @@ static void predict(const strut_model *model, strut_event_stepper *stepper, doub
   }
 }
 
-STRUT_INLINE void correct(int32_t n, double h, const double *restrict v, const double *restrict a0,
-                          const double *restrict a1, double *restrict next) {
+STRUT_INLINE void correct(int32_t n, double h, const double *restrict velocity,
+                          const double *restrict a0, const double *restrict a1,
+                          double *restrict next) {
   double half = 0.5 * h;
   for (int32_t i = 0; i < n; i += STRUT_LANES)
-    strut_lanes_store(next + i, strut_lanes_load(v + i) + half * (strut_lanes_load(a0 + i) +
-                                                                  strut_lanes_load_pairs(a1 + i)));
+    strut_lanes_store(next + i,
+                      strut_lanes_load(velocity + i) +
+                          half * (strut_lanes_load(a0 + i) + strut_lanes_load_pairs(a1 + i)));
 }
 
 STRUT_LOOP void take(const strut_model *model, const strut_state *state,
@@ -99,9 +101,10 @@ STRUT_INLINE bool crosses(const strut_contact_table *c, const strut_event_steppe
 STRUT_INLINE bool contradicts(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h) {
   if (stepper->active.all_sliding) {
-    const strut_sliding_contact *s = stepper->active.sliding;
-    for (const strut_sliding_contact *end = s + stepper->active.closed_count; s < end; s++)
-      if (s->side * stepper->next->touch[s->index].slip < s->edge) return true;
+    const strut_sliding_contact *contact = stepper->active.sliding;
+    for (const strut_sliding_contact *end = contact + stepper->active.closed_count; contact < end;
+         contact++)
+      if (contact->side * stepper->next->touch[contact->index].slip < contact->edge) return true;
   }
   for (int32_t k = 0; k < stepper->active.closed_count && !stepper->active.all_sliding; k++) {
     int32_t i = stepper->active.closed[k];

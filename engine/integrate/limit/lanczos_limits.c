@@ -31,25 +31,25 @@ static void hold_rigid(const strut_model *model, strut_rigid *rigid, double *acc
     memset(acceleration, 0, (size_t)model->length * sizeof *acceleration);
 }
 
-void strut_apply_inverse_mass(strut_krylov_basis *space, double *x) {
+void strut_apply_inverse_mass(strut_krylov_basis *space, double *vector) {
   const strut_model *model = space->model;
   const strut_tangent *tangent = space->tangent;
   size_t both = (size_t)model->length;
   double *force = space->node, *acceleration = force + both, *scratch = force + 2 * both;
   memset(force, 0, 2 * both * sizeof *force);
-  for (int32_t i = 0; i < tangent->n; i++) force[tangent->coordinate[i]] = x[i];
+  for (int32_t i = 0; i < tangent->n; i++) force[tangent->coordinate[i]] = vector[i];
   strut_mass_solve(model, force, acceleration, scratch);
   if (tangent->rigid) hold_rigid(model, tangent->rigid, acceleration, scratch);
-  for (int32_t i = 0; i < tangent->n; i++) x[i] = acceleration[tangent->coordinate[i]];
+  for (int32_t i = 0; i < tangent->n; i++) vector[i] = acceleration[tangent->coordinate[i]];
 }
 
-void strut_tangent_mass(strut_krylov_basis *space, const double *x, double *y) {
+void strut_tangent_mass(strut_krylov_basis *space, const double *vector, double *y) {
   const strut_model *model = space->model;
   const strut_tangent *tangent = space->tangent;
   size_t both = (size_t)model->length;
   double *full = space->node, *gathered = full + both, *product = full + 2 * both;
   memset(full, 0, both * sizeof *full);
-  for (int32_t i = 0; i < tangent->n; i++) full[tangent->coordinate[i]] = x[i];
+  for (int32_t i = 0; i < tangent->n; i++) full[tangent->coordinate[i]] = vector[i];
   for (int c = 0; c < 2; c++) {
     const strut_mass_operator *op = &model->mass->coordinate[c];
     for (int32_t i = 0; i < op->matrix->n; i++) gathered[i] = full[2 * op->matrix_node[i] + c];
@@ -59,31 +59,31 @@ void strut_tangent_mass(strut_krylov_basis *space, const double *x, double *y) {
   for (int32_t i = 0; i < tangent->n; i++) y[i] = full[tangent->coordinate[i]];
 }
 
-void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *x,
+void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *vector,
                          double *y) {
   int32_t n = space->tangent->n;
   double *other = space->node;
   if (a != 0.0)
-    strut_sparse_multiply(space->tangent->stiffness, x, y);
+    strut_sparse_multiply(space->tangent->stiffness, vector, y);
   else
     memset(y, 0, (size_t)n * sizeof *y);
   if (a != 1.0)
     for (int32_t i = 0; i < n; i++) y[i] *= a;
   if (b == 0.0) return;
-  strut_sparse_multiply(space->tangent->damping, x, other);
+  strut_sparse_multiply(space->tangent->damping, vector, other);
   for (int32_t i = 0; i < n; i++) y[i] += b * other[i];
 }
 
 /* Scales x to size 1 in the mass; its size before, 0 where it has none. `image` is then M x. */
-static double normalise(strut_krylov_basis *space, double *x) {
+static double normalise(strut_krylov_basis *space, double *vector) {
   int32_t n = space->tangent->n;
-  double largest = strut_largest_magnitude(x, n);
+  double largest = strut_largest_magnitude(vector, n);
   if (!(largest > 0.0 && largest < HUGE_VAL)) return 0.0;
-  for (int32_t i = 0; i < n; i++) x[i] /= largest;
-  strut_tangent_mass(space, x, space->image);
-  double size = sqrt(fmax(0.0, strut_dot(x, space->image, n)));
+  for (int32_t i = 0; i < n; i++) vector[i] /= largest;
+  strut_tangent_mass(space, vector, space->image);
+  double size = sqrt(fmax(0.0, strut_dot(vector, space->image, n)));
   if (!(size > 0.0)) return 0.0;
-  for (int32_t i = 0; i < n; i++) x[i] /= size, space->image[i] /= size;
+  for (int32_t i = 0; i < n; i++) vector[i] /= size, space->image[i] /= size;
   return size * largest;
 }
 
@@ -102,31 +102,31 @@ static void project_last(strut_krylov_basis *space) {
   }
 }
 
-bool strut_krylov_basis_add(strut_krylov_basis *space, double *x) {
+bool strut_krylov_basis_add(strut_krylov_basis *space, double *vector) {
   int32_t n = space->tangent->n;
-  if (space->count >= space->most || !(normalise(space, x) > 0.0)) return false;
+  if (space->count >= space->most || !(normalise(space, vector) > 0.0)) return false;
   for (int pass = 0; pass < 3; pass++) {
     for (int j = 0; j < space->count; j++) {
       const double *v = space->vector + (size_t)j * (size_t)n;
       double part = strut_dot(v, space->image, n);
-      for (int32_t i = 0; i < n; i++) x[i] -= part * v[i];
+      for (int32_t i = 0; i < n; i++) vector[i] -= part * v[i];
     }
-    double left = normalise(space, x);
+    double left = normalise(space, vector);
     if (!(left > 1e-8)) return false; /* what is left is rounding */
     if (left > 0.5) break;
   }
-  memcpy(space->vector + (size_t)space->count * (size_t)n, x, (size_t)n * sizeof *x);
+  memcpy(space->vector + (size_t)space->count * (size_t)n, vector, (size_t)n * sizeof *vector);
   space->count++;
   project_last(space);
   return true;
 }
 
-void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *x) {
+void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *vector) {
   int32_t n = space->tangent->n;
-  memset(x, 0, (size_t)n * sizeof *x);
+  memset(vector, 0, (size_t)n * sizeof *vector);
   for (int j = 0; j < space->count; j++) {
     const double *v = space->vector + (size_t)j * (size_t)n;
-    for (int32_t i = 0; i < n; i++) x[i] += c[j] * v[i];
+    for (int32_t i = 0; i < n; i++) vector[i] += c[j] * v[i];
   }
 }
 
@@ -199,32 +199,32 @@ typedef struct lanczos {
   int steps, wanted;
 } lanczos;
 
-static bool begin(lanczos *l, strut_arena *arena) {
-  size_t n = (size_t)l->space->tangent->n;
-  l->v = strut_arena_allocate(arena, n, sizeof(double));
-  l->u = strut_arena_allocate(arena, n, sizeof(double));
-  l->before = strut_arena_allocate(arena, n, sizeof(double));
-  l->r = strut_arena_allocate(arena, n, sizeof(double));
-  l->kept = strut_arena_allocate(arena, KEPT * n, sizeof(double));
-  return l->v && l->u && l->before && l->r && l->kept;
+static bool begin(lanczos *self, strut_arena *arena) {
+  size_t n = (size_t)self->space->tangent->n;
+  self->v = strut_arena_allocate(arena, n, sizeof(double));
+  self->u = strut_arena_allocate(arena, n, sizeof(double));
+  self->before = strut_arena_allocate(arena, n, sizeof(double));
+  self->r = strut_arena_allocate(arena, n, sizeof(double));
+  self->kept = strut_arena_allocate(arena, KEPT * n, sizeof(double));
+  return self->v && self->u && self->before && self->r && self->kept;
 }
 
 /* Are all eigenvalues of the leading n rows below x? Then all pivots of T - x are negative. */
-static bool all_below(const lanczos *l, int n, double x) {
-  double pivot = l->alpha[0] - x;
+static bool all_below(const lanczos *self, int n, double x) {
+  double pivot = self->alpha[0] - x;
   for (int j = 1; j < n && pivot < 0; j++)
-    pivot = l->alpha[j] - x - l->beta[j - 1] * l->beta[j - 1] / pivot;
+    pivot = self->alpha[j] - x - self->beta[j - 1] * self->beta[j - 1] / pivot;
   return pivot < 0;
 }
 
 /* The largest eigenvalue of the leading n rows, at least 0. */
-static double largest_of_tridiagonal(const lanczos *l, int n) {
+static double largest_of_tridiagonal(const lanczos *self, int n) {
   double low = 0.0, high = 0.0;
   for (int j = 0; j < n; j++)
-    high = fmax(high, fabs(l->alpha[j]) + l->beta[j] + (j ? l->beta[j - 1] : 0.0));
+    high = fmax(high, fabs(self->alpha[j]) + self->beta[j] + (j ? self->beta[j - 1] : 0.0));
   for (int i = 0; i < 50; i++) {
     double middle = 0.5 * (low + high);
-    *(all_below(l, n, middle) ? &high : &low) = middle;
+    *(all_below(self, n, middle) ? &high : &low) = middle;
   }
   return high;
 }
@@ -240,106 +240,107 @@ static double stirred(uint64_t i) {
  * The next v and u from the residual: divided by its size in the mass, which is returned. 0: the
  * motions seen so far are all there are.
  */
-static double next_vector(lanczos *l) {
-  int32_t n = l->space->tangent->n;
+static double next_vector(lanczos *self) {
+  int32_t n = self->space->tangent->n;
   double square = 0.0;
-  memcpy(l->v, l->r, (size_t)n * sizeof *l->v);
-  strut_apply_inverse_mass(l->space, l->v);
-  for (int32_t i = 0; i < n; i++) square += l->r[i] * l->v[i];
+  memcpy(self->v, self->r, (size_t)n * sizeof *self->v);
+  strut_apply_inverse_mass(self->space, self->v);
+  for (int32_t i = 0; i < n; i++) square += self->r[i] * self->v[i];
   if (!(square > 0)) return 0.0;
-  double size = sqrt(square), *swap = l->before;
-  l->before = l->u, l->u = swap;
-  for (int32_t i = 0; i < n; i++) l->u[i] = l->r[i] / size, l->v[i] /= size;
+  double size = sqrt(square), *swap = self->before;
+  self->before = self->u, self->u = swap;
+  for (int32_t i = 0; i < n; i++) self->u[i] = self->r[i] / size, self->v[i] /= size;
   return size;
 }
 
 /* Begins at the start; its entries are weighed, so that light nodes move as much as heavy ones. */
-static bool first_vector(lanczos *l) {
-  int32_t n = l->space->tangent->n;
-  for (int32_t i = 0; i < n; i++) l->v[i] = stirred((uint64_t)i), l->u[i] = l->before[i] = 0.0;
-  strut_tangent_mass(l->space, l->v, l->r);
-  return next_vector(l) > 0;
+static bool first_vector(lanczos *self) {
+  int32_t n = self->space->tangent->n;
+  for (int32_t i = 0; i < n; i++)
+    self->v[i] = stirred((uint64_t)i), self->u[i] = self->before[i] = 0.0;
+  strut_tangent_mass(self->space, self->v, self->r);
+  return next_vector(self) > 0;
 }
 
 /* r becomes the matrix times v less what v and the one before have of it; alpha of this step. */
-static double next_residual(lanczos *l, double size) {
-  int32_t n = l->space->tangent->n;
+static double next_residual(lanczos *self, double size) {
+  int32_t n = self->space->tangent->n;
   double alpha = 0.0;
-  strut_tangent_apply(l->space, l->a, l->b, l->v, l->r);
-  for (int32_t i = 0; i < n; i++) alpha += l->v[i] * l->r[i];
-  for (int32_t i = 0; i < n; i++) l->r[i] -= alpha * l->u[i] + size * l->before[i];
+  strut_tangent_apply(self->space, self->a, self->b, self->v, self->r);
+  for (int32_t i = 0; i < n; i++) alpha += self->v[i] * self->r[i];
+  for (int32_t i = 0; i < n; i++) self->r[i] -= alpha * self->u[i] + size * self->before[i];
   return alpha;
 }
 
 /* The tridiagonal matrix. False where nothing has a positive eigenvalue. */
-static bool walk(lanczos *l) {
-  int32_t n = l->space->tangent->n;
+static bool walk(lanczos *self) {
+  int32_t n = self->space->tangent->n;
   int most = n < MOST_STEPS ? n : MOST_STEPS;
   double value = 0.0, size = 0.0;
-  if (!first_vector(l)) return false;
+  if (!first_vector(self)) return false;
   for (int j = 0; j < most; j++) {
     double earlier = value;
-    l->alpha[j] = next_residual(l, size);
-    l->beta[j] = 0.0;
-    l->steps = j + 1;
-    value = largest_of_tridiagonal(l, j + 1);
-    size = next_vector(l);
+    self->alpha[j] = next_residual(self, size);
+    self->beta[j] = 0.0;
+    self->steps = j + 1;
+    value = largest_of_tridiagonal(self, j + 1);
+    size = next_vector(self);
     if (size <= 1e-10 * value || (j > 40 && value - earlier < 1e-9 * value)) break;
-    l->beta[j] = size;
+    self->beta[j] = size;
   }
   return value > 0.0;
 }
 
 /* Eigenvectors of the tridiagonal matrix for its largest eigenvalues. */
-static bool mix(lanczos *l) {
-  size_t m = (size_t)l->steps;
-  gsl_matrix *t = gsl_matrix_calloc(m, m), *x = gsl_matrix_alloc(m, m);
+static bool mix(lanczos *self) {
+  size_t m = (size_t)self->steps;
+  gsl_matrix *matrix = gsl_matrix_calloc(m, m), *x = gsl_matrix_alloc(m, m);
   gsl_vector *value = gsl_vector_alloc(m);
-  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(m);
-  bool good = t && x && value && w;
+  gsl_eigen_symmv_workspace *workspace = gsl_eigen_symmv_alloc(m);
+  bool good = matrix && x && value && workspace;
   for (size_t j = 0; good && j < m; j++) {
-    gsl_matrix_set(t, j, j, l->alpha[j]);
+    gsl_matrix_set(matrix, j, j, self->alpha[j]);
     if (j + 1 == m) break;
-    gsl_matrix_set(t, j, j + 1, l->beta[j]);
-    gsl_matrix_set(t, j + 1, j, l->beta[j]);
+    gsl_matrix_set(matrix, j, j + 1, self->beta[j]);
+    gsl_matrix_set(matrix, j + 1, j, self->beta[j]);
   }
-  good = good && !gsl_eigen_symmv(t, value, x, w);
+  good = good && !gsl_eigen_symmv(matrix, value, x, workspace);
   if (good) gsl_eigen_symmv_sort(value, x, GSL_EIGEN_SORT_VAL_DESC);
-  l->wanted = l->steps < KEPT ? l->steps : KEPT;
-  for (int k = 0; good && k < l->wanted; k++)
-    for (size_t j = 0; j < m; j++) l->mix[k][j] = gsl_matrix_get(x, j, (size_t)k);
-  gsl_eigen_symmv_free(w);
+  self->wanted = self->steps < KEPT ? self->steps : KEPT;
+  for (int k = 0; good && k < self->wanted; k++)
+    for (size_t j = 0; j < m; j++) self->mix[k][j] = gsl_matrix_get(x, j, (size_t)k);
+  gsl_eigen_symmv_free(workspace);
   gsl_vector_free(value);
   gsl_matrix_free(x);
-  gsl_matrix_free(t);
+  gsl_matrix_free(matrix);
   return good;
 }
 
 /* The same walk again, which sums up the motions. */
-static void gather(lanczos *l) {
-  int32_t n = l->space->tangent->n;
+static void gather(lanczos *self) {
+  int32_t n = self->space->tangent->n;
   double size = 0.0;
-  if (!first_vector(l)) return;
-  for (int j = 0; j < l->steps; j++) {
-    for (int k = 0; k < l->wanted; k++) {
-      double *x = l->kept + (size_t)k * (size_t)n;
-      for (int32_t i = 0; i < n; i++) x[i] += l->mix[k][j] * l->v[i];
+  if (!first_vector(self)) return;
+  for (int j = 0; j < self->steps; j++) {
+    for (int k = 0; k < self->wanted; k++) {
+      double *x = self->kept + (size_t)k * (size_t)n;
+      for (int32_t i = 0; i < n; i++) x[i] += self->mix[k][j] * self->v[i];
     }
-    next_residual(l, size);
-    if (j + 1 < l->steps) size = next_vector(l);
+    next_residual(self, size);
+    if (j + 1 < self->steps) size = next_vector(self);
   }
 }
 
 bool strut_lanczos_limits(strut_krylov_basis *space, double a, double b) {
   strut_arena arena = {0};
-  lanczos *l = strut_arena_allocate(&arena, 1, sizeof *l);
-  if (l) *l = (lanczos){.space = space, .a = a, .b = b};
-  bool good = l && begin(l, &arena);
-  if (good && walk(l)) {
-    good = mix(l);
-    if (good) gather(l);
-    for (int k = 0; good && k < l->wanted; k++)
-      strut_krylov_basis_add(space, l->kept + (size_t)k * (size_t)space->tangent->n);
+  lanczos *self = strut_arena_allocate(&arena, 1, sizeof *self);
+  if (self) *self = (lanczos){.space = space, .a = a, .b = b};
+  bool good = self && begin(self, &arena);
+  if (good && walk(self)) {
+    good = mix(self);
+    if (good) gather(self);
+    for (int k = 0; good && k < self->wanted; k++)
+      strut_krylov_basis_add(space, self->kept + (size_t)k * (size_t)space->tangent->n);
   }
   strut_arena_free(&arena);
   return good;

@@ -134,76 +134,77 @@ typedef struct search {
   double *x, *y, *other, *mix, *work; /* (n) twice and (n), coefficients */
 } search;
 
-static bool begin(search *s, const strut_model *model, int most) {
-  size_t n = (size_t)s->tangent->n, m = (size_t)most;
-  s->damped = false;
-  for (int32_t i = 0; i < s->tangent->damping->start[n]; i++)
-    s->damped = s->damped || s->tangent->damping->value[i] != 0.0;
-  s->x = strut_arena_allocate(s->arena, n, sizeof(double));
-  s->y = strut_arena_allocate(s->arena, n, sizeof(double));
-  s->other = strut_arena_allocate(s->arena, n, sizeof(double));
-  s->mix = strut_arena_allocate(s->arena, 2 * STRUT_MOST_BINDING * m, sizeof(double));
-  s->work = strut_arena_allocate(s->arena, m, sizeof(double));
-  return s->x && s->y && s->other && s->mix && s->work &&
-         strut_krylov_basis_create(model, s->tangent, most, s->arena, &s->space) &&
-         strut_tangent_limits_create(most, s->arena, &s->found);
+static bool begin(search *self, const strut_model *model, int most) {
+  size_t n = (size_t)self->tangent->n, m = (size_t)most;
+  self->damped = false;
+  for (int32_t i = 0; i < self->tangent->damping->start[n]; i++)
+    self->damped = self->damped || self->tangent->damping->value[i] != 0.0;
+  self->x = strut_arena_allocate(self->arena, n, sizeof(double));
+  self->y = strut_arena_allocate(self->arena, n, sizeof(double));
+  self->other = strut_arena_allocate(self->arena, n, sizeof(double));
+  self->mix = strut_arena_allocate(self->arena, 2 * STRUT_MOST_BINDING * m, sizeof(double));
+  self->work = strut_arena_allocate(self->arena, m, sizeof(double));
+  return self->x && self->y && self->other && self->mix && self->work &&
+         strut_krylov_basis_create(model, self->tangent, most, self->arena, &self->space) &&
+         strut_tangent_limits_create(most, self->arena, &self->found);
 }
 
 /* Few coordinates: the space of all motions. */
-static bool take_all(search *s) {
-  for (int32_t i = 0; i < s->tangent->n; i++) {
-    memset(s->x, 0, (size_t)s->tangent->n * sizeof *s->x);
-    s->x[i] = 1.0;
-    if (s->tangent->rigid) { /* a push on the coordinate moves it as the bars allow */
-      strut_apply_inverse_mass(&s->space, s->x);
+static bool take_all(search *self) {
+  for (int32_t i = 0; i < self->tangent->n; i++) {
+    memset(self->x, 0, (size_t)self->tangent->n * sizeof *self->x);
+    self->x[i] = 1.0;
+    if (self->tangent->rigid) { /* a push on the coordinate moves it as the bars allow */
+      strut_apply_inverse_mass(&self->space, self->x);
     }
-    strut_krylov_basis_add(&s->space, s->x);
+    strut_krylov_basis_add(&self->space, self->x);
   }
-  return strut_tangent_limits_find(&s->space, s->damped, s->rk4, &s->found);
+  return strut_tangent_limits_find(&self->space, self->damped, self->rk4, &self->found);
 }
 
 /* to = M^-1 (K x + re D x - im D y). */
-static void residual(search *s, double a, double re, double im, const double *x, const double *y,
-                     double *to) {
-  strut_tangent_apply(&s->space, a, re, x, to);
+static void residual(search *self, double a, double re, double im, const double *vector,
+                     const double *y, double *to) {
+  strut_tangent_apply(&self->space, a, re, vector, to);
   if (im != 0.0) {
-    double *image = s->space.image;
-    strut_tangent_apply(&s->space, 0.0, -im, y, image);
-    for (int32_t i = 0; i < s->tangent->n; i++) to[i] += image[i];
+    double *image = self->space.image;
+    strut_tangent_apply(&self->space, 0.0, -im, y, image);
+    for (int32_t i = 0; i < self->tangent->n; i++) to[i] += image[i];
   }
-  strut_apply_inverse_mass(&s->space, to);
+  strut_apply_inverse_mass(&self->space, to);
 }
 
 /* Adds what binding motion i leaves. */
-static void grow(search *s, const strut_critical_mode *b) {
-  strut_krylov_basis_combine(&s->space, b->x, s->x);
-  if (!b->rk4 || !b->complex_pair) {
-    double a = b->rk4 ? 1.0 : b->a, c = b->rk4 ? b->re : b->b;
-    residual(s, a, c, 0.0, s->x, NULL, s->other);
-    strut_krylov_basis_add(&s->space, s->other);
+static void grow(search *self, const strut_critical_mode *mode) {
+  strut_krylov_basis_combine(&self->space, mode->x, self->x);
+  if (!mode->rk4 || !mode->complex_pair) {
+    double a = mode->rk4 ? 1.0 : mode->a, c = mode->rk4 ? mode->re : mode->b;
+    residual(self, a, c, 0.0, self->x, NULL, self->other);
+    strut_krylov_basis_add(&self->space, self->other);
     return;
   }
-  strut_krylov_basis_combine(&s->space, b->y, s->y);
-  residual(s, 1.0, b->re, b->im, s->x, s->y, s->other);
-  strut_krylov_basis_add(&s->space, s->other);
-  residual(s, 1.0, b->re, -b->im, s->y, s->x, s->other);
-  strut_krylov_basis_add(&s->space, s->other);
+  strut_krylov_basis_combine(&self->space, mode->y, self->y);
+  residual(self, 1.0, mode->re, mode->im, self->x, self->y, self->other);
+  strut_krylov_basis_add(&self->space, self->other);
+  residual(self, 1.0, mode->re, -mode->im, self->y, self->x, self->other);
+  strut_krylov_basis_add(&self->space, self->other);
 }
 
 /* Keeps the binding motions only. */
-static void shrink(search *s) {
-  size_t columns = (size_t)s->space.count;
+static void shrink(search *self) {
+  size_t columns = (size_t)self->space.count;
   int rows = 0;
-  for (int i = 0; i < s->found.count; i++) {
-    const strut_critical_mode *b = &s->found.binding[i];
-    memcpy(s->mix + (size_t)rows++ * columns, b->x, columns * sizeof(double));
-    if (b->complex_pair) memcpy(s->mix + (size_t)rows++ * columns, b->y, columns * sizeof(double));
+  for (int i = 0; i < self->found.count; i++) {
+    const strut_critical_mode *mode = &self->found.binding[i];
+    memcpy(self->mix + (size_t)rows++ * columns, mode->x, columns * sizeof(double));
+    if (mode->complex_pair)
+      memcpy(self->mix + (size_t)rows++ * columns, mode->y, columns * sizeof(double));
   }
-  strut_krylov_basis_shrink(&s->space, s->mix, rows, s->work);
+  strut_krylov_basis_shrink(&self->space, self->mix, rows, self->work);
 }
 
-static bool find(search *s) {
-  return strut_tangent_limits_find(&s->space, s->damped, s->rk4, &s->found);
+static bool find(search *self) {
+  return strut_tangent_limits_find(&self->space, self->damped, self->rk4, &self->found);
 }
 
 /* By how much, relatively, some limit has fallen. */
@@ -217,51 +218,51 @@ static double fallen(const strut_tangent_limits *found, const double *before) {
   return most;
 }
 
-static bool look_around(search *s) {
-  if (!strut_lanczos_limits(&s->space, 1.0, 0.0)) return false;
-  if (!s->damped) return find(s);
-  if (!strut_lanczos_limits(&s->space, 0.0, 1.0) || !find(s)) return false;
-  double h = s->found.of[STRUT_REGION_VERLET];
-  return !(h < HUGE_VAL) || (strut_lanczos_limits(&s->space, 0.25 * h * h, h) && find(s));
+static bool look_around(search *self) {
+  if (!strut_lanczos_limits(&self->space, 1.0, 0.0)) return false;
+  if (!self->damped) return find(self);
+  if (!strut_lanczos_limits(&self->space, 0.0, 1.0) || !find(self)) return false;
+  double h = self->found.of[STRUT_REGION_VERLET];
+  return !(h < HUGE_VAL) || (strut_lanczos_limits(&self->space, 0.25 * h * h, h) && find(self));
 }
 
-static bool improve(search *s) {
+static bool improve(search *self) {
   int quiet = 0;
   for (int round = 0; round < MOST_ROUNDS && quiet < 2; round++) {
     double before[STRUT_REGIONS];
-    memcpy(before, s->found.of, sizeof before);
-    if (s->space.count + 2 * STRUT_MOST_BINDING > s->space.most) {
-      shrink(s);
-      if (!find(s)) return false;
+    memcpy(before, self->found.of, sizeof before);
+    if (self->space.count + 2 * STRUT_MOST_BINDING > self->space.most) {
+      shrink(self);
+      if (!find(self)) return false;
     }
-    strut_tangent_limits *found = &s->found;
+    strut_tangent_limits *found = &self->found;
     for (int i = 0; i < found->count; i++) {
-      int had = s->space.count;
-      grow(s, &found->binding[i]);
+      int had = self->space.count;
+      grow(self, &found->binding[i]);
       /* coefficients of the other motions end where the space did when they were found */
       for (int k = i + 1; k < found->count; k++)
-        for (int j = had; j < s->space.count; j++)
+        for (int j = had; j < self->space.count; j++)
           found->binding[k].x[j] = found->binding[k].y[j] = 0.0;
     }
-    if (!find(s)) return false;
+    if (!find(self)) return false;
     quiet = fallen(found, before) < SETTLED ? quiet + 1 : 0;
   }
-  s->settled = quiet >= 2;
+  self->settled = quiet >= 2;
   return true;
 }
 
 /* Few coordinates: all motions; many: those that bind. False: out of memory. */
-static bool seek(search *s, const strut_model *model, bool all) {
-  int32_t n = s->tangent->n;
-  if (!begin(s, model, all ? n : n > LARGE ? LARGE_ROOM : ROOM)) return false;
-  return all ? take_all(s) : look_around(s) && improve(s);
+static bool seek(search *self, const strut_model *model, bool all) {
+  int32_t n = self->tangent->n;
+  if (!begin(self, model, all ? n : n > LARGE ? LARGE_ROOM : ROOM)) return false;
+  return all ? take_all(self) : look_around(self) && improve(self);
 }
 
-static void tell_found(const search *s, bool all, strut_step_limit *limit) {
-  limit->exact = all && s->found.solved;
-  limit->largest_frequency = s->found.largest_frequency;
+static void tell_found(const search *self, bool all, strut_step_limit *limit) {
+  limit->exact = all && self->found.solved;
+  limit->largest_frequency = self->found.largest_frequency;
   for (int region = 0; region < STRUT_REGIONS; region++)
-    limit->of[region] = limit->exact ? s->found.of[region] : MARGIN * s->found.of[region];
+    limit->of[region] = limit->exact ? self->found.of[region] : MARGIN * self->found.of[region];
 }
 
 /* What all motions keep to, in place of what could not be found. */
@@ -278,12 +279,12 @@ static bool tell_bound(const strut_model *model, const strut_tangent *tangent, s
 
 /* Signals with a lag and Maxwell branches relax by themselves at these rates, at most [1/s]. */
 static double fastest_relaxation(const strut_model *model) {
-  const strut_feedback_table *f = &model->feedback;
+  const strut_feedback_table *feedback = &model->feedback;
   double rate = 0.0;
-  for (int32_t i = 0; i < f->lag_count; i++)
-    rate = fmax(rate, 1.0 / model->scene->signals[f->lagged[i]].lag);
-  for (int32_t i = 0; i < f->maxwell_count; i++)
-    rate = fmax(rate, f->maxwell[i].stiffness / f->maxwell[i].damping);
+  for (int32_t i = 0; i < feedback->lag_count; i++)
+    rate = fmax(rate, 1.0 / model->scene->signals[feedback->lagged[i]].lag);
+  for (int32_t i = 0; i < feedback->maxwell_count; i++)
+    rate = fmax(rate, feedback->maxwell[i].stiffness / feedback->maxwell[i].damping);
   return rate;
 }
 

@@ -23,12 +23,12 @@ typedef struct bounding {
 /* Those in M, which is no smaller with them than without, and not always diagonally dominant. */
 static void leave_out_sliding_masses(const strut_model *model, double *full) {
   for (int32_t i = 0; i < model->sliding.count; i++) {
-    const strut_sliding_item *s = &model->sliding.item[i];
-    double part[2] = {1.0 - s->start, s->start};
-    for (uint32_t c = 0; c < 2 && s->signal < 0; c++) {
-      bool both = !model->fixed[s->at[0] + c] && !model->fixed[s->at[1] + c];
+    const strut_sliding_item *item = &model->sliding.item[i];
+    double part[2] = {1.0 - item->start, item->start};
+    for (uint32_t c = 0; c < 2 && item->signal < 0; c++) {
+      bool both = !model->fixed[item->at[0] + c] && !model->fixed[item->at[1] + c];
       for (int e = 0; e < 2; e++)
-        full[s->at[e] + c] -= s->mass * part[e] * (part[e] - (both ? part[1 - e] : 0.0));
+        full[item->at[e] + c] -= item->mass * part[e] * (part[e] - (both ? part[1 - e] : 0.0));
     }
   }
 }
@@ -37,42 +37,42 @@ static void leave_out_sliding_masses(const strut_model *model, double *full) {
  * What is left of each row of M when the sizes of the others are taken off its diagonal: then M less
  * this diagonal is diagonally dominant. Of a consistent rod it is a sixth at each end.
  */
-static bool least_masses(const strut_model *model, strut_arena *arena, bounding *b) {
+static bool least_masses(const strut_model *model, strut_arena *arena, bounding *self) {
   double *full = strut_arena_allocate(arena, (size_t)model->length, sizeof *full);
   if (!full) return false;
   for (int c = 0; c < 2; c++) {
     const strut_mass_operator *op = &model->mass->coordinate[c];
-    const strut_sparse *m = op->matrix;
-    for (int32_t j = 0; j < m->n; j++) {
+    const strut_sparse *matrix = op->matrix;
+    for (int32_t j = 0; j < matrix->n; j++) {
       double *to = &full[2 * op->matrix_node[j] + c];
-      *to += m->value[m->start[j]];
-      for (int32_t k = m->start[j] + 1; k < m->start[j + 1]; k++) {
-        double size = fabs(m->value[k]);
+      *to += matrix->value[matrix->start[j]];
+      for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
+        double size = fabs(matrix->value[k]);
         *to -= size;
-        full[2 * op->matrix_node[m->row[k]] + c] -= size;
+        full[2 * op->matrix_node[matrix->row[k]] + c] -= size;
       }
     }
   }
   leave_out_sliding_masses(model, full);
-  for (int32_t i = 0; i < b->tangent->n; i++)
-    b->mass[i] = fmax(full[b->tangent->coordinate[i]], LEAST);
+  for (int32_t i = 0; i < self->tangent->n; i++)
+    self->mass[i] = fmax(full[self->tangent->coordinate[i]], LEAST);
   return true;
 }
 
 /* y = |A| z / mass / z. */
-static void ratios(const bounding *b, const strut_sparse *a, double *y) {
-  const double *z = b->weight;
-  memset(y, 0, (size_t)a->n * sizeof *y);
-  for (int32_t j = 0; j < a->n; j++) {
-    double sum = fabs(a->value[a->start[j]]) * z[j];
-    for (int32_t k = a->start[j] + 1; k < a->start[j + 1]; k++) {
-      double size = fabs(a->value[k]);
-      y[a->row[k]] += size * z[j];
-      sum += size * z[a->row[k]];
+static void ratios(const bounding *self, const strut_sparse *matrix, double *y) {
+  const double *z = self->weight;
+  memset(y, 0, (size_t)matrix->n * sizeof *y);
+  for (int32_t j = 0; j < matrix->n; j++) {
+    double sum = fabs(matrix->value[matrix->start[j]]) * z[j];
+    for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
+      double size = fabs(matrix->value[k]);
+      y[matrix->row[k]] += size * z[j];
+      sum += size * z[matrix->row[k]];
     }
     y[j] += sum;
   }
-  for (int32_t i = 0; i < a->n; i++) y[i] /= b->mass[i] * z[i];
+  for (int32_t i = 0; i < matrix->n; i++) y[i] /= self->mass[i] * z[i];
 }
 
 /* The step at which c h d + h^2/4 k is 1. */
@@ -82,12 +82,12 @@ static double flip(double c, double k, double d) {
 }
 
 /* What these weights say, where it is better than what was known. */
-static void take(const bounding *b, strut_tangent_bound *bound) {
+static void take(const bounding *self, strut_tangent_bound *bound) {
   double square = 0.0, rate = 0.0, verlet = HUGE_VAL, euler = HUGE_VAL;
-  for (int32_t i = 0; i < b->tangent->n; i++) {
-    square = fmax(square, b->stiff[i]), rate = fmax(rate, b->damp[i]);
-    verlet = fmin(verlet, flip(1.0, b->stiff[i], b->damp[i]));
-    euler = fmin(euler, flip(0.5, b->stiff[i], b->damp[i]));
+  for (int32_t i = 0; i < self->tangent->n; i++) {
+    square = fmax(square, self->stiff[i]), rate = fmax(rate, self->damp[i]);
+    verlet = fmin(verlet, flip(1.0, self->stiff[i], self->damp[i]));
+    euler = fmin(euler, flip(0.5, self->stiff[i], self->damp[i]));
   }
   double *of = bound->of;
   bound->frequency = fmin(bound->frequency, sqrt(square) / ROUNDING);
@@ -97,13 +97,14 @@ static void take(const bounding *b, strut_tangent_bound *bound) {
 }
 
 /* The weights times the matrix that binds Verlet, the largest becoming 1. */
-static void improve(bounding *b, double h) {
+static void improve(bounding *self, double h) {
   double largest = 0.0;
-  for (int32_t i = 0; i < b->tangent->n; i++) {
-    b->weight[i] *= 0.25 * h * h * b->stiff[i] + h * b->damp[i];
-    largest = fmax(largest, b->weight[i]);
+  for (int32_t i = 0; i < self->tangent->n; i++) {
+    self->weight[i] *= 0.25 * h * h * self->stiff[i] + h * self->damp[i];
+    largest = fmax(largest, self->weight[i]);
   }
-  for (int32_t i = 0; i < b->tangent->n; i++) b->weight[i] = fmax(b->weight[i] / largest, LEAST);
+  for (int32_t i = 0; i < self->tangent->n; i++)
+    self->weight[i] = fmax(self->weight[i] / largest, LEAST);
 }
 
 /*
@@ -164,28 +165,28 @@ typedef struct symmetric {
   gsl_eigen_symmv_workspace *w;
 } symmetric;
 
-static bool symmetric_create(symmetric *s, size_t m) {
-  *s = (symmetric){.m = m,
-                   .matrix = gsl_matrix_alloc(m, m),
-                   .vectors = gsl_matrix_alloc(m, m),
-                   .values = gsl_vector_alloc(m),
-                   .w = gsl_eigen_symmv_alloc(m)};
-  return s->matrix && s->vectors && s->values && s->w;
+static bool symmetric_create(symmetric *self, size_t m) {
+  *self = (symmetric){.m = m,
+                      .matrix = gsl_matrix_alloc(m, m),
+                      .vectors = gsl_matrix_alloc(m, m),
+                      .values = gsl_vector_alloc(m),
+                      .w = gsl_eigen_symmv_alloc(m)};
+  return self->matrix && self->vectors && self->values && self->w;
 }
 
-static void symmetric_free(symmetric *s) {
-  gsl_matrix_free(s->matrix);
-  gsl_matrix_free(s->vectors);
-  gsl_vector_free(s->values);
-  gsl_eigen_symmv_free(s->w);
+static void symmetric_free(symmetric *self) {
+  gsl_matrix_free(self->matrix);
+  gsl_matrix_free(self->vectors);
+  gsl_vector_free(self->values);
+  gsl_eigen_symmv_free(self->w);
 }
 
 /*
  * Fills in a K + b D, times a power of two that makes the largest entry about 1. Returns by which
  * power they are too small then; INT_MAX where some entry is no finite number: GSL would not end.
  */
-static int fill(symmetric *s, const strut_krylov_basis *space, double a, double b) {
-  size_t m = s->m, row = (size_t)space->most;
+static int fill(symmetric *self, const strut_krylov_basis *space, double a, double b) {
+  size_t m = self->m, row = (size_t)space->most;
   double most = 0.0, poison = 0.0;
   int power = 0;
   for (size_t i = 0; i < m; i++)
@@ -193,31 +194,31 @@ static int fill(symmetric *s, const strut_krylov_basis *space, double a, double 
       double x = a * space->stiffness[i * row + j] + b * space->damping[i * row + j];
       poison += x - x;
       most = fmax(most, fabs(x));
-      gsl_matrix_set(s->matrix, i, j, x);
+      gsl_matrix_set(self->matrix, i, j, x);
     }
   if (poison != 0.0) return INT_MAX;
   frexp(most, &power);
-  for (size_t i = 0; i < m * m; i++) s->matrix->data[i] = ldexp(s->matrix->data[i], -power);
+  for (size_t i = 0; i < m * m; i++) self->matrix->data[i] = ldexp(self->matrix->data[i], -power);
   return power;
 }
 
 /* The largest eigenvalue of a K + b D with its vector; infinite where the matrix is. */
-static double largest(symmetric *s, const strut_krylov_basis *space, double a, double b,
-                      double *x) {
-  size_t m = s->m, top = 0;
-  for (size_t i = 0; i < m; i++) x[i] = i == 0;
-  int power = fill(s, space, a, b);
+static double largest(symmetric *self, const strut_krylov_basis *space, double a, double b,
+                      double *vector) {
+  size_t m = self->m, top = 0;
+  for (size_t i = 0; i < m; i++) vector[i] = i == 0;
+  int power = fill(self, space, a, b);
   if (power == INT_MAX) return HUGE_VAL;
-  if (gsl_eigen_symmv(s->matrix, s->values, s->vectors, s->w)) return 0.0;
-  top = gsl_vector_max_index(s->values);
-  for (size_t i = 0; i < m; i++) x[i] = gsl_matrix_get(s->vectors, i, top);
-  return ldexp(gsl_vector_get(s->values, top), power);
+  if (gsl_eigen_symmv(self->matrix, self->values, self->vectors, self->w)) return 0.0;
+  top = gsl_vector_max_index(self->values);
+  for (size_t i = 0; i < m; i++) vector[i] = gsl_matrix_get(self->vectors, i, top);
+  return ldexp(gsl_vector_get(self->values, top), power);
 }
 
-static double quotient(const double *small, size_t row, const double *x, size_t m) {
+static double quotient(const double *small, size_t row, const double *vector, size_t m) {
   double sum = 0.0;
   for (size_t i = 0; i < m; i++)
-    for (size_t j = 0; j < m; j++) sum += x[i] * small[i * row + j] * x[j];
+    for (size_t j = 0; j < m; j++) sum += vector[i] * small[i * row + j] * vector[j];
   return sum;
 }
 
@@ -225,13 +226,13 @@ static double quotient(const double *small, size_t row, const double *x, size_t 
  * The step at which c h D + h^2/4 K first has the eigenvalue 1, from above: each motion's quotients
  * give a step at which it has it itself.
  */
-static double tangent_limits_flip(symmetric *s, const strut_krylov_basis *space, double c, double h,
-                                  double *x) {
+static double tangent_limits_flip(symmetric *self, const strut_krylov_basis *space, double c,
+                                  double h, double *vector) {
   size_t row = (size_t)space->most;
   for (int i = 0; i < 50 && h < HUGE_VAL; i++) {
-    if (!(largest(s, space, 0.25 * h * h, c * h, x) > 0.0)) break;
-    double k = quotient(space->stiffness, row, x, s->m);
-    double d = c * quotient(space->damping, row, x, s->m);
+    if (!(largest(self, space, 0.25 * h * h, c * h, vector) > 0.0)) break;
+    double k = quotient(space->stiffness, row, vector, self->m);
+    double d = c * quotient(space->damping, row, vector, self->m);
     double next = 2.0 / (d + sqrt(fmax(0.0, d * d + k)));
     bool done = !(next < h * (1.0 - 1e-13));
     h = fmin(h, next);
@@ -247,22 +248,22 @@ static strut_critical_mode *another(strut_tangent_limits *limits) {
 }
 
 /* Frequency, Verlet and Euler; the most negative real part there can be is returned. */
-static double find_symmetric(symmetric *s, const strut_krylov_basis *space, bool damped,
+static double find_symmetric(symmetric *self, const strut_krylov_basis *space, bool damped,
                              strut_tangent_limits *limits) {
   strut_critical_mode *one = another(limits);
-  double square = largest(s, space, 1.0, 0.0, one->x), rate = 0.0;
+  double square = largest(self, space, 1.0, 0.0, one->x), rate = 0.0;
   one->a = 1.0, one->b = 0.0;
   limits->largest_frequency = sqrt(fmax(0.0, square));
   double swing = square > 0.0 ? 2.0 / sqrt(square) : HUGE_VAL;
   limits->of[STRUT_REGION_VERLET] = limits->of[STRUT_REGION_EULER] = swing;
   if (!damped) return 0.0;
   one = another(limits);
-  rate = fmax(0.0, largest(s, space, 0.0, 1.0, one->x));
+  rate = fmax(0.0, largest(self, space, 0.0, 1.0, one->x));
   one->a = 0.0, one->b = 1.0;
   for (int euler = 0; euler < 2; euler++) {
     double c = euler ? 0.5 : 1.0, h = fmin(swing, rate > 0.0 ? 1.0 / (c * rate) : HUGE_VAL);
     one = another(limits);
-    h = tangent_limits_flip(s, space, c, h, one->x);
+    h = tangent_limits_flip(self, space, c, h, one->x);
     one->a = 0.25 * h * h, one->b = c * h;
     if (!(h < HUGE_VAL)) limits->count--;
     limits->of[euler ? STRUT_REGION_EULER : STRUT_REGION_VERLET] = h;
@@ -314,8 +315,8 @@ static bool find_rk4(const strut_krylov_basis *space, double omega, strut_tangen
   gsl_matrix *system = gsl_matrix_calloc(2 * m, 2 * m);
   gsl_vector_complex *values = gsl_vector_complex_alloc(2 * m);
   gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(2 * m, 2 * m);
-  gsl_eigen_nonsymmv_workspace *w = gsl_eigen_nonsymmv_alloc(2 * m);
-  bool room = system && values && vectors && w;
+  gsl_eigen_nonsymmv_workspace *workspace = gsl_eigen_nonsymmv_alloc(2 * m);
+  bool room = system && values && vectors && workspace;
   for (size_t i = 0; room && i < m; i++) {
     gsl_matrix_set(system, i, m + i, 1.0);
     for (size_t j = 0; j < m; j++) {
@@ -323,9 +324,10 @@ static bool find_rk4(const strut_krylov_basis *space, double omega, strut_tangen
       gsl_matrix_set(system, m + i, m + j, -space->damping[i * row + j] / omega);
     }
   }
-  limits->solved = room && is_finite(system) && !gsl_eigen_nonsymmv(system, values, vectors, w);
+  limits->solved =
+      room && is_finite(system) && !gsl_eigen_nonsymmv(system, values, vectors, workspace);
   if (limits->solved) take_pairs(values, vectors, omega, limits);
-  gsl_eigen_nonsymmv_free(w);
+  gsl_eigen_nonsymmv_free(workspace);
   gsl_matrix_complex_free(vectors);
   gsl_vector_complex_free(values);
   gsl_matrix_free(system);

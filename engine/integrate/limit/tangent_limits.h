@@ -31,15 +31,16 @@ typedef struct strut_krylov_basis {
 bool strut_krylov_basis_create(const strut_model *model, const strut_tangent *tangent, int most,
                                strut_arena *arena, strut_krylov_basis *space);
 /** x becomes M^-1 x, through what rigid bars allow. */
-void strut_apply_inverse_mass(strut_krylov_basis *space, double *x);
+void strut_apply_inverse_mass(strut_krylov_basis *space, double *vector);
 /** y = M x. */
-void strut_tangent_mass(strut_krylov_basis *space, const double *x, double *y);
+void strut_tangent_mass(strut_krylov_basis *space, const double *vector, double *y);
 /** y = a K x + b D x; x and y apart. */
-void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *x, double *y);
+void strut_tangent_apply(strut_krylov_basis *space, double a, double b, const double *vector,
+                         double *y);
 /** Takes the space's motions out of x and appends the rest; false where nothing is left or no room. */
-bool strut_krylov_basis_add(strut_krylov_basis *space, double *x);
+bool strut_krylov_basis_add(strut_krylov_basis *space, double *vector);
 /** x = the sum of the space's vectors times c (count). */
-void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *x);
+void strut_krylov_basis_combine(const strut_krylov_basis *space, const double *c, double *vector);
 /** The space becomes what the rows of c (rows, count) span; c is changed, work is (most). */
 void strut_krylov_basis_shrink(strut_krylov_basis *space, double *c, int rows, double *work);
 

@@ -70,16 +70,16 @@ static bool factorise(strut_cholmod_factor *factor, const strut_sparse *matrix, 
   double beta[2] = {shift, 0.0};
   assert((size_t)matrix->n == factor->symbolic->n);
   forget_numbers(factor);
-  cholmod_factor *l = factor->numeric = cholmod_copy_factor(factor->symbolic, common);
-  if (!l || !cholmod_factorize_p(&a, beta, NULL, 0, l, common) || common->status < CHOLMOD_OK ||
-      !cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, l, common))
+  cholmod_factor *self = factor->numeric = cholmod_copy_factor(factor->symbolic, common);
+  if (!self || !cholmod_factorize_p(&a, beta, NULL, 0, self, common) ||
+      common->status < CHOLMOD_OK || !cholmod_change_factor(CHOLMOD_REAL, 0, 0, 1, 1, self, common))
     return false;
-  *columns = (strut_cholmod_columns){.n = (int32_t)l->n,
-                                     .finished = (int32_t)l->minor,
-                                     .order = l->Perm,
-                                     .start = l->p,
-                                     .row = l->i,
-                                     .value = l->x};
+  *columns = (strut_cholmod_columns){.n = (int32_t)self->n,
+                                     .finished = (int32_t)self->minor,
+                                     .order = self->Perm,
+                                     .start = self->p,
+                                     .row = self->i,
+                                     .value = self->x};
   return true;
 }
 

@@ -32,26 +32,26 @@ STRUT_INLINE bool strut_cholesky_factor(int32_t n, const int32_t *first, double 
 
 /** x becomes (L L')^-1 x. */
 STRUT_INLINE void strut_cholesky_solve_rows(int32_t n, const int32_t *first, const double *f,
-                                            double *x) {
+                                            double *vector) {
   for (int32_t i = 0; i < n; i++) {
-    for (int32_t j = first[i]; j < i; j++) x[i] -= f[i * n + j] * x[j];
-    x[i] /= f[i * n + i];
+    for (int32_t j = first[i]; j < i; j++) vector[i] -= f[i * n + j] * vector[j];
+    vector[i] /= f[i * n + i];
   }
   for (int32_t i = n - 1; i >= 0; i--) {
-    x[i] /= f[i * n + i];
-    for (int32_t j = first[i]; j < i; j++) x[j] -= f[i * n + j] * x[i];
+    vector[i] /= f[i * n + i];
+    for (int32_t j = first[i]; j < i; j++) vector[j] -= f[i * n + j] * vector[i];
   }
 }
 
 /** The same with whole rows. */
-STRUT_INLINE void strut_cholesky_solve(int32_t n, const double *f, double *x) {
+STRUT_INLINE void strut_cholesky_solve(int32_t n, const double *f, double *vector) {
   for (int32_t i = 0; i < n; i++) {
-    for (int32_t j = 0; j < i; j++) x[i] -= f[i * n + j] * x[j];
-    x[i] /= f[i * n + i];
+    for (int32_t j = 0; j < i; j++) vector[i] -= f[i * n + j] * vector[j];
+    vector[i] /= f[i * n + i];
   }
   for (int32_t i = n - 1; i >= 0; i--) {
-    for (int32_t j = i + 1; j < n; j++) x[i] -= f[j * n + i] * x[j];
-    x[i] /= f[i * n + i];
+    for (int32_t j = i + 1; j < n; j++) vector[i] -= f[j * n + i] * vector[j];
+    vector[i] /= f[i * n + i];
   }
 }
 

@@ -52,8 +52,8 @@ STRUT_INLINE strut_pair strut_pair_load(const double *p) { return *(const strut_
 STRUT_INLINE void strut_pair_store(double *p, strut_pair x) { *(strut_pair_at *)p = x; }
 STRUT_INLINE strut_lanes strut_lanes_load(const double *p) { return *(const strut_lanes_at *)p; }
 /** Two pairs side by side. */
-STRUT_INLINE strut_lanes strut_lanes_join(const double *a, const double *b) {
-  return __builtin_shufflevector(strut_pair_load(a), strut_pair_load(b), 0, 1, 2, 3);
+STRUT_INLINE strut_lanes strut_lanes_join(const double *first, const double *second) {
+  return __builtin_shufflevector(strut_pair_load(first), strut_pair_load(second), 0, 1, 2, 3);
 }
 /** Lanes from two halves, for values just stored pair by pair: a wider load would have to wait. */
 STRUT_INLINE strut_lanes strut_lanes_load_pairs(const double *p) {

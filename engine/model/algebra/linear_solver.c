@@ -31,11 +31,11 @@ static strut_factor *allocate_factor(int32_t n, size_t nonzeros) {
 }
 
 /* CHOLMOD keeps D as the first entry of each column of L; we keep 1/D apart. */
-static void copy_into(const strut_cholmod_columns *l, strut_factor *factor) {
-  const int *start = l->start, *row = l->row, *order = l->order;
-  const double *value = l->value;
+static void copy_into(const strut_cholmod_columns *columns, strut_factor *factor) {
+  const int *start = columns->start, *row = columns->row, *order = columns->order;
+  const double *value = columns->value;
   int32_t n = factor->n;
-  assert(n == l->n);
+  assert(n == columns->n);
   memcpy(factor->order, order, (size_t)n * sizeof *factor->order);
   int32_t at = 0;
   for (int32_t j = 0; j < n; j++) {
@@ -49,9 +49,10 @@ static void copy_into(const strut_cholmod_columns *l, strut_factor *factor) {
   factor->start[n] = at;
 }
 
-static strut_factor *copy_out(const strut_cholmod_columns *l) {
-  strut_factor *factor = allocate_factor(l->n, (size_t)(l->start[l->n] - l->n));
-  if (factor) copy_into(l, factor);
+static strut_factor *copy_out(const strut_cholmod_columns *columns) {
+  strut_factor *factor =
+      allocate_factor(columns->n, (size_t)(columns->start[columns->n] - columns->n));
+  if (factor) copy_into(columns, factor);
   return factor;
 }
 
@@ -61,10 +62,11 @@ static strut_factor *copy_out(const strut_cholmod_columns *l) {
 enum { LEAST_TO_WEAVE = 256, MOST_TURNS = 4 };
 
 /* Which part each column belongs to; returns how many parts there are. */
-static int32_t find_parts(const strut_factor *f, int32_t *part) {
+static int32_t find_parts(const strut_factor *factor, int32_t *part) {
   int32_t parts = 0;
-  for (int32_t j = f->n - 1; j >= 0; j--)
-    part[j] = f->start[j] < f->start[j + 1] ? part[f->row[f->start[j]]] : parts++;
+  for (int32_t j = factor->n - 1; j >= 0; j--)
+    part[j] =
+        factor->start[j] < factor->start[j + 1] ? part[factor->row[factor->start[j]]] : parts++;
   return parts;
 }
 
@@ -128,10 +130,10 @@ static bool weave_parts(strut_factor **factor) {
  * The row of A at which it shows not to be positive definite, or -1. CHOLMOD's L D L' stops at a
  * zero in D only, so the signs are checked here.
  */
-static int32_t bad_row(const strut_cholmod_columns *l) {
-  if (l->finished < l->n) return l->order[l->finished];
-  for (int32_t j = 0; j < l->n; j++)
-    if (!(l->value[l->start[j]] > 0)) return l->order[j];
+static int32_t bad_row(const strut_cholmod_columns *columns) {
+  if (columns->finished < columns->n) return columns->order[columns->finished];
+  for (int32_t j = 0; j < columns->n; j++)
+    if (!(columns->value[columns->start[j]] > 0)) return columns->order[j];
   return -1;
 }
 
@@ -247,33 +249,33 @@ void strut_ldl_free(strut_ldl *ldl) {
 }
 
 /* The largest column sum of |A + shift I|. */
-static double norm_of(const strut_sparse *a, double shift, double *sum) {
+static double norm_of(const strut_sparse *matrix, double shift, double *sum) {
   double largest = 0.0;
-  for (int32_t j = 0; j < a->n; j++) sum[j] = 0.0;
-  for (int32_t j = 0; j < a->n; j++) {
-    sum[j] += fabs(a->value[a->start[j]] + shift);
-    for (int32_t k = a->start[j] + 1; k < a->start[j + 1]; k++) {
-      sum[j] += fabs(a->value[k]);
-      sum[a->row[k]] += fabs(a->value[k]);
+  for (int32_t j = 0; j < matrix->n; j++) sum[j] = 0.0;
+  for (int32_t j = 0; j < matrix->n; j++) {
+    sum[j] += fabs(matrix->value[matrix->start[j]] + shift);
+    for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
+      sum[j] += fabs(matrix->value[k]);
+      sum[matrix->row[k]] += fabs(matrix->value[k]);
     }
   }
-  for (int32_t j = 0; j < a->n; j++) largest = fmax(largest, sum[j]);
+  for (int32_t j = 0; j < matrix->n; j++) largest = fmax(largest, sum[j]);
   return largest;
 }
 
 /* False where a pivot cannot be divided by. */
-static bool read_inertia(const strut_cholmod_columns *l, const strut_sparse *a, double shift,
-                         strut_inertia *inertia) {
+static bool read_inertia(const strut_cholmod_columns *columns, const strut_sparse *matrix,
+                         double shift, strut_inertia *inertia) {
   *inertia = (strut_inertia){.row = -1, .smallest = HUGE_VAL, .least = HUGE_VAL};
-  if (l->finished < l->n) {
-    inertia->row = l->order[l->finished];
+  if (columns->finished < columns->n) {
+    inertia->row = columns->order[columns->finished];
     inertia->smallest = inertia->least = 0.0;
     return false;
   }
-  for (int32_t j = 0; j < l->n; j++) {
-    int32_t row = l->order[j];
-    double d = l->value[l->start[j]], size = fabs(d);
-    double before = fabs(a->value[a->start[row]] + shift);
+  for (int32_t j = 0; j < columns->n; j++) {
+    int32_t row = columns->order[j];
+    double d = columns->value[columns->start[j]], size = fabs(d);
+    double before = fabs(matrix->value[matrix->start[row]] + shift);
     double left = before > 0 ? size / before : 1.0;
     if (!(size > 0) || !isfinite(size)) {
       *inertia = (strut_inertia){.row = row};
@@ -304,11 +306,11 @@ strut_status strut_ldl_factorise(strut_ldl *ldl, const strut_sparse *matrix, dou
 }
 
 void strut_ldl_solve(strut_ldl *ldl, double *b) {
-  const strut_factor *f = ldl->factor;
+  const strut_factor *factor = ldl->factor;
   double *x = ldl->work;
-  for (int32_t i = 0; i < f->n; i++) x[i] = b[f->order[i]];
-  strut_factor_solve(f, x);
-  for (int32_t i = 0; i < f->n; i++) b[f->order[i]] = x[i];
+  for (int32_t i = 0; i < factor->n; i++) x[i] = b[factor->order[i]];
+  strut_factor_solve(factor, x);
+  for (int32_t i = 0; i < factor->n; i++) b[factor->order[i]] = x[i];
 }
 
 /* Hager's method: climbs to a column of A^-1 with a large sum; then Higham's second guess. */
@@ -378,92 +380,95 @@ static bool copy_factor(const strut_factor *from, strut_factor *to, strut_arena 
 }
 
 /* The place of each entry of the matrix in the factor's order. */
-static void place_entries(const strut_sparse *pattern, strut_refactor *r) {
-  int32_t n = pattern->n, *place = r->next;
-  for (int32_t i = 0; i < n; i++) place[r->factor.order[i]] = i;
+static void place_entries(const strut_sparse *pattern, strut_refactor *refactor) {
+  int32_t n = pattern->n, *place = refactor->next;
+  for (int32_t i = 0; i < n; i++) place[refactor->factor.order[i]] = i;
   for (int32_t pass = 0; pass < 2; pass++) {
     for (int32_t j = 0; j < n; j++)
       for (int32_t k = pattern->start[j]; k < pattern->start[j + 1]; k++) {
         int32_t a = place[j], b = place[pattern->row[k]], column = a < b ? a : b;
         if (pass == 0) {
-          r->start[column + 1]++;
+          refactor->start[column + 1]++;
           continue;
         }
-        int32_t to = r->start[column] + r->at[column]++;
-        r->row[to] = a < b ? b : a;
-        r->from[to] = k;
+        int32_t to = refactor->start[column] + refactor->at[column]++;
+        refactor->row[to] = a < b ? b : a;
+        refactor->from[to] = k;
       }
-    for (int32_t j = 0; j < n && pass == 0; j++) r->start[j + 1] += r->start[j];
+    for (int32_t j = 0; j < n && pass == 0; j++) refactor->start[j + 1] += refactor->start[j];
   }
 }
 
 strut_refactor *strut_refactor_create(const strut_sparse *pattern, strut_arena *arena) {
-  strut_refactor *r = strut_arena_allocate(arena, 1, sizeof *r);
+  strut_refactor *refactor = strut_arena_allocate(arena, 1, sizeof *refactor);
   strut_arena scratch = {0};
   strut_sparse example;
   strut_factor *factor = NULL;
   size_t n = (size_t)pattern->n, nonzeros = (size_t)pattern->start[n];
-  bool good = r && fill_example(pattern, &example, &scratch) &&
+  bool good = refactor && fill_example(pattern, &example, &scratch) &&
               !strut_factor_create(&example, &factor, NULL) &&
-              copy_factor(factor, &r->factor, arena);
+              copy_factor(factor, &refactor->factor, arena);
   strut_factor_free(factor);
   strut_arena_free(&scratch);
   if (!good) return NULL;
-  int32_t **indices[] = {&r->row, &r->from, &r->head, &r->next, &r->at, &r->start};
+  int32_t **indices[] = {&refactor->row,  &refactor->from, &refactor->head,
+                         &refactor->next, &refactor->at,   &refactor->start};
   size_t counts[] = {nonzeros, nonzeros, n, n, n, n + 1};
   for (size_t i = 0; i < sizeof indices / sizeof indices[0]; i++)
     if (!(*indices[i] = strut_arena_allocate(arena, counts[i], sizeof **indices[i]))) return NULL;
-  r->diagonal = strut_arena_allocate(arena, n, sizeof *r->diagonal);
-  r->work = strut_arena_allocate(arena, n, sizeof *r->work);
-  if (!r->diagonal || !r->work) return NULL;
-  place_entries(pattern, r);
-  return r;
+  refactor->diagonal = strut_arena_allocate(arena, n, sizeof *refactor->diagonal);
+  refactor->work = strut_arena_allocate(arena, n, sizeof *refactor->work);
+  if (!refactor->diagonal || !refactor->work) return NULL;
+  place_entries(pattern, refactor);
+  return refactor;
 }
 
 /* Column k waits for the row of its entry at r->at[k], if there is one left. */
-static void wait_for_next(strut_refactor *r, int32_t k) {
-  if (r->at[k] == r->factor.start[k + 1]) return;
-  int32_t row = r->factor.row[r->at[k]];
-  r->next[k] = r->head[row];
-  r->head[row] = k;
+static void wait_for_next(strut_refactor *refactor, int32_t k) {
+  if (refactor->at[k] == refactor->factor.start[k + 1]) return;
+  int32_t row = refactor->factor.row[refactor->at[k]];
+  refactor->next[k] = refactor->head[row];
+  refactor->head[row] = k;
 }
 
 /* Column by column, each taking what the ones before it leave (left-looking). */
-int32_t strut_refactor_apply(strut_refactor *r, const strut_sparse *matrix) {
-  const strut_factor *f = &r->factor;
-  double *restrict work = r->work;
-  for (int32_t j = 0; j < f->n; j++) r->head[j] = -1;
-  for (int32_t j = 0; j < f->n; j++) {
-    for (int32_t i = r->start[j]; i < r->start[j + 1]; i++)
-      work[r->row[i]] += matrix->value[r->from[i]];
-    for (int32_t k = r->head[j], following; k >= 0; k = following) {
-      following = r->next[k];
-      double part = f->value[r->at[k]] * r->diagonal[k];
-      for (int32_t i = r->at[k]; i < f->start[k + 1]; i++) work[f->row[i]] -= f->value[i] * part;
-      r->at[k]++;
-      wait_for_next(r, k);
+int32_t strut_refactor_apply(strut_refactor *refactor, const strut_sparse *matrix) {
+  const strut_factor *factor = &refactor->factor;
+  double *restrict work = refactor->work;
+  for (int32_t j = 0; j < factor->n; j++) refactor->head[j] = -1;
+  for (int32_t j = 0; j < factor->n; j++) {
+    for (int32_t i = refactor->start[j]; i < refactor->start[j + 1]; i++)
+      work[refactor->row[i]] += matrix->value[refactor->from[i]];
+    for (int32_t k = refactor->head[j], following; k >= 0; k = following) {
+      following = refactor->next[k];
+      double part = factor->value[refactor->at[k]] * refactor->diagonal[k];
+      for (int32_t i = refactor->at[k]; i < factor->start[k + 1]; i++)
+        work[factor->row[i]] -= factor->value[i] * part;
+      refactor->at[k]++;
+      wait_for_next(refactor, k);
     }
     double pivot = work[j];
     if (!(pivot > 0.0) || isinf(pivot)) {
-      memset(work, 0, (size_t)f->n * sizeof *work);
-      return f->order[j];
+      memset(work, 0, (size_t)factor->n * sizeof *work);
+      return factor->order[j];
     }
     work[j] = 0.0;
-    r->diagonal[j] = pivot;
-    f->inverse_diagonal[j] = 1.0 / pivot;
-    for (int32_t i = f->start[j]; i < f->start[j + 1]; i++) {
-      f->value[i] = work[f->row[i]] * f->inverse_diagonal[j];
-      work[f->row[i]] = 0.0;
+    refactor->diagonal[j] = pivot;
+    factor->inverse_diagonal[j] = 1.0 / pivot;
+    for (int32_t i = factor->start[j]; i < factor->start[j + 1]; i++) {
+      factor->value[i] = work[factor->row[i]] * factor->inverse_diagonal[j];
+      work[factor->row[i]] = 0.0;
     }
-    r->at[j] = f->start[j];
-    wait_for_next(r, j);
+    refactor->at[j] = factor->start[j];
+    wait_for_next(refactor, j);
   }
   return -1;
 }
 
-void strut_refactor_solve(strut_refactor *r, double *b) {
-  const strut_factor *f = &r->factor;
-  for (int32_t i = 0; i < f->n; i++) r->work[i] = b[f->order[i]];
-  strut_factor_solve(f, r->work);
-  for (int32_t i = 0; i < f->n; i++) b[f->order[i]] = r->work[i], r->work[i] = 0.0;
+void strut_refactor_solve(strut_refactor *refactor, double *b) {
+  const strut_factor *factor = &refactor->factor;
+  for (int32_t i = 0; i < factor->n; i++) refactor->work[i] = b[factor->order[i]];
+  strut_factor_solve(factor, refactor->work);
+  for (int32_t i = 0; i < factor->n; i++)
+    b[factor->order[i]] = refactor->work[i], refactor->work[i] = 0.0;
 }

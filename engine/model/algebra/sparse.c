@@ -75,47 +75,47 @@ static int32_t tidy_column(int32_t *row, double *value, int32_t length) {
 }
 
 /* Tidies the columns [first, last), whose entries follow those before. */
-static void tidy(strut_sparse *m, int32_t first, int32_t last) {
-  int32_t at = m->start[first];
+static void tidy(strut_sparse *matrix, int32_t first, int32_t last) {
+  int32_t at = matrix->start[first];
   for (int32_t j = first, begin = at; j < last; j++) {
-    int32_t end = m->start[j + 1];
-    int32_t length = tidy_column(m->row + begin, m->value + begin, end - begin);
-    memmove(m->row + at, m->row + begin, (size_t)length * sizeof *m->row);
-    memmove(m->value + at, m->value + begin, (size_t)length * sizeof *m->value);
+    int32_t end = matrix->start[j + 1];
+    int32_t length = tidy_column(matrix->row + begin, matrix->value + begin, end - begin);
+    memmove(matrix->row + at, matrix->row + begin, (size_t)length * sizeof *matrix->row);
+    memmove(matrix->value + at, matrix->value + begin, (size_t)length * sizeof *matrix->value);
     at += length;
     begin = end;
-    m->start[j + 1] = at;
+    matrix->start[j + 1] = at;
   }
 }
 
 /* Fills the columns [first, end); `start` is set up to `first`, and zero behind. */
-static void fill_columns(strut_sparse *m, int32_t first, int32_t end,
+static void fill_columns(strut_sparse *matrix, int32_t first, int32_t end,
                          const strut_triplets *triplets) {
-  int32_t *next = m->start + 1; /* shifted by one while filling: becomes start at the end */
-  next[first] = m->start[first];
+  int32_t *next = matrix->start + 1; /* shifted by one while filling: becomes start at the end */
+  next[first] = matrix->start[first];
   for (size_t k = 0; k < triplets->count; k++) next[triplets->column[k] + 1]++;
   for (int32_t j = first; j < end; j++) next[j + 1] += next[j] + 1;
   for (int32_t j = first; j < end; j++) {
-    m->value[next[j]] = 0.0;
-    m->row[next[j]++] = j;
+    matrix->value[next[j]] = 0.0;
+    matrix->row[next[j]++] = j;
   }
   for (size_t k = 0; k < triplets->count; k++) {
     int32_t at = next[triplets->column[k]]++;
-    m->row[at] = triplets->row[k];
-    m->value[at] = triplets->value[k];
+    matrix->row[at] = triplets->row[k];
+    matrix->value[at] = triplets->value[k];
   }
-  tidy(m, first, end);
+  tidy(matrix, first, end);
 }
 
 strut_sparse *strut_sparse_begin(int32_t n, size_t capacity, strut_arena *arena) {
   size_t count = capacity + (size_t)n;
-  strut_sparse *m = strut_arena_allocate(arena, 1, sizeof *m);
-  if (!m) return NULL;
-  m->n = n;
-  m->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *m->start);
-  m->row = strut_arena_allocate(arena, count, sizeof *m->row);
-  m->value = strut_arena_allocate(arena, count, sizeof *m->value);
-  return m->start && m->row && m->value ? m : NULL;
+  strut_sparse *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);
+  if (!matrix) return NULL;
+  matrix->n = n;
+  matrix->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *matrix->start);
+  matrix->row = strut_arena_allocate(arena, count, sizeof *matrix->row);
+  matrix->value = strut_arena_allocate(arena, count, sizeof *matrix->value);
+  return matrix->start && matrix->row && matrix->value ? matrix : NULL;
 }
 
 void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets) {
@@ -123,9 +123,9 @@ void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets) {
 }
 
 strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena) {
-  strut_sparse *m = strut_sparse_begin(n, triplets->count, arena);
-  if (m) fill_columns(m, 0, n, triplets);
-  return m;
+  strut_sparse *matrix = strut_sparse_begin(n, triplets->count, arena);
+  if (matrix) fill_columns(matrix, 0, n, triplets);
+  return matrix;
 }
 
 strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena) {
@@ -143,14 +143,14 @@ strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena) 
   return m;
 }
 
-void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict x,
+void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict vector,
                            double *restrict y) {
   memset(y, 0, (size_t)matrix->n * sizeof *y);
   for (int32_t j = 0; j < matrix->n; j++) {
-    y[j] += matrix->value[matrix->start[j]] * x[j];
+    y[j] += matrix->value[matrix->start[j]] * vector[j];
     for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
-      y[matrix->row[k]] += matrix->value[k] * x[j];
-      y[j] += matrix->value[k] * x[matrix->row[k]];
+      y[matrix->row[k]] += matrix->value[k] * vector[j];
+      y[j] += matrix->value[k] * vector[matrix->row[k]];
     }
   }
 }
@@ -170,33 +170,34 @@ typedef struct block_members {
   uint8_t *number;
 } block_members;
 
-static void meet(const block_members *m, block_nodes *nodes, uint32_t at) {
-  if (!m->number[at / 2]) {
+static void meet(const block_members *self, block_nodes *nodes, uint32_t at) {
+  if (!self->number[at / 2]) {
     nodes->at[nodes->count++] = at;
-    m->number[at / 2] = (uint8_t)nodes->count;
+    self->number[at / 2] = (uint8_t)nodes->count;
   }
-  nodes->pulls[m->number[at / 2] - 1]++;
+  nodes->pulls[self->number[at / 2] - 1]++;
 }
 
-static void note(const block_members *m, block_nodes *nodes, uint32_t at, uint16_t pull) {
-  int32_t i = m->number[at / 2] - 1;
+static void note(const block_members *self, block_nodes *nodes, uint32_t at, uint16_t pull) {
+  int32_t i = self->number[at / 2] - 1;
   nodes->pull[nodes->begin[i] + nodes->pulls[i]++] = pull;
 }
 
-static void list_pulls(const block_members *m, block_nodes *nodes) {
-  for (int32_t k = 0; k < m->count; k++)
-    if (m->from[k] != m->to[k]) meet(m, nodes, m->from[k]), meet(m, nodes, m->to[k]);
+static void list_pulls(const block_members *self, block_nodes *nodes) {
+  for (int32_t k = 0; k < self->count; k++)
+    if (self->from[k] != self->to[k])
+      meet(self, nodes, self->from[k]), meet(self, nodes, self->to[k]);
   for (int32_t i = 0, begin = 0; i < nodes->count; i++) {
     nodes->begin[i] = begin;
     begin += nodes->pulls[i];
     nodes->pulls[i] = 0;
   }
-  for (int32_t k = 0; k < m->count; k++) {
-    if (m->from[k] == m->to[k]) continue;
-    note(m, nodes, m->from[k], strut_pull_at(k, false));
-    note(m, nodes, m->to[k], strut_pull_at(k, true));
+  for (int32_t k = 0; k < self->count; k++) {
+    if (self->from[k] == self->to[k]) continue;
+    note(self, nodes, self->from[k], strut_pull_at(k, false));
+    note(self, nodes, self->to[k], strut_pull_at(k, true));
   }
-  for (int32_t i = 0; i < nodes->count; i++) m->number[nodes->at[i] / 2] = 0;
+  for (int32_t i = 0; i < nodes->count; i++) self->number[nodes->at[i] / 2] = 0;
 }
 
 static int32_t rows_of(const block_nodes *nodes, int32_t width) {

@@ -46,7 +46,7 @@ void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets);
 strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena);
 
 /** y = A x with the whole symmetric matrix. */
-STRUT_API void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict x,
+STRUT_API void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict vector,
                                      double *restrict y);
 
 #endif

@@ -275,27 +275,27 @@ void strut_axes_point(const strut_axes *axes, double x, double y, double point[2
 }
 
 /* The label below the middle of the frame; a long one ends where the axes do, and is shortened if need be. */
-static void label_x(strut_canvas *canvas, const strut_box *f, double y, const char *label) {
+static void label_x(strut_canvas *canvas, const strut_box *box, double y, const char *label) {
   const strut_font font = {.size = LABEL_SIZE, .across = 0.5};
-  double right = f->x + f->width + RIGHT, left = fmax(f->x - LEAST_LEFT - LABEL_SIZE, 0.0);
+  double right = box->x + box->width + RIGHT, left = fmax(box->x - LEAST_LEFT - LABEL_SIZE, 0.0);
   char fitted[STRUT_FITTED_TEXT];
   label = strut_text_fit(canvas, label, font, right - left, 0.0, fitted);
   double width = strut_text_width(canvas, label, font);
-  strut_draw_text(canvas, fmin(f->x + 0.5 * f->width, right - 0.5 * width), y, label, font);
+  strut_draw_text(canvas, fmin(box->x + 0.5 * box->width, right - 0.5 * width), y, label, font);
 }
 
 /* A tick at a value of the axis d, `length` outwards; a faint line across the frame where it has a text. */
 static void draw_tick(strut_canvas *canvas, const strut_axes *axes, int d, double value,
                       const char *text) {
-  const strut_box *f = &axes->frame;
+  const strut_box *box = &axes->frame;
   const strut_pen grid = {.colour = strut_grey(0.9), .width = 0.4, .butt = true};
   const strut_pen tick = {.colour = strut_grey(0.25), .width = 0.6, .butt = true};
-  double at[2], bottom = f->y + f->height, length = text ? TICK : 0.6 * TICK;
+  double at[2], bottom = box->y + box->height, length = text ? TICK : 0.6 * TICK;
   strut_axes_point(axes, d ? axes->x.low : value, d ? value : axes->y.low, at);
-  if (text && d) strut_draw_segment(canvas, f->x, at[1], f->x + f->width, at[1], grid);
-  if (text && !d) strut_draw_segment(canvas, at[0], f->y, at[0], bottom, grid);
+  if (text && d) strut_draw_segment(canvas, box->x, at[1], box->x + box->width, at[1], grid);
+  if (text && !d) strut_draw_segment(canvas, at[0], box->y, at[0], bottom, grid);
   strut_draw_segment(canvas, at[0], at[1], at[0] - d * length, at[1] + (1 - d) * length, tick);
-  strut_draw_text(canvas, d ? f->x - TICK - GAP : at[0], d ? at[1] : bottom + TICK + 1, text,
+  strut_draw_text(canvas, d ? box->x - TICK - GAP : at[0], d ? at[1] : bottom + TICK + 1, text,
                   (strut_font){.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0});
 }
 
@@ -306,17 +306,17 @@ static void draw_ticks(strut_canvas *canvas, const strut_axes *axes, int d,
 }
 
 void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
-  const strut_box *f = &axes->frame;
-  const strut_tick_set x = ticks_along_x(canvas, &axes->x, f->width);
-  const strut_tick_set y = ticks_along_y(&axes->y, f->height);
+  const strut_box *box = &axes->frame;
+  const strut_tick_set x = ticks_along_x(canvas, &axes->x, box->width);
+  const strut_tick_set y = ticks_along_y(&axes->y, box->height);
   double line = strut_text_height(canvas, "0", (strut_font){.size = TICK_SIZE});
   double left = fmax(widest_text(canvas, &y), LEAST_LEFT - TICK - GAP);
   draw_ticks(canvas, axes, 0, &x);
   draw_ticks(canvas, axes, 1, &y);
-  label_x(canvas, f, f->y + f->height + TICK + 1 + line, x.label);
-  strut_draw_text(canvas, f->x - TICK - 2 * GAP - left, f->y + 0.5 * f->height, y.label,
+  label_x(canvas, box, box->y + box->height + TICK + 1 + line, x.label);
+  strut_draw_text(canvas, box->x - TICK - 2 * GAP - left, box->y + 0.5 * box->height, y.label,
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
-  strut_draw_box(canvas, *f, NULL, &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
+  strut_draw_box(canvas, *box, NULL, &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
 }
 
 /* The scale of colours beside a drawing. */

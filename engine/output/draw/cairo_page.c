@@ -24,11 +24,11 @@ struct strut_cairo_page {
 static const double FARTHEST = 1e6;
 
 /* Sets the colour of what is drawn next. */
-static void set_ink(strut_cairo_page *c, strut_colour colour) {
+static void set_ink(strut_cairo_page *page, strut_colour colour) {
   if (colour.alpha >= 1.0) { /* an opaque source keeps SVG and PDF free of transparency */
-    cairo_set_source_rgb(c->cairo, colour.red, colour.green, colour.blue);
+    cairo_set_source_rgb(page->cairo, colour.red, colour.green, colour.blue);
   } else {
-    cairo_set_source_rgba(c->cairo, colour.red, colour.green, colour.blue, colour.alpha);
+    cairo_set_source_rgba(page->cairo, colour.red, colour.green, colour.blue, colour.alpha);
   }
 }
 
@@ -84,41 +84,41 @@ static gchar *write_micro(const gchar *text) {
   return g_string_free(written, FALSE);
 }
 
-static void set_text(strut_cairo_page *c, const char *text, const strut_font *font) {
+static void set_text(strut_cairo_page *page, const char *text, const strut_font *font) {
   PangoFontDescription *wanted = pango_font_description_new();
   pango_font_description_set_family_static(wanted, FAMILY);
   pango_font_description_set_absolute_size(
       wanted, (font->size > 0 ? font->size : USUAL_SIZE) * PANGO_SCALE);
   if (font->bold) pango_font_description_set_weight(wanted, PANGO_WEIGHT_BOLD);
   if (font->italic) pango_font_description_set_style(wanted, PANGO_STYLE_ITALIC);
-  pango_layout_set_font_description(c->layout, wanted);
+  pango_layout_set_font_description(page->layout, wanted);
   pango_font_description_free(wanted);
-  pango_layout_set_width(c->layout, font->width > 0 ? (int)(font->width * PANGO_SCALE) : -1);
+  pango_layout_set_width(page->layout, font->width > 0 ? (int)(font->width * PANGO_SCALE) : -1);
   PangoAlignment side = font->across > 0.75   ? PANGO_ALIGN_RIGHT
                         : font->across > 0.25 ? PANGO_ALIGN_CENTER
                                               : PANGO_ALIGN_LEFT;
-  pango_layout_set_alignment(c->layout, side);
-  pango_layout_set_wrap(c->layout, PANGO_WRAP_WORD_CHAR);
+  pango_layout_set_alignment(page->layout, side);
+  pango_layout_set_wrap(page->layout, PANGO_WRAP_WORD_CHAR);
   gchar *valid =
       g_utf8_make_valid(text, -1); /* Pango complains of other texts on the error stream */
   gchar *written = write_micro(valid);
-  pango_layout_set_text(c->layout, written, -1);
+  pango_layout_set_text(page->layout, written, -1);
   g_free(written);
   g_free(valid);
 }
 
 /* The layout's size [pt]. */
-static void measure_layout(strut_cairo_page *c, double *width, double *height) {
+static void measure_layout(strut_cairo_page *page, double *width, double *height) {
   PangoRectangle logical;
-  pango_layout_get_extents(c->layout, NULL, &logical);
+  pango_layout_get_extents(page->layout, NULL, &logical);
   *width = (double)logical.width / PANGO_SCALE;
   *height = (double)logical.height / PANGO_SCALE;
 }
 
-static void find_text_size(strut_cairo_page *c, const char *text, strut_font font, double *width,
+static void find_text_size(strut_cairo_page *page, const char *text, strut_font font, double *width,
                            double *height) {
-  set_text(c, text, &font);
-  measure_layout(c, width, height);
+  set_text(page, text, &font);
+  measure_layout(page, width, height);
 }
 
 /* The box of the layout's ink on the page; `corner` is where the layout's own origin is, before turning. */
@@ -133,43 +133,44 @@ static strut_box find_ink(PangoLayout *layout, const double at[2], const double 
 }
 
 /* True if the box is on the page and inside the clip, but for a hair. */
-static bool is_unclipped(strut_cairo_page *c, strut_box box) {
+static bool is_unclipped(strut_cairo_page *page, strut_box box) {
   const double hair = 0.3; /* [pt] */
   double x1, y1, x2, y2;
-  cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
+  cairo_clip_extents(page->cairo, &x1, &y1, &x2, &y2);
   return box.x >= x1 - hair && box.y >= y1 - hair && box.x + box.width <= x2 + hair &&
          box.y + box.height <= y2 + hair;
 }
 
-static strut_drawn_text draw_text(strut_cairo_page *c, const double at[2], const char *text,
+static strut_drawn_text draw_text(strut_cairo_page *page, const double at[2], const char *text,
                                   strut_font font) {
   double width, height;
-  set_text(c, text, &font);
-  measure_layout(c, &width, &height);
+  set_text(page, text, &font);
+  measure_layout(page, &width, &height);
   PangoRectangle logical;
-  pango_layout_get_extents(c->layout, NULL, &logical);
+  pango_layout_get_extents(page->layout, NULL, &logical);
   const double corner[2] = {-font.across * width - (double)logical.x / PANGO_SCALE,
                             -font.down * height};
-  const strut_box ink = find_ink(c->layout, at, corner, font.upwards);
-  const strut_drawn_text drawn = {pango_layout_get_text(c->layout), ink, is_unclipped(c, ink)};
-  cairo_save(c->cairo);
-  cairo_translate(c->cairo, clamp_coordinate(at[0]), clamp_coordinate(at[1]));
-  if (font.upwards) cairo_rotate(c->cairo, -0.5 * STRUT_PI);
-  cairo_move_to(c->cairo, corner[0], corner[1]);
+  const strut_box ink = find_ink(page->layout, at, corner, font.upwards);
+  const strut_drawn_text drawn = {pango_layout_get_text(page->layout), ink,
+                                  is_unclipped(page, ink)};
+  cairo_save(page->cairo);
+  cairo_translate(page->cairo, clamp_coordinate(at[0]), clamp_coordinate(at[1]));
+  if (font.upwards) cairo_rotate(page->cairo, -0.5 * STRUT_PI);
+  cairo_move_to(page->cairo, corner[0], corner[1]);
   if (font.halo.alpha > 0) {
-    cairo_save(c->cairo);
-    set_ink(c, font.halo);
-    pango_cairo_layout_path(c->cairo, c->layout);
-    cairo_set_dash(c->cairo, NULL, 0, 0);
-    cairo_set_line_width(c->cairo, HALO);
-    cairo_stroke(c->cairo);
-    cairo_restore(c->cairo);
-    cairo_move_to(c->cairo, corner[0], corner[1]);
+    cairo_save(page->cairo);
+    set_ink(page, font.halo);
+    pango_cairo_layout_path(page->cairo, page->layout);
+    cairo_set_dash(page->cairo, NULL, 0, 0);
+    cairo_set_line_width(page->cairo, HALO);
+    cairo_stroke(page->cairo);
+    cairo_restore(page->cairo);
+    cairo_move_to(page->cairo, corner[0], corner[1]);
   }
-  set_ink(c, font.colour.alpha > 0 ? font.colour : (strut_colour){0, 0, 0, 1});
-  pango_cairo_show_layout(c->cairo, c->layout);
-  cairo_new_path(c->cairo);
-  cairo_restore(c->cairo);
+  set_ink(page, font.colour.alpha > 0 ? font.colour : (strut_colour){0, 0, 0, 1});
+  pango_cairo_show_layout(page->cairo, page->layout);
+  cairo_new_path(page->cairo);
+  cairo_restore(page->cairo);
   return drawn;
 }
 
@@ -264,98 +265,99 @@ static void unclip(strut_cairo_page *page) { cairo_restore(page->cairo); }
 
 static const double HATCH_DISTANCE = 4.0, HATCH_WIDTH = 0.6;
 
-static void set_pen(strut_cairo_page *c, const strut_pen *pen) {
+static void set_pen(strut_cairo_page *page, const strut_pen *pen) {
   int dashes = 0;
   while (dashes < 4 && pen->dash[dashes] > 0) dashes++;
-  set_ink(c, pen->colour);
-  cairo_set_line_width(c->cairo, pen->width);
-  cairo_set_dash(c->cairo, pen->dash, dashes, 0);
-  cairo_set_line_cap(c->cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+  set_ink(page, pen->colour);
+  cairo_set_line_width(page->cairo, pen->width);
+  cairo_set_dash(page->cairo, pen->dash, dashes, 0);
+  cairo_set_line_cap(page->cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
 }
 
-static void trace(strut_cairo_page *c, const double (*points)[2], size_t count) {
-  cairo_new_path(c->cairo);
+static void trace(strut_cairo_page *page, const double (*points)[2], size_t count) {
+  cairo_new_path(page->cairo);
   for (size_t i = 0; i < count; i++)
-    cairo_line_to(c->cairo, clamp_coordinate(points[i][0]), clamp_coordinate(points[i][1]));
+    cairo_line_to(page->cairo, clamp_coordinate(points[i][0]), clamp_coordinate(points[i][1]));
 }
 
-static void draw_line(strut_cairo_page *c, const double (*points)[2], size_t count, strut_pen pen) {
+static void draw_line(strut_cairo_page *page, const double (*points)[2], size_t count,
+                      strut_pen pen) {
   if (!count || !(pen.colour.alpha > 0)) return;
-  trace(c, points, count);
-  set_pen(c, &pen);
-  cairo_stroke(c->cairo);
+  trace(page, points, count);
+  set_pen(page, &pen);
+  cairo_stroke(page->cairo);
 }
 
-static void draw_segments(strut_cairo_page *c, const double (*ends)[2], size_t count,
+static void draw_segments(strut_cairo_page *page, const double (*ends)[2], size_t count,
                           strut_pen pen) {
   if (!count || !(pen.colour.alpha > 0)) return;
-  cairo_new_path(c->cairo);
+  cairo_new_path(page->cairo);
   for (size_t i = 0; i < count; i++) {
-    cairo_move_to(c->cairo, clamp_coordinate(ends[2 * i][0]), clamp_coordinate(ends[2 * i][1]));
-    cairo_line_to(c->cairo, clamp_coordinate(ends[2 * i + 1][0]),
+    cairo_move_to(page->cairo, clamp_coordinate(ends[2 * i][0]), clamp_coordinate(ends[2 * i][1]));
+    cairo_line_to(page->cairo, clamp_coordinate(ends[2 * i + 1][0]),
                   clamp_coordinate(ends[2 * i + 1][1]));
   }
-  set_pen(c, &pen);
-  cairo_stroke(c->cairo);
+  set_pen(page, &pen);
+  cairo_stroke(page->cairo);
 }
 
 /* One line at every HATCH_DISTANCE across the clip, anchored to the page so that areas side by side
    join; `slant` is the line's rise for each point it runs to the right. */
-static void hatch_lines(strut_cairo_page *c, double slant) {
+static void hatch_lines(strut_cairo_page *page, double slant) {
   double x1, y1, x2, y2;
-  cairo_clip_extents(c->cairo, &x1, &y1, &x2, &y2);
+  cairo_clip_extents(page->cairo, &x1, &y1, &x2, &y2);
   double step = slant == 0 ? HATCH_DISTANCE : HATCH_DISTANCE * sqrt(2.0);
   double low = y1 + fmin(slant * x1, slant * x2), high = y2 + fmax(slant * x1, slant * x2);
   for (double k = floor(low / step); k * step <= high; k++) {
-    cairo_move_to(c->cairo, x1, k * step - slant * x1);
-    cairo_line_to(c->cairo, x2, k * step - slant * x2);
+    cairo_move_to(page->cairo, x1, k * step - slant * x1);
+    cairo_line_to(page->cairo, x2, k * step - slant * x2);
   }
-  cairo_stroke(c->cairo);
+  cairo_stroke(page->cairo);
 }
 
-static void hatch(strut_cairo_page *c, const strut_fill *fill) {
-  cairo_save(c->cairo);
-  cairo_clip_preserve(c->cairo);
-  cairo_path_t *outline = cairo_copy_path(c->cairo);
-  cairo_new_path(c->cairo);
+static void hatch(strut_cairo_page *page, const strut_fill *fill) {
+  cairo_save(page->cairo);
+  cairo_clip_preserve(page->cairo);
+  cairo_path_t *outline = cairo_copy_path(page->cairo);
+  cairo_new_path(page->cairo);
   const strut_pen pen = {.colour = fill->hatch_colour, .width = HATCH_WIDTH, .butt = true};
-  set_pen(c, &pen);
-  if (fill->hatch == STRUT_HATCH_RISING) hatch_lines(c, 1);
-  if (fill->hatch == STRUT_HATCH_FALLING) hatch_lines(c, -1);
-  if (fill->hatch == STRUT_HATCH_LEVEL) hatch_lines(c, 0);
-  cairo_restore(c->cairo);
-  cairo_append_path(c->cairo, outline);
+  set_pen(page, &pen);
+  if (fill->hatch == STRUT_HATCH_RISING) hatch_lines(page, 1);
+  if (fill->hatch == STRUT_HATCH_FALLING) hatch_lines(page, -1);
+  if (fill->hatch == STRUT_HATCH_LEVEL) hatch_lines(page, 0);
+  cairo_restore(page->cairo);
+  cairo_append_path(page->cairo, outline);
   cairo_path_destroy(outline);
 }
 
 /* Fills and strokes the current path. */
-static void paint(strut_cairo_page *c, const strut_fill *fill, const strut_pen *pen) {
+static void paint(strut_cairo_page *page, const strut_fill *fill, const strut_pen *pen) {
   if (fill && fill->colour.alpha > 0) {
-    set_ink(c, fill->colour);
-    cairo_fill_preserve(c->cairo);
+    set_ink(page, fill->colour);
+    cairo_fill_preserve(page->cairo);
   }
-  if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(c, fill);
+  if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(page, fill);
   if (pen && pen->colour.alpha > 0) {
-    set_pen(c, pen);
-    cairo_stroke_preserve(c->cairo);
+    set_pen(page, pen);
+    cairo_stroke_preserve(page->cairo);
   }
-  cairo_new_path(c->cairo);
+  cairo_new_path(page->cairo);
 }
 
-static void draw_polygon(strut_cairo_page *c, const double (*points)[2], size_t count,
+static void draw_polygon(strut_cairo_page *page, const double (*points)[2], size_t count,
                          const strut_fill *fill, const strut_pen *pen) {
-  trace(c, points, count);
-  cairo_close_path(c->cairo);
-  paint(c, fill, pen);
+  trace(page, points, count);
+  cairo_close_path(page->cairo);
+  paint(page, fill, pen);
 }
 
-static void draw_circle(strut_cairo_page *c, const double centre[2], double radius,
+static void draw_circle(strut_cairo_page *page, const double centre[2], double radius,
                         const strut_fill *fill, const strut_pen *pen) {
-  cairo_new_path(c->cairo);
-  cairo_arc(c->cairo, clamp_coordinate(centre[0]), clamp_coordinate(centre[1]), radius, 0,
+  cairo_new_path(page->cairo);
+  cairo_arc(page->cairo, clamp_coordinate(centre[0]), clamp_coordinate(centre[1]), radius, 0,
             2 * STRUT_PI);
-  cairo_close_path(c->cairo);
-  paint(c, fill, pen);
+  cairo_close_path(page->cairo);
+  paint(page, fill, pen);
 }
 
 extern STRUT_API const strut_cairo_library strut_cairo_table;

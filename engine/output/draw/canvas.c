@@ -48,17 +48,17 @@ typedef struct numbers {
 } numbers;
 
 /* The place of `number` among those seen so far; false when memory is out. */
-static bool find_index(numbers *n, unsigned long number, size_t *place) {
-  for (*place = 0; *place < n->count; ++*place)
-    if (n->seen[*place] == number) return true;
-  if (n->count == n->room) {
-    size_t room = 2 * n->room + 16;
-    unsigned long *more = strut_reallocate(n->seen, room, sizeof *more);
+static bool find_index(numbers *self, unsigned long number, size_t *place) {
+  for (*place = 0; *place < self->count; ++*place)
+    if (self->seen[*place] == number) return true;
+  if (self->count == self->room) {
+    size_t room = 2 * self->room + 16;
+    unsigned long *more = strut_reallocate(self->seen, room, sizeof *more);
     if (!more) return false;
-    n->seen = more;
-    n->room = room;
+    self->seen = more;
+    self->room = room;
   }
-  n->seen[n->count++] = number;
+  self->seen[self->count++] = number;
   return true;
 }
 
@@ -122,15 +122,15 @@ strut_status strut_canvas_check_name(const char *path, strut_error *error) {
 }
 
 static strut_status gather_bytes(void *context, const void *bytes, size_t count) {
-  strut_canvas *c = context;
-  strut_buffer_add(&c->svg, "%.*s", (int)count, (const char *)bytes);
-  return c->svg.failed ? STRUT_NO_MEMORY : STRUT_OK;
+  strut_canvas *canvas = context;
+  strut_buffer_add(&canvas->svg, "%.*s", (int)count, (const char *)bytes);
+  return canvas->svg.failed ? STRUT_NO_MEMORY : STRUT_OK;
 }
 
 static strut_status write_bytes(void *context, const void *bytes, size_t count) {
-  strut_canvas *c = context;
+  strut_canvas *canvas = context;
   errno = 0;
-  return fwrite(bytes, 1, count, c->file.stream) == count ? STRUT_OK : STRUT_FILE_TROUBLE;
+  return fwrite(bytes, 1, count, canvas->file.stream) == count ? STRUT_OK : STRUT_FILE_TROUBLE;
 }
 
 /* The canvas of a request whose context it becomes; with `path`, one that becomes that file. */
@@ -182,16 +182,16 @@ strut_status strut_canvas_open_pixels(int width, int height, double scale, strut
   return open_canvas(&request, NULL, canvas, error);
 }
 
-const unsigned char *strut_canvas_pixels(strut_canvas *c, size_t *stride) {
-  strut_labels_place(&c->labels, c, &c->ink);
-  return c->cairo->pixels(c->page, stride);
+const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride) {
+  strut_labels_place(&canvas->labels, canvas, &canvas->ink);
+  return canvas->cairo->pixels(canvas->page, stride);
 }
 
 /* Notes a text and the box of its ink for the SVG's metadata, where programs find it. */
-static void note_text(strut_canvas *c, const strut_drawn_text *drawn) {
+static void note_text(strut_canvas *canvas, const strut_drawn_text *drawn) {
   const strut_box *ink = &drawn->ink;
-  strut_buffer *out = &c->texts;
-  if (!c->is_svg || !isfinite(ink->x + ink->y)) return;
+  strut_buffer *out = &canvas->texts;
+  if (!canvas->is_svg || !isfinite(ink->x + ink->y)) return;
   strut_c_locale locale = strut_c_locale_enter();
   strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
                    ink->height, drawn->whole ? "" : " cut=\"\"");
@@ -207,163 +207,171 @@ static void note_text(strut_canvas *c, const strut_drawn_text *drawn) {
 }
 
 /* The gathered SVG with its metadata before the last tag. */
-static strut_status write_svg(strut_canvas *c) {
+static strut_status write_svg(strut_canvas *canvas) {
   static const char last[] = "</svg>", space[] = "urn:strut:texts";
-  char *svg = strut_buffer_take(&c->svg), *end = NULL;
+  char *svg = strut_buffer_take(&canvas->svg), *end = NULL;
   if (svg && renumber_surfaces(svg)) end = strstr(svg, last);
   if (end) {
     strut_buffer whole = {0};
     strut_buffer_add(&whole, "%.*s", (int)(end - svg), svg);
-    if (c->texts.length)
+    if (canvas->texts.length)
       strut_buffer_add(&whole, "<metadata><texts xmlns=\"%s\">\n%s</texts></metadata>\n", space,
-                       c->texts.text);
+                       canvas->texts.text);
     strut_buffer_add(&whole, "%s", end);
-    whole.failed = whole.failed || c->texts.failed;
+    whole.failed = whole.failed || canvas->texts.failed;
     strut_release(svg);
     svg = strut_buffer_take(&whole);
   }
-  strut_status status = end && svg ? write_bytes(c, svg, strlen(svg)) : STRUT_NO_MEMORY;
+  strut_status status = end && svg ? write_bytes(canvas, svg, strlen(svg)) : STRUT_NO_MEMORY;
   strut_release(svg);
   return status;
 }
 
-strut_status strut_canvas_commit(strut_canvas *c, strut_error *error) {
+strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error) {
   const char *reason = NULL;
-  strut_labels_place(&c->labels, c, &c->ink);
-  strut_status status = c->cairo->finish(c->page, &reason);
-  if (status == STRUT_OK && c->labels.failed) status = STRUT_NO_MEMORY;
-  if (status == STRUT_OK && c->is_svg) status = write_svg(c);
-  if (status == STRUT_OK) return strut_file_commit(&c->file, error);
+  strut_labels_place(&canvas->labels, canvas, &canvas->ink);
+  strut_status status = canvas->cairo->finish(canvas->page, &reason);
+  if (status == STRUT_OK && canvas->labels.failed) status = STRUT_NO_MEMORY;
+  if (status == STRUT_OK && canvas->is_svg) status = write_svg(canvas);
+  if (status == STRUT_OK) return strut_file_commit(&canvas->file, error);
   if (status == STRUT_NO_MEMORY)
     status = strut_no_memory(error, "while drawing");
   else if (!reason)
-    status = strut_file_trouble(&c->file, error);
+    status = strut_file_trouble(&canvas->file, error);
   else
-    status = strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s", c->file.path, reason);
-  strut_file_abandon(&c->file);
+    status =
+        strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s", canvas->file.path, reason);
+  strut_file_abandon(&canvas->file);
   return status;
 }
 
-void strut_canvas_free(strut_canvas *c) {
-  if (!c) return;
+void strut_canvas_free(strut_canvas *canvas) {
+  if (!canvas) return;
   /* What an abandoned page still writes goes into the file that is removed next. */
-  c->cairo->free(c->page);
-  strut_release(strut_buffer_take(&c->svg));
-  strut_release(strut_buffer_take(&c->texts));
-  strut_labels_free(&c->labels);
-  strut_page_ink_free(&c->ink);
-  strut_file_abandon(&c->file);
-  strut_release(c);
+  canvas->cairo->free(canvas->page);
+  strut_release(strut_buffer_take(&canvas->svg));
+  strut_release(strut_buffer_take(&canvas->texts));
+  strut_labels_free(&canvas->labels);
+  strut_page_ink_free(&canvas->ink);
+  strut_file_abandon(&canvas->file);
+  strut_release(canvas);
 }
 
-strut_file *strut_canvas_file(strut_canvas *c) { return &c->file; }
+strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }
 
 /* ---- drawing ---- */
 
-strut_box strut_canvas_box(const strut_canvas *c) { return c->box; }
+strut_box strut_canvas_box(const strut_canvas *canvas) { return canvas->box; }
 
-void strut_canvas_clear(strut_canvas *c, strut_colour colour) { c->cairo->clear(c->page, colour); }
+void strut_canvas_clear(strut_canvas *canvas, strut_colour colour) {
+  canvas->cairo->clear(canvas->page, colour);
+}
 
-void strut_canvas_clip(strut_canvas *c, strut_box box) {
-  const strut_box *outer = &c->clips[c->clip_count];
-  assert(c->clip_count < MOST_CLIPS);
+void strut_canvas_clip(strut_canvas *canvas, strut_box box) {
+  const strut_box *outer = &canvas->clips[canvas->clip_count];
+  assert(canvas->clip_count < MOST_CLIPS);
   strut_box both = {fmax(outer->x, box.x), fmax(outer->y, box.y), 0, 0};
   both.width = fmin(outer->x + outer->width, box.x + box.width) - both.x;
   both.height = fmin(outer->y + outer->height, box.y + box.height) - both.y;
-  c->clips[++c->clip_count] = both;
-  c->cairo->clip(c->page, box);
+  canvas->clips[++canvas->clip_count] = both;
+  canvas->cairo->clip(canvas->page, box);
 }
 
-void strut_canvas_unclip(strut_canvas *c) {
-  assert(c->clip_count > 0);
-  c->clip_count--;
-  c->cairo->unclip(c->page);
+void strut_canvas_unclip(strut_canvas *canvas) {
+  assert(canvas->clip_count > 0);
+  canvas->clip_count--;
+  canvas->cairo->unclip(canvas->page);
 }
 
-static void blacken_line(strut_canvas *c, const double (*points)[2], size_t count, strut_pen pen) {
-  strut_page_ink_line(&c->ink, c->clips[c->clip_count], points, count, pen);
+static void blacken_line(strut_canvas *canvas, const double (*points)[2], size_t count,
+                         strut_pen pen) {
+  strut_page_ink_line(&canvas->ink, canvas->clips[canvas->clip_count], points, count, pen);
 }
 
-void strut_draw_line(strut_canvas *c, const double (*points)[2], size_t count, strut_pen pen) {
-  blacken_line(c, points, count, pen);
-  c->cairo->line(c->page, points, count, pen);
+void strut_draw_line(strut_canvas *canvas, const double (*points)[2], size_t count, strut_pen pen) {
+  blacken_line(canvas, points, count, pen);
+  canvas->cairo->line(canvas->page, points, count, pen);
 }
 
-void strut_draw_segments(strut_canvas *c, const double (*ends)[2], size_t count, strut_pen pen) {
-  for (size_t i = 0; i < count; i++) blacken_line(c, ends + 2 * i, 2, pen);
-  c->cairo->segments(c->page, ends, count, pen);
+void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
+                         strut_pen pen) {
+  for (size_t i = 0; i < count; i++) blacken_line(canvas, ends + 2 * i, 2, pen);
+  canvas->cairo->segments(canvas->page, ends, count, pen);
 }
 
-void strut_draw_segment(strut_canvas *c, double x1, double y1, double x2, double y2,
+void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
                         strut_pen pen) {
   const double ends[2][2] = {{x1, y1}, {x2, y2}};
-  strut_draw_line(c, ends, 2, pen);
+  strut_draw_line(canvas, ends, 2, pen);
 }
 
-static void blacken_polygon(strut_canvas *c, const double (*points)[2], size_t count,
+static void blacken_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
                             const strut_fill *fill, const strut_pen *pen) {
-  if (fill) strut_page_ink_fill(&c->ink, c->clips[c->clip_count], points, count, fill);
+  if (fill)
+    strut_page_ink_fill(&canvas->ink, canvas->clips[canvas->clip_count], points, count, fill);
   if (!pen || !count) return;
   const double closing[2][2] = {{points[count - 1][0], points[count - 1][1]},
                                 {points[0][0], points[0][1]}};
-  blacken_line(c, points, count, *pen);
-  blacken_line(c, closing, 2, *pen);
+  blacken_line(canvas, points, count, *pen);
+  blacken_line(canvas, closing, 2, *pen);
 }
 
-void strut_draw_polygon(strut_canvas *c, const double (*points)[2], size_t count,
+void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
                         const strut_fill *fill, const strut_pen *pen) {
-  blacken_polygon(c, points, count, fill, pen);
-  c->cairo->polygon(c->page, points, count, fill, pen);
+  blacken_polygon(canvas, points, count, fill, pen);
+  canvas->cairo->polygon(canvas->page, points, count, fill, pen);
 }
 
-void strut_draw_box(strut_canvas *c, strut_box box, const strut_fill *fill, const strut_pen *pen) {
+void strut_draw_box(strut_canvas *canvas, strut_box box, const strut_fill *fill,
+                    const strut_pen *pen) {
   const double corners[4][2] = {{box.x, box.y},
                                 {box.x + box.width, box.y},
                                 {box.x + box.width, box.y + box.height},
                                 {box.x, box.y + box.height}};
-  strut_draw_polygon(c, corners, 4, fill, pen);
+  strut_draw_polygon(canvas, corners, 4, fill, pen);
 }
 
-void strut_draw_circle(strut_canvas *c, double x, double y, double radius, const strut_fill *fill,
-                       const strut_pen *pen) {
+void strut_draw_circle(strut_canvas *canvas, double x, double y, double radius,
+                       const strut_fill *fill, const strut_pen *pen) {
   double points[CIRCLE][2];
   for (int i = 0; i < CIRCLE; i++) {
     double angle = STRUT_TAU * i / CIRCLE;
     points[i][0] = x + radius * cos(angle), points[i][1] = y + radius * sin(angle);
   }
-  blacken_polygon(c, (const double(*)[2])points, CIRCLE, fill, pen);
-  c->cairo->circle(c->page, (const double[2]){x, y}, radius, fill, pen);
+  blacken_polygon(canvas, (const double(*)[2])points, CIRCLE, fill, pen);
+  canvas->cairo->circle(canvas->page, (const double[2]){x, y}, radius, fill, pen);
 }
 
-void strut_text_size(strut_canvas *c, const char *text, strut_font font, double *width,
+void strut_text_size(strut_canvas *canvas, const char *text, strut_font font, double *width,
                      double *height) {
-  c->cairo->text_size(c->page, text, font, width, height);
+  canvas->cairo->text_size(canvas->page, text, font, width, height);
 }
 
-double strut_text_width(strut_canvas *c, const char *text, strut_font font) {
+double strut_text_width(strut_canvas *canvas, const char *text, strut_font font) {
   double width, height;
-  strut_text_size(c, text, font, &width, &height);
+  strut_text_size(canvas, text, font, &width, &height);
   return width;
 }
 
-double strut_text_height(strut_canvas *c, const char *text, strut_font font) {
+double strut_text_height(strut_canvas *canvas, const char *text, strut_font font) {
   double width, height;
-  strut_text_size(c, text, font, &width, &height);
+  strut_text_size(canvas, text, font, &width, &height);
   return height;
 }
 
-void strut_draw_text(strut_canvas *c, double x, double y, const char *text, strut_font font) {
+void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text, strut_font font) {
   if (!text || !*text) return;
-  const strut_drawn_text drawn = c->cairo->text(c->page, (const double[2]){x, y}, text, font);
-  strut_labels_avoid(&c->labels, drawn.ink);
-  note_text(c, &drawn);
+  const strut_drawn_text drawn =
+      canvas->cairo->text(canvas->page, (const double[2]){x, y}, text, font);
+  strut_labels_avoid(&canvas->labels, drawn.ink);
+  note_text(canvas, &drawn);
 }
 
-void strut_draw_label(strut_canvas *c, const strut_label *label) {
-  strut_labels_add(&c->labels, label);
+void strut_draw_label(strut_canvas *canvas, const strut_label *label) {
+  strut_labels_add(&canvas->labels, label);
 }
 
-void strut_draw_arrow(strut_canvas *c, double x1, double y1, double x2, double y2, double head,
+void strut_draw_arrow(strut_canvas *canvas, double x1, double y1, double x2, double y2, double head,
                       strut_pen pen) {
   double length = hypot(x2 - x1, y2 - y1);
   if (!(length > 0)) return;
@@ -372,13 +380,13 @@ void strut_draw_arrow(strut_canvas *c, double x1, double y1, double x2, double y
   if (length > size) {
     strut_pen shaft = pen;
     shaft.butt = true;
-    strut_draw_segment(c, x1, y1, neck[0] + 0.2 * size * along[0], neck[1] + 0.2 * size * along[1],
-                       shaft);
+    strut_draw_segment(canvas, x1, y1, neck[0] + 0.2 * size * along[0],
+                       neck[1] + 0.2 * size * along[1], shaft);
   }
   const double half = 0.35 * size;
   const double tip[3][2] = {{x2, y2},
                             {neck[0] - half * along[1], neck[1] + half * along[0]},
                             {neck[0] + half * along[1], neck[1] - half * along[0]}};
   const strut_fill fill = {.colour = pen.colour};
-  strut_draw_polygon(c, tip, 3, &fill, NULL);
+  strut_draw_polygon(canvas, tip, 3, &fill, NULL);
 }

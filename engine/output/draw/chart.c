@@ -16,23 +16,24 @@ enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
 static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
 
-static size_t look_of(const strut_panel *p, size_t i) {
-  return p->series[i].look >= 0 ? (size_t)p->series[i].look : i;
+static size_t look_of(const strut_panel *panel, size_t i) {
+  return panel->series[i].look >= 0 ? (size_t)panel->series[i].look : i;
 }
 
-static strut_pen pen_of(const strut_panel *p, size_t i) {
-  return p->series[i].pen ? *p->series[i].pen : strut_series_pen(look_of(p, i));
+static strut_pen pen_of(const strut_panel *panel, size_t i) {
+  return panel->series[i].pen ? *panel->series[i].pen : strut_series_pen(look_of(panel, i));
 }
 
-static bool has_markers(const strut_panel *p, const strut_series *s) {
-  if (s->markers != STRUT_MARKERS_AUTO) return s->markers == STRUT_MARKERS_ALL;
-  return p->series_count > 1 && !s->pen && !s->cloud;
+static bool has_markers(const strut_panel *panel, const strut_series *series) {
+  if (series->markers != STRUT_MARKERS_AUTO) return series->markers == STRUT_MARKERS_ALL;
+  return panel->series_count > 1 && !series->pen && !series->cloud;
 }
 
 /* ---- the legend ---- */
 
-size_t strut_panel_legend_room(const strut_panel *p) {
-  return p->series_count + p->band_count + (p->map ? p->map->category_count : 0) + 2;
+size_t strut_panel_legend_room(const strut_panel *panel) {
+  return panel->series_count + panel->band_count + (panel->map ? panel->map->category_count : 0) +
+         2;
 }
 
 static size_t add_item(strut_key_item *items, size_t count, strut_key_item item) {
@@ -68,31 +69,32 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
   return count;
 }
 
-size_t strut_panel_legend(const strut_panel *p, strut_key_item *items, size_t count) {
-  for (size_t i = 0; i < p->series_count; i++) {
-    strut_pen pen = pen_of(p, i);
+size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
+  for (size_t i = 0; i < panel->series_count; i++) {
+    strut_pen pen = pen_of(panel, i);
     bool broad = pen.width > 4; /* bars */
     count = add_item(items, count,
                      (strut_key_item){.sign = broad ? STRUT_KEY_AREA : STRUT_KEY_LINE,
                                       .pen = pen,
                                       .fill = {.colour = pen.colour},
-                                      .marked = has_markers(p, &p->series[i]),
-                                      .look = look_of(p, i),
-                                      .text = p->series[i].label});
+                                      .marked = has_markers(panel, &panel->series[i]),
+                                      .look = look_of(panel, i),
+                                      .text = panel->series[i].label});
   }
-  for (size_t i = 0; i < p->band_count; i++)
-    count = add_item(
-        items, count,
-        (strut_key_item){.sign = STRUT_KEY_AREA, .fill = band_fill(), .text = p->bands[i].label});
-  return p->map ? name_cells(p->map, items, count) : count;
+  for (size_t i = 0; i < panel->band_count; i++)
+    count =
+        add_item(items, count,
+                 (strut_key_item){
+                     .sign = STRUT_KEY_AREA, .fill = band_fill(), .text = panel->bands[i].label});
+  return panel->map ? name_cells(panel->map, items, count) : count;
 }
 
 /* Counts samples of the lines that lie in a box. */
-static size_t covered(const strut_chart *c, strut_box box) {
+static size_t covered(const strut_chart *chart, strut_box box) {
   size_t count = 0;
-  for (size_t i = 0; i < c->panel->series_count; i++)
-    for (size_t k = 0; k + 1 < c->counts[i]; k++) {
-      const double *a = c->points[i][k], *b = c->points[i][k + 1];
+  for (size_t i = 0; i < chart->panel->series_count; i++)
+    for (size_t k = 0; k + 1 < chart->counts[i]; k++) {
+      const double *a = chart->points[i][k], *b = chart->points[i][k + 1];
       if (isnan(a[0])) continue;
       int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
       for (int m = 0; m <= pieces; m++) {
@@ -106,15 +108,15 @@ static size_t covered(const strut_chart *c, strut_box box) {
 }
 
 /* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
-static bool find_corner(const strut_chart *c, const double size[2], double corner[2]) {
-  const strut_box *f = &c->axes.frame;
-  if (c->panel->map || size[0] > 0.6 * f->width || size[1] > 0.6 * f->height) return false;
+static bool find_corner(const strut_chart *chart, const double size[2], double corner[2]) {
+  const strut_box *box = &chart->axes.frame;
+  if (chart->panel->map || size[0] > 0.6 * box->width || size[1] > 0.6 * box->height) return false;
   for (int k = 0; k < 6; k++) {
     double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
-    corner[0] = f->x + INSET + across * (f->width - size[0] - 2 * INSET);
-    corner[1] = f->y + INSET + down * (f->height - size[1] - 2 * INSET);
+    corner[0] = box->x + INSET + across * (box->width - size[0] - 2 * INSET);
+    corner[1] = box->y + INSET + down * (box->height - size[1] - 2 * INSET);
     const strut_box around = {corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4};
-    if (!covered(c, around)) return true;
+    if (!covered(chart, around)) return true;
   }
   return false;
 }
@@ -146,261 +148,268 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
 }
 
 /* Where point k of a series is: lost ones in the strip, each series at its own height. */
-static void place(const strut_chart *c, size_t i, size_t k, double at[2]) {
-  const strut_series *s = &c->panel->series[i];
-  const strut_box *frame = &c->axes.frame;
-  bool lost = c->panel->lost && !isfinite(s->y[k]);
-  bool zero = c->axes.y.logarithmic && s->y[k] == 0;
+static void place(const strut_chart *chart, size_t i, size_t k, double at[2]) {
+  const strut_series *series = &chart->panel->series[i];
+  const strut_box *frame = &chart->axes.frame;
+  bool lost = chart->panel->lost && !isfinite(series->y[k]);
+  bool zero = chart->axes.y.logarithmic && series->y[k] == 0;
   at[0] = at[1] = (double)NAN;
-  if (!isfinite(s->x[k]) || (!isfinite(s->y[k]) && !lost)) return;
-  if (c->axes.x.logarithmic && !(s->x[k] > 0)) return;
-  strut_axes_point(&c->axes, s->x[k], lost || zero ? c->axes.y.high : s->y[k], at);
+  if (!isfinite(series->x[k]) || (!isfinite(series->y[k]) && !lost)) return;
+  if (chart->axes.x.logarithmic && !(series->x[k] > 0)) return;
+  strut_axes_point(&chart->axes, series->x[k], lost || zero ? chart->axes.y.high : series->y[k],
+                   at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
-  double part = ((double)look_of(c->panel, i) + 0.5) / (double)c->panel->series_count;
-  if (lost) at[1] = c->strip.y + c->strip.height * (0.2 + 0.6 * fmin(part, 1));
+  double part = ((double)look_of(chart->panel, i) + 0.5) / (double)chart->panel->series_count;
+  if (lost) at[1] = chart->strip.y + chart->strip.height * (0.2 + 0.6 * fmin(part, 1));
 }
 
 /* Fills the points of a series' line. Lines that change along them keep all points. */
-static void place_line(strut_chart *c, size_t i) {
-  const strut_series *s = &c->panel->series[i];
-  double(*points)[2] = c->points[i];
+static void place_line(strut_chart *chart, size_t i) {
+  const strut_series *series = &chart->panel->series[i];
+  double(*points)[2] = chart->points[i];
   size_t used = 0, start = 0;
-  assert(!s->count || (s->x && s->y));
-  for (size_t k = 0; k <= s->count; k++) {
+  assert(!series->count || (series->x && series->y));
+  for (size_t k = 0; k <= series->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
-    if (k < s->count && isfinite(s->y[k])) place(c, i, k, at);
+    if (k < series->count && isfinite(series->y[k])) place(chart, i, k, at);
     bool known = isfinite(at[0]) && isfinite(at[1]);
-    if (!known && !s->unstable && used == start) continue;
-    if (!known && !s->unstable) used = start + strut_thin(points + start, used - start, GRAIN);
+    if (!known && !series->unstable && used == start) continue;
+    if (!known && !series->unstable) used = start + strut_thin(points + start, used - start, GRAIN);
     points[used][0] = known ? at[0] : (double)NAN;
     points[used++][1] = at[1];
     if (!known) start = used;
   }
-  c->counts[i] = used;
+  chart->counts[i] = used;
 }
 
 /* Places frame, strip and lines in a box. */
-static void place_chart(strut_chart *c, strut_box box) {
-  const strut_panel *p = c->panel;
+static void place_chart(strut_chart *chart, strut_box box) {
+  const strut_panel *panel = chart->panel;
   bool lost = false;
-  for (size_t i = 0; i < p->series_count && p->lost; i++)
-    for (size_t k = 0; k < p->series[i].count; k++) lost = lost || !isfinite(p->series[i].y[k]);
+  for (size_t i = 0; i < panel->series_count && panel->lost; i++)
+    for (size_t k = 0; k < panel->series[i].count; k++)
+      lost = lost || !isfinite(panel->series[i].y[k]);
   double strip = lost ? STRIP : 0;
   const strut_box rest = {box.x, box.y + strip, box.width, box.height - strip};
-  c->axes = strut_axes_place(c->canvas, rest, p->x, p->y);
-  c->strip = c->axes.frame;
-  c->strip.height = strip, c->strip.y -= strip;
-  for (size_t i = 0; i < p->series_count; i++) place_line(c, i);
+  chart->axes = strut_axes_place(chart->canvas, rest, panel->x, panel->y);
+  chart->strip = chart->axes.frame;
+  chart->strip.height = strip, chart->strip.y -= strip;
+  for (size_t i = 0; i < panel->series_count; i++) place_line(chart, i);
 }
 
-static bool make_room(strut_chart *c) {
-  size_t count = c->panel->series_count;
-  c->points = strut_arena_allocate(c->arena, count + 1, sizeof *c->points);
-  c->counts = strut_arena_allocate(c->arena, count + 1, sizeof *c->counts);
-  for (size_t i = 0; c->points && c->counts && i < count; i++) {
-    c->points[i] =
-        strut_arena_allocate(c->arena, c->panel->series[i].count + 1, sizeof **c->points);
-    if (!c->points[i]) return false;
+static bool make_room(strut_chart *chart) {
+  size_t count = chart->panel->series_count;
+  chart->points = strut_arena_allocate(chart->arena, count + 1, sizeof *chart->points);
+  chart->counts = strut_arena_allocate(chart->arena, count + 1, sizeof *chart->counts);
+  for (size_t i = 0; chart->points && chart->counts && i < count; i++) {
+    chart->points[i] = strut_arena_allocate(chart->arena, chart->panel->series[i].count + 1,
+                                            sizeof **chart->points);
+    if (!chart->points[i]) return false;
   }
-  return c->points && c->counts;
+  return chart->points && chart->counts;
 }
 
 /* ---- drawing ---- */
 
-static void draw_bands(const strut_chart *c) {
+static void draw_bands(const strut_chart *chart) {
   const strut_fill fill = band_fill();
-  for (size_t i = 0; i < c->panel->band_count; i++) {
-    const strut_band *b = &c->panel->bands[i];
-    const strut_axis *x = &c->axes.x, *y = &c->axes.y, *axis = b->level ? y : x;
-    double from = fmax(b->low, axis->low), to = fmin(b->high, axis->high), low[2], high[2];
+  for (size_t i = 0; i < chart->panel->band_count; i++) {
+    const strut_band *band = &chart->panel->bands[i];
+    const strut_axis *x = &chart->axes.x, *y = &chart->axes.y, *axis = band->level ? y : x;
+    double from = fmax(band->low, axis->low), to = fmin(band->high, axis->high), low[2], high[2];
     if (!(to > from)) continue;
-    strut_axes_point(&c->axes, b->level ? x->low : from, b->level ? to : y->high, low);
-    strut_axes_point(&c->axes, b->level ? x->high : to, b->level ? from : y->low, high);
-    strut_draw_box(c->canvas, (strut_box){low[0], low[1], high[0] - low[0], high[1] - low[1]},
+    strut_axes_point(&chart->axes, band->level ? x->low : from, band->level ? to : y->high, low);
+    strut_axes_point(&chart->axes, band->level ? x->high : to, band->level ? from : y->low, high);
+    strut_draw_box(chart->canvas, (strut_box){low[0], low[1], high[0] - low[0], high[1] - low[1]},
                    &fill, NULL);
   }
 }
 
-static void draw_strip(const strut_chart *c) {
+static void draw_strip(const strut_chart *chart) {
   const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  const strut_box *s = &c->strip;
-  strut_draw_box(c->canvas, *s, &grey, &frame);
-  strut_draw_label(c->canvas, &(strut_label){.text = c->panel->lost,
-                                             .font = {.size = 7, .colour = strut_grey(0.35)},
-                                             .at = {s->x + s->width, s->y + 0.5 * STRIP},
-                                             .inside = {s->x + 3, s->y + 5, s->width - 6, 9},
-                                             .loose = true});
+  const strut_box *box = &chart->strip;
+  strut_draw_box(chart->canvas, *box, &grey, &frame);
+  strut_draw_label(chart->canvas,
+                   &(strut_label){.text = chart->panel->lost,
+                                  .font = {.size = 7, .colour = strut_grey(0.35)},
+                                  .at = {box->x + box->width, box->y + 0.5 * STRIP},
+                                  .inside = {box->x + 3, box->y + 5, box->width - 6, 9},
+                                  .loose = true});
 }
 
-static void stroke(const strut_chart *c, size_t i, size_t from, size_t to) {
-  const strut_series *s = &c->panel->series[i];
-  const double(*at)[2] = (const double(*)[2])c->points[i] + from;
-  strut_pen pen = pen_of(c->panel, i);
-  if (s->unstable && s->unstable[from])
+static void stroke(const strut_chart *chart, size_t i, size_t from, size_t to) {
+  const strut_series *series = &chart->panel->series[i];
+  const double(*at)[2] = (const double(*)[2])chart->points[i] + from;
+  strut_pen pen = pen_of(chart->panel, i);
+  if (series->unstable && series->unstable[from])
     pen = (strut_pen){.colour = pen.colour,
-                      .width = (s->pen ? 1.0 : 0.65) * pen.width,
+                      .width = (series->pen ? 1.0 : 0.65) * pen.width,
                       .dash = {3, 2},
-                      .butt = s->pen != NULL};
+                      .butt = series->pen != NULL};
   if (to > from)
-    strut_draw_line(c->canvas, at, to - from + 1, pen);
-  else if (!s->pen) /* a line of one point would be invisible */
-    strut_draw_marker(c->canvas, look_of(c->panel, i), at[0][0], at[0][1], LONE_MARKER);
+    strut_draw_line(chart->canvas, at, to - from + 1, pen);
+  else if (!series->pen) /* a line of one point would be invisible */
+    strut_draw_marker(chart->canvas, look_of(chart->panel, i), at[0][0], at[0][1], LONE_MARKER);
 }
 
 /* Stretches without a gap and of one stability, which share their ends. */
-static void draw_line(const strut_chart *c, size_t i) {
-  const double(*at)[2] = (const double(*)[2])c->points[i];
-  const bool *unstable = c->panel->series[i].unstable;
-  for (size_t k = 0, from = 0; k < c->counts[i]; k++) {
+static void draw_line(const strut_chart *chart, size_t i) {
+  const double(*at)[2] = (const double(*)[2])chart->points[i];
+  const bool *unstable = chart->panel->series[i].unstable;
+  for (size_t k = 0, from = 0; k < chart->counts[i]; k++) {
     if (isnan(at[k][0])) {
       from = k + 1;
       continue;
     }
-    bool last = k + 1 == c->counts[i] || isnan(at[k + 1][0]);
+    bool last = k + 1 == chart->counts[i] || isnan(at[k + 1][0]);
     bool turns = unstable && unstable[k] != unstable[from];
     if (!last && !turns) continue;
-    stroke(c, i, from, k);
+    stroke(chart, i, from, k);
     from = k;
   }
 }
 
 /* True on the frame's edge, too, and in the strip above it. */
-static bool is_inside(const strut_chart *c, const double at[2]) {
+static bool is_inside(const strut_chart *chart, const double at[2]) {
   const double hair = 0.01; /* [pt] */
-  const strut_box *f = &c->axes.frame;
-  return at[0] >= f->x - hair && at[0] <= f->x + f->width + hair && at[1] >= c->strip.y - hair &&
-         at[1] <= f->y + f->height + hair;
+  const strut_box *box = &chart->axes.frame;
+  return at[0] >= box->x - hair && at[0] <= box->x + box->width + hair &&
+         at[1] >= chart->strip.y - hair && at[1] <= box->y + box->height + hair;
 }
 
-static void draw_whisker(const strut_chart *c, size_t i, size_t k) {
-  const strut_series *s = &c->panel->series[i];
-  const strut_pen bar = {.colour = pen_of(c->panel, i).colour, .width = 0.7, .butt = true};
+static void draw_whisker(const strut_chart *chart, size_t i, size_t k) {
+  const strut_series *series = &chart->panel->series[i];
+  const strut_pen bar = {.colour = pen_of(chart->panel, i).colour, .width = 0.7, .butt = true};
   double ends[2][2];
-  if (!s->low || !s->high || !isfinite(s->low[k]) || !isfinite(s->high[k])) return;
-  if (c->axes.y.logarithmic && !(s->low[k] > 0)) return;
-  strut_axes_point(&c->axes, s->x[k], s->low[k], ends[0]);
-  strut_axes_point(&c->axes, s->x[k], s->high[k], ends[1]);
-  strut_draw_line(c->canvas, (const double(*)[2])ends, 2, bar);
+  if (!series->low || !series->high || !isfinite(series->low[k]) || !isfinite(series->high[k]))
+    return;
+  if (chart->axes.y.logarithmic && !(series->low[k] > 0)) return;
+  strut_axes_point(&chart->axes, series->x[k], series->low[k], ends[0]);
+  strut_axes_point(&chart->axes, series->x[k], series->high[k], ends[1]);
+  strut_draw_line(chart->canvas, (const double(*)[2])ends, 2, bar);
   for (int e = 0; e < 2; e++)
-    strut_draw_segment(c->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+    strut_draw_segment(chart->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
 }
 
-static void draw_point(const strut_chart *c, size_t i, size_t k) {
-  const strut_series *s = &c->panel->series[i];
-  const strut_colour_scale *scale = &c->panel->scale;
+static void draw_point(const strut_chart *chart, size_t i, size_t k) {
+  const strut_series *series = &chart->panel->series[i];
+  const strut_colour_scale *scale = &chart->panel->scale;
   double at[2];
-  place(c, i, k, at);
-  if (!isfinite(at[0]) || !is_inside(c, at)) return;
-  draw_whisker(c, i, k);
-  if (!s->cloud) {
-    strut_draw_marker(c->canvas, look_of(c->panel, i), at[0], at[1], MARKER);
+  place(chart, i, k, at);
+  if (!isfinite(at[0]) || !is_inside(chart, at)) return;
+  draw_whisker(chart, i, k);
+  if (!series->cloud) {
+    strut_draw_marker(chart->canvas, look_of(chart->panel, i), at[0], at[1], MARKER);
     return;
   }
-  strut_fill fill = {.colour = s->value ? strut_grey(0.75) : pen_of(c->panel, i).colour};
-  if (s->value && isfinite(s->value[k]))
-    fill.colour = strut_palette_at(scale->colours, s->value[k], scale->low, scale->high);
-  strut_draw_circle(c->canvas, at[0], at[1], CLOUD, &fill, NULL);
+  strut_fill fill = {.colour = series->value ? strut_grey(0.75) : pen_of(chart->panel, i).colour};
+  if (series->value && isfinite(series->value[k]))
+    fill.colour = strut_palette_at(scale->colours, series->value[k], scale->low, scale->high);
+  strut_draw_circle(chart->canvas, at[0], at[1], CLOUD, &fill, NULL);
 }
 
 /* Whole points, on the frame too. */
-static void draw_points(const strut_chart *c, size_t i) {
-  const strut_series *s = &c->panel->series[i];
-  size_t look = look_of(c->panel, i);
-  bool all = s->cloud || s->markers == STRUT_MARKERS_ALL || s->count <= FEW_POINTS;
-  if (!s->cloud && (!has_markers(c->panel, s) || (!all && !s->label))) return;
+static void draw_points(const strut_chart *chart, size_t i) {
+  const strut_series *series = &chart->panel->series[i];
+  size_t look = look_of(chart->panel, i);
+  bool all = series->cloud || series->markers == STRUT_MARKERS_ALL || series->count <= FEW_POINTS;
+  if (!series->cloud && (!has_markers(chart->panel, series) || (!all && !series->label))) return;
   /* A few markers, at other points than those of the other curves. */
-  size_t every = all ? 1 : s->count / MARKERS;
+  size_t every = all ? 1 : series->count / MARKERS;
   size_t first = all ? 0 : (look * every / 3 + every / 2) % every;
-  for (size_t k = first; k < s->count; k += every) draw_point(c, i, k);
+  for (size_t k = first; k < series->count; k += every) draw_point(chart, i, k);
 }
 
 /* ---- marks ---- */
 
 /* A mark of the chart, or what stands for it at the frame's upper or lower edge. */
-static void draw_mark(const strut_chart *c, const strut_mark *mark) {
-  const strut_axes *axes = &c->axes;
+static void draw_mark(const strut_chart *chart, const strut_mark *mark) {
+  const strut_axes *axes = &chart->axes;
   bool above = mark->at[1] > axes->y.high, below = mark->at[1] < axes->y.low;
   double at[2];
   strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), at);
-  if (!is_inside(c, at)) return;
+  if (!is_inside(chart, at)) return;
   if (!above && !below) {
-    strut_draw_mark(c->canvas, axes->frame, at, mark);
+    strut_draw_mark(chart->canvas, axes->frame, at, mark);
     return;
   }
   strut_mark edge = *mark;
   edge.dot = edge.ring = false;
   edge.angle = (above ? -0.5 : 0.5) * STRUT_PI;
   edge.gap = STRUT_BEYOND_SIZE + 1;
-  strut_draw_beyond(c->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
-  strut_draw_mark(c->canvas, axes->frame, at, &edge);
+  strut_draw_beyond(chart->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
+  strut_draw_mark(chart->canvas, axes->frame, at, &edge);
 }
 
 /* Marks where curves leave the frame above or below, and says how many points are there. */
-static void mark_beyond(const strut_chart *c) {
+static void mark_beyond(const strut_chart *chart) {
   strut_beyond beyond = {0};
-  const strut_axis *y = &c->axes.y;
+  const strut_axis *axis = &chart->axes.y;
   char text[STRUT_BEYOND_TEXT];
   size_t labelled = 0;
-  for (size_t i = 0; i < c->panel->series_count; i++) {
-    const strut_series *s = &c->panel->series[i];
+  for (size_t i = 0; i < chart->panel->series_count; i++) {
+    const strut_series *series = &chart->panel->series[i];
     size_t farthest = SIZE_MAX; /* of the excursion that k is in */
-    for (size_t k = 0; k <= s->count; k++) {
-      bool out = k < s->count && (s->y[k] > y->high || s->y[k] < y->low);
-      if (out && (farthest == SIZE_MAX || fabs(s->y[k]) > fabs(s->y[farthest]))) farthest = k;
+    for (size_t k = 0; k <= series->count; k++) {
+      bool out = k < series->count && (series->y[k] > axis->high || series->y[k] < axis->low);
+      if (out && (farthest == SIZE_MAX || fabs(series->y[k]) > fabs(series->y[farthest])))
+        farthest = k;
       if (!out && farthest != SIZE_MAX) {
-        const strut_rounded_quantity value = strut_drawn_quantity(s->y[farthest], 3, y->unit);
-        draw_mark(c, &(strut_mark){.at = {s->x[farthest], s->y[farthest]},
-                                   .text = labelled++ < MOST_LABELLED ? value.text : NULL,
-                                   .steady = 0.2});
+        const strut_rounded_quantity value =
+            strut_drawn_quantity(series->y[farthest], 3, axis->unit);
+        draw_mark(chart, &(strut_mark){.at = {series->x[farthest], series->y[farthest]},
+                                       .text = labelled++ < MOST_LABELLED ? value.text : NULL,
+                                       .steady = 0.2});
       }
       if (!out) farthest = SIZE_MAX;
       if (!out) continue;
       beyond.above++;
-      if (fabs(s->y[k]) > fabs(beyond.farthest)) beyond.farthest = s->y[k];
+      if (fabs(series->y[k]) > fabs(beyond.farthest)) beyond.farthest = series->y[k];
     }
   }
-  strut_draw_axis_note(c->canvas, &c->axes, strut_beyond_text(&beyond, "point", y->unit, text));
+  strut_draw_axis_note(chart->canvas, &chart->axes,
+                       strut_beyond_text(&beyond, "point", axis->unit, text));
 }
 
-static void draw_data(const strut_chart *c) {
-  const strut_panel *p = c->panel;
-  strut_canvas_clip(c->canvas, c->axes.frame);
-  draw_bands(c);
-  strut_canvas_unclip(c->canvas);
-  strut_draw_axes(c->canvas, &c->axes);
-  if (c->strip.height > 0) draw_strip(c);
-  strut_canvas_clip(c->canvas, c->axes.frame);
-  if (p->map) strut_draw_map(c);
-  for (size_t i = 0; i < p->series_count; i++)
-    if (!p->series[i].cloud) draw_line(c, i);
-  strut_canvas_unclip(c->canvas);
-  if (p->map)
-    strut_draw_box(c->canvas, c->axes.frame, NULL,
+static void draw_data(const strut_chart *chart) {
+  const strut_panel *panel = chart->panel;
+  strut_canvas_clip(chart->canvas, chart->axes.frame);
+  draw_bands(chart);
+  strut_canvas_unclip(chart->canvas);
+  strut_draw_axes(chart->canvas, &chart->axes);
+  if (chart->strip.height > 0) draw_strip(chart);
+  strut_canvas_clip(chart->canvas, chart->axes.frame);
+  if (panel->map) strut_draw_map(chart);
+  for (size_t i = 0; i < panel->series_count; i++)
+    if (!panel->series[i].cloud) draw_line(chart, i);
+  strut_canvas_unclip(chart->canvas);
+  if (panel->map)
+    strut_draw_box(chart->canvas, chart->axes.frame, NULL,
                    &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
-  for (size_t i = 0; i < p->series_count; i++) draw_points(c, i);
-  if (p->outliers) mark_beyond(c);
-  for (size_t i = 0; i < p->mark_count; i++) draw_mark(c, &p->marks[i]);
-  if (p->remark) strut_draw_axis_note(c->canvas, &c->axes, p->remark);
+  for (size_t i = 0; i < panel->series_count; i++) draw_points(chart, i);
+  if (panel->outliers) mark_beyond(chart);
+  for (size_t i = 0; i < panel->mark_count; i++) draw_mark(chart, &panel->marks[i]);
+  if (panel->remark) strut_draw_axis_note(chart->canvas, &chart->axes, panel->remark);
 }
 
 /* A title, centred above the frame; returns its height. */
-static double draw_title(const strut_chart *c, strut_box box, bool draw) {
-  const strut_box *f = &c->axes.frame;
+static double draw_title(const strut_chart *chart, strut_box box, bool draw) {
+  const strut_box *f = &chart->axes.frame;
   const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
-  if (!c->panel->title || !*c->panel->title) return 0;
-  if (draw) strut_draw_text(c->canvas, f->x + 0.5 * f->width, box.y, c->panel->title, font);
-  return strut_text_height(c->canvas, c->panel->title, font) + TITLE_GAP;
+  if (!chart->panel->title || !*chart->panel->title) return 0;
+  if (draw) strut_draw_text(chart->canvas, f->x + 0.5 * f->width, box.y, chart->panel->title, font);
+  return strut_text_height(chart->canvas, chart->panel->title, font) + TITLE_GAP;
 }
 
 /* Inside the frame on a white ground. */
-static void draw_legend(const strut_chart *c, const strut_key_item *items, size_t count,
+static void draw_legend(const strut_chart *chart, const strut_key_item *items, size_t count,
                         strut_box at, bool inside) {
   const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
   const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
-  if (inside) strut_draw_box(c->canvas, at, &white, &edge);
+  if (inside) strut_draw_box(chart->canvas, at, &white, &edge);
   strut_draw_key(
-      c->canvas,
+      chart->canvas,
       (strut_box){at.x + PADDING, at.y + PADDING, inside ? 0 : at.width - 2 * PADDING, 0}, items,
       count);
 }

@@ -28,51 +28,52 @@ typedef struct page {
 /* ---- what the figure leaves open ---- */
 
 /* Settles the charts, together or each by itself. */
-static bool settle(page *p, const strut_plot *plot) {
-  size_t count = p->figure->panel_count, charts = 0;
-  strut_panel *shared = strut_arena_allocate(&p->arena, count + 1, sizeof *shared);
-  p->panels = strut_arena_copy(&p->arena, p->figure->panels, count, sizeof *p->panels);
-  if (!shared || !p->panels) return false;
+static bool settle(page *self, const strut_plot *plot) {
+  size_t count = self->figure->panel_count, charts = 0;
+  strut_panel *shared = strut_arena_allocate(&self->arena, count + 1, sizeof *shared);
+  self->panels = strut_arena_copy(&self->arena, self->figure->panels, count, sizeof *self->panels);
+  if (!shared || !self->panels) return false;
   for (size_t i = 0; i < count; i++) {
-    strut_panel *panel = &p->panels[i];
+    strut_panel *panel = &self->panels[i];
     if (panel->view) continue;
     strut_axis_choose(&panel->x, &plot->x);
     strut_axis_choose(&panel->y, &plot->y);
-    if (p->figure->shared_axes)
+    if (self->figure->shared_axes)
       shared[charts++] = *panel;
-    else if (!strut_panels_settle(panel, 1, &p->arena))
+    else if (!strut_panels_settle(panel, 1, &self->arena))
       return false;
   }
-  if (charts && !strut_panels_settle(shared, charts, &p->arena)) return false;
+  if (charts && !strut_panels_settle(shared, charts, &self->arena)) return false;
   for (size_t i = count; charts && i-- > 0;)
-    if (!p->panels[i].view) p->panels[i] = shared[--charts];
+    if (!self->panels[i].view) self->panels[i] = shared[--charts];
   return true;
 }
 
-static bool gather_legend(page *p) {
+static bool gather_legend(page *self) {
   size_t room = 1;
-  for (size_t i = 0; i < p->figure->panel_count; i++)
-    room += strut_panel_legend_room(&p->panels[i]);
-  p->items = strut_arena_allocate(&p->arena, room, sizeof *p->items);
-  for (size_t i = 0; p->items && p->figure->one_legend && i < p->figure->panel_count; i++)
-    p->item_count = strut_panel_legend(&p->panels[i], p->items, p->item_count);
-  return p->items != NULL;
+  for (size_t i = 0; i < self->figure->panel_count; i++)
+    room += strut_panel_legend_room(&self->panels[i]);
+  self->items = strut_arena_allocate(&self->arena, room, sizeof *self->items);
+  for (size_t i = 0; self->items && self->figure->one_legend && i < self->figure->panel_count; i++)
+    self->item_count = strut_panel_legend(&self->panels[i], self->items, self->item_count);
+  return self->items != NULL;
 }
 
 /* ---- the page ---- */
 
 /* Panels in a row with the first, and the width of each. */
-static size_t find_row(const page *p, size_t first, double inner, double *width) {
-  const strut_figure *f = p->figure;
-  const strut_panel *panel = &p->panels[first];
-  size_t left = f->panel_count - first, count = 1;
+static size_t find_row(const page *self, size_t first, double inner, double *width) {
+  const strut_figure *figure = self->figure;
+  const strut_panel *panel = &self->panels[first];
+  size_t left = figure->panel_count - first, count = 1;
   double columns = 1;
   if (left > 1 && panel[1].beside) { /* two by themselves */
     columns = inner >= WIDE ? 2 : 1;
     count = (size_t)columns;
-  } else if (f->least_width > 0 && !panel->whole && !panel->beside) {
-    double most = f->columns ? (double)f->columns : COLUMNS;
-    columns = fmax(1, fmin(fmin(most, floor(inner / f->least_width)), (double)f->panel_count));
+  } else if (figure->least_width > 0 && !panel->whole && !panel->beside) {
+    double most = figure->columns ? (double)figure->columns : COLUMNS;
+    columns =
+        fmax(1, fmin(fmin(most, floor(inner / figure->least_width)), (double)figure->panel_count));
     while (count < (size_t)columns && count < left && !panel[count].view && !panel[count].whole)
       count++;
   }
@@ -80,25 +81,26 @@ static size_t find_row(const page *p, size_t first, double inner, double *width)
   return count;
 }
 
-static double chart_height(const page *p, const strut_panel *panel, double width) {
-  double aspect = p->figure->aspect > 0 ? p->figure->aspect : ASPECT;
+static double chart_height(const page *self, const strut_panel *panel, double width) {
+  double aspect = self->figure->aspect > 0 ? self->figure->aspect : ASPECT;
   if (panel->height > 0) return panel->height;
-  if (!(p->figure->least_width > 0)) return aspect * width;
+  if (!(self->figure->least_width > 0)) return aspect * width;
   return fmax(LOWEST, fmin(aspect * width, HIGHEST));
 }
 
 /* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */
-static double put_row(page *p, strut_canvas *canvas, strut_box box, size_t first, size_t count,
+static double put_row(page *self, strut_canvas *canvas, strut_box box, size_t first, size_t count,
                       bool *fine) {
-  double gap = p->panels[first + count - 1].beside ? GAP : 0, height = 0;
+  double gap = self->panels[first + count - 1].beside ? GAP : 0, height = 0;
   for (size_t i = first; i < first + count; i++)
-    height = fmax(height, chart_height(p, &p->panels[i], box.width));
+    height = fmax(height, chart_height(self, &self->panels[i], box.width));
   box.height = height;
   for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + gap)
-    if (p->panels[i].view)
-      strut_draw_view(canvas, box, &p->panels[i]);
+    if (self->panels[i].view)
+      strut_draw_view(canvas, box, &self->panels[i]);
     else
-      *fine = strut_draw_chart(canvas, box, &p->panels[i], !p->figure->one_legend, &p->arena);
+      *fine =
+          strut_draw_chart(canvas, box, &self->panels[i], !self->figure->one_legend, &self->arena);
   return height;
 }
 
@@ -112,49 +114,51 @@ static double put_heading(strut_canvas *canvas, strut_box box, const char *text,
 }
 
 /* Lays all out and draws it if `fine`. Returns the height of the page. */
-static double put_page(page *p, strut_canvas *canvas, double width, bool *fine) {
-  const strut_figure *f = p->figure;
+static double put_page(page *self, strut_canvas *canvas, double width, bool *fine) {
+  const strut_figure *figure = self->figure;
   strut_box box = {EDGE, EDGE, width - 2 * EDGE, 0};
   bool draw = fine != NULL, foot = true;
   const strut_font bold = {.size = 9, .bold = true};
   const strut_font plain = {.size = 8,
-                            .colour = f->alarm ? strut_palette_thing(1) : strut_grey(0.3)};
-  box.y += put_heading(canvas, box, p->title, bold, draw);
-  box.y += put_heading(canvas, box, f->note, plain, draw);
+                            .colour = figure->alarm ? strut_palette_thing(1) : strut_grey(0.3)};
+  box.y += put_heading(canvas, box, self->title, bold, draw);
+  box.y += put_heading(canvas, box, figure->note, plain, draw);
   if (box.y > EDGE) box.y += HEADING_GAP - LINE_GAP;
   const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
-  if (draw) strut_draw_key(canvas, legend, p->items, p->item_count);
-  box.y += strut_key_height(canvas, legend.width, p->items, p->item_count);
-  for (size_t i = 0, count; i < f->panel_count; i += count) {
-    const strut_panel *first = &p->panels[i];
+  if (draw) strut_draw_key(canvas, legend, self->items, self->item_count);
+  box.y += strut_key_height(canvas, legend.width, self->items, self->item_count);
+  for (size_t i = 0, count; i < figure->panel_count; i += count) {
+    const strut_panel *first = &self->panels[i];
     if (i > 0 && (first->view || first[-1].view)) box.y += GAP;
     strut_box row = box;
-    count = find_row(p, i, box.width, &row.width);
+    count = find_row(self, i, box.width, &row.width);
     if (count > 1 || !first->view) {
-      box.y += put_row(p, canvas, row, i, count, fine);
+      box.y += put_row(self, canvas, row, i, count, fine);
       continue;
     }
-    while (i + count < f->panel_count && first[count].view && first[count].small == first->small)
+    while (i + count < figure->panel_count && first[count].view &&
+           first[count].small == first->small)
       count++;
-    box.y += strut_draw_views(canvas, box, f, first, count, foot, draw);
+    box.y += strut_draw_views(canvas, box, figure, first, count, foot, draw);
     foot = false;
   }
-  if (foot && f->key_count) box.y += 0.5 * GAP;
-  return box.y + (foot ? strut_draw_foot(canvas, box, f, NULL, draw) : 0) + EDGE;
+  if (foot && figure->key_count) box.y += 0.5 * GAP;
+  return box.y + (foot ? strut_draw_foot(canvas, box, figure, NULL, draw) : 0) + EDGE;
 }
 
-static strut_status write_page(page *p, const strut_plot *plot, strut_error *error) {
+static strut_status write_page(page *self, const strut_plot *plot, strut_error *error) {
   strut_canvas *canvas = NULL;
   double width = plot->width > 0 ? plot->width : PAGE;
   bool fine = true;
-  p->title = strut_plot_title(plot, p->figure->title);
+  self->title = strut_plot_title(plot, self->figure->title);
   strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &canvas, error);
   if (status) return status;
-  double height = put_page(p, canvas, width, NULL);
+  double height = put_page(self, canvas, width, NULL);
   strut_canvas_free(canvas);
-  status = strut_canvas_open(plot->path, width, height, p->title ? p->title : "", &canvas, error);
+  status =
+      strut_canvas_open(plot->path, width, height, self->title ? self->title : "", &canvas, error);
   if (status) return status;
-  put_page(p, canvas, width, &fine);
+  put_page(self, canvas, width, &fine);
   status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
   strut_canvas_free(canvas);
   return status;

@@ -38,9 +38,9 @@ STRUT_VALUES_HERE(band_values, BAND, const strut_band *b = of->at)
 
 /* A category by name, or a number, row by row. */
 static strut_value cell(const strut_result_object *of, size_t k) {
-  const strut_map *m = of->at;
-  if (!m->category) return STRUT_VALUE_AS_NUMBER(m->value[k]);
-  return STRUT_VALUE_AS_TEXT(m->category[k] < 0 ? NULL : m->names[m->category[k]]);
+  const strut_map *map = of->at;
+  if (!map->category) return STRUT_VALUE_AS_NUMBER(map->value[k]);
+  return STRUT_VALUE_AS_TEXT(map->category[k] < 0 ? NULL : map->names[map->category[k]]);
 }
 
 static strut_value doubt(const strut_result_object *of, size_t k) {
@@ -64,8 +64,8 @@ static strut_value node_name(const strut_result_object *of, size_t i) {
 }
 
 static strut_value member_ends(const strut_result_object *of, size_t k) {
-  const strut_member *m = &((const strut_shape *)of->at)->model->scene->members[k];
-  return STRUT_VALUE_AS_INDICES(m->node, 2);
+  const strut_member *member = &((const strut_shape *)of->at)->model->scene->members[k];
+  return STRUT_VALUE_AS_INDICES(member->node, 2);
 }
 
 #define SHAPE(X)                                                                                   \

@@ -34,31 +34,34 @@ static bool make_room(void **list, size_t count, size_t *room, size_t size) {
   return true;
 }
 
-void strut_labels_add(strut_labels *l, const strut_label *label) {
+void strut_labels_add(strut_labels *labels, const strut_label *label) {
   if (!label->text || !*label->text || !isfinite(label->at[0] + label->at[1])) return;
-  char *text = strut_arena_text(&l->arena, label->text, strlen(label->text));
-  void *list = l->list;
-  l->failed = l->failed || !text || !make_room(&list, l->count, &l->room, sizeof *l->list);
-  l->list = list;
-  if (l->failed) return;
-  strut_label *added = &l->list[l->count++];
+  char *text = strut_arena_text(&labels->arena, label->text, strlen(label->text));
+  void *list = labels->list;
+  labels->failed = labels->failed || !text ||
+                   !make_room(&list, labels->count, &labels->room, sizeof *labels->list);
+  labels->list = list;
+  if (labels->failed) return;
+  strut_label *added = &labels->list[labels->count++];
   *added = *label;
   added->text = text;
   for (int d = 0; d < 2; d++) added->at[d] = strut_settle_coordinate(label->at[d]);
   added->inside = strut_settle_box(label->inside);
 }
 
-void strut_labels_avoid(strut_labels *l, strut_box ink) {
-  void *list = l->texts;
-  l->failed = l->failed || !make_room(&list, l->text_count, &l->text_room, sizeof *l->texts);
-  l->texts = list;
-  if (!l->failed && isfinite(ink.x + ink.y)) l->texts[l->text_count++] = strut_settle_box(ink);
+void strut_labels_avoid(strut_labels *labels, strut_box ink) {
+  void *list = labels->texts;
+  labels->failed = labels->failed ||
+                   !make_room(&list, labels->text_count, &labels->text_room, sizeof *labels->texts);
+  labels->texts = list;
+  if (!labels->failed && isfinite(ink.x + ink.y))
+    labels->texts[labels->text_count++] = strut_settle_box(ink);
 }
 
-void strut_labels_free(strut_labels *l) {
-  strut_release(l->list);
-  strut_release(l->texts);
-  strut_arena_free(&l->arena);
+void strut_labels_free(strut_labels *labels) {
+  strut_release(labels->list);
+  strut_release(labels->texts);
+  strut_arena_free(&labels->arena);
 }
 
 /* ---- boxes ---- */
@@ -67,9 +70,9 @@ static strut_box widened(strut_box box, double by) {
   return (strut_box){box.x - by, box.y - by, box.width + 2 * by, box.height + 2 * by};
 }
 
-static bool overlap(const strut_box *a, const strut_box *b) {
-  return a->x < b->x + b->width && b->x < a->x + a->width && a->y < b->y + b->height &&
-         b->y < a->y + a->height;
+static bool overlap(const strut_box *first, const strut_box *second) {
+  return first->x < second->x + second->width && second->x < first->x + first->width &&
+         first->y < second->y + second->height && second->y < first->y + first->height;
 }
 
 static bool is_within(const strut_box *box, const strut_box *frame) {
@@ -98,36 +101,37 @@ typedef struct search {
   double cost; /* of the best place; HUGE_VAL: none yet */
 } search;
 
-static bool is_free(const search *s, const strut_box *box) {
-  if (!is_within(box, &s->inside)) return false;
+static bool is_free(const search *self, const strut_box *box) {
+  if (!is_within(box, &self->inside)) return false;
   const strut_box around = {box->x - BESIDE, box->y - BELOW, box->width + 2 * BESIDE,
                             box->height + 2 * BELOW};
-  for (size_t i = 0; i < s->labels->text_count; i++)
-    if (overlap(&around, &s->labels->texts[i])) return false;
+  for (size_t i = 0; i < self->labels->text_count; i++)
+    if (overlap(&around, &self->labels->texts[i])) return false;
   return true;
 }
 
 /* True if a straight line from what is named to the box crosses no text. */
-static bool has_clear_line(const search *s, const strut_box *box) {
-  double end[2], length = nearest_point(box, s->label->at, end);
+static bool has_clear_line(const search *self, const strut_box *box) {
+  double end[2], length = nearest_point(box, self->label->at, end);
   for (double along = 0.0; along < length; along += 2.0) {
-    const strut_box point = {s->label->at[0] + along / length * (end[0] - s->label->at[0]),
-                             s->label->at[1] + along / length * (end[1] - s->label->at[1]), 0, 0};
-    for (size_t i = 0; i < s->labels->text_count; i++)
-      if (overlap(&point, &s->labels->texts[i])) return false;
+    const strut_box point = {self->label->at[0] + along / length * (end[0] - self->label->at[0]),
+                             self->label->at[1] + along / length * (end[1] - self->label->at[1]), 0,
+                             0};
+    for (size_t i = 0; i < self->labels->text_count; i++)
+      if (overlap(&point, &self->labels->texts[i])) return false;
   }
   return true;
 }
 
 /* Cost of being nearer to something else that is named in the same place. */
-static double confusion(const search *s, const strut_box *box) {
-  double point[2], own = nearest_point(box, s->label->at, point), cost = 0.0;
-  for (size_t i = 0; i < s->labels->count; i++) {
-    const strut_label *other = &s->labels->list[i];
-    if (other == s->label || other->loose || s->label->loose ||
-        memcmp(&other->inside, &s->label->inside, sizeof other->inside) != 0)
+static double confusion(const search *self, const strut_box *box) {
+  double point[2], own = nearest_point(box, self->label->at, point), cost = 0.0;
+  for (size_t i = 0; i < self->labels->count; i++) {
+    const strut_label *other = &self->labels->list[i];
+    if (other == self->label || other->loose || self->label->loose ||
+        memcmp(&other->inside, &self->label->inside, sizeof other->inside) != 0)
       continue;
-    if (hypot(other->at[0] - s->label->at[0], other->at[1] - s->label->at[1]) < 0.5) continue;
+    if (hypot(other->at[0] - self->label->at[0], other->at[1] - self->label->at[1]) < 0.5) continue;
     double distance = nearest_point(box, other->at, point);
     if (distance < own + 1.0) cost += MISLEADING;
   }
@@ -135,51 +139,51 @@ static double confusion(const search *s, const strut_box *box) {
 }
 
 /* Tries the place in one direction at one ring. */
-static void try_place(search *s, double ring, int direction) {
-  const strut_label *l = s->label;
-  double angle = l->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = l->gap + ring;
-  double x = l->at[0] + (gap + 0.5 * s->width) * cos(angle);
-  double y = l->at[1] - (gap + 0.5 * s->height) * sin(angle);
-  const strut_box box =
-      strut_settle_box((strut_box){x - 0.5 * s->width, y - 0.5 * s->height, s->width, s->height});
+static void try_place(search *self, double ring, int direction) {
+  const strut_label *label = self->label;
+  double angle = label->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = label->gap + ring;
+  double x = label->at[0] + (gap + 0.5 * self->width) * cos(angle);
+  double y = label->at[1] - (gap + 0.5 * self->height) * sin(angle);
+  const strut_box box = strut_settle_box(
+      (strut_box){x - 0.5 * self->width, y - 0.5 * self->height, self->width, self->height});
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
   bool led = ring >= LED;
-  double cost = DISTANCE * ring + TURN * l->steady * turn + (led ? LINE : 0.0);
-  if (cost >= s->cost || !is_free(s, &box)) return;
-  cost += INK * strut_page_ink_sum(s->ink, box) +
-          NEAR_INK * strut_page_ink_sum(s->ink, widened(box, AROUND)) + confusion(s, &box);
-  if (cost >= s->cost - 1e-9 || (led && !has_clear_line(s, &box))) return;
-  s->cost = cost;
-  s->best = box;
+  double cost = DISTANCE * ring + TURN * label->steady * turn + (led ? LINE : 0.0);
+  if (cost >= self->cost || !is_free(self, &box)) return;
+  cost += INK * strut_page_ink_sum(self->ink, box) +
+          NEAR_INK * strut_page_ink_sum(self->ink, widened(box, AROUND)) + confusion(self, &box);
+  if (cost >= self->cost - 1e-9 || (led && !has_clear_line(self, &box))) return;
+  self->cost = cost;
+  self->best = box;
 }
 
 /* For what names nothing at its place: wherever least is covered, the nearer the better. */
-static bool find_empty_place(search *s) {
+static bool find_empty_place(search *self) {
   static const double STEP = 4.0, FAR = 0.01; /* [pt], cost of each pt */
-  const strut_box *in = &s->inside;
-  s->cost = HUGE_VAL;
-  for (double y = in->y; y + s->height <= in->y + in->height; y += STEP)
-    for (double x = in->x; x + s->width <= in->x + in->width; x += STEP) {
-      const strut_box box = {x, y, s->width, s->height};
-      double point[2], cost = FAR * nearest_point(&box, s->label->at, point);
-      if (cost >= s->cost || !is_free(s, &box)) continue;
-      cost += INK * strut_page_ink_sum(s->ink, box);
-      if (cost >= s->cost - 1e-9) continue;
-      s->cost = cost;
-      s->best = box;
+  const strut_box *in = &self->inside;
+  self->cost = HUGE_VAL;
+  for (double y = in->y; y + self->height <= in->y + in->height; y += STEP)
+    for (double x = in->x; x + self->width <= in->x + in->width; x += STEP) {
+      const strut_box box = {x, y, self->width, self->height};
+      double point[2], cost = FAR * nearest_point(&box, self->label->at, point);
+      if (cost >= self->cost || !is_free(self, &box)) continue;
+      cost += INK * strut_page_ink_sum(self->ink, box);
+      if (cost >= self->cost - 1e-9) continue;
+      self->cost = cost;
+      self->best = box;
     }
-  return s->cost < HUGE_VAL;
+  return self->cost < HUGE_VAL;
 }
 
-static bool find_place(search *s) {
-  if (s->label->loose) return find_empty_place(s);
-  s->cost = HUGE_VAL;
+static bool find_place(search *self) {
+  if (self->label->loose) return find_empty_place(self);
+  self->cost = HUGE_VAL;
   for (size_t r = 0; r < sizeof RINGS / sizeof *RINGS; r++) {
-    if (DISTANCE * RINGS[r] >= s->cost) break;
+    if (DISTANCE * RINGS[r] >= self->cost) break;
     for (int k = 0; k < DIRECTIONS; k++) /* by turns to both sides of the preferred direction */
-      try_place(s, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
+      try_place(self, RINGS[r], k % 2 ? (k + 1) / 2 : (DIRECTIONS - k / 2) % DIRECTIONS);
   }
-  return s->cost < WORST;
+  return self->cost < WORST;
 }
 
 /* The thin line from what is named to a label that is far from it. */
@@ -240,16 +244,17 @@ static void note_omitted(strut_labels *labels, strut_canvas *canvas, const strut
   place_label(labels, &note, canvas, ink);
 }
 
-void strut_labels_place(strut_labels *l, strut_canvas *canvas, const strut_page_ink *ink) {
+void strut_labels_place(strut_labels *labels, strut_canvas *canvas, const strut_page_ink *ink) {
   size_t omitted = 0;
-  for (size_t i = 1; i < l->count; i++) { /* by importance; equal ones keep their order */
-    const strut_label moved = l->list[i];
+  for (size_t i = 1; i < labels->count; i++) { /* by importance; equal ones keep their order */
+    const strut_label moved = labels->list[i];
     size_t k = i;
-    for (; k > 0 && l->list[k - 1].priority < moved.priority; k--) l->list[k] = l->list[k - 1];
-    l->list[k] = moved;
+    for (; k > 0 && labels->list[k - 1].priority < moved.priority; k--)
+      labels->list[k] = labels->list[k - 1];
+    labels->list[k] = moved;
   }
-  for (size_t i = 0; i < l->count; i++)
-    if (!place_label(l, &l->list[i], canvas, ink)) omitted++;
-  l->count = 0;
-  if (omitted) note_omitted(l, canvas, ink, omitted);
+  for (size_t i = 0; i < labels->count; i++)
+    if (!place_label(labels, &labels->list[i], canvas, ink)) omitted++;
+  labels->count = 0;
+  if (omitted) note_omitted(labels, canvas, ink, omitted);
 }

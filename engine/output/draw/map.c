@@ -43,11 +43,12 @@ static strut_fill cell_fill(const strut_panel *panel, size_t k) {
 }
 
 /* The box of (count) cells of a row from `column` on. */
-static strut_box cell_box(const strut_chart *c, size_t row, size_t column, size_t count) {
-  const strut_map *map = c->panel->map;
+static strut_box cell_box(const strut_chart *chart, size_t row, size_t column, size_t count) {
+  const strut_map *map = chart->panel->map;
   double a[2], b[2];
-  strut_axes_point(&c->axes, edge(map->xs, map->columns, column), edge(map->ys, map->rows, row), a);
-  strut_axes_point(&c->axes, edge(map->xs, map->columns, column + count),
+  strut_axes_point(&chart->axes, edge(map->xs, map->columns, column), edge(map->ys, map->rows, row),
+                   a);
+  strut_axes_point(&chart->axes, edge(map->xs, map->columns, column + count),
                    edge(map->ys, map->rows, row + 1), b);
   return (strut_box){a[0], b[1], b[0] - a[0], a[1] - b[1]};
 }
@@ -63,28 +64,28 @@ static bool look_alike(const strut_map *map, size_t a, size_t b) {
 }
 
 /* Hatching on a doubtful cell, a dot on one without a result. */
-static void mark_cell(const strut_chart *c, size_t k) {
-  const strut_map *map = c->panel->map;
+static void mark_cell(const strut_chart *chart, size_t k) {
+  const strut_map *map = chart->panel->map;
   const strut_fill doubt = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
   const strut_fill dot = {.colour = strut_grey(0.5)};
-  strut_box box = cell_box(c, k / map->columns, k % map->columns, 1);
-  if (map->doubtful && map->doubtful[k]) strut_draw_box(c->canvas, box, &doubt, NULL);
+  strut_box box = cell_box(chart, k / map->columns, k % map->columns, 1);
+  if (map->doubtful && map->doubtful[k]) strut_draw_box(chart->canvas, box, &doubt, NULL);
   if (!strut_map_has(map, k))
-    strut_draw_circle(c->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height,
+    strut_draw_circle(chart->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height,
                       fmin(1.0, 0.25 * fmin(box.width, box.height)), &dot, NULL);
 }
 
-void strut_draw_map(const strut_chart *c) {
-  const strut_map *map = c->panel->map;
+void strut_draw_map(const strut_chart *chart) {
+  const strut_map *map = chart->panel->map;
   size_t cells = map->columns * map->rows, joined;
   for (size_t k = 0; k < cells; k += joined) {
     size_t row = k / map->columns, column = k % map->columns;
     for (joined = 1; cells >= MANY_CELLS && column + joined < map->columns; joined++)
       if (!look_alike(map, k, k + joined)) break;
-    strut_fill fill = cell_fill(c->panel, k);
-    strut_box box = cell_box(c, row, column, joined);
+    strut_fill fill = cell_fill(chart->panel, k);
+    strut_box box = cell_box(chart, row, column, joined);
     box.width += 0.4, box.y -= 0.4, box.height += 0.4;
-    strut_draw_box(c->canvas, box, &fill, NULL);
+    strut_draw_box(chart->canvas, box, &fill, NULL);
   }
-  for (size_t k = 0; k < cells; k++) mark_cell(c, k);
+  for (size_t k = 0; k < cells; k++) mark_cell(chart, k);
 }

@@ -86,15 +86,15 @@ void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side
 }
 
 void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text) {
-  const strut_box *f = &axes->frame;
-  const strut_box inside = {f->x + INSET, f->y + INSET, f->width - 2 * INSET,
-                            f->height - 2 * INSET};
+  const strut_box *box = &axes->frame;
+  const strut_box inside = {box->x + INSET, box->y + INSET, box->width - 2 * INSET,
+                            box->height - 2 * INSET};
   strut_draw_label(canvas, &(strut_label){.text = text,
                                           .font = {.size = 7,
                                                    .colour = strut_grey(0.3),
                                                    .halo = strut_grey(1),
-                                                   .width = NOTE_WIDTH * f->width},
-                                          .at = {f->x + f->width, f->y},
+                                                   .width = NOTE_WIDTH * box->width},
+                                          .at = {box->x + box->width, box->y},
                                           .gap = 2,
                                           .angle = 1.25 * STRUT_PI,
                                           .inside = inside,

@@ -7,23 +7,26 @@
 static const double ROOM = 0.06;     /* above and below the data */
 static const double ONE_SIGN = 1e-9; /* noise of the other sign makes no signed quantity */
 
-static void include_series(const strut_series *s, bool lost, strut_axis *x, strut_axis *y) {
-  for (size_t k = 0; k < s->count; k++) {
-    if (!isfinite(s->x[k]) || (!isfinite(s->y[k]) && !lost)) continue;
-    if (x) strut_axis_include(x, s->x[k]);
-    if (!y) continue;
-    strut_axis_include(y, s->y[k]);
-    if (s->low) strut_axis_include(y, s->low[k]);
-    if (s->high) strut_axis_include(y, s->high[k]);
+static void include_series(const strut_series *series, bool lost, strut_axis *axis,
+                           strut_axis *other_axis) {
+  for (size_t k = 0; k < series->count; k++) {
+    if (!isfinite(series->x[k]) || (!isfinite(series->y[k]) && !lost)) continue;
+    if (axis) strut_axis_include(axis, series->x[k]);
+    if (!other_axis) continue;
+    strut_axis_include(other_axis, series->y[k]);
+    if (series->low) strut_axis_include(other_axis, series->low[k]);
+    if (series->high) strut_axis_include(other_axis, series->high[k]);
   }
 }
 
-static void include_panel(const strut_panel *p, strut_axis *x, strut_axis *y) {
+static void include_panel(const strut_panel *panel, strut_axis *x, strut_axis *other_axis) {
   double limits[2];
-  for (size_t i = 0; i < p->series_count; i++) include_series(&p->series[i], p->lost != NULL, x, y);
-  for (int d = 0; d < 2 && p->map; d++) {
-    strut_axis *axis = d ? y : x;
-    strut_map_limits(d ? p->map->ys : p->map->xs, d ? p->map->rows : p->map->columns, limits);
+  for (size_t i = 0; i < panel->series_count; i++)
+    include_series(&panel->series[i], panel->lost != NULL, x, other_axis);
+  for (int d = 0; d < 2 && panel->map; d++) {
+    strut_axis *axis = d ? other_axis : x;
+    strut_map_limits(d ? panel->map->ys : panel->map->xs,
+                     d ? panel->map->rows : panel->map->columns, limits);
     for (int k = 0; k < 2 && axis; k++) strut_axis_include(axis, limits[k]);
   }
 }

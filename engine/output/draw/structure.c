@@ -27,32 +27,32 @@ strut_bounds strut_bounds_none(void) {
   return (strut_bounds){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
 }
 
-void strut_bounds_widen(strut_bounds *b, const double low[2], const double high[2]) {
+void strut_bounds_widen(strut_bounds *bounds, const double low[2], const double high[2]) {
   for (int d = 0; d < 2; d++) {
-    b->low[d] = fmin(b->low[d], low[d]);
-    b->high[d] = fmax(b->high[d], high[d]);
+    bounds->low[d] = fmin(bounds->low[d], low[d]);
+    bounds->high[d] = fmax(bounds->high[d], high[d]);
   }
 }
 
-void strut_bounds_add(strut_bounds *b, const strut_model *model, const double *q) {
+void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *positions) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    if (!isfinite(q[i])) continue;
-    b->low[i % 2] = fmin(b->low[i % 2], q[i]);
-    b->high[i % 2] = fmax(b->high[i % 2], q[i]);
+    if (!isfinite(positions[i])) continue;
+    bounds->low[i % 2] = fmin(bounds->low[i % 2], positions[i]);
+    bounds->high[i % 2] = fmax(bounds->high[i % 2], positions[i]);
   }
   for (size_t m = 0; m < model->scene->member_count; m++) { /* circles of guides */
     const strut_member *member = &model->scene->members[m];
     for (size_t k = 1; k <= member->guide_count && member->guide_radius > 0.0; k++)
       for (int c = 0; c < 2; c++) {
-        double at = q[2 * strut_member_node(member, k) + c];
-        b->low[c] = fmin(b->low[c], at - member->guide_radius);
-        b->high[c] = fmax(b->high[c], at + member->guide_radius);
+        double at = positions[2 * strut_member_node(member, k) + c];
+        bounds->low[c] = fmin(bounds->low[c], at - member->guide_radius);
+        bounds->high[c] = fmax(bounds->high[c], at + member->guide_radius);
       }
   }
 }
 
-double strut_bounds_extent(const strut_bounds *b) {
-  return fmax(b->high[0] - b->low[0], b->high[1] - b->low[1]);
+double strut_bounds_extent(const strut_bounds *bounds) {
+  return fmax(bounds->high[0] - bounds->low[0], bounds->high[1] - bounds->low[1]);
 }
 
 strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
@@ -69,9 +69,9 @@ strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
                         .top = middle[1] + 0.5 * box.height / scale};
 }
 
-void strut_window_point(const strut_window *w, const double position[2], double point[2]) {
-  point[0] = w->box.x + (position[0] - w->left) * w->scale;
-  point[1] = w->box.y + (w->top - position[1]) * w->scale;
+void strut_window_point(const strut_window *window, const double position[2], double point[2]) {
+  point[0] = window->box.x + (position[0] - window->left) * window->scale;
+  point[1] = window->box.y + (window->top - position[1]) * window->scale;
 }
 
 size_t strut_member_segments(const strut_model *model, size_t member) {
@@ -82,17 +82,18 @@ size_t strut_member_segments(const strut_model *model, size_t member) {
  * The straight part of a wrapped member that leads over its way from node k to the next: from where it leaves one
  * circle to where it meets the other. Where a guide is left aside, the parts are divided beside its centre.
  */
-static void find_tangent(const strut_scene *scene, const strut_member *m, const double *q, int k,
-                         double places[2][2]) {
+static void find_tangent(const strut_scene *scene, const strut_member *member,
+                         const double *positions, int k, double places[2][2]) {
   double p[STRUT_MOST_WRAPPED][2];
-  int n = (int)m->guide_count + 2, at = 0;
-  uint32_t right = strut_member_right_guides(scene, m);
+  int n = (int)member->guide_count + 2, at = 0;
+  uint32_t right = strut_member_right_guides(scene, member);
   strut_wrap way;
-  for (int i = 0; i < n; i++) memcpy(p[i], q + 2 * strut_member_node(m, (size_t)i), sizeof p[i]);
-  strut_wrap_find((const double(*)[2])p, n, right, m->guide_radius, &way);
+  for (int i = 0; i < n; i++)
+    memcpy(p[i], positions + 2 * strut_member_node(member, (size_t)i), sizeof p[i]);
+  strut_wrap_find((const double(*)[2])p, n, right, member->guide_radius, &way);
   while (at + 2 < way.count && way.node[at + 1] <= k) at++;
   int from = way.node[at];
-  double off = from > 0 ? m->guide_radius * strut_wrap_side(right, from) : 0.0;
+  double off = from > 0 ? member->guide_radius * strut_wrap_side(right, from) : 0.0;
   const double ux = way.ux[at], uy = way.uy[at];
   const double start[2] = {p[from][0] + off * uy, p[from][1] - off * ux};
   for (int end = 0; end < 2; end++) {
@@ -102,23 +103,24 @@ static void find_tangent(const strut_scene *scene, const strut_member *m, const 
   }
 }
 
-void strut_window_segment(const strut_window *w, const strut_model *model, const double *q,
-                          size_t member, size_t k, double ends[2][2]) {
+void strut_window_segment(const strut_window *window, const strut_model *model,
+                          const double *positions, size_t member, size_t k, double ends[2][2]) {
   const strut_member *m = &model->scene->members[member];
   double places[2][2];
   for (size_t end = 0; end < 2; end++)
-    memcpy(places[end], q + 2 * strut_member_node(m, k + end), sizeof places[end]);
-  if (m->guide_count && m->guide_radius > 0.0) find_tangent(model->scene, m, q, (int)k, places);
-  for (int end = 0; end < 2; end++) strut_window_point(w, places[end], ends[end]);
+    memcpy(places[end], positions + 2 * strut_member_node(m, k + end), sizeof places[end]);
+  if (m->guide_count && m->guide_radius > 0.0)
+    find_tangent(model->scene, m, positions, (int)k, places);
+  for (int end = 0; end < 2; end++) strut_window_point(window, places[end], ends[end]);
 }
 
 /* The longest segment of a member, where its name and its stop stand. */
-void strut_longest_segment(const strut_window *w, const strut_model *model, const double *q,
-                           size_t member, double longest[2][2]) {
-  strut_window_segment(w, model, q, member, 0, longest);
+void strut_longest_segment(const strut_window *window, const strut_model *model,
+                           const double *positions, size_t member, double longest[2][2]) {
+  strut_window_segment(window, model, positions, member, 0, longest);
   for (size_t k = 1; k < strut_member_segments(model, member); k++) {
     double ends[2][2], x = longest[1][0] - longest[0][0], y = longest[1][1] - longest[0][1];
-    strut_window_segment(w, model, q, member, k, ends);
+    strut_window_segment(window, model, positions, member, k, ends);
     double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
     if (strut_settle_coordinate(length) > strut_settle_coordinate(hypot(x, y)))
       memcpy(longest, ends, sizeof ends);
@@ -159,16 +161,18 @@ static void draw_support(strut_canvas *canvas, const double tip[2], const double
 }
 
 /* Triangles below pinned nodes, on wheels where one direction is free. */
-static void draw_supports(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                          const double *q, double size, double opacity) {
+static void draw_supports(strut_canvas *canvas, const strut_window *window,
+                          const strut_model *model, const double *positions, double size,
+                          double opacity) {
   double centre[2] = {0.0, 0.0}, middle[2];
-  for (int32_t i = 0; i < 2 * model->node_count; i++) centre[i % 2] += q[i] / model->node_count;
-  strut_window_point(w, centre, middle);
+  for (int32_t i = 0; i < 2 * model->node_count; i++)
+    centre[i % 2] += positions[i] / model->node_count;
+  strut_window_point(window, centre, middle);
   for (int32_t i = 0; i < model->node_count; i++) {
     const bool *fixed = model->scene->nodes[i].fixed;
     double tip[2];
     if (!fixed[0] && !fixed[1]) continue;
-    strut_window_point(w, q + 2 * i, tip);
+    strut_window_point(window, positions + 2 * i, tip);
     /* Fixed in x only: drawn from the side away from the structure. */
     bool left = strut_settle_coordinate(tip[0]) <= strut_settle_coordinate(middle[0]);
     const double below[2] = {0, 1}, side[2] = {left ? -1 : 1, 0};
@@ -176,16 +180,16 @@ static void draw_supports(strut_canvas *canvas, const strut_window *w, const str
   }
 }
 
-void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
-                               const strut_model *model, const double *q, const double (*force)[2],
-                               double limit, double longest) {
+void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
+                               const strut_model *model, const double *positions,
+                               const double (*force)[2], double limit, double longest) {
   const strut_contact_table *contacts = &model->contacts;
   const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
   for (int32_t i = 0; i < contacts->count && limit > 0; i++) {
     double at[2], normal = force[i][0] / limit * longest, along = force[i][1] / limit * longest;
-    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, NULL, -1);
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, positions, NULL, -1);
     const double *n = pose.axes.normal, *t = pose.axes.tangent;
-    strut_window_point(w, q + contacts->at[i], at);
+    strut_window_point(window, positions + contacts->at[i], at);
     if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
       strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
     if (fabs(along) > 0.3)
@@ -193,11 +197,12 @@ void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *w,
   }
 }
 
-void strut_draw_yardstick(strut_canvas *canvas, const strut_window *w) {
-  double room = 0.3 * w->box.width / w->scale, power = pow(10.0, floor(log10(room)));
+void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window) {
+  double room = 0.3 * window->box.width / window->scale, power = pow(10.0, floor(log10(room)));
   /* The largest of 1, 2 or 5 times a power of ten that fits. */
   double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
-  double x = w->box.x + 3, y = w->box.y + w->box.height - 4, end = x + length * w->scale;
+  double x = window->box.x + 3, y = window->box.y + window->box.height - 4,
+         end = x + length * window->scale;
   const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
   if (!isfinite(length) || !(length > 0)) return;
   strut_draw_segment(canvas, x, y, end, y, pen);
@@ -213,8 +218,8 @@ enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
 
 static const double NODE_GAP = 3.6, MEMBER_GAP = 1.5, NAME_SIZE = 7.5, NEAR_MIDDLE = 6.0; /* [pt] */
 
-static void draw_name(strut_canvas *canvas, const strut_window *w, const double at[2], double angle,
-                      double gap, const char *name) {
+static void draw_name(strut_canvas *canvas, const strut_window *window, const double at[2],
+                      double angle, double gap, const char *name) {
   strut_draw_label(canvas, &(strut_label){.text = name,
                                           .font = {.size = NAME_SIZE,
                                                    .italic = true,
@@ -223,7 +228,7 @@ static void draw_name(strut_canvas *canvas, const strut_window *w, const double 
                                           .gap = gap,
                                           .angle = angle,
                                           .steady = 0.2,
-                                          .inside = w->box});
+                                          .inside = window->box});
 }
 
 /* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
@@ -233,62 +238,63 @@ static double find_outwards(const double at[2], const double middle[2]) {
   return hypot(x, y) > NEAR_MIDDLE ? atan2(y, x) : 0.25 * STRUT_PI;
 }
 
-void strut_draw_names(strut_canvas *canvas, const strut_window *w, const strut_model *model,
-                      const double *q, bool members) {
+void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_model *model,
+                      const double *positions, bool members) {
   const strut_scene *scene = model->scene;
   double middle[2] = {0.0, 0.0}, at[2];
   if (scene->node_count > MOST_NAMED) return;
   for (size_t i = 0; i < scene->node_count; i++) {
-    strut_window_point(w, q + 2 * i, at);
+    strut_window_point(window, positions + 2 * i, at);
     for (int d = 0; d < 2; d++) middle[d] += at[d] / (double)scene->node_count;
   }
   for (size_t i = 0; i < scene->node_count; i++) {
-    strut_window_point(w, q + 2 * i, at);
-    draw_name(canvas, w, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
+    strut_window_point(window, positions + 2 * i, at);
+    draw_name(canvas, window, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
   }
   for (size_t j = 0; j < scene->member_count && members; j++) {
     double ends[2][2]; /* the name stands at the middle of the longest segment */
-    strut_longest_segment(w, model, q, j, ends);
+    strut_longest_segment(window, model, positions, j, ends);
     for (int d = 0; d < 2; d++) at[d] = 0.5 * (ends[0][d] + ends[1][d]);
-    draw_name(canvas, w, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
+    draw_name(canvas, window, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
   }
 }
 
 /* Members and nodes. */
 
 /* Factor for line widths, from the mean length of the members on the page. */
-static double thinning(const strut_window *w, const strut_model *model, const double *q) {
+static double thinning(const strut_window *window, const strut_model *model,
+                       const double *positions) {
   double sum = 0;
   size_t count = model->scene->member_count, finite = 0;
   for (size_t j = 0; j < count; j++)
     for (size_t k = 0; k < strut_member_segments(model, j); k++) {
       double ends[2][2];
-      strut_window_segment(w, model, q, j, k, ends);
+      strut_window_segment(window, model, positions, j, k, ends);
       double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
       if (isfinite(length)) sum += length, finite++;
     }
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
 }
 
-static bool is_slack(const strut_drawing *d, size_t j) {
-  if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
-  if (d->style->slack_forces) return !(fabs(d->style->slack_forces[j]) > 0);
-  return strut_member_path_length(d->model, (int32_t)j, d->q) <
-         d->model->members.rest[j] * (1 - 1e-12);
+static bool is_slack(const strut_drawing *drawing, size_t j) {
+  if (drawing->model->scene->members[j].kind != STRUT_CABLE) return false;
+  if (drawing->style->slack_forces) return !(fabs(drawing->style->slack_forces[j]) > 0);
+  return strut_member_path_length(drawing->model, (int32_t)j, drawing->q) <
+         drawing->model->members.rest[j] * (1 - 1e-12);
 }
 
-static double width_of(const strut_drawing *d, strut_member_kind kind) {
+static double width_of(const strut_drawing *drawing, strut_member_kind kind) {
   double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
-  return width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
+  return width * drawing->thin / (1.0 + drawing->style->thinness) + drawing->style->fringe;
 }
 
 static bool is_shaded(const strut_structure_style *style) {
   return style->colouring == STRUT_COLOUR_FORCE && style->values;
 }
 
-static strut_colour colour_of(const strut_drawing *d, size_t j, bool slack) {
-  const strut_structure_style *style = d->style;
-  strut_member_kind kind = d->model->scene->members[j].kind;
+static strut_colour colour_of(const strut_drawing *drawing, size_t j, bool slack) {
+  const strut_structure_style *style = drawing->style;
+  strut_member_kind kind = drawing->model->scene->members[j].kind;
   if (style->colouring == STRUT_COLOUR_ONE) return style->colour;
   if (slack) return strut_grey(0.55);
   if (is_shaded(style)) {
@@ -300,14 +306,14 @@ static strut_colour colour_of(const strut_drawing *d, size_t j, bool slack) {
                                 : strut_palette_thing(1);
 }
 
-static strut_pen pen_of(const strut_drawing *d, size_t j, bool slack) {
-  strut_pen pen = {.colour = strut_faded(colour_of(d, j, slack), d->opacity),
-                   .width = width_of(d, d->model->scene->members[j].kind),
-                   .butt = slack || d->style->fringe > 0.0};
-  if (d->style->fringe > 0.0)
+static strut_pen pen_of(const strut_drawing *drawing, size_t j, bool slack) {
+  strut_pen pen = {.colour = strut_faded(colour_of(drawing, j, slack), drawing->opacity),
+                   .width = width_of(drawing, drawing->model->scene->members[j].kind),
+                   .butt = slack || drawing->style->fringe > 0.0};
+  if (drawing->style->fringe > 0.0)
     pen.dash[0] = pen.dash[1] = FRINGE_DASH;
   else if (slack)
-    pen.dash[0] = 2.5 * d->thin, pen.dash[1] = 2.0 * d->thin;
+    pen.dash[0] = 2.5 * drawing->thin, pen.dash[1] = 2.0 * drawing->thin;
   return pen;
 }
 
@@ -319,87 +325,92 @@ typedef struct batch {
   double ends[2 * BATCH][2];
 } batch;
 
-static void flush(batch *b) {
-  strut_draw_segments(b->canvas, (const double(*)[2])b->ends, b->count, b->pen);
-  b->count = 0;
+static void flush(batch *self) {
+  strut_draw_segments(self->canvas, (const double(*)[2])self->ends, self->count, self->pen);
+  self->count = 0;
 }
 
-static void add_member(batch *b, const strut_drawing *d, size_t j, strut_pen pen) {
-  bool alike = memcmp(&pen.colour, &b->pen.colour, sizeof pen.colour) == 0;
-  if (!alike || pen.width != b->pen.width || pen.dash[0] != b->pen.dash[0]) flush(b);
-  b->pen = pen;
-  for (size_t k = 0; k < strut_member_segments(d->model, j); k++) {
-    if (b->count == BATCH) flush(b);
-    strut_window_segment(d->window, d->model, d->q, j, k, b->ends + 2 * b->count++);
+static void add_member(batch *self, const strut_drawing *drawing, size_t j, strut_pen pen) {
+  bool alike = memcmp(&pen.colour, &self->pen.colour, sizeof pen.colour) == 0;
+  if (!alike || pen.width != self->pen.width || pen.dash[0] != self->pen.dash[0]) flush(self);
+  self->pen = pen;
+  for (size_t k = 0; k < strut_member_segments(drawing->model, j); k++) {
+    if (self->count == BATCH) flush(self);
+    strut_window_segment(drawing->window, drawing->model, drawing->q, j, k,
+                         self->ends + 2 * self->count++);
   }
 }
 
 /* Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. */
-static void draw_kind(batch *b, const strut_drawing *d, strut_member_kind kind, bool slack) {
-  const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), d->opacity),
-                            .width = width_of(d, kind) + CASING * d->thin};
-  bool cased = is_shaded(d->style) && kind != STRUT_CABLE;
+static void draw_kind(batch *self, const strut_drawing *drawing, strut_member_kind kind,
+                      bool slack) {
+  const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), drawing->opacity),
+                            .width = width_of(drawing, kind) + CASING * drawing->thin};
+  bool cased = is_shaded(drawing->style) && kind != STRUT_CABLE;
   for (int pass = cased ? 0 : 1; pass < 2; pass++)
-    for (size_t j = 0; j < d->model->scene->member_count; j++)
-      if (d->model->scene->members[j].kind == kind && is_slack(d, j) == slack)
-        add_member(b, d, j, pass ? pen_of(d, j, slack) : casing);
+    for (size_t j = 0; j < drawing->model->scene->member_count; j++)
+      if (drawing->model->scene->members[j].kind == kind && is_slack(drawing, j) == slack)
+        add_member(self, drawing, j, pass ? pen_of(drawing, j, slack) : casing);
 }
 
 /* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
-static void draw_members(strut_canvas *canvas, const strut_drawing *d) {
+static void draw_members(strut_canvas *canvas, const strut_drawing *drawing) {
   batch b = {.canvas = canvas};
-  draw_kind(&b, d, STRUT_BAR, false);
-  draw_kind(&b, d, STRUT_SPRING, false);
-  draw_kind(&b, d, STRUT_CABLE, true);
-  draw_kind(&b, d, STRUT_CABLE, false);
+  draw_kind(&b, drawing, STRUT_BAR, false);
+  draw_kind(&b, drawing, STRUT_SPRING, false);
+  draw_kind(&b, drawing, STRUT_CABLE, true);
+  draw_kind(&b, drawing, STRUT_CABLE, false);
   flush(&b);
 }
 
 /* Masses that slide along members: filled circles on them. */
-static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *d) {
-  const strut_scene *scene = d->model->scene;
-  double thin = d->thin / (1.0 + d->style->thinness), point[2], at[2];
-  const strut_fill fill = {.colour = strut_thing_colour(d, 1)};
-  const strut_pen pen = {.colour = strut_faded(strut_grey(1), d->opacity), .width = 0.5 * thin};
-  if (d->thin < 0.3) return; /* too small to be drawn */
+static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *drawing) {
+  const strut_scene *scene = drawing->model->scene;
+  double thin = drawing->thin / (1.0 + drawing->style->thinness), point[2], at[2];
+  const strut_fill fill = {.colour = strut_thing_colour(drawing, 1)};
+  const strut_pen pen = {.colour = strut_faded(strut_grey(1), drawing->opacity),
+                         .width = 0.5 * thin};
+  if (drawing->thin < 0.3) return; /* too small to be drawn */
   for (size_t i = 0; i < scene->sliding_count; i++) {
     const int32_t *node = scene->members[scene->sliding_masses[i].member].node;
-    double far = strut_sliding_mass_share(scene, i, d->style->time);
+    double far = strut_sliding_mass_share(scene, i, drawing->style->time);
     for (int c = 0; c < 2; c++)
-      at[c] = (1.0 - far) * d->q[2 * node[0] + c] + far * d->q[2 * node[1] + c];
-    strut_window_point(d->window, at, point);
+      at[c] = (1.0 - far) * drawing->q[2 * node[0] + c] + far * drawing->q[2 * node[1] + c];
+    strut_window_point(drawing->window, at, point);
     if (isfinite(point[0]) && isfinite(point[1]))
       strut_draw_circle(canvas, point[0], point[1], 3.2 * thin, &fill, &pen);
   }
 }
 
-static void draw_nodes(strut_canvas *canvas, const strut_drawing *d) {
-  double thin = d->thin / (1.0 + d->style->thinness), point[2];
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), d->opacity)};
-  strut_colour edge = d->style->colouring == STRUT_COLOUR_ONE ? d->style->colour : strut_grey(0.1);
-  const strut_pen pen = {.colour = strut_faded(edge, d->opacity), .width = 0.8 * thin};
-  if (d->thin < 0.3) return; /* too small to be drawn */
-  for (int32_t i = 0; i < d->model->node_count; i++) {
-    strut_window_point(d->window, d->q + 2 * i, point);
+static void draw_nodes(strut_canvas *canvas, const strut_drawing *drawing) {
+  double thin = drawing->thin / (1.0 + drawing->style->thinness), point[2];
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), drawing->opacity)};
+  strut_colour edge =
+      drawing->style->colouring == STRUT_COLOUR_ONE ? drawing->style->colour : strut_grey(0.1);
+  const strut_pen pen = {.colour = strut_faded(edge, drawing->opacity), .width = 0.8 * thin};
+  if (drawing->thin < 0.3) return; /* too small to be drawn */
+  for (int32_t i = 0; i < drawing->model->node_count; i++) {
+    strut_window_point(drawing->window, drawing->q + 2 * i, point);
     strut_draw_circle(canvas, point[0], point[1], 1.9 * thin, &white, &pen);
   }
 }
 
 void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
-                          const strut_model *model, const double *q,
+                          const strut_model *model, const double *positions,
                           const strut_structure_style *style) {
   const strut_drawing d = {.window = window,
                            .model = model,
-                           .q = q,
+                           .q = positions,
                            .style = style,
-                           .thin = thinning(window, model, q),
+                           .thin = thinning(window, model, positions),
                            .opacity = style->opacity > 0 ? style->opacity : 1.0};
-  if (!style->no_supports) draw_supports(canvas, window, model, q, fmax(d.thin, 0.3), d.opacity);
+  if (!style->no_supports)
+    draw_supports(canvas, window, model, positions, fmax(d.thin, 0.3), d.opacity);
   strut_draw_cells(canvas, &d);
   strut_draw_collisions(canvas, &d);
   draw_members(canvas, &d);
   strut_draw_elements(canvas, &d);
   if (!style->no_nodes) draw_nodes(canvas, &d);
   draw_sliding_masses(canvas, &d);
-  if (style->node_names) strut_draw_names(canvas, window, model, q, style->member_names);
+  if (style->node_names) strut_draw_names(canvas, window, model, positions, style->member_names);
 }

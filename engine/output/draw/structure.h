@@ -24,7 +24,8 @@ STRUT_API strut_bounds strut_bounds_none(void);
 /** Widens the bounds to hold a rectangle, or a point as both its corners. */
 STRUT_API void strut_bounds_widen(strut_bounds *bounds, const double low[2], const double high[2]);
 /** Widens the bounds by all nodes of a shape q (model->length). */
-STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q);
+STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model,
+                                const double *positions);
 /** The larger extent [m]. */
 STRUT_API double strut_bounds_extent(const strut_bounds *bounds);
 /**
@@ -39,7 +40,8 @@ STRUT_API void strut_window_point(const strut_window *window, const double posit
 STRUT_API size_t strut_member_segments(const strut_model *model, size_t member);
 /** Where the ends of a member's segment k are on the page [pt], in the shape q. */
 STRUT_API void strut_window_segment(const strut_window *window, const strut_model *model,
-                                    const double *q, size_t member, size_t k, double ends[2][2]);
+                                    const double *positions, size_t member, size_t k,
+                                    double ends[2][2]);
 
 typedef enum strut_colouring {
   STRUT_COLOUR_KIND,  /* bars dark, springs and cables by kind */
@@ -69,14 +71,14 @@ typedef struct strut_structure_style {
  * many there are.
  */
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
-                                    const strut_model *model, const double *q,
+                                    const strut_model *model, const double *positions,
                                     const strut_structure_style *style);
 /**
  * Names beside nodes and, with `members`, beside members too, as the style's node_names and member_names
  * do, for callers that name a structure without drawing it. None where there are more than 60 nodes.
  */
 STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
-                                const strut_model *model, const double *q, bool members);
+                                const strut_model *model, const double *positions, bool members);
 /** The lines and bodies of all grounds across the window, where those that are shaken are at `time` [s]; NAN: as drawn. */
 STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
                                  const strut_model *model, double time);
@@ -85,7 +87,7 @@ STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *windo
  * `longest` is the length [pt] of an arrow of `limit` [N].
  */
 STRUT_API void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
-                                         const strut_model *model, const double *q,
+                                         const strut_model *model, const double *positions,
                                          const double (*force)[2], double limit, double longest);
 /** A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);

@@ -15,8 +15,8 @@ typedef struct strut_drawing {
 } strut_drawing;
 
 /** The longest straight part of a member on the page, where its name and its stop stand. */
-void strut_longest_segment(const strut_window *window, const strut_model *model, const double *q,
-                           size_t member, double longest[2][2]);
+void strut_longest_segment(const strut_window *window, const strut_model *model,
+                           const double *positions, size_t member, double longest[2][2]);
 
 /** The colour of all but members and nodes, so opaque. */
 strut_colour strut_thing_colour(const strut_drawing *drawing, double alpha);

@@ -39,15 +39,15 @@ static void draw_belt(strut_canvas *canvas, const double (*points)[2], double sp
                    (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
 }
 
-static void draw_one(strut_canvas *canvas, const strut_window *w, const strut_ground *ground,
+static void draw_one(strut_canvas *canvas, const strut_window *window, const strut_ground *ground,
                      const double *place) {
-  double width = w->box.width / w->scale, height = w->box.height / w->scale;
-  const double middle[2] = {w->left + 0.5 * width, w->top - 0.5 * height};
+  double width = window->box.width / window->scale, height = window->box.height / window->scale;
+  const double middle[2] = {window->left + 0.5 * width, window->top - 0.5 * height};
   strut_arena arena = {0};
   double(*points)[2] = strut_arena_allocate(&arena, strut_outline_most(ground), sizeof *points);
   if (points) {
     size_t count = strut_outline_of(ground, place, middle, 0.7 * (width + height), points);
-    for (size_t k = 0; k < count; k++) strut_window_point(w, points[k], points[k]);
+    for (size_t k = 0; k < count; k++) strut_window_point(window, points[k], points[k]);
     hatch(canvas, (const double(*)[2])points, count);
     strut_draw_line(canvas, (const double(*)[2])points, count,
                     (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
@@ -57,15 +57,15 @@ static void draw_one(strut_canvas *canvas, const strut_window *w, const strut_gr
   strut_arena_free(&arena);
 }
 
-void strut_draw_ground(strut_canvas *canvas, const strut_window *w, const strut_model *model,
+void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model,
                        double time) {
   const strut_scene *scene = model->scene;
-  strut_canvas_clip(canvas, w->box);
-  if (scene->ground.present) draw_one(canvas, w, &scene->ground, NULL);
+  strut_canvas_clip(canvas, window->box);
+  if (scene->ground.present) draw_one(canvas, window, &scene->ground, NULL);
   for (size_t g = 0; g < scene->ground_count; g++) {
     double place[2];
     if (!isnan(time)) strut_ground_place(scene, g, time, place);
-    draw_one(canvas, w, &scene->grounds[g], isnan(time) ? NULL : place);
+    draw_one(canvas, window, &scene->grounds[g], isnan(time) ? NULL : place);
   }
   strut_canvas_unclip(canvas);
 }

@@ -47,28 +47,29 @@ static void shorten(double ends[2][2], double by, bool arrow) {
 }
 
 /* From a trail's first point to its last. */
-static void draw_straight(strut_canvas *canvas, const strut_window *window, const strut_trail *t) {
-  bool arrow = t->kind == STRUT_TRAIL_ARROW;
+static void draw_straight(strut_canvas *canvas, const strut_window *window,
+                          const strut_trail *trail) {
+  bool arrow = trail->kind == STRUT_TRAIL_ARROW;
   double ends[2][2];
-  strut_window_point(window, t->at[0], ends[0]);
-  strut_window_point(window, t->at[t->count - 1], ends[1]);
-  if (arrow && hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) < fmax(2 * t->gap, 2))
+  strut_window_point(window, trail->at[0], ends[0]);
+  strut_window_point(window, trail->at[trail->count - 1], ends[1]);
+  if (arrow && hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) < fmax(2 * trail->gap, 2))
     return;
-  shorten(ends, t->gap, arrow);
+  shorten(ends, trail->gap, arrow);
   if (arrow)
-    strut_draw_arrow(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], 5, t->pen);
+    strut_draw_arrow(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], 5, trail->pen);
   else
-    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], t->pen);
+    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], trail->pen);
 }
 
 /* Through points [first, last], in pieces of the array's size. */
-static void draw_part(strut_canvas *canvas, const strut_window *window, const strut_trail *t,
+static void draw_part(strut_canvas *canvas, const strut_window *window, const strut_trail *trail,
                       size_t first, size_t last, strut_pen pen) {
   enum { PIECE = 200 };
   double points[PIECE][2];
   size_t used = 0;
   for (size_t i = first; i <= last; i++) {
-    strut_window_point(window, t->at[i], points[used++]);
+    strut_window_point(window, trail->at[i], points[used++]);
     if (used < PIECE && i < last) continue;
     strut_draw_line(canvas, (const double(*)[2])points, used, pen);
     memcpy(points[0], points[used - 1], sizeof points[0]);
@@ -77,22 +78,25 @@ static void draw_part(strut_canvas *canvas, const strut_window *window, const st
 }
 
 /* A path that is no longer than a dot is not drawn. */
-static bool is_visible(const strut_window *window, const strut_trail *t) {
-  for (size_t i = 1; i < t->count; i++)
-    if (hypot(t->at[i][0] - t->at[0][0], t->at[i][1] - t->at[0][1]) * window->scale > DOT)
+static bool is_visible(const strut_window *window, const strut_trail *trail) {
+  for (size_t i = 1; i < trail->count; i++)
+    if (hypot(trail->at[i][0] - trail->at[0][0], trail->at[i][1] - trail->at[0][1]) *
+            window->scale >
+        DOT)
       return true;
   return false;
 }
 
-static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *t) {
-  size_t shades = t->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1;
-  if (t->kind == STRUT_TRAIL_ARROW || t->count == 2) draw_straight(canvas, window, t);
-  if (t->kind == STRUT_TRAIL_ARROW || t->count <= 2 || !is_visible(window, t)) return;
+static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *trail) {
+  size_t shades = trail->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1;
+  if (trail->kind == STRUT_TRAIL_ARROW || trail->count == 2) draw_straight(canvas, window, trail);
+  if (trail->kind == STRUT_TRAIL_ARROW || trail->count <= 2 || !is_visible(window, trail)) return;
   for (size_t shade = 0; shade < shades; shade++) {
-    size_t first = shade * (t->count - 1) / shades, last = (shade + 1) * (t->count - 1) / shades;
-    strut_pen pen = t->pen;
+    size_t first = shade * (trail->count - 1) / shades,
+           last = (shade + 1) * (trail->count - 1) / shades;
+    strut_pen pen = trail->pen;
     if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
-    if (last > first) draw_part(canvas, window, t, first, last, pen);
+    if (last > first) draw_part(canvas, window, trail, first, last, pen);
   }
 }
 
@@ -103,10 +107,13 @@ static void draw_trails(strut_canvas *canvas, const strut_window *window, const 
 }
 
 /* From where a shape was to its nodes, unless there are many. */
-static void draw_arrows(strut_canvas *canvas, const strut_window *window, const strut_shape *s) {
+static void draw_arrows(strut_canvas *canvas, const strut_window *window,
+                        const strut_shape *shape) {
   const strut_trail_kind kind = STRUT_TRAIL_ARROW;
-  for (int32_t i = 0; s->from && i < s->model->node_count && s->model->node_count <= LED; i++) {
-    const double at[2][2] = {{s->from[2 * i], s->from[2 * i + 1]}, {s->q[2 * i], s->q[2 * i + 1]}};
+  for (int32_t i = 0;
+       shape->from && i < shape->model->node_count && shape->model->node_count <= LED; i++) {
+    const double at[2][2] = {{shape->from[2 * i], shape->from[2 * i + 1]},
+                             {shape->q[2 * i], shape->q[2 * i + 1]}};
     draw_trail(canvas, window, &(strut_trail){kind, 2, at, strut_displacement_pen(), NODE, false});
   }
 }
@@ -228,9 +235,9 @@ static extent extent_of(const strut_panel *panels, size_t count) {
 }
 
 /* The scale in a drawing of that size [pt/m]. */
-static double scale_in(const extent *e, double width, double height) {
-  return fmin((width - 2 * e->margin) / e->size[0],
-              (height - e->below - 2 * e->margin) / e->size[1]);
+static double scale_in(const extent *self, double width, double height) {
+  return fmin((width - 2 * self->margin) / self->size[0],
+              (height - self->below - 2 * self->margin) / self->size[1]);
 }
 
 /* As many in a row as there is room for; or, on a page with a given aspect, as make the structures largest. */

@@ -30,23 +30,23 @@ typedef struct pass {
   double top, height[2]; /* NAN: not known from that side */
 } pass;
 
-static double level_energy(const ladder *l, size_t place) {
-  return l->all->list[l->chosen[place]].energy - l->zero;
+static double level_energy(const ladder *self, size_t place) {
+  return self->all->list[self->chosen[place]].energy - self->zero;
 }
 
-static pass find_pass(const ladder *l, size_t left, size_t right) {
+static pass find_pass(const ladder *self, size_t left, size_t right) {
   pass p = {.top = (double)NAN, .height = {(double)NAN, (double)NAN}};
-  for (size_t i = 0; i < l->all->barrier_count; i++) {
-    const strut_barrier *b = &l->all->barriers[i];
-    size_t from = (size_t)b->from, to = (size_t)b->to;
-    bool along = from == l->chosen[left] && to == l->chosen[right];
-    bool back = from == l->chosen[right] && to == l->chosen[left];
+  for (size_t i = 0; i < self->all->barrier_count; i++) {
+    const strut_barrier *barrier = &self->all->barriers[i];
+    size_t from = (size_t)barrier->from, to = (size_t)barrier->to;
+    bool along = from == self->chosen[left] && to == self->chosen[right];
+    bool back = from == self->chosen[right] && to == self->chosen[left];
     /* The direct pass where it is known, else the lowest path. */
-    double height = isfinite(b->direct) ? b->direct : b->height;
+    double height = isfinite(barrier->direct) ? barrier->direct : barrier->height;
     if ((!along && !back) || !isfinite(height)) continue;
     p.known = true;
     p.height[back] = height;
-    if (along || isnan(p.top)) p.top = height + level_energy(l, along ? left : right);
+    if (along || isnan(p.top)) p.top = height + level_energy(self, along ? left : right);
   }
   return p;
 }
@@ -59,34 +59,34 @@ bool strut_ladder_wanted(const strut_equilibria *all, const size_t *chosen, size
   return false;
 }
 
-static void add_point(strut_series *s, double *const columns[2], double x, double y) {
-  columns[0][s->count] = x, columns[1][s->count++] = y;
+static void add_point(strut_series *series, double *const columns[2], double x, double y) {
+  columns[0][series->count] = x, columns[1][series->count++] = y;
 }
 
 /* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
-static void add_arc(ladder *l, size_t left, size_t right, double top, double most) {
+static void add_arc(ladder *self, size_t left, size_t right, double top, double most) {
   bool far = right > left + 1;
   top = top <= most ? top : 1.3 * most;
   for (int i = 0; i < ARC; i++) {
-    double t = (double)i / (ARC - 1), low = level_energy(l, t < 0.5 ? left : right);
+    double t = (double)i / (ARC - 1), low = level_energy(self, t < 0.5 ? left : right);
     double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
-    add_point(&l->arcs[far], l->arc[far],
+    add_point(&self->arcs[far], self->arc[far],
               (double)left + LEVEL + t * ((double)(right - left) - 2 * LEVEL),
               low + rise * (top - low));
   }
-  add_point(&l->arcs[far], l->arc[far], (double)NAN, (double)NAN);
+  add_point(&self->arcs[far], self->arc[far], (double)NAN, (double)NAN);
 }
 
 /* The heights from either side, above the top. */
-static bool name_pass(ladder *l, size_t left, const pass *p) {
+static bool name_pass(ladder *self, size_t left, const pass *p) {
   char text[2][80] = {"", ""};
   for (int back = 0; back < 2; back++)
     if (isfinite(p->height[back]))
       snprintf(text[back], sizeof text[back], back ? "\xe2\x86\x90 %s" : "%s \xe2\x86\x92",
                strut_drawn_quantity(p->height[back], 3, "J").text);
-  strut_mark *mark = &l->marks[l->mark_count++];
+  strut_mark *mark = &self->marks[self->mark_count++];
   *mark = (strut_mark){.at = {(double)left + 0.5, p->top},
-                       .text = strut_arena_format(l->arena, "%s%s%s", text[0],
+                       .text = strut_arena_format(self->arena, "%s%s%s", text[0],
                                                   text[0][0] && text[1][0] ? "\n" : "", text[1]),
                        .gap = 2,
                        .angle = 0.5 * STRUT_PI,
@@ -99,49 +99,49 @@ static bool name_pass(ladder *l, size_t left, const pass *p) {
  * Gathers the tops of the barriers, or adds these below an axis that ends at `most`. Among many states, only those
  * between neighbours remain readable.
  */
-static bool add_passes(ladder *l, const double *most) {
+static bool add_passes(ladder *self, const double *most) {
   bool fine = true;
-  for (size_t left = 0; left < l->count; left++)
-    for (size_t right = left + 1; right < l->count && fine; right++) {
-      if (right > left + 1 && l->count > FEW) continue;
-      const pass p = find_pass(l, left, right);
+  for (size_t left = 0; left < self->count; left++)
+    for (size_t right = left + 1; right < self->count && fine; right++) {
+      if (right > left + 1 && self->count > FEW) continue;
+      const pass p = find_pass(self, left, right);
       if (!p.known) continue;
-      if (most) add_arc(l, left, right, p.top, *most);
-      if (most && right == left + 1) fine = name_pass(l, left, &p);
-      if (!most) l->tops[l->top_count++] = p.top;
+      if (most) add_arc(self, left, right, p.top, *most);
+      if (most && right == left + 1) fine = name_pass(self, left, &p);
+      if (!most) self->tops[self->top_count++] = p.top;
     }
   return fine;
 }
 
-static void add_level(ladder *l, size_t place) {
-  double x = (double)place, energy = level_energy(l, place);
-  bool few = l->count <= FEW;
-  add_point(&l->levels, l->level, x - LEVEL, energy);
-  add_point(&l->levels, l->level, x + LEVEL, energy);
-  add_point(&l->levels, l->level, (double)NAN, (double)NAN);
-  l->marks[l->mark_count++] = (strut_mark){.at = {x, energy},
-                                           .text = l->all->list[l->chosen[place]].name,
-                                           .font = {.size = few ? 8 : 7, .bold = few},
-                                           .gap = 3,
-                                           .angle = -0.5 * STRUT_PI,
-                                           .steady = 1,
-                                           .priority = 2};
+static void add_level(ladder *self, size_t place) {
+  double x = (double)place, energy = level_energy(self, place);
+  bool few = self->count <= FEW;
+  add_point(&self->levels, self->level, x - LEVEL, energy);
+  add_point(&self->levels, self->level, x + LEVEL, energy);
+  add_point(&self->levels, self->level, (double)NAN, (double)NAN);
+  self->marks[self->mark_count++] = (strut_mark){.at = {x, energy},
+                                                 .text = self->all->list[self->chosen[place]].name,
+                                                 .font = {.size = few ? 8 : 7, .bold = few},
+                                                 .gap = 3,
+                                                 .angle = -0.5 * STRUT_PI,
+                                                 .steady = 1,
+                                                 .priority = 2};
 }
 
-static double *allocate_columns(strut_series *s, double *columns[2], size_t count,
+static double *allocate_columns(strut_series *series, double *columns[2], size_t count,
                                 strut_arena *arena) {
   columns[0] = strut_arena_allocate(arena, 2 * count + 2, sizeof **columns);
   if (columns[0]) columns[1] = columns[0] + count + 1;
-  s->x = columns[0], s->y = columns[1];
+  series->x = columns[0], series->y = columns[1];
   return columns[0];
 }
 
 /* The energy axis, which leaves out single barriers far above all else. */
-static strut_axis find_axis(ladder *l, strut_beyond *beyond) {
+static strut_axis find_axis(ladder *self, strut_beyond *beyond) {
   strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = 0.0, .high = 0.0};
-  for (size_t k = 0; k < l->count; k++) strut_axis_include(&y, level_energy(l, k));
-  strut_axis_include(&y,
-                     strut_limit_without_outliers(l->tops, l->top_count, y.high, OUTLYING, beyond));
+  for (size_t k = 0; k < self->count; k++) strut_axis_include(&y, level_energy(self, k));
+  strut_axis_include(
+      &y, strut_limit_without_outliers(self->tops, self->top_count, y.high, OUTLYING, beyond));
   strut_axis_settle(&y, 0.2);
   return y;
 }

@@ -30,9 +30,10 @@ typedef struct picture {
 } picture;
 
 /* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
-static const double *drawn_shape(const picture *p, size_t i) {
-  const strut_equilibrium *e = &p->all->list[i];
-  return e->rest && e->ends_as == (int32_t)i ? e->rest : e->point.q;
+static const double *drawn_shape(const picture *self, size_t i) {
+  const strut_equilibrium *equilibrium = &self->all->list[i];
+  return equilibrium->rest && equilibrium->ends_as == (int32_t)i ? equilibrium->rest
+                                                                 : equilibrium->point.q;
 }
 
 /* Adds an index to those sorted by energy; equal ones keep the list's order. */
@@ -43,130 +44,140 @@ static void add_by_energy(const strut_equilibria *all, size_t *index, size_t *co
   index[k] = added;
 }
 
-static bool choose_equilibria(picture *p) {
-  size_t count = p->all->count;
-  p->standing = strut_arena_allocate(&p->arena, count, sizeof *p->standing);
-  p->aside = strut_arena_allocate(&p->arena, count, sizeof *p->aside);
-  if (!p->standing || !p->aside) return false;
+static bool choose_equilibria(picture *self) {
+  size_t count = self->all->count;
+  self->standing = strut_arena_allocate(&self->arena, count, sizeof *self->standing);
+  self->aside = strut_arena_allocate(&self->arena, count, sizeof *self->aside);
+  if (!self->standing || !self->aside) return false;
   for (size_t i = 0; i < count; i++) {
-    const strut_equilibrium *e = &p->all->list[i];
-    bool floppy = e->outcome == STRUT_OUTCOME_FLOPPY;
-    p->largest_energy = fmax(p->largest_energy, fabs(e->energy));
-    if (e->point.label != STRUT_STABLE && e->point.label != STRUT_FLOPPY) continue;
-    if (e->outcome == STRUT_OUTCOME_STANDS || floppy)
-      add_by_energy(p->all, p->standing, &p->standing_count, i), p->floppy_count += floppy;
+    const strut_equilibrium *equilibrium = &self->all->list[i];
+    bool floppy = equilibrium->outcome == STRUT_OUTCOME_FLOPPY;
+    self->largest_energy = fmax(self->largest_energy, fabs(equilibrium->energy));
+    if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
+      continue;
+    if (equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy)
+      add_by_energy(self->all, self->standing, &self->standing_count, i),
+          self->floppy_count += floppy;
     else
-      add_by_energy(p->all, p->aside, &p->aside_count, i);
+      add_by_energy(self->all, self->aside, &self->aside_count, i);
   }
-  p->cards = p->standing_count < MOST_CARDS ? p->standing_count : MOST_CARDS;
-  p->small = p->aside_count < MOST_SMALL ? p->aside_count : MOST_SMALL;
+  self->cards = self->standing_count < MOST_CARDS ? self->standing_count : MOST_CARDS;
+  self->small = self->aside_count < MOST_SMALL ? self->aside_count : MOST_SMALL;
   return true;
 }
 
-static strut_bounds bounds_of(const picture *p, size_t i) {
+static strut_bounds bounds_of(const picture *self, size_t i) {
   strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, p->model, drawn_shape(p, i));
+  strut_bounds_add(&b, self->model, drawn_shape(self, i));
   return b;
 }
 
 /* The scales that all cards share: of forces but for collapsed states with far larger ones. */
-static void find_scales(picture *p) {
+static void find_scales(picture *self) {
   double most[MOST_CARDS] = {0};
-  const size_t *shown = p->cards ? p->standing : p->aside;
-  for (size_t k = 0; k < (p->cards ? p->cards : p->small); k++) {
-    const strut_bounds b = bounds_of(p, shown[k]);
-    for (int d = 0; d < 2; d++) p->size[d] = fmax(p->size[d], b.high[d] - b.low[d]);
+  const size_t *shown = self->cards ? self->standing : self->aside;
+  for (size_t k = 0; k < (self->cards ? self->cards : self->small); k++) {
+    const strut_bounds b = bounds_of(self, shown[k]);
+    for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
   }
-  for (size_t k = 0; k < p->cards; k++) {
-    const strut_equilibrium *e = &p->all->list[p->standing[k]];
-    for (size_t j = 0; j < p->model->scene->member_count; j++)
-      most[k] = fmax(most[k], fabs(e->member_force[j]));
-    for (int32_t i = 0; i < e->contact_count && e->normal; i++)
-      p->contact_limit = fmax(p->contact_limit, fabs(e->normal[i]));
+  for (size_t k = 0; k < self->cards; k++) {
+    const strut_equilibrium *equilibrium = &self->all->list[self->standing[k]];
+    for (size_t j = 0; j < self->model->scene->member_count; j++)
+      most[k] = fmax(most[k], fabs(equilibrium->member_force[j]));
+    for (int32_t i = 0; i < equilibrium->contact_count && equilibrium->normal; i++)
+      self->contact_limit = fmax(self->contact_limit, fabs(equilibrium->normal[i]));
   }
-  p->force_limit = strut_limit_without_outliers(most, p->cards, 0.0, COLLAPSED, &p->beyond);
-  p->beyond.below = p->beyond.above; /* of either sign */
+  self->force_limit =
+      strut_limit_without_outliers(most, self->cards, 0.0, COLLAPSED, &self->beyond);
+  self->beyond.below = self->beyond.above; /* of either sign */
 }
 
 /* As large as all others, about the shape's middle, from the ground or its foot on. */
-static strut_bounds shared_bounds(const picture *p, size_t i) {
-  const strut_ground *ground = &p->model->scene->ground;
-  strut_bounds b = bounds_of(p, i);
+static strut_bounds shared_bounds(const picture *self, size_t i) {
+  const strut_ground *ground = &self->model->scene->ground;
+  strut_bounds b = bounds_of(self, i);
   double middle = 0.5 * (b.low[0] + b.high[0]);
   if (ground->present && ground->slope == 0) b.low[1] = fmin(b.low[1], ground->height);
   for (int side = -1; side <= 1; side += 2)
-    (side < 0 ? b.low : b.high)[0] = middle + side * 0.5 * p->size[0];
-  b.high[1] = b.low[1] + p->size[1];
+    (side < 0 ? b.low : b.high)[0] = middle + side * 0.5 * self->size[0];
+  b.high[1] = b.low[1] + self->size[1];
   return b;
 }
 
 /* The panel of an equilibrium. */
-static strut_shape *add_panel(picture *p, size_t i, double margin) {
-  const strut_equilibrium *e = &p->all->list[i];
-  size_t k = p->panel_count++;
-  double energy = fabs(e->energy) > ROUNDING * p->largest_energy ? e->energy : 0;
-  p->shapes[k] = (strut_shape){.model = p->model, .q = drawn_shape(p, i), .ground = true};
-  p->views[k] = (strut_view){
-      .shape_count = 1, .shapes = &p->shapes[k], .bounds = shared_bounds(p, i), .margin = margin};
-  p->panels[k] = (strut_panel){.note = p->texts[k], .view = &p->views[k]};
-  snprintf(p->texts[k], NOTE, "%s, %s", strut_drawn_quantity(energy, 6, "J").text, e->verdict);
-  return &p->shapes[k];
+static strut_shape *add_panel(picture *self, size_t i, double margin) {
+  const strut_equilibrium *equilibrium = &self->all->list[i];
+  size_t k = self->panel_count++;
+  double energy =
+      fabs(equilibrium->energy) > ROUNDING * self->largest_energy ? equilibrium->energy : 0;
+  self->shapes[k] = (strut_shape){.model = self->model, .q = drawn_shape(self, i), .ground = true};
+  self->views[k] = (strut_view){.shape_count = 1,
+                                .shapes = &self->shapes[k],
+                                .bounds = shared_bounds(self, i),
+                                .margin = margin};
+  self->panels[k] = (strut_panel){.note = self->texts[k], .view = &self->views[k]};
+  snprintf(self->texts[k], NOTE, "%s, %s", strut_drawn_quantity(energy, 6, "J").text,
+           equilibrium->verdict);
+  return &self->shapes[k];
 }
 
 /* An equilibrium that stands, with the forces in it and of the ground. False: out of memory. */
-static bool add_card(picture *p, size_t i) {
-  const strut_equilibrium *e = &p->all->list[i];
-  const strut_contact_table *contacts = &p->model->contacts;
-  double(*force)[2] = strut_arena_allocate(&p->arena, (size_t)contacts->count + 1, sizeof *force);
-  for (int32_t k = 0; force && k < e->contact_count && e->normal; k++)
+static bool add_card(picture *self, size_t i) {
+  const strut_equilibrium *equilibrium = &self->all->list[i];
+  const strut_contact_table *contacts = &self->model->contacts;
+  double(*force)[2] =
+      strut_arena_allocate(&self->arena, (size_t)contacts->count + 1, sizeof *force);
+  for (int32_t k = 0; force && k < equilibrium->contact_count && equilibrium->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
-      if (contacts->entry[c].node == e->contacts[k]) force[c][0] = e->normal[k];
-  strut_shape *shape = add_panel(p, i, MARGIN);
-  p->panels[p->panel_count - 1].title = e->name;
+      if (contacts->entry[c].node == equilibrium->contacts[k]) force[c][0] = equilibrium->normal[k];
+  strut_shape *shape = add_panel(self, i, MARGIN);
+  self->panels[self->panel_count - 1].title = equilibrium->name;
   shape->style = (strut_structure_style){.colouring = STRUT_COLOUR_FORCE,
-                                         .values = e->member_force,
-                                         .slack_forces = e->member_force,
-                                         .limit = p->force_limit};
+                                         .values = equilibrium->member_force,
+                                         .slack_forces = equilibrium->member_force,
+                                         .limit = self->force_limit};
   shape->names = true;
   shape->forces = (const double(*)[2])force;
-  shape->force_limit = p->contact_limit;
+  shape->force_limit = self->contact_limit;
   shape->arrow = ARROW;
   return force != NULL;
 }
 
 /* Cards, their energies with the barriers, and the others small. False: out of memory. */
-static bool add_panels(picture *p) {
-  for (size_t k = 0; k < p->cards; k++)
-    if (!add_card(p, p->standing[k])) return false;
-  if (p->cards > 1 && strut_ladder_wanted(p->all, p->standing, p->cards)) {
-    strut_panel *ladder = &p->panels[p->panel_count++];
-    if (!strut_ladder_fill(p->all, p->standing, p->cards, &p->arena, ladder)) return false;
+static bool add_panels(picture *self) {
+  for (size_t k = 0; k < self->cards; k++)
+    if (!add_card(self, self->standing[k])) return false;
+  if (self->cards > 1 && strut_ladder_wanted(self->all, self->standing, self->cards)) {
+    strut_panel *ladder = &self->panels[self->panel_count++];
+    if (!strut_ladder_fill(self->all, self->standing, self->cards, &self->arena, ladder))
+      return false;
     ladder->height = LADDER;
     ladder->whole = true;
   }
-  for (size_t k = 0; k < p->small; k++) {
-    add_panel(p, p->aside[k], LEAST_MARGIN)->style =
+  for (size_t k = 0; k < self->small; k++) {
+    add_panel(self, self->aside[k], LEAST_MARGIN)->style =
         (strut_structure_style){.colouring = STRUT_COLOUR_ONE,
                                 .colour = strut_grey(0.45),
                                 .thinness = 0.4,
                                 .no_nodes = true};
-    p->panels[p->panel_count - 1].small = true;
+    self->panels[self->panel_count - 1].small = true;
   }
   return true;
 }
 
-static void describe_all(const picture *p, char text[NOTE]) {
-  size_t stable = p->standing_count - p->floppy_count;
+static void describe_all(const picture *self, char text[NOTE]) {
+  size_t stable = self->standing_count - self->floppy_count;
   char floppy[40] = "", aside[200] = "";
-  if (p->floppy_count) snprintf(floppy, sizeof floppy, ", %zu floppy", p->floppy_count);
-  if (p->small)
+  if (self->floppy_count) snprintf(floppy, sizeof floppy, ", %zu floppy", self->floppy_count);
+  if (self->small)
     snprintf(aside, sizeof aside,
              "; small and grey: stable on static supports, but not at rest on the ground%s%.0zu%s",
-             p->small < p->aside_count ? " (the lowest of " : "",
-             p->small < p->aside_count ? p->aside_count : 0, p->small < p->aside_count ? ")" : "");
+             self->small < self->aside_count ? " (the lowest of " : "",
+             self->small < self->aside_count ? self->aside_count : 0,
+             self->small < self->aside_count ? ")" : "");
   snprintf(text, NOTE, "%zu stable equilibri%s%s%s%s%s", stable, stable == 1 ? "um" : "a",
-           p->model->scene->ground.present ? " on the ground" : "", floppy,
-           p->cards < p->standing_count ? ", the lowest are drawn" : "", aside);
+           self->model->scene->ground.present ? " on the ground" : "", floppy,
+           self->cards < self->standing_count ? ", the lowest are drawn" : "", aside);
 }
 
 strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,

@@ -38,23 +38,24 @@ typedef struct picture {
 } picture;
 
 /* Chooses the modes with panels: rigid-body motions only if there are no others. */
-static void choose_modes(picture *p, size_t panels) {
+static void choose_modes(picture *self, size_t panels) {
   size_t others = 0, most = panels ? panels : STRUT_MODES_FIGURE_PANELS;
-  for (size_t i = 0; i < p->modes->count; i++) others += p->modes->list[i].kind != STRUT_MODE_RIGID;
-  for (size_t i = 0; i < p->modes->count && p->count < most && p->count < MOST; i++)
-    if (!others || p->modes->list[i].kind != STRUT_MODE_RIGID)
-      p->shown[p->count++] = &p->modes->list[i];
+  for (size_t i = 0; i < self->modes->count; i++)
+    others += self->modes->list[i].kind != STRUT_MODE_RIGID;
+  for (size_t i = 0; i < self->modes->count && self->count < most && self->count < MOST; i++)
+    if (!others || self->modes->list[i].kind != STRUT_MODE_RIGID)
+      self->shown[self->count++] = &self->modes->list[i];
 }
 
 /* Strains of all members by the displacement drawn, to first order; returns the largest. */
-static double find_strains(const picture *p, const double *moved, double *strain) {
-  const double *q = p->modes->q;
+static double find_strains(const picture *self, const double *moved, double *strain) {
+  const double *q = self->modes->q;
   double largest = 0.0;
-  for (size_t j = 0; j < p->model->scene->member_count; j++) {
-    const strut_member *m = &p->model->scene->members[j];
+  for (size_t j = 0; j < self->model->scene->member_count; j++) {
+    const strut_member *member = &self->model->scene->members[j];
     double change = 0.0, length = 0.0;
-    for (size_t k = 0; k <= m->guide_count; k++) {
-      int32_t a = 2 * strut_member_node(m, k), b = 2 * strut_member_node(m, k + 1);
+    for (size_t k = 0; k <= member->guide_count; k++) {
+      int32_t a = 2 * strut_member_node(member, k), b = 2 * strut_member_node(member, k + 1);
       double own = 0.0, part = strut_distance(q + a, q + b);
       for (int d = 0; d < 2; d++)
         own += (q[b + d] - q[a + d]) * (moved[b + d] - q[b + d] - moved[a + d] + q[a + d]);
@@ -94,76 +95,80 @@ static void describe_mode(const strut_mode *mode, size_t number, mode_panel *to)
 }
 
 /* Fills in a panel, and widens the picture's bounds to it. False: out of memory. */
-static bool add_mode(picture *p, size_t k) {
-  const strut_mode *mode = p->shown[k];
-  const strut_model *model = p->model;
-  mode_panel *to = &p->of[k];
+static bool add_mode(picture *self, size_t k) {
+  const strut_mode *mode = self->shown[k];
+  const strut_model *model = self->model;
+  mode_panel *to = &self->of[k];
   double most = 0.0;
-  to->moved = strut_arena_copy(&p->arena, p->modes->q, (size_t)model->length, sizeof *to->moved);
-  to->strain = strut_arena_allocate(&p->arena, model->scene->member_count + 1, sizeof(double));
+  to->moved =
+      strut_arena_copy(&self->arena, self->modes->q, (size_t)model->length, sizeof *to->moved);
+  to->strain = strut_arena_allocate(&self->arena, model->scene->member_count + 1, sizeof(double));
   if (!to->moved || !to->strain) return false;
   for (int32_t i = 0; i < model->node_count; i++)
     most = fmax(most, hypot(mode->shape[2 * i], mode->shape[2 * i + 1]));
   for (int32_t i = 0; i < model->length && most > 0; i++)
-    to->moved[i] += STRUT_MODES_FIGURE_SWING * p->size / most * mode->shape[i];
-  strut_bounds_add(&p->bounds, model, to->moved);
-  describe_mode(mode, (size_t)(mode - p->modes->list) + 1, to);
+    to->moved[i] += STRUT_MODES_FIGURE_SWING * self->size / most * mode->shape[i];
+  strut_bounds_add(&self->bounds, model, to->moved);
+  describe_mode(mode, (size_t)(mode - self->modes->list) + 1, to);
   to->shapes[0] = (strut_shape){.model = model,
-                                .q = p->modes->q,
+                                .q = self->modes->q,
                                 .style = {.colouring = STRUT_COLOUR_ONE,
                                           .colour = strut_grey(0.8),
-                                          .slack_forces = p->taut,
+                                          .slack_forces = self->taut,
                                           .no_nodes = true},
                                 .ground = true};
   to->shapes[1] = (strut_shape){.model = model,
                                 .q = to->moved,
                                 .style = {.colouring = STRUT_COLOUR_FORCE,
                                           .values = to->strain,
-                                          .limit = find_strains(p, to->moved, to->strain),
-                                          .slack_forces = p->taut,
+                                          .limit = find_strains(self, to->moved, to->strain),
+                                          .slack_forces = self->taut,
                                           .no_supports = true},
-                                .from = p->modes->q,
+                                .from = self->modes->q,
                                 .names = model->node_count <= NAMED};
   to->view = (strut_view){.shape_count = 2, .shapes = to->shapes, .margin = MARGIN};
-  p->panels[k] = (strut_panel){.title = to->title,
-                               .note = to->words,
-                               .view = &to->view,
-                               .marks = p->rings,
-                               .mark_count = (size_t)p->modes->closed_count};
+  self->panels[k] = (strut_panel){.title = to->title,
+                                  .note = to->words,
+                                  .view = &to->view,
+                                  .marks = self->rings,
+                                  .mark_count = (size_t)self->modes->closed_count};
   return true;
 }
 
 /* Fills in all panels. False: out of memory. */
-static bool add_modes(picture *p) {
-  const double *q = p->modes->q;
-  p->of = strut_arena_allocate(&p->arena, p->count + 1, sizeof *p->of);
-  p->panels = strut_arena_allocate(&p->arena, p->count + 1, sizeof *p->panels);
-  p->rings = strut_arena_allocate(&p->arena, (size_t)p->modes->closed_count + 1, sizeof *p->rings);
-  p->taut = strut_arena_allocate(&p->arena, p->model->scene->member_count + 1, sizeof(double));
-  if (!p->of || !p->panels || !p->rings || !p->taut) return false;
-  for (size_t j = 0; j < p->model->scene->member_count; j++)
-    p->taut[j] =
-        p->model->scene->members[j].kind != STRUT_CABLE ||
-        strut_member_path_length(p->model, (int32_t)j, q) > p->model->members.rest[j] * (1 - 1e-12);
-  for (int32_t k = 0; k < p->modes->closed_count; k++) {
-    const double *at = q + 2 * p->modes->closed[k];
-    p->rings[k] = (strut_mark){.at = {at[0], at[1]}, .ring = true};
+static bool add_modes(picture *self) {
+  const double *q = self->modes->q;
+  self->of = strut_arena_allocate(&self->arena, self->count + 1, sizeof *self->of);
+  self->panels = strut_arena_allocate(&self->arena, self->count + 1, sizeof *self->panels);
+  self->rings = strut_arena_allocate(&self->arena, (size_t)self->modes->closed_count + 1,
+                                     sizeof *self->rings);
+  self->taut =
+      strut_arena_allocate(&self->arena, self->model->scene->member_count + 1, sizeof(double));
+  if (!self->of || !self->panels || !self->rings || !self->taut) return false;
+  for (size_t j = 0; j < self->model->scene->member_count; j++)
+    self->taut[j] = self->model->scene->members[j].kind != STRUT_CABLE ||
+                    strut_member_path_length(self->model, (int32_t)j, q) >
+                        self->model->members.rest[j] * (1 - 1e-12);
+  for (int32_t k = 0; k < self->modes->closed_count; k++) {
+    const double *at = q + 2 * self->modes->closed[k];
+    self->rings[k] = (strut_mark){.at = {at[0], at[1]}, .ring = true};
   }
-  p->bounds = strut_bounds_none();
-  strut_bounds_add(&p->bounds, p->model, q);
-  p->size = strut_bounds_extent(&p->bounds);
-  if (!(p->size > 0)) p->size = p->model->size;
-  for (size_t k = 0; k < p->count; k++)
-    if (!add_mode(p, k)) return false;
-  for (size_t k = 0; k < p->count; k++) p->of[k].view.bounds = p->bounds;
+  self->bounds = strut_bounds_none();
+  strut_bounds_add(&self->bounds, self->model, q);
+  self->size = strut_bounds_extent(&self->bounds);
+  if (!(self->size > 0)) self->size = self->model->size;
+  for (size_t k = 0; k < self->count; k++)
+    if (!add_mode(self, k)) return false;
+  for (size_t k = 0; k < self->count; k++) self->of[k].view.bounds = self->bounds;
   return true;
 }
 
 /* Names the modes that have no panel; empty where all have one. */
-static void describe_omitted(const picture *p, char text[TITLE]) {
-  size_t rigid = 0, left = p->modes->count - p->count;
-  for (size_t i = 0; i < p->modes->count; i++) rigid += p->modes->list[i].kind == STRUT_MODE_RIGID;
-  if (p->shown[0]->kind == STRUT_MODE_RIGID) rigid -= p->count;
+static void describe_omitted(const picture *self, char text[TITLE]) {
+  size_t rigid = 0, left = self->modes->count - self->count;
+  for (size_t i = 0; i < self->modes->count; i++)
+    rigid += self->modes->list[i].kind == STRUT_MODE_RIGID;
+  if (self->shown[0]->kind == STRUT_MODE_RIGID) rigid -= self->count;
   left -= rigid;
   text[0] = '\0';
   int used = 0;

@@ -72,17 +72,18 @@ static size_t count_items(const strut_run_scene *run, int kind) {
 
 /* One value of a kind at a frame: of a channel the first component. */
 static double value_at(const strut_run_scene *run, int kind, size_t item, size_t f) {
-  const strut_trajectory *m = run->motion;
+  const strut_trajectory *trajectory = run->motion;
   assert(item < count_items(run, kind));
   if (kind == STRUT_RUN_DISPLACEMENT) return strut_run_measured(run, f, (int)item);
   if (kind == STRUT_RUN_HEIGHTS) {
-    const double *at = strut_run_positions(run, f) + 2 * m->contact_node[item];
+    const double *at = strut_run_positions(run, f) + 2 * trajectory->contact_node[item];
     return (at[1] - strut_run_ground_at(run, at[0])) * cos(run->model->scene->ground.slope);
   }
   const strut_channel_row *row = strut_channel_row_of(kinds[kind].channel);
   size_t step = kind == STRUT_RUN_ENERGIES ? 1 : row->components;
   size_t columns = row->components * strut_channel_items(row, run->model->scene);
-  return kinds[kind].factor * strut_trajectory_channel(m, row->id)[f * columns + step * item];
+  return kinds[kind].factor *
+         strut_trajectory_channel(trajectory, row->id)[f * columns + step * item];
 }
 
 /* True if a contact ever touches the ground; heights of others are omitted. */
@@ -162,22 +163,22 @@ static size_t choose_curves(const strut_run_scene *run, int kind, size_t first,
   return count;
 }
 
-static bool fill_panel(strut_run_scene *run, int kind, size_t first, panel *p) {
+static bool fill_panel(strut_run_scene *run, int kind, size_t first, panel *self) {
   size_t chosen[MOST_CURVES], frames = run->frames - first;
   double most = 0;
-  p->count = choose_curves(run, kind, first, chosen);
-  for (size_t i = 0; i < p->count; i++) {
+  self->count = choose_curves(run, kind, first, chosen);
+  for (size_t i = 0; i < self->count; i++) {
     double start = from_start(kind) ? value_at(run, kind, chosen[i], first) : 0;
-    p->values[i] = strut_arena_allocate(&run->arena, frames, sizeof(double));
-    if (!p->values[i]) return false;
+    self->values[i] = strut_arena_allocate(&run->arena, frames, sizeof(double));
+    if (!self->values[i]) return false;
     for (size_t f = 0; f < frames; f++) {
-      p->values[i][f] = value_at(run, kind, chosen[i], first + f) - start;
-      most = fmax(most, fabs(p->values[i][f]));
+      self->values[i][f] = value_at(run, kind, chosen[i], first + f) - start;
+      most = fmax(most, fabs(self->values[i][f]));
     }
-    p->labels[i] = label_of(run, kind, chosen[i]);
+    self->labels[i] = label_of(run, kind, chosen[i]);
   }
-  if (kind == STRUT_RUN_DISPLACEMENT && p->count == 1) p->labels[0] = NULL;
-  p->least = fmax(least_range(run, kind), from_start(kind) ? 0 : LEVEL * most);
+  if (kind == STRUT_RUN_DISPLACEMENT && self->count == 1) self->labels[0] = NULL;
+  self->least = fmax(least_range(run, kind), from_start(kind) ? 0 : LEVEL * most);
   return true;
 }
 
@@ -199,10 +200,10 @@ static double length_at(const strut_run_scene *run, int32_t member, size_t f) {
 }
 
 /* Actuated rest lengths and actual lengths, as changes from the first frame. */
-static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
+static bool fill_drive(strut_run_scene *run, size_t first, panel *self) {
   const strut_drive_table *drives = &run->model->drives;
   size_t frames = run->frames - first;
-  for (int32_t i = 0; i < drives->count && p->count < 2 * MOST_DRIVEN; i++) {
+  for (int32_t i = 0; i < drives->count && self->count < 2 * MOST_DRIVEN; i++) {
     int32_t member = drives->member[i];
     if (!drives->first[i] || !is_shown(run, i)) continue;
     const char *name = run->model->scene->members[member].name;
@@ -212,23 +213,23 @@ static bool fill_drive(strut_run_scene *run, size_t first, panel *p) {
       for (size_t f = 0; f < frames; f++)
         values[f] = k ? length_at(run, member, first + f) - length_at(run, member, first)
                       : driven_by(run, member, run->motion->time[first + f]);
-      p->labels[p->count] =
+      self->labels[self->count] =
           strut_arena_format(&run->arena, k ? "length of %s" : "rest length of %s", name);
-      if (!p->labels[p->count]) return false;
-      p->values[p->count++] = values;
+      if (!self->labels[self->count]) return false;
+      self->values[self->count++] = values;
     }
   }
-  p->least = least_range(run, STRUT_RUN_DRIVE);
+  self->least = least_range(run, STRUT_RUN_DRIVE);
   return true;
 }
 
 /* The range of all curves, at least p->least. */
-static void find_range(const panel *p, size_t frames, int kind, strut_axis *axis) {
-  for (size_t i = 0; i < p->count; i++)
-    for (size_t f = 0; f < frames; f++) strut_axis_include(axis, p->values[i][f]);
+static void find_range(const panel *self, size_t frames, int kind, strut_axis *axis) {
+  for (size_t i = 0; i < self->count; i++)
+    for (size_t f = 0; f < frames; f++) strut_axis_include(axis, self->values[i][f]);
   if (kind == STRUT_RUN_NORMALS) strut_axis_include(axis, 0);
   if (!(axis->low <= axis->high)) return;
-  double missing = p->least - (axis->high - axis->low);
+  double missing = self->least - (axis->high - axis->low);
   if (missing > 0) axis->low -= 0.5 * missing, axis->high += 0.5 * missing;
   strut_axis_settle(axis, ROOM);
 }

@@ -73,19 +73,19 @@ static double largest(const double *values, size_t count) {
 }
 
 bool strut_run_find_limits(strut_run_scene *run) {
-  const strut_trajectory *m = run->motion;
+  const strut_trajectory *trajectory = run->motion;
   double *most = strut_arena_allocate(&run->arena, run->frames + 1, sizeof *most);
   if (!most) return false;
-  for (size_t f = 0; f < run->frames && m->force; f++)
-    most[f] = largest(m->force + f * m->member_count, m->member_count);
+  for (size_t f = 0; f < run->frames && trajectory->force; f++)
+    most[f] = largest(trajectory->force + f * trajectory->member_count, trajectory->member_count);
   run->force_limit = strut_limit_without_outliers(most, run->frames, 0.0, FEW_FRAMES, &run->beyond);
   run->beyond.below = run->beyond.above; /* of either sign */
   return true;
 }
 
 void strut_run_count_frames(strut_run_scene *run) {
-  const strut_trajectory *m = run->motion;
-  while (run->frames < m->frames && is_shape(run, run->frames)) run->frames++;
+  const strut_trajectory *trajectory = run->motion;
+  while (run->frames < trajectory->frames && is_shape(run, run->frames)) run->frames++;
   double period = strut_experiment_span(run->figure->experiment, run->model->scene).period;
   double all = run->frames ? strut_run_time_from(run, 0) : 0;
   bool fine = (double)(run->frames - 1) * period >= LEAST_SAMPLES * all * (1 - 1e-9);
@@ -154,10 +154,11 @@ strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
   return b;
 }
 
-void strut_run_add_ground(const strut_run_scene *run, strut_bounds *b) {
+void strut_run_add_ground(const strut_run_scene *run, strut_bounds *bounds) {
   if (!run->model->scene->ground.present) return;
-  double ground = strut_run_ground_at(run, 0.5 * (b->low[0] + b->high[0]));
-  if (b->low[1] > ground && b->low[1] - ground < strut_bounds_extent(b)) b->low[1] = ground;
+  double ground = strut_run_ground_at(run, 0.5 * (bounds->low[0] + bounds->high[0]));
+  if (bounds->low[1] > ground && bounds->low[1] - ground < strut_bounds_extent(bounds))
+    bounds->low[1] = ground;
 }
 
 /* Parts of several views: shapes, contact forces, scales. */
@@ -165,29 +166,31 @@ void strut_run_add_ground(const strut_run_scene *run, strut_bounds *b) {
 static const double STANDING = 1e-6; /* of the model's size over the whole run: it stands still */
 
 void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
-  const strut_trajectory *m = run->motion;
-  for (size_t i = 0; m->contact && i < 2 * m->contact_count; i++) {
-    double force = fabs(m->contact[2 * frame * m->contact_count + i]);
+  const strut_trajectory *trajectory = run->motion;
+  for (size_t i = 0; trajectory->contact && i < 2 * trajectory->contact_count; i++) {
+    double force = fabs(trajectory->contact[2 * frame * trajectory->contact_count + i]);
     if (isfinite(force)) run->contact_limit = fmax(run->contact_limit, force);
   }
 }
 
 bool strut_run_shape(strut_run_scene *run, size_t frame, strut_shape *shape) {
-  const strut_trajectory *m = run->motion;
+  const strut_trajectory *trajectory = run->motion;
   *shape = (strut_shape){.model = run->model,
                          .q = strut_run_coordinates(run, frame),
-                         .style.time = m->time ? m->time[frame] : 0.0,
+                         .style.time = trajectory->time ? trajectory->time[frame] : 0.0,
                          .ground = true,
-                         .moving = m->time != NULL,
+                         .moving = trajectory->time != NULL,
                          .force_limit = run->contact_limit,
                          .arrow = STRUT_RUN_ARROW};
-  if (m->force) {
+  if (trajectory->force) {
     shape->style.colouring = STRUT_COLOUR_FORCE;
-    shape->style.values = shape->style.slack_forces = m->force + frame * m->member_count;
+    shape->style.values = shape->style.slack_forces =
+        trajectory->force + frame * trajectory->member_count;
     shape->style.limit = run->force_limit;
   }
-  if (m->contact && run->contact_limit > 0)
-    shape->forces = (const double(*)[2])(m->contact + 2 * frame * m->contact_count);
+  if (trajectory->contact && run->contact_limit > 0)
+    shape->forces =
+        (const double(*)[2])(trajectory->contact + 2 * frame * trajectory->contact_count);
   return shape->q != NULL;
 }
 
@@ -214,9 +217,9 @@ const strut_key_item *strut_run_arrow_item(strut_run_scene *run) {
 
 /* The measured velocity; 0 for a structure that stands still. */
 static double shown_velocity(const strut_run_scene *run) {
-  const strut_summary *s = run->summary;
-  double path = fabs(s->velocity) * fmax(s->duration, STRUT_RUN_MOMENT);
-  return path > STANDING * run->model->size ? s->velocity : 0;
+  const strut_summary *summary = run->summary;
+  double path = fabs(summary->velocity) * fmax(summary->duration, STRUT_RUN_MOMENT);
+  return path > STANDING * run->model->size ? summary->velocity : 0;
 }
 
 /* A second motion of the same structure, dashed below the first. */
@@ -260,15 +263,16 @@ void strut_run_describe_other(const strut_run_scene *run, char *text, size_t siz
 
 /* What the figure shows, in `note`: the failure, `what`, the velocity. */
 static void describe_run(const strut_run_scene *run, const char *what, char note[STRUT_RUN_NOTE]) {
-  const strut_summary *s = run->summary;
-  bool failed = s && s->status != STRUT_OK;
+  const strut_summary *summary = run->summary;
+  bool failed = summary && summary->status != STRUT_OK;
   int used = 0;
   if (failed)
     used = snprintf(note, STRUT_RUN_NOTE, "%s at %s; ",
-                    s->status == STRUT_DIVERGED ? "diverged" : "stopped",
-                    strut_drawn_quantity(s->duration, 4, "s").text);
+                    summary->status == STRUT_DIVERGED ? "diverged" : "stopped",
+                    strut_drawn_quantity(summary->duration, 4, "s").text);
   used += snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "%.400s", what);
-  if (!views[run->figure->view].velocity || !s || failed || !isfinite(s->velocity)) return;
+  if (!views[run->figure->view].velocity || !summary || failed || !isfinite(summary->velocity))
+    return;
   double v = shown_velocity(run);
   snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "; velocity of %.60s %s%s",
            strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,

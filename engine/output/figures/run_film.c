@@ -81,63 +81,65 @@ typedef struct making {
   strut_bounds view; /* of all shapes in the first picture's window */
 } making;
 
-static size_t frame_at(const making *m, size_t i) {
-  double shown = (double)i * m->film->speed / m->film->fps;
-  return strut_run_nearest(&m->run, m->run.motion->time[0] + shown);
+static size_t frame_at(const making *self, size_t i) {
+  double shown = (double)i * self->film->speed / self->film->fps;
+  return strut_run_nearest(&self->run, self->run.motion->time[0] + shown);
 }
 
-static strut_bounds bounds_of(const making *m, size_t i) {
+static strut_bounds bounds_of(const making *self, size_t i) {
   strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, m->run.model, strut_run_positions(&m->run, frame_at(m, i)));
+  strut_bounds_add(&b, self->run.model, strut_run_positions(&self->run, frame_at(self, i)));
   return b;
 }
 
 /* Moves bounds as the window has moved at picture i, or back. */
-static strut_bounds move(const making *m, size_t i, int sign, strut_bounds b) {
-  double part = sign * (double)i / fmax((double)m->film->frames - 1, 1);
-  for (int d = 0; d < 2; d++) b.low[d] += part * m->travel[d], b.high[d] += part * m->travel[d];
+static strut_bounds move(const making *self, size_t i, int sign, strut_bounds b) {
+  double part = sign * (double)i / fmax((double)self->film->frames - 1, 1);
+  for (int d = 0; d < 2; d++)
+    b.low[d] += part * self->travel[d], b.high[d] += part * self->travel[d];
   return b;
 }
 
-static void find_view(making *m) {
-  const strut_bounds first = bounds_of(m, 0), last = bounds_of(m, m->film->frames - 1);
+static void find_view(making *self) {
+  const strut_bounds first = bounds_of(self, 0), last = bounds_of(self, self->film->frames - 1);
   double size = strut_bounds_extent(&first);
   for (int d = 0; d < 2; d++) {
     double way = 0.5 * (last.low[d] + last.high[d] - first.low[d] - first.high[d]);
-    if (size > 0 && fabs(way) > FAR * size) m->travel[d] = way;
+    if (size > 0 && fabs(way) > FAR * size) self->travel[d] = way;
   }
-  m->view = strut_bounds_none();
-  for (size_t i = 0; i < m->film->frames; i++) {
-    const strut_bounds b = move(m, i, -1, bounds_of(m, i));
-    strut_bounds_widen(&m->view, b.low, b.high);
+  self->view = strut_bounds_none();
+  for (size_t i = 0; i < self->film->frames; i++) {
+    const strut_bounds b = move(self, i, -1, bounds_of(self, i));
+    strut_bounds_widen(&self->view, b.low, b.high);
   }
-  strut_run_add_ground(&m->run, &m->view);
+  strut_run_add_ground(&self->run, &self->view);
 }
 
 enum { MARKS = 40 };
 
 /* Marks along the ground, which they show passing. Returns their number. */
-static size_t add_marks(const making *m, const strut_window *w, double at[MARKS][2][2],
+static size_t add_marks(const making *self, const strut_window *window, double at[MARKS][2][2],
                         strut_trail trails[MARKS]) {
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.9, .butt = true};
-  double step = pow(10.0, ceil(log10(20.0 / w->scale))), right = w->left + w->box.width / w->scale;
-  const strut_ground *ground = &m->run.model->scene->ground;
+  double step = pow(10.0, ceil(log10(20.0 / window->scale))),
+         right = window->left + window->box.width / window->scale;
+  const strut_ground *ground = &self->run.model->scene->ground;
   size_t count = 0;
   if (!ground->present || ground->belt_speed != 0) return 0;
-  for (double x = step * ceil(w->left / step); x < right && count < MARKS; x += step) {
-    double y = strut_run_ground_at(&m->run, x);
+  for (double x = step * ceil(window->left / step); x < right && count < MARKS; x += step) {
+    double y = strut_run_ground_at(&self->run, x);
     for (int end = 0; end < 2; end++) at[count][end][0] = x, at[count][end][1] = y;
-    at[count][1][1] -= 9 / w->scale;
+    at[count][1][1] -= 9 / window->scale;
     trails[count] = (strut_trail){.count = 2, .at = (const double(*)[2])at[count], .pen = pen};
     count++;
   }
   return count;
 }
 
-static bool draw(making *m, strut_canvas *canvas, size_t i) {
+static bool draw(making *self, strut_canvas *canvas, size_t i) {
   strut_box page = strut_canvas_box(canvas), box = {0, HEAD, PAGE, page.height - HEAD - FOOT};
-  strut_run_scene run = m->run; /* with an arena for this frame alone */
-  size_t frame = frame_at(m, i);
+  strut_run_scene run = self->run; /* with an arena for this frame alone */
+  size_t frame = frame_at(self, i);
   char text[160], fitted[STRUT_FITTED_TEXT];
   const strut_font bold = {.size = 11, .bold = true};
   double at[MARKS][2][2];
@@ -146,18 +148,18 @@ static bool draw(making *m, strut_canvas *canvas, size_t i) {
   strut_view view = {.shape_count = 1,
                      .shapes = &shape,
                      .trails = marks,
-                     .bounds = move(m, i, 1, m->view),
+                     .bounds = move(self, i, 1, self->view),
                      .margin = MARGIN};
   const strut_window window = strut_window_fit(box, view.bounds, MARGIN);
   run.arena = (strut_arena){0};
   strut_canvas_clear(canvas, strut_grey(1));
-  view.trail_count = add_marks(m, &window, at, marks);
+  view.trail_count = add_marks(self, &window, at, marks);
   bool good = strut_run_shape(&run, frame, &shape);
   if (good) strut_draw_view(canvas, box, &(strut_panel){.view = &view});
   strut_arena_free(&run.arena);
   strut_text_fit(canvas, run.model->scene->name, bold, 0.7 * PAGE, 0, fitted);
   strut_draw_text(canvas, EDGE, EDGE - 4, fitted, bold);
-  double digits = fmin(fmax(ceil(-log10(m->film->speed / m->film->fps) - 1e-6), 0), 6);
+  double digits = fmin(fmax(ceil(-log10(self->film->speed / self->film->fps) - 1e-6), 0), 6);
   double moved = strut_run_measured(&run, frame, 0) - strut_run_measured(&run, 0, 0);
   if (fabs(moved) < 1e-9 * run.model->size) moved = 0;
   snprintf(text, sizeof text, "%.*f s   %.60s: x %s%s", (int)digits, run.motion->time[frame],
@@ -170,13 +172,14 @@ static bool draw(making *m, strut_canvas *canvas, size_t i) {
   return good;
 }
 
-static strut_status draw_all(making *m, strut_canvas *canvas, FILE *pipe, strut_error *error) {
-  const strut_film *film = m->film;
+static strut_status draw_all(making *self, strut_canvas *canvas, FILE *pipe, strut_error *error) {
+  const strut_film *film = self->film;
   for (size_t i = 0; i < film->frames; i++) {
     size_t stride = 0;
     if (film->interrupt && *film->interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted; no film was written");
-    const unsigned char *pixels = draw(m, canvas, i) ? strut_canvas_pixels(canvas, &stride) : NULL;
+    const unsigned char *pixels =
+        draw(self, canvas, i) ? strut_canvas_pixels(canvas, &stride) : NULL;
     if (!pixels) return strut_no_memory(error, "while making a film");
     if (!fwrite(pixels, stride * (size_t)film->height, 1, pipe)) break; /* ffmpeg says why */
     if (film->progress) film->progress(film->progress_context, (double)i / (double)film->frames);
@@ -184,8 +187,8 @@ static strut_status draw_all(making *m, strut_canvas *canvas, FILE *pipe, strut_
   return STRUT_OK;
 }
 
-static strut_status encode(making *m, strut_error *error) {
-  const strut_film *film = m->film;
+static strut_status encode(making *self, strut_error *error) {
+  const strut_film *film = self->film;
   strut_canvas *canvas = NULL;
   strut_file file = {0};
   void (*before)(int) = signal(SIGPIPE, SIG_IGN);
@@ -193,7 +196,7 @@ static strut_status encode(making *m, strut_error *error) {
       strut_canvas_open_pixels(film->width, film->height, film->width / PAGE, &canvas, error);
   if (status == STRUT_OK) status = strut_file_open_path(&file, film->path, error);
   FILE *pipe = status == STRUT_OK ? start_ffmpeg(film, file.part) : NULL;
-  if (pipe) status = draw_all(m, canvas, pipe, error);
+  if (pipe) status = draw_all(self, canvas, pipe, error);
   if ((!pipe || pclose(pipe) != 0) && status == STRUT_OK)
     status = strut_fail(error, STRUT_FILE_TROUBLE, "ffmpeg could not write '%s'", film->path);
   if (status == STRUT_OK) status = strut_file_commit(&file, error);

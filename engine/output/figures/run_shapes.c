@@ -42,63 +42,64 @@ static bool can_touch(const strut_run_scene *run, size_t node) {
 
 /* The centre of a node's enlargement: its mean position or, of a node that touches the ground,
    the point of the ground below, so that contact is drawn as contact. */
-static void find_anchor(const strut_run_scene *run, size_t node, node_paths *w) {
-  double *at = w->rest + 2 * node, lowest = HUGE_VAL;
+static void find_anchor(const strut_run_scene *run, size_t node, node_paths *self) {
+  double *at = self->rest + 2 * node, lowest = HUGE_VAL;
   at[0] = at[1] = 0;
-  for (size_t f = w->first; f < run->frames; f++) {
+  for (size_t f = self->first; f < run->frames; f++) {
     const double *p = strut_run_positions(run, f) + 2 * node;
-    for (int d = 0; d < 2; d++) at[d] += p[d] / (double)w->count;
+    for (int d = 0; d < 2; d++) at[d] += p[d] / (double)self->count;
     if (run->model->scene->ground.present)
       lowest = fmin(lowest, p[1] - strut_run_ground_at(run, p[0]));
   }
   if (!(lowest < CLOSED * run->model->size) || !can_touch(run, node)) return;
   at[1] = strut_run_ground_at(run, at[0]);
-  w->grounded = true;
+  self->grounded = true;
 }
 
-static bool find_paths(strut_run_scene *run, node_paths *w) {
+static bool find_paths(strut_run_scene *run, node_paths *self) {
   size_t nodes = run->motion->node_count;
-  *w = (node_paths){.first = first_frame(run)};
-  w->count = run->frames - w->first;
-  w->rest = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *w->rest);
-  w->path = strut_arena_allocate(&run->arena, nodes * w->count, sizeof *w->path);
-  if (!w->rest || !w->path) return false;
-  w->bounds = strut_run_frame_bounds(run, run->frames - 1);
+  *self = (node_paths){.first = first_frame(run)};
+  self->count = run->frames - self->first;
+  self->rest = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *self->rest);
+  self->path = strut_arena_allocate(&run->arena, nodes * self->count, sizeof *self->path);
+  if (!self->rest || !self->path) return false;
+  self->bounds = strut_run_frame_bounds(run, run->frames - 1);
   for (size_t i = 0; i < nodes; i++) {
-    find_anchor(run, i, w);
-    for (size_t f = 0; f < w->count; f++) {
-      double *at = w->path[i * w->count + f];
+    find_anchor(run, i, self);
+    for (size_t f = 0; f < self->count; f++) {
+      double *at = self->path[i * self->count + f];
       for (int d = 0; d < 2; d++) {
-        double rest = w->rest[2 * i + (size_t)d];
-        double moved = strut_run_positions(run, w->first + f)[2 * i + (size_t)d] - rest;
+        double rest = self->rest[2 * i + (size_t)d];
+        double moved = strut_run_positions(run, self->first + f)[2 * i + (size_t)d] - rest;
         at[d] = rest + enlargement(run, d) * moved;
       }
-      strut_bounds_widen(&w->bounds, at, at);
+      strut_bounds_widen(&self->bounds, at, at);
     }
   }
-  strut_run_add_ground(run, &w->bounds);
+  strut_run_add_ground(run, &self->bounds);
   /* Mean positions are no shape of a large motion: only enlarged paths are drawn over them. */
-  w->shape = is_enlarged(run) ? w->rest : strut_run_coordinates(run, run->frames - 1);
-  return w->shape;
+  self->shape = is_enlarged(run) ? self->rest : strut_run_coordinates(run, run->frames - 1);
+  return self->shape;
 }
 
 /* The paths of the second motion, about the centres of the first. False: out of memory. */
-static bool find_other_paths(strut_run_scene *run, const node_paths *w, node_paths *o) {
+static bool find_other_paths(strut_run_scene *run, const node_paths *self, node_paths *other_self) {
   strut_run_scene other;
   if (!strut_run_find_other(run, &other)) return true;
   other.arena = run->arena; /* what is drawn stays until the figure is */
-  bool good = find_paths(&other, o);
+  bool good = find_paths(&other, other_self);
   run->arena = other.arena;
   for (size_t i = 0; good && i < run->motion->node_count; i++)
-    for (size_t f = 0; f < o->count; f++)
+    for (size_t f = 0; f < other_self->count; f++)
       for (size_t d = 0; d < 2; d++)
-        o->path[i * o->count + f][d] += w->rest[2 * i + d] - o->rest[2 * i + d];
+        other_self->path[i * other_self->count + f][d] +=
+            self->rest[2 * i + d] - other_self->rest[2 * i + d];
   return good;
 }
 
-static void describe_period(const strut_run_scene *run, const node_paths *w, char *note) {
+static void describe_period(const strut_run_scene *run, const node_paths *self, char *note) {
   /* The period itself: the frames drawn of it span a whole number of samples. */
-  double span = run->period > 0 ? run->period : strut_run_time_from(run, w->first);
+  double span = run->period > 0 ? run->period : strut_run_time_from(run, self->first);
   strut_c_locale locale = strut_c_locale_enter();
   snprintf(note, STRUT_RUN_NOTE, "node trajectories over %s%s%s, dark to bright",
            run->period > 0 ? "one period (" : "", strut_drawn_quantity(span, 4, "s").text,
@@ -110,7 +111,7 @@ static void describe_period(const strut_run_scene *run, const node_paths *w, cha
              ", enlarged %g times along x and %g times along y about each node's mean position "
              "(grey)%s",
              enlargement(run, 0), enlargement(run, 1),
-             w->grounded ? " or, where it touches the ground, the point below" : "");
+             self->grounded ? " or, where it touches the ground, the point below" : "");
   strut_c_locale_leave(locale);
 }
 
@@ -211,20 +212,21 @@ static size_t count_cells(const strut_run_scene *run) {
 }
 
 /* Height of the ground below the middle of bounds. */
-static double ground_below(const strut_run_scene *run, const strut_bounds *b) {
-  return strut_run_ground_at(run, 0.5 * (b->low[0] + b->high[0]));
+static double ground_below(const strut_run_scene *run, const strut_bounds *bounds) {
+  return strut_run_ground_at(run, 0.5 * (bounds->low[0] + bounds->high[0]));
 }
 
 /* Finds the frames of the cells and what they show: both motions, and the ground where it is near. */
-static bool find_cells(strut_run_scene *run, grid *g) {
+static bool find_cells(strut_run_scene *run, grid *self) {
   strut_run_scene other;
   bool two = strut_run_find_other(run, &other);
-  g->count = count_cells(run);
-  g->cells = strut_arena_allocate(&run->arena, g->count, sizeof *g->cells);
-  g->all = strut_bounds_none();
-  for (size_t i = 0; g->cells && i < g->count; i++) {
-    snapshot *cell = &g->cells[i];
-    double time = run->figure->time_count ? run->figure->times[i] : default_time(run, i, g->count);
+  self->count = count_cells(run);
+  self->cells = strut_arena_allocate(&run->arena, self->count, sizeof *self->cells);
+  self->all = strut_bounds_none();
+  for (size_t i = 0; self->cells && i < self->count; i++) {
+    snapshot *cell = &self->cells[i];
+    double time =
+        run->figure->time_count ? run->figure->times[i] : default_time(run, i, self->count);
     cell->frame = strut_run_nearest(run, time);
     cell->bounds = strut_run_frame_bounds(run, cell->frame);
     if (two) {
@@ -235,66 +237,70 @@ static bool find_cells(strut_run_scene *run, grid *g) {
       run->arena = other.arena;
     }
     strut_run_add_ground(run, &cell->bounds);
-    strut_bounds_widen(&g->all, cell->bounds.low, cell->bounds.high);
+    strut_bounds_widen(&self->all, cell->bounds.low, cell->bounds.high);
     for (int d = 0; d < 2; d++)
-      g->size[d] = fmax(g->size[d], cell->bounds.high[d] - cell->bounds.low[d]);
+      self->size[d] = fmax(self->size[d], cell->bounds.high[d] - cell->bounds.low[d]);
     strut_run_expect_frame(run, cell->frame);
   }
-  return g->cells != NULL;
+  return self->cells != NULL;
 }
 
 /* How far the measured point has come since the first cell [m]. */
-static double way_to(const strut_run_scene *run, const grid *g, size_t i) {
-  return strut_run_measured(run, g->cells[i].frame, 0) -
-         strut_run_measured(run, g->cells[0].frame, 0);
+static double way_to(const strut_run_scene *run, const grid *self, size_t i) {
+  return strut_run_measured(run, self->cells[i].frame, 0) -
+         strut_run_measured(run, self->cells[0].frame, 0);
 }
 
 /* A shape near the ground, whose bounds reach it. */
-static bool is_grounded(const strut_run_scene *run, const strut_bounds *b) {
-  return run->model->scene->ground.present && b->low[1] <= ground_below(run, b);
+static bool is_grounded(const strut_run_scene *run, const strut_bounds *bounds) {
+  return run->model->scene->ground.present && bounds->low[1] <= ground_below(run, bounds);
 }
 
 /* The range of all cells along each axis: one for all where the shapes are close together. */
-static void find_sizes(const strut_run_scene *run, grid *g) {
+static void find_sizes(const strut_run_scene *run, grid *self) {
   const strut_ground *ground = &run->model->scene->ground;
-  double most = COMMON * fmax(g->size[0], g->size[1]);
-  for (size_t i = 0; i < g->count; i++)
-    g->moves = g->moves || fabs(way_to(run, g, i)) > SEEN * strut_bounds_extent(&g->all);
+  double most = COMMON * fmax(self->size[0], self->size[1]);
+  for (size_t i = 0; i < self->count; i++)
+    self->moves =
+        self->moves || fabs(way_to(run, self, i)) > SEEN * strut_bounds_extent(&self->all);
   for (int d = 0; d < 2; d++) {
-    double together = g->all.high[d] - g->all.low[d];
-    g->common[d] = together <= fmax(COMMON * g->size[d], 0.5 * most);
-    if (d == 1 && ground->present && ground->slope != 0 && !g->common[0]) g->common[1] = false;
-    if (g->common[d]) g->size[d] = together;
+    double together = self->all.high[d] - self->all.low[d];
+    self->common[d] = together <= fmax(COMMON * self->size[d], 0.5 * most);
+    if (d == 1 && ground->present && ground->slope != 0 && !self->common[0])
+      self->common[1] = false;
+    if (self->common[d]) self->size[d] = together;
   }
-  for (int pass = 0; pass < 2 && !g->common[1]; pass++)
-    for (size_t i = 0; i < g->count; i++) {
-      const strut_bounds *b = &g->cells[i].bounds;
-      if (!is_grounded(run, b)) continue;
-      if (pass == 0) g->base = fmin(g->base, b->low[1] - ground_below(run, b));
-      if (pass == 1) g->size[1] = fmax(g->size[1], b->high[1] - ground_below(run, b) - g->base);
+  for (int pass = 0; pass < 2 && !self->common[1]; pass++)
+    for (size_t i = 0; i < self->count; i++) {
+      const strut_bounds *bounds = &self->cells[i].bounds;
+      if (!is_grounded(run, bounds)) continue;
+      if (pass == 0) self->base = fmin(self->base, bounds->low[1] - ground_below(run, bounds));
+      if (pass == 1)
+        self->size[1] =
+            fmax(self->size[1], bounds->high[1] - ground_below(run, bounds) - self->base);
     }
 }
 
 /* What cell i shows, as large as all others: shapes on the ground are drawn at one height. */
-static strut_bounds bounds_of(const strut_run_scene *run, const grid *g, size_t i) {
-  const strut_bounds *own = &g->cells[i].bounds;
-  strut_bounds b = g->all;
+static strut_bounds bounds_of(const strut_run_scene *run, const grid *self, size_t i) {
+  const strut_bounds *own = &self->cells[i].bounds;
+  strut_bounds b = self->all;
   for (int d = 0; d < 2; d++) {
     double middle = 0.5 * (own->low[d] + own->high[d]);
-    if (g->common[d]) continue;
-    b.low[d] = middle - 0.5 * g->size[d];
-    if (d == 1 && is_grounded(run, own)) b.low[1] = ground_below(run, own) + g->base;
-    b.high[d] = b.low[d] + g->size[d];
+    if (self->common[d]) continue;
+    b.low[d] = middle - 0.5 * self->size[d];
+    if (d == 1 && is_grounded(run, own)) b.low[1] = ground_below(run, own) + self->base;
+    b.high[d] = b.low[d] + self->size[d];
   }
   return b;
 }
 
 /* One digit more than the times need to differ. */
-static int count_digits(const strut_run_scene *run, const grid *g) {
+static int count_digits(const strut_run_scene *run, const grid *self) {
   double least = HUGE_VAL, latest = 0;
-  for (size_t i = 0; i < g->count; i++) {
-    double time = run->motion->time[g->cells[i].frame];
-    double before = i ? run->motion->time[g->cells[i - 1].frame] : -HUGE_VAL;
+  for (size_t i = 0; i < self->count; i++) {
+    double time = run->motion->time[self->cells[i].frame];
+    double before = i ? run->motion->time[self->cells[i - 1].frame] : -HUGE_VAL;
     latest = fmax(latest, fabs(time));
     if (fabs(time - before) > STRUT_RUN_MOMENT) least = fmin(least, fabs(time - before));
   }
@@ -303,12 +309,12 @@ static int count_digits(const strut_run_scene *run, const grid *g) {
 }
 
 /* Fills in a cell's panel. False: out of memory. */
-static bool fill_cell(strut_run_scene *run, const grid *g, size_t i, strut_panel *panel) {
-  snapshot *cell = &g->cells[i];
+static bool fill_cell(strut_run_scene *run, const grid *self, size_t i, strut_panel *panel) {
+  snapshot *cell = &self->cells[i];
   bool alone = !cell->shapes[0].q;
-  double path = way_to(run, g, i), start = strut_run_measured(run, g->cells[0].frame, 0);
+  double path = way_to(run, self, i), start = strut_run_measured(run, self->cells[0].frame, 0);
   const char *time =
-      strut_drawn_quantity(run->motion->time[cell->frame], count_digits(run, g), "s").text;
+      strut_drawn_quantity(run->motion->time[cell->frame], count_digits(run, self), "s").text;
   int used = snprintf(cell->title, sizeof cell->title, "%s", time);
   if (i > 0 && fabs(path) > 1e-6 * run->model->size)
     snprintf(cell->title + used, sizeof cell->title - (size_t)used, ", x %s%s", path > 0 ? "+" : "",
@@ -316,7 +322,7 @@ static bool fill_cell(strut_run_scene *run, const grid *g, size_t i, strut_panel
   if (!strut_run_shape(run, cell->frame, &cell->shapes[1])) return false;
   cell->shapes[1].names = true;
   cell->line[0][0] = cell->line[1][0] = start;
-  cell->line[0][1] = g->all.low[1], cell->line[1][1] = g->all.high[1];
+  cell->line[0][1] = self->all.low[1], cell->line[1][1] = self->all.high[1];
   cell->start = (strut_trail){.count = 2,
                               .at = (const double(*)[2])cell->line,
                               .pen = {strut_grey(0.6), 0.6, {2, 2}, false},
@@ -324,8 +330,8 @@ static bool fill_cell(strut_run_scene *run, const grid *g, size_t i, strut_panel
   cell->view = (strut_view){.shapes = cell->shapes + alone,
                             .shape_count = 2 - alone,
                             .trails = &cell->start,
-                            .trail_count = g->common[0] && g->moves,
-                            .bounds = bounds_of(run, g, i),
+                            .trail_count = self->common[0] && self->moves,
+                            .bounds = bounds_of(run, self, i),
                             .margin = MARGIN};
   *panel = (strut_panel){.title = cell->title, .view = &cell->view};
   return true;

@@ -18,9 +18,10 @@ static double largest(const double *values, size_t count) {
 }
 
 /* A shape in colours of the forces in it, with names. */
-static strut_shape force_shape(const strut_model *model, const double *q, const double *force) {
+static strut_shape force_shape(const strut_model *model, const double *positions,
+                               const double *force) {
   return (strut_shape){.model = model,
-                       .q = q,
+                       .q = positions,
                        .style = {.colouring = STRUT_COLOUR_FORCE,
                                  .values = force,
                                  .slack_forces = force,
@@ -106,87 +107,90 @@ typedef struct picture {
 } picture;
 
 /* True if member forces exceed the effect of rounding in their lengths. */
-static bool forces_told(const picture *p) {
-  const strut_member_table *m = &p->model->members;
-  size_t members = p->model->scene->member_count;
+static bool forces_told(const picture *self) {
+  const strut_member_table *m = &self->model->members;
+  size_t members = self->model->scene->member_count;
   double scale = 0;
   for (size_t j = 0; j < members; j++) scale = fmax(scale, m->stiffness[j] * m->rest[j]);
-  return p->rigidity->prestressed && largest(p->rigidity->force, members) > 1e-12 * scale;
+  return self->rigidity->prestressed && largest(self->rigidity->force, members) > 1e-12 * scale;
 }
 
 /* The next panel, with so many shapes. Its title is written to what is returned. */
-static char *add_panel(picture *p, size_t shapes) {
-  size_t k = p->count++;
-  p->views[k] = (strut_view){
-      .shape_count = shapes, .shapes = p->shapes[k], .bounds = p->bounds, .margin = MARGIN};
-  p->panels[k] = (strut_panel){.title = p->titles[k], .view = &p->views[k]};
-  return p->titles[k];
+static char *add_panel(picture *self, size_t shapes) {
+  size_t k = self->count++;
+  self->views[k] = (strut_view){
+      .shape_count = shapes, .shapes = self->shapes[k], .bounds = self->bounds, .margin = MARGIN};
+  self->panels[k] = (strut_panel){.title = self->titles[k], .view = &self->views[k]};
+  return self->titles[k];
 }
 
 /* The shape in grey, displaced by a small motion. False: out of memory. */
-static bool add_mechanism(picture *p, int32_t number) {
-  const strut_mechanism *mechanism = &p->rigidity->mechanisms.list[number];
-  const strut_equilibrium_matrix *a = &p->rigidity->matrix;
-  double *moved = strut_arena_copy(&p->arena, p->q, (size_t)p->model->length, sizeof *moved);
-  double most = largest(mechanism->motion, (size_t)a->rows);
+static bool add_mechanism(picture *self, int32_t number) {
+  const strut_mechanism *mechanism = &self->rigidity->mechanisms.list[number];
+  const strut_equilibrium_matrix *matrix = &self->rigidity->matrix;
+  double *moved =
+      strut_arena_copy(&self->arena, self->q, (size_t)self->model->length, sizeof *moved);
+  double most = largest(mechanism->motion, (size_t)matrix->rows);
   if (!moved) return false;
-  for (int32_t r = 0; r < a->rows && most > 0; r++)
-    moved[a->coordinate[r]] += p->swing / most * mechanism->motion[r];
-  strut_shape *shapes = p->shapes[p->count];
-  shapes[0] = shapes[1] = (strut_shape){.model = p->model,
-                                        .q = p->q,
+  for (int32_t r = 0; r < matrix->rows && most > 0; r++)
+    moved[matrix->coordinate[r]] += self->swing / most * mechanism->motion[r];
+  strut_shape *shapes = self->shapes[self->count];
+  shapes[0] = shapes[1] = (strut_shape){.model = self->model,
+                                        .q = self->q,
                                         .style = {.colouring = STRUT_COLOUR_ONE,
                                                   .colour = strut_grey(0.72),
                                                   .thinness = 0.5,
                                                   .no_nodes = true}};
   shapes[1].q = moved;
-  shapes[1].from = p->q;
+  shapes[1].from = self->q;
   shapes[1].style.colour = strut_palette_thing(0);
   shapes[1].style.no_supports = true;
-  snprintf(add_panel(p, 2), TITLE, "mechanism %d, %s", (int)number + 1,
+  snprintf(add_panel(self, 2), TITLE, "mechanism %d, %s", (int)number + 1,
            strut_motion_kind_name(mechanism->kind));
   return true;
 }
 
 /* Forces, states of self-stress, mechanisms: as many as go in; the last two share the room. False: out of memory. */
-static bool add_panels(picture *p, int32_t columns) {
-  const strut_rigidity *r = p->rigidity;
-  int32_t states = r->states.force ? r->states.count : 0;
-  int32_t motions = r->mechanisms.list ? r->mechanisms.count : 0;
+static bool add_panels(picture *self, int32_t columns) {
+  const strut_rigidity *rigidity = self->rigidity;
+  int32_t states = rigidity->states.force ? rigidity->states.count : 0;
+  int32_t motions = rigidity->mechanisms.list ? rigidity->mechanisms.count : 0;
   int32_t room = PANELS / COLUMNS * columns;
-  p->bounds = strut_bounds_none();
-  strut_bounds_add(&p->bounds, p->model, p->q);
-  p->swing = SWING * strut_bounds_extent(&p->bounds);
+  self->bounds = strut_bounds_none();
+  strut_bounds_add(&self->bounds, self->model, self->q);
+  self->swing = SWING * strut_bounds_extent(&self->bounds);
   for (int d = 0; d < 2 && motions > 0; d++) /* there is room for motions */
-    p->bounds.low[d] -= p->swing, p->bounds.high[d] += p->swing;
-  if (forces_told(p)) {
-    double limit = largest(r->force, p->model->scene->member_count);
-    p->shapes[p->count][0] = force_shape(p->model, p->q, r->force);
-    snprintf(add_panel(p, 1), TITLE, "forces, up to %s", strut_drawn_quantity(limit, 3, "N").text);
+    self->bounds.low[d] -= self->swing, self->bounds.high[d] += self->swing;
+  if (forces_told(self)) {
+    double limit = largest(rigidity->force, self->model->scene->member_count);
+    self->shapes[self->count][0] = force_shape(self->model, self->q, rigidity->force);
+    snprintf(add_panel(self, 1), TITLE, "forces, up to %s",
+             strut_drawn_quantity(limit, 3, "N").text);
     room--;
   }
   int32_t kept = motions < room / 2 ? motions : room / 2; /* at least, if states abound */
   if (states > room - kept) states = room - kept;
   if (motions > room - states) motions = room - states;
   for (int32_t i = 0; i < states; i++) {
-    p->shapes[p->count][0] =
-        force_shape(p->model, p->q, r->states.force + (size_t)i * (size_t)r->matrix.columns);
-    snprintf(add_panel(p, 1), TITLE, "self-stress %d%s", (int)i + 1,
-             r->has_cables && !r->states.cables_pull[i] ? ", presses cables" : "");
+    self->shapes[self->count][0] =
+        force_shape(self->model, self->q,
+                    rigidity->states.force + (size_t)i * (size_t)rigidity->matrix.columns);
+    snprintf(add_panel(self, 1), TITLE, "self-stress %d%s", (int)i + 1,
+             rigidity->has_cables && !rigidity->states.cables_pull[i] ? ", presses cables" : "");
   }
   for (int32_t i = 0; i < motions; i++)
-    if (!add_mechanism(p, i)) return false;
-  if (p->count) return true;
-  p->shapes[0][0] =
-      (strut_shape){.model = p->model, .q = p->q, .names = true}; /* the shape itself */
-  add_panel(p, 1)[0] = '\0';
+    if (!add_mechanism(self, i)) return false;
+  if (self->count) return true;
+  self->shapes[0][0] =
+      (strut_shape){.model = self->model, .q = self->q, .names = true}; /* the shape itself */
+  add_panel(self, 1)[0] = '\0';
   return true;
 }
 
 strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
-                                   const double *q, const char *at, const strut_rigidity *rigidity,
-                                   strut_error *error) {
-  picture p = {.model = model, .q = q, .rigidity = rigidity};
+                                   const double *positions, const char *at,
+                                   const strut_rigidity *rigidity, strut_error *error) {
+  picture p = {.model = model, .q = positions, .rigidity = rigidity};
   int32_t states = rigidity->states.count, mechanisms = rigidity->mechanisms.count;
   char note[NOTE];
   strut_status status = STRUT_OK;

@@ -60,7 +60,7 @@ STRUT_API strut_status strut_path_figure(const strut_plot *plot, const strut_mod
  * self-stress, then mechanisms, as many as fit in four rows.
  */
 STRUT_API strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
-                                             const double *q, const char *at,
+                                             const double *positions, const char *at,
                                              const strut_rigidity *rigidity, strut_error *error);
 
 #endif

@@ -8,20 +8,21 @@
 #include <string.h>
 
 strut_status strut_table_groups_find(const strut_table *table, int column, size_t most,
-                                     const char *what, strut_table_groups *g, strut_error *error) {
-  g->count = 1;
-  g->name[0] = NULL;
+                                     const char *what, strut_table_groups *groups,
+                                     strut_error *error) {
+  groups->count = 1;
+  groups->name[0] = NULL;
   if (column == STRUT_NO_COLUMN) return STRUT_OK;
-  g->count = 0;
+  groups->count = 0;
   for (size_t i = 0; i < table->row_count; i++) {
     const char *text = table->columns[column].text[i];
     size_t k = 0;
-    while (k < g->count && strcmp(g->name[k], text) != 0) k++;
-    if (k < g->count) continue;
-    if (g->count == most)
+    while (k < groups->count && strcmp(groups->name[k], text) != 0) k++;
+    if (k < groups->count) continue;
+    if (groups->count == most)
       return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s",
                         table->columns[column].name, most, what);
-    g->name[g->count++] = text;
+    groups->name[groups->count++] = text;
   }
   return STRUT_OK;
 }
@@ -82,18 +83,18 @@ typedef struct keyed {
 } keyed;
 
 /* Numbers by value, NAN first; texts alphabetically. */
-static int compare_keys(const void *a, const void *b) {
-  const keyed *one = a, *two = b;
+static int compare_keys(const void *first, const void *second) {
+  const keyed *one = first, *two = second;
   for (size_t i = 0; i < one->pairing->key_count; i++) {
     int column = one->pairing->keys[i];
     if (column == STRUT_NO_COLUMN) continue;
-    const strut_table_column *c = &one->table->columns[column];
+    const strut_table_column *table_column = &one->table->columns[column];
     int order;
-    if (c->value) {
-      double x = c->value[one->row], y = c->value[two->row];
+    if (table_column->value) {
+      double x = table_column->value[one->row], y = table_column->value[two->row];
       order = isnan(x) || isnan(y) ? isnan(y) - isnan(x) : (x > y) - (x < y);
     } else {
-      order = strcmp(c->text[one->row], c->text[two->row]);
+      order = strcmp(table_column->text[one->row], table_column->text[two->row]);
     }
     if (order) return order;
   }
@@ -107,23 +108,23 @@ typedef struct sides {
   size_t first_count;
 } sides;
 
-static strut_status find_sides(const strut_table *table, const strut_table_pairing *p, sides *s,
-                               strut_arena *arena, strut_error *error) {
-  const char *name = table->columns[p->of].name;
+static strut_status find_sides(const strut_table *table, const strut_table_pairing *pairing,
+                               sides *self, strut_arena *arena, strut_error *error) {
+  const char *name = table->columns[pairing->of].name;
   strut_status status =
-      strut_table_groups_find(table, p->of, 2, "sides to compare", &s->names, error);
+      strut_table_groups_find(table, pairing->of, 2, "sides to compare", &self->names, error);
   if (status) return status;
-  if (s->names.count < 2)
+  if (self->names.count < 2)
     return strut_fail(error, STRUT_USAGE,
                       "column '%.60s' has only the text '%.60s', so there is nothing to compare",
-                      name, s->names.name[0]);
-  size_t *rows = rows_with(table, p->of, s->names.name[0], arena, &s->first_count);
-  s->second = rows_with(table, p->of, s->names.name[1], arena, &s->second_count);
-  s->first = strut_arena_allocate(arena, s->first_count, sizeof *s->first);
-  if (!rows || !s->second || !s->first) return strut_no_memory(error, "while drawing");
-  for (size_t i = 0; i < s->first_count; i++)
-    s->first[i] = (keyed){.table = table, .pairing = p, .row = rows[i]};
-  qsort(s->first, s->first_count, sizeof *s->first, compare_keys);
+                      name, self->names.name[0]);
+  size_t *rows = rows_with(table, pairing->of, self->names.name[0], arena, &self->first_count);
+  self->second = rows_with(table, pairing->of, self->names.name[1], arena, &self->second_count);
+  self->first = strut_arena_allocate(arena, self->first_count, sizeof *self->first);
+  if (!rows || !self->second || !self->first) return strut_no_memory(error, "while drawing");
+  for (size_t i = 0; i < self->first_count; i++)
+    self->first[i] = (keyed){.table = table, .pairing = pairing, .row = rows[i]};
+  qsort(self->first, self->first_count, sizeof *self->first, compare_keys);
   return STRUT_OK;
 }
 
@@ -134,50 +135,50 @@ typedef struct partner {
 } partner;
 
 /* True if all keys but the last are equal. */
-static bool alongside(const keyed *a, const keyed *b) {
-  strut_table_pairing but_last = *a->pairing;
+static bool alongside(const keyed *first, const keyed *second) {
+  strut_table_pairing but_last = *first->pairing;
   but_last.key_count--;
-  const keyed one = {.table = a->table, .pairing = &but_last, .row = a->row};
-  const keyed two = {.table = b->table, .pairing = &but_last, .row = b->row};
+  const keyed one = {.table = first->table, .pairing = &but_last, .row = first->row};
+  const keyed two = {.table = second->table, .pairing = &but_last, .row = second->row};
   return compare_keys(&one, &two) == 0;
 }
 
-static partner find_partner(const sides *s, const keyed *wanted) {
-  const strut_table_pairing *p = wanted->pairing;
-  size_t low = 0, high = s->first_count;
+static partner find_partner(const sides *self, const keyed *wanted) {
+  const strut_table_pairing *pairing = wanted->pairing;
+  size_t low = 0, high = self->first_count;
   while (low < high) { /* the first not before `wanted` */
     size_t middle = (low + high) / 2;
-    if (compare_keys(&s->first[middle], wanted) < 0) {
+    if (compare_keys(&self->first[middle], wanted) < 0) {
       low = middle + 1;
     } else {
       high = middle;
     }
   }
-  const keyed *after = s->first + low, *before = after - 1;
-  if (low < s->first_count && compare_keys(after, wanted) == 0)
+  const keyed *after = self->first + low, *before = after - 1;
+  if (low < self->first_count && compare_keys(after, wanted) == 0)
     return (partner){after->row, after->row, 0};
-  if (!p->between || low == 0 || low == s->first_count || !alongside(before, wanted) ||
+  if (!pairing->between || low == 0 || low == self->first_count || !alongside(before, wanted) ||
       !alongside(after, wanted))
     return (partner){SIZE_MAX, SIZE_MAX, 0};
-  const double *x = wanted->table->columns[p->keys[p->key_count - 1]].value;
+  const double *x = wanted->table->columns[pairing->keys[pairing->key_count - 1]].value;
   return (partner){before->row, after->row,
                    (x[wanted->row] - x[before->row]) / (x[after->row] - x[before->row])};
 }
 
 /* Compares one column: numbers are subtracted, different texts marked. */
-static bool compare_column(const strut_table *table, const sides *s, const partner *partners,
+static bool compare_column(const strut_table *table, const sides *self, const partner *partners,
                            int column, strut_table *out, const char **mark) {
   strut_table_column *to = &out->columns[column];
   const strut_table_column *from = &table->columns[column];
-  for (size_t k = 0; !from->value && k < s->second_count; k++)
+  for (size_t k = 0; !from->value && k < self->second_count; k++)
     if (partners[k].row == SIZE_MAX || strcmp(from->text[partners[k].row], to->text[k]) != 0)
       mark[k] = "1";
   if (!from->value) return true;
-  double *value = strut_arena_allocate(&out->arena, s->second_count, sizeof *value);
-  to->name = strut_arena_format(&out->arena, "%s, %s less %s", from->name, s->names.name[1],
-                                s->names.name[0]);
+  double *value = strut_arena_allocate(&out->arena, self->second_count, sizeof *value);
+  to->name = strut_arena_format(&out->arena, "%s, %s less %s", from->name, self->names.name[1],
+                                self->names.name[0]);
   if (!value || !to->name) return false;
-  for (size_t k = 0; k < s->second_count; k++) {
+  for (size_t k = 0; k < self->second_count; k++) {
     const partner *p = &partners[k];
     value[k] = (double)NAN;
     if (p->row == SIZE_MAX) continue;
@@ -188,19 +189,19 @@ static bool compare_column(const strut_table *table, const sides *s, const partn
   return true;
 }
 
-static strut_status subtract_sides(const strut_table *table, const strut_table_pairing *p,
-                                   const sides *s, strut_table *out, strut_error *error) {
-  partner *partners = strut_arena_allocate(&out->arena, s->second_count, sizeof *partners);
-  const char **mark = strut_arena_allocate(&out->arena, s->second_count, sizeof *mark);
-  const char *name = strut_arena_format(&out->arena, "%s: other", s->names.name[0]);
+static strut_status subtract_sides(const strut_table *table, const strut_table_pairing *pairing,
+                                   const sides *self, strut_table *out, strut_error *error) {
+  partner *partners = strut_arena_allocate(&out->arena, self->second_count, sizeof *partners);
+  const char **mark = strut_arena_allocate(&out->arena, self->second_count, sizeof *mark);
+  const char *name = strut_arena_format(&out->arena, "%s: other", self->names.name[0]);
   if (!partners || !mark || !name) return strut_no_memory(error, "while drawing");
-  for (size_t k = 0; k < s->second_count; k++) {
-    const keyed wanted = {.table = table, .pairing = p, .row = s->second[k]};
-    partners[k] = find_partner(s, &wanted);
+  for (size_t k = 0; k < self->second_count; k++) {
+    const keyed wanted = {.table = table, .pairing = pairing, .row = self->second[k]};
+    partners[k] = find_partner(self, &wanted);
     mark[k] = "0";
   }
-  for (size_t i = 0; i < p->value_count; i++)
-    if (!compare_column(table, s, partners, p->values[i], out, mark))
+  for (size_t i = 0; i < pairing->value_count; i++)
+    if (!compare_column(table, self, partners, pairing->values[i], out, mark))
       return strut_no_memory(error, "while drawing");
   out->columns[out->column_count++] = (strut_table_column){.name = name, .unit = "", .text = mark};
   return STRUT_OK;

@@ -26,36 +26,37 @@ typedef struct maker {
   strut_error *error;
 } maker;
 
-static const strut_table_column *column_of(const maker *m, int column) {
-  return column == STRUT_NO_COLUMN ? NULL : &m->table->columns[column];
+static const strut_table_column *column_of(const maker *self, int column) {
+  return column == STRUT_NO_COLUMN ? NULL : &self->table->columns[column];
 }
 
 /* "a) friction = 0.1" */
-static const char *panel_title(maker *m, size_t panel) {
-  const strut_table_column *c = column_of(m, m->figure->panels);
-  return strut_arena_format(&m->arena, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)), c->name,
-                            m->panels.name[panel], *c->unit ? " " : "", c->unit);
+static const char *panel_title(maker *self, size_t panel) {
+  const strut_table_column *column = column_of(self, self->figure->panels);
+  return strut_arena_format(&self->arena, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)),
+                            column->name, self->panels.name[panel], *column->unit ? " " : "",
+                            column->unit);
 }
 
 /* ---- curves ---- */
 
 /* Rows of one curve in one panel. Returns how many. */
-static size_t rows_of(const maker *m, size_t panel, size_t curve, size_t *rows) {
-  const strut_table_figure *f = m->figure;
+static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *rows) {
+  const strut_table_figure *figure = self->figure;
   size_t count = 0;
-  for (size_t i = 0; i < m->table->row_count; i++)
-    if (strut_table_belongs(m->table, f->panels, m->panels.name[panel], i) &&
-        strut_table_belongs(m->table, f->by, m->curves.name[curve], i))
+  for (size_t i = 0; i < self->table->row_count; i++)
+    if (strut_table_belongs(self->table, figure->panels, self->panels.name[panel], i) &&
+        strut_table_belongs(self->table, figure->by, self->curves.name[curve], i))
       rows[count++] = i;
   return count;
 }
 
 /* Grey areas over stretches of matching rows. */
-static bool add_bands(maker *m, const size_t *rows, size_t count, strut_panel *panel) {
-  const strut_table_column *band = column_of(m, m->figure->band);
-  const double *x = column_of(m, m->figure->x)->value;
+static bool add_bands(maker *self, const size_t *rows, size_t count, strut_panel *panel) {
+  const strut_table_column *band = column_of(self, self->figure->band);
+  const double *x = column_of(self, self->figure->x)->value;
   strut_band *bands = (strut_band *)panel->bands;
-  const char *wanted = m->figure->band_value;
+  const char *wanted = self->figure->band_value;
   for (size_t i = 0; band && i < count; i++) {
     if (strcmp(band->text[rows[i]], wanted) != 0) continue;
     size_t last = i;
@@ -66,7 +67,7 @@ static bool add_bands(maker *m, const size_t *rows, size_t count, strut_panel *p
     bands[panel->band_count++] =
         (strut_band){.low = fmin(low, high),
                      .high = fmax(low, high),
-                     .label = strut_arena_format(&m->arena, "%s %s", band->name, wanted)};
+                     .label = strut_arena_format(&self->arena, "%s %s", band->name, wanted)};
     if (!bands[panel->band_count - 1].label) return false;
     i = last;
   }
@@ -74,43 +75,45 @@ static bool add_bands(maker *m, const size_t *rows, size_t count, strut_panel *p
 }
 
 /* What the legend says of y column k of a curve; NULL: there is one curve only, or no memory. */
-static const char *curve_name(maker *m, size_t curve, int k) {
-  const strut_table_figure *f = m->figure;
-  const char *column = column_of(m, f->y[k])->name, *group = m->curves.name[curve];
-  const strut_table_column *by = column_of(m, f->by);
-  bool several = f->y_count > 1;
-  if (m->curves.count * (size_t)f->y_count < 2) return NULL;
+static const char *curve_name(maker *self, size_t curve, int k) {
+  const strut_table_figure *figure = self->figure;
+  const char *column = column_of(self, figure->y[k])->name, *group = self->curves.name[curve];
+  const strut_table_column *by = column_of(self, figure->by);
+  bool several = figure->y_count > 1;
+  if (self->curves.count * (size_t)figure->y_count < 2) return NULL;
   if (!group) return column;
-  return strut_arena_format(&m->arena, "%s%s%s %s%s%s", several ? column : "", several ? ", " : "",
-                            by->name, group, by->value && *by->unit ? " " : "",
+  return strut_arena_format(&self->arena, "%s%s%s %s%s%s", several ? column : "",
+                            several ? ", " : "", by->name, group, by->value && *by->unit ? " " : "",
                             by->value ? by->unit : "");
 }
 
-static bool add_curve(maker *m, const size_t *rows, size_t count, size_t curve, int k,
+static bool add_curve(maker *self, const size_t *rows, size_t count, size_t curve, int k,
                       strut_panel *panel) {
-  double *x = strut_arena_allocate(&m->arena, count, sizeof *x);
-  double *y = strut_arena_allocate(&m->arena, count, sizeof *y);
+  double *x = strut_arena_allocate(&self->arena, count, sizeof *x);
+  double *y = strut_arena_allocate(&self->arena, count, sizeof *y);
   for (size_t i = 0; x && y && i < count; i++) {
-    x[i] = column_of(m, m->figure->x)->value[rows[i]];
-    y[i] = column_of(m, m->figure->y[k])->value[rows[i]];
+    x[i] = column_of(self, self->figure->x)->value[rows[i]];
+    y[i] = column_of(self, self->figure->y[k])->value[rows[i]];
   }
-  ((strut_series *)panel->series)[panel->series_count++] =
-      (strut_series){.label = curve_name(m, curve, k), .count = count, .x = x, .y = y, .look = -1};
+  ((strut_series *)panel->series)[panel->series_count++] = (strut_series){
+      .label = curve_name(self, curve, k), .count = count, .x = x, .y = y, .look = -1};
   return x && y;
 }
 
-static bool fill_curves(maker *m, size_t number, strut_panel *panel) {
-  const strut_table_figure *f = m->figure;
-  size_t most = m->curves.count * (size_t)f->y_count, rows = m->table->row_count;
-  size_t *row = strut_arena_allocate(&m->arena, rows, sizeof *row);
-  panel->series = strut_arena_allocate(&m->arena, most, sizeof *panel->series);
-  panel->bands = strut_arena_allocate(&m->arena, rows * m->curves.count, sizeof *panel->bands);
+static bool fill_curves(maker *self, size_t number, strut_panel *panel) {
+  const strut_table_figure *figure = self->figure;
+  size_t most = self->curves.count * (size_t)figure->y_count, rows = self->table->row_count;
+  size_t *row = strut_arena_allocate(&self->arena, rows, sizeof *row);
+  panel->series = strut_arena_allocate(&self->arena, most, sizeof *panel->series);
+  panel->bands =
+      strut_arena_allocate(&self->arena, rows * self->curves.count, sizeof *panel->bands);
   panel->outliers = true;
   bool fine = row && panel->series && panel->bands;
-  for (size_t c = 0; c < m->curves.count && fine; c++) {
-    size_t count = rows_of(m, number, c, row);
-    fine = add_bands(m, row, count, panel);
-    for (int k = 0; k < f->y_count && fine; k++) fine = add_curve(m, row, count, c, k, panel);
+  for (size_t c = 0; c < self->curves.count && fine; c++) {
+    size_t count = rows_of(self, number, c, row);
+    fine = add_bands(self, row, count, panel);
+    for (int k = 0; k < figure->y_count && fine; k++)
+      fine = add_curve(self, row, count, c, k, panel);
   }
   return fine;
 }
@@ -118,30 +121,30 @@ static bool fill_curves(maker *m, size_t number, strut_panel *panel) {
 /* ---- points ---- */
 
 /* A cloud of the points that are marked, or of the others. */
-static bool fill_cloud(maker *m, bool marked, strut_series *cloud) {
-  const strut_table_figure *f = m->figure;
-  const int columns[] = {f->x, f->y[0], f->value};
+static bool fill_cloud(maker *self, bool marked, strut_series *cloud) {
+  const strut_table_figure *figure = self->figure;
+  const int columns[] = {figure->x, figure->y[0], figure->value};
   double *to[3];
   for (int d = 0; d < 3; d++) {
-    to[d] = strut_arena_allocate(&m->arena, m->table->row_count + 1, sizeof *to[d]);
+    to[d] = strut_arena_allocate(&self->arena, self->table->row_count + 1, sizeof *to[d]);
     if (!to[d]) return false;
   }
-  for (size_t i = 0; i < m->table->row_count; i++) {
-    if (!f->shown[i] || f->marked[i] != marked) continue;
+  for (size_t i = 0; i < self->table->row_count; i++) {
+    if (!figure->shown[i] || figure->marked[i] != marked) continue;
     for (int d = 0; d < 3; d++)
-      to[d][cloud->count] = columns[d] >= 0 ? column_of(m, columns[d])->value[i] : (double)NAN;
+      to[d][cloud->count] = columns[d] >= 0 ? column_of(self, columns[d])->value[i] : (double)NAN;
     cloud->count++;
   }
   cloud->cloud = true;
-  cloud->x = to[0], cloud->y = to[1], cloud->value = f->value >= 0 ? to[2] : NULL;
+  cloud->x = to[0], cloud->y = to[1], cloud->value = figure->value >= 0 ? to[2] : NULL;
   return true;
 }
 
-static bool fill_points(maker *m, strut_panel *panel) {
-  strut_series *clouds = strut_arena_allocate(&m->arena, 2, sizeof *clouds);
-  if (!clouds || !fill_cloud(m, false, &clouds[0]) || !fill_cloud(m, true, &clouds[1]))
+static bool fill_points(maker *self, strut_panel *panel) {
+  strut_series *clouds = strut_arena_allocate(&self->arena, 2, sizeof *clouds);
+  if (!clouds || !fill_cloud(self, false, &clouds[0]) || !fill_cloud(self, true, &clouds[1]))
     return false;
-  strut_mark *marks = strut_arena_allocate(&m->arena, clouds[1].count + 1, sizeof *marks);
+  strut_mark *marks = strut_arena_allocate(&self->arena, clouds[1].count + 1, sizeof *marks);
   for (size_t i = 0; marks && i < clouds[1].count; i++)
     marks[i] = (strut_mark){.at = {clouds[1].x[i], clouds[1].y[i]}, .ring = true};
   panel->series = clouds, panel->series_count = 2;
@@ -153,17 +156,17 @@ static bool fill_points(maker *m, strut_panel *panel) {
 /* ---- maps ---- */
 
 /* The different finite values of a column, ascending. False: out of memory. */
-static bool find_positions(maker *m, int column, int d) {
-  const double *value = column_of(m, column)->value;
-  double *all = strut_arena_allocate(&m->arena, m->table->row_count, sizeof *all);
-  size_t used = 0, *kept = &m->count[d];
-  for (size_t i = 0; all && i < m->table->row_count; i++)
+static bool find_positions(maker *self, int column, int d) {
+  const double *value = column_of(self, column)->value;
+  double *all = strut_arena_allocate(&self->arena, self->table->row_count, sizeof *all);
+  size_t used = 0, *kept = &self->count[d];
+  for (size_t i = 0; all && i < self->table->row_count; i++)
     if (isfinite(value[i])) all[used++] = value[i];
   if (all && used) gsl_sort(all, 1, used);
   double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
     if (!*kept || all[i] - all[*kept - 1] > grain) all[(*kept)++] = all[i];
-  m->at[d] = all;
+  self->at[d] = all;
   return all != NULL;
 }
 
@@ -186,68 +189,70 @@ static bool is_doubtful(const char *text) {
   return true;
 }
 
-static int by_text(const void *a, const void *b) {
-  return strcmp(*(const char *const *)a, *(const char *const *)b);
+static int by_text(const void *first, const void *second) {
+  return strcmp(*(const char *const *)first, *(const char *const *)second);
 }
 
 /* Finds the grid's positions and the categories. */
-static strut_status prepare_grid(maker *m) {
-  const strut_table_figure *f = m->figure;
-  strut_table_groups *names = &m->curves;
+static strut_status prepare_grid(maker *self) {
+  const strut_table_figure *figure = self->figure;
+  strut_table_groups *names = &self->curves;
   strut_status status = STRUT_OK;
   names->count = 0;
-  if (!column_of(m, f->value)->value)
-    status = strut_table_groups_find(m->table, f->value, STRUT_MOST_TABLE_GROUPS, "categories",
-                                     names, m->error);
+  if (!column_of(self, figure->value)->value)
+    status = strut_table_groups_find(self->table, figure->value, STRUT_MOST_TABLE_GROUPS,
+                                     "categories", names, self->error);
   if (status) return status;
   qsort(names->name, names->count, sizeof *names->name, by_text);
   if (names->count && !*names->name[0]) { /* an empty text is no category */
     names->count--;
     memmove(names->name, names->name + 1, names->count * sizeof *names->name);
   }
-  if (!find_positions(m, f->x, 0) || !find_positions(m, f->y[0], 1))
-    return strut_no_memory(m->error, "while drawing");
-  if (!m->count[0] || !m->count[1] || m->count[1] > MOST_CELLS / m->count[0])
-    return strut_fail(m->error, STRUT_USAGE,
+  if (!find_positions(self, figure->x, 0) || !find_positions(self, figure->y[0], 1))
+    return strut_no_memory(self->error, "while drawing");
+  if (!self->count[0] || !self->count[1] || self->count[1] > MOST_CELLS / self->count[0])
+    return strut_fail(self->error, STRUT_USAGE,
                       "the map would have %zu by %zu cells: its x and y have to form a grid",
-                      m->count[0], m->count[1]);
+                      self->count[0], self->count[1]);
   return STRUT_OK;
 }
 
 /* Puts row i of the table into its cell. */
-static void fill_cell(const maker *m, size_t i, int *category, double *value, bool *doubtful) {
-  const strut_table_figure *f = m->figure;
-  const strut_table_column *of = column_of(m, f->value), *doubt = column_of(m, f->doubt);
-  double x = column_of(m, f->x)->value[i], y = column_of(m, f->y[0])->value[i];
+static void fill_cell(const maker *self, size_t i, int *category, double *value, bool *doubtful) {
+  const strut_table_figure *figure = self->figure;
+  const strut_table_column *of = column_of(self, figure->value),
+                           *doubt = column_of(self, figure->doubt);
+  double x = column_of(self, figure->x)->value[i], y = column_of(self, figure->y[0])->value[i];
   if (!isfinite(x) || !isfinite(y)) return;
-  size_t k = nearest_index(m->at[1], m->count[1], y) * m->count[0] +
-             nearest_index(m->at[0], m->count[0], x);
+  size_t k = nearest_index(self->at[1], self->count[1], y) * self->count[0] +
+             nearest_index(self->at[0], self->count[0], x);
   if (of->value) value[k] = of->value[i];
-  for (size_t g = 0; g < m->curves.count; g++)
-    if (strcmp(m->curves.name[g], of->text[i]) == 0) category[k] = (int)g;
+  for (size_t g = 0; g < self->curves.count; g++)
+    if (strcmp(self->curves.name[g], of->text[i]) == 0) category[k] = (int)g;
   if (doubt) doubtful[k] = is_doubtful(doubt->text[i]);
 }
 
-static bool fill_map(maker *m, size_t number, strut_panel *panel) {
-  const strut_table_figure *f = m->figure;
-  const strut_table_column *of = column_of(m, f->value), *doubt = column_of(m, f->doubt);
-  size_t count = m->count[0] * m->count[1];
-  strut_map *map = strut_arena_allocate(&m->arena, 1, sizeof *map);
-  int *category = strut_arena_allocate(&m->arena, count, sizeof *category);
-  double *value = strut_arena_allocate(&m->arena, count, sizeof *value);
-  bool *doubtful = strut_arena_allocate(&m->arena, count, sizeof *doubtful);
+static bool fill_map(maker *self, size_t number, strut_panel *panel) {
+  const strut_table_figure *figure = self->figure;
+  const strut_table_column *of = column_of(self, figure->value),
+                           *doubt = column_of(self, figure->doubt);
+  size_t count = self->count[0] * self->count[1];
+  strut_map *map = strut_arena_allocate(&self->arena, 1, sizeof *map);
+  int *category = strut_arena_allocate(&self->arena, count, sizeof *category);
+  double *value = strut_arena_allocate(&self->arena, count, sizeof *value);
+  bool *doubtful = strut_arena_allocate(&self->arena, count, sizeof *doubtful);
   if (!map || !category || !value || !doubtful) return false;
   for (size_t k = 0; k < count; k++) value[k] = (double)NAN, category[k] = -1;
-  for (size_t i = 0; i < m->table->row_count; i++)
-    if (strut_table_belongs(m->table, f->panels, m->panels.name[number], i))
-      fill_cell(m, i, category, value, doubtful);
-  *map = (strut_map){.columns = m->count[0],
-                     .rows = m->count[1],
-                     .xs = m->at[0],
-                     .ys = m->at[1],
+  for (size_t i = 0; i < self->table->row_count; i++)
+    if (strut_table_belongs(self->table, figure->panels, self->panels.name[number], i))
+      fill_cell(self, i, category, value, doubtful);
+  *map = (strut_map){.columns = self->count[0],
+                     .rows = self->count[1],
+                     .xs = self->at[0],
+                     .ys = self->at[1],
                      .category = of->value ? NULL : category,
-                     .category_count = m->curves.count,
-                     .names = m->curves.name,
+                     .category_count = self->curves.count,
+                     .names = self->curves.name,
                      .value = value,
                      .doubtful = doubt ? doubtful : NULL,
                      .doubt = doubt ? doubt->name : NULL};
@@ -258,86 +263,91 @@ static bool fill_map(maker *m, size_t number, strut_panel *panel) {
 /* ---- the whole ---- */
 
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
-static const char *name_y_axis(maker *m) {
-  const strut_table_figure *f = m->figure;
+static const char *name_y_axis(maker *self) {
+  const strut_table_figure *figure = self->figure;
   char text[NAME] = "";
   size_t used = 0;
-  for (int k = 0; k < f->y_count && f->y_count > 1; k++) {
-    const char *column = column_of(m, f->y[k])->name;
+  for (int k = 0; k < figure->y_count && figure->y_count > 1; k++) {
+    const char *column = column_of(self, figure->y[k])->name;
     if (k == MOST_NAMES || used + strlen(column) + 3 > NAME) return "";
     used += (size_t)snprintf(text + used, NAME - used, "%s%s", k ? ", " : "", column);
   }
-  return f->y_count > 1 ? strut_arena_format(&m->arena, "%s", text) : column_of(m, f->y[0])->name;
+  return figure->y_count > 1 ? strut_arena_format(&self->arena, "%s", text)
+                             : column_of(self, figure->y[0])->name;
 }
 
-static strut_status check_column(const maker *m, int column) {
-  const strut_table_column *c = column_of(m, column), *first = column_of(m, m->figure->y[0]);
-  if (!c || !c->value)
-    return strut_fail(m->error, STRUT_USAGE, "column '%s' does not hold numbers", c ? c->name : "");
-  if (column == m->figure->x || strcmp(c->unit, first->unit) == 0) return STRUT_OK;
-  return strut_fail(m->error, STRUT_USAGE,
+static strut_status check_column(const maker *self, int column) {
+  const strut_table_column *table_column = column_of(self, column),
+                           *first = column_of(self, self->figure->y[0]);
+  if (!table_column || !table_column->value)
+    return strut_fail(self->error, STRUT_USAGE, "column '%s' does not hold numbers",
+                      table_column ? table_column->name : "");
+  if (column == self->figure->x || strcmp(table_column->unit, first->unit) == 0) return STRUT_OK;
+  return strut_fail(self->error, STRUT_USAGE,
                     "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
                     "separate figures",
-                    first->name, c->name, *first->unit ? first->unit : "none",
-                    *c->unit ? c->unit : "none");
+                    first->name, table_column->name, *first->unit ? first->unit : "none",
+                    *table_column->unit ? table_column->unit : "none");
 }
 
 /* Checks the columns and finds the groups of rows. */
-static strut_status prepare(maker *m) {
-  const strut_table_figure *f = m->figure;
-  strut_status status = check_column(m, f->x);
-  for (int k = 0; k < f->y_count && !status; k++) status = check_column(m, f->y[k]);
-  if (!status && f->kind == STRUT_TABLE_POINTS && f->value >= 0 && !column_of(m, f->value)->value)
-    status = strut_fail(m->error, STRUT_USAGE, "points are drawn over columns of numbers");
+static strut_status prepare(maker *self) {
+  const strut_table_figure *figure = self->figure;
+  strut_status status = check_column(self, figure->x);
+  for (int k = 0; k < figure->y_count && !status; k++) status = check_column(self, figure->y[k]);
+  if (!status && figure->kind == STRUT_TABLE_POINTS && figure->value >= 0 &&
+      !column_of(self, figure->value)->value)
+    status = strut_fail(self->error, STRUT_USAGE, "points are drawn over columns of numbers");
   if (!status)
-    status = strut_table_groups_find(m->table, f->panels, STRUT_MOST_PANELS, "panels", &m->panels,
-                                     m->error);
-  if (!status && f->kind == STRUT_TABLE_CURVES)
-    status = strut_table_groups_find(m->table, f->by, STRUT_MOST_TABLE_GROUPS, "curves", &m->curves,
-                                     m->error);
-  if (!status && f->kind == STRUT_TABLE_MAP) status = prepare_grid(m);
-  if (!status && !(m->y_name = name_y_axis(m))) status = strut_no_memory(m->error, "while drawing");
+    status = strut_table_groups_find(self->table, figure->panels, STRUT_MOST_PANELS, "panels",
+                                     &self->panels, self->error);
+  if (!status && figure->kind == STRUT_TABLE_CURVES)
+    status = strut_table_groups_find(self->table, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
+                                     &self->curves, self->error);
+  if (!status && figure->kind == STRUT_TABLE_MAP) status = prepare_grid(self);
+  if (!status && !(self->y_name = name_y_axis(self)))
+    status = strut_no_memory(self->error, "while drawing");
   return status;
 }
 
-static bool fill_panel(maker *m, size_t i, strut_panel *panel) {
-  const strut_table_figure *f = m->figure;
-  const strut_table_column *x = column_of(m, f->x), *y = column_of(m, f->y[0]);
-  const strut_table_column *value = column_of(m, f->value);
-  *panel =
-      (strut_panel){.x = strut_axis_of(x->name, x->unit), .y = strut_axis_of(m->y_name, y->unit)};
-  panel->x.logarithmic = f->log_x, panel->y.logarithmic = f->log_y;
+static bool fill_panel(maker *self, size_t i, strut_panel *panel) {
+  const strut_table_figure *figure = self->figure;
+  const strut_table_column *column = column_of(self, figure->x), *y = column_of(self, figure->y[0]);
+  const strut_table_column *value = column_of(self, figure->value);
+  *panel = (strut_panel){.x = strut_axis_of(column->name, column->unit),
+                         .y = strut_axis_of(self->y_name, y->unit)};
+  panel->x.logarithmic = figure->log_x, panel->y.logarithmic = figure->log_y;
   if (value && value->value)
     panel->scale =
-        (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = f->colours};
-  if (f->panels != STRUT_NO_COLUMN && !(panel->title = panel_title(m, i))) return false;
-  return f->kind == STRUT_TABLE_CURVES ? fill_curves(m, i, panel)
-         : f->kind == STRUT_TABLE_MAP  ? fill_map(m, i, panel)
-                                       : fill_points(m, panel);
+        (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = figure->colours};
+  if (figure->panels != STRUT_NO_COLUMN && !(panel->title = panel_title(self, i))) return false;
+  return figure->kind == STRUT_TABLE_CURVES ? fill_curves(self, i, panel)
+         : figure->kind == STRUT_TABLE_MAP  ? fill_map(self, i, panel)
+                                            : fill_points(self, panel);
 }
 
-static strut_status draw(maker *m, const strut_plot *plot) {
-  strut_panel *panels = strut_arena_allocate(&m->arena, m->panels.count, sizeof *panels);
-  bool fine = panels != NULL, map = m->figure->kind == STRUT_TABLE_MAP;
-  for (size_t i = 0; i < m->panels.count && fine; i++) fine = fill_panel(m, i, &panels[i]);
-  const strut_figure figure = {.panel_count = m->panels.count,
+static strut_status draw(maker *self, const strut_plot *plot) {
+  strut_panel *panels = strut_arena_allocate(&self->arena, self->panels.count, sizeof *panels);
+  bool fine = panels != NULL, map = self->figure->kind == STRUT_TABLE_MAP;
+  for (size_t i = 0; i < self->panels.count && fine; i++) fine = fill_panel(self, i, &panels[i]);
+  const strut_figure figure = {.panel_count = self->panels.count,
                                .panels = panels,
                                .least_width = map ? MAP_WIDTH : CURVES_WIDTH,
                                .aspect = map ? 0.8 : 0.62,
                                .shared_axes = true,
                                .one_legend = true};
-  return fine ? strut_figure_draw(plot, &figure, m->error)
-              : strut_no_memory(m->error, "while drawing");
+  return fine ? strut_figure_draw(plot, &figure, self->error)
+              : strut_no_memory(self->error, "while drawing");
 }
 
 /* The rows that are compared are equal in these columns. */
-static strut_table_pairing pair_rows(const strut_table_figure *f) {
-  bool map = f->kind == STRUT_TABLE_MAP;
-  return (strut_table_pairing){.keys = {map ? f->y[0] : f->by, f->panels, f->x},
+static strut_table_pairing pair_rows(const strut_table_figure *figure) {
+  bool map = figure->kind == STRUT_TABLE_MAP;
+  return (strut_table_pairing){.keys = {map ? figure->y[0] : figure->by, figure->panels, figure->x},
                                .key_count = 3,
-                               .between = f->between,
-                               .values = map ? &f->value : f->y,
-                               .value_count = map ? 1 : (size_t)f->y_count};
+                               .between = figure->between,
+                               .values = map ? &figure->value : figure->y,
+                               .value_count = map ? 1 : (size_t)figure->y_count};
 }
 
 strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,

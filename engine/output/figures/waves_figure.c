@@ -9,39 +9,39 @@
 enum { NAME = 200 };
 
 /* Over one step the phase itself; over two the place on the line, with its corners by name. */
-static void name_axis(const strut_waves *w, char text[NAME]) {
+static void name_axis(const strut_waves *waves, char text[NAME]) {
   size_t used = (size_t)snprintf(
-      text, NAME, "%s", w->steps == 1 ? "phase from cell to cell in turns" : "wave vector:");
-  for (int32_t i = 0; i < w->corner_count && w->steps == 2; i++) {
-    const char *name = w->corner[i].name[0] == 'G' ? "\u0393" : w->corner[i].name;
+      text, NAME, "%s", waves->steps == 1 ? "phase from cell to cell in turns" : "wave vector:");
+  for (int32_t i = 0; i < waves->corner_count && waves->steps == 2; i++) {
+    const char *name = waves->corner[i].name[0] == 'G' ? "\u0393" : waves->corner[i].name;
     used += (size_t)snprintf(text + used, NAME - used, "%s %s at %d", i ? "," : "", name, (int)i);
   }
 }
 
 strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model,
-                                const strut_waves *w, strut_error *error) {
+                                const strut_waves *waves, strut_error *error) {
   strut_arena arena = {0};
   char name[NAME];
-  size_t lines = (size_t)w->shown, gaps = 0;
+  size_t lines = (size_t)waves->shown, gaps = 0;
   strut_series *series = strut_arena_allocate(&arena, lines, sizeof *series);
-  strut_band *bands = strut_arena_allocate(&arena, w->gap_count + 1, sizeof *bands);
-  double *x = strut_arena_allocate(&arena, w->count, sizeof *x);
-  double *y = strut_arena_allocate(&arena, lines * w->count, sizeof *y);
+  strut_band *bands = strut_arena_allocate(&arena, waves->gap_count + 1, sizeof *bands);
+  double *x = strut_arena_allocate(&arena, waves->count, sizeof *x);
+  double *y = strut_arena_allocate(&arena, lines * waves->count, sizeof *y);
   bool fine = series && bands && x && y;
-  for (size_t i = 0; i < w->count && fine; i++) {
-    x[i] = w->steps == 1 ? w->phase[i][0] : w->along[i];
+  for (size_t i = 0; i < waves->count && fine; i++) {
+    x[i] = waves->steps == 1 ? waves->phase[i][0] : waves->along[i];
     for (size_t b = 0; b < lines; b++)
-      y[b * w->count + i] = w->frequency[i * (size_t)w->band_count + b];
+      y[b * waves->count + i] = waves->frequency[i * (size_t)waves->band_count + b];
   }
   for (size_t b = 0; b < lines && fine; b++)
     series[b] = (strut_series){
-        .count = w->count, .x = x, .y = y + b * w->count, .markers = STRUT_MARKERS_NONE};
-  for (size_t g = 0; g < w->gap_count && fine; g++)
-    if (w->gaps[g].below < w->shown)
-      bands[gaps++] = (strut_band){w->gaps[g].low, w->gaps[g].high, true, "no waves"};
-  name_axis(w, name);
+        .count = waves->count, .x = x, .y = y + b * waves->count, .markers = STRUT_MARKERS_NONE};
+  for (size_t g = 0; g < waves->gap_count && fine; g++)
+    if (waves->gaps[g].below < waves->shown)
+      bands[gaps++] = (strut_band){waves->gaps[g].low, waves->gaps[g].high, true, "no waves"};
+  name_axis(waves, name);
   const strut_panel panel = {
-      .x = {.name = name, .high = w->steps == 1 ? 0.5 : w->corner_count - 1.0},
+      .x = {.name = name, .high = waves->steps == 1 ? 0.5 : waves->corner_count - 1.0},
       .y = strut_axis_of("frequency", "Hz"),
       .series_count = lines,
       .series = series,

@@ -31,30 +31,30 @@ typedef struct choice {
   double energy;
 } choice;
 
-static int by_rank(const void *a, const void *b) {
-  const choice *x = a, *y = b;
-  if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
-  if (x->energy != y->energy) return x->energy < y->energy ? -1 : 1;
-  return (x->index > y->index) - (x->index < y->index);
+static int by_rank(const void *first, const void *second) {
+  const choice *self = first, *y = second;
+  if (self->rank != y->rank) return self->rank < y->rank ? -1 : 1;
+  if (self->energy != y->energy) return self->energy < y->energy ? -1 : 1;
+  return (self->index > y->index) - (self->index < y->index);
 }
 
-static bool is_saddle(const strut_equilibrium *e) {
-  return e->point.label == STRUT_SADDLE || e->point.label == STRUT_MAXIMUM;
+static bool is_saddle(const strut_equilibrium *equilibrium) {
+  return equilibrium->point.label == STRUT_SADDLE || equilibrium->point.label == STRUT_MAXIMUM;
 }
 
 /* ENDS: stable on the ground, or another equilibrium comes to rest there. */
-static int rank_of(const strut_equilibrium *e) {
-  if (is_saddle(e)) return SADDLES;
-  if (e->outcome == STRUT_OUTCOME_BELOW_GROUND) return BELOW_GROUND;
-  if (e->outcome != STRUT_OUTCOME_STANDS) return ELSEWHERE;
-  return e->configured ? NAMED : ENDS;
+static int rank_of(const strut_equilibrium *equilibrium) {
+  if (is_saddle(equilibrium)) return SADDLES;
+  if (equilibrium->outcome == STRUT_OUTCOME_BELOW_GROUND) return BELOW_GROUND;
+  if (equilibrium->outcome != STRUT_OUTCOME_STANDS) return ELSEWHERE;
+  return equilibrium->configured ? NAMED : ENDS;
 }
 
 /* Every equilibrium with its rank, the best first. */
 static void rank_all(const strut_equilibria *all, choice *choices) {
   for (size_t i = 0; i < all->count; i++) {
-    const strut_equilibrium *e = &all->list[i];
-    choices[i] = (choice){(int32_t)i, rank_of(e), e->energy};
+    const strut_equilibrium *equilibrium = &all->list[i];
+    choices[i] = (choice){(int32_t)i, rank_of(equilibrium), equilibrium->energy};
   }
   for (size_t i = 0; i < all->count; i++) {
     int32_t end = all->list[i].ends_as;
@@ -95,20 +95,22 @@ typedef struct content {
 } content;
 
 /* Contact forces in the shape that is shown; of held contacts their reactions. */
-static bool rests(const strut_equilibrium *e) {
-  return e->outcome == STRUT_OUTCOME_STANDS || !e->supports;
+static bool rests(const strut_equilibrium *equilibrium) {
+  return equilibrium->outcome == STRUT_OUTCOME_STANDS || !equilibrium->supports;
 }
 
 static const strut_equilibrium *equilibrium_of(const strut_result_object *of) {
-  const content *c = strut_result_whole(of);
-  return &c->page->equilibria->list[((const choice *)of->at)->index];
+  const content *self = strut_result_whole(of);
+  return &self->page->equilibria->list[((const choice *)of->at)->index];
 }
 
 static strut_value pressing(const strut_result_object *of, size_t i) {
-  const strut_equilibrium *e = equilibrium_of(of);
+  const strut_equilibrium *equilibrium = equilibrium_of(of);
   const double *up = ((const content *)of->outer->at)->page->model->contacts.normal;
-  const double *reaction = rests(e) ? up : e->reaction[e->supports->node[i]];
-  double normal = rests(e) ? e->normal[i] : reaction[0] * up[0] + reaction[1] * up[1];
+  const double *reaction =
+      rests(equilibrium) ? up : equilibrium->reaction[equilibrium->supports->node[i]];
+  double normal =
+      rests(equilibrium) ? equilibrium->normal[i] : reaction[0] * up[0] + reaction[1] * up[1];
   return STRUT_VALUE_AS_ROUNDED(DIGITS, NUMBER(normal));
 }
 
@@ -141,9 +143,9 @@ STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_barrier *barrier = of->at
                   const int32_t *place = ((const content *)of->outer->at)->place)
 
 static bool has_barrier(const strut_result_object *of, size_t i) {
-  const content *c = of->at;
-  const strut_barrier *b = &c->page->equilibria->barriers[i];
-  return c->place[b->from] >= 0 && c->place[b->to] >= 0;
+  const content *self = of->at;
+  const strut_barrier *b = &self->page->equilibria->barriers[i];
+  return self->place[b->from] >= 0 && self->place[b->to] >= 0;
 }
 
 static strut_value fixed_of(const strut_result_object *of, size_t k) {
@@ -203,10 +205,11 @@ static strut_value contact_ground(const strut_result_object *of, size_t i) {
 
 /* The outline of one of several grounds, the solid to the right of its direction. */
 static strut_value surface_of(const strut_result_object *of, size_t g) {
-  const content *c = of->at;
+  const content *self = of->at;
   const strut_ground *ground = &of->scene->grounds[g];
-  double(*points)[2] = strut_arena_allocate(c->arena, strut_outline_most(ground), sizeof *points);
-  size_t count = points ? strut_outline_of(ground, NULL, c->middle, c->far, points) : 0;
+  double(*points)[2] =
+      strut_arena_allocate(self->arena, strut_outline_most(ground), sizeof *points);
+  size_t count = points ? strut_outline_of(ground, NULL, self->middle, self->far, points) : 0;
   return STRUT_VALUE_AS_ROUNDED(DIGITS, TABLE(points, count, 2));
 }
 
@@ -282,14 +285,14 @@ static char *shown_yaml(const char *yaml) {
 }
 
 /* Around all nodes at the start. */
-static void find_extent(content *c, const strut_scene *scene) {
+static void find_extent(content *self, const strut_scene *scene) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < 2 * scene->node_count; i++) {
     double x = scene->nodes[i / 2].start[i % 2];
     low[i % 2] = fmin(low[i % 2], x), high[i % 2] = fmax(high[i % 2], x);
   }
-  for (int k = 0; k < 2; k++) c->middle[k] = 0.5 * (low[k] + high[k]);
-  c->far = FAR * fmax(fmax(high[0] - low[0], high[1] - low[1]), LEAST_SIZE);
+  for (int k = 0; k < 2; k++) self->middle[k] = 0.5 * (low[k] + high[k]);
+  self->far = FAR * fmax(fmax(high[0] - low[0], high[1] - low[1]), LEAST_SIZE);
 }
 
 /* Everything but the motion. */

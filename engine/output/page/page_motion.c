@@ -170,65 +170,67 @@ static bool all_finite(const double *values, size_t count) {
 }
 
 /* True if every node is within `reach` model sizes of its start. */
-static bool is_within(const strut_model *model, const double *q, double reach) {
+static bool is_within(const strut_model *model, const double *positions, double reach) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
-    if (fabs(q[i] - model->start[i]) > reach * model->size) return false;
+    if (fabs(positions[i] - model->start[i]) > reach * model->size) return false;
   return true;
 }
 
-static size_t count_frames(const motion *m) {
-  const strut_trajectory *t = m->page->motion;
-  bool diverged = t->status == STRUT_DIVERGED;
+static size_t count_frames(const motion *self) {
+  const strut_trajectory *trajectory = self->page->motion;
+  bool diverged = trajectory->status == STRUT_DIVERGED;
   double most = STRUT_MOST_QUANTA * POSITION_QUANTUM / 8;
-  for (size_t f = 0; f < t->frames; f++) {
+  for (size_t f = 0; f < trajectory->frames; f++) {
     for (int b = 0; b < BLOCKS; b++) {
-      const strut_rows *rows = &m->rows[b];
+      const strut_rows *rows = &self->rows[b];
       if (rows->values && !all_finite(rows->values + f * rows->columns, rows->columns)) return f;
     }
-    const double *q = m->rows[POSITION].values + f * m->rows[POSITION].columns;
-    if (!is_within(m->page->model, q, diverged ? DIVERGED_REACH : most)) return f;
+    const double *q = self->rows[POSITION].values + f * self->rows[POSITION].columns;
+    if (!is_within(self->page->model, q, diverged ? DIVERGED_REACH : most)) return f;
   }
-  return t->frames;
+  return trajectory->frames;
 }
 
-static void find_rows(motion *m) {
-  const strut_trajectory *t = m->page->motion;
-  m->rows[TIME] = (strut_rows){t->time, t->frames, 1, 1};
+static void find_rows(motion *self) {
+  const strut_trajectory *trajectory = self->page->motion;
+  self->rows[TIME] = (strut_rows){trajectory->time, trajectory->frames, 1, 1};
   for (size_t b = 1; b < BLOCKS; b++) {
     const strut_channel_row *row = channel_of(b);
-    size_t columns = strut_channel_items(row, m->page->model->scene) * row->components;
+    size_t columns = strut_channel_items(row, self->page->model->scene) * row->components;
     if (!(LEFT_OUT & row->id))
-      m->rows[b] = (strut_rows){strut_trajectory_channel(t, row->id), t->frames, columns, 1};
+      self->rows[b] = (strut_rows){strut_trajectory_channel(trajectory, row->id),
+                                   trajectory->frames, columns, 1};
   }
-  m->frames = count_frames(m);
-  for (int b = 0; b < BLOCKS; b++) m->rows[b].frames = m->frames;
+  self->frames = count_frames(self);
+  for (int b = 0; b < BLOCKS; b++) self->rows[b].frames = self->frames;
 }
 
-static double time_quantum(const motion *m) {
-  const strut_rows *time = &m->rows[TIME];
-  double step = m->page->experiment->step;
+static double time_quantum(const motion *self) {
+  const strut_rows *time = &self->rows[TIME];
+  double step = self->page->experiment->step;
   if (strut_rows_multiples(time, step)) return step;
-  double span = time->values[m->frames - 1] - time->values[0];
+  double span = time->values[self->frames - 1] - time->values[0];
   return strut_round_quantum(TIME_QUANTUM * span, strut_rows_largest(time));
 }
 
 /* The scale of forces and energies: the largest of all, but of a diverged run's first half, for
    beside what it ends with everything else would be nothing. */
-static double largest_shown(const motion *m, const strut_rows *rows, double largest) {
-  bool diverged = m->page->motion->status == STRUT_DIVERGED || m->frames < m->page->motion->frames;
+static double largest_shown(const motion *self, const strut_rows *rows, double largest) {
+  bool diverged =
+      self->page->motion->status == STRUT_DIVERGED || self->frames < self->page->motion->frames;
   strut_rows half = *rows;
-  half.frames = diverged ? (m->frames + 1) / 2 : m->frames;
+  half.frames = diverged ? (self->frames + 1) / 2 : self->frames;
   double scale = strut_rows_largest(&half);
   return scale > 0 ? scale : largest;
 }
 
 /* Energies of one column may be tiny beside those of another, and are curves all the same: the
    quantum suits the smallest column, within what a block holds at little cost. */
-static double energy_quantum(const motion *m, const strut_rows *rows, double scale) {
+static double energy_quantum(const motion *self, const strut_rows *rows, double scale) {
   double wanted = VALUE_QUANTUM * scale;
   for (size_t c = 0; c < rows->columns; c++) {
     double largest = 0;
-    for (size_t f = 0; f < m->frames; f++) {
+    for (size_t f = 0; f < self->frames; f++) {
       double value = fabs(rows->values[f * rows->columns + c]);
       if (value > largest) largest = value;
     }
@@ -237,46 +239,46 @@ static double energy_quantum(const motion *m, const strut_rows *rows, double sca
   return fmax(wanted, LEAST_QUANTUM * scale);
 }
 
-static double wanted_quantum(const motion *m, int b, double largest) {
-  if (b == POSITION) return POSITION_QUANTUM * m->page->model->size;
-  double scale = largest_shown(m, &m->rows[b], largest);
-  return b == ENERGY ? energy_quantum(m, &m->rows[b], scale) : VALUE_QUANTUM * scale;
+static double wanted_quantum(const motion *self, int b, double largest) {
+  if (b == POSITION) return POSITION_QUANTUM * self->page->model->size;
+  double scale = largest_shown(self, &self->rows[b], largest);
+  return b == ENERGY ? energy_quantum(self, &self->rows[b], scale) : VALUE_QUANTUM * scale;
 }
 
-static void choose_quanta(motion *m) {
-  m->quantum[TIME] = time_quantum(m);
+static void choose_quanta(motion *self) {
+  self->quantum[TIME] = time_quantum(self);
   for (int b = 1; b < BLOCKS; b++) {
-    if (!m->rows[b].values) continue;
-    double largest = strut_rows_largest(&m->rows[b]);
-    m->quantum[b] = strut_round_quantum(wanted_quantum(m, b, largest), largest);
+    if (!self->rows[b].values) continue;
+    double largest = strut_rows_largest(&self->rows[b]);
+    self->quantum[b] = strut_round_quantum(wanted_quantum(self, b, largest), largest);
   }
 }
 
-static void free_blocks(motion *m) {
-  for (int b = 0; b < BLOCKS; b++) strut_block_free(&m->block[b]);
+static void free_blocks(motion *self) {
+  for (int b = 0; b < BLOCKS; b++) strut_block_free(&self->block[b]);
 }
 
 /* Encodes every `every`-th frame. Returns the bytes in base64, or 0 when memory is out. */
-static size_t encode(motion *m, size_t every) {
+static size_t encode(motion *self, size_t every) {
   size_t bytes = 0;
-  free_blocks(m);
+  free_blocks(self);
   for (int b = 0; b < BLOCKS; b++) {
-    if (!m->rows[b].values) continue;
-    m->rows[b].every = every;
-    if (!strut_block_encode(&m->rows[b], m->quantum[b], &m->block[b])) return 0;
-    bytes += (m->block[b].size + 2) / 3 * 4;
+    if (!self->rows[b].values) continue;
+    self->rows[b].every = every;
+    if (!strut_block_encode(&self->rows[b], self->quantum[b], &self->block[b])) return 0;
+    bytes += (self->block[b].size + 2) / 3 * 4;
   }
   return bytes;
 }
 
 /* Leaves out half of the frames as often as needed. Half the frames never take less than half the
    bytes, so that two halvings at once are right where four times the room is filled. */
-static bool choose_frames(motion *m, size_t room) {
+static bool choose_frames(motion *self, size_t room) {
   size_t every = 1, bytes, most = 1;
   for (int b = 0; b < BLOCKS; b++)
-    if (m->rows[b].values && m->rows[b].columns > most) most = m->rows[b].columns;
-  while (m->frames / every > MOST_VALUES / most) every *= 2;
-  while ((bytes = encode(m, every)) > room && strut_rows_taken(&m->rows[TIME]) > 2) {
+    if (self->rows[b].values && self->rows[b].columns > most) most = self->rows[b].columns;
+  while (self->frames / every > MOST_VALUES / most) every *= 2;
+  while ((bytes = encode(self, every)) > room && strut_rows_taken(&self->rows[TIME]) > 2) {
     size_t more = 2;
     while (bytes / room >= 2 * more) more *= 2;
     every *= more;
@@ -288,8 +290,8 @@ static bool choose_frames(motion *m, size_t room) {
 
 /* The block that is shown, counted from the time on. */
 static size_t block_of(const strut_result_object *of) {
-  const motion *m = strut_result_whole(of);
-  return (size_t)((const strut_block *)of->at - m->block);
+  const motion *self = strut_result_whole(of);
+  return (size_t)((const strut_block *)of->at - self->block);
 }
 
 static strut_value component_of(const strut_result_object *of, size_t i) {
@@ -297,9 +299,9 @@ static strut_value component_of(const strut_result_object *of, size_t i) {
 }
 
 static strut_value name_of(const strut_result_object *of, size_t i) {
-  const motion *m = strut_result_whole(of);
+  const motion *self = strut_result_whole(of);
   return STRUT_VALUE_AS_TEXT(
-      strut_channel_item(channel_of(block_of(of)), m->page->model->scene, i));
+      strut_channel_item(channel_of(block_of(of)), self->page->model->scene, i));
 }
 
 #define BLOCK(X)                                                                                   \
@@ -320,9 +322,9 @@ static const char *channel_name(const strut_result_object *of, size_t i) {
 }
 
 static strut_value channel_block(const strut_result_object *of, size_t i) {
-  const motion *m = of->at;
+  const motion *self = of->at;
   if (LEFT_OUT & channel_of(i + 1)->id) return (strut_value){0};
-  return STRUT_VALUE_AS_KNOWN(m->text[i + 1], PART(&m->block[i + 1]));
+  return STRUT_VALUE_AS_KNOWN(self->text[i + 1], PART(&self->block[i + 1]));
 }
 
 static strut_value energy_name(const strut_result_object *of, size_t i) {
@@ -344,18 +346,18 @@ STRUT_VALUES_HERE(motion_values, MOTION, const motion *m = of->at;
                   const strut_trajectory *t = m->page->motion)
 
 /* The motion as JSON; NULL: out of memory. */
-static char *write_motion(motion *m) {
+static char *write_motion(motion *self) {
   char *json = NULL;
   bool good = true;
   for (int b = 0; b < BLOCKS && good; b++) {
     strut_buffer text = {0};
-    if (!m->block[b].bytes) continue;
-    strut_base64_add(&text, m->block[b].bytes, m->block[b].size);
-    m->text[b] = strut_buffer_take(&text);
-    good = m->text[b] != NULL;
+    if (!self->block[b].bytes) continue;
+    strut_base64_add(&text, self->block[b].bytes, self->block[b].size);
+    self->text[b] = strut_buffer_take(&text);
+    good = self->text[b] != NULL;
   }
-  if (good) json = strut_values_json(&motion_values, m, NULL);
-  for (int b = 0; b < BLOCKS; b++) strut_release(m->text[b]);
+  if (good) json = strut_values_json(&motion_values, self, NULL);
+  for (int b = 0; b < BLOCKS; b++) strut_release(self->text[b]);
   return json;
 }
 

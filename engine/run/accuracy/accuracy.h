@@ -66,42 +66,42 @@ static inline bool strut_accuracy_is_kept(bool confirmed, double expected, doubl
 }
 
 /** Does the energy balance leave open what the accuracy asked for does not explain? */
-bool strut_accuracy_balance_is_open(const strut_accuracy *a, const strut_summary *summary);
+bool strut_accuracy_balance_is_open(const strut_accuracy *accuracy, const strut_summary *summary);
 /** The shortest period or duration of a signal [s]; HUGE_VAL: none. `stops`: only of those that the breaks at which
     methods with events stop do not resolve. */
-double strut_accuracy_signal_time(const strut_accuracy *a, bool stops);
+double strut_accuracy_signal_time(const strut_accuracy *accuracy, bool stops);
 /** Announces the next part of the work to the progress display. */
-void strut_accuracy_begin_phase(const strut_accuracy *a, const char *name);
+void strut_accuracy_begin_phase(const strut_accuracy *accuracy, const char *name);
 /** Force evaluations that the budget allows at least. */
-double strut_accuracy_least_budget(const strut_accuracy *a);
+double strut_accuracy_least_budget(const strut_accuracy *accuracy);
 /** Force evaluations left for the next run, at least 1. */
-int64_t strut_accuracy_evaluations_left(const strut_accuracy *a);
+int64_t strut_accuracy_evaluations_left(const strut_accuracy *accuracy);
 /**
  * The answer of the request is a run that was a check until now; where it is recorded it is made again.
  */
-strut_status strut_accuracy_deliver(strut_accuracy *a, const strut_experiment *experiment,
+strut_status strut_accuracy_deliver(strut_accuracy *accuracy, const strut_experiment *experiment,
                                     strut_summary *run);
 /** Runs the model with another experiment; STRUT_WORK_LIMIT if it exceeds the evaluations left. */
-strut_status strut_accuracy_run(strut_accuracy *a, const strut_experiment *experiment,
+strut_status strut_accuracy_run(strut_accuracy *accuracy, const strut_experiment *experiment,
                                 const strut_run_options *options, strut_summary *summary);
 /**
  * Drive periods in which the motion must become steady: all where the run ends when it is steady.
  * Otherwise half of those before the window, so that the rest of the transient dies out.
  */
-double strut_accuracy_transient_periods(const strut_accuracy *a);
+double strut_accuracy_transient_periods(const strut_accuracy *accuracy);
 /** Is the mean over the window that of the steady motion? */
-bool strut_accuracy_orbit_covers_window(const strut_accuracy *a,
+bool strut_accuracy_orbit_covers_window(const strut_accuracy *accuracy,
                                         const strut_steady_summary *steady);
 /**
  * Tries implicit midpoint, halving the step until two runs agree, their positions converge at the
  * expected order and no motion that matters is too fast for the step; as long as a run costs less
  * than one by the cheapest explicit method. *done is false where this fails or does not apply.
  */
-strut_status strut_accuracy_try_midpoint(strut_accuracy *a, bool *done);
+strut_status strut_accuracy_try_midpoint(strut_accuracy *accuracy, bool *done);
 /** Tries to find a periodic orbit; *done is false if that fails. */
-strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done);
+strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done);
 /** Repeats the run with ever finer steps and tolerances until two runs agree. */
-strut_status strut_accuracy_climb_ladder(strut_accuracy *a);
+strut_status strut_accuracy_climb_ladder(strut_accuracy *accuracy);
 
 /* Node positions near the end of a run, to compare the motions of two runs. */
 
@@ -115,13 +115,13 @@ typedef struct strut_track {
 
 /** A track of up to `capacity` moments, in the arena. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_track_create(const strut_model *model, size_t capacity, strut_arena *arena,
-                                strut_track *t);
+                                strut_track *track);
 /**
  * Largest distance between two tracks at the same moments over the nodes' range of motion: 0 for
  * the same motion, about 1 for unrelated ones. Travel along the ground is left out. HUGE_VAL where
  * the moments differ, except by whole periods [s] if `period` is not 0. Motions below 1e-4 of the
  * size count as that.
  */
-double strut_track_distance(const strut_track *a, const strut_track *b, double period);
+double strut_track_distance(const strut_track *first, const strut_track *second, double period);
 
 #endif

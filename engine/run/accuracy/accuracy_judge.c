@@ -8,10 +8,11 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/accuracy/ladder_parts.h"
 
-double strut_ladder_tolerated_error(const strut_ladder *l, const strut_measured *m, size_t i) {
-  double allowed = strut_quantity_allowed_error(&l->a->experiment.quantities[i], l->a->target,
-                                                m->value, m->scale);
-  return m->arrival ? allowed : fmax(allowed, m->rounding);
+double strut_ladder_tolerated_error(const strut_ladder *ladder, const strut_measured *measured,
+                                    size_t i) {
+  double allowed = strut_quantity_allowed_error(
+      &ladder->a->experiment.quantities[i], ladder->a->target, measured->value, measured->scale);
+  return measured->arrival ? allowed : fmax(allowed, measured->rounding);
 }
 
 double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measured *other) {
@@ -69,57 +70,65 @@ enum { LEAST_MEANS = 5 };
 static const double ENOUGH_OF_MEANS = 0.1;
 
 /* The row for the runs that there are; NULL: they say nothing. */
-static const strut_evidence *find_evidence(const strut_ladder *l) {
-  int fine = strut_ladder_runs_with_error_control(l);
-  int method = l->a->single_method ? ALONE : fine > 0 ? CONTROLLED : COARSE;
-  int runs = method == COARSE ? l->runs : fine;
+static const strut_evidence *find_evidence(const strut_ladder *ladder) {
+  int fine = strut_ladder_runs_with_error_control(ladder);
+  int method = ladder->a->single_method ? ALONE : fine > 0 ? CONTROLLED : COARSE;
+  int runs = method == COARSE ? ladder->runs : fine;
   for (size_t k = 0; k < sizeof EVIDENCE / sizeof EVIDENCE[0]; k++) {
-    const strut_evidence *e = &EVIDENCE[k];
-    if ((int)e->method == method && runs >= e->least && runs <= e->most) return e;
+    const strut_evidence *evidence = &EVIDENCE[k];
+    if ((int)evidence->method == method && runs >= evidence->least && runs <= evidence->most)
+      return evidence;
   }
   return NULL;
 }
 
-static bool shrinks(const strut_ladder *l, const strut_evidence *e) {
-  double part = e->shrinks;
+static bool shrinks(const strut_ladder *ladder, const strut_evidence *evidence) {
+  double part = evidence->shrinks;
   if (part == 0.0) return true;
-  if (e->leaves > 0.0 && !(l->distance <= part * l->earlier_distance)) return false;
-  if (l->change <= NOISE) return true;
+  if (evidence->leaves > 0.0 && !(ladder->distance <= part * ladder->earlier_distance))
+    return false;
+  if (ladder->change <= NOISE) return true;
   /* after differences that did not shrink, one that is small may be chance */
-  bool stalled =
-      l->earlier_change > part * l->earliest_change && l->earlier_change > e->enough * l->a->target;
-  return l->change < part * l->earlier_change && !stalled;
+  bool stalled = ladder->earlier_change > part * ladder->earliest_change &&
+                 ladder->earlier_change > evidence->enough * ladder->a->target;
+  return ladder->change < part * ladder->earlier_change && !stalled;
 }
 
 /* Relative error of the latest run: the rest of a geometric series where the rate is known, else the difference. */
-static double estimate_error(const strut_ladder *l, const strut_evidence *e) {
-  if (!(l->distance <= e->apart) || !shrinks(l, e)) return HUGE_VAL;
-  double ratio = e->shrinks > 0.0 ? fmin(l->change / l->earlier_change, e->shrinks) : 0.5;
-  double rest = l->change > NOISE ? l->change * fmax(1.0, ratio / (1.0 - ratio)) : l->change;
-  if (e->leaves == 0.0) return rest;
-  return fmax(rest, e->leaves * fmax(l->earlier_change, OF_DISTANCE * l->earlier_distance));
+static double estimate_error(const strut_ladder *ladder, const strut_evidence *evidence) {
+  if (!(ladder->distance <= evidence->apart) || !shrinks(ladder, evidence)) return HUGE_VAL;
+  double ratio = evidence->shrinks > 0.0
+                     ? fmin(ladder->change / ladder->earlier_change, evidence->shrinks)
+                     : 0.5;
+  double rest =
+      ladder->change > NOISE ? ladder->change * fmax(1.0, ratio / (1.0 - ratio)) : ladder->change;
+  if (evidence->leaves == 0.0) return rest;
+  return fmax(rest, evidence->leaves *
+                        fmax(ladder->earlier_change, OF_DISTANCE * ladder->earlier_distance));
 }
 
 /* Did no contact or law switch too often, and does the energy balance close? */
-static bool is_followed(const strut_ladder *l, const strut_summary *s) {
-  return !s->spent.forced && !strut_accuracy_balance_is_open(l->a, s);
+static bool is_followed(const strut_ladder *ladder, const strut_summary *summary) {
+  return !summary->spent.forced && !strut_accuracy_balance_is_open(ladder->a, summary);
 }
 
-void strut_ladder_extend_coarse(strut_ladder *l) {
-  const strut_evidence *e = &EVIDENCE[HALVED_AGAIN];
-  if (l->kept || l->runs != l->coarse_runs || !strut_ladder_is_coarse(l, 2)) return;
-  if (l->runs > 2 && !shrinks(l, e)) return;
-  double wanted = l->a->target;
-  double apart = fmax(l->distance / fmin(e->apart_of_wanted * wanted, e->apart),
-                      l->change / (e->enough * wanted));
-  double cost = (double)l->now->cost, of_steps = cost - (double)l->before->cost, spent = 0.0;
-  int runs = l->runs;
+void strut_ladder_extend_coarse(strut_ladder *ladder) {
+  const strut_evidence *evidence = &EVIDENCE[HALVED_AGAIN];
+  if (ladder->kept || ladder->runs != ladder->coarse_runs || !strut_ladder_is_coarse(ladder, 2))
+    return;
+  if (ladder->runs > 2 && !shrinks(ladder, evidence)) return;
+  double wanted = ladder->a->target;
+  double apart = fmax(ladder->distance / fmin(evidence->apart_of_wanted * wanted, evidence->apart),
+                      ladder->change / (evidence->enough * wanted));
+  double cost = (double)ladder->now->cost, of_steps = cost - (double)ladder->before->cost,
+         spent = 0.0;
+  int runs = ladder->runs;
   do {
     if (runs++ == MOST_COARSE_RUNS) return;
-    apart *= e->leaves;
+    apart *= evidence->leaves;
     of_steps *= 2.0, cost += of_steps, spent += cost;
   } while (apart > 1.0);
-  if (spent <= WORTH * (double)l->rung[0].cost) l->coarse_runs++;
+  if (spent <= WORTH * (double)ladder->rung[0].cost) ladder->coarse_runs++;
 }
 
 /* Runs whose range counts where they are the same motion: earlier ones were further from it. */
@@ -130,178 +139,188 @@ static const double RANGE_MARGIN = 2.0;
  * How far runs are from the latest, in quantity i or, behind them, in the velocity. The first run is coarser
  * by far.
  */
-static double range_about_latest(const strut_ladder *l, size_t i) {
-  size_t width = l->a->experiment.quantity_count + 1;
-  double latest = l->results[(size_t)(l->runs - 1) * width + i], most = 0.0;
-  for (int k = l->same_motion && l->runs > LATEST ? l->runs - LATEST : 1; k < l->runs; k++)
-    most = fmax(most, fabs(l->results[(size_t)k * width + i] - latest));
+static double range_about_latest(const strut_ladder *ladder, size_t i) {
+  size_t width = ladder->a->experiment.quantity_count + 1;
+  double latest = ladder->results[(size_t)(ladder->runs - 1) * width + i], most = 0.0;
+  for (int k = ladder->same_motion && ladder->runs > LATEST ? ladder->runs - LATEST : 1;
+       k < ladder->runs; k++)
+    most = fmax(most, fabs(ladder->results[(size_t)k * width + i] - latest));
   return RANGE_MARGIN * most;
 }
 
 /* The relative error where the runs do not converge: nothing is known of the answer but their range. */
-static double range_of_runs(const strut_ladder *l, const strut_summary *s) {
-  if (l->runs < 2) return (double)NAN;
-  double worst = 0.0, change = isfinite(l->change) ? RANGE_MARGIN * l->change : 0.0;
-  if (!s->measured_count)
-    return fmax(change, range_about_latest(l, 0) / strut_ladder_velocity_size(l, s->velocity));
-  for (size_t i = 0; i < s->measured_count; i++) {
-    const strut_measured *m = &s->measured[i];
-    worst = fmax(worst, range_about_latest(l, i) / strut_ladder_tolerated_error(l, m, i));
+static double range_of_runs(const strut_ladder *ladder, const strut_summary *summary) {
+  if (ladder->runs < 2) return (double)NAN;
+  double worst = 0.0, change = isfinite(ladder->change) ? RANGE_MARGIN * ladder->change : 0.0;
+  if (!summary->measured_count)
+    return fmax(change, range_about_latest(ladder, 0) /
+                            strut_ladder_velocity_size(ladder, summary->velocity));
+  for (size_t i = 0; i < summary->measured_count; i++) {
+    const strut_measured *measured = &summary->measured[i];
+    worst = fmax(worst,
+                 range_about_latest(ladder, i) / strut_ladder_tolerated_error(ladder, measured, i));
   }
-  return fmax(change, l->a->target * worst);
+  return fmax(change, ladder->a->target * worst);
 }
 
 /* The error where all runs are different motions; HUGE_VAL: they are too few. */
-static double estimate_mean_error(const strut_ladder *l) {
-  const strut_summary *s = &l->now->s;
-  bool zero = s->velocity_zero && l->before->s.velocity_zero;
-  bool few = strut_ladder_runs_with_error_control(l) < LEAST_MEANS || l->a->single_method;
-  for (size_t i = 0; i < s->measured_count; i++) few = few || s->measured[i].arrival;
-  if (!s->measured_count && zero) return 0.0;
-  return few ? HUGE_VAL : range_of_runs(l, s);
+static double estimate_mean_error(const strut_ladder *ladder) {
+  const strut_summary *summary = &ladder->now->s;
+  bool zero = summary->velocity_zero && ladder->before->s.velocity_zero;
+  bool few = strut_ladder_runs_with_error_control(ladder) < LEAST_MEANS || ladder->a->single_method;
+  for (size_t i = 0; i < summary->measured_count; i++) few = few || summary->measured[i].arrival;
+  if (!summary->measured_count && zero) return 0.0;
+  return few ? HUGE_VAL : range_of_runs(ladder, summary);
 }
 
-void strut_ladder_judge(strut_ladder *l) {
-  const strut_evidence *e = find_evidence(l);
-  double wanted = l->a->target;
-  bool followed = is_followed(l, &l->now->s);
-  l->same_motion = l->distance <= SAME_MOTION;
-  l->expected = e ? estimate_error(l, e) : HUGE_VAL;
-  l->margin = e ? e->margin : 1.0;
-  bool near = e && l->distance <= e->apart_of_wanted * wanted;
-  l->kept = e && strut_accuracy_is_kept(near && followed, l->expected, e->enough * wanted);
-  if (l->kept || l->same_motion || !followed) return;
-  l->expected = estimate_mean_error(l);
-  l->kept = strut_accuracy_is_kept(true, l->expected, ENOUGH_OF_MEANS * wanted);
+void strut_ladder_judge(strut_ladder *ladder) {
+  const strut_evidence *evidence = find_evidence(ladder);
+  double wanted = ladder->a->target;
+  bool followed = is_followed(ladder, &ladder->now->s);
+  ladder->same_motion = ladder->distance <= SAME_MOTION;
+  ladder->expected = evidence ? estimate_error(ladder, evidence) : HUGE_VAL;
+  ladder->margin = evidence ? evidence->margin : 1.0;
+  bool near = evidence && ladder->distance <= evidence->apart_of_wanted * wanted;
+  ladder->kept = evidence && strut_accuracy_is_kept(near && followed, ladder->expected,
+                                                    evidence->enough * wanted);
+  if (ladder->kept || ladder->same_motion || !followed) return;
+  ladder->expected = estimate_mean_error(ladder);
+  ladder->kept = strut_accuracy_is_kept(true, ladder->expected, ENOUGH_OF_MEANS * wanted);
 }
 
-void strut_ladder_judge_last(strut_ladder *l) {
-  bool fine = strut_ladder_runs_with_error_control(l) > 1 && !l->failed;
-  if (l->runs < 2 || !l->same_motion || !is_followed(l, &l->now->s)) return;
-  l->kept = strut_accuracy_is_kept(fine, l->margin * l->expected, l->a->target);
+void strut_ladder_judge_last(strut_ladder *ladder) {
+  bool fine = strut_ladder_runs_with_error_control(ladder) > 1 && !ladder->failed;
+  if (ladder->runs < 2 || !ladder->same_motion || !is_followed(ladder, &ladder->now->s)) return;
+  ladder->kept = strut_accuracy_is_kept(fine, ladder->margin * ladder->expected, ladder->a->target);
 }
 
 /* ---- what is said ---- */
 
 /* Writes such as "a velocity that differs by 2 m/s". */
-static void describe_difference(const strut_ladder *l, char *text, size_t size) {
-  const strut_summary *s = l->a->summary;
-  if (s->measured_count)
-    snprintf(text, size, "'%.60s', which differs by %.2g %s", s->measured[l->worst].name,
-             l->difference[l->worst], s->measured[l->worst].unit);
-  else if (s->velocity_zero)
+static void describe_difference(const strut_ladder *ladder, char *text, size_t size) {
+  const strut_summary *summary = ladder->a->summary;
+  if (summary->measured_count)
+    snprintf(text, size, "'%.60s', which differs by %.2g %s", summary->measured[ladder->worst].name,
+             ladder->difference[ladder->worst], summary->measured[ladder->worst].unit);
+  else if (summary->velocity_zero)
     snprintf(text, size, "a velocity that is zero up to rounding, as by symmetry");
   else
     snprintf(text, size, "a velocity that differs by %.2g m/s",
-             l->change * strut_ladder_velocity_size(l, s->velocity));
+             ladder->change * strut_ladder_velocity_size(ladder, summary->velocity));
 }
 
 /* The first arrival that is not decided; NULL: all are. */
-static const strut_measured *find_undecided(const strut_ladder *l) {
-  const strut_summary *s = l->a->summary;
-  for (size_t i = 0; i < s->measured_count; i++)
-    if (s->measured[i].undecided) return &s->measured[i];
+static const strut_measured *find_undecided(const strut_ladder *ladder) {
+  const strut_summary *summary = ladder->a->summary;
+  for (size_t i = 0; i < summary->measured_count; i++)
+    if (summary->measured[i].undecided) return &summary->measured[i];
   return NULL;
 }
 
 /* Explains the answer and, where the accuracy was not reached, the reason and remedy. */
-static void explain_ladder(const strut_ladder *l, char *why, size_t size) {
-  const strut_accuracy *a = l->a;
-  const strut_experiment *e = &l->now->e;
-  const strut_measured *undecided = find_undecided(l);
+static void explain_ladder(const strut_ladder *ladder, char *why, size_t size) {
+  const strut_accuracy *accuracy = ladder->a;
+  const strut_experiment *experiment = &ladder->now->e;
+  const strut_measured *undecided = find_undecided(ladder);
   char how[80], apart[120];
-  describe_difference(l, apart, sizeof apart);
-  if (strut_integrator_controls_error(strut_integrator_find(e->integrator)))
-    snprintf(how, sizeof how, "%s with a tolerance of %.1g and steps up to %.2g s", e->integrator,
-             e->tolerance, e->step);
+  describe_difference(ladder, apart, sizeof apart);
+  if (strut_integrator_controls_error(strut_integrator_find(experiment->integrator)))
+    snprintf(how, sizeof how, "%s with a tolerance of %.1g and steps up to %.2g s",
+             experiment->integrator, experiment->tolerance, experiment->step);
   else
-    snprintf(how, sizeof how, "%s with a step of %.3g s", e->integrator, e->step);
-  if (l->runs == 1)
+    snprintf(how, sizeof how, "%s with a step of %.3g s", experiment->integrator, experiment->step);
+  if (ladder->runs == 1)
     snprintf(why, size,
              "%s, unchecked: the budget of %.2g force evaluations was used up before a second run "
              "finished; give a larger budget",
-             how, (double)a->budget);
-  else if (l->failed)
+             how, (double)accuracy->budget);
+  else if (ladder->failed)
     snprintf(why, size,
              "%s; a run with a smaller tolerance failed, so nothing is known of the error", how);
-  else if (a->summary->spent.forced)
+  else if (accuracy->summary->spent.forced)
     snprintf(why, size,
              "%s: contacts or laws switch too often to be followed in %lld steps; choose a method "
              "and a smaller solver.step",
-             how, (long long)a->summary->spent.forced);
+             how, (long long)accuracy->summary->spent.forced);
   else if (undecided)
     snprintf(why, size,
              "%s: whether '%.60s' reaches its target, or when, is not decided: an extreme comes "
              "within %.2g %s of it, "
              "and its error may be as large",
              how, undecided->name, undecided->margin,
-             a->experiment.quantities[undecided - a->summary->measured].target_unit);
-  else if (l->kept && !l->same_motion)
+             accuracy->experiment.quantities[undecided - accuracy->summary->measured].target_unit);
+  else if (ladder->kept && !ladder->same_motion)
     snprintf(why, size, "%s: a coarser run gives a different motion, but also %s", how, apart);
-  else if (l->sensitivity > a->target)
+  else if (ladder->sensitivity > accuracy->target)
     snprintf(
         why, size,
         "%s; a start shifted by %.0e m changes the answer by %.2g of itself: the motion is too "
         "sensitive",
-        how, l->shift * l->model->size, l->sensitivity);
-  else if (l->kept)
+        how, ladder->shift * ladder->model->size, ladder->sensitivity);
+  else if (ladder->kept)
     snprintf(why, size, "%s: %s gives the same motion, and %s", how,
-             strut_ladder_runs_with_error_control(l) == 1 && !a->single_method
+             strut_ladder_runs_with_error_control(ladder) == 1 && !accuracy->single_method
                  ? strut_integrator_for(STRUT_ROLE_COARSE)->name
                  : "a coarser run",
              apart);
-  else if (l->same_motion)
+  else if (ladder->same_motion)
     snprintf(why, size, "%s; a coarser run gives the same motion, but %s%s", how, apart,
-             l->budget_spent ? "; the budget is used up: give a larger budget" : "");
+             ladder->budget_spent ? "; the budget is used up: give a larger budget" : "");
   else
     snprintf(why, size,
              "%s; a coarser run gives a different motion, and %s: nearby motions separate, so the "
              "motion may be chaotic%s",
-             how, apart, l->budget_spent ? "; a larger budget may help" : "");
+             how, apart, ladder->budget_spent ? "; a larger budget may help" : "");
 }
 
 /* Fills the expected error of each quantity and whether it is within the wanted one. */
-static void report_quantities(const strut_ladder *l) {
-  strut_summary *s = l->a->summary;
-  bool known = isfinite(l->expected);
-  double factor = l->change > 0.0 && known ? l->expected / l->change : 1.0;
-  double worst = known ? OF_WORST * l->expected / l->a->target : 0.0;
-  double apart = l->same_motion ? OF_DISTANCE * l->distance : 0.0;
-  for (size_t i = 0; i < s->measured_count; i++) {
-    strut_measured *m = &s->measured[i];
-    m->expected = (double)NAN;
-    double allowed = strut_ladder_tolerated_error(l, m, i), error = factor * l->difference[i];
-    if (!m->zero && error < HUGE_VAL)
-      error = fmax(error, fmax(apart * fabs(m->value), worst * allowed));
-    if (l->runs > 1) m->expected = fmax(l->margin * error, l->shifted[i]);
-    m->kept = l->kept ||
-              strut_accuracy_is_kept(l->same_motion && is_followed(l, s), m->expected, allowed);
-    if (l->kept) m->expected = fmin(m->expected, allowed);
-    if (!m->kept && l->runs > 1) m->expected = fmax(m->expected, range_about_latest(l, i));
-    bool decided = l->runs > 1 && isfinite(l->difference[i] + l->shifted[i]);
-    bool unsettled = !l->kept && l->worst == i && isnan(m->value);
-    m->undecided = m->arrival && (!decided || unsettled);
-    if (m->undecided) m->kept = false;
-    if (m->undecided || (m->arrival && isnan(m->value))) m->expected = (double)NAN;
+static void report_quantities(const strut_ladder *ladder) {
+  strut_summary *summary = ladder->a->summary;
+  bool known = isfinite(ladder->expected);
+  double factor = ladder->change > 0.0 && known ? ladder->expected / ladder->change : 1.0;
+  double worst = known ? OF_WORST * ladder->expected / ladder->a->target : 0.0;
+  double apart = ladder->same_motion ? OF_DISTANCE * ladder->distance : 0.0;
+  for (size_t i = 0; i < summary->measured_count; i++) {
+    strut_measured *measured = &summary->measured[i];
+    measured->expected = (double)NAN;
+    double allowed = strut_ladder_tolerated_error(ladder, measured, i),
+           error = factor * ladder->difference[i];
+    if (!measured->zero && error < HUGE_VAL)
+      error = fmax(error, fmax(apart * fabs(measured->value), worst * allowed));
+    if (ladder->runs > 1) measured->expected = fmax(ladder->margin * error, ladder->shifted[i]);
+    measured->kept =
+        ladder->kept || strut_accuracy_is_kept(ladder->same_motion && is_followed(ladder, summary),
+                                               measured->expected, allowed);
+    if (ladder->kept) measured->expected = fmin(measured->expected, allowed);
+    if (!measured->kept && ladder->runs > 1)
+      measured->expected = fmax(measured->expected, range_about_latest(ladder, i));
+    bool decided = ladder->runs > 1 && isfinite(ladder->difference[i] + ladder->shifted[i]);
+    bool unsettled = !ladder->kept && ladder->worst == i && isnan(measured->value);
+    measured->undecided = measured->arrival && (!decided || unsettled);
+    if (measured->undecided) measured->kept = false;
+    if (measured->undecided || (measured->arrival && isnan(measured->value)))
+      measured->expected = (double)NAN;
   }
 }
 
-void strut_ladder_report(strut_ladder *l) {
-  strut_accuracy *a = l->a;
-  strut_summary *s = a->summary;
-  double expected = l->expected;
-  if (l->same_motion)
-    expected = l->margin * fmax(expected, s->velocity_zero ? 0.0 : OF_DISTANCE * l->distance);
-  if (l->kept) expected = fmin(expected, a->target);
-  if (!isfinite(expected)) expected = range_of_runs(l, s);
-  if (isfinite(expected)) expected = fmax(expected, l->sensitivity);
+void strut_ladder_report(strut_ladder *ladder) {
+  strut_accuracy *accuracy = ladder->a;
+  strut_summary *summary = accuracy->summary;
+  double expected = ladder->expected;
+  if (ladder->same_motion)
+    expected = ladder->margin *
+               fmax(expected, summary->velocity_zero ? 0.0 : OF_DISTANCE * ladder->distance);
+  if (ladder->kept) expected = fmin(expected, accuracy->target);
+  if (!isfinite(expected)) expected = range_of_runs(ladder, summary);
+  if (isfinite(expected)) expected = fmax(expected, ladder->sensitivity);
   if (!isfinite(expected)) expected = (double)NAN; /* a single run */
-  s->accuracy = (strut_accuracy_summary){.wanted = a->target,
-                                         .expected = expected,
-                                         .scale = a->scale,
-                                         .kept = l->kept,
-                                         .check_evaluations = a->check_evaluations};
-  report_quantities(l);
-  if (find_undecided(l)) s->accuracy.expected = (double)NAN, s->accuracy.kept = false;
-  explain_ladder(l, s->accuracy.why, sizeof s->accuracy.why);
+  summary->accuracy = (strut_accuracy_summary){.wanted = accuracy->target,
+                                               .expected = expected,
+                                               .scale = accuracy->scale,
+                                               .kept = ladder->kept,
+                                               .check_evaluations = accuracy->check_evaluations};
+  report_quantities(ladder);
+  if (find_undecided(ladder))
+    summary->accuracy.expected = (double)NAN, summary->accuracy.kept = false;
+  explain_ladder(ladder, summary->accuracy.why, sizeof summary->accuracy.why);
 }

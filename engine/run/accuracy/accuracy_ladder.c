@@ -46,8 +46,8 @@ static const double STEPS_OF_MOMENT[STRUT_LADDER_RUNS] = {3,  4,  5,  7,  9,  11
  * period, or the largest fraction of the run that divides the start of the window; `*meets` is
  * false where there is none.
  */
-static double find_grid_unit(const strut_accuracy *a, bool *meets) {
-  strut_span span = strut_experiment_span(&a->experiment, a->scene);
+static double find_grid_unit(const strut_accuracy *accuracy, bool *meets) {
+  strut_span span = strut_experiment_span(&accuracy->experiment, accuracy->scene);
   *meets = true;
   if (span.period > 0.0) {
     double phase = span.window_start / span.period;
@@ -80,27 +80,27 @@ static double count_steps_of_moment(double first, int k) {
  * Settings of the k-th run: ever smaller steps where only one method suits the scene, otherwise first Verlet, with
  * half the step too where the run is short, and then error control.
  */
-static strut_experiment refine_experiment(const strut_ladder *l, int k) {
-  const strut_accuracy *a = l->a;
-  strut_experiment e = a->coarse;
-  e.steady.tolerance = fmin(e.steady.tolerance, 0.2 * a->target);
-  double coarse = ceil(l->moment / e.step * (1.0 - 1e-9));
-  if (a->single_method || k < l->coarse_runs) {
-    e.step = l->moment / count_steps_of_moment(coarse, k);
+static strut_experiment refine_experiment(const strut_ladder *ladder, int k) {
+  const strut_accuracy *accuracy = ladder->a;
+  strut_experiment e = accuracy->coarse;
+  e.steady.tolerance = fmin(e.steady.tolerance, 0.2 * accuracy->target);
+  double coarse = ceil(ladder->moment / e.step * (1.0 - 1e-9));
+  if (accuracy->single_method || k < ladder->coarse_runs) {
+    e.step = ladder->moment / count_steps_of_moment(coarse, k);
     if (k > 0) e.refine_rate *= 0.5; /* steps after a touchdown are finer, too */
   } else {
-    int further = k - l->coarse_runs;
-    e.integrator = strut_integrator_for(l->implicit  ? STRUT_ROLE_IMPLICIT
-                                        : l->precise ? STRUT_ROLE_PRECISE
-                                                     : STRUT_ROLE_REFERENCE)
+    int further = k - ladder->coarse_runs;
+    e.integrator = strut_integrator_for(ladder->implicit  ? STRUT_ROLE_IMPLICIT
+                                        : ladder->precise ? STRUT_ROLE_PRECISE
+                                                          : STRUT_ROLE_REFERENCE)
                        ->name;
-    e.step = l->moment / STEPS_OF_MOMENT[further];
-    e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * a->target);
+    e.step = ladder->moment / STEPS_OF_MOMENT[further];
+    e.tolerance = fmin(FIRST_TOLERANCE, FIRST_TOLERANCE_PER_ERROR * accuracy->target);
     e.tolerance = fmax(LEAST_TOLERANCE, e.tolerance * pow(FINER_TOLERANCE, further));
   }
-  strut_span span = strut_experiment_span(&a->experiment, a->scene);
-  double kept = (MOST_MOMENTS - 1) * l->moment;
-  e.output_every = l->moment;
+  strut_span span = strut_experiment_span(&accuracy->experiment, accuracy->scene);
+  double kept = (MOST_MOMENTS - 1) * ladder->moment;
+  e.output_every = ladder->moment;
   e.output_last = kept < span.duration ? kept / (span.period > 0.0 ? span.period : 1.0) : 0.0;
   e.steady.run_on =
       (int64_t)ceil(e.output_last - 1e-9); /* of the answer too, whatever is recorded */
@@ -112,42 +112,44 @@ static strut_experiment refine_experiment(const strut_ladder *l, int k) {
  * largest over its allowed error, times the wanted accuracy, so that both are comparable. Fills
  * `difference` (quantities), SI.
  */
-static double compare_results(strut_ladder *l, const strut_summary *one, const strut_summary *other,
-                              double *difference) {
+static double compare_results(strut_ladder *ladder, const strut_summary *one,
+                              const strut_summary *other, double *difference) {
   double worst = 0.0;
   if (one->measured_count == 0)
-    return fabs(one->velocity - other->velocity) / strut_ladder_velocity_size(l, one->velocity);
+    return fabs(one->velocity - other->velocity) /
+           strut_ladder_velocity_size(ladder, one->velocity);
   for (size_t i = 0; i < one->measured_count; i++) {
-    const strut_measured *m = &one->measured[i];
-    double apart = fabs(m->value - other->measured[i].value) + m->left,
-           allowed = strut_ladder_tolerated_error(l, m, i), doubt = 0.0;
-    if (m->arrival) {
-      doubt = strut_ladder_arrival_doubt(m, &other->measured[i]);
-      if (isnan(m->value) && doubt < HUGE_VAL) apart = 0.0; /* neither run reaches the target */
+    const strut_measured *measured = &one->measured[i];
+    double apart = fabs(measured->value - other->measured[i].value) + measured->left,
+           allowed = strut_ladder_tolerated_error(ladder, measured, i), doubt = 0.0;
+    if (measured->arrival) {
+      doubt = strut_ladder_arrival_doubt(measured, &other->measured[i]);
+      if (isnan(measured->value) && doubt < HUGE_VAL)
+        apart = 0.0; /* neither run reaches the target */
     }
-    if (m->zero && other->measured[i].zero) apart = 0.0;
+    if (measured->zero && other->measured[i].zero) apart = 0.0;
     difference[i] = doubt > STRUT_LADDER_UNDECIDED ? (double)NAN : apart;
     if (apart == 0.0 && doubt == 0.0) continue;
-    double part = l->a->target * fmax(doubt, apart > 0.0 ? apart / allowed : 0.0);
+    double part = ladder->a->target * fmax(doubt, apart > 0.0 ? apart / allowed : 0.0);
     if (!(part <= worst)) worst = isnan(part) ? HUGE_VAL : part;
-    if (worst == (isnan(part) ? HUGE_VAL : part)) l->worst = i;
+    if (worst == (isnan(part) ? HUGE_VAL : part)) ladder->worst = i;
   }
   return worst;
 }
 
 /* The one before the latest run becomes the latest; of both there is one. */
-static void step_back(strut_ladder *l) {
-  strut_rung *unfinished = l->now;
-  l->now = l->before;
-  l->before = unfinished;
-  l->runs--;
+static void step_back(strut_ladder *ladder) {
+  strut_rung *unfinished = ladder->now;
+  ladder->now = ladder->before;
+  ladder->before = unfinished;
+  ladder->runs--;
 }
 
 /* The latest run exceeded the budget: the one before it becomes the answer, if there is one. */
-static strut_status discard_unfinished_run(strut_ladder *l) {
-  l->budget_spent = true;
-  if (l->runs < 2) return STRUT_WORK_LIMIT;
-  step_back(l);
+static strut_status discard_unfinished_run(strut_ladder *ladder) {
+  ladder->budget_spent = true;
+  if (ladder->runs < 2) return STRUT_WORK_LIMIT;
+  step_back(ladder);
   return STRUT_OK;
 }
 
@@ -155,64 +157,69 @@ static strut_status discard_unfinished_run(strut_ladder *l) {
 enum { MOST_FAILURES = 2 };
 
 /* The latest run has failed after one that has not. The method of higher order gives way to the usual one. */
-static void discard_failed_run(strut_ladder *l) {
-  bool coarse = l->runs <= l->coarse_runs;
-  step_back(l);
+static void discard_failed_run(strut_ladder *ladder) {
+  bool coarse = ladder->runs <= ladder->coarse_runs;
+  step_back(ladder);
   if (coarse)
-    l->coarse_runs--, l->tried--;
-  else if (l->precise)
-    l->precise = false, l->imprecise = true, l->tried--;
+    ladder->coarse_runs--, ladder->tried--;
+  else if (ladder->precise)
+    ladder->precise = false, ladder->imprecise = true, ladder->tried--;
   else
-    l->failed = ++l->failures == MOST_FAILURES;
+    ladder->failed = ++ladder->failures == MOST_FAILURES;
 }
 
 /* Keeps the results of the latest run, for their range. */
-static void keep_results(const strut_ladder *l, const strut_summary *s) {
-  double *value = l->results + (size_t)(l->runs - 1) * (l->a->experiment.quantity_count + 1);
-  for (size_t i = 0; i < s->measured_count; i++) value[i] = s->measured[i].value;
-  value[s->measured_count] = s->velocity;
+static void keep_results(const strut_ladder *ladder, const strut_summary *summary) {
+  double *value =
+      ladder->results + (size_t)(ladder->runs - 1) * (ladder->a->experiment.quantity_count + 1);
+  for (size_t i = 0; i < summary->measured_count; i++) value[i] = summary->measured[i].value;
+  value[summary->measured_count] = summary->velocity;
 }
 
 /* Do tolerances set the steps of the two latest runs, with error control? */
-static void note_growth(strut_ladder *l) {
-  double growth = (double)l->now->cost / (double)l->before->cost;
+static void note_growth(strut_ladder *ladder) {
+  double growth = (double)ladder->now->cost / (double)ladder->before->cost;
   if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS)
-    l->precise = !l->imprecise && !l->implicit;
+    ladder->precise = !ladder->imprecise && !ladder->implicit;
 }
 
 /* Makes one more run without output and compares it with the one before. */
-static strut_status run_next_rung(strut_ladder *l) {
-  strut_rung *next = l->runs == 0 ? l->rung : l->now == &l->rung[1] ? &l->rung[2] : &l->rung[1];
-  strut_run_options quiet = *l->a->options;
+static strut_status run_next_rung(strut_ladder *ladder) {
+  strut_rung *next = ladder->runs == 0                 ? ladder->rung
+                     : ladder->now == &ladder->rung[1] ? &ladder->rung[2]
+                                                       : &ladder->rung[1];
+  strut_run_options quiet = *ladder->a->options;
   strut_sink *sinks[] = {&next->track.sink};
-  assert(next != l->now && l->tried < STRUT_LADDER_RUNS);
-  l->before = l->now;
-  l->now = next;
+  assert(next != ladder->now && ladder->tried < STRUT_LADDER_RUNS);
+  ladder->before = ladder->now;
+  ladder->now = next;
   strut_summary_free(&next->s);
-  next->e = refine_experiment(l, l->tried++);
-  l->runs++;
-  strut_accuracy_begin_phase(l->a, l->runs == 1 ? "first run" : "checking by a finer run");
+  next->e = refine_experiment(ladder, ladder->tried++);
+  ladder->runs++;
+  strut_accuracy_begin_phase(ladder->a,
+                             ladder->runs == 1 ? "first run" : "checking by a finer run");
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
-  strut_status status = strut_accuracy_run(l->a, &next->e, &quiet, &next->s);
+  strut_status status = strut_accuracy_run(ladder->a, &next->e, &quiet, &next->s);
   next->cost = next->s.spent.evaluations;
-  l->a->check_evaluations += next->cost;
-  if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(l);
-  if (status == STRUT_DIVERGED && l->before && l->before->s.status == STRUT_OK) {
-    discard_failed_run(l);
+  ladder->a->check_evaluations += next->cost;
+  if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(ladder);
+  if (status == STRUT_DIVERGED && ladder->before && ladder->before->s.status == STRUT_OK) {
+    discard_failed_run(ladder);
     return STRUT_OK;
   }
-  if (strut_ladder_runs_with_error_control(l) > 1) note_growth(l);
-  l->earliest_change = l->earlier_change;
-  l->earlier_change = l->change;
-  l->earlier_distance = l->distance;
-  l->change = l->distance = HUGE_VAL;
+  if (strut_ladder_runs_with_error_control(ladder) > 1) note_growth(ladder);
+  ladder->earliest_change = ladder->earlier_change;
+  ladder->earlier_change = ladder->change;
+  ladder->earlier_distance = ladder->distance;
+  ladder->change = ladder->distance = HUGE_VAL;
   if (status && status != STRUT_DIVERGED) return status;
-  keep_results(l, &next->s);
-  if (status || l->runs == 1 || l->before->s.status) return STRUT_OK;
-  double period =
-      next->e.steady.wanted ? strut_experiment_span(&l->a->experiment, l->a->scene).period : 0.0;
-  l->change = compare_results(l, &next->s, &l->before->s, l->difference);
-  l->distance = strut_track_distance(&next->track, &l->before->track, period);
+  keep_results(ladder, &next->s);
+  if (status || ladder->runs == 1 || ladder->before->s.status) return STRUT_OK;
+  double period = next->e.steady.wanted
+                      ? strut_experiment_span(&ladder->a->experiment, ladder->a->scene).period
+                      : 0.0;
+  ladder->change = compare_results(ladder, &next->s, &ladder->before->s, ladder->difference);
+  ladder->distance = strut_track_distance(&next->track, &ladder->before->track, period);
   return STRUT_OK;
 }
 
@@ -233,82 +240,89 @@ static bool is_damped(double stiffness, double damping, double per_mass) {
 
 /* May steps be longer than vibrations? They must die out by themselves, not by the method. */
 static bool suits_implicit_steps(const strut_model *model) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   bool suits = 2 * model->node_count <= MOST_IMPLICIT && !model->elements.count &&
                !(model->terms & STRUT_TERM_MEMORY);
-  for (int32_t j = 0; j < t->count && suits; j++)
-    suits = is_damped(t->stiffness[j], t->damping[j],
-                      1.0 / model->weight[t->from[j] / 2] + 1.0 / model->weight[t->to[j] / 2]);
+  for (int32_t j = 0; j < members->count && suits; j++)
+    suits = is_damped(
+        members->stiffness[j], members->damping[j],
+        1.0 / model->weight[members->from[j] / 2] + 1.0 / model->weight[members->to[j] / 2]);
   for (int32_t i = 0; i < model->contacts.count && suits; i++) {
-    const strut_contact_entry *e = &model->contacts.entry[i];
-    suits = is_damped(e->stiffness, e->damping, 1.0 / model->weight[e->node]);
+    const strut_contact_entry *contact = &model->contacts.entry[i];
+    suits = is_damped(contact->stiffness, contact->damping, 1.0 / model->weight[contact->node]);
   }
   return suits;
 }
 
 /* Tries whether runs with error control alone are cheaper; then the budget follows from their cost. */
-static strut_status probe(strut_ladder *l, bool implicit) {
-  strut_accuracy *a = l->a;
-  double steps = strut_experiment_span(&a->experiment, a->scene).duration / a->coarse.step;
+static strut_status probe(strut_ladder *ladder, bool implicit) {
+  strut_accuracy *accuracy = ladder->a;
+  double steps = strut_experiment_span(&accuracy->experiment, accuracy->scene).duration /
+                 accuracy->coarse.step;
   double part = implicit ? PROBE_IMPLICIT : PROBE;
-  if (a->single_method || l->runs || !(steps > PROBED)) return STRUT_OK;
-  if (implicit && !suits_implicit_steps(l->model)) return STRUT_OK;
-  int64_t allowed = a->allowed;
-  int coarse_runs = l->coarse_runs;
-  a->allowed = (int64_t)fmin((double)a->used + part * steps, (double)allowed);
-  l->coarse_runs = 0;
-  l->implicit = implicit;
-  strut_status status = run_next_rung(l);
-  a->allowed = allowed;
+  if (accuracy->single_method || ladder->runs || !(steps > PROBED)) return STRUT_OK;
+  if (implicit && !suits_implicit_steps(ladder->model)) return STRUT_OK;
+  int64_t allowed = accuracy->allowed;
+  int coarse_runs = ladder->coarse_runs;
+  accuracy->allowed = (int64_t)fmin((double)accuracy->used + part * steps, (double)allowed);
+  ladder->coarse_runs = 0;
+  ladder->implicit = implicit;
+  strut_status status = run_next_rung(ladder);
+  accuracy->allowed = allowed;
   if (status && status != STRUT_WORK_LIMIT) return status;
-  if (!status && l->now->s.status == STRUT_OK) {
-    double budget =
-        a->experiment.budget / STRUT_USUAL_BUDGET * RUNS_OF_PROBE * (double)l->now->cost;
-    a->budget = (int64_t)fmin((double)a->budget, fmax(budget, strut_accuracy_least_budget(a)));
-    a->allowed = a->budget;
+  if (!status && ladder->now->s.status == STRUT_OK) {
+    double budget = accuracy->experiment.budget / STRUT_USUAL_BUDGET * RUNS_OF_PROBE *
+                    (double)ladder->now->cost;
+    accuracy->budget = (int64_t)fmin((double)accuracy->budget,
+                                     fmax(budget, strut_accuracy_least_budget(accuracy)));
+    accuracy->allowed = accuracy->budget;
     return STRUT_OK;
   }
-  l->coarse_runs = coarse_runs, l->runs = l->tried = 0;
-  l->now = l->before = NULL;
-  l->budget_spent = l->implicit = false;
+  ladder->coarse_runs = coarse_runs, ladder->runs = ladder->tried = 0;
+  ladder->now = ladder->before = NULL;
+  ladder->budget_spent = ladder->implicit = false;
   return STRUT_OK;
 }
 
-static bool may_refine(const strut_ladder *l) {
-  if (l->kept || l->failed || l->budget_spent || l->tried >= STRUT_LADDER_RUNS) return false;
-  if (l->sensitivity > l->a->target && !l->model->feedback.sampled_count) return false;
-  if (strut_ladder_runs_with_error_control(l) < 1 || l->a->single_method) return true;
-  return l->now->e.tolerance > LEAST_TOLERANCE;
+static bool may_refine(const strut_ladder *ladder) {
+  if (ladder->kept || ladder->failed || ladder->budget_spent || ladder->tried >= STRUT_LADDER_RUNS)
+    return false;
+  if (ladder->sensitivity > ladder->a->target && !ladder->model->feedback.sampled_count)
+    return false;
+  if (strut_ladder_runs_with_error_control(ladder) < 1 || ladder->a->single_method) return true;
+  return ladder->now->e.tolerance > LEAST_TOLERANCE;
 }
 
-static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
+static strut_status create_ladder(strut_accuracy *accuracy, strut_ladder *ladder) {
   bool meets = true;
   strut_status status = STRUT_OK;
-  l->model = a->model;
-  l->unit = find_grid_unit(a, &meets);
-  l->moment = l->unit / MOMENTS_OF_PERIOD;
-  double signals = strut_accuracy_signal_time(a, !a->single_method);
-  if (l->moment > SIGNAL_FRACTION * signals)
-    l->moment = divide_evenly(l->moment, SIGNAL_FRACTION * signals);
+  ladder->model = accuracy->model;
+  ladder->unit = find_grid_unit(accuracy, &meets);
+  ladder->moment = ladder->unit / MOMENTS_OF_PERIOD;
+  double signals = strut_accuracy_signal_time(accuracy, !accuracy->single_method);
+  if (ladder->moment > SIGNAL_FRACTION * signals)
+    ladder->moment = divide_evenly(ladder->moment, SIGNAL_FRACTION * signals);
   /* where the signals set steps within moments, two runs of one method share them, and their error */
-  bool shares = strut_drive_is_looked_at(a->model) ||
-                SIGNAL_FRACTION * strut_accuracy_signal_time(a, false) < l->moment;
-  if (!meets) l->moment = divide_evenly(l->moment, fmin(l->unit / 40.0, 5.0 * a->coarse.step));
-  double capacity = MOST_TRACK_NUMBERS / (2.0 * l->model->node_count);
+  bool shares = strut_drive_is_looked_at(accuracy->model) ||
+                SIGNAL_FRACTION * strut_accuracy_signal_time(accuracy, false) < ladder->moment;
+  if (!meets)
+    ladder->moment =
+        divide_evenly(ladder->moment, fmin(ladder->unit / 40.0, 5.0 * accuracy->coarse.step));
+  double capacity = MOST_TRACK_NUMBERS / (2.0 * ladder->model->node_count);
   size_t moments = capacity < 2.0 ? 2 : capacity < MOST_MOMENTS ? (size_t)capacity : MOST_MOMENTS;
   /* Two steps of one method may lead to the same wrong motion: they must agree from the start on. */
-  double duration = strut_experiment_span(&a->experiment, a->scene).duration;
-  l->coarse_runs = !shares && duration <= (double)(moments - 1) * l->moment ? 2 : 1;
-  if (a->single_method) l->coarse_runs = 0;
+  double duration = strut_experiment_span(&accuracy->experiment, accuracy->scene).duration;
+  ladder->coarse_runs = !shares && duration <= (double)(moments - 1) * ladder->moment ? 2 : 1;
+  if (accuracy->single_method) ladder->coarse_runs = 0;
   for (int k = 0; k < 3 && !status; k++)
-    status = strut_track_create(l->model, moments, &l->arena, &l->rung[k].track);
-  size_t quantities = a->experiment.quantity_count;
-  double **const arrays[] = {&l->difference, &l->shifted, &l->results};
+    status = strut_track_create(ladder->model, moments, &ladder->arena, &ladder->rung[k].track);
+  size_t quantities = accuracy->experiment.quantity_count;
+  double **const arrays[] = {&ladder->difference, &ladder->shifted, &ladder->results};
   for (size_t k = 0; k < sizeof arrays / sizeof arrays[0] && !status; k++)
-    if (!(*arrays[k] = strut_arena_allocate(&l->arena, STRUT_LADDER_RUNS * (quantities + 1),
+    if (!(*arrays[k] = strut_arena_allocate(&ladder->arena, STRUT_LADDER_RUNS * (quantities + 1),
                                             sizeof(double))))
       status = STRUT_NO_MEMORY;
-  return status ? strut_fail(a->error, status, "out of memory") : STRUT_OK;
+  return status ? strut_fail(accuracy->error, status, "out of memory") : STRUT_OK;
 }
 
 /* ---- sensitivity to the start ---- */
@@ -321,20 +335,20 @@ static strut_status create_ladder(strut_accuracy *a, strut_ladder *l) {
 static const double CHECKED_BELOW = 1e-8;
 
 /* The shift, over the size of the structure. */
-static double shift_of(const strut_ladder *l, double tolerance) {
-  return l->model->feedback.sampled_count ? fmax(STRUT_LADDER_SHIFT, 0.01 * tolerance)
-                                          : STRUT_LADDER_SHIFT;
+static double shift_of(const strut_ladder *ladder, double tolerance) {
+  return ladder->model->feedback.sampled_count ? fmax(STRUT_LADDER_SHIFT, 0.01 * tolerance)
+                                               : STRUT_LADDER_SHIFT;
 }
 
 /* The start with every free coordinate shifted, up or down. */
-static strut_status shift_start(strut_ladder *l, double shift, strut_snapshot *start) {
-  const strut_model *model = l->model;
+static strut_status shift_start(strut_ladder *ladder, double shift, strut_snapshot *start) {
+  const strut_model *model = ladder->model;
   size_t bytes = (size_t)model->length * sizeof(double);
   strut_state *state = NULL;
-  start->q = strut_arena_allocate(&l->arena, (size_t)model->length, sizeof(double));
-  start->v = strut_arena_allocate(&l->arena, (size_t)model->length, sizeof(double));
-  if (!start->q || !start->v) return strut_no_memory(l->a->error, "");
-  strut_status status = strut_state_create(model, &state, l->a->error);
+  start->q = strut_arena_allocate(&ladder->arena, (size_t)model->length, sizeof(double));
+  start->v = strut_arena_allocate(&ladder->arena, (size_t)model->length, sizeof(double));
+  if (!start->q || !start->v) return strut_no_memory(ladder->a->error, "");
+  strut_status status = strut_state_create(model, &state, ladder->a->error);
   if (status) return status;
   memcpy(start->q, state->q, bytes);
   memcpy(start->v, state->v, bytes);
@@ -348,42 +362,46 @@ static strut_status shift_start(strut_ladder *l, double shift, strut_snapshot *s
  * Repeats the run before the latest from the shifted start. The answer is not accepted where that changes it
  * by more than the wanted error.
  */
-static strut_status check_sensitivity(strut_ladder *l) {
-  strut_accuracy *a = l->a;
-  strut_run_options quiet = *a->options;
+static strut_status check_sensitivity(strut_ladder *ladder) {
+  strut_accuracy *accuracy = ladder->a;
+  strut_run_options quiet = *accuracy->options;
   strut_snapshot start = {.q = NULL};
   strut_summary shifted = {0};
-  const strut_rung *r = l->before && !l->before->s.status ? l->before : l->now;
-  int64_t allowed = a->allowed;
-  if (!l->same_motion || a->single_method || strut_ladder_runs_with_error_control(l) < 2)
+  const strut_rung *rung =
+      ladder->before && !ladder->before->s.status ? ladder->before : ladder->now;
+  int64_t allowed = accuracy->allowed;
+  if (!ladder->same_motion || accuracy->single_method ||
+      strut_ladder_runs_with_error_control(ladder) < 2)
     return STRUT_OK;
-  if (!(r->e.tolerance < CHECKED_BELOW) && !l->model->feedback.sampled_count) return STRUT_OK;
-  l->shift = shift_of(l, r->e.tolerance);
-  strut_status status = shift_start(l, l->shift, &start);
+  if (!(rung->e.tolerance < CHECKED_BELOW) && !ladder->model->feedback.sampled_count)
+    return STRUT_OK;
+  ladder->shift = shift_of(ladder, rung->e.tolerance);
+  strut_status status = shift_start(ladder, ladder->shift, &start);
   if (status) return status;
   quiet.sink_count = 0, quiet.to = NULL, quiet.from = &start;
-  strut_accuracy_begin_phase(a, "checking with a shifted start");
-  a->allowed = INT64_MAX; /* the same run was within the budget before */
-  status = strut_accuracy_run(a, &r->e, &quiet, &shifted);
-  a->allowed = allowed;
-  a->check_evaluations += shifted.spent.evaluations;
-  size_t worst = l->worst;
-  l->sensitivity = status ? HUGE_VAL : compare_results(l, &r->s, &shifted, l->shifted);
-  l->worst = worst;
-  l->kept = l->kept && l->sensitivity <= a->target;
+  strut_accuracy_begin_phase(accuracy, "checking with a shifted start");
+  accuracy->allowed = INT64_MAX; /* the same run was within the budget before */
+  status = strut_accuracy_run(accuracy, &rung->e, &quiet, &shifted);
+  accuracy->allowed = allowed;
+  accuracy->check_evaluations += shifted.spent.evaluations;
+  size_t worst = ladder->worst;
+  ladder->sensitivity =
+      status ? HUGE_VAL : compare_results(ladder, &rung->s, &shifted, ladder->shifted);
+  ladder->worst = worst;
+  ladder->kept = ladder->kept && ladder->sensitivity <= accuracy->target;
   strut_summary_free(&shifted);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
-strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
-  strut_ladder l = {.a = a,
+strut_status strut_accuracy_climb_ladder(strut_accuracy *accuracy) {
+  strut_ladder l = {.a = accuracy,
                     .change = HUGE_VAL,
                     .earlier_change = HUGE_VAL,
                     .earliest_change = HUGE_VAL,
                     .distance = HUGE_VAL,
                     .expected = HUGE_VAL,
-                    .precise = a->target < PRECISE};
-  strut_status status = create_ladder(a, &l);
+                    .precise = accuracy->target < PRECISE};
+  strut_status status = create_ladder(accuracy, &l);
   if (!status) status = probe(&l, true);
   if (!status) status = probe(&l, false);
   while (!status && may_refine(&l)) {
@@ -393,11 +411,11 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *a) {
     strut_ladder_extend_coarse(&l);
     if (l.kept) status = check_sensitivity(&l);
   }
-  if (!status && !l.kept && !(l.sensitivity > a->target)) {
+  if (!status && !l.kept && !(l.sensitivity > accuracy->target)) {
     strut_ladder_judge_last(&l);
     status = check_sensitivity(&l);
   }
-  if (!status) status = strut_accuracy_deliver(a, &l.now->e, &l.now->s);
+  if (!status) status = strut_accuracy_deliver(accuracy, &l.now->e, &l.now->s);
   if (!status) strut_ladder_report(&l);
   for (int k = 0; k < 3; k++) strut_summary_free(&l.rung[k].s);
   strut_arena_free(&l.arena);

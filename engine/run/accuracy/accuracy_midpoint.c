@@ -42,32 +42,32 @@ typedef struct fast_motion {
  * Adds three successive velocities: the second difference is fast, the mean without the rigid
  * translation slow.
  */
-static void add_step_energies(fast_motion *m, const double *v) {
+static void add_step_energies(fast_motion *self, const double *velocity) {
   double mean[2] = {0.0, 0.0}, fast = 0.0, slow = 0.0, whole = 0.0;
-  for (int32_t i = 0; i < 2 * m->model->node_count; i++) {
-    double ends = m->before[1][i] + v[i], middle = 2.0 * m->before[0][i];
-    double mass = m->model->weight[i / 2], smooth = 0.25 * (ends + middle);
+  for (int32_t i = 0; i < 2 * self->model->node_count; i++) {
+    double ends = self->before[1][i] + velocity[i], middle = 2.0 * self->before[0][i];
+    double mass = self->model->weight[i / 2], smooth = 0.25 * (ends + middle);
     fast += mass * 0.0625 * (ends - middle) * (ends - middle);
     slow += mass * smooth * smooth;
     mean[i % 2] += mass * smooth;
     whole += 0.5 * mass;
   }
-  m->fast += fast;
-  m->slow += fmax(0.0, slow - (mean[0] * mean[0] + mean[1] * mean[1]) / whole);
+  self->fast += fast;
+  self->slow += fmax(0.0, slow - (mean[0] * mean[0] + mean[1] * mean[1]) / whole);
 }
 
 static strut_status read_velocity_rows(void *context, const double *rows, size_t count,
                                        strut_error *error) {
-  fast_motion *m = context;
-  size_t both = 2 * (size_t)m->model->node_count;
+  fast_motion *self = context;
+  size_t both = 2 * (size_t)self->model->node_count;
   (void)error;
   for (size_t k = 0; k < count; k++) {
     const double *v = rows + k * (both + 1) + 1;
-    double *oldest = m->before[1];
-    if (m->known == 2) add_step_energies(m, v);
+    double *oldest = self->before[1];
+    if (self->known == 2) add_step_energies(self, v);
     memcpy(oldest, v, both * sizeof *v);
-    m->before[1] = m->before[0], m->before[0] = oldest;
-    if (m->known < 2) m->known++;
+    self->before[1] = self->before[0], self->before[0] = oldest;
+    if (self->known < 2) self->known++;
   }
   return STRUT_OK;
 }
@@ -79,9 +79,10 @@ static strut_status read_velocity_rows(void *context, const double *rows, size_t
 static bool has_jumping_signal(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->signal_count; i++) {
-    const strut_signal *s = &scene->signals[i];
-    bool begins = s->kind == STRUT_CONSTANT || s->kind == STRUT_SINE;
-    any = any || s->kind == STRUT_SQUARE || (begins && (s->start > 0.0 || isfinite(s->stop)));
+    const strut_signal *signal = &scene->signals[i];
+    bool begins = signal->kind == STRUT_CONSTANT || signal->kind == STRUT_SINE;
+    any = any || signal->kind == STRUT_SQUARE ||
+          (begins && (signal->start > 0.0 || isfinite(signal->stop)));
   }
   return any;
 }
@@ -92,15 +93,17 @@ enum { MOST_LOOKS = 20000 };
 static const double FAINT = 1e-4, LEAST_PART = 1e-9;
 
 /* The shortest time between breaks of expressions, or in which one of them or a half-wave does something. */
-static double find_expression_time(const strut_accuracy *a) {
-  double duration = strut_experiment_span(&a->experiment, a->scene).duration, last = 0.0, t = 0.0;
+static double find_expression_time(const strut_accuracy *accuracy) {
+  double duration = strut_experiment_span(&accuracy->experiment, accuracy->scene).duration,
+         last = 0.0, t = 0.0;
   double shortest = HUGE_VAL, least = LEAST_PART * duration;
   strut_state *state = NULL;
-  if (!strut_drive_is_looked_at(a->model)) return shortest;
-  if (strut_state_create(a->model, &state, NULL)) return shortest;
+  if (!strut_drive_is_looked_at(accuracy->model)) return shortest;
+  if (strut_state_create(accuracy->model, &state, NULL)) return shortest;
   for (int k = 0; k < MOST_LOOKS && t < duration; k++) {
-    double stop = strut_drive_next_break(a->model, state, t + 1e-3 * least, duration), h = stop - t;
-    double shown = strut_drive_longest_step(a->model, state, t, h, FAINT, least);
+    double stop = strut_drive_next_break(accuracy->model, state, t + 1e-3 * least, duration),
+           h = stop - t;
+    double shown = strut_drive_longest_step(accuracy->model, state, t, h, FAINT, least);
     if (shown < h) shortest = fmin(shortest, shown);
     t = shown < h ? t + shown : stop;
     if (t == stop && stop < duration)
@@ -110,16 +113,17 @@ static double find_expression_time(const strut_accuracy *a) {
   return shortest;
 }
 
-double strut_accuracy_signal_time(const strut_accuracy *a, bool stops) {
-  const strut_scene *scene = a->scene;
+double strut_accuracy_signal_time(const strut_accuracy *accuracy, bool stops) {
+  const strut_scene *scene = accuracy->scene;
   double shortest = 1.0 / strut_scene_fastest_turn(scene, 0.0, stops).rate;
-  if (!stops) shortest = fmin(shortest, find_expression_time(a));
+  if (!stops) shortest = fmin(shortest, find_expression_time(accuracy));
   for (size_t i = 0; i < scene->signal_count && !stops; i++) {
-    const strut_signal *s = &scene->signals[i];
-    if (s->kind != STRUT_CONSTANT && s->stop > s->start)
-      shortest = fmin(shortest, s->stop - s->start);
-    for (size_t k = 1; s->kind == STRUT_TABLE && k < s->point_count; k++)
-      if (s->time[k] > s->time[k - 1]) shortest = fmin(shortest, s->time[k] - s->time[k - 1]);
+    const strut_signal *signal = &scene->signals[i];
+    if (signal->kind != STRUT_CONSTANT && signal->stop > signal->start)
+      shortest = fmin(shortest, signal->stop - signal->start);
+    for (size_t k = 1; signal->kind == STRUT_TABLE && k < signal->point_count; k++)
+      if (signal->time[k] > signal->time[k - 1])
+        shortest = fmin(shortest, signal->time[k] - signal->time[k - 1]);
   }
   return shortest;
 }
@@ -128,12 +132,12 @@ double strut_accuracy_signal_time(const strut_accuracy *a, bool stops) {
  * First step: one that puts the start of the window on the grid if possible, otherwise half-way. 0:
  * the explicit method is at least as good.
  */
-static double choose_first_step(const strut_accuracy *a) {
-  strut_span span = strut_experiment_span(&a->experiment, a->scene);
+static double choose_first_step(const strut_accuracy *accuracy) {
+  strut_span span = strut_experiment_span(&accuracy->experiment, accuracy->scene);
   double unit = span.period > 0.0 ? span.period : span.duration;
-  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(a, false);
+  double signals = STEPS_IN_SIGNAL * unit / strut_accuracy_signal_time(accuracy, false);
   double least = fmax(span.period > 0.0 ? STEPS_IN_PERIOD : STEPS_IN_RUN, ceil(signals));
-  if (!(unit / least > a->coarse.step)) return 0.0;
+  if (!(unit / least > accuracy->coarse.step)) return 0.0;
   for (double n = least; n <= 4.0 * least; n++) {
     double at = span.window_start / unit * n;
     if (fabs(at - round(at)) < 1e-9 * n) return unit / n;
@@ -153,64 +157,67 @@ typedef struct midpoint_runs {
   strut_arena arena;
 } midpoint_runs;
 
-static double tolerated_error(const midpoint_runs *h) {
-  return h->a->target * fmax(fabs(h->now.velocity), h->a->scale);
+static double tolerated_error(const midpoint_runs *self) {
+  return self->a->target * fmax(fabs(self->now.velocity), self->a->scale);
 }
 
 /* Largest distance of a node between the ends of the last two runs [m]. */
-static double distance_of_ends(const midpoint_runs *h) {
+static double distance_of_ends(const midpoint_runs *self) {
   double most = 0.0;
-  for (size_t i = 0; i + 1 < 2 * h->now.end.node_count; i += 2)
-    most = fmax(most, hypot(h->now.end.positions[i] - h->before.end.positions[i],
-                            h->now.end.positions[i + 1] - h->before.end.positions[i + 1]));
+  for (size_t i = 0; i + 1 < 2 * self->now.end.node_count; i += 2)
+    most = fmax(most, hypot(self->now.end.positions[i] - self->before.end.positions[i],
+                            self->now.end.positions[i + 1] - self->before.end.positions[i + 1]));
   return most;
 }
 
 /* Makes one more run with the present step. *kept: it agrees with the one before. */
-static strut_status run_with_half_step(midpoint_runs *h, bool *kept) {
-  strut_accuracy *a = h->a;
-  strut_span span = strut_experiment_span(&a->experiment, a->scene);
-  strut_sink sink = {&h->fast_motion, NULL, read_velocity_rows, NULL, STRUT_CHANNEL_VELOCITY};
+static strut_status run_with_half_step(midpoint_runs *self, bool *kept) {
+  strut_accuracy *accuracy = self->a;
+  strut_span span = strut_experiment_span(&accuracy->experiment, accuracy->scene);
+  strut_sink sink = {&self->fast_motion, NULL, read_velocity_rows, NULL, STRUT_CHANNEL_VELOCITY};
   strut_sink *sinks[] = {&sink};
-  strut_run_options quiet = *a->options;
+  strut_run_options quiet = *accuracy->options;
   quiet.sinks = sinks, quiet.sink_count = 1, quiet.to = NULL;
-  h->fast_motion.known = 0, h->fast_motion.fast = h->fast_motion.slow = 0.0;
-  strut_summary_free(&h->before);
-  h->before = h->now;
-  h->now = (strut_summary){0};
-  h->e.output_every = h->e.step, h->e.output_last = 0.0; /* velocities of every step */
-  strut_status status = strut_accuracy_run(a, &h->e, &quiet, &h->now);
-  a->check_evaluations += h->now.spent.evaluations;
-  h->earlier = h->moved;
-  h->moved = h->change = HUGE_VAL;
-  if (status || h->before.spent.steps == 0) return status;
-  double window = span.duration - span.window_start, size = a->scale * 1e3 * span.duration;
-  if (span.period > 0.0) size = a->scale * 1e3 * span.period;
-  h->change = fabs(h->now.velocity - h->before.velocity);
-  h->moved = distance_of_ends(h);
-  h->share =
-      h->fast_motion.slow > 0.0 ? h->fast_motion.fast / h->fast_motion.slow * size / window : 0.0;
-  bool converges = h->earlier >= CONVERGES * h->moved && isfinite(h->earlier);
-  *kept = strut_accuracy_is_kept(converges || h->moved <= AGREE * tolerated_error(h) * window,
-                                 fmax(h->change, h->share), AGREE * tolerated_error(h));
+  self->fast_motion.known = 0, self->fast_motion.fast = self->fast_motion.slow = 0.0;
+  strut_summary_free(&self->before);
+  self->before = self->now;
+  self->now = (strut_summary){0};
+  self->e.output_every = self->e.step, self->e.output_last = 0.0; /* velocities of every step */
+  strut_status status = strut_accuracy_run(accuracy, &self->e, &quiet, &self->now);
+  accuracy->check_evaluations += self->now.spent.evaluations;
+  self->earlier = self->moved;
+  self->moved = self->change = HUGE_VAL;
+  if (status || self->before.spent.steps == 0) return status;
+  double window = span.duration - span.window_start, size = accuracy->scale * 1e3 * span.duration;
+  if (span.period > 0.0) size = accuracy->scale * 1e3 * span.period;
+  self->change = fabs(self->now.velocity - self->before.velocity);
+  self->moved = distance_of_ends(self);
+  self->share = self->fast_motion.slow > 0.0
+                    ? self->fast_motion.fast / self->fast_motion.slow * size / window
+                    : 0.0;
+  bool converges = self->earlier >= CONVERGES * self->moved && isfinite(self->earlier);
+  *kept = strut_accuracy_is_kept(converges || self->moved <= AGREE * tolerated_error(self) * window,
+                                 fmax(self->change, self->share), AGREE * tolerated_error(self));
   return status;
 }
 
-static void report_midpoint(midpoint_runs *h, double explicit_evaluations) {
-  strut_accuracy *a = h->a;
-  strut_summary *s = a->summary;
-  double error = 0.5 * h->change + h->share, size = fmax(fabs(s->velocity), a->scale);
-  s->accuracy =
-      (strut_accuracy_summary){.wanted = a->target,
+static void report_midpoint(midpoint_runs *self, double explicit_evaluations) {
+  strut_accuracy *accuracy = self->a;
+  strut_summary *summary = accuracy->summary;
+  double error = 0.5 * self->change + self->share,
+         size = fmax(fabs(summary->velocity), accuracy->scale);
+  summary->accuracy =
+      (strut_accuracy_summary){.wanted = accuracy->target,
                                .expected = error / size,
-                               .scale = a->scale,
-                               .kept = strut_accuracy_is_kept(true, error, a->target * size),
-                               .check_evaluations = a->check_evaluations};
-  snprintf(s->accuracy.why, sizeof s->accuracy.why,
+                               .scale = accuracy->scale,
+                               .kept = strut_accuracy_is_kept(true, error, accuracy->target * size),
+                               .check_evaluations = accuracy->check_evaluations};
+  snprintf(summary->accuracy.why, sizeof summary->accuracy.why,
            "midpoint with a step of %.3g s, %.3g times that of verlet-events, which would take "
            "%.2g force evaluations: twice the step changes the velocity by %.2g m/s, and motions "
            "too fast for the step contribute at most %.2g m/s",
-           s->step, s->step / a->coarse.step, explicit_evaluations, h->change, h->share);
+           summary->step, summary->step / accuracy->coarse.step, explicit_evaluations, self->change,
+           self->share);
 }
 
 /*
@@ -223,40 +230,40 @@ static double relative_step_cost(const strut_model *model) {
   return 2.0 + sqrt(free) / 8.0;
 }
 
-static strut_status halve_until_kept(midpoint_runs *h, bool *done) {
+static strut_status halve_until_kept(midpoint_runs *self, bool *done) {
   strut_status status = STRUT_OK;
-  strut_span span = strut_experiment_span(&h->a->experiment, h->a->scene);
+  strut_span span = strut_experiment_span(&self->a->experiment, self->a->scene);
   double usual_duration =
       span.period > 0.0 ? fmin(span.duration, MOST_PERIODS * span.period) : span.duration;
-  double explicit_evaluations = usual_duration / h->a->coarse.step;
-  double next = EVALUATIONS_PER_STEP * span.duration / h->e.step,
-         time = relative_step_cost(h->fast_motion.model);
-  strut_accuracy_begin_phase(h->a, "midpoint with ever smaller steps");
-  for (; !status && !*done && time * next < explicit_evaluations; h->e.step *= 0.5) {
-    status = run_with_half_step(h, done);
-    next = 2.0 * (double)h->now.spent.evaluations;
+  double explicit_evaluations = usual_duration / self->a->coarse.step;
+  double next = EVALUATIONS_PER_STEP * span.duration / self->e.step,
+         time = relative_step_cost(self->fast_motion.model);
+  strut_accuracy_begin_phase(self->a, "midpoint with ever smaller steps");
+  for (; !status && !*done && time * next < explicit_evaluations; self->e.step *= 0.5) {
+    status = run_with_half_step(self, done);
+    next = 2.0 * (double)self->now.spent.evaluations;
     if (*done) break;
   }
-  if (!status && *done) status = strut_accuracy_deliver(h->a, &h->e, &h->now);
-  if (!status && *done) report_midpoint(h, explicit_evaluations);
+  if (!status && *done) status = strut_accuracy_deliver(self->a, &self->e, &self->now);
+  if (!status && *done) report_midpoint(self, explicit_evaluations);
   return status;
 }
 
-strut_status strut_accuracy_try_midpoint(strut_accuracy *a, bool *done) {
-  const strut_scene *scene = a->scene;
-  midpoint_runs h = {.a = a, .e = a->coarse, .change = HUGE_VAL, .moved = HUGE_VAL};
+strut_status strut_accuracy_try_midpoint(strut_accuracy *accuracy, bool *done) {
+  const strut_scene *scene = accuracy->scene;
+  midpoint_runs h = {.a = accuracy, .e = accuracy->coarse, .change = HUGE_VAL, .moved = HUGE_VAL};
   *done = false;
   h.e.integrator = strut_integrator_for(STRUT_ROLE_STIFF)->name;
-  h.e.step = choose_first_step(a);
-  bool fits = scene->contact_count == 0 && !a->single_method && !a->experiment.steady.wanted &&
-              !has_jumping_signal(scene) && h.e.step > 0.0;
+  h.e.step = choose_first_step(accuracy);
+  bool fits = scene->contact_count == 0 && !accuracy->single_method &&
+              !accuracy->experiment.steady.wanted && !has_jumping_signal(scene) && h.e.step > 0.0;
   if (!fits) return STRUT_OK;
   strut_status status = STRUT_OK;
   size_t both = 2 * scene->node_count;
-  h.fast_motion.model = a->model;
+  h.fast_motion.model = accuracy->model;
   for (int k = 0; k < 2 && !status; k++)
     if (!(h.fast_motion.before[k] = strut_arena_allocate(&h.arena, both, sizeof(double))))
-      status = strut_no_memory(a->error, "");
+      status = strut_no_memory(accuracy->error, "");
   if (!status) status = halve_until_kept(&h, done);
   strut_summary_free(&h.now);
   strut_summary_free(&h.before);

@@ -69,7 +69,9 @@ static const double FALL = 0.7;
 static const double CONFIRMED_BY_FINER = 0.3, CONFIRMED = 0.6;
 
 /* Where stability bounds the coarse step, finer ones cost less than the reference method. */
-static bool uses_finer_steps(const strut_accuracy *a) { return a->stiff && a->target >= FINE; }
+static bool uses_finer_steps(const strut_accuracy *accuracy) {
+  return accuracy->stiff && accuracy->target >= FINE;
+}
 
 static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model *model) {
   size_t length = (size_t)model->length;
@@ -87,17 +89,18 @@ static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model 
  * repeated with a step for the stiffest shape so far.
  */
 static strut_status run_coarse_from_start(strut_orbit_solve *solve, double periods) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   for (int k = 0; k < MOST_STEPS; k++) {
-    strut_status status = strut_orbit_solve_run_until_steady(
-        solve, a->coarse, fmax(0.1, 16.0 * a->target), 3, periods, false, &solve->coarse_run);
+    strut_status status = strut_orbit_solve_run_until_steady(solve, accuracy->coarse,
+                                                             fmax(0.1, 16.0 * accuracy->target), 3,
+                                                             periods, false, &solve->coarse_run);
     double limit = solve->coarse_run.limit_fell.limit;
-    bool fell = limit > 0.0 && limit < a->coarse.step;
+    bool fell = limit > 0.0 && limit < accuracy->coarse.step;
     if (status ? status != STRUT_DIVERGED : !fell) return status;
-    a->check_evaluations += solve->coarse_run.spent.evaluations;
+    accuracy->check_evaluations += solve->coarse_run.spent.evaluations;
     strut_summary_free(&solve->coarse_run);
     solve->coarse_run = (strut_summary){0};
-    a->coarse.step = fell ? STRUT_COARSE_STEP * limit : 0.5 * a->coarse.step;
+    accuracy->coarse.step = fell ? STRUT_COARSE_STEP * limit : 0.5 * accuracy->coarse.step;
   }
   solve->coarse_run.status = STRUT_DIVERGED;
   return STRUT_DIVERGED;
@@ -109,24 +112,25 @@ static strut_status run_coarse_from_start(strut_orbit_solve *solve, double perio
  * therefore loose. *steady is false where even that is not reached.
  */
 static strut_status run_coarse(strut_orbit_solve *solve, bool *steady) {
-  strut_accuracy *a = solve->a;
-  double periods = strut_accuracy_transient_periods(a), first = fmin(FIRST, periods);
-  strut_status status = allocate_arrays(solve, a->model);
+  strut_accuracy *accuracy = solve->a;
+  double periods = strut_accuracy_transient_periods(accuracy), first = fmin(FIRST, periods);
+  strut_status status = allocate_arrays(solve, accuracy->model);
   /* without ground transients may be slow; with it motions may be irregular */
-  bool may_be_slow = a->model->contacts.count == 0;
+  bool may_be_slow = accuracy->model->contacts.count == 0;
   if (status) return status;
-  strut_accuracy_begin_phase(a, "waiting for steady motion");
+  strut_accuracy_begin_phase(accuracy, "waiting for steady motion");
   status = run_coarse_from_start(solve, first);
   if (!status && solve->coarse_run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow &&
       periods > first) {
     strut_summary more = {0};
-    status = strut_orbit_solve_run_until_steady(solve, a->coarse, fmin(0.005, 0.5 * a->target), 5,
+    status = strut_orbit_solve_run_until_steady(solve, accuracy->coarse,
+                                                fmin(0.005, 0.5 * accuracy->target), 5,
                                                 periods - first, true, &more);
     if (!status) strut_summary_append(&solve->coarse_run, &more);
     strut_summary_free(&more);
   }
   *steady = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC &&
-            strut_accuracy_orbit_covers_window(a, &solve->coarse_run.steady);
+            strut_accuracy_orbit_covers_window(accuracy, &solve->coarse_run.steady);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
 }
 
@@ -143,35 +147,36 @@ static void take_end_as_fixed_point(strut_orbit_solve *solve) {
  * contacts.
  */
 static double longest_reference_step(const strut_orbit_solve *solve) {
-  const strut_accuracy *a = solve->a;
-  double longest = strut_experiment_span(&a->experiment, a->scene).period / 50.0;
-  return a->stiff ? fmin(longest, solve->finer * a->coarse.step) : longest;
+  const strut_accuracy *accuracy = solve->a;
+  double longest = strut_experiment_span(&accuracy->experiment, accuracy->scene).period / 50.0;
+  return accuracy->stiff ? fmin(longest, solve->finer * accuracy->coarse.step) : longest;
 }
 
 static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
-  strut_accuracy *a = solve->a;
-  a->check_evaluations += solve->coarse_map.evaluations + solve->reference_map.evaluations;
+  strut_accuracy *accuracy = solve->a;
+  accuracy->check_evaluations += solve->coarse_map.evaluations + solve->reference_map.evaluations;
   strut_orbit_solve_count_evaluations(solve);
   assert(repeats >= 1);
   solve->counted = 0;
   strut_period_map_free(&solve->coarse_map);
   strut_period_map_free(&solve->reference_map);
-  solve->reference = a->coarse;
+  solve->reference = accuracy->coarse;
   solve->reference.steady.creep = 0.0;
   solve->reference.integrator = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-  solve->reference.tolerance = fmin(2.5e-6, fmax(1e-12, a->target * STRUT_TOLERANCE_PER_ERROR));
+  solve->reference.tolerance =
+      fmin(2.5e-6, fmax(1e-12, accuracy->target * STRUT_TOLERANCE_PER_ERROR));
   solve->tightened = solve->finer > 1.0; /* an orbit that needs finer steps is sensitive */
   if (solve->tightened) solve->reference.tolerance /= STRUT_TIGHTENED;
   solve->reference.step = longest_reference_step(solve);
-  strut_status status =
-      strut_period_map_create(a->model, &a->coarse, repeats, &solve->coarse_map, a->error);
+  strut_status status = strut_period_map_create(accuracy->model, &accuracy->coarse, repeats,
+                                                &solve->coarse_map, accuracy->error);
   if (!status)
-    status = strut_period_map_create(a->model, &solve->reference, repeats, &solve->reference_map,
-                                     a->error);
+    status = strut_period_map_create(accuracy->model, &solve->reference, repeats,
+                                     &solve->reference_map, accuracy->error);
   if (status) return status;
-  solve->coarse_map.interrupt = solve->reference_map.interrupt = a->options->interrupt;
+  solve->coarse_map.interrupt = solve->reference_map.interrupt = accuracy->options->interrupt;
   solve->coarse_map.most_evaluations = solve->reference_map.most_evaluations =
-      strut_accuracy_evaluations_left(a);
+      strut_accuracy_evaluations_left(accuracy);
   solve->coarse_map.time = solve->reference_map.time = solve->end_state.time;
   take_end_as_fixed_point(solve);
   return STRUT_OK;
@@ -214,7 +219,7 @@ static double orbit_periods(const strut_orbit_solve *solve) {
  */
 static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
                               strut_summary *summary) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   double period = solve->coarse_map.period;
   e.measure_last = 0.0;
   strut_orbit_solve_copy_orbit_to_end(solve);
@@ -223,8 +228,8 @@ static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool
   e.periods = orbit_periods(solve);
   if (record) e.periods = fmax(e.periods, e.output_last);
   e.output_last = 0.0;
-  strut_run_options options = *a->options;
-  strut_accuracy_begin_phase(a, "running the orbit");
+  strut_run_options options = *accuracy->options;
+  strut_accuracy_begin_phase(accuracy, "running the orbit");
   if (record)
     options.to = NULL;
   else
@@ -232,7 +237,7 @@ static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool
   solve->end_state.balance = &solve->history.energy;
   options.from = &solve->end_state;
   options.progress = NULL;
-  return strut_accuracy_run(a, &e, &options, summary);
+  return strut_accuracy_run(accuracy, &e, &options, summary);
 }
 
 /* Charges the cost of a failed orbit search to the checks of the next strategy. */
@@ -268,10 +273,10 @@ static bool is_as_steady_as_sought(const strut_orbit_solve *solve) {
 
 /* Extrapolates to the fixed point of the coarse map; fills `to`. */
 static strut_status extrapolate_to_fixed_point(strut_orbit_solve *solve, strut_extrapolation *to) {
-  const strut_accuracy *a = solve->a;
-  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
-  double enough = STRUT_FIXED_POINT_PART * a->target * size * solve->coarse_map.period;
-  bool slow = fabs(solve->coarse_run.velocity) <= a->coarse.steady.creep,
+  const strut_accuracy *accuracy = solve->a;
+  double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
+  double enough = STRUT_FIXED_POINT_PART * accuracy->target * size * solve->coarse_map.period;
+  bool slow = fabs(solve->coarse_run.velocity) <= accuracy->coarse.steady.creep,
        finer = solve->finer > 1.0;
   *to = (strut_extrapolation){
       .enough = enough * solve->coarse_map.repeats,
@@ -301,39 +306,40 @@ static strut_experiment finer_experiment(const strut_orbit_solve *solve) {
  * none.
  */
 static strut_status find_finer_fixed_point(strut_orbit_solve *solve, bool from_orbit, bool *found) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   int32_t repeats = solve->coarse_map.repeats;
-  double step = a->coarse.step;
+  double step = accuracy->coarse.step;
   *found = false;
-  if (!uses_finer_steps(a) || solve->finer > 1.0) return STRUT_OK;
+  if (!uses_finer_steps(accuracy) || solve->finer > 1.0) return STRUT_OK;
   if (from_orbit) {
     memcpy(solve->orbit.y, solve->fixed_point,
            (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
     strut_orbit_solve_copy_orbit_to_end(solve);
   }
-  strut_accuracy_begin_phase(a, "finding the orbit by finer steps");
-  a->coarse.step = step / FINER, solve->finer = FINER;
+  strut_accuracy_begin_phase(accuracy, "finding the orbit by finer steps");
+  accuracy->coarse.step = step / FINER, solve->finer = FINER;
   strut_status status = create_maps(solve, repeats);
   strut_extrapolation to = {.found = false};
   if (!status) status = extrapolate_to_fixed_point(solve, &to);
   *found = to.found;
   if (status || *found) return status;
-  a->coarse.step = step, solve->finer = 1.0;
+  accuracy->coarse.step = step, solve->finer = 1.0;
   return create_maps(solve, repeats);
 }
 
 /* Corrects the coarse orbit; sets solve->answer if it is accurate enough then. */
 static strut_status correct_to_answer(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
-  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
-  strut_accuracy_begin_phase(a, "correcting the orbit");
+  strut_accuracy *accuracy = solve->a;
+  double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
+  strut_accuracy_begin_phase(accuracy, "correcting the orbit");
   /* the reference method runs on from the orbit, so that a rough one suffices */
-  bool last_word = a->target < FINE;
-  double enough = (last_word ? 3.0 : 0.3) * a->target * size;
-  strut_status status = correct_orbit(solve, enough, a->target >= COARSE || last_word ? 1 : 2);
+  bool last_word = accuracy->target < FINE;
+  double enough = (last_word ? 3.0 : 0.3) * accuracy->target * size;
+  strut_status status =
+      correct_orbit(solve, enough, accuracy->target >= COARSE || last_word ? 1 : 2);
   if (status) return status;
   double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity) + solve->error;
-  if (a->target >= COARSE && moved <= 0.8 * a->target * size)
+  if (accuracy->target >= COARSE && moved <= 0.8 * accuracy->target * size)
     solve->answer = STRUT_ORBIT_COARSE;
   else if (!last_word && strut_orbit_solve_error_share(solve) <= 0.8)
     solve->answer = STRUT_ORBIT_CORRECTED;
@@ -358,7 +364,7 @@ static strut_status correct_end_of_run(strut_orbit_solve *solve) {
  * solve->answer.
  */
 static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_extrapolation to;
   strut_status status = extrapolate_to_fixed_point(solve, &to);
   bool end_serves = is_as_steady_as_sought(solve) && !strut_orbit_solve_is_stuck(solve);
@@ -368,7 +374,8 @@ static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *stea
   if (!to.found && solve->coarse_map.repeats == 1) {
     strut_summary more = {0};
     status = strut_orbit_solve_run_until_steady(
-        solve, a->coarse, fmin(0.002, STRUT_FIXED_POINT_PART * a->target), 5, CHANCE, true, &more);
+        solve, accuracy->coarse, fmin(0.002, STRUT_FIXED_POINT_PART * accuracy->target), 5, CHANCE,
+        true, &more);
     *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC && more.steady.repeats == 1;
     if (!status) strut_summary_append(&solve->coarse_run, &more);
     strut_summary_free(&more);
@@ -380,15 +387,15 @@ static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *stea
 
 /* Corrects the coarse orbit; where that is not enough, runs the reference method from it. */
 static strut_status correct_or_rerun(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
-  double all = fmax(20.0, strut_accuracy_transient_periods(a));
+  strut_accuracy *accuracy = solve->a;
+  double all = fmax(20.0, strut_accuracy_transient_periods(accuracy));
   strut_status status = STRUT_OK;
   solve->error = HUGE_VAL;
   if (strut_orbit_solve_is_stuck(solve)) {
     status = strut_orbit_solve_confirm_stuck(solve);
     return status || solve->answer ? status : strut_orbit_solve_run_reference(solve, false, all);
   }
-  bool finer = false, last_word = a->target < FINE;
+  bool finer = false, last_word = accuracy->target < FINE;
   status = correct_to_answer(solve);
   if (!status && !solve->answer) status = find_finer_fixed_point(solve, true, &finer);
   if (!status && finer) status = correct_to_answer(solve);
@@ -425,12 +432,13 @@ static strut_status find_by_reference(strut_orbit_solve *solve) {
 
 /* Confirms a creeping motion, or runs on as if it did not matter. */
 static strut_status find_creep(strut_orbit_solve *solve, bool *steady) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_status status = create_maps(solve, 1);
   if (!status) status = strut_orbit_solve_confirm_creep(solve);
   if (status || solve->answer) return status;
-  a->coarse.steady.creep = 0.0;
-  a->check_evaluations += solve->coarse_run.spent.evaluations + solve->last_run.spent.evaluations;
+  accuracy->coarse.steady.creep = 0.0;
+  accuracy->check_evaluations +=
+      solve->coarse_run.spent.evaluations + solve->last_run.spent.evaluations;
   strut_summary_free(&solve->coarse_run);
   strut_summary_free(&solve->last_run);
   solve->coarse_run = solve->last_run = (strut_summary){0};
@@ -439,7 +447,7 @@ static strut_status find_creep(strut_orbit_solve *solve, bool *steady) {
 
 /* Finds the orbit to the wanted accuracy. */
 static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
-  const strut_accuracy *a = solve->a;
+  const strut_accuracy *accuracy = solve->a;
   strut_status status = create_maps(solve, steady ? solve->coarse_run.steady.repeats : 1);
   solve->error = HUGE_VAL;
   if (status) return status;
@@ -452,7 +460,7 @@ static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
     solve->until_steady = 0;
   }
   if (status || steady) return status ? status : correct_or_rerun(solve);
-  if (!uses_finer_steps(a)) return find_by_reference(solve);
+  if (!uses_finer_steps(accuracy)) return find_by_reference(solve);
   /* for several periods, running on costs less than finer steps */
   if (!several) status = find_finer_fixed_point(solve, false, &steady);
   if (status) return status;
@@ -464,13 +472,14 @@ static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
  * begins, counted from the start of the scene.
  */
 static bool window_is_steady(const strut_orbit_solve *solve) {
-  const strut_accuracy *a = solve->a;
+  const strut_accuracy *accuracy = solve->a;
   strut_steady_summary steady = solve->last_run.steady;
-  if (a->experiment.steady.wanted) return true;
+  if (accuracy->experiment.steady.wanted) return true;
   double periods = (double)(solve->coarse_run.steady.periods + steady.periods);
-  if (periods > 2.0 * strut_accuracy_transient_periods(a)) return false;
+  if (periods > 2.0 * strut_accuracy_transient_periods(accuracy)) return false;
   steady.periods = 0;
-  return steady.kind != STRUT_MOTION_PERIODIC || strut_accuracy_orbit_covers_window(a, &steady);
+  return steady.kind != STRUT_MOTION_PERIODIC ||
+         strut_accuracy_orbit_covers_window(accuracy, &steady);
 }
 
 /*
@@ -479,25 +488,26 @@ static bool window_is_steady(const strut_orbit_solve *solve) {
  * it is made, and its velocity must agree with that of the orbit.
  */
 static strut_status check_window(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   bool of_orbit = solve->answer >= STRUT_ORBIT_COARSE && solve->answer <= STRUT_ORBIT_STUCK;
-  double periods = a->experiment.periods, before = (double)solve->coarse_run.steady.periods;
+  double periods = accuracy->experiment.periods, before = (double)solve->coarse_run.steady.periods;
   double work = (double)solve->coarse_run.spent.evaluations / fmax(1.0, before) * periods;
-  if (!of_orbit || a->experiment.steady.wanted || work > WHOLE_RUN * (double)a->used)
+  if (!of_orbit || accuracy->experiment.steady.wanted || work > WHOLE_RUN * (double)accuracy->used)
     return STRUT_OK;
-  strut_experiment whole = a->coarse;
+  strut_experiment whole = accuracy->coarse;
   strut_summary run = {0};
   strut_run_options options = {.without_balance = true,
-                               .interrupt = a->options->interrupt,
-                               .progress = a->options->progress,
-                               .progress_context = a->options->progress_context,
-                               .from = a->options->from};
+                               .interrupt = accuracy->options->interrupt,
+                               .progress = accuracy->options->progress,
+                               .progress_context = accuracy->options->progress_context,
+                               .from = accuracy->options->from};
   whole.step = solve->coarse_map.dt;
-  strut_accuracy_begin_phase(a, "checking by the whole run");
-  strut_status status = strut_accuracy_run(a, &whole, &options, &run);
-  a->check_evaluations += run.spent.evaluations;
+  strut_accuracy_begin_phase(accuracy, "checking by the whole run");
+  strut_status status = strut_accuracy_run(accuracy, &whole, &options, &run);
+  accuracy->check_evaluations += run.spent.evaluations;
   double away = fabs(run.velocity - solve->coarse_run.velocity);
-  if (!status && !(away <= 0.3 * a->target * strut_accuracy_velocity_scale(a, run.velocity)))
+  if (!status &&
+      !(away <= 0.3 * accuracy->target * strut_accuracy_velocity_scale(accuracy, run.velocity)))
     solve->answer = STRUT_ORBIT_NONE;
   strut_summary_free(&run);
   return status;
@@ -517,19 +527,19 @@ static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
  */
 static strut_status confirm_by(strut_orbit_solve *solve, strut_experiment e, double part,
                                strut_summary *orbit, bool *confirmed) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   discard_run(solve, orbit);
   strut_status status = run_orbit(solve, e, false, orbit);
-  double size = strut_accuracy_velocity_scale(a, solve->coarse_run.velocity);
+  double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
   solve->apart = fabs(orbit->velocity - solve->orbit.velocity);
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  *confirmed = !status && (ran_on || solve->apart <= part * a->target * size);
-  if (!*confirmed || !a->options->sink_count) return status;
+  *confirmed = !status && (ran_on || solve->apart <= part * accuracy->target * size);
+  if (!*confirmed || !accuracy->options->sink_count) return status;
   strut_summary recorded = {0};
-  int64_t allowed = a->allowed;
-  a->allowed = INT64_MAX; /* what is recorded does not decide whether the work suffices */
+  int64_t allowed = accuracy->allowed;
+  accuracy->allowed = INT64_MAX; /* what is recorded does not decide whether the work suffices */
   status = run_orbit(solve, e, true, &recorded);
-  a->allowed = allowed;
+  accuracy->allowed = allowed;
   strut_summary_free(&recorded);
   return status;
 }
@@ -551,7 +561,7 @@ static strut_status confirm_by_finer(strut_orbit_solve *solve, strut_summary *or
 
 /* Runs the orbit once more; its velocity must agree with that of the orbit. */
 static strut_status confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   if (solve->answer > STRUT_ORBIT_CORRECTED && !window_is_steady(solve))
     solve->answer = STRUT_ORBIT_NONE;
   strut_status status = check_window(solve);
@@ -563,25 +573,27 @@ static strut_status confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit
   if (status || confirmed) return status;
   solve->answer = STRUT_ORBIT_NONE;
   discard_run(solve, orbit);
-  status = strut_orbit_solve_run_reference(solve, true, a->target < FINE ? LONG_TRIAL : TRIAL);
+  status =
+      strut_orbit_solve_run_reference(solve, true, accuracy->target < FINE ? LONG_TRIAL : TRIAL);
   if (!status && !solve->answer) status = strut_orbit_solve_average_disputed(solve);
   return status ? status : confirm_by(solve, solve->reference, CONFIRMED, orbit, &confirmed);
 }
 
-strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
-  strut_orbit_solve solve = {.a = a, .finer = 1.0};
+strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
+  strut_orbit_solve solve = {.a = accuracy, .finer = 1.0};
   *done = false;
-  bool steady_wanted = a->experiment.steady.wanted;
-  if (strut_accuracy_transient_periods(a) < (steady_wanted ? LEAST : LEAST_OF_RUN)) return STRUT_OK;
+  bool steady_wanted = accuracy->experiment.steady.wanted;
+  if (strut_accuracy_transient_periods(accuracy) < (steady_wanted ? LEAST : LEAST_OF_RUN))
+    return STRUT_OK;
   bool steady = false;
   strut_summary orbit = {0};
-  strut_experiment given = a->coarse;
-  a->allowed = (int64_t)(PART_OF_BUDGET * (double)a->budget);
-  a->coarse.refine_rate =
+  strut_experiment given = accuracy->coarse;
+  accuracy->allowed = (int64_t)(PART_OF_BUDGET * (double)accuracy->budget);
+  accuracy->coarse.refine_rate =
       0.5; /* the orbit will be corrected, so that a short refinement suffices */
-  a->coarse.refine_memory = 3.0;
-  a->coarse.steady.mean_tolerance = MEAN * a->target;
-  if (a->target >= FINE) a->coarse.steady.creep = CREEP * a->scale;
+  accuracy->coarse.refine_memory = 3.0;
+  accuracy->coarse.steady.mean_tolerance = MEAN * accuracy->target;
+  if (accuracy->target >= FINE) accuracy->coarse.steady.creep = CREEP * accuracy->scale;
   strut_status status = run_coarse(&solve, &steady);
   bool ran = !status && solve.coarse_run.status == STRUT_OK;
   if (ran && solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING)
@@ -595,9 +607,9 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *a, bool *done) {
     strut_orbit_solve_report(&solve, &orbit);
   else
     charge_costs(&solve, &orbit);
-  given.step = solve.finer * a->coarse.step;
-  a->coarse = given;
-  a->allowed = a->budget;
+  given.step = solve.finer * accuracy->coarse.step;
+  accuracy->coarse = given;
+  accuracy->allowed = accuracy->budget;
   free_solve(&solve);
   return status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT ? STRUT_OK : status;
 }

@@ -50,36 +50,37 @@ typedef struct strut_ladder {
 } strut_ladder;
 
 /** How many of the runs were by a method with error control; at most zero as long as there are coarse runs only. */
-static inline int strut_ladder_runs_with_error_control(const strut_ladder *l) {
-  return l->runs - l->coarse_runs;
+static inline int strut_ladder_runs_with_error_control(const strut_ladder *ladder) {
+  return ladder->runs - ladder->coarse_runs;
 }
 
 /** Are there so many runs, and all by the coarse method? */
-static inline bool strut_ladder_is_coarse(const strut_ladder *l, int least) {
-  return l->runs >= least && strut_ladder_runs_with_error_control(l) < 1;
+static inline bool strut_ladder_is_coarse(const strut_ladder *ladder, int least) {
+  return ladder->runs >= least && strut_ladder_runs_with_error_control(ladder) < 1;
 }
 
-static inline double strut_ladder_velocity_size(const strut_ladder *l, double velocity) {
-  return fmax(fabs(velocity), l->a->scale);
+static inline double strut_ladder_velocity_size(const strut_ladder *ladder, double velocity) {
+  return fmax(fabs(velocity), ladder->a->scale);
 }
 
 /**
  * Error allowed for quantity i, in its unit. Relative ones refer to its value, or to a thousandth
  * of its largest term if that is larger.
  */
-double strut_ladder_tolerated_error(const strut_ladder *l, const strut_measured *m, size_t i);
+double strut_ladder_tolerated_error(const strut_ladder *ladder, const strut_measured *measured,
+                                    size_t i);
 /**
  * Error of the extreme that decides an arrival, by two runs, over its distance from the target: 0 is certain, above
  * STRUT_LADDER_UNDECIDED nothing is known.
  */
 double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measured *other);
 /** Decides whether the latest of two or more runs is accurate enough, and estimates its error. */
-void strut_ladder_judge(strut_ladder *l);
+void strut_ladder_judge(strut_ladder *ladder);
 /** Lets the coarse method go on where one or two more halved steps should do, for less than another method takes. */
-void strut_ladder_extend_coarse(strut_ladder *l);
+void strut_ladder_extend_coarse(strut_ladder *ladder);
 /** No more runs follow: those that met a limit may still agree well enough. */
-void strut_ladder_judge_last(strut_ladder *l);
+void strut_ladder_judge_last(strut_ladder *ladder);
 /** Fills the summary's accuracy and quantities. */
-void strut_ladder_report(strut_ladder *l);
+void strut_ladder_report(strut_ladder *ladder);
 
 #endif

@@ -110,19 +110,19 @@ static void return_to(strut_orbit_solve *solve, const run_end *end) {
    solve->end_state, is known well enough. */
 static strut_status run_by_two_steps(strut_orbit_solve *solve, run_end *end, strut_summary run[2],
                                      strut_orbit_mean mean[2]) {
-  strut_accuracy *a = solve->a;
-  const strut_experiment by[2] = {a->coarse, strut_orbit_solve_halve_step(solve)};
+  strut_accuracy *accuracy = solve->a;
+  const strut_experiment by[2] = {accuracy->coarse, strut_orbit_solve_halve_step(solve)};
   double most = most_periods(solve, 3.0 * cost_of_period(&solve->coarse_run));
   for (double periods = fmin(PERIODS, most);;) {
     for (int k = 0; k < 2; k++) {
       strut_orbit_solve_copy_orbit_to_end(solve);
-      a->check_evaluations += run[k].spent.evaluations;
+      accuracy->check_evaluations += run[k].spent.evaluations;
       strut_status status = run_for_mean(solve, by[k], periods, &run[k], &mean[k]);
       if (status) return status;
       if (k == 0) keep_end(solve, end);
     }
-    double size = strut_accuracy_velocity_scale(a, mean[1].velocity);
-    double wanted = ENOUGH * a->target * size;
+    double size = strut_accuracy_velocity_scale(accuracy, mean[1].velocity);
+    double wanted = ENOUGH * accuracy->target * size;
     mean[1].apart = fabs(mean[1].velocity - mean[0].velocity);
     bool enough = mean[1].interval <= wanted && mean[1].apart <= wanted;
     if (!(periods < most) || !agree(&mean[0], &mean[1]) || enough) return STRUT_OK;
@@ -157,7 +157,7 @@ strut_status strut_orbit_solve_average(strut_orbit_solve *solve) {
 }
 
 strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_status status = STRUT_OK;
   solve->answer = STRUT_ORBIT_NONE;
   if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
@@ -165,7 +165,7 @@ strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool 
   if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_CREEPING) {
     status = strut_orbit_solve_confirm_creep(solve);
     if (status || solve->answer) return status;
-    a->coarse.steady.creep = 0.0;
+    accuracy->coarse.steady.creep = 0.0;
     status = continue_coarse_run(solve, PERIODS);
   }
   if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)

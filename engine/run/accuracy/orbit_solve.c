@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-double strut_accuracy_velocity_scale(const strut_accuracy *a, double velocity) {
-  return fmax(fabs(velocity), a->scale);
+double strut_accuracy_velocity_scale(const strut_accuracy *accuracy, double velocity) {
+  return fmax(fabs(velocity), accuracy->scale);
 }
 
 void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve) {
@@ -41,26 +41,26 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
                                                 double tolerance, int32_t successive,
                                                 double periods, bool from_end,
                                                 strut_summary *summary) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_snapshot from = solve->end_state;
   e.steady.wanted = true;
   e.steady.tolerance = tolerance;
-  e.steady.floor = tolerance * a->scale;
+  e.steady.floor = tolerance * accuracy->scale;
   e.steady.creep_after = from_end ? 0 : CREEP_AFTER;
   e.steady.successive = successive;
   e.periods = fmin(e.periods, periods);
   e.measure_last = fmin(e.measure_last, e.periods);
   e.output_last = 0.0;
   /* the energy of the first run tells whether its step is too large: what it leads to would look periodic, too */
-  strut_run_options options = {.without_balance = from_end && a->options->without_balance,
-                               .interrupt = a->options->interrupt,
-                               .progress = a->options->progress,
-                               .progress_context = a->options->progress_context,
-                               .from = from_end ? &from : a->options->from,
+  strut_run_options options = {.without_balance = from_end && accuracy->options->without_balance,
+                               .interrupt = accuracy->options->interrupt,
+                               .progress = accuracy->options->progress,
+                               .progress_context = accuracy->options->progress_context,
+                               .from = from_end ? &from : accuracy->options->from,
                                .to = &solve->end_state};
   if (!from_end) solve->history = (strut_orbit_history){0};
   from.balance = &solve->history.energy;
-  strut_status status = strut_accuracy_run(a, &e, &options, summary);
+  strut_status status = strut_accuracy_run(accuracy, &e, &options, summary);
   solve->history.energy = summary->energy; /* it continues that of the runs before */
   solve->history.steps += summary->spent.steps;
   solve->history.events += summary->spent.events;
@@ -117,9 +117,9 @@ static void accept_reference_run(strut_orbit_solve *solve) {
 
 strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
                                              double periods) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_summary more = {0};
-  strut_accuracy_begin_phase(a, "until steady by adaptive");
+  strut_accuracy_begin_phase(accuracy, "until steady by adaptive");
   strut_orbit_solve_copy_orbit_to_end(solve);
   /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
   if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
@@ -127,7 +127,7 @@ strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from
     solve->tightened = true;
   }
   strut_status status = strut_orbit_solve_run_until_steady(
-      solve, solve->reference, fmin(0.001, 0.2 * a->target), 4, periods, from_orbit, &more);
+      solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4, periods, from_orbit, &more);
   if (!status) strut_summary_append(&solve->last_run, &more);
   strut_summary_free(&more);
   if (!status && solve->last_run.steady.kind == STRUT_MOTION_PERIODIC) accept_reference_run(solve);
@@ -139,19 +139,19 @@ strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from
  * the wanted error; otherwise the finer result replaces it and is checked likewise.
  */
 static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   for (int k = 0; k < MOST_CHECKS; k++) {
     strut_summary finer = {0};
     strut_orbit_solve_copy_orbit_to_end(solve);
     solve->reference.tolerance = fmax(1e-12, 0.1 * solve->reference.tolerance);
     strut_status status = strut_orbit_solve_run_until_steady(
-        solve, solve->reference, fmin(0.001, 0.2 * a->target), 4, TRIAL, true, &finer);
+        solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4, TRIAL, true, &finer);
     bool periodic = !status && finer.steady.kind == STRUT_MOTION_PERIODIC;
     double apart = periodic ? fabs(finer.velocity - solve->orbit.velocity) : HUGE_VAL;
-    bool stands =
-        apart <= 0.5 * a->target * strut_accuracy_velocity_scale(a, solve->orbit.velocity);
+    bool stands = apart <= 0.5 * accuracy->target *
+                               strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity);
     if (stands || !periodic) {
-      a->check_evaluations += finer.spent.evaluations;
+      accuracy->check_evaluations += finer.spent.evaluations;
       solve->error = fmax(solve->error, stands ? apart : 0.0);
       solve->reference.tolerance *= 10.0;
     } else {
@@ -170,26 +170,26 @@ static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
  * much, runs on with that tolerance.
  */
 static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   size_t both = 2 * (size_t)solve->coarse_map.model->length + 1;
   strut_experiment finer = solve->reference;
   strut_period_map map = {.model = NULL};
   strut_orbit there = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
-  if (!there.y) return strut_no_memory(a->error, "");
+  if (!there.y) return strut_no_memory(accuracy->error, "");
   memcpy(there.y, solve->orbit.y, both * sizeof(double));
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
-  double size = strut_accuracy_velocity_scale(a, solve->orbit.velocity),
-         half = 0.5 * a->target * size;
+  double size = strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity),
+         half = 0.5 * accuracy->target * size;
   int64_t before = solve->coarse_map.evaluations;
-  strut_status status =
-      strut_period_map_create(a->model, &finer, solve->coarse_map.repeats, &map, a->error);
+  strut_status status = strut_period_map_create(accuracy->model, &finer, solve->coarse_map.repeats,
+                                                &map, accuracy->error);
   if (status) return status;
   map.interrupt = solve->coarse_map.interrupt, map.time = solve->coarse_map.time;
-  map.most_evaluations = strut_accuracy_evaluations_left(a);
+  map.most_evaluations = strut_accuracy_evaluations_left(accuracy);
   status = strut_orbit_correct(&solve->coarse_map, &map, solve->fixed_point, solve->travel,
                                0.1 * half * solve->coarse_map.period, &there);
-  a->check_evaluations += solve->coarse_map.evaluations - before + map.evaluations;
-  a->used += solve->coarse_map.evaluations - before + map.evaluations;
+  accuracy->check_evaluations += solve->coarse_map.evaluations - before + map.evaluations;
+  accuracy->used += solve->coarse_map.evaluations - before + map.evaluations;
   solve->coarse_map.evaluations = before;
   strut_period_map_free(&map);
   status = strut_orbit_solve_check_maps(solve, status);
@@ -227,20 +227,21 @@ void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_ans
 }
 
 bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve) {
-  const strut_contact_table *c = &solve->coarse_map.model->contacts;
+  const strut_contact_table *contacts = &solve->coarse_map.model->contacts;
   double band = 0.0;
-  for (int32_t i = 0; i < c->count; i++) band = fmax(band, c->entry[i].friction.stick_velocity);
+  for (int32_t i = 0; i < contacts->count; i++)
+    band = fmax(band, contacts->entry[i].friction.stick_velocity);
   return solve->coarse_map.applied > 0 && solve->coarse_map.events == 0 &&
          fabs(solve->coarse_run.velocity) <= 1.01 * band;
 }
 
 strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_summary half = {0};
   solve->answer = STRUT_ORBIT_NONE;
   strut_status status = strut_orbit_solve_run_until_steady(
-      solve, strut_orbit_solve_halve_step(solve), fmin(0.001, 0.2 * a->target), 4,
-      fmax(20.0, strut_accuracy_transient_periods(a)), false, &half);
+      solve, strut_orbit_solve_halve_step(solve), fmin(0.001, 0.2 * accuracy->target), 4,
+      fmax(20.0, strut_accuracy_transient_periods(accuracy)), false, &half);
   if (status) {
     strut_summary_free(&half);
     return status;
@@ -248,20 +249,20 @@ strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
   bool periodic = half.steady.kind == STRUT_MOTION_PERIODIC;
   strut_summary_append(&solve->last_run, &half);
   double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
-  if (periodic &&
-      apart <= AGREE * a->target * strut_accuracy_velocity_scale(a, solve->last_run.velocity))
+  if (periodic && apart <= AGREE * accuracy->target *
+                               strut_accuracy_velocity_scale(accuracy, solve->last_run.velocity))
     strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK,
                                       apart + solve->last_run.steady.interval);
   return STRUT_OK;
 }
 
 strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
-  strut_accuracy *a = solve->a;
+  strut_accuracy *accuracy = solve->a;
   strut_summary half = {0};
   strut_experiment finer = strut_orbit_solve_halve_step(solve);
-  finer.steady.creep = a->coarse.steady.creep;
+  finer.steady.creep = accuracy->coarse.steady.creep;
   strut_status status =
-      strut_orbit_solve_run_until_steady(solve, finer, a->target, 5, CREEPING, true, &half);
+      strut_orbit_solve_run_until_steady(solve, finer, accuracy->target, 5, CREEPING, true, &half);
   if (!status) {
     strut_steady_summary found = half.steady;
     strut_summary_append(&solve->last_run, &half);
@@ -349,47 +350,49 @@ static int64_t sum_evaluations(const strut_orbit_solve *solve) {
  * works and losses are over all of it already.
  */
 static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summary *orbit,
-                              strut_summary *s) {
+                              strut_summary *summary) {
   const strut_snapshot *from = solve->a->options->from;
   double before = solve->orbit_time - (from ? from->time : 0.0);
-  s->duration = before + orbit->duration;
-  s->spent.steps = solve->orbit_history.steps + orbit->spent.steps;
-  s->spent.events = solve->orbit_history.events + orbit->spent.events;
-  s->steady.periods = llround(before / solve->coarse_map.period);
+  summary->duration = before + orbit->duration;
+  summary->spent.steps = solve->orbit_history.steps + orbit->spent.steps;
+  summary->spent.events = solve->orbit_history.events + orbit->spent.events;
+  summary->steady.periods = llround(before / solve->coarse_map.period);
 }
 
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit) {
-  strut_accuracy *a = solve->a;
-  strut_summary *s = a->summary;
+  strut_accuracy *accuracy = solve->a;
+  strut_summary *summary = accuracy->summary;
   assert(solve->answer != STRUT_ORBIT_NONE);
   bool coarse_suffices = solve->answer == STRUT_ORBIT_COARSE;
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
   double error = estimate_error(solve);
   int64_t corrections =
       solve->coarse_map.evaluations - solve->until_steady + solve->reference_map.evaluations;
-  *s = *orbit;
-  s->velocity = coarse_suffices ? solve->coarse_run.velocity : solve->orbit.velocity;
-  s->velocity_spread = ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
-  s->settle_time = solve->coarse_run.settle_time;
-  s->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
-  s->steady.interval = error;
-  tell_whole_motion(solve, orbit, s);
-  if (solve->mean.periods > 0) s->window = solve->last_run.window; /* that of the mean */
-  s->spent.evaluations = sum_evaluations(solve);
-  s->step = solve->coarse_map.dt;
-  s->step_limit = solve->coarse_run.step_limit;
-  s->spent.wall_time = solve->coarse_run.spent.wall_time;
+  *summary = *orbit;
+  summary->velocity = coarse_suffices ? solve->coarse_run.velocity : solve->orbit.velocity;
+  summary->velocity_spread =
+      ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
+  summary->settle_time = solve->coarse_run.settle_time;
+  summary->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
+  summary->steady.interval = error;
+  tell_whole_motion(solve, orbit, summary);
+  if (solve->mean.periods > 0) summary->window = solve->last_run.window; /* that of the mean */
+  summary->spent.evaluations = sum_evaluations(solve);
+  summary->step = solve->coarse_map.dt;
+  summary->step_limit = solve->coarse_run.step_limit;
+  summary->spent.wall_time = solve->coarse_run.spent.wall_time;
   bool adaptive = solve->answer == STRUT_ORBIT_CORRECTED || solve->answer == STRUT_ORBIT_REFERENCE;
-  snprintf(s->method, sizeof s->method, "%s%s%s", strut_integrator_for(STRUT_ROLE_COARSE)->name,
-           adaptive ? "+" : "", adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
-  s->accuracy = (strut_accuracy_summary){
-      .wanted = a->target,
-      .expected = error / strut_accuracy_velocity_scale(a, s->velocity),
-      .scale = a->scale,
-      .check_evaluations =
-          a->check_evaluations + orbit->spent.evaluations + (coarse_suffices ? corrections : 0)};
+  snprintf(summary->method, sizeof summary->method, "%s%s%s",
+           strut_integrator_for(STRUT_ROLE_COARSE)->name, adaptive ? "+" : "",
+           adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
+  summary->accuracy = (strut_accuracy_summary){
+      .wanted = accuracy->target,
+      .expected = error / strut_accuracy_velocity_scale(accuracy, summary->velocity),
+      .scale = accuracy->scale,
+      .check_evaluations = accuracy->check_evaluations + orbit->spent.evaluations +
+                           (coarse_suffices ? corrections : 0)};
   /* of what creeps only that is promised */
-  double known = solve->answer == STRUT_ORBIT_CREEPING ? 0.0 : s->accuracy.expected;
-  s->accuracy.kept = strut_accuracy_is_kept(!solve->mean.disputed, known, a->target);
-  explain_orbit(solve, &s->accuracy);
+  double known = solve->answer == STRUT_ORBIT_CREEPING ? 0.0 : summary->accuracy.expected;
+  summary->accuracy.kept = strut_accuracy_is_kept(!solve->mean.disputed, known, accuracy->target);
+  explain_orbit(solve, &summary->accuracy);
 }

@@ -69,7 +69,7 @@ typedef struct strut_orbit_solve {
 } strut_orbit_solve;
 
 /** The velocity that errors are relative to [m/s]. */
-double strut_accuracy_velocity_scale(const strut_accuracy *a, double velocity);
+double strut_accuracy_velocity_scale(const strut_accuracy *accuracy, double velocity);
 /** Adds the evaluations of both maps since the last call to a->used. */
 void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve);
 /** Appends a continuation: costs add up, results are replaced; empties `part`. */

@@ -80,32 +80,33 @@ typedef struct strut_follow_limits {
  * Moves y (both), near a periodic motion at the system's value, onto it. *found is false where Newton's
  * method does not converge; `reason` (200) says why.
  */
-STRUT_API strut_status strut_follow_correct(strut_follow_system *s, double *y, bool *found,
-                                            char *reason, strut_error *error);
+STRUT_API strut_status strut_follow_correct(strut_follow_system *system, double *unknowns,
+                                            bool *found, char *reason, strut_error *error);
 /**
  * Chooses the steps of a period, of a method that takes fixed ones, for the fastest vibrations at both ends of
  * the range and here. Not `good`: there would be too many.
  */
-STRUT_API strut_status strut_follow_choose_steps(strut_follow_system *s, double accuracy,
+STRUT_API strut_status strut_follow_choose_steps(strut_follow_system *system, double accuracy,
                                                  bool *good, strut_error *error);
 /**
  * Compares the motion y (both) with what half the step makes of it, and halves the step until velocity or
  * amplitude agree to the accuracy.
  */
-STRUT_API strut_status strut_follow_check_steps(strut_follow_system *s, double *y, double accuracy,
-                                                strut_error *error);
+STRUT_API strut_status strut_follow_check_steps(strut_follow_system *system, double *unknowns,
+                                                double accuracy, strut_error *error);
 /**
  * Follows the branch both ways from the motion y at the system's value, which is on it; `direction` (n):
  * NULL, or that in which the branch leaves y, of a doubled branch. The branch is to be freed in any case;
  * with STRUT_INTERRUPTED it holds what was followed so far.
  */
-STRUT_API strut_status strut_follow_branch_make(strut_follow_system *s, const double *y,
+STRUT_API strut_status strut_follow_branch_make(strut_follow_system *system, const double *unknowns,
                                                 const double *direction,
                                                 const strut_follow_limits *limits,
                                                 strut_follow_branch *branch, strut_error *error);
 STRUT_API void strut_follow_branch_free(strut_follow_branch *branch);
 /** Is the motion y at the value on the branch, which has the same repeats? Corrects to find out. */
-STRUT_API strut_status strut_follow_is_on(strut_follow_system *s, const strut_follow_branch *branch,
-                                          const double *y, bool *on, strut_error *error);
+STRUT_API strut_status strut_follow_is_on(strut_follow_system *system,
+                                          const strut_follow_branch *branch, const double *unknowns,
+                                          bool *on, strut_error *error);
 
 #endif

@@ -53,33 +53,35 @@ typedef struct strut_follow_surface {
  * Prepares the equations at two values; s.repeats and what stands before it in s must be filled, and the
  * ranges. As strut_follow_open.
  */
-strut_status strut_follow_surface_open(strut_follow_surface *u, const double value[2],
+strut_status strut_follow_surface_open(strut_follow_surface *surface, const double value[2],
                                        strut_error *error);
-void strut_follow_surface_close(strut_follow_surface *u);
+void strut_follow_surface_close(strut_follow_surface *surface);
 /** Makes the model of two values. False: that scene is not valid, or status. */
-bool strut_follow_surface_set(strut_follow_surface *u, const double value[2]);
+bool strut_follow_surface_set(strut_follow_surface *surface, const double value[2]);
 /** An empty point in the arena; NULL: out of memory. */
-strut_follow_surface_point *strut_follow_surface_point_new(const strut_follow_surface *u,
+strut_follow_surface_point *strut_follow_surface_point_new(const strut_follow_surface *surface,
                                                            strut_arena *arena);
-void strut_follow_surface_point_copy(const strut_follow_surface *u,
+void strut_follow_surface_point_copy(const strut_follow_surface *surface,
                                      const strut_follow_surface_point *from,
                                      strut_follow_surface_point *to);
 /** Unknown i of b less that of a, each of order one; i up to n + 1. */
-double strut_follow_surface_difference(const strut_follow_surface *u,
-                                       const strut_follow_surface_point *a,
-                                       const strut_follow_surface_point *b, size_t i);
+double strut_follow_surface_difference(const strut_follow_surface *surface,
+                                       const strut_follow_surface_point *first,
+                                       const strut_follow_surface_point *second, size_t i);
 /** Moves p by a multiple of a direction (n + 2); it is incomplete then. */
-void strut_follow_surface_move(const strut_follow_surface *u, strut_follow_surface_point *p,
-                               const double *direction, double factor);
+void strut_follow_surface_move(const strut_follow_surface *surface,
+                               strut_follow_surface_point *point, const double *direction,
+                               double factor);
 /**
  * Newton's method from p to the motion with rows[k] . (p - base) = offset[k]. The derivative of an earlier
  * point serves while it makes the residual fall. False: there is none, or status.
  */
-bool strut_follow_surface_correct(strut_follow_surface *u, strut_follow_surface_point *p,
+bool strut_follow_surface_correct(strut_follow_surface *surface, strut_follow_surface_point *point,
                                   const strut_follow_surface_point *base,
                                   const double *const rows[2], const double offset[2]);
 /** Derivative, tangents and multipliers at p, which is a motion. False as above. */
-bool strut_follow_surface_complete(strut_follow_surface *u, strut_follow_surface_point *p);
+bool strut_follow_surface_complete(strut_follow_surface *surface,
+                                   strut_follow_surface_point *point);
 
 /* Test functions that vanish along curves of special points. Internal to engine/run/follow. */
 
@@ -94,11 +96,11 @@ typedef struct strut_follow_criterion {
 } strut_follow_criterion;
 
 /** Value of the test function at a motion, which is completed where that is needed. False: none, or status. */
-bool strut_follow_criterion_at(strut_follow_surface *u, strut_follow_criterion *criterion,
-                               strut_follow_surface_point *p, double *value);
+bool strut_follow_criterion_at(strut_follow_surface *surface, strut_follow_criterion *criterion,
+                               strut_follow_surface_point *point, double *value);
 /** Chooses the contact and the phase by the gaps of the node's contacts. False: none is near zero. */
-bool strut_follow_criterion_choose(strut_follow_surface *u, strut_follow_criterion *criterion,
-                                   const strut_follow_surface_point *p, const char *node);
+bool strut_follow_criterion_choose(strut_follow_surface *surface, strut_follow_criterion *criterion,
+                                   const strut_follow_surface_point *point, const char *node);
 
 /* Curves of special points over two parameters: folds, period doublings, grazings and lift-offs.
  *
@@ -152,13 +154,13 @@ STRUT_API bool strut_follow_curve_known(strut_follow_kind kind);
  * start is on no curve, count is 0 and ends[0] says why. The curve is to be freed in any case; with
  * STRUT_INTERRUPTED it holds what was followed so far.
  */
-STRUT_API strut_status strut_follow_curve_make(strut_follow_surface *u,
+STRUT_API strut_status strut_follow_curve_make(strut_follow_surface *surface,
                                                const strut_follow_curve_start *start,
                                                const strut_follow_curve_limits *limits,
                                                strut_follow_curve *curve, strut_error *error);
 STRUT_API void strut_follow_curve_free(strut_follow_curve *curve);
 /** Does the curve pass the start, which has as many repeats? */
-STRUT_API bool strut_follow_curve_passes(const strut_follow_surface *u,
+STRUT_API bool strut_follow_curve_passes(const strut_follow_surface *surface,
                                          const strut_follow_curve *curve,
                                          const strut_follow_curve_start *start);
 
@@ -230,50 +232,51 @@ typedef struct strut_follow_section {
  * Newton's method from y and the value on a plane. The derivative in the system serves as long as it
  * converges. False: no orbit there.
  */
-bool strut_follow_newton(strut_follow_walk *w, double *y, double *value,
+bool strut_follow_newton(strut_follow_walk *walk, double *unknowns, double *value,
                          const strut_follow_section *plane, int *rounds);
 /**
  * Multipliers of the system's derivative by size; the one of shifts, 0 in it, is left out. scratch (n, n),
  * multiplier (n). False: out of memory.
  */
-bool strut_follow_multipliers(const strut_follow_system *s, double *scratch,
+bool strut_follow_multipliers(const strut_follow_system *system, double *scratch,
                               double (*multiplier)[2], size_t *count);
 /** Travel, work and word of the orbit at o->y, o->value. False: motion lost, or status. */
-bool strut_follow_measure(strut_follow_walk *w, strut_follow_orbit *o);
+bool strut_follow_measure(strut_follow_walk *walk, strut_follow_orbit *orbit);
 /** Both that and what follows, which then takes one run less. */
-bool strut_follow_examine(strut_follow_walk *w, strut_follow_orbit *o, const double *before);
+bool strut_follow_examine(strut_follow_walk *walk, strut_follow_orbit *orbit, const double *before);
 /** Derivative, multipliers, tangent along `before` (n + 1). False as above. */
-bool strut_follow_complete(strut_follow_walk *w, strut_follow_orbit *o, const double *before);
+bool strut_follow_complete(strut_follow_walk *walk, strut_follow_orbit *orbit,
+                           const double *before);
 /** An orbit with its arrays; NULL: out of memory, which the walk's status says. */
-strut_follow_orbit *strut_follow_orbit_new(strut_follow_walk *w);
+strut_follow_orbit *strut_follow_orbit_new(strut_follow_walk *walk);
 /** direction (n): eigenvector of the derivative at o, of the real multiplier nearest to `value`. */
-bool strut_follow_eigenvector(strut_follow_walk *w, const strut_follow_orbit *o, double value,
-                              double *direction);
+bool strut_follow_eigenvector(strut_follow_walk *walk, const strut_follow_orbit *orbit,
+                              double value, double *direction);
 
 /* follow_word.c */
 
 /** The word of what the system's log holds. False: out of memory. */
-bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
+bool strut_follow_word_read(const strut_follow_system *system, strut_arena *arena,
                             strut_follow_word *word);
-bool strut_follow_words_equal(const strut_follow_word *a, const strut_follow_word *b);
+bool strut_follow_words_equal(const strut_follow_word *first, const strut_follow_word *second);
 /** What changes from a to b, which are near the point of change: kind, name and sentence. */
-bool strut_follow_words_compare(const strut_follow_system *s, const strut_follow_word *a,
-                                const strut_follow_word *b, strut_arena *arena,
+bool strut_follow_words_compare(const strut_follow_system *system, const strut_follow_word *first,
+                                const strut_follow_word *second, strut_arena *arena,
                                 strut_follow_point *point);
 /** As a text: "n4 down, n4 slips +, ..." in short. NULL: out of memory. */
-const char *strut_follow_word_text(const strut_follow_system *s, const strut_follow_word *word,
+const char *strut_follow_word_text(const strut_follow_system *system, const strut_follow_word *word,
                                    strut_arena *arena);
 
 /* follow_special.c */
 
 /** Locates what changes between two complete orbits of a step and appends the points. */
-bool strut_follow_locate(strut_follow_walk *w, const strut_follow_orbit *a,
-                         const strut_follow_orbit *b);
+bool strut_follow_locate(strut_follow_walk *walk, const strut_follow_orbit *first,
+                         const strut_follow_orbit *second);
 
 /* follow_walk.c */
 
 /** Appends a point at o; `at`: arclength. Returns it, or NULL. */
-strut_follow_point *strut_follow_add(strut_follow_walk *w, const strut_follow_orbit *o, double arc,
-                                     strut_follow_kind kind);
+strut_follow_point *strut_follow_add(strut_follow_walk *walk, const strut_follow_orbit *orbit,
+                                     double arc, strut_follow_kind kind);
 
 #endif

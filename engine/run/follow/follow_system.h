@@ -80,50 +80,53 @@ typedef struct strut_follow_period {
  * filled. STRUT_USAGE with a sentence where the scene has no such motions: no periodic drive, a memory,
  * too many coordinates, a method without events over contacts.
  */
-strut_status strut_follow_open(strut_follow_system *s, double value, strut_error *error);
-void strut_follow_close(strut_follow_system *s);
+strut_status strut_follow_open(strut_follow_system *system, double value, strut_error *error);
+void strut_follow_close(strut_follow_system *system);
 /** Makes the model of a value, if it is another one. */
-strut_status strut_follow_set_value(strut_follow_system *s, double value, strut_error *error);
+strut_status strut_follow_set_value(strut_follow_system *system, double value, strut_error *error);
 /** Changes the number of drive periods of P. */
-strut_status strut_follow_set_repeats(strut_follow_system *s, int32_t repeats, strut_error *error);
+strut_status strut_follow_set_repeats(strut_follow_system *system, int32_t repeats,
+                                      strut_error *error);
 /** Changes the number of steps of a period. */
-strut_status strut_follow_set_steps(strut_follow_system *s, int64_t steps, strut_error *error);
+strut_status strut_follow_set_steps(strut_follow_system *system, int64_t steps, strut_error *error);
 /** Chooses the units by the motion from the state y (both) over one application. */
-bool strut_follow_set_units(strut_follow_system *s, const double *y);
+bool strut_follow_set_units(strut_follow_system *system, const double *unknowns);
 /** Moves y (both) by one application at the present value; with `works` and events in s->log. */
-strut_follow_period strut_follow_apply(strut_follow_system *s, double *y, bool works);
+strut_follow_period strut_follow_apply(strut_follow_system *system, double *unknowns, bool works);
 /** f (n): scaled residual at y; returns its largest entry, HUGE_VAL where the motion was lost. */
-double strut_follow_residual(strut_follow_system *s, const double *y, double *f);
+double strut_follow_residual(strut_follow_system *system, const double *unknowns, double *f);
 /** As strut_follow_apply, and fills jacobian at the start; only where there is `variation`. */
-strut_follow_period strut_follow_carry(strut_follow_system *s, double *y, bool works);
+strut_follow_period strut_follow_carry(strut_follow_system *system, double *unknowns, bool works);
 /** Fills jacobian by central differences of whole runs. */
-void strut_follow_difference(strut_follow_system *s, const double *y, bool *lost);
+void strut_follow_difference(strut_follow_system *system, const double *unknowns, bool *lost);
 /** f (n): scaled residual of an application from y to `end`; returns its largest entry. */
-double strut_follow_change(const strut_follow_system *s, const double *y, const double *end,
-                           double *f);
+double strut_follow_change(const strut_follow_system *system, const double *unknowns,
+                           const double *end, double *f);
 /** Fills column at y and the present value; f is the residual there. */
-strut_status strut_follow_differentiate_parameter(strut_follow_system *s, const double *y,
-                                                  const double *f, bool *lost, strut_error *error);
+strut_status strut_follow_differentiate_parameter(strut_follow_system *system,
+                                                  const double *unknowns, const double *f,
+                                                  bool *lost, strut_error *error);
 /** Fills jacobian and column at y and the present value; f is the residual there. */
-strut_status strut_follow_differentiate(strut_follow_system *s, const double *y, const double *f,
-                                        bool *lost, strut_error *error);
+strut_status strut_follow_differentiate(strut_follow_system *system, const double *unknowns,
+                                        const double *f, bool *lost, strut_error *error);
 /** The parameter [SI] over its range. */
-static inline double strut_follow_scaled(const strut_follow_system *s, double value) {
-  return (value - s->low) / (s->high - s->low);
+static inline double strut_follow_scaled(const strut_follow_system *system, double value) {
+  return (value - system->low) / (system->high - system->low);
 }
 /** The state y moved by a difference d (n) of unknowns. */
-void strut_follow_move(const strut_follow_system *s, double *y, const double *d, double factor);
+void strut_follow_move(const strut_follow_system *system, double *unknowns, const double *change,
+                       double factor);
 /** Shifts y along the ground so that the mean of the nodes is at 0, where the structure travels. */
-void strut_follow_centre(const strut_follow_system *s, double *y);
+void strut_follow_centre(const strut_follow_system *system, double *unknowns);
 /** Unit of unknown i [m] or [m/s]. */
-static inline double strut_follow_unit(const strut_follow_system *s, size_t i) {
-  return i < s->n / 2 ? s->length : s->speed;
+static inline double strut_follow_unit(const strut_follow_system *system, size_t i) {
+  return i < system->n / 2 ? system->length : system->speed;
 }
 /**
  * Solves the bordered system [jacobian - 1, column; normal] x = right in place of right (n + 1); normal
  * (n + 1). False where it is singular.
  */
-bool strut_follow_solve(strut_follow_system *s, const double *normal, double *right);
+bool strut_follow_solve(strut_follow_system *system, const double *normal, double *right);
 
 /** Columns (n) beside jacobian - 1, and rows (n + count) below: one for each parameter. */
 typedef struct strut_follow_border {
@@ -132,10 +135,10 @@ typedef struct strut_follow_border {
   const double *row[2];
 } strut_follow_border;
 /** The same of any border; scratch (n + count, n + count). */
-bool strut_follow_solve_with(const strut_follow_system *s, const strut_follow_border *border,
+bool strut_follow_solve_with(const strut_follow_system *system, const strut_follow_border *border,
                              double *scratch, double *right);
 /** Broyden's update: the derivative that would have predicted the residual f (n) behind the step x. */
-void strut_follow_update(strut_follow_system *s, const strut_follow_border *border, const double *f,
-                         const double *x);
+void strut_follow_update(strut_follow_system *system, const strut_follow_border *border,
+                         const double *f, const double *vector);
 
 #endif

@@ -10,10 +10,10 @@
 static const double INSTANT = 1e-12;
 enum { MOST_TEXT = 400 };
 
-bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
+bool strut_follow_word_read(const strut_follow_system *system, strut_arena *arena,
                             strut_follow_word *word) {
-  const strut_event_log *log = s->log;
-  double span = s->period * s->how.repeats, begin = s->map[0].time;
+  const strut_event_log *log = system->log;
+  double span = system->period * system->how.repeats, begin = system->map[0].time;
   word->count = 0;
   word->letter = strut_arena_allocate(arena, log->count + 1, sizeof *word->letter);
   word->first = strut_arena_allocate(arena, (size_t)log->items + 1, 1);
@@ -21,15 +21,15 @@ bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
   if (!word->letter || !word->first || !latest) return false;
   memcpy(word->first, log->first, (size_t)log->items);
   for (size_t i = 0; i < log->count; i++) {
-    const strut_logged_event *e = &log->event[i];
-    double time = (e->time - begin) / span;
-    int32_t before = latest[e->item] - 1; /* index of the item's latest letter */
+    const strut_logged_event *event = &log->event[i];
+    double time = (event->time - begin) / span;
+    int32_t before = latest[event->item] - 1; /* index of the item's latest letter */
     if (before >= 0 && time - word->letter[before].time <= INSTANT) {
-      word->letter[before].mode = e->mode; /* two changes at once are one */
+      word->letter[before].mode = event->mode; /* two changes at once are one */
       continue;
     }
-    word->letter[word->count++] = (strut_follow_letter){e->item, e->mode, time, 1.0};
-    latest[e->item] = (int32_t)word->count;
+    word->letter[word->count++] = (strut_follow_letter){event->item, event->mode, time, 1.0};
+    latest[event->item] = (int32_t)word->count;
   }
   /* changes at once that cancel */
   size_t kept = 0;
@@ -39,8 +39,8 @@ bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
     int8_t mode = latest[l.item] ? word->letter[latest[l.item] - 1].mode : word->first[l.item];
     if (l.mode == mode) continue;
     if (latest[l.item]) {
-      strut_follow_letter *p = &word->letter[latest[l.item] - 1];
-      p->lasts = l.time - p->time;
+      strut_follow_letter *letter = &word->letter[latest[l.item] - 1];
+      letter->lasts = l.time - letter->time;
     }
     word->letter[kept++] = l;
     latest[l.item] = (int32_t)kept;
@@ -48,29 +48,30 @@ bool strut_follow_word_read(const strut_follow_system *s, strut_arena *arena,
   word->count = kept;
   /* the last mode of an item lasts into the next period */
   for (size_t i = 0; i < word->count; i++) {
-    strut_follow_letter *l = &word->letter[i];
-    if (latest[l->item] == 0) continue;
-    strut_follow_letter *end = &word->letter[latest[l->item] - 1];
-    end->lasts = l->time + 1.0 - end->time;
-    latest[l->item] = 0;
+    strut_follow_letter *follow_letter = &word->letter[i];
+    if (latest[follow_letter->item] == 0) continue;
+    strut_follow_letter *end = &word->letter[latest[follow_letter->item] - 1];
+    end->lasts = follow_letter->time + 1.0 - end->time;
+    latest[follow_letter->item] = 0;
   }
   return true;
 }
 
-static bool same_letter(const strut_follow_word *a, size_t i, const strut_follow_word *b,
+static bool same_letter(const strut_follow_word *first, size_t i, const strut_follow_word *second,
                         size_t k) {
-  return a->letter[i].item == b->letter[k].item && a->letter[i].mode == b->letter[k].mode;
+  return first->letter[i].item == second->letter[k].item &&
+         first->letter[i].mode == second->letter[k].mode;
 }
 
 /* Words are cycles: an event may pass the start of the period. */
-bool strut_follow_words_equal(const strut_follow_word *a, const strut_follow_word *b) {
-  if (a->count != b->count) return false;
-  size_t n = a->count;
+bool strut_follow_words_equal(const strut_follow_word *first, const strut_follow_word *second) {
+  if (first->count != second->count) return false;
+  size_t n = first->count;
   if (n == 0) return true;
   size_t most = n < 8 ? n : 8;
   for (size_t turn = 0; turn < 2 * most - 1; turn++) {
     size_t by = turn % 2 ? n - (turn + 1) / 2 : turn / 2, i = 0;
-    while (i < n && same_letter(a, i, b, (i + by) % n)) i++;
+    while (i < n && same_letter(first, i, second, (i + by) % n)) i++;
     if (i == n) return true;
   }
   return false;
@@ -78,40 +79,41 @@ bool strut_follow_words_equal(const strut_follow_word *a, const strut_follow_wor
 
 /* ---- what a change is ---- */
 
-static const char *item_name(const strut_follow_system *s, int32_t item) {
-  const strut_scene *scene = &s->setup.scene;
-  const strut_model *m = s->model;
-  const strut_event_log *log = s->log;
-  if (item < log->contacts) return scene->nodes[m->contacts.entry[item].node].name;
+static const char *item_name(const strut_follow_system *system, int32_t item) {
+  const strut_scene *scene = &system->setup.scene;
+  const strut_model *model = system->model;
+  const strut_event_log *log = system->log;
+  if (item < log->contacts) return scene->nodes[model->contacts.entry[item].node].name;
   item -= log->contacts;
   if (item < log->members)
     return (size_t)item < scene->member_count ? scene->members[item].name : "";
   item -= log->members;
   if (log->elements) item %= log->elements;
-  const strut_element *e = &m->elements.element[item];
-  if (e->role == STRUT_ELEMENT_MEMBER) return scene->members[e->item].name;
-  if (e->role == STRUT_ELEMENT_HINGE) return scene->hinges[e->item].name;
-  if (e->role == STRUT_ELEMENT_CELL) return scene->cells[e->item].name;
+  const strut_element *element = &model->elements.element[item];
+  if (element->role == STRUT_ELEMENT_MEMBER) return scene->members[element->item].name;
+  if (element->role == STRUT_ELEMENT_HINGE) return scene->hinges[element->item].name;
+  if (element->role == STRUT_ELEMENT_CELL) return scene->cells[element->item].name;
   return "a collision";
 }
 
-static size_t count_of(const strut_follow_word *w, int32_t item) {
+static size_t count_of(const strut_follow_word *word, int32_t item) {
   size_t count = 0;
-  for (size_t i = 0; i < w->count; i++) count += w->letter[i].item == item;
+  for (size_t i = 0; i < word->count; i++) count += word->letter[i].item == item;
   return count;
 }
 
 /* The modes of an item around the period, equal up to their begin? */
-static bool same_cycle(const strut_follow_word *a, const strut_follow_word *b, int32_t item) {
-  size_t n = count_of(a, item), k = 0;
+static bool same_cycle(const strut_follow_word *first, const strut_follow_word *second,
+                       int32_t item) {
+  size_t n = count_of(first, item), k = 0;
   int8_t mode[2][64];
-  if (n != count_of(b, item) || n > 64) return n == count_of(b, item) && n > 64;
-  for (size_t i = 0; i < a->count; i++)
-    if (a->letter[i].item == item) mode[0][k++] = a->letter[i].mode;
+  if (n != count_of(second, item) || n > 64) return n == count_of(second, item) && n > 64;
+  for (size_t i = 0; i < first->count; i++)
+    if (first->letter[i].item == item) mode[0][k++] = first->letter[i].mode;
   k = 0;
-  for (size_t i = 0; i < b->count; i++)
-    if (b->letter[i].item == item) mode[1][k++] = b->letter[i].mode;
-  if (n == 0) return a->first[item] == b->first[item];
+  for (size_t i = 0; i < second->count; i++)
+    if (second->letter[i].item == item) mode[1][k++] = second->letter[i].mode;
+  if (n == 0) return first->first[item] == second->first[item];
   for (size_t turn = 0; turn < n; turn++) {
     size_t i = 0;
     while (i < n && mode[0][i] == mode[1][(i + turn) % n]) i++;
@@ -121,18 +123,18 @@ static bool same_cycle(const strut_follow_word *a, const strut_follow_word *b, i
 }
 
 /* The shortest mode of the item. */
-static const strut_follow_letter *shortest(const strut_follow_word *w, int32_t item) {
+static const strut_follow_letter *shortest(const strut_follow_word *word, int32_t item) {
   const strut_follow_letter *best = NULL;
-  for (size_t i = 0; i < w->count; i++)
-    if (w->letter[i].item == item && (!best || w->letter[i].lasts < best->lasts))
-      best = &w->letter[i];
+  for (size_t i = 0; i < word->count; i++)
+    if (word->letter[i].item == item && (!best || word->letter[i].lasts < best->lasts))
+      best = &word->letter[i];
   return best;
 }
 
-static strut_follow_kind kind_of(const strut_follow_system *s, const strut_follow_letter *l,
-                                 bool only_touch) {
-  if (l->item >= s->log->contacts) return STRUT_FOLLOW_SWITCH;
-  switch ((strut_logged_contact)l->mode) {
+static strut_follow_kind kind_of(const strut_follow_system *system,
+                                 const strut_follow_letter *letter, bool only_touch) {
+  if (letter->item >= system->log->contacts) return STRUT_FOLLOW_SWITCH;
+  switch ((strut_logged_contact)letter->mode) {
     case STRUT_LOGGED_OPEN: return STRUT_FOLLOW_LIFT;
     case STRUT_LOGGED_STICK: return STRUT_FOLLOW_STICK;
     case STRUT_LOGGED_SLIDE: return STRUT_FOLLOW_TOUCH;
@@ -143,16 +145,17 @@ static strut_follow_kind kind_of(const strut_follow_system *s, const strut_follo
 }
 
 /* Is the mode between two flights? */
-static bool between_flights(const strut_follow_word *w, const strut_follow_letter *l) {
+static bool between_flights(const strut_follow_word *word, const strut_follow_letter *letter) {
   int8_t before = -1, after = -1;
-  size_t at = (size_t)(l - w->letter);
-  for (size_t k = 1; k <= w->count && before < 0; k++) {
-    const strut_follow_letter *o = &w->letter[(at + w->count - k) % w->count];
-    if (o->item == l->item && o != l) before = o->mode;
+  size_t at = (size_t)(letter - word->letter);
+  for (size_t k = 1; k <= word->count && before < 0; k++) {
+    const strut_follow_letter *follow_letter = &word->letter[(at + word->count - k) % word->count];
+    if (follow_letter->item == letter->item && follow_letter != letter)
+      before = follow_letter->mode;
   }
-  for (size_t k = 1; k <= w->count && after < 0; k++) {
-    const strut_follow_letter *o = &w->letter[(at + k) % w->count];
-    if (o->item == l->item && o != l) after = o->mode;
+  for (size_t k = 1; k <= word->count && after < 0; k++) {
+    const strut_follow_letter *o = &word->letter[(at + k) % word->count];
+    if (o->item == letter->item && o != letter) after = o->mode;
   }
   return before == STRUT_LOGGED_OPEN && after == STRUT_LOGGED_OPEN;
 }
@@ -187,51 +190,51 @@ static const char *sentence(strut_follow_kind kind, bool begins, const char *nam
   return strut_arena_format(arena, "%s %s %s", name, verb, what);
 }
 
-static bool compare_orders(const strut_follow_system *s, const strut_follow_word *a,
-                           const strut_follow_word *b, strut_arena *arena,
+static bool compare_orders(const strut_follow_system *system, const strut_follow_word *first,
+                           const strut_follow_word *second, strut_arena *arena,
                            strut_follow_point *point) {
   int32_t pair[2] = {-1, -1};
-  for (size_t i = 0; i < a->count && i < b->count; i++) {
-    if (same_letter(a, i, b, i)) continue;
-    pair[0] = a->letter[i].item, pair[1] = b->letter[i].item;
+  for (size_t i = 0; i < first->count && i < second->count; i++) {
+    if (same_letter(first, i, second, i)) continue;
+    pair[0] = first->letter[i].item, pair[1] = second->letter[i].item;
     break;
   }
   point->kind = STRUT_FOLLOW_MEETING;
-  point->node = pair[0] >= 0 ? strut_arena_format(arena, "%s", item_name(s, pair[0])) : NULL;
+  point->node = pair[0] >= 0 ? strut_arena_format(arena, "%s", item_name(system, pair[0])) : NULL;
   point->detail = pair[0] >= 0 && pair[1] != pair[0]
                       ? strut_arena_format(arena, "events of %s and %s change their order",
-                                           item_name(s, pair[0]), item_name(s, pair[1]))
+                                           item_name(system, pair[0]), item_name(system, pair[1]))
                       : strut_arena_format(arena, "events change their order");
   return point->detail != NULL;
 }
 
-bool strut_follow_words_compare(const strut_follow_system *s, const strut_follow_word *a,
-                                const strut_follow_word *b, strut_arena *arena,
+bool strut_follow_words_compare(const strut_follow_system *system, const strut_follow_word *first,
+                                const strut_follow_word *second, strut_arena *arena,
                                 strut_follow_point *point) {
-  for (int32_t item = 0; item < s->log->items; item++) {
-    if (same_cycle(a, b, item)) continue;
-    bool begins = count_of(b, item) >= count_of(a, item);
-    const strut_follow_word *longer = begins ? b : a;
-    const strut_follow_letter *l = shortest(longer, item);
-    if (!l) continue;
-    bool touch =
-        l->item < s->log->contacts && l->mode != STRUT_LOGGED_OPEN && between_flights(longer, l);
-    point->kind = kind_of(s, l, touch);
+  for (int32_t item = 0; item < system->log->items; item++) {
+    if (same_cycle(first, second, item)) continue;
+    bool begins = count_of(second, item) >= count_of(first, item);
+    const strut_follow_word *longer = begins ? second : first;
+    const strut_follow_letter *letter = shortest(longer, item);
+    if (!letter) continue;
+    bool touch = letter->item < system->log->contacts && letter->mode != STRUT_LOGGED_OPEN &&
+                 between_flights(longer, letter);
+    point->kind = kind_of(system, letter, touch);
     if (touch) point->kind = STRUT_FOLLOW_TOUCH;
-    point->node = strut_arena_format(arena, "%s", item_name(s, item));
-    if (count_of(a, item) == count_of(b, item))
+    point->node = strut_arena_format(arena, "%s", item_name(system, item));
+    if (count_of(first, item) == count_of(second, item))
       point->detail =
           strut_arena_format(arena, "%s replaces one short mode by another", point->node);
     else
       point->detail = sentence(point->kind, begins, point->node, arena);
     return point->node && point->detail;
   }
-  return compare_orders(s, a, b, arena, point);
+  return compare_orders(system, first, second, arena, point);
 }
 
-static const char *mode_text(const strut_follow_system *s, const strut_follow_letter *l) {
-  if (l->item >= s->log->contacts) return l->mode > 0 ? "*" : "o";
-  switch ((strut_logged_contact)l->mode) {
+static const char *mode_text(const strut_follow_system *system, const strut_follow_letter *letter) {
+  if (letter->item >= system->log->contacts) return letter->mode > 0 ? "*" : "o";
+  switch ((strut_logged_contact)letter->mode) {
     case STRUT_LOGGED_OPEN: return "^";
     case STRUT_LOGGED_SLIDE: return "_";
     case STRUT_LOGGED_FORWARD: return ">";
@@ -241,15 +244,15 @@ static const char *mode_text(const strut_follow_system *s, const strut_follow_le
   return "?";
 }
 
-const char *strut_follow_word_text(const strut_follow_system *s, const strut_follow_word *word,
+const char *strut_follow_word_text(const strut_follow_system *system, const strut_follow_word *word,
                                    strut_arena *arena) {
   char text[MOST_TEXT];
   size_t used = 0;
   text[0] = '\0';
   for (size_t i = 0; i < word->count; i++) {
     char one[80];
-    int n = snprintf(one, sizeof one, "%s%.60s%s", i ? " " : "", item_name(s, word->letter[i].item),
-                     mode_text(s, &word->letter[i]));
+    int n = snprintf(one, sizeof one, "%s%.60s%s", i ? " " : "",
+                     item_name(system, word->letter[i].item), mode_text(system, &word->letter[i]));
     if (used + (size_t)n + 5 >= sizeof text) {
       memcpy(text + used, " ...", 5);
       break;

@@ -146,24 +146,24 @@ typedef struct strut_samples {
 } strut_samples;
 
 /** Starts the window; place: of the column rate_of. */
-void strut_meter_open(strut_meter *m, double time, double value, double place);
+void strut_meter_open(strut_meter *meter, double time, double value, double place);
 /** Could a kink within the next `length` [s], at whose end the value is `value`, change the result? */
-bool strut_meter_may_turn(const strut_meter *m, double value, double length);
+bool strut_meter_may_turn(const strut_meter *meter, double value, double length);
 /** Uncertainty of the result where samples do not resolve an extreme. */
-double strut_meter_left(const strut_meter *m);
+double strut_meter_left(const strut_meter *meter);
 /** How far from the target the extreme is that decides whether and when it is reached; HUGE_VAL: at it already. */
-double strut_meter_margin(const strut_meter *m);
+double strut_meter_margin(const strut_meter *meter);
 /** A mark of the window: ends one period and starts the next. */
-void strut_meter_mark(strut_meter *m, double time, double value, double place);
+void strut_meter_mark(strut_meter *meter, double time, double value, double place);
 /** The value jumps, or the way it changes does, at a time [s]. */
-void strut_meter_jump(strut_meter *m, double time, double value);
+void strut_meter_jump(strut_meter *meter, double time, double value);
 /** Does the value change so evenly to `value`, within `length` [s], that this end tells enough? */
-bool strut_meter_is_even(const strut_meter *m, double value, double length);
+bool strut_meter_is_even(const strut_meter *meter, double value, double length);
 /** Adds a part by its ends alone; `begin` and `length` in [s]. */
-void strut_meter_add_even(strut_meter *m, double value, double begin, double length);
+void strut_meter_add_even(strut_meter *meter, double value, double begin, double length);
 /** Do the samples tell enough? Those at odd places are compared with what the others foretell. */
-bool strut_meter_is_resolved(const strut_meter *m, const strut_samples *samples);
+bool strut_meter_is_resolved(const strut_meter *meter, const strut_samples *samples);
 /** Adds a part by its samples, searching for extremes and arrivals between them. */
-void strut_meter_add(strut_meter *m, const strut_samples *samples);
+void strut_meter_add(strut_meter *meter, const strut_samples *samples);
 
 #endif

@@ -27,63 +27,63 @@ typedef struct product {
   double *image, stiff, damp; /* factors of K and D */
 } product;
 
-static void apply_member(const product *p, const strut_force *member) {
+static void apply_member(const product *self, const strut_force *member) {
   const double *unit = member->pose.b + 2;
   uint32_t from = member->at[0], to = member->at[1];
-  const double motion[2] = {p->motion[to] - p->motion[from],
-                            p->motion[to + 1] - p->motion[from + 1]};
+  const double motion[2] = {self->motion[to] - self->motion[from],
+                            self->motion[to + 1] - self->motion[from + 1]};
   if (!(member->pose.strain > 0.0)) return;
-  double along = unit[0] * motion[0] + unit[1] * motion[1], across = p->stiff * member->across;
-  double pull = (p->stiff * member->pose.slope - across + p->damp * member->damping) * along;
+  double along = unit[0] * motion[0] + unit[1] * motion[1], across = self->stiff * member->across;
+  double pull = (self->stiff * member->pose.slope - across + self->damp * member->damping) * along;
   for (uint32_t k = 0; k < 2; k++) {
     double force = across * motion[k] + pull * unit[k];
-    p->image[from + k] -= force;
-    p->image[to + k] += force;
+    self->image[from + k] -= force;
+    self->image[to + k] += force;
   }
 }
 
 /* An element or a contact. */
-static void apply_element(const product *p, const strut_force *force) {
+static void apply_element(const product *self, const strut_force *force) {
   double bend[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT], along = 0.0, across = 0.0;
   int32_t n = 2 * force->nodes;
   bool bends = force->kind == STRUT_FORCE_ELEMENT;
   for (int32_t k = 0; k < n; k += 2) {
-    const double *motion = p->motion + force->at[k / 2];
+    const double *motion = self->motion + force->at[k / 2];
     along += force->pose.b[k] * motion[0] + force->pose.b[k + 1] * motion[1];
   }
   memset(bend, 0, (size_t)(n * n) * sizeof *bend);
-  if (bends) strut_force_bend(p->model, force, p->q, p->stiff, bend);
+  if (bends) strut_force_bend(self->model, force, self->q, self->stiff, bend);
   for (int32_t r = 0; r < n; r++) {
     double push =
-        (p->stiff * force->pose.slope + p->damp * force->damping) * along * force->pose.b[r];
+        (self->stiff * force->pose.slope + self->damp * force->damping) * along * force->pose.b[r];
     for (int32_t c = 0; c < n && bends; c++)
-      push += bend[r * n + c] * p->motion[strut_force_coordinate(force, c)];
-    p->image[strut_force_coordinate(force, r)] += push;
+      push += bend[r * n + c] * self->motion[strut_force_coordinate(force, c)];
+    self->image[strut_force_coordinate(force, r)] += push;
   }
   if (force->across == 0.0) return;
   for (int32_t k = 0; k < n; k++)
-    across += p->motion[strut_force_coordinate(force, k)] * force->side[k];
+    across += self->motion[strut_force_coordinate(force, k)] * force->side[k];
   for (int32_t k = 0; k < n; k++)
-    p->image[strut_force_coordinate(force, k)] +=
-        p->stiff * force->across * across * force->side[k];
+    self->image[strut_force_coordinate(force, k)] +=
+        self->stiff * force->across * across * force->side[k];
 }
 
-static void apply_forces(const product *p, const double *rest, strut_closed closed) {
+static void apply_forces(const product *self, const double *rest, strut_closed closed) {
   strut_force_visit visit = {
-      .model = p->model, .q = p->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
+      .model = self->model, .q = self->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
   for (const strut_force *force; (force = strut_force_next(&visit));)
     if (force->kind == STRUT_FORCE_MEMBER)
-      apply_member(p, force);
+      apply_member(self, force);
     else
-      apply_element(p, force);
+      apply_element(self, force);
 }
 
 /* Adds noise to a motion, so that no eigenvector is missed for ever. */
-static void perturb_motion(const strut_model *model, strut_step_limit_monitor *g,
-                           strut_monitored_set *w, double size) {
+static void perturb_motion(const strut_model *model, strut_step_limit_monitor *monitor,
+                           strut_monitored_set *set, double size) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    g->noise = g->noise * 6364136223846793005u + 1442695040888963407u;
-    if (!model->fixed[i]) w->motion[i] += size * ((double)(g->noise >> 11) * 0x1p-53 - 0.5);
+    monitor->noise = monitor->noise * 6364136223846793005u + 1442695040888963407u;
+    if (!model->fixed[i]) set->motion[i] += size * ((double)(monitor->noise >> 11) * 0x1p-53 - 0.5);
   }
 }
 
@@ -93,31 +93,36 @@ static void perturb_motion(const strut_model *model, strut_step_limit_monitor *g
  * known.
  */
 static void iterate_power(const strut_model *model, const strut_state *state,
-                          strut_step_limit_monitor *g, strut_monitored_set *w) {
+                          strut_step_limit_monitor *monitor, strut_monitored_set *set) {
   int32_t n = 2 * model->node_count;
-  double work = 0.0, square = 0.0, largest = 0.0, weight = w->weight;
-  memset(g->image, 0, (size_t)model->length * sizeof *g->image);
-  product p = {
-      model, state->q, w->motion, g->image, g->step * g->step * w->stiff, g->step * w->damp};
+  double work = 0.0, square = 0.0, largest = 0.0, weight = set->weight;
+  memset(monitor->image, 0, (size_t)model->length * sizeof *monitor->image);
+  product p = {model,
+               state->q,
+               set->motion,
+               monitor->image,
+               monitor->step * monitor->step * set->stiff,
+               monitor->step * set->damp};
   /* implicit ground dampers: steps are refined while the ground is touched */
-  strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
+  strut_closed closed =
+      monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   apply_forces(&p, state->latest->rest, closed);
   for (int32_t i = 0; i < n; i++)
-    if (model->fixed[i]) g->image[i] = 0.0;
-  strut_mass_solve(model, g->image, g->divided, g->scratch);
+    if (model->fixed[i]) monitor->image[i] = 0.0;
+  strut_mass_solve(model, monitor->image, monitor->divided, monitor->scratch);
   for (int32_t i = 0; i < n; i++) {
-    work += w->motion[i] * g->image[i];
-    square += g->divided[i] * g->image[i];
-    largest = fmax(largest, fabs(g->divided[i]));
+    work += set->motion[i] * monitor->image[i];
+    square += monitor->divided[i] * monitor->image[i];
+    largest = fmax(largest, fabs(monitor->divided[i]));
   }
   if (!(largest > 0.0 && largest < HUGE_VAL)) {
-    perturb_motion(model, g, w, 1.0);
-    w->weight = w->strength = 0.0;
+    perturb_motion(model, monitor, set, 1.0);
+    set->weight = set->strength = 0.0;
     return;
   }
-  for (int32_t i = 0; i < n; i++) w->motion[i] = g->divided[i] / largest;
-  w->weight = square / largest / largest;
-  w->strength = weight > 0.0 ? work / weight : 0.0;
+  for (int32_t i = 0; i < n; i++) set->motion[i] = monitor->divided[i] / largest;
+  set->weight = square / largest / largest;
+  set->strength = weight > 0.0 ? work / weight : 0.0;
 }
 
 /*
@@ -125,76 +130,87 @@ static void iterate_power(const strut_model *model, const strut_state *state,
  * iterated motions are of this shape, at least the limit that they show: a bound alone must not
  * stop a run.
  */
-static double find_limit(const strut_model *model, const strut_step_limit_monitor *g,
-                         const double *q, const double *rest, bool of_this_shape) {
-  strut_closed closed = g->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
+static double find_limit(const strut_model *model, const strut_step_limit_monitor *monitor,
+                         const double *positions, const double *rest, bool of_this_shape) {
+  strut_closed closed =
+      monitor->method->implicit_damper ? STRUT_CLOSED_NONE : STRUT_CLOSED_TOUCHING;
   strut_step_limit limit;
-  if (strut_step_limit_at_shape(model, q, rest, closed, &limit, NULL)) return HUGE_VAL;
-  double bound = limit.of[g->method->region], seen = HUGE_VAL;
+  if (strut_step_limit_at_shape(model, positions, rest, closed, &limit, NULL)) return HUGE_VAL;
+  double bound = limit.of[monitor->method->region], seen = HUGE_VAL;
   if (!limit.bound || !of_this_shape) return bound;
-  for (int i = 0; i < g->count; i++) seen = fmin(seen, g->step / g->set[i].strength);
+  for (int i = 0; i < monitor->count; i++)
+    seen = fmin(seen, monitor->step / monitor->set[i].strength);
   return fmax(bound, seen);
 }
 
 static void update_limit(const strut_model *model, const strut_state *state,
-                         strut_step_limit_monitor *g) {
-  g->known_limit = find_limit(model, g, state->q, state->latest->rest, true);
-  for (int i = 0; i < g->count; i++) {
-    strut_monitored_set *w = &g->set[i];
-    w->known = w->strength;
+                         strut_step_limit_monitor *monitor) {
+  monitor->known_limit = find_limit(model, monitor, state->q, state->latest->rest, true);
+  for (int i = 0; i < monitor->count; i++) {
+    strut_monitored_set *set = &monitor->set[i];
+    set->known = set->strength;
     /*
      * the limit falls at most with 1/strength: recompute when strength could bring it to the step
      */
-    w->alarm = fmax(1.0, w->strength * fmax(1.01, 0.99 * g->known_limit / g->step));
+    set->alarm = fmax(1.0, set->strength * fmax(1.01, 0.99 * monitor->known_limit / monitor->step));
   }
 }
 
 /* Records that the step is above the limit, for the last `steps` steps. */
-static void record_violation(strut_step_limit_monitor *g, double time, int64_t steps) {
-  double limit = g->known_limit;
-  double growth = strut_region_at(g->method->region)->growth;
-  if (!(g->lowest > 0.0)) g->first_time = time;
-  if (!(g->lowest > 0.0) || limit < g->lowest) g->lowest = limit, g->lowest_time = time;
-  g->grown = g->below ? g->grown + growth * fmin(g->step / limit - 1.0, 1.0) * (double)steps : 0.0;
-  g->steps_below += steps;
-  g->below = true;
-  g->motion_lost = g->motion_lost || g->grown > LOST_MOTION;
+static void record_violation(strut_step_limit_monitor *monitor, double time, int64_t steps) {
+  double limit = monitor->known_limit;
+  double growth = strut_region_at(monitor->method->region)->growth;
+  if (!(monitor->lowest > 0.0)) monitor->first_time = time;
+  if (!(monitor->lowest > 0.0) || limit < monitor->lowest)
+    monitor->lowest = limit, monitor->lowest_time = time;
+  monitor->grown =
+      monitor->below
+          ? monitor->grown + growth * fmin(monitor->step / limit - 1.0, 1.0) * (double)steps
+          : 0.0;
+  monitor->steps_below += steps;
+  monitor->below = true;
+  monitor->motion_lost = monitor->motion_lost || monitor->grown > LOST_MOTION;
 }
 
 void strut_step_limit_monitor_sample(const strut_model *model, const strut_state *state,
-                                     strut_step_limit_monitor *g) {
-  int64_t steps = state->step - g->last;
+                                     strut_step_limit_monitor *monitor) {
+  int64_t steps = state->step - monitor->last;
   bool again = false;
-  g->last = state->step;
-  g->next = state->step + g->every;
-  for (int i = 0; i < g->count; i++) {
-    strut_monitored_set *w = &g->set[i];
-    perturb_motion(model, g, w, 1e-6);
-    for (int k = 0; k < ITERATIONS; k++) iterate_power(model, state, g, w);
-    again = again || w->strength >= w->alarm || (g->below && w->strength < 0.99 * w->known);
+  monitor->last = state->step;
+  monitor->next = state->step + monitor->every;
+  for (int i = 0; i < monitor->count; i++) {
+    strut_monitored_set *set = &monitor->set[i];
+    perturb_motion(model, monitor, set, 1e-6);
+    for (int k = 0; k < ITERATIONS; k++) iterate_power(model, state, monitor, set);
+    again = again || set->strength >= set->alarm ||
+            (monitor->below && set->strength < 0.99 * set->known);
   }
-  if (g->count > 0) {
-    memcpy(g->shape, state->q, (size_t)model->length * sizeof *g->shape);
-    memcpy(g->rest, state->latest->rest, (size_t)model->members.slots * sizeof *g->rest);
+  if (monitor->count > 0) {
+    memcpy(monitor->shape, state->q, (size_t)model->length * sizeof *monitor->shape);
+    memcpy(monitor->rest, state->latest->rest,
+           (size_t)model->members.slots * sizeof *monitor->rest);
   }
-  if (again) update_limit(model, state, g);
-  if (g->known_limit < g->step)
-    record_violation(g, (double)state->step * g->step, steps);
+  if (again) update_limit(model, state, monitor);
+  if (monitor->known_limit < monitor->step)
+    record_violation(monitor, (double)state->step * monitor->step, steps);
   else
-    g->below = false;
+    monitor->below = false;
 }
 
 double strut_step_limit_monitor_last_limit(const strut_model *model,
-                                           const strut_step_limit_monitor *g) {
-  return g->count > 0 ? find_limit(model, g, g->shape, g->rest, false) : HUGE_VAL;
+                                           const strut_step_limit_monitor *monitor) {
+  return monitor->count > 0 ? find_limit(model, monitor, monitor->shape, monitor->rest, false)
+                            : HUGE_VAL;
 }
 
 void strut_step_limit_monitor_check(const strut_model *model, const strut_state *state,
-                                    strut_step_limit_monitor *g) {
-  if (g->count == 0) return;
-  double before = strut_step_limit_monitor_last_limit(model, g);
-  g->known_limit = fmin(before, find_limit(model, g, state->q, state->latest->rest, false));
-  if (g->known_limit < g->step) record_violation(g, (double)g->last * g->step, 0);
+                                    strut_step_limit_monitor *monitor) {
+  if (monitor->count == 0) return;
+  double before = strut_step_limit_monitor_last_limit(model, monitor);
+  monitor->known_limit =
+      fmin(before, find_limit(model, monitor, state->q, state->latest->rest, false));
+  if (monitor->known_limit < monitor->step)
+    record_violation(monitor, (double)monitor->last * monitor->step, 0);
 }
 
 bool strut_step_limit_monitor_create(const strut_model *model, strut_state *state,
@@ -228,32 +244,33 @@ bool strut_step_limit_monitor_create(const strut_model *model, strut_state *stat
   return true;
 }
 
-strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *g,
+strut_status strut_step_limit_monitor_fail(const strut_step_limit_monitor *monitor,
                                            const strut_state *state, double start_limit,
                                            strut_error *error) {
-  const char *name = g->method->name;
-  if (g->lowest > 0.0)
+  const char *name = monitor->method->name;
+  if (monitor->lowest > 0.0)
     return strut_fail(
         error, STRUT_DIVERGED,
         "the structure has become stiffer: at t = %.9g s the largest stable step of %s, %.4g s at "
         "the start, fell below the step %g s, then to %.4g s, and the motion since then is "
         "numerical; use solver.step <= %.2g s, or --force to continue anyway",
-        g->first_time, name, start_limit, g->step, g->lowest, 0.9 * g->lowest);
+        monitor->first_time, name, start_limit, monitor->step, monitor->lowest,
+        0.9 * monitor->lowest);
   return strut_fail(
       error, STRUT_DIVERGED,
       "by t = %.9g s most of the energy has appeared without a source: the structure became "
       "stiffer than at the start, where the largest stable step of %s is %.4g s, and too stiff for "
       "the step %g s; use solver.step <= %.2g s, or --force to continue anyway",
-      (double)state->step * g->step, name, start_limit, g->step, 0.75 * g->step);
+      (double)state->step * monitor->step, name, start_limit, monitor->step, 0.75 * monitor->step);
 }
 
 /* ---- vibrations ---- */
 
 bool strut_motion_frequency_create(const strut_model *model, strut_state *state,
-                                   strut_motion_frequency *w) {
-  *w = (strut_motion_frequency){0};
-  w->image = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
-  return w->image;
+                                   strut_motion_frequency *frequency) {
+  *frequency = (strut_motion_frequency){0};
+  frequency->image = strut_arena_allocate(&state->arena, (size_t)model->length, sizeof(double));
+  return frequency->image;
 }
 
 /* v'(stiff K + damp D)v of the velocities. */
@@ -269,11 +286,11 @@ static double form_of_motion(const strut_model *model, const strut_state *state,
 }
 
 void strut_motion_frequency_sample(const strut_model *model, const strut_state *state,
-                                   double kinetic, strut_motion_frequency *w) {
-  w->curvature += form_of_motion(model, state, 1.0, 0.0, w->image);
-  w->damping += form_of_motion(model, state, 0.0, 1.0, w->image);
-  w->movement += 2.0 * kinetic;
-  w->samples++;
+                                   double kinetic, strut_motion_frequency *frequency) {
+  frequency->curvature += form_of_motion(model, state, 1.0, 0.0, frequency->image);
+  frequency->damping += form_of_motion(model, state, 0.0, 1.0, frequency->image);
+  frequency->movement += 2.0 * kinetic;
+  frequency->samples++;
 }
 
 /* ---- stick band ---- */
@@ -292,35 +309,35 @@ static const double ALWAYS_MISSED = 0.5, MET_BY_CHANCE = 0.01;
 /* Part of the static friction of a node that strain from creeping may reach before it matters. */
 static const double STRAINED = 0.1;
 
-static bool has_band(const strut_contact_entry *e) {
-  return strut_friction_has_band(e->friction.law);
+static bool has_band(const strut_contact_entry *contact) {
+  return strut_friction_has_band(contact->friction.law);
 }
 
-static bool is_stronger_at_rest(const strut_contact_entry *e) {
-  return has_band(e) && strut_friction_drops(&e->friction);
+static bool is_stronger_at_rest(const strut_contact_entry *contact) {
+  return has_band(contact) && strut_friction_drops(&contact->friction);
 }
 
 /* Contact with stronger static friction at a coordinate, or -1; contacts are in ascending order. */
-static int32_t contact_at(const strut_contact_table *c, uint32_t coordinate) {
-  int32_t low = 0, high = c->count;
+static int32_t contact_at(const strut_contact_table *contacts, uint32_t coordinate) {
+  int32_t low = 0, high = contacts->count;
   while (low < high) {
     int32_t middle = low + (high - low) / 2;
-    if (c->at[middle] < coordinate)
+    if (contacts->at[middle] < coordinate)
       low = middle + 1;
     else
       high = middle;
   }
-  bool found = low < c->count && c->at[low] == coordinate;
-  return found && is_stronger_at_rest(&c->entry[low]) ? low : -1;
+  bool found = low < contacts->count && contacts->at[low] == coordinate;
+  return found && is_stronger_at_rest(&contacts->entry[low]) ? low : -1;
 }
 
 /* Counts the ties; fills them if `ties` is given. */
 static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   int32_t count = 0;
-  for (int32_t j = 0; j < t->count; j++) {
-    int32_t a = contact_at(&model->contacts, t->from[j]),
-            b = contact_at(&model->contacts, t->to[j]);
+  for (int32_t j = 0; j < members->count; j++) {
+    int32_t a = contact_at(&model->contacts, members->from[j]),
+            b = contact_at(&model->contacts, members->to[j]);
     if (a < 0 || b < 0) continue;
     if (ties) ties[count] = (strut_band_tie){.member = j, .contact = {a, b}};
     count++;
@@ -331,30 +348,31 @@ static int32_t list_ties(const strut_model *model, strut_band_tie *ties) {
 /* Does a contact touch, with a slip velocity within its band? *normal: its normal force. */
 static bool is_stuck(const strut_model *model, const strut_state *state, int32_t i,
                      double *normal) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   double gap, slip;
-  strut_contact_observe(c, i, state, &gap, &slip);
-  *normal = -gap * c->entry[i].stiffness;
-  return gap < 0.0 && fabs(slip) < c->entry[i].friction.stick_velocity;
+  strut_contact_observe(contacts, i, state, &gap, &slip);
+  *normal = -gap * contacts->entry[i].stiffness;
+  return gap < 0.0 && fabs(slip) < contacts->entry[i].friction.stick_velocity;
 }
 
 /* Of a member at the present rest length, where that matters. */
 static double stiffness_of(const strut_model *model, const strut_state *state, int32_t member) {
-  const strut_element *e = strut_element_of_member(&model->elements, member);
-  if (!e || e->law != STRUT_LAW_AXIAL) return model->members.stiffness[member];
-  return e->numbers.axial / strut_axial_length(&e->numbers, state->latest->rest[member]);
+  const strut_element *element = strut_element_of_member(&model->elements, member);
+  if (!element || element->law != STRUT_LAW_AXIAL) return model->members.stiffness[member];
+  return element->numbers.axial /
+         strut_axial_length(&element->numbers, state->latest->rest[member]);
 }
 
 static void sample_tie(const strut_model *model, const strut_state *state, double time,
                        strut_band_tie *tie) {
-  const strut_member_table *t = &model->members;
-  const strut_contact_entry *e = model->contacts.entry;
-  double length = strut_member_length(t, tie->member, state->q), change = length - tie->length,
-         normal[2];
+  const strut_member_table *members = &model->members;
+  const strut_contact_entry *contact = model->contacts.entry;
+  double length = strut_member_length(members, tie->member, state->q),
+         change = length - tie->length, normal[2];
   double creep = 0.0, resistance = HUGE_VAL;
   bool held = true;
   for (int k = 0; k < 2; k++) {
-    const strut_contact_entry *one = &e[tie->contact[k]];
+    const strut_contact_entry *one = &contact[tie->contact[k]];
     held = is_stuck(model, state, tie->contact[k], &normal[k]) && held;
     creep += one->friction.stick_velocity * time;
     double least = fmin(strut_friction_static(&one->friction, 1.0),
@@ -373,12 +391,12 @@ static void sample_tie(const strut_model *model, const strut_state *state, doubl
 
 double strut_stick_band_needed(const strut_model *model, const strut_integrator *method,
                                int32_t contact, double step) {
-  const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &c->entry[contact];
+  const strut_contact_table *contacts = &model->contacts;
+  const strut_contact_entry *e = &contacts->entry[contact];
   const double *g = model->scene->gravity;
   if (method->events || !has_band(e) || !(strut_friction_largest(&e->friction) > 0.0)) return 0.0;
-  double down = -(g[0] * c->normal[0] + g[1] * c->normal[1]);
-  if (c->surface) down = hypot(g[0], g[1]);
+  double down = -(g[0] * contacts->normal[0] + g[1] * contacts->normal[1]);
+  if (contacts->surface) down = hypot(g[0], g[1]);
   return down > 0.0 && step > 0.0 ? strut_friction_largest(&e->friction) * down * step : 0.0;
 }
 
@@ -402,7 +420,7 @@ bool strut_stick_band_create(const strut_model *model, strut_state *state,
 
 void strut_stick_band_sample(const strut_model *model, const strut_state *state,
                              strut_stick_band *band) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   if (!band->contacts) return;
   double time = (double)(state->step - band->last) * band->step;
   for (int32_t k = 0; k < band->tie_count; k++) sample_tie(model, state, time, &band->ties[k]);
@@ -412,17 +430,18 @@ void strut_stick_band_sample(const strut_model *model, const strut_state *state,
   if (with_acceleration) strut_mass_solve(model, state->latest->force, band->a, band->scratch);
   if (with_acceleration && model->terms & STRUT_TERM_SLIDING_MASS)
     strut_sliding_masses_correct(model, state, band->a);
-  int32_t count =
-      c->surface ? strut_contacts_all_near(c, state->q, NULL, state->buffers->near) : c->count;
+  int32_t count = contacts->surface
+                      ? strut_contacts_all_near(contacts, state->q, NULL, state->buffers->near)
+                      : contacts->count;
   for (int32_t k = 0; k < count; k++) {
-    int32_t i = c->surface ? state->buffers->near[k] : k;
-    strut_stick_band_monitor *w = &band->contacts[i];
-    if (!(strut_contact_gap(c, i, state->q) < 0.0)) continue;
-    if (!with_acceleration ||
-        fabs(strut_contact_slip(c, i, state->v)) < c->entry[i].friction.stick_velocity)
+    int32_t i = contacts->surface ? state->buffers->near[k] : k;
+    strut_stick_band_monitor *monitor = &band->contacts[i];
+    if (!(strut_contact_gap(contacts, i, state->q) < 0.0)) continue;
+    if (!with_acceleration || fabs(strut_contact_slip(contacts, i, state->v)) <
+                                  contacts->entry[i].friction.stick_velocity)
       continue;
-    w->sliding++;
-    w->change += band->step * fabs(strut_contact_along_ground(c, i, band->a));
+    monitor->sliding++;
+    monitor->change += band->step * fabs(strut_contact_along_ground(contacts, i, band->a));
   }
 }
 
@@ -430,8 +449,8 @@ double strut_stick_band_missed(const strut_model *model, const strut_stick_band 
                                int32_t contact) {
   const strut_contact_entry *e = &model->contacts.entry[contact];
   if (!band->contacts || !has_band(e)) return 0.0;
-  const strut_stick_band_monitor *w = &band->contacts[contact];
-  double needed = w->sliding >= LEAST_SAMPLES ? w->change / w->sliding : 0.0;
+  const strut_stick_band_monitor *monitor = &band->contacts[contact];
+  double needed = monitor->sliding >= LEAST_SAMPLES ? monitor->change / monitor->sliding : 0.0;
   double least = strut_friction_drops(&e->friction) ? ALWAYS_MISSED : MET_BY_CHANCE;
   return e->friction.stick_velocity < least * needed ? needed : 0.0;
 }
@@ -450,8 +469,8 @@ enum { ROUNDS = 40 };
 
 double strut_states_rate(const strut_model *model, strut_state *state, double t, double *work,
                          int32_t *fastest) {
-  const strut_feedback_table *f = &model->feedback;
-  int32_t count = (int32_t)model->scene->state_count + f->lag_count, base = f->base;
+  const strut_feedback_table *feedback = &model->feedback;
+  int32_t count = (int32_t)model->scene->state_count + feedback->lag_count, base = feedback->base;
   double *v = work, *here = v + model->length, *there = here + model->length;
   double size = 1e-3, rate = 0.0;
   *fastest = -1;

@@ -75,9 +75,9 @@ static bool find_primitive(strut_column column, strut_column *primitive) {
 }
 
 /* Does what happens between steps matter? */
-static bool needs_inner(const strut_meter *m) {
-  switch (m->definition->take) {
-    case STRUT_TAKE_MEAN: return m->rate_of == NONE;
+static bool needs_inner(const strut_meter *meter) {
+  switch (meter->definition->take) {
+    case STRUT_TAKE_MEAN: return meter->rate_of == NONE;
     case STRUT_TAKE_FINAL:
     case STRUT_TAKE_CHANGE:
     case STRUT_TAKE_RATE: return false;
@@ -91,380 +91,406 @@ static bool needs_inner(const strut_meter *m) {
   return true;
 }
 
-static bool make_meter(strut_quantities *q, const strut_quantity_definition *d, double accuracy,
-                       strut_arena *arena, strut_meter *m) {
+static bool make_meter(strut_quantities *quantities, const strut_quantity_definition *definition,
+                       double accuracy, strut_arena *arena, strut_meter *meter) {
   strut_column primitive;
-  *m = (strut_meter){.definition = d, .rate_of = NONE};
-  m->index = strut_arena_allocate(arena, d->length, sizeof *m->index);
-  if (!m->index) return false;
-  for (size_t i = 0; i < d->length; i++)
-    if (d->program[i].operation == STRUT_OPERATION_COLUMN)
-      m->index[i] = strut_columns_add(&q->columns, d->program[i].column);
-  bool mean = d->length == 1 && d->take == STRUT_TAKE_MEAN;
-  if (mean && find_primitive(d->program[0].column, &primitive))
-    m->rate_of = strut_columns_add(&q->columns, primitive);
-  m->inner = needs_inner(m);
-  m->accuracy = accuracy > 0.0 ? accuracy : USUAL_ACCURACY;
-  q->inner = q->inner || m->inner;
+  *meter = (strut_meter){.definition = definition, .rate_of = NONE};
+  meter->index = strut_arena_allocate(arena, definition->length, sizeof *meter->index);
+  if (!meter->index) return false;
+  for (size_t i = 0; i < definition->length; i++)
+    if (definition->program[i].operation == STRUT_OPERATION_COLUMN)
+      meter->index[i] = strut_columns_add(&quantities->columns, definition->program[i].column);
+  bool mean = definition->length == 1 && definition->take == STRUT_TAKE_MEAN;
+  if (mean && find_primitive(definition->program[0].column, &primitive))
+    meter->rate_of = strut_columns_add(&quantities->columns, primitive);
+  meter->inner = needs_inner(meter);
+  meter->accuracy = accuracy > 0.0 ? accuracy : USUAL_ACCURACY;
+  quantities->inner = quantities->inner || meter->inner;
   return true;
 }
 
 static void see_piece(strut_observer *observer, strut_state *state,
                       const strut_motion_piece *piece);
 
-strut_quantities *strut_quantities_create(const strut_model *model, const strut_experiment *e,
-                                          strut_arena *arena) {
+strut_quantities *strut_quantities_create(const strut_model *model,
+                                          const strut_experiment *experiment, strut_arena *arena) {
   size_t columns = 0, depth = 1;
-  strut_quantities *q = strut_arena_allocate(arena, 1, sizeof *q);
-  if (!q) return NULL;
-  for (size_t i = 0; i < e->quantity_count; i++) {
-    columns += e->quantities[i].length + 1;
-    if (e->quantities[i].depth > depth) depth = e->quantities[i].depth;
+  strut_quantities *quantities = strut_arena_allocate(arena, 1, sizeof *quantities);
+  if (!quantities) return NULL;
+  for (size_t i = 0; i < experiment->quantity_count; i++) {
+    columns += experiment->quantities[i].length + 1;
+    if (experiment->quantities[i].depth > depth) depth = experiment->quantities[i].depth;
   }
-  q->count = e->quantity_count;
-  q->observer.see = see_piece;
-  q->by_periods = strut_experiment_span(e, model->scene).period > 0.0;
-  q->meters = strut_arena_allocate(arena, q->count, sizeof *q->meters);
-  q->grid = strut_arena_allocate(arena, q->count * STRUT_MOST_SAMPLES, sizeof *q->grid);
-  q->coarse = strut_arena_allocate(arena, q->count, sizeof *q->coarse);
-  q->stack = strut_arena_allocate(arena, depth, sizeof *q->stack);
-  q->sizes = strut_arena_allocate(arena, columns, sizeof *q->sizes);
-  q->size_stack = strut_arena_allocate(arena, depth, sizeof *q->size_stack);
-  bool ready = q->meters && q->grid && q->coarse && q->stack && q->sizes && q->size_stack &&
-               strut_columns_create(model, columns, arena, &q->columns) &&
-               strut_dense_create(model, arena, &q->dense);
-  for (size_t i = 0; i < q->count && ready; i++)
-    ready = make_meter(q, &e->quantities[i], e->accuracy, arena, &q->meters[i]);
-  return ready ? q : NULL;
+  quantities->count = experiment->quantity_count;
+  quantities->observer.see = see_piece;
+  quantities->by_periods = strut_experiment_span(experiment, model->scene).period > 0.0;
+  quantities->meters = strut_arena_allocate(arena, quantities->count, sizeof *quantities->meters);
+  quantities->grid =
+      strut_arena_allocate(arena, quantities->count * STRUT_MOST_SAMPLES, sizeof *quantities->grid);
+  quantities->coarse = strut_arena_allocate(arena, quantities->count, sizeof *quantities->coarse);
+  quantities->stack = strut_arena_allocate(arena, depth, sizeof *quantities->stack);
+  quantities->sizes = strut_arena_allocate(arena, columns, sizeof *quantities->sizes);
+  quantities->size_stack = strut_arena_allocate(arena, depth, sizeof *quantities->size_stack);
+  bool ready = quantities->meters && quantities->grid && quantities->coarse && quantities->stack &&
+               quantities->sizes && quantities->size_stack &&
+               strut_columns_create(model, columns, arena, &quantities->columns) &&
+               strut_dense_create(model, arena, &quantities->dense);
+  for (size_t i = 0; i < quantities->count && ready; i++)
+    ready = make_meter(quantities, &experiment->quantities[i], experiment->accuracy, arena,
+                       &quantities->meters[i]);
+  return ready ? quantities : NULL;
 }
 
-bool strut_quantities_need_balance(const strut_experiment *e) {
-  for (size_t i = 0; i < e->quantity_count; i++)
-    for (size_t k = 0; k < e->quantities[i].length; k++) {
-      const strut_instruction *p = &e->quantities[i].program[k];
-      if (p->operation != STRUT_OPERATION_COLUMN) continue;
-      if (strut_observable_at(p->column.kind)->need == STRUT_OBSERVED_BALANCE) return true;
+bool strut_quantities_need_balance(const strut_experiment *experiment) {
+  for (size_t i = 0; i < experiment->quantity_count; i++)
+    for (size_t k = 0; k < experiment->quantities[i].length; k++) {
+      const strut_instruction *instruction = &experiment->quantities[i].program[k];
+      if (instruction->operation != STRUT_OPERATION_COLUMN) continue;
+      if (strut_observable_at(instruction->column.kind)->need == STRUT_OBSERVED_BALANCE)
+        return true;
     }
   return false;
 }
 
-bool strut_quantities_need_pieces(const strut_quantities *q) { return q->inner; }
+bool strut_quantities_need_pieces(const strut_quantities *quantities) { return quantities->inner; }
 
-void strut_quantities_observe(strut_quantities *q) { q->observed = true; }
+void strut_quantities_observe(strut_quantities *quantities) { quantities->observed = true; }
 
 /* ---- values at an instant ---- */
 
 /* The row of a place of the grid. */
-static double *row_at(const strut_quantities *q, int k) { return q->grid + (size_t)k * q->count; }
+static double *row_at(const strut_quantities *quantities, int k) {
+  return quantities->grid + (size_t)k * quantities->count;
+}
 
-static double evaluate_meter(const strut_quantities *q, size_t i) {
-  strut_meter *m = &q->meters[i];
-  const strut_quantity_definition *d = m->definition;
-  double value = strut_quantity_program_evaluate(d, m->index, q->columns.value, q->stack, &m->seen);
-  for (size_t k = 0; k < d->length; k++)
-    if (d->program[k].operation == STRUT_OPERATION_COLUMN)
-      m->seen = strut_gather_branch(m->seen, (uint64_t)q->columns.branch[m->index[k]]);
+static double evaluate_meter(const strut_quantities *quantities, size_t i) {
+  strut_meter *meter = &quantities->meters[i];
+  const strut_quantity_definition *definition = meter->definition;
+  double value = strut_quantity_program_evaluate(
+      definition, meter->index, quantities->columns.value, quantities->stack, &meter->seen);
+  for (size_t k = 0; k < definition->length; k++)
+    if (definition->program[k].operation == STRUT_OPERATION_COLUMN)
+      meter->seen =
+          strut_gather_branch(meter->seen, (uint64_t)quantities->columns.branch[meter->index[k]]);
   return value;
 }
 
 /* Values of all quantities at the fraction s of the piece. */
 static void evaluate_at(const motion_part *part, double s, double *row) {
-  strut_quantities *q = part->quantities;
+  strut_quantities *quantities = part->quantities;
   double t;
-  if (s >= 1.0 && !q->dense.away)
+  if (s >= 1.0 && !quantities->dense.away)
     t = part->piece->begin + part->piece->length;
   else
-    t = strut_dense_place(&q->dense, part->state, part->piece, s);
-  strut_columns_evaluate(&q->columns, part->state, t);
-  for (size_t i = 0; i < q->count; i++) row[i] = evaluate_meter(q, i);
+    t = strut_dense_place(&quantities->dense, part->state, part->piece, s);
+  strut_columns_evaluate(&quantities->columns, part->state, t);
+  for (size_t i = 0; i < quantities->count; i++) row[i] = evaluate_meter(quantities, i);
 }
 
 /* One quantity at the fraction `at` of the part. */
 static double sample_part(void *context, double at) {
   const motion_part *part = context;
-  strut_quantities *q = part->quantities;
+  strut_quantities *quantities = part->quantities;
   double s = part->from + at * (part->to - part->from);
-  double t = strut_dense_place(&q->dense, part->state, part->piece, s);
-  strut_columns_evaluate(&q->columns, part->state, t);
-  return evaluate_meter(q, part->meter);
+  double t = strut_dense_place(&quantities->dense, part->state, part->piece, s);
+  strut_columns_evaluate(&quantities->columns, part->state, t);
+  return evaluate_meter(quantities, part->meter);
 }
 
 /* Fills the rows of the grid that divide the part into 2^depth. */
 static void fill_grid(const motion_part *part, int depth) {
-  strut_quantities *q = part->quantities;
+  strut_quantities *quantities = part->quantities;
   int last = STRUT_MOST_SAMPLES - 1, stride = last >> depth;
   for (int k = 0; k <= last; k += stride) {
-    if (q->known[k]) continue;
+    if (quantities->known[k]) continue;
     double at = part->from + (part->to - part->from) * k / last;
-    evaluate_at(part, at, row_at(q, k));
-    q->known[k] = true;
+    evaluate_at(part, at, row_at(quantities, k));
+    quantities->known[k] = true;
   }
 }
 
 static void copy_samples(const motion_part *part, int depth, strut_samples *samples) {
-  const strut_quantities *q = part->quantities;
+  const strut_quantities *quantities = part->quantities;
   int stride = (STRUT_MOST_SAMPLES - 1) >> depth;
   samples->count = (1 << depth) + 1;
-  for (int k = 0; k < samples->count; k++) samples->value[k] = row_at(q, k * stride)[part->meter];
+  for (int k = 0; k < samples->count; k++)
+    samples->value[k] = row_at(quantities, k * stride)[part->meter];
 }
 
 /* By how much the value in the middle of the part depends on the order of the interpolation. */
 static double find_doubt(const motion_part *part) {
-  strut_quantities *q = part->quantities;
-  if (!q->coarse_known) {
-    q->dense.coarse = true;
-    evaluate_at(part, 0.5 * (part->from + part->to), q->coarse);
-    q->dense.coarse = false;
-    q->coarse_known = true;
+  strut_quantities *quantities = part->quantities;
+  if (!quantities->coarse_known) {
+    quantities->dense.coarse = true;
+    evaluate_at(part, 0.5 * (part->from + part->to), quantities->coarse);
+    quantities->dense.coarse = false;
+    quantities->coarse_known = true;
   }
-  return fabs(q->coarse[part->meter] - row_at(q, (STRUT_MOST_SAMPLES - 1) / 2)[part->meter]);
+  return fabs(quantities->coarse[part->meter] -
+              row_at(quantities, (STRUT_MOST_SAMPLES - 1) / 2)[part->meter]);
 }
 
 /* ---- parts of pieces ---- */
 
 /* Adds a part of the piece, whose value at the begin is m->value, to one quantity. */
 static void add_to_meter(motion_part *part, size_t i, double begin) {
-  strut_quantities *q = part->quantities;
-  strut_meter *m = &q->meters[i];
+  strut_quantities *quantities = part->quantities;
+  strut_meter *meter = &quantities->meters[i];
   strut_samples samples = {.begin = begin,
                            .length = (part->to - part->from) * part->piece->length,
                            .sample = sample_part,
                            .context = part};
-  double end = row_at(q, STRUT_MOST_SAMPLES - 1)[i];
+  double end = row_at(quantities, STRUT_MOST_SAMPLES - 1)[i];
   part->meter = i;
-  if (part->piece->ends_only) m->elapsed = 0.0; /* a straight line */
-  if (part->piece->ends_only || strut_meter_is_even(m, end, samples.length)) {
-    strut_meter_add_even(m, end, begin, samples.length);
+  if (part->piece->ends_only) meter->elapsed = 0.0; /* a straight line */
+  if (part->piece->ends_only || strut_meter_is_even(meter, end, samples.length)) {
+    strut_meter_add_even(meter, end, begin, samples.length);
     return;
   }
-  row_at(q, 0)[i] = m->value;
+  row_at(quantities, 0)[i] = meter->value;
   int depth = 0;
   do {
     depth++;
     fill_grid(part, depth);
     copy_samples(part, depth, &samples);
-  } while (depth < STRUT_DEEPEST && !strut_meter_is_resolved(m, &samples));
+  } while (depth < STRUT_DEEPEST && !strut_meter_is_resolved(meter, &samples));
   if (depth > 1) samples.doubt = find_doubt(part);
-  strut_meter_add(m, &samples);
+  strut_meter_add(meter, &samples);
 }
 
 /* Adds a part of the piece without kinks that matter, to whose end values the last row belongs, to all quantities. */
 static void add_smooth_part(motion_part *part) {
-  strut_quantities *q = part->quantities;
+  strut_quantities *quantities = part->quantities;
   double begin = part->start + part->from * part->piece->length;
   if (!(part->to > part->from)) return;
-  memset(q->known, 0, sizeof q->known);
-  q->known[0] = q->known[STRUT_MOST_SAMPLES - 1] = true;
-  q->coarse_known = false;
-  for (size_t i = 0; i < q->count; i++) add_to_meter(part, i, begin);
+  memset(quantities->known, 0, sizeof quantities->known);
+  quantities->known[0] = quantities->known[STRUT_MOST_SAMPLES - 1] = true;
+  quantities->coarse_known = false;
+  for (size_t i = 0; i < quantities->count; i++) add_to_meter(part, i, begin);
 }
 
 /* Evaluates all at the end of the part: which quantities have a kink in it that matters? */
 static bool find_kinks(const motion_part *part) {
-  strut_quantities *q = part->quantities;
-  double *row = row_at(q, STRUT_MOST_SAMPLES - 1);
+  strut_quantities *quantities = part->quantities;
+  double *row = row_at(quantities, STRUT_MOST_SAMPLES - 1);
   double length = (part->to - part->from) * part->piece->length;
   bool any = false;
   evaluate_at(part, part->to, row);
-  for (size_t i = 0; i < q->count; i++) {
-    strut_meter *m = &q->meters[i];
-    m->ahead = m->seen;
-    m->kinked = m->inner && m->ahead != m->branch && strut_meter_may_turn(m, row[i], length);
-    any = any || m->kinked;
+  for (size_t i = 0; i < quantities->count; i++) {
+    strut_meter *meter = &quantities->meters[i];
+    meter->ahead = meter->seen;
+    meter->kinked = meter->inner && meter->ahead != meter->branch &&
+                    strut_meter_may_turn(meter, row[i], length);
+    any = any || meter->kinked;
   }
   return any && !part->piece->ends_only;
 }
 
 /* Has one of these kinks been passed at the fraction s of the piece? Values there: `coarse`. */
 static bool is_kink_passed(const motion_part *part, double s) {
-  const strut_quantities *q = part->quantities;
+  const strut_quantities *quantities = part->quantities;
   bool any = false;
-  evaluate_at(part, s, q->coarse);
-  for (size_t i = 0; i < q->count; i++)
-    any = any || (q->meters[i].kinked && q->meters[i].seen != q->meters[i].branch);
+  evaluate_at(part, s, quantities->coarse);
+  for (size_t i = 0; i < quantities->count; i++)
+    any = any || (quantities->meters[i].kinked &&
+                  quantities->meters[i].seen != quantities->meters[i].branch);
   return any;
 }
 
 /* Adds the part up to the first kink, and moves its begin there. */
 static void add_to_kink(motion_part *part) {
-  strut_quantities *q = part->quantities;
+  strut_quantities *quantities = part->quantities;
   double low = part->from, high = part->to, end = part->to;
   while (high - low > LOCATED) {
     double middle = 0.5 * (low + high);
     *(is_kink_passed(part, middle) ? &high : &low) = middle;
   }
   part->to = low;
-  evaluate_at(part, low, row_at(q, STRUT_MOST_SAMPLES - 1));
+  evaluate_at(part, low, row_at(quantities, STRUT_MOST_SAMPLES - 1));
   add_smooth_part(part);
   (void)is_kink_passed(part, high);
-  for (size_t i = 0; i < q->count; i++)
-    if (q->meters[i].kinked && q->meters[i].seen != q->meters[i].branch)
-      strut_meter_jump(&q->meters[i], part->start + low * part->piece->length, q->coarse[i]);
+  for (size_t i = 0; i < quantities->count; i++)
+    if (quantities->meters[i].kinked && quantities->meters[i].seen != quantities->meters[i].branch)
+      strut_meter_jump(&quantities->meters[i], part->start + low * part->piece->length,
+                       quantities->coarse[i]);
   part->from = low, part->to = end;
 }
 
 /* Adds a part of the piece to all quantities, from kink to kink. */
 static void add_part(motion_part *part) {
-  strut_quantities *q = part->quantities;
+  strut_quantities *quantities = part->quantities;
   if (!(part->to > part->from)) return;
   for (int k = 0; find_kinks(part) && k < MOST_KINKS; k++) add_to_kink(part);
   add_smooth_part(part);
-  for (size_t i = 0; i < q->count; i++) q->meters[i].branch = q->meters[i].ahead;
+  for (size_t i = 0; i < quantities->count; i++)
+    quantities->meters[i].branch = quantities->meters[i].ahead;
 }
 
-static double primitive_of(const strut_quantities *q, const strut_meter *m) {
-  return m->rate_of == NONE ? 0.0 : q->columns.value[m->rate_of];
+static double primitive_of(const strut_quantities *quantities, const strut_meter *meter) {
+  return meter->rate_of == NONE ? 0.0 : quantities->columns.value[meter->rate_of];
 }
 
 /* Passes the mark at the fraction s of the piece, up to which it has been added; the first opens the window. */
 static void pass_mark(const motion_part *part, double s) {
-  strut_quantities *q = part->quantities;
-  double time = q->marks.time[q->next], *row = row_at(q, 0);
+  strut_quantities *quantities = part->quantities;
+  double time = quantities->marks.time[quantities->next], *row = row_at(quantities, 0);
   evaluate_at(part, s, row);
-  for (size_t i = 0; i < q->count; i++) {
-    strut_meter *m = &q->meters[i];
-    if (q->next > 0)
-      strut_meter_mark(m, time, m->value, primitive_of(q, m));
+  for (size_t i = 0; i < quantities->count; i++) {
+    strut_meter *meter = &quantities->meters[i];
+    if (quantities->next > 0)
+      strut_meter_mark(meter, time, meter->value, primitive_of(quantities, meter));
     else
-      strut_meter_open(m, time, row[i], primitive_of(q, m));
+      strut_meter_open(meter, time, row[i], primitive_of(quantities, meter));
   }
-  if (q->next == 0) q->begin = time;
-  q->time = time;
-  q->next++;
+  if (quantities->next == 0) quantities->begin = time;
+  quantities->time = time;
+  quantities->next++;
 }
 
 /* Values just after the begin of a piece, which may have jumped there. */
 static void pass_jump(const motion_part *part, double time) {
-  strut_quantities *q = part->quantities;
-  evaluate_at(part, 0.0, row_at(q, 0));
-  for (size_t i = 0; i < q->count; i++) strut_meter_jump(&q->meters[i], time, row_at(q, 0)[i]);
+  strut_quantities *quantities = part->quantities;
+  evaluate_at(part, 0.0, row_at(quantities, 0));
+  for (size_t i = 0; i < quantities->count; i++)
+    strut_meter_jump(&quantities->meters[i], time, row_at(quantities, 0)[i]);
 }
 
 /* Measures a piece: up to each mark within it, then to its end. */
 static void see_piece(strut_observer *observer, strut_state *state,
                       const strut_motion_piece *seen) {
-  strut_quantities *q = (strut_quantities *)observer;
+  strut_quantities *quantities = (strut_quantities *)observer;
   strut_motion_piece piece = *seen;
-  double begin = piece.begin + (state->time_offset - q->marks.offset), h = piece.length;
-  motion_part part = {.quantities = q, .state = state, .piece = &piece, .start = begin};
-  double end = begin + h, near = MARK_TOLERANCE * q->marks.step;
-  bool smooth = piece.smooth && !q->fresh;
-  if (q->next >= q->marks.count) return;
-  if (q->next > 0 && q->inner && !smooth) pass_jump(&part, begin);
-  q->fresh = false;
-  while (q->next < q->marks.count && q->marks.time[q->next] <= end + near) {
-    double s = (q->marks.time[q->next] - begin) / h;
+  double begin = piece.begin + (state->time_offset - quantities->marks.offset), h = piece.length;
+  motion_part part = {.quantities = quantities, .state = state, .piece = &piece, .start = begin};
+  double end = begin + h, near = MARK_TOLERANCE * quantities->marks.step;
+  bool smooth = piece.smooth && !quantities->fresh;
+  if (quantities->next >= quantities->marks.count) return;
+  if (quantities->next > 0 && quantities->inner && !smooth) pass_jump(&part, begin);
+  quantities->fresh = false;
+  while (quantities->next < quantities->marks.count &&
+         quantities->marks.time[quantities->next] <= end + near) {
+    double s = (quantities->marks.time[quantities->next] - begin) / h;
     part.to = s * h > h - near ? 1.0 : fmax(s, part.from);
-    if (q->next > 0) add_part(&part);
+    if (quantities->next > 0) add_part(&part);
     pass_mark(&part, part.to);
     part.from = part.to;
   }
   part.to = 1.0;
-  if (q->next > 0 && q->next < q->marks.count) add_part(&part);
-  strut_dense_return(&q->dense, state, &piece);
-  if (q->next >= q->marks.count) state->watched.observer = NULL;
+  if (quantities->next > 0 && quantities->next < quantities->marks.count) add_part(&part);
+  strut_dense_return(&quantities->dense, state, &piece);
+  if (quantities->next >= quantities->marks.count) state->watched.observer = NULL;
 }
 
 /* May a mark lie within the next step of the grid? */
-static bool mark_is_near(const strut_quantities *q, double begin) {
-  return q->next < q->marks.count && q->marks.time[q->next] <= begin + 1.5 * q->marks.step;
+static bool mark_is_near(const strut_quantities *quantities, double begin) {
+  return quantities->next < quantities->marks.count &&
+         quantities->marks.time[quantities->next] <= begin + 1.5 * quantities->marks.step;
 }
 
 /* Does a step of the grid matter by its end alone? */
-static bool ends_suffice(const strut_quantities *q) { return !q->inner && q->next > 0; }
-
-void strut_quantities_begin(strut_quantities *q, const strut_marks *marks, strut_state *state) {
-  double t = (double)state->step * marks->step;
-  q->marks = *marks;
-  q->next = 0;
-  q->fresh = true;
-  /* what jumps where the window begins has its value from before that, as at its end */
-  if (q->observed) t -= fmax(4.0 * DBL_EPSILON * t, state->step > 0 ? 1e-12 * marks->step : 0.0);
-  strut_columns_begin(&q->columns, state, t);
-  for (size_t i = 0; i < q->count; i++) {
-    q->meters[i].result = (double)NAN;
-    q->meters[i].parts = 0;
-  }
-  if (q->observed)
-    state->watched.observer = &q->observer;
-  else
-    strut_dense_keep(&q->dense, state);
-  if (fabs(marks->time[0] / marks->step - (double)state->step) >= MARK_TOLERANCE) return;
-  for (size_t i = 0; i < q->count; i++) {
-    strut_meter *m = &q->meters[i];
-    strut_meter_open(m, marks->time[0], evaluate_meter(q, i), primitive_of(q, m));
-  }
-  q->begin = q->time = marks->time[0];
-  q->next = 1;
+static bool ends_suffice(const strut_quantities *quantities) {
+  return !quantities->inner && quantities->next > 0;
 }
 
-void strut_quantities_step(strut_quantities *q, double length, strut_state *state) {
-  double begin = ((double)state->step - 1.0) * q->marks.step;
-  if (q->observed || q->next >= q->marks.count) return; /* the method has shown it; or it is over */
-  if (ends_suffice(q) && !mark_is_near(q, begin)) {
-    strut_columns_evaluate(&q->columns, state, begin + length);
-    for (size_t i = 0; i < q->count; i++)
-      strut_meter_add_even(&q->meters[i], evaluate_meter(q, i), begin, length);
-  } else {
-    strut_motion_piece piece = strut_dense_step(&q->dense, state, begin, length);
-    see_piece(&q->observer, state, &piece);
+void strut_quantities_begin(strut_quantities *quantities, const strut_marks *marks,
+                            strut_state *state) {
+  double t = (double)state->step * marks->step;
+  quantities->marks = *marks;
+  quantities->next = 0;
+  quantities->fresh = true;
+  /* what jumps where the window begins has its value from before that, as at its end */
+  if (quantities->observed)
+    t -= fmax(4.0 * DBL_EPSILON * t, state->step > 0 ? 1e-12 * marks->step : 0.0);
+  strut_columns_begin(&quantities->columns, state, t);
+  for (size_t i = 0; i < quantities->count; i++) {
+    quantities->meters[i].result = (double)NAN;
+    quantities->meters[i].parts = 0;
   }
-  if (!ends_suffice(q) || mark_is_near(q, begin + length)) strut_dense_keep(&q->dense, state);
+  if (quantities->observed)
+    state->watched.observer = &quantities->observer;
+  else
+    strut_dense_keep(&quantities->dense, state);
+  if (fabs(marks->time[0] / marks->step - (double)state->step) >= MARK_TOLERANCE) return;
+  for (size_t i = 0; i < quantities->count; i++) {
+    strut_meter *meter = &quantities->meters[i];
+    strut_meter_open(meter, marks->time[0], evaluate_meter(quantities, i),
+                     primitive_of(quantities, meter));
+  }
+  quantities->begin = quantities->time = marks->time[0];
+  quantities->next = 1;
+}
+
+void strut_quantities_step(strut_quantities *quantities, double length, strut_state *state) {
+  double begin = ((double)state->step - 1.0) * quantities->marks.step;
+  if (quantities->observed || quantities->next >= quantities->marks.count)
+    return; /* the method has shown it; or it is over */
+  if (ends_suffice(quantities) && !mark_is_near(quantities, begin)) {
+    strut_columns_evaluate(&quantities->columns, state, begin + length);
+    for (size_t i = 0; i < quantities->count; i++)
+      strut_meter_add_even(&quantities->meters[i], evaluate_meter(quantities, i), begin, length);
+  } else {
+    strut_motion_piece piece = strut_dense_step(&quantities->dense, state, begin, length);
+    see_piece(&quantities->observer, state, &piece);
+  }
+  if (!ends_suffice(quantities) || mark_is_near(quantities, begin + length))
+    strut_dense_keep(&quantities->dense, state);
 }
 
 /* Fills size, span and noise of all columns over the window. */
-static void measure_columns(strut_quantities *q) {
-  const strut_columns *c = &q->columns;
-  for (size_t i = 0; i < c->count; i++)
-    q->sizes[i] = (strut_magnitude){.size = c->largest[i],
-                                    .span = strut_columns_span(c, i),
-                                    .noise = strut_columns_noise(c, i)};
+static void measure_columns(strut_quantities *quantities) {
+  const strut_columns *columns = &quantities->columns;
+  for (size_t i = 0; i < columns->count; i++)
+    quantities->sizes[i] = (strut_magnitude){.size = columns->largest[i],
+                                             .span = strut_columns_span(columns, i),
+                                             .noise = strut_columns_noise(columns, i)};
 }
 
-bool strut_quantity_names_member(const strut_quantity_definition *d) {
+bool strut_quantity_names_member(const strut_quantity_definition *definition) {
   bool asked = false;
-  for (size_t i = 0; i < d->length; i++)
-    asked = asked || (d->program[i].operation == STRUT_OPERATION_COLUMN &&
-                      d->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE);
-  return asked && d->take == STRUT_TAKE_MAX;
+  for (size_t i = 0; i < definition->length; i++)
+    asked = asked || (definition->program[i].operation == STRUT_OPERATION_COLUMN &&
+                      definition->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE);
+  return asked && definition->take == STRUT_TAKE_MAX;
 }
 
 /* The member of the largest force, where the largest one of all was asked for. */
-static const char *loaded_member(const strut_quantities *q, const strut_meter *m) {
-  if (!strut_quantity_names_member(m->definition) || q->columns.loaded < 0) return NULL;
-  return q->columns.instant.model->scene->members[q->columns.loaded].name;
+static const char *loaded_member(const strut_quantities *quantities, const strut_meter *meter) {
+  if (!strut_quantity_names_member(meter->definition) || quantities->columns.loaded < 0)
+    return NULL;
+  return quantities->columns.instant.model->scene->members[quantities->columns.loaded].name;
 }
 
-static void fill_measured(strut_quantities *q, strut_meter *m, strut_measured *to) {
-  strut_reduction take = m->definition->take;
+static void fill_measured(strut_quantities *quantities, strut_meter *meter, strut_measured *to) {
+  strut_reduction take = meter->definition->take;
   bool differs = take == STRUT_TAKE_RANGE || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE ||
                  take == STRUT_TAKE_RISE;
   bool cancels = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_CHANGE || take == STRUT_TAKE_RATE;
-  strut_magnitude made =
-      strut_quantity_program_magnitude(m->definition, m->index, q->sizes, q->size_stack);
-  double size = fmax(made.size, m->largest), window = q->time - q->begin;
+  strut_magnitude made = strut_quantity_program_magnitude(
+      meter->definition, meter->index, quantities->sizes, quantities->size_stack);
+  double size = fmax(made.size, meter->largest), window = quantities->time - quantities->begin;
   double per = take == STRUT_TAKE_RATE ? window : 1.0;
   bool summed = take == STRUT_TAKE_MEAN || take == STRUT_TAKE_RMS;
   to->rounding = (made.noise + (cancels ? CANCELLED : ROUNDED) * size) / per;
-  if (take == STRUT_TAKE_ARRIVAL) to->margin = strut_meter_margin(m);
-  if (!isfinite(m->result)) return;
-  to->doubt = m->doubt / (summed ? window : 1.0);
-  to->left = strut_meter_left(m);
-  to->value = m->result;
-  to->member = loaded_member(q, m);
+  if (take == STRUT_TAKE_ARRIVAL) to->margin = strut_meter_margin(meter);
+  if (!isfinite(meter->result)) return;
+  to->doubt = meter->doubt / (summed ? window : 1.0);
+  to->left = strut_meter_left(meter);
+  to->value = meter->result;
+  to->member = loaded_member(quantities, meter);
   if (take == STRUT_TAKE_ARRIVAL) { /* a time, not a value of the expression */
-    to->scale = fabs(m->result);
+    to->scale = fabs(meter->result);
     return;
   }
   double scale = (differs ? made.span : size) / per;
   if (isfinite(scale)) to->scale = scale;
   to->zero = fabs(to->value) <= to->rounding;
-  if (q->by_periods && m->parts > 1) to->spread = sqrt(m->part_square / (double)(m->parts - 1));
+  if (quantities->by_periods && meter->parts > 1)
+    to->spread = sqrt(meter->part_square / (double)(meter->parts - 1));
 }
 
-void strut_quantities_finish(strut_quantities *q, strut_summary *summary) {
-  if (q->next < 2) return;
-  measure_columns(q);
-  for (size_t i = 0; i < q->count && i < summary->measured_count; i++)
-    fill_measured(q, &q->meters[i], &summary->measured[i]);
+void strut_quantities_finish(strut_quantities *quantities, strut_summary *summary) {
+  if (quantities->next < 2) return;
+  measure_columns(quantities);
+  for (size_t i = 0; i < quantities->count && i < summary->measured_count; i++)
+    fill_measured(quantities, &quantities->meters[i], &summary->measured[i]);
 }

@@ -30,24 +30,26 @@ static const strut_sensitivity sensitivities[] = {
 #undef STRUT_OPERATION_ROW
 };
 
-double strut_quantity_program_evaluate(const strut_quantity_definition *d, const size_t *index,
-                                       const double *value, double *stack, uint64_t *branch) {
+double strut_quantity_program_evaluate(const strut_quantity_definition *definition,
+                                       const size_t *index, const double *value, double *stack,
+                                       uint64_t *branch) {
   size_t top = 0;
   uint64_t gathered = 0;
-  for (size_t i = 0; i < d->length; i++) {
-    const strut_instruction *p = &d->program[i];
-    if (p->operation == STRUT_OPERATION_NUMBER) {
-      stack[top++] = p->number;
-    } else if (p->operation == STRUT_OPERATION_COLUMN) {
+  for (size_t i = 0; i < definition->length; i++) {
+    const strut_instruction *instruction = &definition->program[i];
+    if (instruction->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = instruction->number;
+    } else if (instruction->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = strut_operation_operands(p->operation);
+      int count = strut_operation_operands(instruction->operation);
       top -= (size_t)count;
-      assert(top < d->depth);
+      assert(top < definition->depth);
       double a = stack[top], b = count > 1 ? stack[top + 1] : 0.0;
-      stack[top] = strut_operation_apply(p->operation, a, b);
+      stack[top] = strut_operation_apply(instruction->operation, a, b);
       if (branch)
-        gathered = strut_gather_branch(gathered, branch_of(p->operation, a, b, stack[top]));
+        gathered =
+            strut_gather_branch(gathered, branch_of(instruction->operation, a, b, stack[top]));
       top++;
     }
   }
@@ -91,22 +93,23 @@ static strut_magnitude combine_magnitudes(strut_operation operation, strut_magni
                            propagate_uncertainty(operation, a.size, b.size, a.noise, b.noise)};
 }
 
-strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *d,
+strut_magnitude strut_quantity_program_magnitude(const strut_quantity_definition *definition,
                                                  const size_t *index, const strut_magnitude *value,
                                                  strut_magnitude *stack) {
   size_t top = 0;
-  for (size_t i = 0; i < d->length; i++) {
-    const strut_instruction *p = &d->program[i];
-    if (p->operation == STRUT_OPERATION_NUMBER) {
-      stack[top++] = (strut_magnitude){.size = fabs(p->number)};
-    } else if (p->operation == STRUT_OPERATION_COLUMN) {
+  for (size_t i = 0; i < definition->length; i++) {
+    const strut_instruction *instruction = &definition->program[i];
+    if (instruction->operation == STRUT_OPERATION_NUMBER) {
+      stack[top++] = (strut_magnitude){.size = fabs(instruction->number)};
+    } else if (instruction->operation == STRUT_OPERATION_COLUMN) {
       stack[top++] = value[index[i]];
     } else {
-      int count = strut_operation_operands(p->operation);
+      int count = strut_operation_operands(instruction->operation);
       strut_magnitude none = {0};
       top -= (size_t)count;
-      assert(top < d->depth);
-      stack[top] = combine_magnitudes(p->operation, stack[top], count > 1 ? stack[top + 1] : none);
+      assert(top < definition->depth);
+      stack[top] =
+          combine_magnitudes(instruction->operation, stack[top], count > 1 ? stack[top + 1] : none);
       top++;
     }
   }

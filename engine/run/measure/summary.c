@@ -14,9 +14,9 @@ const char *strut_motion_name(strut_motion motion) {
   return names[motion];
 }
 
-const char *strut_measured_arrival(const strut_measured *m) {
-  if (!m->arrival || isnan(m->margin)) return NULL;
-  return m->undecided ? "not decided" : isnan(m->value) ? "never" : "reached";
+const char *strut_measured_arrival(const strut_measured *measured) {
+  if (!measured->arrival || isnan(measured->margin)) return NULL;
+  return measured->undecided ? "not decided" : isnan(measured->value) ? "never" : "reached";
 }
 
 void strut_summary_warn(strut_summary *summary, const char *code, const char *format, ...) {
@@ -65,45 +65,50 @@ void strut_summary_free(strut_summary *summary) {
   summary->measured_count = 0;
 }
 
-bool strut_summary_is_inaccurate(const strut_summary *s) {
-  return s->status == STRUT_OK && s->accuracy.wanted > 0.0 && !s->accuracy.kept;
+bool strut_summary_is_inaccurate(const strut_summary *summary) {
+  return summary->status == STRUT_OK && summary->accuracy.wanted > 0.0 && !summary->accuracy.kept;
 }
 
 /* What is known of the error where an accuracy was requested. */
-static void describe_error(const strut_summary *s, char *text, size_t size) {
-  const strut_accuracy_summary *a = &s->accuracy;
-  bool velocity = s->measured_count == 0;
+static void describe_error(const strut_summary *summary, char *text, size_t size) {
+  const strut_accuracy_summary *accuracy_summary = &summary->accuracy;
+  bool velocity = summary->measured_count == 0;
   char error[60] = "the error is not known";
-  if (isfinite(a->expected) && velocity && fabs(s->velocity) < a->scale)
-    snprintf(error, sizeof error, "within %.2g m/s", a->expected * a->scale);
-  else if (isfinite(a->expected))
-    snprintf(error, sizeof error, "within %.2g %%", 100.0 * a->expected);
-  if (a->kept && s->steady.kind == STRUT_MOTION_CREEPING)
+  if (isfinite(accuracy_summary->expected) && velocity &&
+      fabs(summary->velocity) < accuracy_summary->scale)
+    snprintf(error, sizeof error, "within %.2g m/s",
+             accuracy_summary->expected * accuracy_summary->scale);
+  else if (isfinite(accuracy_summary->expected))
+    snprintf(error, sizeof error, "within %.2g %%", 100.0 * accuracy_summary->expected);
+  if (accuracy_summary->kept && summary->steady.kind == STRUT_MOTION_CREEPING)
     snprintf(text, size, "right %s for this model: it only creeps", error);
-  else if (a->kept && velocity && s->velocity_zero)
+  else if (accuracy_summary->kept && velocity && summary->velocity_zero)
     snprintf(text, size, "right for this model: the velocity is zero by symmetry");
-  else if (a->kept)
-    snprintf(text, size, "right %s for this model; %.2g %% requested", error, 100.0 * a->wanted);
+  else if (accuracy_summary->kept)
+    snprintf(text, size, "right %s for this model; %.2g %% requested", error,
+             100.0 * accuracy_summary->wanted);
   else
     snprintf(text, size, "NOT kept: %s%s, but %.2g %% requested",
-             isfinite(a->expected) ? "right only " : "", error, 100.0 * a->wanted);
+             isfinite(accuracy_summary->expected) ? "right only " : "", error,
+             100.0 * accuracy_summary->wanted);
 }
 
-void strut_summary_worth(const strut_summary *s, char *text, size_t size) {
+void strut_summary_worth(const strut_summary *summary, char *text, size_t size) {
   if (size) *text = '\0';
-  if (s->status != STRUT_OK) return;
-  if (s->accuracy.wanted > 0.0)
-    describe_error(s, text, size);
+  if (summary->status != STRUT_OK) return;
+  if (summary->accuracy.wanted > 0.0)
+    describe_error(summary, text, size);
   else
     snprintf(text, size, "not known: %s; --accuracy 1%% estimates the error",
-             s->caveat[0] ? s->caveat : "no error was estimated");
+             summary->caveat[0] ? summary->caveat : "no error was estimated");
 }
 
-void strut_summary_warn_of_accuracy(strut_summary *s) {
+void strut_summary_warn_of_accuracy(strut_summary *summary) {
   char text[200];
-  if (!strut_summary_is_inaccurate(s)) return;
-  strut_summary_worth(s, text, sizeof text);
-  strut_summary_warn(s, "accuracy", "the requested accuracy is %s: %s", text, s->accuracy.why);
+  if (!strut_summary_is_inaccurate(summary)) return;
+  strut_summary_worth(summary, text, sizeof text);
+  strut_summary_warn(summary, "accuracy", "the requested accuracy is %s: %s", text,
+                     summary->accuracy.why);
 }
 
 void strut_summary_warn_of_start(strut_summary *summary) {
@@ -131,13 +136,13 @@ const char *strut_balance_name(strut_balance balance) {
   return names[balance];
 }
 
-double strut_summary_work_per_distance(const strut_summary *s) {
-  double distance = fabs(s->velocity) * s->window.time;
-  bool moves = !s->velocity_zero && distance > 0.0;
-  return moves ? s->window.work / distance : (double)NAN;
+double strut_summary_work_per_distance(const strut_summary *summary) {
+  double distance = fabs(summary->velocity) * summary->window.time;
+  bool moves = !summary->velocity_zero && distance > 0.0;
+  return moves ? summary->window.work / distance : (double)NAN;
 }
 
-double strut_summary_cost_of_transport(const strut_summary *s) {
-  double cost = strut_summary_work_per_distance(s) / s->weight;
-  return s->weight > 0.0 && cost > 0.0 ? cost : (double)NAN;
+double strut_summary_cost_of_transport(const strut_summary *summary) {
+  double cost = strut_summary_work_per_distance(summary) / summary->weight;
+  return summary->weight > 0.0 && cost > 0.0 ? cost : (double)NAN;
 }

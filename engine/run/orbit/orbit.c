@@ -32,29 +32,30 @@ static const double MOST_WEIGHT = 100.0;
 static const double GROWN = 1.02, FITTED = 0.04;
 
 /* Solves the small symmetric system a x = 1 in place by elimination; false if it is singular. */
-static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *x) {
-  for (int32_t i = 0; i < n; i++) x[i] = 1.0;
+static bool solve_ones(double a[WINDOW][WINDOW], int32_t n, double *vector) {
+  for (int32_t i = 0; i < n; i++) vector[i] = 1.0;
   for (int32_t p = 0; p < n; p++) {
     if (!(a[p][p] > 0.0)) return false;
     for (int32_t i = p + 1; i < n; i++) {
       double f = a[i][p] / a[p][p];
       for (int32_t j = p; j < n; j++) a[i][j] -= f * a[p][j];
-      x[i] -= f * x[p];
+      vector[i] -= f * vector[p];
     }
   }
   for (int32_t i = n - 1; i >= 0; i--) {
-    for (int32_t j = i + 1; j < n; j++) x[i] -= a[i][j] * x[j];
-    x[i] /= a[i][i];
+    for (int32_t j = i + 1; j < n; j++) vector[i] -= a[i][j] * vector[j];
+    vector[i] /= a[i][i];
   }
   return true;
 }
 
 /* Product of two differences, positions over the size and velocities over size times 2 pi f. */
-static double multiply(const strut_period_map *map, const double *a, const double *b) {
+static double multiply(const strut_period_map *map, const double *first, const double *second) {
   int32_t length = map->model->length, nodes = 2 * map->model->node_count;
   double in = map->model->size, speed = in * STRUT_TAU / map->period, product = 0.0;
   for (int32_t k = 0; k < nodes; k++)
-    product += a[k] * b[k] / (in * in) + a[length + k] * b[length + k] / (speed * speed);
+    product +=
+        first[k] * second[k] / (in * in) + first[length + k] * second[length + k] / (speed * speed);
   return product;
 }
 
@@ -62,12 +63,12 @@ static double multiply(const strut_period_map *map, const double *a, const doubl
  * Fills weight (count) of the differences d (count, each 2 length + 1), 1 <= count <= WINDOW. False
  * where the system is singular or the weights would amplify errors.
  */
-static bool find_extrapolation_weights(const strut_period_map *map, double *const *d, int32_t count,
-                                       double *weight) {
+static bool find_extrapolation_weights(const strut_period_map *map, double *const *changes,
+                                       int32_t count, double *weight) {
   double a[WINDOW][WINDOW], sum = 0.0, most = 0.0;
   assert(count >= 1 && count <= WINDOW);
   for (int32_t i = 0; i < count; i++)
-    for (int32_t j = 0; j <= i; j++) a[i][j] = a[j][i] = multiply(map, d[i], d[j]);
+    for (int32_t j = 0; j <= i; j++) a[i][j] = a[j][i] = multiply(map, changes[i], changes[j]);
   for (int32_t i = 0; i < count; i++) a[i][i] *= 1.0 + 1e-10;
   if (!solve_ones(a, count, weight)) return false;
   for (int32_t i = 0; i < count; i++) sum += weight[i];
@@ -86,12 +87,12 @@ typedef struct disturbance {
   double travel; /* extrapolated [m]; NAN where there is none */
 } disturbance;
 
-static bool allocate_disturbance(size_t both, strut_arena *arena, disturbance *t) {
-  bool ready = (t->limit = strut_arena_allocate(arena, both, sizeof(double)));
-  ready = ready && (t->work = strut_arena_allocate(arena, both, sizeof(double)));
+static bool allocate_disturbance(size_t both, strut_arena *arena, disturbance *self) {
+  bool ready = (self->limit = strut_arena_allocate(arena, both, sizeof(double)));
+  ready = ready && (self->work = strut_arena_allocate(arena, both, sizeof(double)));
   for (int k = 0; k < KEPT && ready; k++)
-    ready = (t->d[k] = strut_arena_allocate(arena, both, sizeof(double))) &&
-            (t->sum[k] = strut_arena_allocate(arena, both, sizeof(double)));
+    ready = (self->d[k] = strut_arena_allocate(arena, both, sizeof(double))) &&
+            (self->sum[k] = strut_arena_allocate(arena, both, sizeof(double)));
   return ready;
 }
 
@@ -99,25 +100,25 @@ static bool allocate_disturbance(size_t both, strut_arena *arena, disturbance *t
  * Extrapolates the sums after m periods into t->limit and t->travel. Returns the size of the
  * combined disturbance.
  */
-static double extrapolate_disturbance(const strut_period_map *map, int m, disturbance *t) {
+static double extrapolate_disturbance(const strut_period_map *map, int m, disturbance *self) {
   double *d[WINDOW], c[WINDOW];
   int n = m < WINDOW ? m : WINDOW;
   size_t both = 2 * (size_t)map->model->length + 1;
-  for (int i = 0; i < n; i++) d[i] = t->d[(m - n + i + 1) % KEPT];
-  t->travel = (double)NAN;
+  for (int i = 0; i < n; i++) d[i] = self->d[(m - n + i + 1) % KEPT];
+  self->travel = (double)NAN;
   if (n < 2 || !find_extrapolation_weights(map, d, n, c)) return HUGE_VAL;
-  t->travel = 0.0;
-  memset(t->limit, 0, both * sizeof(double));
-  memset(t->work, 0, both * sizeof(double));
+  self->travel = 0.0;
+  memset(self->limit, 0, both * sizeof(double));
+  memset(self->work, 0, both * sizeof(double));
   for (int i = 0; i < n; i++) {
     int k = (m - n + i) % KEPT;
-    t->travel += c[i] * t->gone[k];
+    self->travel += c[i] * self->gone[k];
     for (size_t j = 0; j < both; j++) {
-      t->limit[j] += c[i] * t->sum[k][j];
-      t->work[j] += c[i] * d[i][j];
+      self->limit[j] += c[i] * self->sum[k][j];
+      self->work[j] += c[i] * d[i][j];
     }
   }
-  return strut_period_map_size(map, t->work);
+  return strut_period_map_size(map, self->work);
 }
 
 /*
@@ -126,31 +127,32 @@ static double extrapolate_disturbance(const strut_period_map *map, int m, distur
  * the change between two extrapolations in a row, contribute less than `enough` [m].
  */
 static double propagate_disturbance(strut_period_map *coarse, const double *base, double travel,
-                                    double enough, disturbance *t) {
+                                    double enough, disturbance *self) {
   int32_t both = 2 * coarse->model->length + 1;
   size_t bytes = (size_t)both * sizeof(double);
-  double first = strut_period_map_size(coarse, t->d[0]), last = first, gone = 0.0, farthest = 0.0;
+  double first = strut_period_map_size(coarse, self->d[0]), last = first, gone = 0.0,
+         farthest = 0.0;
   double last_step = 0.0, guess = (double)NAN;
-  memcpy(t->sum[0], t->d[0], bytes);
+  memcpy(self->sum[0], self->d[0], bytes);
   for (int m = 1; m <= MOST_PERIODS; m++) {
-    const double *before = t->d[(m - 1) % KEPT], *sum = t->sum[(m - 1) % KEPT];
-    double *d = t->d[m % KEPT], *total = t->sum[m % KEPT];
-    for (int32_t i = 0; i < both; i++) t->work[i] = base[i] + before[i];
-    double step = strut_period_map_apply(coarse, t->work) - travel;
-    strut_period_map_subtract(coarse, base, t->work, d);
+    const double *before = self->d[(m - 1) % KEPT], *sum = self->sum[(m - 1) % KEPT];
+    double *d = self->d[m % KEPT], *total = self->sum[m % KEPT];
+    for (int32_t i = 0; i < both; i++) self->work[i] = base[i] + before[i];
+    double step = strut_period_map_apply(coarse, self->work) - travel;
+    strut_period_map_subtract(coarse, base, self->work, d);
     double now = strut_period_map_size(coarse, d);
-    t->gone[(m - 1) % KEPT] = gone += step;
+    self->gone[(m - 1) % KEPT] = gone += step;
     for (int32_t i = 0; i < both; i++) total[i] = sum[i] + d[i];
     if (!isfinite(step) || !(now < 30.0 * first) || (m >= LOST && now > first)) return (double)NAN;
     farthest = fmax(farthest, fabs(step));
     double little = fmax(DECAYED * farthest, enough);
     if (fmax(fabs(step), fabs(last_step)) <= little && fmax(now, last) <= 0.3 * first) {
-      memcpy(t->limit, total, bytes);
+      memcpy(self->limit, total, bytes);
       return gone;
     }
-    double rest = extrapolate_disturbance(coarse, m, t);
-    if (rest <= 0.1 * first && fabs(t->travel - guess) <= little) return t->travel;
-    last = now, last_step = step, guess = t->travel;
+    double rest = extrapolate_disturbance(coarse, m, self);
+    if (rest <= 0.1 * first && fabs(self->travel - guess) <= little) return self->travel;
+    last = now, last_step = step, guess = self->travel;
   }
   return (double)NAN;
 }
@@ -193,33 +195,34 @@ typedef struct window {
   double travel[WINDOW], size[WINDOW];
 } window;
 
-static bool allocate_window(size_t both, strut_arena *arena, window *w) {
+static bool allocate_window(size_t both, strut_arena *arena, window *self) {
   bool ready = true;
   for (int k = 0; k <= WINDOW && ready; k++)
-    ready = (w->y[k] = strut_arena_allocate(arena, both, sizeof(double)));
+    ready = (self->y[k] = strut_arena_allocate(arena, both, sizeof(double)));
   for (int k = 0; k < WINDOW && ready; k++)
-    ready = (w->d[k] = strut_arena_allocate(arena, both, sizeof(double)));
-  return ready && (w->best = strut_arena_allocate(arena, both, sizeof(double)));
+    ready = (self->d[k] = strut_arena_allocate(arena, both, sizeof(double)));
+  return ready && (self->best = strut_arena_allocate(arena, both, sizeof(double)));
 }
 
 /* Extrapolates into w->best; takes the end of the latest period where that fails. */
-static void extrapolate_periods(const strut_period_map *map, window *w) {
+static void extrapolate_periods(const strut_period_map *map, window *self) {
   double c[WINDOW];
   size_t both = 2 * (size_t)map->model->length + 1;
-  memcpy(w->best, w->y[WINDOW], both * sizeof(double));
-  if (!find_extrapolation_weights(map, w->d, WINDOW, c)) return;
+  memcpy(self->best, self->y[WINDOW], both * sizeof(double));
+  if (!find_extrapolation_weights(map, self->d, WINDOW, c)) return;
   for (size_t k = 0; k < both; k++) {
-    double x = w->y[WINDOW][k];
-    for (int i = 0; i < WINDOW; i++) x += c[i] * (w->y[i + 1][k] - w->y[WINDOW][k]);
-    w->best[k] = x;
+    double x = self->y[WINDOW][k];
+    for (int i = 0; i < WINDOW; i++) x += c[i] * (self->y[i + 1][k] - self->y[WINDOW][k]);
+    self->best[k] = x;
   }
 }
 
 /* Estimates the remaining travel per application from the decay of the differences. */
-static double estimate_remaining_travel(const window *w) {
-  double effect = 0.0, first = w->size[0], last = w->size[WINDOW - 1];
+static double estimate_remaining_travel(const window *self) {
+  double effect = 0.0, first = self->size[0], last = self->size[WINDOW - 1];
   for (int k = 1; k < WINDOW; k++)
-    effect = fmax(effect, fabs(w->travel[k] - w->travel[k - 1]) / fmax(w->size[k - 1], 1e-300));
+    effect =
+        fmax(effect, fabs(self->travel[k] - self->travel[k - 1]) / fmax(self->size[k - 1], 1e-300));
   double rate = first > 0.0 ? pow(last / first, 1.0 / (WINDOW - 1)) : 0.0;
   if (!(rate < 0.98)) rate = 0.98;
   return effect * last * rate / (1.0 - rate);
@@ -230,10 +233,10 @@ static double estimate_remaining_travel(const window *w) {
  * multipliers rules, d[k + 2] = s d[k + 1] + p d[k]; both are fitted, each period with the same weight. An
  * extrapolation finds the orbit that they leave, too, but it is unstable, and no run stays on it.
  */
-static bool grow(const strut_period_map *map, double *const *d) {
+static bool grow(const strut_period_map *map, double *const *changes) {
   double g[WINDOW][WINDOW], a = 0.0, b = 0.0, c = 0.0, e = 0.0, f = 0.0;
   for (int i = 0; i < WINDOW; i++)
-    for (int j = 0; j < WINDOW; j++) g[i][j] = multiply(map, d[i], d[j]);
+    for (int j = 0; j < WINDOW; j++) g[i][j] = multiply(map, changes[i], changes[j]);
   for (int k = 0; k + 1 < WINDOW; k++) {
     if (!(g[k][k] > 0.0) || !(g[k + 1][k + 1] > 0.0)) return false;
     a += g[k][k] / g[k + 1][k + 1];

@@ -45,14 +45,14 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
 double strut_period_map_apply(strut_period_map *map, double *y);
 /** d = shape of `to` minus that of `from`: the mean shift along the ground is removed. */
 void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
-                               double *d);
+                               double *change);
 /** Is the interrupt flag set? */
 bool strut_period_map_interrupted(const strut_period_map *map);
 /** Is the limit of evaluations exceeded? */
 bool strut_period_map_spent(const strut_period_map *map);
 /** Size of a difference: the largest of positions over the structure's size, and velocities over
     size times 2 pi f. */
-double strut_period_map_size(const strut_period_map *map, const double *d);
+double strut_period_map_size(const strut_period_map *map, const double *change);
 /** NULL-safe on a zeroed map. */
 void strut_period_map_free(strut_period_map *map);
 
@@ -60,7 +60,7 @@ void strut_period_map_free(strut_period_map *map);
  * x (n) becomes a^-1 x by elimination with pivots; a (n, n), row by row, is lost. False where a pivot is not
  * above `least`.
  */
-bool strut_solve_dense(double *a, double *x, size_t n, double least);
+bool strut_solve_dense(double *a, double *vector, size_t n, double least);
 
 /* An accurate periodic motion from a coarse one, by defect correction on the period map.
  *

@@ -36,10 +36,11 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
   return STRUT_OK;
 }
 
-static double mean_along(const strut_model *model, const double *q) {
+static double mean_along(const strut_model *model, const double *positions) {
   const double *t = model->contacts.tangent;
   double sum = 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) sum += q[2 * i] * t[0] + q[2 * i + 1] * t[1];
+  for (int32_t i = 0; i < model->node_count; i++)
+    sum += positions[2 * i] * t[0] + positions[2 * i + 1] * t[1];
   return sum / model->node_count;
 }
 
@@ -107,25 +108,25 @@ double strut_period_map_apply(strut_period_map *map, double *y) {
   return whole ? to - from : (double)NAN;
 }
 
-double strut_period_map_size(const strut_period_map *map, const double *d) {
+double strut_period_map_size(const strut_period_map *map, const double *change) {
   const strut_model *model = map->model;
   double speed = model->size * STRUT_TAU / map->period, most = 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    most = fmax(most, fabs(d[i]) / model->size);
-    most = fmax(most, fabs(d[model->length + i]) / speed);
+    most = fmax(most, fabs(change[i]) / model->size);
+    most = fmax(most, fabs(change[model->length + i]) / speed);
   }
   return most;
 }
 
 void strut_period_map_subtract(const strut_period_map *map, const double *from, const double *to,
-                               double *d) {
+                               double *change) {
   const strut_model *model = map->model;
   const double *t = model->contacts.tangent;
   double along = 0.0;
-  for (int32_t i = 0; i <= 2 * model->length; i++) d[i] = to[i] - from[i];
+  for (int32_t i = 0; i <= 2 * model->length; i++) change[i] = to[i] - from[i];
   for (int32_t i = 0; i < model->node_count && map->travels; i++)
-    along += (d[2 * i] * t[0] + d[2 * i + 1] * t[1]) / model->node_count;
-  for (int32_t i = 0; i < 2 * model->node_count; i++) d[i] -= along * t[i % 2];
+    along += (change[2 * i] * t[0] + change[2 * i + 1] * t[1]) / model->node_count;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) change[i] -= along * t[i % 2];
 }
 
 void strut_period_map_free(strut_period_map *map) {
@@ -134,7 +135,7 @@ void strut_period_map_free(strut_period_map *map) {
   *map = (strut_period_map){.model = NULL};
 }
 
-bool strut_solve_dense(double *a, double *x, size_t n, double least) {
+bool strut_solve_dense(double *a, double *vector, size_t n, double least) {
   for (size_t p = 0; p < n; p++) {
     size_t best = p;
     for (size_t i = p + 1; i < n; i++)
@@ -144,17 +145,17 @@ bool strut_solve_dense(double *a, double *x, size_t n, double least) {
       double keep = a[p * n + j];
       a[p * n + j] = a[best * n + j], a[best * n + j] = keep;
     }
-    double keep = x[p];
-    x[p] = x[best], x[best] = keep;
+    double keep = vector[p];
+    vector[p] = vector[best], vector[best] = keep;
     for (size_t i = p + 1; i < n; i++) {
       double factor = a[i * n + p] / a[p * n + p];
       for (size_t j = p; j < n; j++) a[i * n + j] -= factor * a[p * n + j];
-      x[i] -= factor * x[p];
+      vector[i] -= factor * vector[p];
     }
   }
   for (size_t i = n; i-- > 0;) {
-    for (size_t j = i + 1; j < n; j++) x[i] -= a[i * n + j] * x[j];
-    x[i] /= a[i * n + i];
+    for (size_t j = i + 1; j < n; j++) vector[i] -= a[i * n + j] * vector[j];
+    vector[i] /= a[i * n + i];
   }
   return true;
 }

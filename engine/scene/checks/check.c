@@ -15,17 +15,18 @@
 
 static bool report(strut_checker *checker, strut_finding finding, const char *owner,
                    const char *format, va_list arguments) {
-  strut_findings *f = checker->findings;
-  if (f->count >= STRUT_FINDINGS_MOST) {
-    f->unstored++;
+  strut_findings *findings = checker->findings;
+  if (findings->count >= STRUT_FINDINGS_MOST) {
+    findings->unstored++;
     return false;
   }
   char text[800];
   int used = owner ? snprintf(text, sizeof text, "%s ", owner) : 0;
   vsnprintf(text + used, 600, format, arguments);
-  finding.message = strut_arena_text(&f->arena, text, strlen(text));
-  bool kept = finding.message && strut_grow(&f->items, &f->capacity, f->count, sizeof *f->items);
-  if (kept) f->items[f->count++] = finding;
+  finding.message = strut_arena_text(&findings->arena, text, strlen(text));
+  bool kept = finding.message && strut_grow(&findings->items, &findings->capacity, findings->count,
+                                            sizeof *findings->items);
+  if (kept) findings->items[findings->count++] = finding;
   if (!kept) checker->out_of_memory = true;
   return false;
 }
@@ -211,57 +212,59 @@ static const char *rest_key(strut_rest_kind kind) {
 
 /* Does the member join nodes that exist, each to a different one? */
 static bool check_ends(strut_checker *checker) {
-  const strut_member *m = &checker->scene->members[checker->index];
-  if (m->guide_count + 2 > STRUT_MOST_ELEMENT_NODES)
-    return strut_fault(checker, "nodes", "runs over %zu nodes, more than %d", m->guide_count + 2,
-                       (int)STRUT_MOST_ELEMENT_NODES);
-  for (size_t k = 0; k < m->guide_count + 2; k++) {
-    int32_t node = strut_member_node(m, k), before = k ? strut_member_node(m, k - 1) : -1;
+  const strut_member *member = &checker->scene->members[checker->index];
+  if (member->guide_count + 2 > STRUT_MOST_ELEMENT_NODES)
+    return strut_fault(checker, "nodes", "runs over %zu nodes, more than %d",
+                       member->guide_count + 2, (int)STRUT_MOST_ELEMENT_NODES);
+  for (size_t k = 0; k < member->guide_count + 2; k++) {
+    int32_t node = strut_member_node(member, k), before = k ? strut_member_node(member, k - 1) : -1;
     if (node < 0 || (size_t)node >= checker->scene->node_count)
       return strut_fault(checker, "nodes", "joins a node that does not exist");
     if (node != before) continue;
     return strut_fault(checker, "nodes", "joins node '%s' to itself",
                        checker->scene->nodes[node].name);
   }
-  if (!m->guide_count || m->kind != STRUT_BAR) return true;
+  if (!member->guide_count || member->kind != STRUT_BAR) return true;
   return strut_fault(checker, "nodes", "runs over guides, which a bar cannot");
 }
 
 /* Checks each number of a member by itself. */
 static bool check_numbers(strut_checker *checker) {
-  const strut_member *m = &checker->scene->members[checker->index];
+  const strut_member *member = &checker->scene->members[checker->index];
   bool valid = strut_check_thing(checker);
-  if (rest_key(m->rest_kind) && (unsigned)m->kind <= STRUT_CABLE) return valid;
+  if (rest_key(member->rest_kind) && (unsigned)member->kind <= STRUT_CABLE) return valid;
   return strut_fault(checker, "kind", "is of an unknown kind");
 }
 
 /* Checks the numbers of a member together. */
 static bool check_law(strut_checker *checker) {
-  const strut_member *m = &checker->scene->members[checker->index];
-  const char *key = rest_key(m->rest_kind);
-  bool force = m->rest_kind == STRUT_REST_PRETENSION || m->rest_kind == STRUT_REST_FORCE_DENSITY;
-  bool given = m->stiffness > 0.0 || m->axial_stiffness > 0.0;
-  bool elastic = given || strut_law_at(m->law.kind)->own, linear = m->law.kind == STRUT_LAW_LINEAR;
+  const strut_member *member = &checker->scene->members[checker->index];
+  const char *key = rest_key(member->rest_kind);
+  bool force =
+      member->rest_kind == STRUT_REST_PRETENSION || member->rest_kind == STRUT_REST_FORCE_DENSITY;
+  bool given = member->stiffness > 0.0 || member->axial_stiffness > 0.0;
+  bool elastic = given || strut_law_at(member->law.kind)->own,
+       linear = member->law.kind == STRUT_LAW_LINEAR;
   if (!strut_check_member_law(checker)) return false;
   strut_check_maxwell(checker);
-  if (m->stiffness > 0.0 && m->axial_stiffness > 0.0)
+  if (member->stiffness > 0.0 && member->axial_stiffness > 0.0)
     return strut_fault(checker, "axial_stiffness",
                        "has both a stiffness and an axial_stiffness; give one");
-  if (m->damping > 0.0 && m->damping_ratio > 0.0)
+  if (member->damping > 0.0 && member->damping_ratio > 0.0)
     return strut_fault(checker, "damping_ratio",
                        "has both a damping and a damping_ratio; give one");
-  if (!elastic && m->damping_ratio > 0.0)
+  if (!elastic && member->damping_ratio > 0.0)
     return strut_fault_of(checker, "damping_ratio", "the damping_ratio of %s needs a stiffness",
                           checker->owner);
-  if (!elastic && m->damping == 0.0 && m->maxwell.stiffness == 0.0 &&
+  if (!elastic && member->damping == 0.0 && member->maxwell.stiffness == 0.0 &&
       !strut_is_pulled(checker->scene, (int32_t)checker->index, -1))
     return strut_fault(checker, NULL, "has neither stiffness nor damping, so it does nothing");
   if (force && !linear)
     return strut_fault_of(checker, key, "the %s of %s needs a linear law; give its rest_length",
                           key, checker->owner);
-  if (force && !elastic && m->rest_value != 0.0)
+  if (force && !elastic && member->rest_value != 0.0)
     return strut_fault_of(checker, key, "the %s of %s needs a stiffness", key, checker->owner);
-  if (force && m->kind == STRUT_CABLE && m->rest_value < 0.0)
+  if (force && member->kind == STRUT_CABLE && member->rest_value < 0.0)
     return strut_fault_of(checker, key,
                           "the %s of %s must not be negative, since a cable cannot push; "
                           "give a slack cable its rest_length",
@@ -272,28 +275,28 @@ static bool check_law(strut_checker *checker) {
 /* Checks the geometry of a member: a direction as drawn and at the start, and a rest length. */
 static void check_shape(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_member *m = &scene->members[checker->index];
+  const strut_member *member = &scene->members[checker->index];
   double drawn = 0.0;
-  bool free_length = m->rest_kind == STRUT_REST_LENGTH && m->rest_value == 0.0;
-  for (size_t k = 0; k <= m->guide_count; k++) {
-    int32_t a = strut_member_node(m, k), b = strut_member_node(m, k + 1);
+  bool free_length = member->rest_kind == STRUT_REST_LENGTH && member->rest_value == 0.0;
+  for (size_t k = 0; k <= member->guide_count; k++) {
+    int32_t a = strut_member_node(member, k), b = strut_member_node(member, k + 1);
     double start = strut_distance(scene->nodes[a].start, scene->nodes[b].start);
     drawn = strut_distance(scene->nodes[a].position, scene->nodes[b].position);
     if (isnan(drawn) || isnan(start)) return; /* reported at the node */
     if (!free_length && !strut_check_apart(checker, "nodes", a, b, "")) return;
   }
-  const char *key = rest_key(m->rest_kind);
+  const char *key = rest_key(member->rest_kind);
   strut_rest rest;
-  if (!strut_member_rest(scene, checker->index, &rest) && m->axial_stiffness > 0.0)
+  if (!strut_member_rest(scene, checker->index, &rest) && member->axial_stiffness > 0.0)
     strut_fault_of(checker, key,
                    "the axial_stiffness of %s needs a rest length above zero, but its %s is %g "
                    "(drawn length %g m, axial_stiffness %g N)",
-                   checker->owner, key, m->rest_value, drawn, m->axial_stiffness);
+                   checker->owner, key, member->rest_value, drawn, member->axial_stiffness);
   else if (!strut_member_rest(scene, checker->index, &rest))
     strut_fault_of(checker, key,
                    "the %s %g of %s would need a rest length below zero "
                    "(drawn length %g m, stiffness %g N/m)",
-                   key, m->rest_value, checker->owner, drawn, m->stiffness);
+                   key, member->rest_value, checker->owner, drawn, member->stiffness);
 }
 
 /* Steps lead somewhere, and two of them span the plane. */
@@ -399,15 +402,15 @@ strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
       strut_check_feet,      strut_check_drives,     strut_check_sliding_masses, strut_check_shapes,
       strut_check_experiment};
   const strut_scene *scene = &setup->scene;
-  const strut_experiment *e = &setup->experiment;
-  bool runs = e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0;
+  const strut_experiment *experiment = &setup->experiment;
+  bool runs = experiment->step != 0.0 || experiment->duration != 0.0 || experiment->periods != 0.0;
   bool resting = purpose == STRUT_FOR_ANY_STATICS;
   if (purpose == STRUT_FOR_ANY || resting) purpose = runs ? STRUT_FOR_RUN : STRUT_FOR_STATICS;
   bool step_later = resting || purpose == STRUT_FOR_RUN_STEP_LATER;
   if (purpose == STRUT_FOR_RUN_STEP_LATER) purpose = STRUT_FOR_RUN;
   size_t before = findings->count;
   strut_checker checker = {.scene = scene,
-                           .experiment = e,
+                           .experiment = experiment,
                            .purpose = purpose,
                            .step_given_later = step_later,
                            .resting = resting,

@@ -13,25 +13,26 @@
 static const double QUARTER_TURN = 1.57079632679489661923;
 
 /* What keeps a contact from being an element that rubs, with the name of its ground; or NULL. */
-static const char *fault_of_ground(const strut_scene *scene, const strut_contact *c) {
-  const strut_ground *g = scene->ground_count ? &scene->grounds[c->ground] : &scene->ground;
-  const strut_friction *f = &c->friction;
-  return g->shape != STRUT_GROUND_LINE ? "needs a straight ground, and '%s' is none"
-         : g->moves[0] || g->moves[1]  ? "needs a ground at rest, and '%s' is shaken"
-         : g->damping_law != STRUT_DAMPING_APPROACH
+static const char *fault_of_ground(const strut_scene *scene, const strut_contact *contact) {
+  const strut_ground *ground =
+      scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
+  const strut_friction *friction = &contact->friction;
+  return ground->shape != STRUT_GROUND_LINE     ? "needs a straight ground, and '%s' is none"
+         : ground->moves[0] || ground->moves[1] ? "needs a ground at rest, and '%s' is shaken"
+         : ground->damping_law != STRUT_DAMPING_APPROACH
              ? "has no dissipation of Hunt and Crossley, as ground '%s' wants it"
-         : f->law == STRUT_FRICTION_COULOMB
+         : friction->law == STRUT_FRICTION_COULOMB
              ? "has no friction that sticks exactly, as ground '%s' wants it; use karnopp or smooth"
-         : f->law != STRUT_FRICTION_NONE && f->directional
+         : friction->law != STRUT_FRICTION_NONE && friction->directional
              ? "rubs in both directions alike, unlike ground '%s'"
              : NULL;
 }
 
 /* Reports it of a subject that rubs there. */
-static void report_ground(strut_checker *checker, const strut_contact *c) {
+static void report_ground(strut_checker *checker, const strut_contact *contact) {
   const strut_scene *scene = checker->scene;
-  const char *fault = fault_of_ground(scene, c);
-  const char *name = scene->ground_count ? scene->grounds[c->ground].name : NULL;
+  const char *fault = fault_of_ground(scene, contact);
+  const char *name = scene->ground_count ? scene->grounds[contact->ground].name : NULL;
   if (!name || !*name) name = "ground";
   char what[240];
   if (!fault) return;
@@ -43,43 +44,45 @@ static void report_ground(strut_checker *checker, const strut_contact *c) {
 }
 
 static void check_friction(strut_checker *checker) {
-  const strut_friction *f = &checker->scene->contacts[checker->index].friction;
-  if ((unsigned)f->law >= STRUT_FRICTION_LAW_COUNT) {
+  const strut_friction *friction = &checker->scene->contacts[checker->index].friction;
+  if ((unsigned)friction->law >= STRUT_FRICTION_LAW_COUNT) {
     strut_fault_of(checker, "law", "the friction law of %s is unknown", checker->owner);
     return;
   }
   const strut_friction none = {0};
   const strut_scene *scene = checker->scene;
-  const char *fault = !f->driven                                      ? NULL
-                      : !strut_exists(f->signal, scene->signal_count) ? "which does not exist"
-                      : f->directional    ? "which cannot depend on the direction, too"
-                      : scene->foot_count ? "which feet that roll do not know"
-                      : strut_friction_has_bristles(f->law) ? "which bristles do not know"
+  const char *fault = !friction->driven ? NULL
+                      : !strut_exists(friction->signal, scene->signal_count)
+                          ? "which does not exist"
+                      : friction->directional ? "which cannot depend on the direction, too"
+                      : scene->foot_count     ? "which feet that roll do not know"
+                      : strut_friction_has_bristles(friction->law) ? "which bristles do not know"
                       : !scene->ground_count ? "which needs its ground in the list of grounds"
                                              : NULL;
   if (fault)
     strut_fault_of(checker, "mu", "the friction of %s follows a signal, %s", checker->owner, fault);
-  strut_check_fields(checker, STRUT_FIELDS_FRICTION, f, &none);
-  if (strut_friction_has_bristles(f->law) && f->mu_static == 0.0 && f->mu_kinetic > 0.0)
+  strut_check_fields(checker, STRUT_FIELDS_FRICTION, friction, &none);
+  if (strut_friction_has_bristles(friction->law) && friction->mu_static == 0.0 &&
+      friction->mu_kinetic > 0.0)
     strut_fault_of(checker, "mu_static",
                    "the friction of %s has bristles that hold nothing: its mu_static is 0, but "
                    "its mu_kinetic is not",
                    checker->owner);
-  if (strut_friction_holds_too_little(f))
+  if (strut_friction_holds_too_little(friction))
     strut_fault_of(checker, "mu_static",
                    "the friction of %s has static friction below kinetic friction", checker->owner);
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++)
-    if (strut_friction_needs(f->law, p) && strut_friction_value(f, p) == 0.0)
+    if (strut_friction_needs(friction->law, p) && strut_friction_value(friction, p) == 0.0)
       strut_check_number(checker, STRUT_FIELDS_FRICTION, strut_friction_key(p), 0.0);
 }
 
 static void check_line(strut_checker *checker) {
-  const strut_ground *g = &checker->scene->grounds[checker->index];
-  strut_check_number(checker, STRUT_FIELDS_GROUND, "height", g->height);
-  strut_check_number(checker, STRUT_FIELDS_GROUND, "slope", g->slope);
+  const strut_ground *ground = &checker->scene->grounds[checker->index];
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "height", ground->height);
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "slope", ground->slope);
   for (int c = 0; c < 2; c++)
-    strut_check_number(checker, STRUT_FIELDS_GROUND, "through", g->through[c]);
-  if (!g->placed && fabs(cos(g->slope)) < 1e-12)
+    strut_check_number(checker, STRUT_FIELDS_GROUND, "through", ground->through[c]);
+  if (!ground->placed && fabs(cos(ground->slope)) < 1e-12)
     strut_fault(checker, "slope",
                 "is upright, so that it has no height at x = 0; give a point of it, "
                 "through: [x, y]");
@@ -120,12 +123,12 @@ static void check_profile(strut_checker *checker) {
 /* A displacement that jumps would take the ground through nodes. */
 static void check_motion(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_ground *g = &scene->grounds[checker->index];
+  const strut_ground *ground = &scene->grounds[checker->index];
   double when;
   for (int c = 0; c < 2; c++) {
     const char *axis = c ? "y" : "x";
-    if (!g->moves[c]) continue;
-    int32_t signal = g->motion[c];
+    if (!ground->moves[c]) continue;
+    int32_t signal = ground->motion[c];
     if (signal < 0 || (size_t)signal >= scene->signal_count)
       strut_fault_of(checker, "motion", "the motion of %s in %s has no signal", checker->owner,
                      axis);
@@ -148,21 +151,21 @@ static void check_grounds(strut_checker *checker) {
   if (scene->ground.present)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are both a ground and grounds");
   for (size_t i = 0; i < scene->ground_count; i++) {
-    const strut_ground *g = &scene->grounds[i];
-    bool single = scene->ground_count == 1 && !(g->name && *g->name), used = false;
+    const strut_ground *ground = &scene->grounds[i];
+    bool single = scene->ground_count == 1 && !(ground->name && *ground->name), used = false;
     strut_check_begin(checker, STRUT_THING_GROUND, i);
     if (single) strut_check_begin_with(checker, STRUT_ON_GROUND, i, "the ground");
-    strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
-    if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
+    strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", ground->belt_speed);
+    if ((unsigned)ground->damping_law >= STRUT_DAMPING_COUNT)
       strut_fault_of(checker, "damping_law", "the damping law of %s is unknown", checker->owner);
-    switch (g->shape) {
+    switch (ground->shape) {
       case STRUT_GROUND_LINE: check_line(checker); break;
       case STRUT_GROUND_PROFILE: check_profile(checker); break;
       case STRUT_GROUND_CIRCLE:
         checker->within = "circle";
         for (int c = 0; c < 2; c++)
-          strut_check_number(checker, STRUT_FIELDS_CIRCLE, "centre", g->centre[c]);
-        strut_check_number(checker, STRUT_FIELDS_CIRCLE, "radius", g->radius);
+          strut_check_number(checker, STRUT_FIELDS_CIRCLE, "centre", ground->centre[c]);
+        strut_check_number(checker, STRUT_FIELDS_CIRCLE, "radius", ground->radius);
         checker->within = NULL;
         break;
     }
@@ -174,10 +177,10 @@ static void check_grounds(strut_checker *checker) {
 }
 
 /* Contacts follow their nodes, then grounds, then pieces, one of each. */
-static bool follows(const strut_contact *before, const strut_contact *c) {
-  if (c->node != before->node) return c->node > before->node;
-  if (c->ground != before->ground) return c->ground > before->ground;
-  return c->piece > before->piece;
+static bool follows(const strut_contact *before, const strut_contact *contact) {
+  if (contact->node != before->node) return contact->node > before->node;
+  if (contact->ground != before->ground) return contact->ground > before->ground;
+  return contact->piece > before->piece;
 }
 
 /* Pieces of each ground; of a profile with faults, which are reported, any number. */
@@ -186,60 +189,63 @@ static size_t *count_pieces(strut_checker *checker) {
   size_t *pieces = strut_allocate(scene->ground_count + 1, sizeof *pieces), segment, other;
   if (!pieces) checker->out_of_memory = true;
   for (size_t i = 0; i < scene->ground_count && pieces; i++) {
-    const strut_ground *g = &scene->grounds[i];
-    bool faulty = g->shape == STRUT_GROUND_PROFILE && strut_profile_check(g, &segment, &other);
-    pieces[i] = faulty ? SIZE_MAX : strut_ground_pieces(g);
+    const strut_ground *ground = &scene->grounds[i];
+    bool faulty =
+        ground->shape == STRUT_GROUND_PROFILE && strut_profile_check(ground, &segment, &other);
+    pieces[i] = faulty ? SIZE_MAX : strut_ground_pieces(ground);
   }
   return pieces;
 }
 
-static bool has_surface(const strut_scene *scene, const strut_contact *c, const size_t *pieces) {
-  if (!scene->ground_count) return c->ground == 0 && c->piece == 0;
-  if (c->ground < 0 || (size_t)c->ground >= scene->ground_count || c->piece < 0) return false;
-  return (size_t)c->piece < pieces[c->ground];
+static bool has_surface(const strut_scene *scene, const strut_contact *contact,
+                        const size_t *pieces) {
+  if (!scene->ground_count) return contact->ground == 0 && contact->piece == 0;
+  if (contact->ground < 0 || (size_t)contact->ground >= scene->ground_count || contact->piece < 0)
+    return false;
+  return (size_t)contact->piece < pieces[contact->ground];
 }
 
 static void check_contacts(strut_checker *checker, const size_t *pieces) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->contact_count; i++) {
-    const strut_contact *c = &scene->contacts[i];
+    const strut_contact *contact = &scene->contacts[i];
     strut_check_begin(checker, STRUT_THING_CONTACT, i);
-    if (c->node < 0 || (size_t)c->node >= scene->node_count) {
+    if (contact->node < 0 || (size_t)contact->node >= scene->node_count) {
       strut_fault_of(checker, NULL, "contact number %zu is of a node that does not exist", i + 1);
       continue;
     }
-    strut_format_name(checker->owner, "the contact of node", scene->nodes[c->node].name,
-                      (size_t)c->node);
-    if (i && !follows(&scene->contacts[i - 1], c))
+    strut_format_name(checker->owner, "the contact of node", scene->nodes[contact->node].name,
+                      (size_t)contact->node);
+    if (i && !follows(&scene->contacts[i - 1], contact))
       strut_fault(checker, NULL,
                   "is out of order: contacts follow their nodes, one for each at most");
-    bool again =
-        i && scene->contacts[i - 1].node == c->node && scene->contacts[i - 1].ground == c->ground;
-    if (!has_surface(scene, c, pieces))
+    bool again = i && scene->contacts[i - 1].node == contact->node &&
+                 scene->contacts[i - 1].ground == contact->ground;
+    if (!has_surface(scene, contact, pieces))
       strut_fault(checker, NULL, "is with a ground, or a piece of one, that does not exist");
-    else if (strut_friction_has_bristles(c->friction.law) && !again)
-      report_ground(checker, c);
-    strut_check_fields(checker, STRUT_FIELDS_CONTACT, c, NULL);
+    else if (strut_friction_has_bristles(contact->friction.law) && !again)
+      report_ground(checker, contact);
+    strut_check_fields(checker, STRUT_FIELDS_CONTACT, contact, NULL);
     check_friction(checker);
   }
 }
 
 void strut_check_ground(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_ground *g = &scene->ground;
+  const strut_ground *ground = &scene->ground;
   strut_check_begin_with(checker, STRUT_ON_GROUND, 0, "the ground");
-  strut_check_number(checker, STRUT_FIELDS_GROUND, "height", g->height);
-  strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", g->belt_speed);
-  if (!(fabs(g->slope) < QUARTER_TURN))
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "height", ground->height);
+  strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", ground->belt_speed);
+  if (!(fabs(ground->slope) < QUARTER_TURN))
     strut_report_finding(
         checker, STRUT_ON_GROUND, 0, "slope",
         "the slope of the ground must lie between -90 deg and 90 deg, found %g deg; a line at any "
         "angle needs a point, through: [x, y]",
-        g->slope / QUARTER_TURN * 90.0);
-  if ((unsigned)g->damping_law >= STRUT_DAMPING_COUNT)
+        ground->slope / QUARTER_TURN * 90.0);
+  if ((unsigned)ground->damping_law >= STRUT_DAMPING_COUNT)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, "damping_law",
                          "the ground's damping law is unknown");
-  if (g->present && !scene->contact_count)
+  if (ground->present && !scene->contact_count)
     strut_report_finding(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
   if (scene->ground_count) check_grounds(checker);
   if (!strut_scene_has_ground(scene) && scene->contact_count)
@@ -253,13 +259,14 @@ void strut_check_ground(strut_checker *checker) {
 
 static bool check_foot(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_foot *f = &scene->feet[checker->index];
-  if (!strut_exists(f->member, scene->member_count) || !strut_exists(f->node, scene->node_count))
+  const strut_foot *foot = &scene->feet[checker->index];
+  if (!strut_exists(foot->member, scene->member_count) ||
+      !strut_exists(foot->node, scene->node_count))
     return strut_fault(checker, "member", "is at a member or a node that does not exist");
-  if (checker->loose[f->member]) return false; /* it is reported there */
-  const strut_member *m = &scene->members[f->member];
-  const char *member = m->name, *node = scene->nodes[f->node].name;
-  if (m->node[0] != f->node && m->node[1] != f->node)
+  if (checker->loose[foot->member]) return false; /* it is reported there */
+  const strut_member *m = &scene->members[foot->member];
+  const char *member = m->name, *node = scene->nodes[foot->node].name;
+  if (m->node[0] != foot->node && m->node[1] != foot->node)
     return strut_fault(checker, "node", "is at node '%s', which is no end of member '%s'", node,
                        member);
   if (m->guide_count)
@@ -270,23 +277,24 @@ static bool check_foot(strut_checker *checker) {
 void strut_check_feet(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (size_t i = 0; i < scene->foot_count; i++) {
-    const strut_foot *f = &scene->feet[i];
+    const strut_foot *foot = &scene->feet[i];
     bool touches = false;
     strut_check_begin(checker, STRUT_THING_FOOT, i);
-    if (!strut_check_fields(checker, STRUT_FIELDS_FOOT, f, NULL) || !check_foot(checker)) continue;
+    if (!strut_check_fields(checker, STRUT_FIELDS_FOOT, foot, NULL) || !check_foot(checker))
+      continue;
     for (size_t k = 0; k < i; k++)
-      if (scene->feet[k].node == f->node)
+      if (scene->feet[k].node == foot->node)
         strut_fault_of(checker, "node", "node '%s' has a foot already, '%s'",
-                       scene->nodes[f->node].name, scene->feet[k].name);
+                       scene->nodes[foot->node].name, scene->feet[k].name);
     for (size_t k = 0; k < scene->contact_count; k++) {
-      const strut_contact *c = &scene->contacts[k];
-      if (c->node != f->node) continue;
+      const strut_contact *contact = &scene->contacts[k];
+      if (contact->node != foot->node) continue;
       touches = true;
-      report_ground(checker, c);
+      report_ground(checker, contact);
     }
     if (!touches)
       strut_fault(checker, "node", "is at node '%s', which may touch no ground",
-                  scene->nodes[f->node].name);
+                  scene->nodes[foot->node].name);
   }
 }
 
@@ -347,10 +355,11 @@ static void check_sets(sets_check *check, const strut_node_set *sets, size_t cou
 
 static void check_positions(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_configuration *c = &scene->configurations[checker->index];
+  const strut_configuration *configuration = &scene->configurations[checker->index];
   for (size_t i = 0; i < scene->node_count; i++) {
     const double *drawn = scene->nodes[i].position;
-    if (isfinite(c->position[i][0]) && isfinite(c->position[i][1])) continue;
+    if (isfinite(configuration->position[i][0]) && isfinite(configuration->position[i][1]))
+      continue;
     if (!isfinite(drawn[0]) || !isfinite(drawn[1])) continue; /* reported at the node */
     char node[200];
     strut_fault_of(checker, NULL, "the position of %s in %s is not finite",
@@ -392,10 +401,10 @@ void strut_check_shapes(strut_checker *checker) {
     if (node >= 0 && (size_t)node < scene->node_count) check.touches[node] = true;
   }
   for (size_t i = 0; !checker->out_of_memory && i < scene->configuration_count; i++) {
-    const strut_configuration *c = &scene->configurations[i];
+    const strut_configuration *configuration = &scene->configurations[i];
     strut_check_begin(checker, STRUT_THING_CONFIGURATION, i);
     check_positions(checker);
-    check_sets(&check, c->sets, c->set_count, "contacts");
+    check_sets(&check, configuration->sets, configuration->set_count, "contacts");
   }
   if (!checker->out_of_memory) {
     const strut_search *search = &checker->experiment->search;

@@ -14,23 +14,23 @@
 enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
 static bool check_table(strut_checker *checker) {
-  const strut_signal *s = &checker->scene->signals[checker->index];
-  if (!s->point_count)
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  if (!signal->point_count)
     return strut_fault_of(checker, "table", "the table of %s has no points", checker->owner);
-  for (size_t i = 0; i < s->point_count; i++) {
-    if (!isfinite(s->time[i]) || !isfinite(s->value[i]))
+  for (size_t i = 0; i < signal->point_count; i++) {
+    if (!isfinite(signal->time[i]) || !isfinite(signal->value[i]))
       strut_fault_of(checker, "table", "point %zu in the table of %s is not finite", i + 1,
                      checker->owner);
-    else if (i && s->time[i] < s->time[i - 1])
+    else if (i && signal->time[i] < signal->time[i - 1])
       strut_fault_of(
           checker, "table",
           "the times in the table of %s must increase, but point %zu at %g s follows %g s",
-          checker->owner, i + 1, s->time[i], s->time[i - 1]);
-    else if (i > 1 && s->time[i] <= s->time[i - 2])
+          checker->owner, i + 1, signal->time[i], signal->time[i - 1]);
+    else if (i > 1 && signal->time[i] <= signal->time[i - 2])
       strut_fault_of(
           checker, "table",
           "the table of %s has three points at %g s, expected at most two, between which it jumps",
-          checker->owner, s->time[i]);
+          checker->owner, signal->time[i]);
     else
       continue;
     return false;
@@ -39,30 +39,31 @@ static bool check_table(strut_checker *checker) {
 }
 
 /* Signal that part i of a sum or an expression refers to; -1: it refers to none. */
-static int32_t part_of(const strut_signal *s, size_t i) {
-  if (s->kind == STRUT_SUM) return s->terms[i];
-  const strut_instruction *p = &s->program.instruction[i];
-  bool refers = p->operation == STRUT_OPERATION_COLUMN && p->column.kind == STRUT_COLUMN_SIGNAL;
-  return refers ? p->column.item : -1;
+static int32_t part_of(const strut_signal *signal, size_t i) {
+  if (signal->kind == STRUT_SUM) return signal->terms[i];
+  const strut_instruction *instruction = &signal->program.instruction[i];
+  bool refers = instruction->operation == STRUT_OPERATION_COLUMN &&
+                instruction->column.kind == STRUT_COLUMN_SIGNAL;
+  return refers ? instruction->column.item : -1;
 }
 
-static size_t part_count(const strut_signal *s) {
-  if (s->kind == STRUT_SUM) return s->term_count;
-  return strut_signal_has_program(s) ? s->program.length : 0;
+static size_t part_count(const strut_signal *signal) {
+  if (signal->kind == STRUT_SUM) return signal->term_count;
+  return strut_signal_has_program(signal) ? signal->program.length : 0;
 }
 
 /* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
 static bool check_sum(strut_checker *checker, uint32_t *size, uint32_t *depth) {
-  const strut_signal *s = &checker->scene->signals[checker->index];
+  const strut_signal *signal = &checker->scene->signals[checker->index];
   uint64_t terms = 1;
   size_t index = checker->index;
-  if (strut_signal_has_program(s) && !strut_check_program(checker)) return false;
-  if (s->kind == STRUT_RELAY && !strut_check_relay(checker)) return false;
-  if (s->kind == STRUT_SUM && !s->term_count)
+  if (strut_signal_has_program(signal) && !strut_check_program(checker)) return false;
+  if (signal->kind == STRUT_RELAY && !strut_check_relay(checker)) return false;
+  if (signal->kind == STRUT_SUM && !signal->term_count)
     return strut_fault_of(checker, "sum", "the sum of %s has no terms", checker->owner);
-  for (size_t i = 0; i < part_count(s); i++) {
-    int32_t term = part_of(s, i);
-    if (term < 0 && strut_signal_has_program(s)) continue;
+  for (size_t i = 0; i < part_count(signal); i++) {
+    int32_t term = part_of(signal, i);
+    if (term < 0 && strut_signal_has_program(signal)) continue;
     if (term < 0 || (size_t)term >= index)
       return strut_fault_of(checker, "sum", "term %zu of %s is not a signal that comes before it",
                             i + 1, checker->owner);
@@ -78,45 +79,47 @@ static bool check_sum(strut_checker *checker, uint32_t *size, uint32_t *depth) {
 
 /* Checks the numbers of a waveform. */
 static bool check_wave(strut_checker *checker) {
-  const strut_signal *s = &checker->scene->signals[checker->index];
-  bool wave = s->kind == STRUT_SINE || s->kind == STRUT_HALF_SINE || s->kind == STRUT_SQUARE;
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  bool wave =
+      signal->kind == STRUT_SINE || signal->kind == STRUT_HALF_SINE || signal->kind == STRUT_SQUARE;
   const struct {
     const char *key;
     double value;
-  } numbers[] = {{"amplitude", s->amplitude}, {"phase", s->phase}, {"start", s->start}};
+  } numbers[] = {
+      {"amplitude", signal->amplitude}, {"phase", signal->phase}, {"start", signal->start}};
   bool valid = true; /* as of a sine, whatever the wave */
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
     valid =
         strut_check_number(checker, STRUT_FIELDS_SINE, numbers[i].key, numbers[i].value) && valid;
   if (wave)
-    valid = strut_check_number(checker, STRUT_FIELDS_SINE, "frequency", s->frequency) && valid;
+    valid = strut_check_number(checker, STRUT_FIELDS_SINE, "frequency", signal->frequency) && valid;
   if (!valid) return false;
-  if (s->kind == STRUT_RAMP && !isfinite(s->stop))
+  if (signal->kind == STRUT_RAMP && !isfinite(signal->stop))
     return strut_fault(checker, "stop", "needs a stop");
-  if (!(s->stop > s->start))
+  if (!(signal->stop > signal->start))
     return strut_fault_of(checker, "stop",
                           "the stop of %s must come after its start, found %g s after %g s",
-                          checker->owner, s->stop, s->start);
+                          checker->owner, signal->stop, signal->start);
   return true;
 }
 
 /* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
-static double jump_rate(const strut_signal *s) {
-  double rate = s->kind == STRUT_SQUARE ? 2.0 * s->frequency : 0.0;
-  return s->every > 0.0 ? fmax(rate, 1.0 / s->every) : rate;
+static double jump_rate(const strut_signal *signal) {
+  double rate = signal->kind == STRUT_SQUARE ? 2.0 * signal->frequency : 0.0;
+  return signal->every > 0.0 ? fmax(rate, 1.0 / signal->every) : rate;
 }
 
 /* A run stops at each jump: more of them than this in a step, or in a run without one, are a mistake. */
 static const double MOST_JUMPS_OF_STEP = 1e3, MOST_JUMPS_OF_RUN = 1e9;
 
 static void check_jumps(strut_checker *checker) {
-  const strut_experiment *e = checker->experiment;
-  const strut_signal *s = &checker->scene->signals[checker->index];
-  bool step = e->step > 0.0 && isfinite(e->step);
-  double rate = jump_rate(s), span = step ? e->step : e->duration;
+  const strut_experiment *experiment = checker->experiment;
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  bool step = experiment->step > 0.0 && isfinite(experiment->step);
+  double rate = jump_rate(signal), span = step ? experiment->step : experiment->duration;
   if (checker->purpose != STRUT_FOR_RUN || !(span > 0.0 && isfinite(span))) return;
   if (rate * span <= (step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN)) return;
-  bool sampled = s->every > 0.0 && s->every * rate <= 1.0;
+  bool sampled = signal->every > 0.0 && signal->every * rate <= 1.0;
   strut_fault(checker, sampled ? "every" : "frequency",
               "jumps %.3g times within %s of %g s, expected at most %g; give %s%s", rate * span,
               step ? "a step" : "the run", span, step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN,
@@ -150,10 +153,10 @@ static void call_signal(strut_checker *checker, const size_t *user, size_t i) {
  */
 static void find_users(const strut_scene *scene, size_t *user) {
   for (size_t i = scene->support_motion_count; i-- > 0;) {
-    const strut_support_motion *m = &scene->support_motions[i];
-    if (m->signal >= 0 && (size_t)m->signal < scene->signal_count && m->node >= 0 &&
-        (size_t)m->node < scene->node_count)
-      user[m->signal] = 1 + scene->actuator_count + scene->load_count + i;
+    const strut_support_motion *motion = &scene->support_motions[i];
+    if (motion->signal >= 0 && (size_t)motion->signal < scene->signal_count && motion->node >= 0 &&
+        (size_t)motion->node < scene->node_count)
+      user[motion->signal] = 1 + scene->actuator_count + scene->load_count + i;
   }
   for (size_t i = scene->load_count; i-- > 0;)
     if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
@@ -176,17 +179,17 @@ void strut_check_signals(strut_checker *checker) {
   if (!size || !depth || !user) checker->out_of_memory = true;
   if (!checker->out_of_memory) find_users(scene, user);
   for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++) {
-    const strut_signal *s = &scene->signals[i];
+    const strut_signal *signal = &scene->signals[i];
     call_signal(checker, user, i);
     size[i] = depth[i] = 1;
-    if ((unsigned)s->kind >= STRUT_SIGNAL_KINDS) {
+    if ((unsigned)signal->kind >= STRUT_SIGNAL_KINDS) {
       strut_fault(checker, NULL, "is of an unknown kind");
       checker->wild[i] = true;
       continue;
     }
     bool modified = strut_check_modifiers(checker);
-    checker->wild[i] = !modified || (s->kind == STRUT_TABLE ? !check_table(checker)
-                                     : s->kind == STRUT_SUM || strut_signal_has_program(s)
+    checker->wild[i] = !modified || (signal->kind == STRUT_TABLE ? !check_table(checker)
+                                     : signal->kind == STRUT_SUM || strut_signal_has_program(signal)
                                          ? !check_sum(checker, size, depth)
                                          : !check_wave(checker));
     if (!checker->wild[i]) check_jumps(checker);
@@ -201,14 +204,14 @@ void strut_check_signals(strut_checker *checker) {
 void strut_check_maxwell(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_member *member = &scene->members[checker->index];
-  const strut_maxwell *m = &member->maxwell;
+  const strut_maxwell *maxwell = &member->maxwell;
   const strut_maxwell none = {0};
-  if (memcmp(m, &none, sizeof none) == 0) return;
+  if (memcmp(maxwell, &none, sizeof none) == 0) return;
   checker->within = "maxwell";
-  bool valid = strut_check_fields(checker, STRUT_FIELDS_MAXWELL, m, &none);
+  bool valid = strut_check_fields(checker, STRUT_FIELDS_MAXWELL, maxwell, &none);
   checker->within = NULL;
   if (!valid) return;
-  if ((m->damping > 0.0) == (m->time > 0.0))
+  if ((maxwell->damping > 0.0) == (maxwell->time > 0.0))
     strut_fault_of(checker, "maxwell", "the Maxwell branch of %s needs either a damping or a time",
                    checker->owner);
   else if (member->kind == STRUT_CABLE || member->law.carries != STRUT_CARRIES_BOTH)
@@ -240,18 +243,19 @@ static bool column_exists(const strut_scene *scene, strut_column column) {
 
 static void check_sensor(strut_checker *checker, size_t index) {
   const strut_scene *scene = checker->scene;
-  const strut_sensor *s = &scene->sensors[index];
+  const strut_sensor *sensor = &scene->sensors[index];
   strut_check_begin(checker, STRUT_THING_SENSOR, index);
-  bool known = s->along < 2 && s->energy < 3 && strut_sensor_column(s).kind != STRUT_COLUMN_TIME &&
-               column_exists(scene, strut_sensor_column(s));
+  bool known = sensor->along < 2 && sensor->energy < 3 &&
+               strut_sensor_column(sensor).kind != STRUT_COLUMN_TIME &&
+               column_exists(scene, strut_sensor_column(sensor));
   if (!known) {
     strut_fault(checker, NULL, "is of a thing that does not exist");
     return;
   }
-  strut_column seen = strut_sensor_column(s);
+  strut_column seen = strut_sensor_column(sensor);
   bool contact = strut_observable_at(seen.kind)->owner == STRUT_OWNER_CONTACT,
        ground = contact || seen.kind == STRUT_COLUMN_HEIGHT;
-  const char *key = s->length                           ? "of"
+  const char *key = sensor->length                      ? "of"
                     : seen.kind == STRUT_COLUMN_TOUCHES ? "contact"
                                                         : "contact_force";
   if (ground && !strut_scene_has_ground(scene))
@@ -263,7 +267,7 @@ static void check_sensor(strut_checker *checker, size_t index) {
                 scene->nodes[seen.item].name);
   else if (seen.kind == STRUT_COLUMN_FORCE && scene->bar_model == STRUT_BARS_RIGID &&
            scene->members[seen.item].kind == STRUT_BAR)
-    strut_fault(checker, s->length ? "of" : "force",
+    strut_fault(checker, sensor->length ? "of" : "force",
                 "is of the force of a bar, but bars are rigid; make the member a "
                 "spring, or bars: elastic");
 }
@@ -273,16 +277,19 @@ void strut_check_sensors(strut_checker *checker) {
 }
 
 /* Is the instruction one that a signal may have? `signals`: of those before it. */
-static bool is_known(const strut_scene *scene, const strut_instruction *p, size_t signals) {
-  if (p->operation == STRUT_OPERATION_NUMBER) return isfinite(p->number);
-  if (p->operation != STRUT_OPERATION_COLUMN) return (unsigned)p->operation < STRUT_OPERATION_COUNT;
-  int32_t item = p->column.item;
-  if (p->column.kind == STRUT_COLUMN_TIME) return true;
-  if (p->column.kind == STRUT_COLUMN_SENSOR) return strut_exists(item, scene->sensor_count);
-  if (p->column.kind == STRUT_COLUMN_SENSOR_RATE)
+static bool is_known(const strut_scene *scene, const strut_instruction *instruction,
+                     size_t signals) {
+  if (instruction->operation == STRUT_OPERATION_NUMBER) return isfinite(instruction->number);
+  if (instruction->operation != STRUT_OPERATION_COLUMN)
+    return (unsigned)instruction->operation < STRUT_OPERATION_COUNT;
+  int32_t item = instruction->column.item;
+  if (instruction->column.kind == STRUT_COLUMN_TIME) return true;
+  if (instruction->column.kind == STRUT_COLUMN_SENSOR)
+    return strut_exists(item, scene->sensor_count);
+  if (instruction->column.kind == STRUT_COLUMN_SENSOR_RATE)
     return strut_exists(item, scene->sensor_count) && strut_sensor_has_rate(&scene->sensors[item]);
-  if (p->column.kind == STRUT_COLUMN_STATE) return strut_exists(item, scene->state_count);
-  return p->column.kind == STRUT_COLUMN_SIGNAL && strut_exists(item, signals);
+  if (instruction->column.kind == STRUT_COLUMN_STATE) return strut_exists(item, scene->state_count);
+  return instruction->column.kind == STRUT_COLUMN_SIGNAL && strut_exists(item, signals);
 }
 
 static bool check_program(strut_checker *checker, const strut_program *program, size_t signals,
@@ -290,12 +297,12 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
   size_t top = 0, most = 0;
   bool valid = program->length > 0;
   for (size_t i = 0; i < program->length && valid; i++) {
-    const strut_instruction *p = &program->instruction[i];
-    if (p->operation == STRUT_OPERATION_NUMBER && !isfinite(p->number))
+    const strut_instruction *instruction = &program->instruction[i];
+    if (instruction->operation == STRUT_OPERATION_NUMBER && !isfinite(instruction->number))
       return strut_fault_of(checker, key, "a number of %s is not finite", checker->owner);
-    valid = is_known(checker->scene, p, signals);
+    valid = is_known(checker->scene, instruction, signals);
     if (!valid) break;
-    size_t operands = (size_t)strut_operation_operands(p->operation);
+    size_t operands = (size_t)strut_operation_operands(instruction->operation);
     valid = top >= operands;
     top += 1 - operands;
     if (valid && top > most) most = top;
@@ -315,27 +322,29 @@ bool strut_check_program(strut_checker *checker) {
 }
 
 bool strut_check_relay(strut_checker *checker) {
-  const strut_signal *s = &checker->scene->signals[checker->index];
-  const strut_relay *r = &s->relay;
-  if (!isfinite(r->upper) || !isfinite(r->lower) || !isfinite(r->on) || !isfinite(r->off))
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  const strut_relay *relay = &signal->relay;
+  if (!isfinite(relay->upper) || !isfinite(relay->lower) || !isfinite(relay->on) ||
+      !isfinite(relay->off))
     return strut_fault_of(checker, NULL, "the numbers of relay %s are not finite", checker->owner);
-  if (!s->name)
+  if (!signal->name)
     return strut_fault_of(checker, NULL, "the relay of %s needs a name", checker->owner);
-  if (s->lag > 0.0 || s->trigger.kind != STRUT_TRIGGER_NONE)
+  if (signal->lag > 0.0 || signal->trigger.kind != STRUT_TRIGGER_NONE)
     return strut_fault_of(
         checker, NULL, "relay %s has a lag or a trigger; give it to a signal that uses the relay",
         checker->owner);
-  if (r->lower > r->upper)
+  if (relay->lower > relay->upper)
+    return strut_fault_of(checker, relay->on_above ? "off_below" : "off_above",
+                          relay->on_above
+                              ? "%s is on above %g and off below %g, so that both hold in between; "
+                                "let it be off below a lesser value"
+                              : "%s is on below %g and off above %g, so that both hold in between; "
+                                "let it be off above a greater value",
+                          checker->owner, relay->on_above ? relay->upper : relay->lower,
+                          relay->on_above ? relay->lower : relay->upper);
+  if (relay->lower == relay->upper && !(signal->every > 0.0))
     return strut_fault_of(
-        checker, r->on_above ? "off_below" : "off_above",
-        r->on_above ? "%s is on above %g and off below %g, so that both hold in between; "
-                      "let it be off below a lesser value"
-                    : "%s is on below %g and off above %g, so that both hold in between; "
-                      "let it be off above a greater value",
-        checker->owner, r->on_above ? r->upper : r->lower, r->on_above ? r->lower : r->upper);
-  if (r->lower == r->upper && !(s->every > 0.0))
-    return strut_fault_of(
-        checker, r->on_above ? "off_below" : "off_above",
+        checker, relay->on_above ? "off_below" : "off_above",
         "the thresholds of %s are equal, so that it would switch without end; set "
         "them apart, or sample it ('every')",
         checker->owner);
@@ -383,10 +392,10 @@ static bool may_describe(const strut_checker *checker) {
 
 void strut_check_driven_rate(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_actuator *a = &scene->actuators[checker->index];
-  if (a->force || !may_describe(checker)) return;
-  strut_signal_traits traits = strut_signal_describe(scene, a->signal);
-  const char *what = a->member >= 0 ? "length" : "angle";
+  const strut_actuator *actuator = &scene->actuators[checker->index];
+  if (actuator->force || !may_describe(checker)) return;
+  strut_signal_traits traits = strut_signal_describe(scene, actuator->signal);
+  const char *what = actuator->member >= 0 ? "length" : "angle";
   if (traits.sensor >= 0)
     strut_fault(checker, "signal",
                 "drives a rest %s by sensor '%s', whose rate is not known; sample the "

@@ -43,8 +43,8 @@ static const char *list_names(named *all) {
   return all->names;
 }
 
-static bool drives_length_of(const strut_actuator *a, size_t member) {
-  return !a->force && a->member >= 0 && (size_t)a->member == member;
+static bool drives_length_of(const strut_actuator *actuator, size_t member) {
+  return !actuator->force && actuator->member >= 0 && (size_t)actuator->member == member;
 }
 
 /* Rest length of a member at time t, drives included. */
@@ -107,8 +107,9 @@ static void warn_of_rest_lengths(strut_checker *checker) {
 /* Warns of nodes that start deeper in the ground than they could rest. */
 static void warn_of_depths(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  const strut_ground *g = &scene->ground;
-  double s = sin(g->slope), c = cos(g->slope), weight = 0.0, low[2] = {0.0}, high[2] = {0.0};
+  const strut_ground *ground = &scene->ground;
+  double s = sin(ground->slope), c = cos(ground->slope), weight = 0.0, low[2] = {0.0},
+         high[2] = {0.0};
   named below = {0};
   double depth_of_first = 0.0;
   int32_t last = -1;
@@ -127,7 +128,8 @@ static void warn_of_depths(strut_checker *checker) {
     const strut_contact *contact = &scene->contacts[i];
     const strut_node *node = &scene->nodes[contact->node];
     if (contact->piece || contact->node == last || (node->fixed[0] && node->fixed[1])) continue;
-    double depth = s * node->start[0] - c * (node->start[1] - g->height), size_of_load = weight;
+    double depth = s * node->start[0] - c * (node->start[1] - ground->height),
+           size_of_load = weight;
     if (scene->ground_count) {
       depth = strut_ground_depth(&scene->grounds[contact->ground], node->start);
       size_of_load = whole;
@@ -152,15 +154,15 @@ typedef struct pair {
   size_t member;
 } pair;
 
-static int compare_pairs(const void *a, const void *b) {
-  const pair *x = a, *y = b;
-  if (x->low != y->low) return x->low < y->low ? -1 : 1;
-  if (x->high != y->high) return x->high < y->high ? -1 : 1;
-  return x->member < y->member ? -1 : x->member > y->member;
+static int compare_pairs(const void *first, const void *second) {
+  const pair *self = first, *y = second;
+  if (self->low != y->low) return self->low < y->low ? -1 : 1;
+  if (self->high != y->high) return self->high < y->high ? -1 : 1;
+  return self->member < y->member ? -1 : self->member > y->member;
 }
 
-static bool only_damps(const strut_member *m) {
-  return !(m->stiffness > 0.0) && !(m->axial_stiffness > 0.0);
+static bool only_damps(const strut_member *member) {
+  return !(member->stiffness > 0.0) && !(member->axial_stiffness > 0.0);
 }
 
 static void warn_of_pairs(strut_checker *checker) {
@@ -178,14 +180,14 @@ static void warn_of_pairs(strut_checker *checker) {
   }
   if (scene->member_count) qsort(pairs, scene->member_count, sizeof *pairs, compare_pairs);
   for (size_t i = 1; i < scene->member_count; i++) {
-    const strut_member *m = &scene->members[pairs[i - 1].member],
+    const strut_member *member = &scene->members[pairs[i - 1].member],
                        *n = &scene->members[pairs[i].member];
     char text[200];
     if (pairs[i].low != pairs[i - 1].low || pairs[i].high != pairs[i - 1].high) continue;
-    if (only_damps(m) != only_damps(n)) continue; /* a spring and its damper */
-    if (m->law.kind != STRUT_LAW_LINEAR && n->law.kind != STRUT_LAW_LINEAR)
+    if (only_damps(member) != only_damps(n)) continue; /* a spring and its damper */
+    if (member->law.kind != STRUT_LAW_LINEAR && n->law.kind != STRUT_LAW_LINEAR)
       continue; /* as in an Iwan model */
-    snprintf(text, sizeof text, "'%.80s' and '%.80s'", m->name, n->name);
+    snprintf(text, sizeof text, "'%.80s' and '%.80s'", member->name, n->name);
     add_name(&twice, pairs[i].member, text);
   }
   strut_release(pairs);

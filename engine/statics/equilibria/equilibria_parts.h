@@ -58,11 +58,11 @@ int32_t strut_overlap_find(const strut_model *model, const double *q);
 
 /** The first collision whose bodies pass through each other while all nodes move straight from a to b (length);
     -1: none. */
-int32_t strut_passage_find(const strut_model *model, const double *a, const double *b);
+int32_t strut_passage_find(const strut_model *model, const double *first, const double *second);
 
 /** The first collision of two rods that cross in one of the shapes a and b (length) only; -1: none. No motion
     leads from one to the other without pushing an end of one rod through the other. */
-int32_t strut_crossing_find(const strut_model *model, const double *a, const double *b);
+int32_t strut_crossing_find(const strut_model *model, const double *first, const double *second);
 
 /* The scene as statics sees it: nothing moves by itself, the ground is level, and static supports
  * may take the ground's place, as in (12): contact nodes held in turn.
@@ -239,7 +239,7 @@ bool strut_closed_contacts(const strut_model *model, const double *q, double lea
                            strut_arena *arena, strut_node_pushes *pushes);
 /** Nodes that touch the ground at q and with what force: contacts, contact_count, normal of e. */
 strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search, const double *q,
-                                               strut_equilibrium *e);
+                                               strut_equilibrium *equilibrium);
 
 /**
  * Releases the candidates that may stand from their supports and judges them by where they come to

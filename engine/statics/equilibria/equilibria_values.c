@@ -31,17 +31,17 @@ static const char *listed(const strut_equilibria *all, int32_t i) {
 static const strut_equilibrium *rest_of(const strut_result_object *of) { return of->outer->at; }
 
 static bool touches(const strut_result_object *of, size_t node) {
-  const strut_equilibrium *e = rest_of(of);
-  for (int32_t i = 0; i < e->contact_count; i++)
-    if (e->contacts[i] == (int32_t)node) return true;
+  const strut_equilibrium *equilibrium = rest_of(of);
+  for (int32_t i = 0; i < equilibrium->contact_count; i++)
+    if (equilibrium->contacts[i] == (int32_t)node) return true;
   return false;
 }
 
 static double normal_on(const strut_result_object *of, size_t node) {
-  const strut_equilibrium *e = rest_of(of);
+  const strut_equilibrium *equilibrium = rest_of(of);
   int32_t i = 0;
-  while (e->contacts[i] != (int32_t)node) i++;
-  return e->normal[i];
+  while (equilibrium->contacts[i] != (int32_t)node) i++;
+  return equilibrium->normal[i];
 }
 
 #define REST(X)                                                                                    \
@@ -71,20 +71,20 @@ static const char *name_down(const strut_result_object *of, size_t i) {
 }
 
 static bool is_support(const strut_result_object *of, size_t k) {
-  const strut_equilibrium *e = of->at;
+  const strut_equilibrium *equilibrium = of->at;
   const strut_node *node = &of->scene->nodes[k / 2];
-  for (size_t i = 0; e->supports && i < e->supports->count; i++)
-    if (e->supports->node[i] == (int32_t)(k / 2)) return true;
+  for (size_t i = 0; equilibrium->supports && i < equilibrium->supports->count; i++)
+    if (equilibrium->supports->node[i] == (int32_t)(k / 2)) return true;
   return node->fixed[0] || node->fixed[1];
 }
 
 static void write_flaws(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  const strut_equilibrium *e = of->at;
-  if (e->collapsed)
+  const strut_equilibrium *equilibrium = of->at;
+  if (equilibrium->collapsed)
     snprintf(text, STRUT_VALUE_ROOM, "collapsed");
-  else if (e->crossings)
-    snprintf(text, STRUT_VALUE_ROOM, "%d crossing%s", (int)e->crossings,
-             e->crossings == 1 ? "" : "s");
+  else if (equilibrium->crossings)
+    snprintf(text, STRUT_VALUE_ROOM, "%d crossing%s", (int)equilibrium->crossings,
+             equilibrium->crossings == 1 ? "" : "s");
 }
 
 /* Of the energy; 0 where it is rounding beside those of the others. */
@@ -95,9 +95,9 @@ static double shown_energy(const strut_equilibria *all, double energy) {
 }
 
 /* The lowest eigenvalue of a motion that is not free. */
-static double lowest_stiffness(const strut_critical_point *p) {
-  int32_t first = p->label == STRUT_STABLE ? p->zero : 0;
-  return first < p->eigenvalue_count ? p->eigenvalues[first] : (double)NAN;
+static double lowest_stiffness(const strut_critical_point *point) {
+  int32_t first = point->label == STRUT_STABLE ? point->zero : 0;
+  return first < point->eigenvalue_count ? point->eigenvalues[first] : (double)NAN;
 }
 
 #define EQUILIBRIUM(X)                                                                             \
@@ -188,15 +188,16 @@ static bool is_shown(const strut_result_object *of, size_t i) {
 /* Those between configurations, where there are some. */
 static bool is_shown_barrier(const strut_result_object *of, size_t i) {
   const strut_equilibria *all = of->at;
-  const strut_barrier *b = &all->barriers[i];
+  const strut_barrier *barrier = &all->barriers[i];
   bool names = false;
   for (size_t k = 0; k < all->count; k++) names = names || all->list[k].configured;
-  return all->shows_all || !names || (all->list[b->from].configured && all->list[b->to].configured);
+  return all->shows_all || !names ||
+         (all->list[barrier->from].configured && all->list[barrier->to].configured);
 }
 
 static bool stands(const strut_result_object *of, size_t i) {
-  const strut_equilibrium *e = &((const strut_equilibria *)of->at)->list[i];
-  return e->outcome == STRUT_OUTCOME_STANDS && e->rest;
+  const strut_equilibrium *equilibrium = &((const strut_equilibria *)of->at)->list[i];
+  return equilibrium->outcome == STRUT_OUTCOME_STANDS && equilibrium->rest;
 }
 
 #define POSITION(X)                                                                                \

@@ -42,7 +42,8 @@ void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size
 }
 
 /* The x about which the whole may be mirrored; false: its mirror image is another problem. */
-static bool mirror_axis(const strut_model *model, const uint8_t *held, const double *q, double *x) {
+static bool mirror_axis(const strut_model *model, const uint8_t *held, const double *q,
+                        double *vector) {
   bool any = false;
   double sum = 0.0;
   const uint32_t sided = 1u << STRUT_STRAIN_ANGLE | 1u << STRUT_STRAIN_AREA |
@@ -52,11 +53,11 @@ static bool mirror_axis(const strut_model *model, const uint8_t *held, const dou
     if (model->constant_force && model->constant_force[2 * i] != 0.0) return false;
     sum += q[2 * i];
     if (!model->fixed[2 * i] && !(held && held[2 * i])) continue;
-    if (any && q[2 * i] != *x) return false;
-    *x = q[2 * i];
+    if (any && q[2 * i] != *vector) return false;
+    *vector = q[2 * i];
     any = true;
   }
-  if (!any) *x = sum / model->node_count;
+  if (!any) *vector = sum / model->node_count;
   return model->contacts.count == 0 || strut_contacts_are_level(&model->contacts);
 }
 
@@ -87,14 +88,14 @@ static double distance_to_drawn(const strut_model *model, const double *q, doubl
 static bool do_hinges_allow_mirrors(const strut_model *model) {
   static const double places[] = {0.01, 0.1, 1.0};
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_HINGE) continue;
+    const strut_element *element = &model->elements.element[i];
+    if (element->role != STRUT_ELEMENT_HINGE) continue;
     double rest = strut_element_start(model, i), half = 0.5 * STRUT_TAU;
-    if (e->carries || fabs(rest - half * rint(rest / half)) > 1e-12) return false;
+    if (element->carries || fabs(rest - half * rint(rest / half)) > 1e-12) return false;
     for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
       double x = places[k];
-      double there = strut_law_respond(e->law, &e->numbers, rest + x, rest, -1).force;
-      double back = strut_law_respond(e->law, &e->numbers, rest - x, rest, -1).force;
+      double there = strut_law_respond(element->law, &element->numbers, rest + x, rest, -1).force;
+      double back = strut_law_respond(element->law, &element->numbers, rest - x, rest, -1).force;
       if (fabs(there + back) > 1e-9 * (fabs(there) + fabs(back))) return false;
     }
   }
@@ -125,42 +126,47 @@ strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, d
   return STRUT_OK;
 }
 
-static bool rests_on_set(const strut_configuration *c, const strut_equilibrium *e) {
-  for (size_t k = 0; k < c->set_count; k++)
-    if (strut_same_nodes(&c->sets[k], e->contacts, e->contact_count)) return true;
-  return c->set_count == 0;
+static bool rests_on_set(const strut_configuration *configuration,
+                         const strut_equilibrium *equilibrium) {
+  for (size_t k = 0; k < configuration->set_count; k++)
+    if (strut_same_nodes(&configuration->sets[k], equilibrium->contacts,
+                         equilibrium->contact_count))
+      return true;
+  return configuration->set_count == 0;
 }
 
-static bool may_be_named(const strut_equilibrium *e) {
-  return !e->name && e->outcome == STRUT_OUTCOME_STANDS;
+static bool may_be_named(const strut_equilibrium *equilibrium) {
+  return !equilibrium->name && equilibrium->outcome == STRUT_OUTCOME_STANDS;
 }
 
 /* Largest distance between corresponding nodes after the best translation carries b onto a [m]. */
-static double translated_distance(const strut_model *model, const double *a, const double *b) {
+static double translated_distance(const strut_model *model, const double *first,
+                                  const double *second) {
   double shift[2] = {0.0, 0.0}, largest = 0.0;
   for (int32_t i = 0; i < 2 * model->node_count; i++)
-    shift[i % 2] += (b[i] - a[i]) / (double)model->node_count;
+    shift[i % 2] += (second[i] - first[i]) / (double)model->node_count;
   for (int32_t i = 0; i < 2 * model->node_count; i += 2)
-    largest = fmax(largest, hypot(b[i] - a[i] - shift[0], b[i + 1] - a[i + 1] - shift[1]));
+    largest = fmax(largest,
+                   hypot(second[i] - first[i] - shift[0], second[i + 1] - first[i + 1] - shift[1]));
   return largest;
 }
 
-static void name_shaped(const strut_model *model, const strut_configuration *c, size_t count,
-                        strut_equilibrium **list, double *scratch) {
+static void name_shaped(const strut_model *model, const strut_configuration *configuration,
+                        size_t count, strut_equilibrium **list, double *scratch) {
   strut_equilibrium *nearest = NULL;
   double least = STRUT_NAMED_WITHIN * model->size;
-  memcpy(scratch, c->position[0], 2 * model->scene->node_count * sizeof *scratch);
+  memcpy(scratch, configuration->position[0], 2 * model->scene->node_count * sizeof *scratch);
   for (size_t i = 0; i < count; i++) {
-    if (!may_be_named(list[i]) || !rests_on_set(c, list[i])) continue;
+    if (!may_be_named(list[i]) || !rests_on_set(configuration, list[i])) continue;
     /* Without a list of contacts, the shape says on which side the structure lies. */
-    double d = model->contacts.count && !c->set_count
+    double d = model->contacts.count && !configuration->set_count
                    ? translated_distance(model, scratch, list[i]->rest)
                    : strut_shape_distance(model, scratch, list[i]->rest, false, NULL);
     if (!(d < least)) continue;
     least = d;
     nearest = list[i];
   }
-  if (nearest) nearest->name = c->name;
+  if (nearest) nearest->name = configuration->name;
 }
 
 static bool is_name_taken(size_t count, strut_equilibrium **list, const strut_scene *scene,
@@ -181,18 +187,23 @@ static const char *numbered_name(size_t count, strut_equilibrium **list, const s
 }
 
 /* All that rest on set k, lowest first. False: out of memory. */
-static bool name_on_set(const strut_model *model, const strut_configuration *c, size_t k,
-                        size_t count, strut_equilibrium **list, int *n, strut_arena *arena) {
+static bool name_on_set(const strut_model *model, const strut_configuration *configuration,
+                        size_t k, size_t count, strut_equilibrium **list, int *n,
+                        strut_arena *arena) {
   for (;;) {
     strut_equilibrium *lowest = NULL;
     for (size_t i = 0; i < count; i++) {
-      strut_equilibrium *e = list[i];
-      if (!may_be_named(e) || !strut_same_nodes(&c->sets[k], e->contacts, e->contact_count))
+      strut_equilibrium *equilibrium = list[i];
+      if (!may_be_named(equilibrium) ||
+          !strut_same_nodes(&configuration->sets[k], equilibrium->contacts,
+                            equilibrium->contact_count))
         continue;
-      if (!lowest || e->rest_energy < lowest->rest_energy) lowest = e;
+      if (!lowest || equilibrium->rest_energy < lowest->rest_energy) lowest = equilibrium;
     }
     if (!lowest) return true;
-    lowest->name = *n == 1 ? c->name : numbered_name(count, list, model->scene, c->name, n, arena);
+    lowest->name = *n == 1
+                       ? configuration->name
+                       : numbered_name(count, list, model->scene, configuration->name, n, arena);
     if (*n == 1) *n = 2;
     if (!lowest->name) return false;
   }
@@ -213,24 +224,24 @@ typedef struct unnamed {
   size_t place;     /* in the list; of equals the first stays first, whatever sorts */
 } unnamed;
 
-static int kind_of(const strut_equilibrium *e) {
-  if (e->point.label == STRUT_SADDLE) return 1;
-  return e->point.label == STRUT_MAXIMUM ? 2 : 0;
+static int kind_of(const strut_equilibrium *equilibrium) {
+  if (equilibrium->point.label == STRUT_SADDLE) return 1;
+  return equilibrium->point.label == STRUT_MAXIMUM ? 2 : 0;
 }
 
 /* "n1-n4", "n1-n4-saddle", "held-n1-n4" (at rest only while held), "saddle" (touches nothing). */
-static const char *make_stem(const strut_scene *scene, const strut_equilibrium *e,
+static const char *make_stem(const strut_scene *scene, const strut_equilibrium *equilibrium,
                              strut_arena *arena) {
   char text[STEM] = "";
   size_t used = 0;
   int shown = 0;
-  if (e->contact_count == 0) return kind_names[kind_of(e)];
-  bool held = e->supports && e->outcome != STRUT_OUTCOME_STANDS;
+  if (equilibrium->contact_count == 0) return kind_names[kind_of(equilibrium)];
+  bool held = equilibrium->supports && equilibrium->outcome != STRUT_OUTCOME_STANDS;
   if (held) used = (size_t)snprintf(text, sizeof text, "%s", HELD);
   for (size_t i = 0; i < scene->node_count && used < sizeof text; i++) {
     bool touches = false;
-    for (int32_t k = 0; k < e->contact_count; k++)
-      touches = touches || e->contacts[k] == (int32_t)i;
+    for (int32_t k = 0; k < equilibrium->contact_count; k++)
+      touches = touches || equilibrium->contacts[k] == (int32_t)i;
     if (!touches || ++shown > MOST_IN_STEM) continue;
     int n = snprintf(text + used, sizeof text - used, "%s%s", shown > 1 ? "-" : "",
                      scene->nodes[i].name);
@@ -238,8 +249,8 @@ static const char *make_stem(const strut_scene *scene, const strut_equilibrium *
   }
   if (shown > MOST_IN_STEM && used < sizeof text)
     used += (size_t)snprintf(text + used, sizeof text - used, "+%d", shown - MOST_IN_STEM);
-  if (kind_of(e) > 0 && used < sizeof text)
-    snprintf(text + used, sizeof text - used, "-%s", kind_names[kind_of(e)]);
+  if (kind_of(equilibrium) > 0 && used < sizeof text)
+    snprintf(text + used, sizeof text - used, "-%s", kind_names[kind_of(equilibrium)]);
   return strut_arena_format(arena, "%s", text);
 }
 
@@ -253,12 +264,13 @@ static double shape_invariant(const strut_model *model, const double *q, int32_t
 }
 
 /* Order within one stem: by energy, and for equal energies by shape, so that no start matters. */
-static bool comes_before(const strut_model *model, const strut_equilibrium *a,
-                         const strut_equilibrium *b) {
-  double scale = fmax(fabs(a->energy), fabs(b->energy));
-  if (fabs(a->energy - b->energy) > SAME * scale) return a->energy < b->energy;
+static bool comes_before(const strut_model *model, const strut_equilibrium *first,
+                         const strut_equilibrium *second) {
+  double scale = fmax(fabs(first->energy), fabs(second->energy));
+  if (fabs(first->energy - second->energy) > SAME * scale) return first->energy < second->energy;
   for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    double x = shape_invariant(model, a->point.q, i), y = shape_invariant(model, b->point.q, i);
+    double x = shape_invariant(model, first->point.q, i),
+           y = shape_invariant(model, second->point.q, i);
     if (fabs(x - y) > 100 * SAME) return x < y;
   }
   return false;
@@ -276,12 +288,12 @@ static void sort_by_energy(const strut_model *model, size_t count, unnamed *rows
   }
 }
 
-static int by_stem(const void *a, const void *b) {
-  const unnamed *x = a, *y = b;
-  int order = strcmp(x->stem, y->stem);
+static int by_stem(const void *first, const void *second) {
+  const unnamed *self = first, *y = second;
+  int order = strcmp(self->stem, y->stem);
   if (order) return order;
-  if (x->e->energy != y->e->energy) return x->e->energy < y->e->energy ? -1 : 1;
-  return (x->place > y->place) - (x->place < y->place);
+  if (self->e->energy != y->e->energy) return self->e->energy < y->e->energy ? -1 : 1;
+  return (self->place > y->place) - (self->place < y->place);
 }
 
 static strut_status name_by_contacts(const strut_model *model, size_t count,
@@ -318,10 +330,10 @@ strut_status strut_name_equilibria(const strut_model *model, size_t count, strut
       name_shaped(model, &scene->configurations[i], count, list, scratch);
   strut_release(scratch);
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    const strut_configuration *c = &scene->configurations[i];
+    const strut_configuration *configuration = &scene->configurations[i];
     int n = 1;
-    for (size_t k = 0; !c->shaped && k < c->set_count; k++)
-      if (!name_on_set(model, c, k, count, list, &n, arena)) return STRUT_NO_MEMORY;
+    for (size_t k = 0; !configuration->shaped && k < configuration->set_count; k++)
+      if (!name_on_set(model, configuration, k, count, list, &n, arena)) return STRUT_NO_MEMORY;
   }
   for (size_t i = 0; i < count; i++) list[i]->configured = list[i]->name != NULL;
   return name_by_contacts(model, count, list, arena);

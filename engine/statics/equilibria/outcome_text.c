@@ -19,21 +19,21 @@ typedef struct whole {
   double shift[2], turn;
 } whole;
 
-static double node_speed(const double *q, const double *mode, const whole *w, int32_t i) {
-  double dx = q[2 * i] - q[2 * w->about], dy = q[2 * i + 1] - q[2 * w->about + 1];
-  return hypot(mode[2 * i] - w->shift[0] + w->turn * dy,
-               mode[2 * i + 1] - w->shift[1] - w->turn * dx);
+static double node_speed(const double *q, const double *mode, const whole *self, int32_t i) {
+  double dx = q[2 * i] - q[2 * self->about], dy = q[2 * i + 1] - q[2 * self->about + 1];
+  return hypot(mode[2 * i] - self->shift[0] + self->turn * dy,
+               mode[2 * i + 1] - self->shift[1] - self->turn * dx);
 }
 
 /* Flags the nodes that move besides w; their count. */
 static int32_t flag_moving(const strut_model *model, const strut_critical_point *point,
-                           const whole *w, uint8_t *flag) {
+                           const whole *self, uint8_t *flag) {
   double most = 0.0;
   int32_t count = 0;
   for (int32_t i = 0; i < model->node_count; i++)
-    most = fmax(most, node_speed(point->q, point->softest, w, i));
+    most = fmax(most, node_speed(point->q, point->softest, self, i));
   for (int32_t i = 0; i < model->node_count; i++)
-    count += flag[i] = node_speed(point->q, point->softest, w, i) > MOVES * most;
+    count += flag[i] = node_speed(point->q, point->softest, self, i) > MOVES * most;
   return count;
 }
 
@@ -80,13 +80,13 @@ static double distance_moved(const strut_model *model, const strut_critical_poin
  * again, stays away at the same energy: else stiffness of a higher order brings it back, or it
  * falls further. False when memory is out too.
  */
-static bool stays_displaced(const strut_potential *p, const strut_critical_point *point) {
-  const strut_model *model = p->model;
+static bool stays_displaced(const strut_potential *potential, const strut_critical_point *point) {
+  const strut_model *model = potential->model;
   size_t length = (size_t)model->length;
   double size = model->size > 0 ? model->size : 1.0, most = 0.0;
   strut_minimiser *minimiser = NULL;
   double *q = strut_allocate(length, sizeof *q);
-  bool good = q && strut_minimiser_create(p, &minimiser, NULL) == STRUT_OK, stays = false;
+  bool good = q && strut_minimiser_create(potential, &minimiser, NULL) == STRUT_OK, stays = false;
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     most = fmax(most, fabs(point->softest[at]));
   double same = 1e-12 * (fabs(point->potential) + strut_stiffest(model) * size * size);
@@ -96,7 +96,7 @@ static bool stays_displaced(const strut_potential *p, const strut_critical_point
       q[at] += side * PUSHED * size / most * point->softest[at];
     strut_descent end = strut_minimise(minimiser, q, 0.0);
     stays = end.end == STRUT_DESCENT_REACHED && distance_moved(model, point, q) > AWAY * size &&
-            fabs(strut_potential_value(p, q) - point->potential) <= same;
+            fabs(strut_potential_value(potential, q) - point->potential) <= same;
   }
   strut_minimiser_free(minimiser);
   strut_release(q);
@@ -108,41 +108,42 @@ static bool stays_displaced(const strut_potential *p, const strut_critical_point
 enum { NAMES = 100 };
 
 /* Why a part cannot rest: the forces on it against the supports that could balance them. */
-static strut_instability_cause instability_of(const strut_equilibrium_search *h,
-                                              const strut_connected_part *p) {
-  double scale = 1e-12 * h->potential->force_scale;
-  bool across = !p->held[1] && fabs(p->force[1]) > scale;
-  bool along = !p->held[0] && fabs(p->force[0]) > scale;
-  if (!p->touches || !h->on_ground)
+static strut_instability_cause instability_of(const strut_equilibrium_search *search,
+                                              const strut_connected_part *part) {
+  double scale = 1e-12 * search->potential->force_scale;
+  bool across = !part->held[1] && fabs(part->force[1]) > scale;
+  bool along = !part->held[0] && fabs(part->force[0]) > scale;
+  if (!part->touches || !search->on_ground)
     return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
-  const strut_contact_table *c = &h->model->contacts;
-  if (c->surface) { /* only along parallel lines is it known beforehand that nothing holds it */
-    double pull = p->force[0] * c->tangent[0] + p->force[1] * c->tangent[1];
-    bool free = c->parallel && !p->held[0] && !p->held[1] && fabs(pull) > scale;
+  const strut_contact_table *contacts = &search->model->contacts;
+  if (contacts
+          ->surface) { /* only along parallel lines is it known beforehand that nothing holds it */
+    double pull = part->force[0] * contacts->tangent[0] + part->force[1] * contacts->tangent[1];
+    bool free = contacts->parallel && !part->held[0] && !part->held[1] && fabs(pull) > scale;
     return free ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
   }
-  if (across && p->force[1] > 0) return STRUT_INSTABILITY_LIFTED;
+  if (across && part->force[1] > 0) return STRUT_INSTABILITY_LIFTED;
   return along ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;
 }
 
 /* The friction coefficient that would hold the part: force along the ground over normal force. */
-static void describe_friction(const strut_connected_part *p, size_t room, char *text) {
-  if (p->force[1] < 0)
+static void describe_friction(const strut_connected_part *part, size_t room, char *text) {
+  if (part->force[1] < 0)
     snprintf(text, room, "a friction coefficient of at least %.4g holds it",
-             fabs(p->force[0] / p->force[1]));
+             fabs(part->force[0] / part->force[1]));
   else
     snprintf(text, room, "friction cannot hold it, because nothing presses it down");
 }
 
-static void describe_instability(strut_equilibrium_search *h, strut_instability_cause cause,
-                                 const strut_connected_part *p, const uint8_t *flag) {
-  char names[NAMES] = "all nodes", friction[NAMES], *remark = h->out->remark;
-  size_t room = sizeof h->out->remark;
+static void describe_instability(strut_equilibrium_search *search, strut_instability_cause cause,
+                                 const strut_connected_part *part, const uint8_t *flag) {
+  char names[NAMES] = "all nodes", friction[NAMES], *remark = search->out->remark;
+  size_t room = sizeof search->out->remark;
   int32_t count = 0;
-  describe_friction(p, sizeof friction, friction);
-  for (int32_t i = 0; i < h->model->node_count; i++) count += flag[i];
-  bool all = count == h->model->node_count;
-  if (!all) strut_list_nodes(&h->level.scene, flag, sizeof names, names);
+  describe_friction(part, sizeof friction, friction);
+  for (int32_t i = 0; i < search->model->node_count; i++) count += flag[i];
+  bool all = count == search->model->node_count;
+  if (!all) strut_list_nodes(&search->level.scene, flag, sizeof names, names);
   const char *what = all ? "the structure" : "a part of the structure";
   if (cause == STRUT_INSTABILITY_FALLS)
     snprintf(remark, room, "nothing holds %s: it falls freely, %s", what, names);
@@ -154,47 +155,48 @@ static void describe_instability(strut_equilibrium_search *h, strut_instability_
              what, names, friction);
 }
 
-strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_search *h) {
-  int32_t nodes = h->model->node_count, moves = -1;
+strut_instability_cause strut_equilibrium_search_instability(strut_equilibrium_search *search) {
+  int32_t nodes = search->model->node_count, moves = -1;
   strut_instability_cause worst = STRUT_INSTABILITY_NONE;
   strut_arena scratch = {0};
   int32_t *parent = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parent);
   strut_connected_part *parts = strut_arena_allocate(&scratch, (size_t)nodes, sizeof *parts);
   uint8_t *flag = strut_arena_allocate(&scratch, (size_t)nodes, 1);
   if (parent && parts && flag) {
-    strut_connected_parts_find(h->model, h->potential->force, parent, parts);
+    strut_connected_parts_find(search->model, search->potential->force, parent, parts);
     for (int32_t i = 0; i < nodes && worst == STRUT_INSTABILITY_NONE; i++)
-      if (parent[i] == i && (worst = instability_of(h, &parts[i])) != STRUT_INSTABILITY_NONE)
+      if (parent[i] == i && (worst = instability_of(search, &parts[i])) != STRUT_INSTABILITY_NONE)
         moves = i;
     for (int32_t i = 0; i < nodes; i++) flag[i] = parent[i] == moves;
-    if (moves >= 0) describe_instability(h, worst, &parts[moves], flag);
+    if (moves >= 0) describe_instability(search, worst, &parts[moves], flag);
   }
   strut_arena_free(&scratch);
   return worst;
 }
 
 /* True if the free motion leads away, under the potential that the equilibrium was found with. */
-static bool leads_away(const strut_equilibrium_search *h, const strut_equilibrium *e,
+static bool leads_away(const strut_equilibrium_search *search, const strut_equilibrium *equilibrium,
                        uint8_t *held) {
   strut_potential *potential = NULL;
-  if (!e->supports) return stays_displaced(h->potential, &e->point);
-  memset(held, 0, (size_t)h->model->length);
-  strut_supports_hold(&h->supports, e->supports, held);
-  bool stays = strut_potential_create(h->model, held, false, &potential, NULL) == STRUT_OK &&
-               stays_displaced(potential, &e->point);
+  if (!equilibrium->supports) return stays_displaced(search->potential, &equilibrium->point);
+  memset(held, 0, (size_t)search->model->length);
+  strut_supports_hold(&search->supports, equilibrium->supports, held);
+  bool stays = strut_potential_create(search->model, held, false, &potential, NULL) == STRUT_OK &&
+               stays_displaced(potential, &equilibrium->point);
   strut_potential_free(potential);
   return stays;
 }
 
 /* Describes a motion without stiffness; true if it leads away at equal energy. flag: (length) */
-static bool describe_floppy_motion(strut_equilibrium_search *h, const strut_equilibrium *e,
-                                   uint8_t *flag, size_t room, char *text) {
+static bool describe_floppy_motion(strut_equilibrium_search *search,
+                                   const strut_equilibrium *equilibrium, uint8_t *flag, size_t room,
+                                   char *text) {
   char names[NAMES];
   int32_t count = 0;
-  bool away = leads_away(h, e, flag);
-  flag_floppy_nodes(h->model, &e->point, flag);
-  for (int32_t i = 0; i < h->model->node_count; i++) count += flag[i];
-  strut_list_nodes(&h->level.scene, flag, sizeof names, names);
+  bool away = leads_away(search, equilibrium, flag);
+  flag_floppy_nodes(search->model, &equilibrium->point, flag);
+  for (int32_t i = 0; i < search->model->node_count; i++) count += flag[i];
+  strut_list_nodes(&search->level.scene, flag, sizeof names, names);
   if (away)
     snprintf(text, room, "%s %s %s without stiffness", count == 1 ? "node" : "nodes", names,
              count == 1 ? "moves" : "move together");
@@ -204,70 +206,75 @@ static bool describe_floppy_motion(strut_equilibrium_search *h, const strut_equi
   return away;
 }
 
-static void describe_tipping(strut_equilibrium_search *h, const strut_candidate_equilibrium *finds,
-                             uint8_t *flag, strut_equilibrium *e) {
+static void describe_tipping(strut_equilibrium_search *search,
+                             const strut_candidate_equilibrium *finds, uint8_t *flag,
+                             strut_equilibrium *equilibrium) {
   char names[NAMES];
-  const strut_scene *scene = &h->level.scene;
-  const char *over = e->tips_over >= 0 ? scene->nodes[e->tips_over].name : NULL;
-  memset(flag, 0, (size_t)h->model->node_count);
-  for (int32_t i = 0; i < e->contact_count; i++) flag[e->contacts[i]] = 1;
+  const strut_scene *scene = &search->level.scene;
+  const char *over = equilibrium->tips_over >= 0 ? scene->nodes[equilibrium->tips_over].name : NULL;
+  memset(flag, 0, (size_t)search->model->node_count);
+  for (int32_t i = 0; i < equilibrium->contact_count; i++) flag[equilibrium->contacts[i]] = 1;
   strut_list_nodes(scene, flag, sizeof names, names);
-  const char *end = e->ends_as >= 0 ? finds[e->ends_as].e.name : NULL;
-  int length = snprintf(e->verdict, sizeof e->verdict, "%s%.24s onto %s%s%.60s",
+  const char *end = equilibrium->ends_as >= 0 ? finds[equilibrium->ends_as].e.name : NULL;
+  int length = snprintf(equilibrium->verdict, sizeof equilibrium->verdict, "%s%.24s onto %s%s%.60s",
                         over ? "tips over " : "gives way", over ? over : "", names, end ? ": " : "",
                         end ? end : ""); /* a long list of names is cut */
-  if (length < 0) e->verdict[0] = '\0';
+  if (length < 0) equilibrium->verdict[0] = '\0';
 }
 
-static void describe_no_rest(const strut_equilibrium_search *h, strut_equilibrium *e) {
+static void describe_no_rest(const strut_equilibrium_search *search,
+                             strut_equilibrium *equilibrium) {
   static const char *const why[] = {
       [STRUT_INSTABILITY_NONE] = "does not come to rest",
       [STRUT_INSTABILITY_FALLS] = "falls",
       [STRUT_INSTABILITY_SLIDES] = "slides along the ground without friction",
       [STRUT_INSTABILITY_LIFTED] = "is lifted off the ground"};
-  snprintf(e->verdict, sizeof e->verdict, "%s",
-           h->held_by_friction ? "tips over or slides once released" : why[h->instability]);
+  snprintf(
+      equilibrium->verdict, sizeof equilibrium->verdict, "%s",
+      search->held_by_friction ? "tips over or slides once released" : why[search->instability]);
 }
 
-static void describe_outcome(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
-                             strut_candidate_equilibrium *f, uint8_t *flag) {
-  strut_equilibrium *e = &f->e;
-  size_t room = sizeof e->verdict;
+static void describe_outcome(strut_equilibrium_search *search, strut_candidate_equilibrium *finds,
+                             strut_candidate_equilibrium *candidate, uint8_t *flag) {
+  strut_equilibrium *equilibrium = &candidate->e;
+  size_t room = sizeof equilibrium->verdict;
   char names[NAMES];
   int used;
-  switch (e->outcome) {
+  switch (equilibrium->outcome) {
     case STRUT_OUTCOME_STANDS:
-      used = snprintf(e->verdict, room, "stands");
-      if (e->friction > 0.0)
-        snprintf(e->verdict + used, room - (size_t)used, " by friction, with a coefficient of %.4g",
-                 e->friction);
+      used = snprintf(equilibrium->verdict, room, "stands");
+      if (equilibrium->friction > 0.0)
+        snprintf(equilibrium->verdict + used, room - (size_t)used,
+                 " by friction, with a coefficient of %.4g", equilibrium->friction);
       break;
-    case STRUT_OUTCOME_TIPS: describe_tipping(h, finds, flag, e); break;
+    case STRUT_OUTCOME_TIPS: describe_tipping(search, finds, flag, equilibrium); break;
     case STRUT_OUTCOME_BELOW_GROUND:
-      strut_list_nodes(&h->level.scene, e->below, sizeof names, names);
-      snprintf(e->verdict, room, "below ground (%s)", names);
+      strut_list_nodes(&search->level.scene, equilibrium->below, sizeof names, names);
+      snprintf(equilibrium->verdict, room, "below ground (%s)", names);
       break;
-    case STRUT_OUTCOME_FLOPPY: describe_floppy_motion(h, e, flag, room, e->verdict); break;
+    case STRUT_OUTCOME_FLOPPY:
+      describe_floppy_motion(search, equilibrium, flag, room, equilibrium->verdict);
+      break;
     case STRUT_OUTCOME_UNSTABLE:
-      snprintf(e->verdict, room, "unstable: %d negative eigenvalue%s", (int)e->point.negative,
-               e->point.negative == 1 ? "" : "s");
+      snprintf(equilibrium->verdict, room, "unstable: %d negative eigenvalue%s",
+               (int)equilibrium->point.negative, equilibrium->point.negative == 1 ? "" : "s");
       break;
-    case STRUT_OUTCOME_NO_REST: describe_no_rest(h, e); break;
+    case STRUT_OUTCOME_NO_REST: describe_no_rest(search, equilibrium); break;
   }
 }
 
 /* Free motions need a remark only if no equilibrium stands. */
-static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
+static void write_remark(strut_equilibrium_search *search, strut_candidate_equilibrium *finds,
                          size_t count, uint8_t *flag) {
-  char *remark = h->out->remark;
-  size_t room = sizeof h->out->remark;
+  char *remark = search->out->remark;
+  size_t room = sizeof search->out->remark;
   int32_t floppy = -1;
   for (size_t i = 0; i < count; i++) {
     if (finds[i].e.outcome == STRUT_OUTCOME_STANDS) return;
     if (floppy < 0 && finds[i].e.outcome == STRUT_OUTCOME_FLOPPY) floppy = (int32_t)i;
   }
   if (floppy >= 0) {
-    bool away = describe_floppy_motion(h, &finds[floppy].e, flag, room, remark);
+    bool away = describe_floppy_motion(search, &finds[floppy].e, flag, room, remark);
     size_t used = strlen(remark);
     if (away)
       snprintf(remark + used, room - used,
@@ -277,13 +284,14 @@ static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibriu
       snprintf(remark + used, room - used, " in '%s'; pushed further, it does not stay",
                finds[floppy].e.name);
   } else if (count == 0) {
-    snprintf(remark, room, "no equilibrium was found from %lld starts", (long long)h->out->starts);
-  } else if (h->level.oblique_node >= 0) {
+    snprintf(remark, room, "no equilibrium was found from %lld starts",
+             (long long)search->out->starts);
+  } else if (search->level.oblique_node >= 0) {
     snprintf(remark, room,
              "node '%s' is held in one direction only, so the slope cannot be turned level: only "
              "the real ground was searched, without holding contacts in turn",
-             h->level.scene.nodes[h->level.oblique_node].name);
-  } else if (h->supports.many) {
+             search->level.scene.nodes[search->level.oblique_node].name);
+  } else if (search->supports.many) {
     snprintf(remark, room,
              "too many pairs of contact nodes to hold each in turn: only the real ground was "
              "searched; list pairs in equilibria.supports");
@@ -291,23 +299,25 @@ static void write_remark(strut_equilibrium_search *h, strut_candidate_equilibriu
 }
 
 /* Appends what the potential alone does not say: bodies in each other, and ways through them. */
-static void add_collisions(const strut_scene *scene, strut_equilibrium *e) {
-  size_t used = strlen(e->verdict), room = sizeof e->verdict - used;
-  if (e->overlap >= 0)
-    snprintf(e->verdict + used, room, "; '%.60s' overlaps", scene->collisions[e->overlap].name);
-  else if (e->through >= 0)
-    snprintf(e->verdict + used, room, "; %s '%.60s'",
-             e->outcome == STRUT_OUTCOME_UNSTABLE ? "leads through" : "reached only through",
-             scene->collisions[e->through].name);
+static void add_collisions(const strut_scene *scene, strut_equilibrium *equilibrium) {
+  size_t used = strlen(equilibrium->verdict), room = sizeof equilibrium->verdict - used;
+  if (equilibrium->overlap >= 0)
+    snprintf(equilibrium->verdict + used, room, "; '%.60s' overlaps",
+             scene->collisions[equilibrium->overlap].name);
+  else if (equilibrium->through >= 0)
+    snprintf(
+        equilibrium->verdict + used, room, "; %s '%.60s'",
+        equilibrium->outcome == STRUT_OUTCOME_UNSTABLE ? "leads through" : "reached only through",
+        scene->collisions[equilibrium->through].name);
 }
 
-void strut_report_candidates(strut_equilibrium_search *h, strut_candidate_equilibrium *finds,
+void strut_report_candidates(strut_equilibrium_search *search, strut_candidate_equilibrium *finds,
                              size_t count) {
-  uint8_t *flag = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, 1);
+  uint8_t *flag = strut_arena_allocate(&search->out->arena, (size_t)search->model->length, 1);
   if (!flag) return;
   for (size_t i = 0; i < count; i++) {
-    describe_outcome(h, finds, &finds[i], flag);
-    add_collisions(&h->level.scene, &finds[i].e);
+    describe_outcome(search, finds, &finds[i], flag);
+    add_collisions(&search->level.scene, &finds[i].e);
   }
-  if (!h->out->remark[0]) write_remark(h, finds, count, flag);
+  if (!search->out->remark[0]) write_remark(search, finds, count, flag);
 }

@@ -17,11 +17,11 @@ static const double AT_REST = 1e-8;
 
 /* A hinge pushes on its nodes with its moment over the arms, a cell with its pressure times lengths. */
 static double sum_member_forces(const strut_model *model, const double *q) {
-  const strut_member_table *t = &model->members;
-  strut_force_visit visit = {.model = model, .q = q, .rest = t->rest, .least = -HUGE_VAL};
+  const strut_member_table *members = &model->members;
+  strut_force_visit visit = {.model = model, .q = q, .rest = members->rest, .least = -HUGE_VAL};
   double sum = 0.0, others = 0.0;
-  for (int32_t j = 0; j < t->count; j++)
-    sum += fabs(strut_member_elastic_tension(model, t->rest, j, q));
+  for (int32_t j = 0; j < members->count; j++)
+    sum += fabs(strut_member_elastic_tension(model, members->rest, j, q));
   for (const strut_force *force; (force = strut_force_next(&visit));)
     if (force->kind == STRUT_FORCE_ELEMENT &&
         !strut_element_is_of_member(&model->elements.element[force->index]))
@@ -54,108 +54,116 @@ static strut_status judge_rest(const strut_model *model, strut_arena *arena, str
 }
 
 /* Prepares a search for a single relaxation; of what friction holds there is none without it. */
-static strut_status prepare_relaxation(strut_equilibrium_search *h, const strut_model *model) {
-  strut_status status = strut_level_frame_create(model->scene, &h->level, h->error);
-  if (!status) status = strut_model_compile(&h->level.scene, &h->model, h->error);
+static strut_status prepare_relaxation(strut_equilibrium_search *search, const strut_model *model) {
+  strut_status status = strut_level_frame_create(model->scene, &search->level, search->error);
+  if (!status) status = strut_model_compile(&search->level.scene, &search->model, search->error);
   if (!status) {
-    h->on_ground = h->model->contacts.count > 0;
-    status = strut_potential_create(h->model, NULL, h->on_ground, &h->potential, h->error);
+    search->on_ground = search->model->contacts.count > 0;
+    status = strut_potential_create(search->model, NULL, search->on_ground, &search->potential,
+                                    search->error);
   }
-  if (!status) h->instability = strut_equilibrium_search_instability(h);
-  h->supports.pin = true;
-  if (!status && h->instability == STRUT_INSTABILITY_SLIDES)
-    status = strut_equilibrium_search_grips(h, model->scene, &h->held_by_friction);
-  if (status || h->held_by_friction) return status;
-  if (h->instability != STRUT_INSTABILITY_NONE)
-    status = strut_fail(h->error, STRUT_NOT_SETTLED, "%s", h->out->remark);
-  if (!status && h->potential->n > 0)
-    status = strut_relaxer_create(h->potential, h->experiment->settle.limit, &h->relaxer, h->error);
+  if (!status) search->instability = strut_equilibrium_search_instability(search);
+  search->supports.pin = true;
+  if (!status && search->instability == STRUT_INSTABILITY_SLIDES)
+    status = strut_equilibrium_search_grips(search, model->scene, &search->held_by_friction);
+  if (status || search->held_by_friction) return status;
+  if (search->instability != STRUT_INSTABILITY_NONE)
+    status = strut_fail(search->error, STRUT_NOT_SETTLED, "%s", search->out->remark);
+  if (!status && search->potential->n > 0)
+    status = strut_relaxer_create(search->potential, search->experiment->settle.limit,
+                                  &search->relaxer, search->error);
   return status;
 }
 
-static void free_search(strut_equilibrium_search *h) {
-  strut_relaxer_free(h->relaxer);
-  strut_potential_free(h->potential);
-  strut_model_free(h->model);
-  strut_level_frame_free(&h->level);
-  strut_arena_free(&h->out->arena);
+static void free_search(strut_equilibrium_search *search) {
+  strut_relaxer_free(search->relaxer);
+  strut_potential_free(search->potential);
+  strut_model_free(search->model);
+  strut_level_frame_free(&search->level);
+  strut_arena_free(&search->out->arena);
 }
 
 /* The node that moved most from one shape to the other. */
-static const char *farthest_node(const strut_equilibrium_search *h, const double *from,
+static const char *farthest_node(const strut_equilibrium_search *search, const double *from,
                                  const double *to) {
   int32_t node = 0;
   double most = -1.0;
-  for (int32_t i = 0; i < h->model->node_count; i++) {
+  for (int32_t i = 0; i < search->model->node_count; i++) {
     double moved = hypot(to[2 * i] - from[2 * i], to[2 * i + 1] - from[2 * i + 1]);
     if (moved > most) most = moved, node = i;
   }
-  return h->level.scene.nodes[node].name;
+  return search->level.scene.nodes[node].name;
 }
 
 /* Moves q (level coordinates) to where the structure comes to rest from it. */
-static strut_status relax_to_rest(strut_equilibrium_search *h, const char *what, double *q) {
-  size_t bytes = (size_t)h->model->length * sizeof *q;
+static strut_status relax_to_rest(strut_equilibrium_search *search, const char *what, double *q) {
+  size_t bytes = (size_t)search->model->length * sizeof *q;
   strut_relaxed relaxed;
   strut_status status = STRUT_OK;
-  if (h->potential->n == 0) return STRUT_OK;
-  double *near = strut_arena_allocate(&h->out->arena, 1, bytes);
-  double *from = strut_arena_allocate(&h->out->arena, 1, bytes);
-  if (!near || !from) return strut_no_memory(h->error, "");
+  if (search->potential->n == 0) return STRUT_OK;
+  double *near = strut_arena_allocate(&search->out->arena, 1, bytes);
+  double *from = strut_arena_allocate(&search->out->arena, 1, bytes);
+  if (!near || !from) return strut_no_memory(search->error, "");
   memcpy(near, q, bytes);
   memcpy(from, q, bytes);
-  strut_relax_down(h->relaxer, near, &relaxed);
-  bool close = relaxed.end == STRUT_RELAXED_RESTS &&
-               strut_shape_distance(h->model, q, near, false, NULL) < NEAR * h->model->size;
-  if (close || !strut_relaxer_simulates(h->relaxer))
+  strut_relax_down(search->relaxer, near, &relaxed);
+  bool close =
+      relaxed.end == STRUT_RELAXED_RESTS &&
+      strut_shape_distance(search->model, q, near, false, NULL) < NEAR * search->model->size;
+  if (close || !strut_relaxer_simulates(search->relaxer))
     memcpy(q, near, bytes);
   else
-    status = strut_relax(h->relaxer, q, NULL, NULL, h->experiment->interrupt, &relaxed, h->error);
+    status = strut_relax(search->relaxer, q, NULL, NULL, search->experiment->interrupt, &relaxed,
+                         search->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
   return strut_fail(
-      h->error, STRUT_NOT_SETTLED,
+      search->error, STRUT_NOT_SETTLED,
       relaxed.end == STRUT_RELAXED_LEAVES
           ? "from %s the structure moves away without end, %s farthest: nothing holds it there"
           : "from %s the structure does not come to rest within "
             "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
             "larger limit, or more damping",
-      what, farthest_node(h, from, q));
+      what, farthest_node(search, from, q));
 }
 
-static strut_status relax_from_start(strut_equilibrium_search *h, double *q) {
-  memcpy(q, h->model->start, (size_t)h->model->length * sizeof *q);
-  return relax_to_rest(h, "the scene's start", q);
+static strut_status relax_from_start(strut_equilibrium_search *search, double *q) {
+  memcpy(q, search->model->start, (size_t)search->model->length * sizeof *q);
+  return relax_to_rest(search, "the scene's start", q);
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
-static bool fits_configuration(strut_equilibrium_search *h, const strut_configuration *c,
-                               const double *shape, const double *q, strut_node_set *rests_on) {
+static bool fits_configuration(strut_equilibrium_search *search,
+                               const strut_configuration *configuration, const double *shape,
+                               const double *q, strut_node_set *rests_on) {
   strut_equilibrium e = {0};
-  if (strut_equilibrium_search_contacts(h, q, &e)) return false;
+  if (strut_equilibrium_search_contacts(search, q, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
-  bool on_set = c->set_count == 0;
-  for (size_t k = 0; k < c->set_count; k++)
-    on_set = on_set || strut_same_nodes(&c->sets[k], e.contacts, e.contact_count);
-  return on_set && strut_shape_distance(h->model, shape, q, false, NULL) <
-                       STRUT_NAMED_WITHIN * h->model->size;
+  bool on_set = configuration->set_count == 0;
+  for (size_t k = 0; k < configuration->set_count; k++)
+    on_set = on_set || strut_same_nodes(&configuration->sets[k], e.contacts, e.contact_count);
+  return on_set && strut_shape_distance(search->model, shape, q, false, NULL) <
+                       STRUT_NAMED_WITHIN * search->model->size;
 }
 
 /*
  * Relaxes from the configuration's shape; *found: it stands there; else *rests_on has its contacts.
  */
-static strut_status relax_from_shape(strut_equilibrium_search *h, const strut_configuration *c,
-                                     double *q, bool *found, strut_node_set *rests_on) {
-  size_t nodes = h->level.scene.node_count;
-  double *shape = strut_arena_allocate(&h->out->arena, (size_t)h->model->length, sizeof *shape);
-  if (!shape) return strut_no_memory(h->error, "");
-  memcpy(shape, c->position[0], 2 * nodes * sizeof *shape);
+static strut_status relax_from_shape(strut_equilibrium_search *search,
+                                     const strut_configuration *configuration, double *q,
+                                     bool *found, strut_node_set *rests_on) {
+  size_t nodes = search->level.scene.node_count;
+  double *shape =
+      strut_arena_allocate(&search->out->arena, (size_t)search->model->length, sizeof *shape);
+  if (!shape) return strut_no_memory(search->error, "");
+  memcpy(shape, configuration->position[0], 2 * nodes * sizeof *shape);
   for (size_t i = 0; i < nodes; i++) /* held coordinates stay */
     for (size_t k = 0; k < 2; k++)
-      if (h->level.scene.nodes[i].fixed[k]) shape[2 * i + k] = h->level.scene.nodes[i].start[k];
-  memcpy(q, shape, (size_t)h->model->length * sizeof *q);
-  strut_status status = relax_to_rest(h, "the configuration's shape", q);
+      if (search->level.scene.nodes[i].fixed[k])
+        shape[2 * i + k] = search->level.scene.nodes[i].start[k];
+  memcpy(q, shape, (size_t)search->model->length * sizeof *q);
+  strut_status status = relax_to_rest(search, "the configuration's shape", q);
   if (status == STRUT_NOT_SETTLED) return STRUT_OK;
-  *found = !status && fits_configuration(h, c, shape, q, rests_on);
+  *found = !status && fits_configuration(search, configuration, shape, q, rests_on);
   return status;
 }
 
@@ -168,10 +176,10 @@ static strut_status find_named(const strut_model *model, const strut_experiment 
   strut_equilibria all;
   strut_status status = strut_equilibria_find(model, experiment, &options, &all, error);
   for (size_t i = 0; i < all.count && !status && !*found; i++) {
-    const strut_equilibrium *e = &all.list[i];
-    bool stands = e->outcome == STRUT_OUTCOME_STANDS && e->rest;
-    if ((standing && !stands) || strcmp(e->name, name) != 0) continue;
-    memcpy(q, stands ? e->rest : e->point.q, (size_t)model->length * sizeof *q);
+    const strut_equilibrium *equilibrium = &all.list[i];
+    bool stands = equilibrium->outcome == STRUT_OUTCOME_STANDS && equilibrium->rest;
+    if ((standing && !stands) || strcmp(equilibrium->name, name) != 0) continue;
+    memcpy(q, stands ? equilibrium->rest : equilibrium->point.q, (size_t)model->length * sizeof *q);
     *found = true;
   }
   strut_equilibria_free(&all);
@@ -184,15 +192,16 @@ static strut_status find_named(const strut_model *model, const strut_experiment 
  */
 static strut_status search_configuration(const strut_model *model,
                                          const strut_experiment *experiment,
-                                         const strut_configuration *c, double *q,
+                                         const strut_configuration *configuration, double *q,
                                          const strut_node_set *rests_on, strut_error *error) {
   bool found = false;
   strut_status status = STRUT_OK;
-  for (size_t k = 0; k < c->set_count && !status && !found; k++)
-    status = find_named(model, experiment, c->sets[k].count == 2 ? &c->sets[k] : NULL, true,
-                        c->name, q, &found, error);
-  if (!status && !found && c->set_count == 0)
-    status = find_named(model, experiment, NULL, true, c->name, q, &found, error);
+  for (size_t k = 0; k < configuration->set_count && !status && !found; k++)
+    status = find_named(model, experiment,
+                        configuration->sets[k].count == 2 ? &configuration->sets[k] : NULL, true,
+                        configuration->name, q, &found, error);
+  if (!status && !found && configuration->set_count == 0)
+    status = find_named(model, experiment, NULL, true, configuration->name, q, &found, error);
   if (status || found) return status;
   char instead[200] = "";
   size_t used = 0;
@@ -206,7 +215,8 @@ static strut_status search_configuration(const strut_model *model,
   return strut_fail(
       error, STRUT_NOT_SETTLED,
       "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut equilibria' lists all",
-      c->name, c->set_count ? " on its contacts" : "", c->shaped ? " near its shape" : "", instead);
+      configuration->name, configuration->set_count ? " on its contacts" : "",
+      configuration->shaped ? " near its shape" : "", instead);
 }
 
 static strut_status report_unknown(const strut_scene *scene, const char *name, strut_error *error) {
@@ -236,7 +246,7 @@ static strut_status find_in_list(const strut_model *model, const strut_experimen
 
 /* *held: by friction alone. */
 static strut_status find_rest(const strut_model *model, const strut_experiment *experiment,
-                              const strut_configuration *c, double *q, bool *held,
+                              const strut_configuration *configuration, double *q, bool *held,
                               strut_error *error) {
   strut_equilibria scratch = {0};
   strut_equilibrium_search h = {.experiment = experiment, .out = &scratch, .error = error};
@@ -245,18 +255,19 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
   strut_experiment kept = *experiment;
   kept.settle.friction = true;
   strut_status status = prepare_relaxation(&h, model);
-  bool found = !c, turned = !h.held_by_friction;
+  bool found = !configuration, turned = !h.held_by_friction;
   *held = h.held_by_friction;
-  if (!status && !c && !turned)
+  if (!status && !configuration && !turned)
     status = strut_settle_experiment(model, &kept, experiment->interrupt, q, &how, error);
-  else if (!status && !c)
+  else if (!status && !configuration)
     status = relax_from_start(&h, q);
-  if (!status && c && c->shaped && turned)
-    status = relax_from_shape(&h, &h.level.scene.configurations[c - model->scene->configurations],
-                              q, &found, &rests_on);
+  if (!status && configuration && configuration->shaped && turned)
+    status = relax_from_shape(
+        &h, &h.level.scene.configurations[configuration - model->scene->configurations], q, &found,
+        &rests_on);
   if (!status && !found) {
     turned = false;
-    status = search_configuration(model, experiment, c, q, &rests_on, error);
+    status = search_configuration(model, experiment, configuration, q, &rests_on, error);
   }
   if (!status && turned) strut_level_frame_place(&h.level, (size_t)model->node_count, q);
   free_search(&h);
@@ -280,30 +291,30 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
                                    const char *name, strut_arena *arena, strut_rest_state *rest,
                                    strut_error *error) {
   const strut_scene *scene = model->scene;
-  const strut_configuration *c = NULL;
+  const strut_configuration *configuration = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
   rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
   if (!rest->q) return strut_no_memory(error, "");
-  if (name && (c = strut_configuration_named(scene, name)))
+  if (name && (configuration = strut_configuration_named(scene, name)))
     start = drawn = false; /* a configuration has this name */
-  if (!c && !start && !drawn) {
+  if (!configuration && !start && !drawn) {
     if (!strut_is_listed_name(scene, name)) return report_unknown(scene, name, error);
     strut_status status = find_in_list(model, experiment, name, arena, rest, error);
     return status ? status : judge_rest(model, arena, rest, error);
   }
-  if (!c && start && scene->start_equilibrium >= 0)
-    c = &scene->configurations[scene->start_equilibrium];
-  if (c) rest->name = c->name;
+  if (!configuration && start && scene->start_equilibrium >= 0)
+    configuration = &scene->configurations[scene->start_equilibrium];
+  if (configuration) rest->name = configuration->name;
   if (drawn) {
     for (size_t i = 0; i < scene->node_count; i++)
       memcpy(rest->q + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
     return judge_rest(model, arena, rest, error);
   }
-  if (!c && experiment->settle.wanted && model->mass)
+  if (!configuration && experiment->settle.wanted && model->mass)
     return settle_scene(model, experiment, arena, rest, error);
   bool held = false;
-  strut_status status = find_rest(model, experiment, c, rest->q, &held, error);
+  strut_status status = find_rest(model, experiment, configuration, rest->q, &held, error);
   if (!status) status = judge_rest(model, arena, rest, error);
   if (!held) rest->at_rest = true;
   return strut_experiment_end(experiment, status, error);

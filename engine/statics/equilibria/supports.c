@@ -36,12 +36,12 @@ static void level_frame_from_original(const strut_level_frame *level, size_t cou
 }
 
 double strut_level_frame_work(const strut_level_frame *level, const double *weight) {
-  const strut_scene *s = &level->scene;
+  const strut_scene *scene = &level->scene;
   double force[2] = {0.0, 0.0};
-  for (size_t i = 0; i < s->node_count; i++)
-    for (int c = 0; c < 2; c++) force[c] += weight[i] * s->gravity[c];
-  for (size_t i = 0; i < s->load_count; i++)
-    for (int c = 0; c < 2; c++) force[c] += s->loads[i].force[c];
+  for (size_t i = 0; i < scene->node_count; i++)
+    for (int c = 0; c < 2; c++) force[c] += weight[i] * scene->gravity[c];
+  for (size_t i = 0; i < scene->load_count; i++)
+    for (int c = 0; c < 2; c++) force[c] += scene->loads[i].force[c];
   strut_level_frame_to_original(level, 1, force);
   return force[0] * level->shift[0] + force[1] * level->shift[1];
 }
@@ -55,71 +55,80 @@ static int32_t find_oblique_node(const strut_scene *scene) {
 }
 
 static bool copy_arrays(strut_level_frame *level) {
-  strut_scene *s = &level->scene;
-  s->nodes = strut_arena_copy(&level->arena, s->nodes, s->node_count, sizeof *s->nodes);
-  s->members = strut_arena_copy(&level->arena, s->members, s->member_count, sizeof *s->members);
-  s->hinges = strut_arena_copy(&level->arena, s->hinges, s->hinge_count, sizeof *s->hinges);
-  s->contacts = strut_arena_copy(&level->arena, s->contacts, s->contact_count, sizeof *s->contacts);
-  s->loads = strut_arena_copy(&level->arena, s->loads, s->load_count, sizeof *s->loads);
-  s->configurations = strut_arena_copy(&level->arena, s->configurations, s->configuration_count,
-                                       sizeof *s->configurations);
-  if (!s->nodes || !s->members || !s->hinges || !s->contacts || !s->loads || !s->configurations)
+  strut_scene *scene = &level->scene;
+  scene->nodes =
+      strut_arena_copy(&level->arena, scene->nodes, scene->node_count, sizeof *scene->nodes);
+  scene->members =
+      strut_arena_copy(&level->arena, scene->members, scene->member_count, sizeof *scene->members);
+  scene->hinges =
+      strut_arena_copy(&level->arena, scene->hinges, scene->hinge_count, sizeof *scene->hinges);
+  scene->contacts = strut_arena_copy(&level->arena, scene->contacts, scene->contact_count,
+                                     sizeof *scene->contacts);
+  scene->loads =
+      strut_arena_copy(&level->arena, scene->loads, scene->load_count, sizeof *scene->loads);
+  scene->configurations =
+      strut_arena_copy(&level->arena, scene->configurations, scene->configuration_count,
+                       sizeof *scene->configurations);
+  if (!scene->nodes || !scene->members || !scene->hinges || !scene->contacts || !scene->loads ||
+      !scene->configurations)
     return false;
-  for (size_t i = 0; i < s->configuration_count; i++) {
-    strut_configuration *c = &s->configurations[i];
-    if (c->position)
-      c->position =
-          strut_arena_copy(&level->arena, c->position, s->node_count, sizeof *c->position);
-    if (c->shaped && !c->position) return false;
+  for (size_t i = 0; i < scene->configuration_count; i++) {
+    strut_configuration *configuration = &scene->configurations[i];
+    if (configuration->position)
+      configuration->position =
+          strut_arena_copy(&level->arena, configuration->position, scene->node_count,
+                           sizeof *configuration->position);
+    if (configuration->shaped && !configuration->position) return false;
   }
   return true;
 }
 
 /* Rest lengths and angles as resolved in the original, so that turning changes no bit of them. */
-static void keep_rest_lengths(const strut_scene *original, strut_scene *s) {
-  for (size_t j = 0; j < s->member_count; j++) {
+static void keep_rest_lengths(const strut_scene *original, strut_scene *scene) {
+  for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
     if (!strut_member_rest(original, j, &rest)) continue;
-    s->members[j].rest_kind = STRUT_REST_LENGTH;
-    s->members[j].rest_value = rest.length;
-    s->members[j].stiffness = rest.stiffness;
-    s->members[j].axial_stiffness = 0.0;
+    scene->members[j].rest_kind = STRUT_REST_LENGTH;
+    scene->members[j].rest_value = rest.length;
+    scene->members[j].stiffness = rest.stiffness;
+    scene->members[j].axial_stiffness = 0.0;
   }
-  for (size_t i = 0; i < s->hinge_count; i++)
-    s->hinges[i].rest_angle = strut_hinge_rest(original, i);
+  for (size_t i = 0; i < scene->hinge_count; i++)
+    scene->hinges[i].rest_angle = strut_hinge_rest(original, i);
 }
 
-static bool remove_motion(strut_scene *s, strut_arena *arena) {
+static bool remove_motion(strut_scene *scene, strut_arena *arena) {
   size_t kept = 0;
-  if (!strut_scene_hold_sliding_masses(s, arena)) return false;
-  s->actuator_count = 0;
-  strut_scene_hold_supports(s, true);
-  strut_scene_stop_unbalances(s);
-  s->ground.belt_speed = 0.0;
-  for (size_t i = 0; i < s->load_count; i++)
-    if (s->loads[i].signal < 0) s->loads[kept++] = s->loads[i];
-  s->load_count = kept;
-  for (size_t i = 0; i < s->contact_count; i++) s->contacts[i].friction.law = STRUT_FRICTION_NONE;
-  for (size_t i = 0; i < s->node_count; i++)
-    s->nodes[i].velocity[0] = s->nodes[i].velocity[1] = 0.0;
+  if (!strut_scene_hold_sliding_masses(scene, arena)) return false;
+  scene->actuator_count = 0;
+  strut_scene_hold_supports(scene, true);
+  strut_scene_stop_unbalances(scene);
+  scene->ground.belt_speed = 0.0;
+  for (size_t i = 0; i < scene->load_count; i++)
+    if (scene->loads[i].signal < 0) scene->loads[kept++] = scene->loads[i];
+  scene->load_count = kept;
+  for (size_t i = 0; i < scene->contact_count; i++)
+    scene->contacts[i].friction.law = STRUT_FRICTION_NONE;
+  for (size_t i = 0; i < scene->node_count; i++)
+    scene->nodes[i].velocity[0] = scene->nodes[i].velocity[1] = 0.0;
   return true;
 }
 
 /* Moves a structure far from the origin there. */
 static bool bring_near(strut_level_frame *level) {
-  strut_scene *s = &level->scene;
+  strut_scene *scene = &level->scene;
   double size = 0.0, far = 0.0, by[2];
-  for (size_t i = 0; i < s->node_count; i++)
+  for (size_t i = 0; i < scene->node_count; i++)
     for (int c = 0; c < 2; c++) {
-      size = fmax(size, fabs(s->nodes[i].position[c] - s->nodes[0].position[c]));
-      far = fmax(far, fabs(s->nodes[i].position[c]));
+      size = fmax(size, fabs(scene->nodes[i].position[c] - scene->nodes[0].position[c]));
+      far = fmax(far, fabs(scene->nodes[i].position[c]));
     }
   if (!(far > FAR * size) || !(size > 0.0)) return true;
   for (int c = 0; c < 2; c++) {
-    level->shift[c] = s->nodes[0].position[c];
+    level->shift[c] = scene->nodes[0].position[c];
     by[c] = -level->shift[c];
   }
-  return strut_scene_shift(s, by, &level->arena);
+  return strut_scene_shift(scene, by, &level->arena);
 }
 
 /* Turns a force, of which rounding leaves no part along or across the ground where there is none. */
@@ -131,19 +140,19 @@ static void turn_force(const strut_level_frame *level, double force[2]) {
 }
 
 static void make_level(strut_level_frame *level) {
-  strut_scene *s = &level->scene;
+  strut_scene *scene = &level->scene;
   if (level->sine == 0.0) return;
-  s->ground.height *= level->cosine;
-  s->ground.slope = 0.0;
-  turn_force(level, s->gravity);
-  for (size_t i = 0; i < s->node_count; i++) {
-    level_frame_from_original(level, 1, s->nodes[i].position);
-    level_frame_from_original(level, 1, s->nodes[i].start);
+  scene->ground.height *= level->cosine;
+  scene->ground.slope = 0.0;
+  turn_force(level, scene->gravity);
+  for (size_t i = 0; i < scene->node_count; i++) {
+    level_frame_from_original(level, 1, scene->nodes[i].position);
+    level_frame_from_original(level, 1, scene->nodes[i].start);
   }
-  for (size_t i = 0; i < s->load_count; i++) turn_force(level, s->loads[i].force);
-  for (size_t i = 0; i < s->configuration_count; i++)
-    if (s->configurations[i].position)
-      level_frame_from_original(level, s->node_count, s->configurations[i].position[0]);
+  for (size_t i = 0; i < scene->load_count; i++) turn_force(level, scene->loads[i].force);
+  for (size_t i = 0; i < scene->configuration_count; i++)
+    if (scene->configurations[i].position)
+      level_frame_from_original(level, scene->node_count, scene->configurations[i].position[0]);
 }
 
 strut_status strut_level_frame_create(const strut_scene *original, strut_level_frame *level,

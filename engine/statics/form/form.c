@@ -19,21 +19,23 @@
 
 static const double TOUCH = 1e-6; /* of the size: nearer to the ground is drawn on it */
 
-strut_contact_pose strut_form_contact(const strut_former *f, int32_t contact, const double *point) {
-  assert(contact >= 0 && contact < f->model->contacts.count);
-  const strut_contact_table *c = &f->model->contacts;
-  strut_contact_pose pose = {.axes = c->axes, .gap = strut_ground_gap(c, point)};
-  if (c->surface) strut_surface_find(&c->surface[c->surface_of[contact]], point, -1, &pose);
+strut_contact_pose strut_form_contact(const strut_former *former, int32_t contact,
+                                      const double *point) {
+  assert(contact >= 0 && contact < former->model->contacts.count);
+  const strut_contact_table *contacts = &former->model->contacts;
+  strut_contact_pose pose = {.axes = contacts->axes, .gap = strut_ground_gap(contacts, point)};
+  if (contacts->surface)
+    strut_surface_find(&contacts->surface[contacts->surface_of[contact]], point, -1, &pose);
   return pose;
 }
 
-strut_contact_pose strut_form_contact_as_drawn(const strut_former *f, int32_t contact) {
-  int32_t node = f->model->contacts.entry[contact].node;
-  return strut_form_contact(f, contact, f->scene->nodes[node].position);
+strut_contact_pose strut_form_contact_as_drawn(const strut_former *former, int32_t contact) {
+  int32_t node = former->model->contacts.entry[contact].node;
+  return strut_form_contact(former, contact, former->scene->nodes[node].position);
 }
 
-bool strut_form_touches(const strut_former *f, int32_t contact) {
-  return strut_form_contact_as_drawn(f, contact).gap <= TOUCH * f->size;
+bool strut_form_touches(const strut_former *former, int32_t contact) {
+  return strut_form_contact_as_drawn(former, contact).gap <= TOUCH * former->size;
 }
 
 /* Sets the error that energies and forces overflow; returns its status. */
@@ -44,27 +46,29 @@ static strut_status form_out_of_range(strut_error *error) {
 }
 
 double strut_form_length(const strut_scene *scene, size_t j) {
-  const strut_member *m = &scene->members[j];
-  return strut_distance(scene->nodes[m->node[0]].start, scene->nodes[m->node[1]].start);
+  const strut_member *member = &scene->members[j];
+  return strut_distance(scene->nodes[member->node[0]].start, scene->nodes[member->node[1]].start);
 }
 
-strut_status strut_form_set_force(strut_former *f, size_t j, double force, strut_error *error) {
-  assert(j < f->scene->member_count);
-  strut_member *m = &f->scene->members[j];
-  double length = strut_form_length(f->scene, j);
-  double rest = m->axial_stiffness > 0 ? m->axial_stiffness * length / (m->axial_stiffness + force)
-                : m->stiffness > 0     ? length - force / m->stiffness
-                                       : length;
+strut_status strut_form_set_force(strut_former *former, size_t j, double force,
+                                  strut_error *error) {
+  assert(j < former->scene->member_count);
+  strut_member *member = &former->scene->members[j];
+  double length = strut_form_length(former->scene, j);
+  double rest = member->axial_stiffness > 0
+                    ? member->axial_stiffness * length / (member->axial_stiffness + force)
+                : member->stiffness > 0 ? length - force / member->stiffness
+                                        : length;
   if (!isfinite(force) || !isfinite(length)) return form_out_of_range(error);
-  bool carries = m->axial_stiffness > 0 || m->stiffness > 0 || force == 0;
+  bool carries = member->axial_stiffness > 0 || member->stiffness > 0 || force == 0;
   if (!carries || !isfinite(rest) || rest < 0)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "member %s would have to carry %.4g N at a length of %.4g m, which its "
                       "stiffness does not allow; make it stiffer",
-                      m->name, force, length);
-  m->rest_kind = STRUT_REST_LENGTH;
-  m->rest_value = rest;
-  f->form->largest_force = fmax(f->form->largest_force, fabs(force));
+                      member->name, force, length);
+  member->rest_kind = STRUT_REST_LENGTH;
+  member->rest_value = rest;
+  former->form->largest_force = fmax(former->form->largest_force, fabs(force));
   return STRUT_OK;
 }
 
@@ -85,20 +89,20 @@ typedef struct density_problem {
   uint8_t *held; /* (2 nodes) 1: keeps its coordinate, by a support or the ground */
 } density_problem;
 
-static strut_status read_densities(density_problem *p, strut_error *error) {
-  strut_scene *scene = p->f->scene;
+static strut_status read_densities(density_problem *self, strut_error *error) {
+  strut_scene *scene = self->f->scene;
   double largest = 0;
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
-    const strut_member *m = &scene->members[j];
+    const strut_member *member = &scene->members[j];
     if (!strut_member_rest(scene, j, &rest)) continue;
-    bool given = m->rest_kind == STRUT_REST_FORCE_DENSITY;
-    p->q[j] = given ? m->rest_value : rest.force_density;
-    largest = fmax(largest, fabs(p->q[j]));
-    if (m->kind == STRUT_CABLE && p->q[j] < 0)
+    bool given = member->rest_kind == STRUT_REST_FORCE_DENSITY;
+    self->q[j] = given ? member->rest_value : rest.force_density;
+    largest = fmax(largest, fabs(self->q[j]));
+    if (member->kind == STRUT_CABLE && self->q[j] < 0)
       return strut_fail(error, STRUT_NOT_SETTLED,
                         "cable %s is given the force density %.4g N/m, but cables only pull",
-                        m->name, p->q[j]);
+                        member->name, self->q[j]);
   }
   if (largest > 0) return STRUT_OK;
   return strut_fail(error, STRUT_NOT_SETTLED,
@@ -106,47 +110,47 @@ static strut_status read_densities(density_problem *p, strut_error *error) {
 }
 
 /* Marks coordinates held by supports, level ground or walls; returns their number. */
-static int32_t mark_held(density_problem *p) {
-  const strut_former *f = p->f;
-  const strut_contact_table *c = &f->model->contacts;
+static int32_t mark_held(density_problem *self) {
+  const strut_former *former = self->f;
+  const strut_contact_table *contacts = &former->model->contacts;
   int32_t count = 0;
-  for (size_t i = 0; i < f->scene->node_count; i++)
+  for (size_t i = 0; i < former->scene->node_count; i++)
     for (size_t k = 0; k < 2; k++) {
-      p->held[2 * i + k] = f->scene->nodes[i].fixed[k];
-      p->x[2 * i + k] = f->scene->nodes[i].position[k];
+      self->held[2 * i + k] = former->scene->nodes[i].fixed[k];
+      self->x[2 * i + k] = former->scene->nodes[i].position[k];
     }
-  for (int32_t i = 0; i < c->count; i++) {
-    const strut_contact_pose pose = strut_form_contact_as_drawn(f, i);
-    for (uint32_t k = 0; k < 2 && pose.curvature == 0 && strut_form_touches(f, i); k++)
-      if (pose.axes.normal[1 - k] == 0) p->held[c->at[i] + k] = 1;
+  for (int32_t i = 0; i < contacts->count; i++) {
+    const strut_contact_pose pose = strut_form_contact_as_drawn(former, i);
+    for (uint32_t k = 0; k < 2 && pose.curvature == 0 && strut_form_touches(former, i); k++)
+      if (pose.axes.normal[1 - k] == 0) self->held[contacts->at[i] + k] = 1;
   }
-  for (size_t i = 0; i < 2 * f->scene->node_count; i++) count += p->held[i];
+  for (size_t i = 0; i < 2 * former->scene->node_count; i++) count += self->held[i];
   return count;
 }
 
 /* D of one axis on the nodes that are free in it, and the forces on them (right). */
-static strut_sparse *assemble_axis(const density_problem *p, int axis, const int32_t *row_of,
+static strut_sparse *assemble_axis(const density_problem *self, int axis, const int32_t *row_of,
                                    int32_t n, double *right, strut_arena *arena) {
-  const strut_scene *scene = p->f->scene;
+  const strut_scene *scene = self->f->scene;
   strut_triplets sum = {0};
   if (!strut_triplets_reserve(&sum, 3 * scene->member_count, arena)) return NULL;
   for (size_t i = 0; i < scene->node_count; i++)
-    if (row_of[i] >= 0) right[row_of[i]] = p->f->potential->force[2 * i + (size_t)axis];
+    if (row_of[i] >= 0) right[row_of[i]] = self->f->potential->force[2 * i + (size_t)axis];
   for (size_t j = 0; j < scene->member_count; j++) {
     const int32_t *node = scene->members[j].node;
     int32_t a = row_of[node[0]], b = row_of[node[1]];
-    if (a >= 0) strut_triplets_add(&sum, a, a, p->q[j]);
-    if (b >= 0) strut_triplets_add(&sum, b, b, p->q[j]);
-    if (a >= 0 && b >= 0) strut_triplets_add(&sum, a > b ? a : b, a > b ? b : a, -p->q[j]);
-    if (a >= 0 && b < 0) right[a] += p->q[j] * p->x[2 * node[1] + axis];
-    if (b >= 0 && a < 0) right[b] += p->q[j] * p->x[2 * node[0] + axis];
+    if (a >= 0) strut_triplets_add(&sum, a, a, self->q[j]);
+    if (b >= 0) strut_triplets_add(&sum, b, b, self->q[j]);
+    if (a >= 0 && b >= 0) strut_triplets_add(&sum, a > b ? a : b, a > b ? b : a, -self->q[j]);
+    if (a >= 0 && b < 0) right[a] += self->q[j] * self->x[2 * node[1] + axis];
+    if (b >= 0 && a < 0) right[b] += self->q[j] * self->x[2 * node[0] + axis];
   }
   return strut_sparse_build(n, &sum, arena);
 }
 
 /* One axis: STRUT_SINGULAR where D determines nothing. */
-static strut_status solve_axis(density_problem *p, int axis) {
-  size_t nodes = p->f->scene->node_count;
+static strut_status solve_axis(density_problem *self, int axis) {
+  size_t nodes = self->f->scene->node_count;
   strut_arena arena = {0};
   strut_ldl *ldl = NULL;
   strut_inertia inertia;
@@ -154,8 +158,9 @@ static strut_status solve_axis(density_problem *p, int axis) {
   int32_t *row_of = strut_arena_allocate(&arena, nodes, sizeof *row_of);
   double *right = strut_arena_allocate(&arena, nodes, sizeof *right);
   strut_sparse *matrix = NULL;
-  for (size_t i = 0; i < nodes && row_of; i++) row_of[i] = p->held[2 * i + (size_t)axis] ? -1 : n++;
-  if (row_of && right && n > 0) matrix = assemble_axis(p, axis, row_of, n, right, &arena);
+  for (size_t i = 0; i < nodes && row_of; i++)
+    row_of[i] = self->held[2 * i + (size_t)axis] ? -1 : n++;
+  if (row_of && right && n > 0) matrix = assemble_axis(self, axis, row_of, n, right, &arena);
   strut_status status = !row_of || !right ? STRUT_NO_MEMORY : STRUT_OK;
   if (n > 0 && status == STRUT_OK) {
     status = matrix ? strut_ldl_create(matrix, &ldl, NULL) : STRUT_NO_MEMORY;
@@ -166,58 +171,59 @@ static strut_status solve_axis(density_problem *p, int axis) {
     for (size_t i = 0; i < nodes && status == STRUT_OK; i++) {
       if (row_of[i] < 0) continue;
       double x = right[row_of[i]];
-      if (!(fabs(x - p->x[2 * i + (size_t)axis]) <= BEYOND * p->f->size)) status = STRUT_SINGULAR;
+      if (!(fabs(x - self->x[2 * i + (size_t)axis]) <= BEYOND * self->f->size))
+        status = STRUT_SINGULAR;
     }
     for (size_t i = 0; i < nodes && status == STRUT_OK; i++)
-      if (row_of[i] >= 0) p->x[2 * i + (size_t)axis] = right[row_of[i]];
+      if (row_of[i] >= 0) self->x[2 * i + (size_t)axis] = right[row_of[i]];
   }
   strut_ldl_free(ldl);
   strut_arena_free(&arena);
   return status;
 }
 
-static strut_status solve_shape(density_problem *p, int32_t held, strut_error *error) {
-  size_t nodes = p->f->scene->node_count;
+static strut_status solve_shape(density_problem *self, int32_t held, strut_error *error) {
+  size_t nodes = self->f->scene->node_count;
   bool standing = held <= RIGID_MOTIONS;
   strut_status status = STRUT_SINGULAR;
   if (!standing) {
-    status = solve_axis(p, 0);
-    if (status == STRUT_OK) status = solve_axis(p, 1);
+    status = solve_axis(self, 0);
+    if (status == STRUT_OK) status = solve_axis(self, 1);
   }
   if (status == STRUT_NO_MEMORY) return strut_fail(error, status, "out of memory");
   if (status == STRUT_OK) return status;
-  for (size_t i = 0; i < 2 * nodes; i++) p->x[i] = p->f->scene->nodes[i / 2].position[i % 2];
-  return strut_form_nearest(p->f, p->held, standing, p->x, p->q, error);
+  for (size_t i = 0; i < 2 * nodes; i++) self->x[i] = self->f->scene->nodes[i / 2].position[i % 2];
+  return strut_form_nearest(self->f, self->held, standing, self->x, self->q, error);
 }
 
-static strut_status apply_solution(density_problem *p, strut_error *error) {
-  strut_scene *scene = p->f->scene;
+static strut_status apply_solution(density_problem *self, strut_error *error) {
+  strut_scene *scene = self->f->scene;
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < scene->node_count; i++)
     for (size_t k = 0; k < 2; k++)
-      scene->nodes[i].position[k] = scene->nodes[i].start[k] = p->x[2 * i + k];
+      scene->nodes[i].position[k] = scene->nodes[i].start[k] = self->x[2 * i + k];
   for (size_t j = 0; j < scene->member_count && status == STRUT_OK; j++) {
     const double *a = scene->nodes[scene->members[j].node[0]].position;
     const double *b = scene->nodes[scene->members[j].node[1]].position;
-    double force = p->q[j] * strut_distance(a, b);
+    double force = self->q[j] * strut_distance(a, b);
     if (scene->members[j].kind == STRUT_CABLE && force < 0)
       return strut_fail(error, STRUT_NOT_SETTLED,
                         "the nearest densities in equilibrium make cable %s push (%.4g N/m); "
                         "--given prestress keeps the drawn shape instead",
-                        scene->members[j].name, p->q[j]);
-    status = strut_form_set_force(p->f, j, force, error);
+                        scene->members[j].name, self->q[j]);
+    status = strut_form_set_force(self->f, j, force, error);
   }
   return status;
 }
 
 /* Shape and rest lengths from force densities. */
-static strut_status form_densities(strut_former *f, strut_error *error) {
-  size_t nodes = f->scene->node_count, members = f->scene->member_count;
-  density_problem p = {.f = f,
-                       .q = strut_arena_allocate(&f->arena, members, sizeof(double)),
-                       .x = strut_arena_allocate(&f->arena, 2 * nodes, sizeof(double)),
-                       .held = strut_arena_allocate(&f->arena, 2 * nodes, 1)};
-  double *given = strut_arena_allocate(&f->arena, members, sizeof *given);
+static strut_status form_densities(strut_former *former, strut_error *error) {
+  size_t nodes = former->scene->node_count, members = former->scene->member_count;
+  density_problem p = {.f = former,
+                       .q = strut_arena_allocate(&former->arena, members, sizeof(double)),
+                       .x = strut_arena_allocate(&former->arena, 2 * nodes, sizeof(double)),
+                       .held = strut_arena_allocate(&former->arena, 2 * nodes, 1)};
+  double *given = strut_arena_allocate(&former->arena, members, sizeof *given);
   if (!p.q || !p.x || !p.held || !given) return strut_no_memory(error, "");
   strut_status status = read_densities(&p, error);
   if (status) return status;
@@ -228,7 +234,7 @@ static strut_status form_densities(strut_former *f, strut_error *error) {
     largest = fmax(largest, fabs(given[j]));
     change = fmax(change, fabs(p.q[j] - given[j]));
   }
-  f->form->density_change = change / largest;
+  former->form->density_change = change / largest;
   return status == STRUT_OK ? apply_solution(&p, error) : status;
 }
 
@@ -268,19 +274,19 @@ static void remove_motion(strut_scene *scene, strut_experiment *experiment) {
 }
 
 /* A shape may have put a member's ends in one place, where it has no direction and no strain. */
-static strut_status check_lengths(const strut_former *f, strut_error *error) {
-  const strut_scene *scene = f->scene;
+static strut_status check_lengths(const strut_former *former, strut_error *error) {
+  const strut_scene *scene = former->scene;
   for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *m = &scene->members[j];
-    const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
+    const strut_member *member = &scene->members[j];
+    const strut_node *node = &scene->nodes[member->node[0]], *b = &scene->nodes[member->node[1]];
     strut_rest rest;
-    bool apart = strut_form_length(scene, j) > MEET * f->size;
-    if (strut_member_rest(scene, j, &rest) && (apart || f->form->from != STRUT_FORM_DENSITIES))
+    bool apart = strut_form_length(scene, j) > MEET * former->size;
+    if (strut_member_rest(scene, j, &rest) && (apart || former->form->from != STRUT_FORM_DENSITIES))
       continue;
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "in this form nodes '%s' and '%s', the ends of '%s', coincide; choose other "
                       "densities or supports",
-                      a->name, b->name, m->name);
+                      node->name, b->name, member->name);
   }
   return STRUT_OK;
 }
@@ -292,34 +298,34 @@ static strut_status check_lengths(const strut_former *f, strut_error *error) {
 static void fix_lengths(strut_scene *scene) {
   for (size_t j = 0; j < scene->member_count; j++) {
     strut_rest rest;
-    strut_member *m = &scene->members[j];
-    if (m->rest_kind == STRUT_REST_LENGTH || !strut_member_rest(scene, j, &rest)) continue;
-    m->rest_kind = STRUT_REST_LENGTH;
-    m->rest_value = rest.length;
+    strut_member *member = &scene->members[j];
+    if (member->rest_kind == STRUT_REST_LENGTH || !strut_member_rest(scene, j, &rest)) continue;
+    member->rest_kind = STRUT_REST_LENGTH;
+    member->rest_value = rest.length;
   }
   for (size_t i = 0; i < scene->hinge_count; i++)
     scene->hinges[i].rest_angle = strut_hinge_rest(scene, i);
 }
 
 /* Finds whether the structure is free to shift along x, and to turn and shift in the plane. */
-static void find_freedom(const strut_former *f, bool *shift, bool *turn) {
-  const strut_contact_table *c = &f->model->contacts;
-  *shift = c->count == 0 || strut_contacts_are_level(c);
-  *turn = c->count == 0;
-  for (size_t i = 0; i < f->scene->node_count; i++) {
-    if (f->scene->nodes[i].fixed[0]) *shift = *turn = false;
-    if (f->scene->nodes[i].fixed[1]) *turn = false;
+static void find_freedom(const strut_former *former, bool *shift, bool *turn) {
+  const strut_contact_table *contacts = &former->model->contacts;
+  *shift = contacts->count == 0 || strut_contacts_are_level(contacts);
+  *turn = contacts->count == 0;
+  for (size_t i = 0; i < former->scene->node_count; i++) {
+    if (former->scene->nodes[i].fixed[0]) *shift = *turn = false;
+    if (former->scene->nodes[i].fixed[1]) *turn = false;
   }
 }
 
 /* Undoes the drift of a structure that nothing holds from where it started. */
-static bool undo_drift(const strut_former *f, const double *start, double *q) {
-  strut_rigid_fit fit = strut_rigid_fit_find((int32_t)f->scene->node_count, start, q, 1.0);
+static bool undo_drift(const strut_former *former, const double *start, double *q) {
+  strut_rigid_fit fit = strut_rigid_fit_find((int32_t)former->scene->node_count, start, q, 1.0);
   bool shift, turn;
-  find_freedom(f, &shift, &turn);
+  find_freedom(former, &shift, &turn);
   if (!shift) return false;
   if (!turn) fit.cosine = 1.0, fit.sine = 0.0, fit.to[1] = fit.from[1];
-  for (size_t i = 0; i < f->scene->node_count; i++)
+  for (size_t i = 0; i < former->scene->node_count; i++)
     strut_rigid_fit_apply(&fit, q + 2 * i, q + 2 * i);
   return true;
 }
@@ -334,23 +340,23 @@ static double farthest(const strut_scene *scene, const double *q, size_t *node) 
   return most;
 }
 
-static strut_status judge(const strut_former *f, const strut_descent *d, const double *q,
+static strut_status judge(const strut_former *former, const strut_descent *descent, const double *q,
                           strut_error *error) {
   size_t node = 0;
-  bool finite = isfinite(d->residual);
-  for (size_t i = 0; i < 2 * f->scene->node_count; i++) finite = finite && isfinite(q[i]);
+  bool finite = isfinite(descent->residual);
+  for (size_t i = 0; i < 2 * former->scene->node_count; i++) finite = finite && isfinite(q[i]);
   if (!finite) return form_out_of_range(error);
-  double moved = farthest(f->scene, q, &node);
-  const char *name = f->scene->nodes[node].name;
-  if (d->end == STRUT_DESCENT_RUNAWAY)
+  double moved = farthest(former->scene, q, &node);
+  const char *name = former->scene->nodes[node].name;
+  if (descent->end == STRUT_DESCENT_RUNAWAY)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "nothing holds the structure: %s moves away without end; support it", name);
-  if (d->end == STRUT_DESCENT_EXHAUSTED && !(d->residual <= NEARLY * d->rounding))
+  if (descent->end == STRUT_DESCENT_EXHAUSTED && !(descent->residual <= NEARLY * descent->rounding))
     return strut_fail(
         error, STRUT_NOT_SETTLED,
         "the structure does not come to rest: the residual is %.3g N, and %s still moves",
-        d->residual, name);
-  if (f->form->from != STRUT_FORM_LENGTHS && moved > STABLE * f->size)
+        descent->residual, name);
+  if (former->form->from != STRUT_FORM_LENGTHS && moved > STABLE * former->size)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "the equilibrium found is not stable: left to itself, %s moves by %.3g m; "
                       "more tension (--least-tension) or stiffer members may hold it",
@@ -359,30 +365,31 @@ static strut_status judge(const strut_former *f, const strut_descent *d, const d
 }
 
 /* Lets the structure come to rest from its start, to the last bits; a form by lengths is that. */
-static strut_status polish(strut_former *f, strut_error *error) {
+static strut_status polish(strut_former *former, strut_error *error) {
   strut_model *model = NULL;
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
   double *q = NULL;
-  strut_scene *scene = f->scene;
+  strut_scene *scene = former->scene;
   strut_status status = strut_model_compile(scene, &model, error);
   if (status == STRUT_OK) status = strut_potential_create(model, NULL, true, &potential, error);
   if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
-  if (status == STRUT_OK) q = strut_arena_allocate(&f->arena, (size_t)model->length, sizeof *q);
+  if (status == STRUT_OK)
+    q = strut_arena_allocate(&former->arena, (size_t)model->length, sizeof *q);
   if (status == STRUT_OK && !q) status = strut_no_memory(error, "");
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
-    strut_minimiser_watch(minimiser, f->experiment->interrupt);
+    strut_minimiser_watch(minimiser, former->experiment->interrupt);
     strut_descent descent = strut_minimise(minimiser, q, 0.0);
-    if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(f, model->start, q))
+    if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(former, model->start, q))
       descent = strut_polish(minimiser, q, 0.0);
-    f->form->residual = descent.residual;
-    status = judge(f, &descent, q, error);
+    former->form->residual = descent.residual;
+    status = judge(former, &descent, q, error);
   }
   for (size_t i = 0; i < scene->node_count && status == STRUT_OK; i++)
     for (size_t c = 0; c < 2; c++) {
       scene->nodes[i].start[c] = q[2 * i + c];
-      if (f->form->from == STRUT_FORM_LENGTHS) scene->nodes[i].position[c] = q[2 * i + c];
+      if (former->form->from == STRUT_FORM_LENGTHS) scene->nodes[i].position[c] = q[2 * i + c];
     }
   strut_minimiser_free(minimiser);
   strut_potential_free(potential);
@@ -399,38 +406,39 @@ static double round_down(double x) {
 }
 
 /* A step that the new shape bears, and a run where the scene has none. */
-static strut_status add_run(strut_former *f, strut_error *error) {
-  strut_experiment *e = f->experiment;
+static strut_status add_run(strut_former *former, strut_error *error) {
+  strut_experiment *experiment = former->experiment;
   strut_model *model = NULL;
   strut_step_limit limit = {0};
-  strut_status status = strut_model_compile(f->scene, &model, error);
-  f->form->massless = status == STRUT_OK && !model->mass;
+  strut_status status = strut_model_compile(former->scene, &model, error);
+  former->form->massless = status == STRUT_OK && !model->mass;
   if (status == STRUT_OK && model->mass) {
     status = strut_step_limit_estimate(model, &limit, error);
     if (status == STRUT_OK && !(limit.limit > LEAST_STEP))
       status = strut_fail(error, STRUT_BAD_SCENE,
                           "stiffnesses are so large beside the masses that no time step can be "
                           "chosen; check their units");
-    f->form->run_added = e->step == 0 || (e->duration == 0 && e->periods == 0);
-    if (status == STRUT_OK && (e->step == 0 || e->step > limit.limit))
-      e->step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;
-    if (e->duration == 0 && e->periods == 0) e->duration = HOLD;
+    former->form->run_added =
+        experiment->step == 0 || (experiment->duration == 0 && experiment->periods == 0);
+    if (status == STRUT_OK && (experiment->step == 0 || experiment->step > limit.limit))
+      experiment->step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;
+    if (experiment->duration == 0 && experiment->periods == 0) experiment->duration = HOLD;
   }
   strut_model_free(model);
   return status;
 }
 
-static strut_status find(strut_former *f, strut_error *error) {
-  strut_scene *scene = f->scene;
+static strut_status find(strut_former *former, strut_error *error) {
+  strut_scene *scene = former->scene;
   strut_status status = STRUT_OK;
-  if (f->form->from == STRUT_FORM_DENSITIES) status = form_densities(f, error);
-  if (f->form->from == STRUT_FORM_PRESTRESS) status = strut_form_prestress(f, error);
+  if (former->form->from == STRUT_FORM_DENSITIES) status = form_densities(former, error);
+  if (former->form->from == STRUT_FORM_PRESTRESS) status = strut_form_prestress(former, error);
   if (status != STRUT_OK) return status;
   fix_lengths(scene);
-  remove_motion(scene, f->experiment);
-  status = check_lengths(f, error);
-  if (status == STRUT_OK) status = polish(f, error);
-  return status == STRUT_OK ? add_run(f, error) : status;
+  remove_motion(scene, former->experiment);
+  status = check_lengths(former, error);
+  if (status == STRUT_OK) status = polish(former, error);
+  return status == STRUT_OK ? add_run(former, error) : status;
 }
 
 /* Distance of every node from its drawn position. */
@@ -445,10 +453,11 @@ static double moved_from(const double *drawn, const strut_scene *scene) {
 /* Shapes drawn for another form mean nothing now. */
 static void drop_shapes(strut_scene *scene) {
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    strut_configuration *c = &scene->configurations[i];
-    for (size_t k = 0; k < scene->node_count && c->position; k++)
-      memcpy(c->position[k], scene->nodes[k].position, sizeof c->position[k]);
-    c->shaped = c->set_count == 0;
+    strut_configuration *configuration = &scene->configurations[i];
+    for (size_t k = 0; k < scene->node_count && configuration->position; k++)
+      memcpy(configuration->position[k], scene->nodes[k].position,
+             sizeof configuration->position[k]);
+    configuration->shaped = configuration->set_count == 0;
   }
 }
 
@@ -457,12 +466,12 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
                                     strut_error *error) {
   if (from == STRUT_FORM_LENGTHS) return STRUT_OK;
   for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *m = &scene->members[j];
-    if (!strut_member_is_special(m)) continue;
+    const strut_member *member = &scene->members[j];
+    if (!strut_member_is_special(member)) continue;
     return strut_fail(error, STRUT_BAD_SCENE,
                       "form finding by %s knows straight members with a linear law only: %s %s",
-                      strut_form_source_name(from), m->name,
-                      m->guide_count ? "runs over guides" : "has another law");
+                      strut_form_source_name(from), member->name,
+                      member->guide_count ? "runs over guides" : "has another law");
   }
   static const strut_thing others[] = {STRUT_THING_COLLISION, STRUT_THING_DISTANCE,
                                        STRUT_THING_CELL, STRUT_THING_HINGE, STRUT_THING_LOAD};
@@ -480,7 +489,7 @@ static strut_status refuse_elements(const strut_scene *scene, strut_form_source 
 /* A member at the start; model: of the scene where it has elements, else NULL. */
 static void measure_member(const strut_scene *scene, const strut_model *model, size_t j,
                            double pose[4]) {
-  const strut_member *m = &scene->members[j];
+  const strut_member *member = &scene->members[j];
   strut_rest rest = {0};
   double length = strut_form_length(scene, j), force = 0;
   if (!strut_member_rest(scene, j, &rest)) {
@@ -490,7 +499,7 @@ static void measure_member(const strut_scene *scene, const strut_model *model, s
     force = strut_member_elastic_tension(model, model->members.rest, (int32_t)j, model->start);
   } else {
     force = rest.stiffness * (length - rest.length);
-    if (m->kind == STRUT_CABLE && force < 0) force = 0;
+    if (member->kind == STRUT_CABLE && force < 0) force = 0;
   }
   pose[0] = length, pose[1] = rest.length, pose[2] = force;
   pose[3] = length > 0 ? force / length : 0;

@@ -40,14 +40,14 @@ strut_status strut_form_prestress(strut_former *former, strut_error *error);
  * to the one given. held (2 node_count): 1 where a coordinate keeps its value. `standing`: the held
  * coordinates only prevent rigid motions.
  */
-strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool standing, double *x,
-                                double *q, strut_error *error);
+strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool standing,
+                                double *vector, double *q, strut_error *error);
 
 /**
  * Minimises the sum of (weight x)^2 subject to A x = b, with b from the initial `x` (count), and x
  * >= low. equations (rows, count), row by row. False: memory was out.
  */
 bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
-                           const double *weight, const double *low, double *x);
+                           const double *weight, const double *low, double *vector);
 
 #endif

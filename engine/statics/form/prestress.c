@@ -25,13 +25,13 @@ static const double ZERO = 1e-12; /* of a step, of a multiplier */
 static gsl_matrix *null_space(int32_t rows, int32_t count, const double *equations,
                               strut_arena *arena) {
   size_t n = (size_t)count, m = (size_t)rows, tall = m > n ? m : n, k = 0;
-  gsl_matrix *a = strut_arena_matrix(arena, tall, n), *v = strut_arena_matrix(arena, n, n);
-  gsl_vector *s = strut_arena_vector(arena, n), *w = strut_arena_vector(arena, n);
-  if (!a || !v || !s || !w) return NULL;
+  gsl_matrix *matrix = strut_arena_matrix(arena, tall, n), *v = strut_arena_matrix(arena, n, n);
+  gsl_vector *vector = strut_arena_vector(arena, n), *w = strut_arena_vector(arena, n);
+  if (!matrix || !v || !vector || !w) return NULL;
   for (size_t i = 0; i < m; i++)
-    for (size_t j = 0; j < n; j++) gsl_matrix_set(a, i, j, equations[i * n + j]);
-  gsl_linalg_SV_decomp(a, v, s, w);
-  while (k < n && gsl_vector_get(s, k) > CUT * gsl_vector_get(s, 0)) k++;
+    for (size_t j = 0; j < n; j++) gsl_matrix_set(matrix, i, j, equations[i * n + j]);
+  gsl_linalg_SV_decomp(matrix, v, vector, w);
+  while (k < n && gsl_vector_get(vector, k) > CUT * gsl_vector_get(vector, 0)) k++;
   gsl_matrix *basis = strut_arena_matrix(arena, n, n - k);
   for (size_t i = 0; i < n && basis; i++)
     for (size_t j = k; j < n; j++) gsl_matrix_set(basis, i, j - k, gsl_matrix_get(v, i, j));
@@ -50,40 +50,40 @@ typedef struct problem {
 } problem;
 
 /* The step (free) to the least sum with the active bounds kept, and their multipliers behind it. */
-static size_t find_step(problem *p) {
-  size_t size = p->free;
-  gsl_matrix_set_zero(p->system);
-  gsl_vector_set_zero(p->right);
-  for (size_t i = 0; i < p->count; i++) {
-    double square = p->weight[i] * p->weight[i];
-    for (size_t a = 0; a < p->free; a++) {
-      double za = gsl_matrix_get(p->basis, i, a);
-      *gsl_vector_ptr(p->right, a) -= square * p->x[i] * za;
-      for (size_t b = 0; b < p->free; b++)
-        *gsl_matrix_ptr(p->system, a, b) += square * za * gsl_matrix_get(p->basis, i, b);
+static size_t find_step(problem *self) {
+  size_t size = self->free;
+  gsl_matrix_set_zero(self->system);
+  gsl_vector_set_zero(self->right);
+  for (size_t i = 0; i < self->count; i++) {
+    double square = self->weight[i] * self->weight[i];
+    for (size_t a = 0; a < self->free; a++) {
+      double za = gsl_matrix_get(self->basis, i, a);
+      *gsl_vector_ptr(self->right, a) -= square * self->x[i] * za;
+      for (size_t b = 0; b < self->free; b++)
+        *gsl_matrix_ptr(self->system, a, b) += square * za * gsl_matrix_get(self->basis, i, b);
     }
-    if (!p->active[i]) continue;
-    for (size_t a = 0; a < p->free; a++) {
-      gsl_matrix_set(p->system, a, size, gsl_matrix_get(p->basis, i, a));
-      gsl_matrix_set(p->system, size, a, gsl_matrix_get(p->basis, i, a));
+    if (!self->active[i]) continue;
+    for (size_t a = 0; a < self->free; a++) {
+      gsl_matrix_set(self->system, a, size, gsl_matrix_get(self->basis, i, a));
+      gsl_matrix_set(self->system, size, a, gsl_matrix_get(self->basis, i, a));
     }
     size++;
   }
   return size;
 }
 
-static bool solve_step(problem *p, size_t size) {
-  gsl_matrix_view a = gsl_matrix_submatrix(p->system, 0, 0, size, size);
-  gsl_vector_view b = gsl_vector_subvector(p->right, 0, size);
-  gsl_vector_view x = gsl_vector_subvector(p->solution, 0, size);
-  gsl_permutation order = {size, p->order->data};
+static bool solve_step(problem *self, size_t size) {
+  gsl_matrix_view a = gsl_matrix_submatrix(self->system, 0, 0, size, size);
+  gsl_vector_view b = gsl_vector_subvector(self->right, 0, size);
+  gsl_vector_view x = gsl_vector_subvector(self->solution, 0, size);
+  gsl_permutation order = {size, self->order->data};
   return strut_solve_rows(&a.matrix, &b.vector, &order, &x.vector);
 }
 
-static double step_component(const problem *p, size_t i) {
+static double step_component(const problem *self, size_t i) {
   double sum = 0;
-  for (size_t a = 0; a < p->free; a++)
-    sum += gsl_matrix_get(p->basis, i, a) * gsl_vector_get(p->solution, a);
+  for (size_t a = 0; a < self->free; a++)
+    sum += gsl_matrix_get(self->basis, i, a) * gsl_vector_get(self->solution, a);
   return sum;
 }
 
@@ -91,37 +91,37 @@ static double step_component(const problem *p, size_t i) {
  * Steps as far as the bounds allow; a bound that stops the step becomes active. True: nothing
  * moved.
  */
-static bool advance_to_bound(problem *p) {
+static bool advance_to_bound(problem *self) {
   double share = 1, most = 0, scale = 0;
-  size_t stop = p->count;
-  for (size_t i = 0; i < p->count; i++) {
-    double step = step_component(p, i), room = p->low[i] - p->x[i];
-    most = fmax(most, fabs(step)), scale = fmax(scale, fabs(p->x[i]));
-    if (p->active[i] || !(step < 0) || !isfinite(room)) continue;
+  size_t stop = self->count;
+  for (size_t i = 0; i < self->count; i++) {
+    double step = step_component(self, i), room = self->low[i] - self->x[i];
+    most = fmax(most, fabs(step)), scale = fmax(scale, fabs(self->x[i]));
+    if (self->active[i] || !(step < 0) || !isfinite(room)) continue;
     if (room / step < share) share = fmax(room / step, 0), stop = i;
   }
-  for (size_t i = 0; i < p->count; i++) p->x[i] += share * step_component(p, i);
-  if (stop < p->count) p->active[stop] = 1, p->x[stop] = p->low[stop];
-  return stop == p->count && most <= ZERO * scale;
+  for (size_t i = 0; i < self->count; i++) self->x[i] += share * step_component(self, i);
+  if (stop < self->count) self->active[stop] = 1, self->x[stop] = self->low[stop];
+  return stop == self->count && most <= ZERO * scale;
 }
 
 /* Releases the active bound with the worst multiplier; false if all signs are right. */
-static bool release_bound(problem *p) {
-  size_t at = p->free, worst = p->count;
+static bool release_bound(problem *self) {
+  size_t at = self->free, worst = self->count;
   double least = 0, scale = 0;
-  for (size_t i = 0; i < p->count; i++) {
-    if (!p->active[i]) continue;
-    double multiplier = gsl_vector_get(p->solution, at++);
+  for (size_t i = 0; i < self->count; i++) {
+    if (!self->active[i]) continue;
+    double multiplier = gsl_vector_get(self->solution, at++);
     scale = fmax(scale, fabs(multiplier));
     if (multiplier > least) least = multiplier, worst = i;
   }
-  if (worst == p->count || least <= ZERO * scale) return false;
-  p->active[worst] = 0;
+  if (worst == self->count || least <= ZERO * scale) return false;
+  self->active[worst] = 0;
   return true;
 }
 
 bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
-                           const double *weight, const double *low, double *x) {
+                           const double *weight, const double *low, double *vector) {
   size_t n = (size_t)count;
   strut_arena arena = {0};
   gsl_matrix *basis = null_space(rows, count, equations, &arena);
@@ -130,7 +130,7 @@ bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
                .basis = basis,
                .weight = weight,
                .low = low,
-               .x = x};
+               .x = vector};
   size_t room = p.free + n + 1;
   p.active = strut_arena_allocate(&arena, n, 1);
   p.system = strut_arena_matrix(&arena, room, room);
@@ -173,26 +173,28 @@ typedef struct prestress {
   double *x;
 } prestress;
 
-static bool can_carry(const strut_member *m) { return m->stiffness > 0 || m->axial_stiffness > 0; }
+static bool can_carry(const strut_member *member) {
+  return member->stiffness > 0 || member->axial_stiffness > 0;
+}
 
-static double least_tension(const strut_former *f) {
+static double least_tension(const strut_former *former) {
   double least = HUGE_VAL;
-  if (f->options->least_tension > 0 || f->options->least_density > 0)
-    return f->options->least_tension;
-  if (f->potential->force_scale > 0) return SHARE * f->potential->force_scale;
-  for (int32_t j = 0; j < f->model->members.count; j++) {
+  if (former->options->least_tension > 0 || former->options->least_density > 0)
+    return former->options->least_tension;
+  if (former->potential->force_scale > 0) return SHARE * former->potential->force_scale;
+  for (int32_t j = 0; j < former->model->members.count; j++) {
     strut_rest rest;
-    if (f->scene->members[j].kind != STRUT_CABLE) continue;
-    if (!strut_member_rest(f->scene, (size_t)j, &rest) || !(rest.stiffness > 0)) continue;
+    if (former->scene->members[j].kind != STRUT_CABLE) continue;
+    if (!strut_member_rest(former->scene, (size_t)j, &rest) || !(rest.stiffness > 0)) continue;
     least = fmin(least, SHARE * rest.stiffness * rest.drawn_length);
   }
   return isfinite(least) ? least : 0.0;
 }
 
-static columns number_columns(const strut_former *f) {
-  columns at = {.members = f->model->members.count,
-                .contacts = f->model->contacts.count,
-                .n = f->potential->n};
+static columns number_columns(const strut_former *former) {
+  columns at = {.members = former->model->members.count,
+                .contacts = former->model->contacts.count,
+                .n = former->potential->n};
   at.pull = 0, at.push = at.members, at.ground = 2 * at.members;
   at.most = at.ground + at.contacts, at.up = at.most + 1;
   at.down = at.up + at.n, at.count = at.down + at.n;
@@ -200,68 +202,69 @@ static columns number_columns(const strut_former *f) {
 }
 
 /* Net force on each free coordinate = 0; then p + m <= z for each member. */
-static void fill_rows(prestress *p) {
-  const strut_former *f = p->f;
-  const columns *at = &p->at;
-  const int32_t *row_of = f->potential->row_of;
+static void fill_rows(prestress *self) {
+  const strut_former *former = self->f;
+  const columns *at = &self->at;
+  const int32_t *row_of = former->potential->row_of;
   for (int32_t j = 0; j < at->members; j++) {
-    const strut_member *m = &f->scene->members[j];
-    const double *a = f->scene->nodes[m->node[0]].start;
-    const double *b = f->scene->nodes[m->node[1]].start;
+    const strut_member *member = &former->scene->members[j];
+    const double *a = former->scene->nodes[member->node[0]].start;
+    const double *b = former->scene->nodes[member->node[1]].start;
     double length = strut_distance(a, b);
     for (int c = 0; c < 2 && length > 0; c++) {
       double u = (b[c] - a[c]) / length;
-      int32_t row[2] = {row_of[2 * m->node[0] + c], row_of[2 * m->node[1] + c]};
+      int32_t row[2] = {row_of[2 * member->node[0] + c], row_of[2 * member->node[1] + c]};
       for (int end = 0; end < 2; end++) {
         if (row[end] < 0) continue;
-        strut_linear_program_add(&p->program, row[end], at->pull + j, end ? -u : u);
-        strut_linear_program_add(&p->program, row[end], at->push + j, end ? u : -u);
+        strut_linear_program_add(&self->program, row[end], at->pull + j, end ? -u : u);
+        strut_linear_program_add(&self->program, row[end], at->push + j, end ? u : -u);
       }
     }
-    strut_linear_program_add(&p->program, at->n + j, at->pull + j, 1);
-    strut_linear_program_add(&p->program, at->n + j, at->push + j, 1);
-    strut_linear_program_add(&p->program, at->n + j, at->most, -1);
-    p->program.row_low[at->n + j] = -HUGE_VAL;
+    strut_linear_program_add(&self->program, at->n + j, at->pull + j, 1);
+    strut_linear_program_add(&self->program, at->n + j, at->push + j, 1);
+    strut_linear_program_add(&self->program, at->n + j, at->most, -1);
+    self->program.row_low[at->n + j] = -HUGE_VAL;
   }
-  const strut_contact_table *c = &f->model->contacts;
+  const strut_contact_table *contacts = &former->model->contacts;
   for (int32_t i = 0; i < at->contacts; i++) {
-    const strut_contact_pose pose = strut_form_contact_as_drawn(f, i);
+    const strut_contact_pose pose = strut_form_contact_as_drawn(former, i);
     for (int k = 0; k < 2; k++) {
-      int32_t row = row_of[c->at[i] + (uint32_t)k];
-      if (row >= 0) strut_linear_program_add(&p->program, row, at->ground + i, pose.axes.normal[k]);
+      int32_t row = row_of[contacts->at[i] + (uint32_t)k];
+      if (row >= 0)
+        strut_linear_program_add(&self->program, row, at->ground + i, pose.axes.normal[k]);
     }
   }
   for (int32_t i = 0; i < at->n; i++) {
-    double force = f->potential->force[f->potential->coordinate[i]] / p->scale;
-    strut_linear_program_add(&p->program, i, at->up + i, 1);
-    strut_linear_program_add(&p->program, i, at->down + i, -1);
-    p->program.row_low[i] = p->program.row_high[i] = -force;
+    double force = former->potential->force[former->potential->coordinate[i]] / self->scale;
+    strut_linear_program_add(&self->program, i, at->up + i, 1);
+    strut_linear_program_add(&self->program, i, at->down + i, -1);
+    self->program.row_low[i] = self->program.row_high[i] = -force;
   }
 }
 
-static void fill_bounds(prestress *p) {
-  const columns *at = &p->at;
+static void fill_bounds(prestress *self) {
+  const columns *at = &self->at;
   for (int32_t j = 0; j < at->members; j++) {
-    const strut_member *m = &p->f->scene->members[j];
-    bool cable = m->kind == STRUT_CABLE, carries = can_carry(m);
-    double least =
-        fmax(p->least, p->f->options->least_density * strut_form_length(p->f->scene, (size_t)j));
-    p->program.low[at->pull + j] = cable && carries ? least / p->scale : 0;
-    if (!carries) p->program.high[at->pull + j] = 0;
-    if (cable || !carries) p->program.high[at->push + j] = 0;
+    const strut_member *member = &self->f->scene->members[j];
+    bool cable = member->kind == STRUT_CABLE, carries = can_carry(member);
+    double least = fmax(self->least, self->f->options->least_density *
+                                         strut_form_length(self->f->scene, (size_t)j));
+    self->program.low[at->pull + j] = cable && carries ? least / self->scale : 0;
+    if (!carries) self->program.high[at->pull + j] = 0;
+    if (cable || !carries) self->program.high[at->push + j] = 0;
   }
   for (int32_t i = 0; i < at->contacts; i++)
-    if (!strut_form_touches(p->f, i)) p->program.high[at->ground + i] = 0;
+    if (!strut_form_touches(self->f, i)) self->program.high[at->ground + i] = 0;
 }
 
-static void set_costs(prestress *p, int32_t from, int32_t to, double cost) {
-  for (int32_t j = from; j < to; j++) p->program.cost[j] = cost;
+static void set_costs(prestress *self, int32_t from, int32_t to, double cost) {
+  for (int32_t j = from; j < to; j++) self->program.cost[j] = cost;
 }
 
-static strut_status solve_program(prestress *p, double *sum, strut_error *error) {
+static strut_status solve_program(prestress *self, double *sum, strut_error *error) {
   strut_linear_program_end end;
-  p->program.interrupt = p->f->experiment->interrupt;
-  strut_status status = strut_linear_program_solve(&p->program, p->x, sum, &end);
+  self->program.interrupt = self->f->experiment->interrupt;
+  strut_status status = strut_linear_program_solve(&self->program, self->x, sum, &end);
   if (status == STRUT_INTERRUPTED) return strut_fail(error, status, "interrupted");
   if (status) return strut_fail(error, status, "out of memory");
   if (end == STRUT_PROGRAM_OPTIMAL) return STRUT_OK;
@@ -269,64 +272,64 @@ static strut_status solve_program(prestress *p, double *sum, strut_error *error)
                     "the linear programme for the members' forces could not be solved");
 }
 
-static bool has_cables(const strut_former *f) {
-  for (size_t j = 0; j < f->scene->member_count; j++)
-    if (f->scene->members[j].kind == STRUT_CABLE) return true;
+static bool has_cables(const strut_former *former) {
+  for (size_t j = 0; j < former->scene->member_count; j++)
+    if (former->scene->members[j].kind == STRUT_CABLE) return true;
   return false;
 }
 
 /* Reports the nodes that lack a force, and the largest missing force. */
-static strut_status cannot_hold(const prestress *p, strut_error *error) {
-  const strut_former *f = p->f;
-  const columns *at = &p->at;
-  uint8_t *marked = strut_allocate(f->scene->node_count, 1);
+static strut_status cannot_hold(const prestress *self, strut_error *error) {
+  const strut_former *former = self->f;
+  const columns *at = &self->at;
+  uint8_t *marked = strut_allocate(former->scene->node_count, 1);
   char names[200];
   double worst = 0;
   if (!marked) return strut_no_memory(error, "");
   for (int32_t i = 0; i < at->n; i++) {
-    double missing = fmax(p->x[at->up + i], p->x[at->down + i]);
-    if (missing > MISSING) marked[f->potential->coordinate[i] / 2] = 1;
+    double missing = fmax(self->x[at->up + i], self->x[at->down + i]);
+    if (missing > MISSING) marked[former->potential->coordinate[i] / 2] = 1;
     worst = fmax(worst, missing);
   }
-  strut_list_nodes(f->scene, marked, sizeof names, names);
+  strut_list_nodes(former->scene, marked, sizeof names, names);
   strut_release(marked);
   char cables[80] = "";
-  if (f->options->least_density > 0)
+  if (former->options->least_density > 0)
     snprintf(cables, sizeof cables, " with every cable at %.4g N/m or more",
-             f->options->least_density);
-  if (p->least > 0)
-    snprintf(cables, sizeof cables, " with every cable at %.4g N or more", p->least);
+             former->options->least_density);
+  if (self->least > 0)
+    snprintf(cables, sizeof cables, " with every cable at %.4g N or more", self->least);
   return strut_fail(error, STRUT_NOT_SETTLED,
                     "no forces%s hold the drawn shape: at %s up to %.4g N are missing; change the "
                     "shape, add members or supports",
-                    has_cables(f) ? cables : "", names, worst * p->scale);
+                    has_cables(former) ? cables : "", names, worst * self->scale);
 }
 
 /* Checks that some forces hold the shape, then minimises the objective over them. */
-static strut_status find_forces(prestress *p, strut_error *error) {
-  const columns *at = &p->at;
+static strut_status find_forces(prestress *self, strut_error *error) {
+  const columns *at = &self->at;
   double sum = 0;
-  set_costs(p, at->up, at->count, 1);
-  strut_status status = solve_program(p, &sum, error);
+  set_costs(self, at->up, at->count, 1);
+  strut_status status = solve_program(self, &sum, error);
   if (status) return status;
-  if (sum > MISSING * (1 + (double)at->n)) return cannot_hold(p, error);
-  set_costs(p, at->up, at->count, 0);
-  for (int32_t j = at->up; j < at->count; j++) p->program.high[j] = 0;
-  if (p->f->options->objective == STRUT_FORM_LARGEST) {
-    p->program.cost[at->most] = 1;
-    status = solve_program(p, &sum, error);
+  if (sum > MISSING * (1 + (double)at->n)) return cannot_hold(self, error);
+  set_costs(self, at->up, at->count, 0);
+  for (int32_t j = at->up; j < at->count; j++) self->program.high[j] = 0;
+  if (self->f->options->objective == STRUT_FORM_LARGEST) {
+    self->program.cost[at->most] = 1;
+    status = solve_program(self, &sum, error);
     if (status) return status;
-    p->program.cost[at->most] = 0;
-    p->program.high[at->most] = sum * (1 + SLACKEN) + 1e-12;
+    self->program.cost[at->most] = 0;
+    self->program.high[at->most] = sum * (1 + SLACKEN) + 1e-12;
   }
-  set_costs(p, at->pull, at->ground, 1);
-  return solve_program(p, &sum, error);
+  set_costs(self, at->pull, at->ground, 1);
+  return solve_program(self, &sum, error);
 }
 
 /* From forces that hold the shape to those whose cables have the least squares of densities. */
-static bool minimise_squares(prestress *p) {
-  const strut_former *f = p->f;
-  const columns *at = &p->at;
+static bool minimise_squares(prestress *self) {
+  const strut_former *former = self->f;
+  const columns *at = &self->at;
   const double faint = 1e-5; /* bars and contacts decide only what cables leave open */
   int32_t count = at->members + at->contacts;
   strut_arena arena = {0};
@@ -335,33 +338,33 @@ static bool minimise_squares(prestress *p) {
   double *low = strut_arena_allocate(&arena, (size_t)count, sizeof *low);
   double *x = strut_arena_allocate(&arena, (size_t)count, sizeof *x);
   bool good = matrix && weight && low && x;
-  for (size_t k = 0; k < p->program.entry_count && good; k++) {
-    int32_t row = p->program.entry_row[k], column = p->program.entry_column[k];
+  for (size_t k = 0; k < self->program.entry_count && good; k++) {
+    int32_t row = self->program.entry_row[k], column = self->program.entry_column[k];
     if (row >= at->n) continue;
-    if (column < at->members) matrix[row * count + column] = p->program.entry[k];
+    if (column < at->members) matrix[row * count + column] = self->program.entry[k];
     if (column >= at->ground && column < at->most)
-      matrix[row * count + at->members + column - at->ground] = p->program.entry[k];
+      matrix[row * count + at->members + column - at->ground] = self->program.entry[k];
   }
   for (int32_t j = 0; j < at->members && good; j++) {
-    const strut_member *m = &f->scene->members[j];
-    double length = strut_form_length(f->scene, (size_t)j);
-    bool cable = m->kind == STRUT_CABLE;
-    weight[j] = (cable ? 1.0 : faint) * f->size / (length > 0 ? length : f->size);
-    low[j] = cable ? p->program.low[at->pull + j] : -HUGE_VAL;
-    x[j] = p->x[at->pull + j] - p->x[at->push + j];
-    if (!can_carry(m))
+    const strut_member *member = &former->scene->members[j];
+    double length = strut_form_length(former->scene, (size_t)j);
+    bool cable = member->kind == STRUT_CABLE;
+    weight[j] = (cable ? 1.0 : faint) * former->size / (length > 0 ? length : former->size);
+    low[j] = cable ? self->program.low[at->pull + j] : -HUGE_VAL;
+    x[j] = self->x[at->pull + j] - self->x[at->push + j];
+    if (!can_carry(member))
       for (int32_t i = 0; i < at->n; i++) matrix[i * count + j] = 0;
   }
   for (int32_t i = 0; i < at->contacts && good; i++) {
     weight[at->members + i] = faint;
-    x[at->members + i] = p->x[at->ground + i];
-    for (int32_t k = 0; k < at->n && !strut_form_touches(f, i); k++)
+    x[at->members + i] = self->x[at->ground + i];
+    for (int32_t k = 0; k < at->n && !strut_form_touches(former, i); k++)
       matrix[k * count + at->members + i] = 0;
   }
   good = good && strut_bounded_squares(at->n, count, matrix, weight, low, x);
   for (int32_t j = 0; j < count && good; j++) {
-    if (j >= at->members) p->x[at->ground + j - at->members] = x[j];
-    if (j < at->members) p->x[at->pull + j] = x[j], p->x[at->push + j] = 0;
+    if (j >= at->members) self->x[at->ground + j - at->members] = x[j];
+    if (j < at->members) self->x[at->pull + j] = x[j], self->x[at->push + j] = 0;
   }
   strut_arena_free(&arena);
   return good;
@@ -371,14 +374,14 @@ static bool minimise_squares(prestress *p) {
  * Moves nodes into the ground to the depth that their contact force needs; returns the largest move
  * [m].
  */
-static double sink_nodes(prestress *p) {
-  const strut_contact_table *c = &p->f->model->contacts;
+static double sink_nodes(prestress *self) {
+  const strut_contact_table *contacts = &self->f->model->contacts;
   double moved = 0;
-  for (int32_t i = 0; i < p->at.contacts; i++) {
-    strut_node *node = &p->f->scene->nodes[c->entry[i].node];
-    double push = p->scale * p->x[p->at.ground + i];
-    const strut_contact_pose pose = strut_form_contact(p->f, i, node->start);
-    double sinks = push / c->entry[i].stiffness + pose.gap;
+  for (int32_t i = 0; i < self->at.contacts; i++) {
+    strut_node *node = &self->f->scene->nodes[contacts->entry[i].node];
+    double push = self->scale * self->x[self->at.ground + i];
+    const strut_contact_pose pose = strut_form_contact(self->f, i, node->start);
+    double sinks = push / contacts->entry[i].stiffness + pose.gap;
     for (int k = 0; k < 2 && push > 0; k++) {
       double start = node->start[k] - sinks * pose.axes.normal[k];
       if (node->fixed[k]) continue;
@@ -389,27 +392,28 @@ static double sink_nodes(prestress *p) {
   return moved;
 }
 
-static strut_status set_forces(prestress *p, strut_error *error) {
-  const columns *at = &p->at;
+static strut_status set_forces(prestress *self, strut_error *error) {
+  const columns *at = &self->at;
   strut_status status = STRUT_OK;
   for (int32_t j = 0; j < at->members && status == STRUT_OK; j++)
-    status = strut_form_set_force(p->f, (size_t)j,
-                                  p->scale * (p->x[at->pull + j] - p->x[at->push + j]), error);
+    status = strut_form_set_force(
+        self->f, (size_t)j, self->scale * (self->x[at->pull + j] - self->x[at->push + j]), error);
   return status;
 }
 
 /* Computes the forces for the start positions. */
-static strut_status compute_forces(prestress *p, strut_error *error) {
-  const columns *at = &p->at;
+static strut_status compute_forces(prestress *self, strut_error *error) {
+  const columns *at = &self->at;
   size_t entries = 11 * (size_t)at->members + 2 * (size_t)at->contacts + 2 * (size_t)at->n;
   strut_arena arena = {0};
   strut_status status = STRUT_NO_MEMORY;
-  if (strut_linear_program_create(&p->program, at->n + at->members, at->count, entries, &arena)) {
-    fill_rows(p);
-    fill_bounds(p);
-    status = find_forces(p, error);
-    if (status == STRUT_OK && p->f->options->objective == STRUT_FORM_SQUARES &&
-        !minimise_squares(p))
+  if (strut_linear_program_create(&self->program, at->n + at->members, at->count, entries,
+                                  &arena)) {
+    fill_rows(self);
+    fill_bounds(self);
+    status = find_forces(self, error);
+    if (status == STRUT_OK && self->f->options->objective == STRUT_FORM_SQUARES &&
+        !minimise_squares(self))
       status = strut_no_memory(error, "");
   } else {
     strut_fail(error, status, "out of memory");
@@ -418,19 +422,21 @@ static strut_status compute_forces(prestress *p, strut_error *error) {
   return status;
 }
 
-strut_status strut_form_prestress(strut_former *f, strut_error *error) {
-  prestress p = {.f = f, .at = number_columns(f), .least = least_tension(f)};
-  p.scale = fmax(f->potential->force_scale, fmax(p.least, f->options->least_density * f->size));
+strut_status strut_form_prestress(strut_former *former, strut_error *error) {
+  prestress p = {.f = former, .at = number_columns(former), .least = least_tension(former)};
+  p.scale = fmax(former->potential->force_scale,
+                 fmax(p.least, former->options->least_density * former->size));
   if (!(p.scale > 0)) p.scale = 1.0;
-  f->form->least_tension = p.least;
-  p.x = strut_arena_allocate(&f->arena, (size_t)p.at.count, sizeof *p.x);
+  former->form->least_tension = p.least;
+  p.x = strut_arena_allocate(&former->arena, (size_t)p.at.count, sizeof *p.x);
   if (!p.x) return strut_no_memory(error, "");
-  for (size_t i = 0; i < f->scene->node_count; i++)
-    memcpy(f->scene->nodes[i].start, f->scene->nodes[i].position, sizeof f->scene->nodes[i].start);
+  for (size_t i = 0; i < former->scene->node_count; i++)
+    memcpy(former->scene->nodes[i].start, former->scene->nodes[i].position,
+           sizeof former->scene->nodes[i].start);
   strut_status status = STRUT_OK;
   for (int k = 0; k < PASSES && status == STRUT_OK; k++) { /* sinking turns members a little */
     status = compute_forces(&p, error);
-    if (status == STRUT_OK && sink_nodes(&p) <= SUNK * f->size) break;
+    if (status == STRUT_OK && sink_nodes(&p) <= SUNK * former->size) break;
   }
   return status == STRUT_OK ? set_forces(&p, error) : status;
 }

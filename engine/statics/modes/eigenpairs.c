@@ -24,92 +24,95 @@ typedef struct dense {
   strut_arena arena;
 } dense;
 
-static void fill_matrices(const dense *d) {
-  const strut_vibration *v = d->work->v;
-  const strut_sparse *a = v->shape->pattern;
-  for (int32_t j = 0; j < v->n; j++)
-    for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
-      size_t r = d->place[a->row[at]], c = d->place[j];
-      gsl_matrix_set(d->k, r, c, v->k[at]);
-      gsl_matrix_set(d->k, c, r, v->k[at]);
-      gsl_matrix_set(d->m, r, c, v->m[at]);
-      gsl_matrix_set(d->m, c, r, v->m[at]);
+static void fill_matrices(const dense *self) {
+  const strut_vibration *vibration = self->work->v;
+  const strut_sparse *matrix = vibration->shape->pattern;
+  for (int32_t j = 0; j < vibration->n; j++)
+    for (int32_t at = matrix->start[j]; at < matrix->start[j + 1]; at++) {
+      size_t r = self->place[matrix->row[at]], c = self->place[j];
+      gsl_matrix_set(self->k, r, c, vibration->k[at]);
+      gsl_matrix_set(self->k, c, r, vibration->k[at]);
+      gsl_matrix_set(self->m, r, c, vibration->m[at]);
+      gsl_matrix_set(self->m, c, r, vibration->m[at]);
     }
 }
 
 /* K11 loses K10 K00^-1 K01. */
-static bool condense(dense *d) {
-  size_t light = d->n - d->massive;
+static bool condense(dense *self) {
+  size_t light = self->n - self->massive;
   if (light == 0) return true;
-  d->follow = strut_arena_matrix(&d->arena, light, d->massive);
-  gsl_permutation *order = strut_arena_order(&d->arena, light);
+  self->follow = strut_arena_matrix(&self->arena, light, self->massive);
+  gsl_permutation *order = strut_arena_order(&self->arena, light);
   int sign = 0;
-  bool good = d->follow && order;
+  bool good = self->follow && order;
   if (good) {
-    gsl_matrix_view k00 = gsl_matrix_submatrix(d->k, d->massive, d->massive, light, light);
-    gsl_matrix_view k01 = gsl_matrix_submatrix(d->k, d->massive, 0, light, d->massive);
-    gsl_matrix_view k11 = gsl_matrix_submatrix(d->k, 0, 0, d->massive, d->massive);
-    gsl_matrix_memcpy(d->follow, &k01.matrix);
+    gsl_matrix_view k00 = gsl_matrix_submatrix(self->k, self->massive, self->massive, light, light);
+    gsl_matrix_view k01 = gsl_matrix_submatrix(self->k, self->massive, 0, light, self->massive);
+    gsl_matrix_view k11 = gsl_matrix_submatrix(self->k, 0, 0, self->massive, self->massive);
+    gsl_matrix_memcpy(self->follow, &k01.matrix);
     good = gsl_linalg_LU_decomp(&k00.matrix, order, &sign) == 0;
-    for (size_t c = 0; c < d->massive && good; c++) {
-      gsl_vector_view column = gsl_matrix_column(d->follow, c);
+    for (size_t c = 0; c < self->massive && good; c++) {
+      gsl_vector_view column = gsl_matrix_column(self->follow, c);
       good = gsl_linalg_LU_svx(&k00.matrix, order, &column.vector) == 0;
     }
     if (good)
-      gsl_blas_dgemm(CblasTrans, CblasNoTrans, -1.0, &k01.matrix, d->follow, 1.0, &k11.matrix);
+      gsl_blas_dgemm(CblasTrans, CblasNoTrans, -1.0, &k01.matrix, self->follow, 1.0, &k11.matrix);
   }
   return good;
 }
 
 /* Vectors of unit length to such of x'Mx = 1, into the set. */
-static void store_eigenpairs(const dense *d) {
-  strut_eigen_set *set = &d->work->set;
-  double *product = d->work->v->work;
-  for (size_t i = 0; i < d->massive; i++) {
-    double *x = set->vector + i * d->n, square = 0.0;
-    set->value[i] = gsl_vector_get(d->value, i);
-    for (size_t r = 0; r < d->n; r++) {
-      size_t row = d->place[r];
-      x[r] = row < d->massive ? gsl_matrix_get(d->vector, row, i) : 0.0;
-      for (size_t c = 0; c < d->massive && row >= d->massive; c++)
-        x[r] -= gsl_matrix_get(d->follow, row - d->massive, c) * gsl_matrix_get(d->vector, c, i);
+static void store_eigenpairs(const dense *self) {
+  strut_eigen_set *set = &self->work->set;
+  double *product = self->work->v->work;
+  for (size_t i = 0; i < self->massive; i++) {
+    double *x = set->vector + i * self->n, square = 0.0;
+    set->value[i] = gsl_vector_get(self->value, i);
+    for (size_t r = 0; r < self->n; r++) {
+      size_t row = self->place[r];
+      x[r] = row < self->massive ? gsl_matrix_get(self->vector, row, i) : 0.0;
+      for (size_t c = 0; c < self->massive && row >= self->massive; c++)
+        x[r] -= gsl_matrix_get(self->follow, row - self->massive, c) *
+                gsl_matrix_get(self->vector, c, i);
     }
-    strut_vibration_multiply(d->work->v, d->work->v->m, x, product);
-    for (size_t r = 0; r < d->n; r++) square += x[r] * product[r];
-    for (size_t r = 0; r < d->n; r++) x[r] /= sqrt(square);
+    strut_vibration_multiply(self->work->v, self->work->v->m, x, product);
+    for (size_t r = 0; r < self->n; r++) square += x[r] * product[r];
+    for (size_t r = 0; r < self->n; r++) x[r] /= sqrt(square);
   }
 }
 
-static bool allocate_dense(dense *d) {
-  strut_eigen_set *set = &d->work->set;
-  const strut_vibration *v = d->work->v;
-  d->n = (size_t)v->n, d->massive = (size_t)v->massive;
-  d->place = strut_arena_allocate(d->work->arena, d->n, sizeof *d->place);
-  set->n = v->n, set->count = v->massive;
-  set->value = strut_arena_allocate(d->work->arena, d->massive, sizeof *set->value);
-  set->vector = strut_arena_allocate(d->work->arena, d->massive * d->n, sizeof *set->vector);
-  d->k = strut_arena_matrix(&d->arena, d->n, d->n);
-  d->m = strut_arena_matrix(&d->arena, d->n, d->n);
-  d->vector = strut_arena_matrix(&d->arena, d->massive, d->massive);
-  d->value = strut_arena_vector(&d->arena, d->massive);
-  if (!d->place || !set->value || !set->vector || !d->k || !d->m || !d->vector || !d->value)
+static bool allocate_dense(dense *self) {
+  strut_eigen_set *set = &self->work->set;
+  const strut_vibration *vibration = self->work->v;
+  self->n = (size_t)vibration->n, self->massive = (size_t)vibration->massive;
+  self->place = strut_arena_allocate(self->work->arena, self->n, sizeof *self->place);
+  set->n = vibration->n, set->count = vibration->massive;
+  set->value = strut_arena_allocate(self->work->arena, self->massive, sizeof *set->value);
+  set->vector =
+      strut_arena_allocate(self->work->arena, self->massive * self->n, sizeof *set->vector);
+  self->k = strut_arena_matrix(&self->arena, self->n, self->n);
+  self->m = strut_arena_matrix(&self->arena, self->n, self->n);
+  self->vector = strut_arena_matrix(&self->arena, self->massive, self->massive);
+  self->value = strut_arena_vector(&self->arena, self->massive);
+  if (!self->place || !set->value || !set->vector || !self->k || !self->m || !self->vector ||
+      !self->value)
     return false;
-  for (size_t i = 0, heavy = 0, light = d->massive; i < d->n; i++)
-    d->place[i] = v->mass[i] > 0 ? heavy++ : light++;
+  for (size_t i = 0, heavy = 0, light = self->massive; i < self->n; i++)
+    self->place[i] = vibration->mass[i] > 0 ? heavy++ : light++;
   return true;
 }
 
-static bool solve_dense(dense *d) {
-  fill_matrices(d);
-  if (!condense(d)) return false;
-  gsl_eigen_gensymmv_workspace *w = gsl_eigen_gensymmv_alloc(d->massive);
-  if (!w) return false;
-  gsl_matrix_view k = gsl_matrix_submatrix(d->k, 0, 0, d->massive, d->massive);
-  gsl_matrix_view m = gsl_matrix_submatrix(d->m, 0, 0, d->massive, d->massive);
-  bool good = gsl_eigen_gensymmv(&k.matrix, &m.matrix, d->value, d->vector, w) == 0 &&
-              gsl_eigen_gensymmv_sort(d->value, d->vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
-  if (good) store_eigenpairs(d);
-  gsl_eigen_gensymmv_free(w);
+static bool solve_dense(dense *self) {
+  fill_matrices(self);
+  if (!condense(self)) return false;
+  gsl_eigen_gensymmv_workspace *workspace = gsl_eigen_gensymmv_alloc(self->massive);
+  if (!workspace) return false;
+  gsl_matrix_view k = gsl_matrix_submatrix(self->k, 0, 0, self->massive, self->massive);
+  gsl_matrix_view m = gsl_matrix_submatrix(self->m, 0, 0, self->massive, self->massive);
+  bool good = gsl_eigen_gensymmv(&k.matrix, &m.matrix, self->value, self->vector, workspace) == 0 &&
+              gsl_eigen_gensymmv_sort(self->value, self->vector, GSL_EIGEN_SORT_VAL_ASC) == 0;
+  if (good) store_eigenpairs(self);
+  gsl_eigen_gensymmv_free(workspace);
   return good;
 }
 
@@ -150,38 +153,40 @@ static double find_bound(strut_modes_work *work, int32_t count, int32_t *below) 
   return high;
 }
 
-static void apply_inverse(void *context, double *x) {
+static void apply_inverse(void *context, double *vector) {
   strut_modes_work *work = context;
-  strut_modes_solve(&work->solver, x);
+  strut_modes_solve(&work->solver, vector);
 }
 
-static void apply_mass(void *context, const double *x, double *y) {
+static void apply_mass(void *context, const double *vector, double *y) {
   strut_modes_work *work = context;
-  strut_vibration_multiply(work->v, work->v->m, x, y);
+  strut_vibration_multiply(work->v, work->v->m, vector, y);
 }
 
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error) {
-  strut_vibration *v = work->v;
+  strut_vibration *vibration = work->v;
   int32_t below = 0;
-  if (count > v->massive - 3) count = v->massive - 3; /* Lanczos's method wants a few to spare */
-  double bound = find_bound(work, count, &below), shift = -fmax(1e-3 * bound, LEAST * v->largest);
-  if (below > 2 * count + MOST_ALIKE && bound <= LEAST * v->largest)
+  if (count > vibration->massive - 3)
+    count = vibration->massive - 3; /* Lanczos's method wants a few to spare */
+  double bound = find_bound(work, count, &below),
+         shift = -fmax(1e-3 * bound, LEAST * vibration->largest);
+  if (below > 2 * count + MOST_ALIKE && bound <= LEAST * vibration->largest)
     return strut_fail(
         error, STRUT_SINGULAR,
         "%d modes have no stiffness, or less than rounding leaves, too many to tell apart "
         "in a structure of this size; cables that are only just taut have none: give "
         "them a prestress",
         (int)below);
-  if (below >= v->massive) below = v->massive - 1;
+  if (below >= vibration->massive) below = vibration->massive - 1;
   size_t room = (size_t)below;
   strut_eigen_set *set = &work->set;
-  set->n = v->n;
+  set->n = vibration->n;
   set->count = below;
   set->value = strut_arena_allocate(work->arena, room, sizeof *set->value);
-  set->vector = strut_arena_allocate(work->arena, room * (size_t)v->n, sizeof *set->vector);
+  set->vector = strut_arena_allocate(work->arena, room * (size_t)vibration->n, sizeof *set->vector);
   if (!set->value || !set->vector) return strut_no_memory(error, "");
   for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
-  strut_lanczos_problem problem = {v->n,          shift,      work,
+  strut_lanczos_problem problem = {vibration->n,  shift,      work,
                                    apply_inverse, apply_mass, work->experiment->interrupt};
   const strut_sparse_algebra_library *sparse = NULL;
   strut_status status = strut_sparse_algebra_load(&sparse, error);
@@ -236,59 +241,59 @@ static bool fill_damping(const strut_modes_work *work, gsl_matrix *damping) {
   return any;
 }
 
-static void fill_system(const strut_modes_work *work, quadratic *p) {
-  for (size_t i = 0; i < p->n; i++) {
+static void fill_system(const strut_modes_work *work, quadratic *self) {
+  for (size_t i = 0; i < self->n; i++) {
     double z = work->set.value[i], a = sqrt(fabs(z));
-    gsl_matrix_set(p->system, i, p->n + i, a);
-    gsl_matrix_set(p->system, p->n + i, i, z > 0 ? -a : a);
-    for (size_t j = 0; j < p->n; j++)
-      gsl_matrix_set(p->system, p->n + i, p->n + j, -gsl_matrix_get(p->damping, i, j));
+    gsl_matrix_set(self->system, i, self->n + i, a);
+    gsl_matrix_set(self->system, self->n + i, i, z > 0 ? -a : a);
+    for (size_t j = 0; j < self->n; j++)
+      gsl_matrix_set(self->system, self->n + i, self->n + j, -gsl_matrix_get(self->damping, i, j));
   }
 }
 
-static void compute_weights(quadratic *p) {
-  for (size_t i = 0; i < 2 * p->n; i++)
-    for (size_t j = 0; j < p->n; j++) {
-      gsl_complex a = gsl_matrix_complex_get(p->vector, j, i);
-      gsl_complex b = gsl_matrix_complex_get(p->vector, p->n + j, i);
-      p->weight[i * p->n + j] = GSL_REAL(a) * GSL_REAL(a) + GSL_IMAG(a) * GSL_IMAG(a) +
-                                GSL_REAL(b) * GSL_REAL(b) + GSL_IMAG(b) * GSL_IMAG(b);
+static void compute_weights(quadratic *self) {
+  for (size_t i = 0; i < 2 * self->n; i++)
+    for (size_t j = 0; j < self->n; j++) {
+      gsl_complex a = gsl_matrix_complex_get(self->vector, j, i);
+      gsl_complex b = gsl_matrix_complex_get(self->vector, self->n + j, i);
+      self->weight[i * self->n + j] = GSL_REAL(a) * GSL_REAL(a) + GSL_IMAG(a) * GSL_IMAG(a) +
+                                      GSL_REAL(b) * GSL_REAL(b) + GSL_IMAG(b) * GSL_IMAG(b);
     }
 }
 
 /* Repeatedly assigns the best free solution to a mode that lacks one in `slot`. */
-static void assign_solutions(quadratic *p, bool oscillating, int32_t *slot) {
+static void assign_solutions(quadratic *self, bool oscillating, int32_t *slot) {
   for (;;) {
     double most = LEAST_SHARE;
     size_t solution = 0, mode = 0;
-    for (size_t i = 0; i < 2 * p->n; i++) {
-      double im = GSL_IMAG(gsl_vector_complex_get(p->value, i));
-      if (p->taken[i] || (oscillating ? !(im > 0) : im != 0)) continue;
-      for (size_t j = 0; j < p->n; j++)
-        if (slot[j] == NONE && p->weight[i * p->n + j] > most)
-          most = p->weight[i * p->n + j], solution = i, mode = j;
+    for (size_t i = 0; i < 2 * self->n; i++) {
+      double im = GSL_IMAG(gsl_vector_complex_get(self->value, i));
+      if (self->taken[i] || (oscillating ? !(im > 0) : im != 0)) continue;
+      for (size_t j = 0; j < self->n; j++)
+        if (slot[j] == NONE && self->weight[i * self->n + j] > most)
+          most = self->weight[i * self->n + j], solution = i, mode = j;
     }
     if (!(most > LEAST_SHARE)) return;
-    p->taken[solution] = 1;
+    self->taken[solution] = 1;
     slot[mode] = (int32_t)solution;
   }
 }
 
 /* Modes that swing by themselves get a conjugate pair, or two real solutions. */
-static void assign_all_solutions(quadratic *p, const strut_mode *list) {
-  for (size_t j = 0; j < p->n; j++)
-    p->first[j] = p->second[j] = list[j].kind == STRUT_MODE_ELASTIC ? NONE : NOT_WANTED;
-  assign_solutions(p, true, p->first);
-  for (size_t j = 0; j < p->n; j++)
-    if (p->first[j] >= 0) p->second[j] = NOT_WANTED;
-  assign_solutions(p, false, p->first);
-  assign_solutions(p, false, p->second);
+static void assign_all_solutions(quadratic *self, const strut_mode *list) {
+  for (size_t j = 0; j < self->n; j++)
+    self->first[j] = self->second[j] = list[j].kind == STRUT_MODE_ELASTIC ? NONE : NOT_WANTED;
+  assign_solutions(self, true, self->first);
+  for (size_t j = 0; j < self->n; j++)
+    if (self->first[j] >= 0) self->second[j] = NOT_WANTED;
+  assign_solutions(self, false, self->first);
+  assign_solutions(self, false, self->second);
 }
 
 /* From the two roots of a mode: a conjugate pair, or two real ones. */
-static void set_damped_mode(const quadratic *p, size_t j, strut_mode *mode) {
-  if (p->first[j] < 0) return;
-  gsl_complex z = gsl_vector_complex_get(p->value, (size_t)p->first[j]);
+static void set_damped_mode(const quadratic *self, size_t j, strut_mode *mode) {
+  if (self->first[j] < 0) return;
+  gsl_complex z = gsl_vector_complex_get(self->value, (size_t)self->first[j]);
   double re = GSL_REAL(z), im = GSL_IMAG(z);
   if (im != 0) {
     mode->decay_rate = -re;
@@ -296,8 +301,9 @@ static void set_damped_mode(const quadratic *p, size_t j, strut_mode *mode) {
     mode->damping_ratio = -re / hypot(re, im);
     return;
   }
-  double other =
-      p->second[j] < 0 ? re : GSL_REAL(gsl_vector_complex_get(p->value, (size_t)p->second[j]));
+  double other = self->second[j] < 0
+                     ? re
+                     : GSL_REAL(gsl_vector_complex_get(self->value, (size_t)self->second[j]));
   mode->damped_frequency = 0.0;
   mode->decay_rate = -fmax(re, other);
   if (re * other > 0) mode->damping_ratio = -(re + other) / (2.0 * sqrt(re * other));
@@ -324,19 +330,19 @@ static void apply_modal_quotients(const strut_modes_work *work, strut_mode *list
   }
 }
 
-static bool allocate_quadratic(const strut_modes_work *work, quadratic *p) {
-  size_t n = p->n;
-  p->system = gsl_matrix_calloc(2 * n, 2 * n);
-  p->damping = gsl_matrix_calloc(n, n);
-  p->value = gsl_vector_complex_calloc(2 * n);
-  p->vector = gsl_matrix_complex_calloc(2 * n, 2 * n);
-  p->w = gsl_eigen_nonsymmv_alloc(2 * n);
-  p->weight = strut_arena_allocate(work->arena, 2 * n * n, sizeof *p->weight);
-  p->taken = strut_arena_allocate(work->arena, 2 * n, sizeof *p->taken);
-  p->first = strut_arena_allocate(work->arena, n, sizeof *p->first);
-  p->second = strut_arena_allocate(work->arena, n, sizeof *p->second);
-  return p->system && p->damping && p->value && p->vector && p->w && p->weight && p->taken &&
-         p->first && p->second;
+static bool allocate_quadratic(const strut_modes_work *work, quadratic *self) {
+  size_t n = self->n;
+  self->system = gsl_matrix_calloc(2 * n, 2 * n);
+  self->damping = gsl_matrix_calloc(n, n);
+  self->value = gsl_vector_complex_calloc(2 * n);
+  self->vector = gsl_matrix_complex_calloc(2 * n, 2 * n);
+  self->w = gsl_eigen_nonsymmv_alloc(2 * n);
+  self->weight = strut_arena_allocate(work->arena, 2 * n * n, sizeof *self->weight);
+  self->taken = strut_arena_allocate(work->arena, 2 * n, sizeof *self->taken);
+  self->first = strut_arena_allocate(work->arena, n, sizeof *self->first);
+  self->second = strut_arena_allocate(work->arena, n, sizeof *self->second);
+  return self->system && self->damping && self->value && self->vector && self->w && self->weight &&
+         self->taken && self->first && self->second;
 }
 
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,

@@ -25,19 +25,20 @@ static void append_text(strut_mode *mode, const char *format, ...) {
   va_end(arguments);
 }
 
-static void motion_of(const strut_vibration *v, const double *x, int32_t node, double d[2]) {
+static void motion_of(const strut_vibration *vibration, const double *vector, int32_t node,
+                      double d[2]) {
   for (int c = 0; c < 2; c++) {
-    int32_t row = v->shape->row_of[2 * node + c];
-    d[c] = row >= 0 ? x[row] : 0.0;
+    int32_t row = vibration->shape->row_of[2 * node + c];
+    d[c] = row >= 0 ? vector[row] : 0.0;
   }
 }
 
-static int32_t largest_node(const strut_vibration *v, const double *x, double d[2]) {
+static int32_t largest_node(const strut_vibration *vibration, const double *vector, double d[2]) {
   double most = -1.0, here[2];
   d[0] = d[1] = 0.0;
   int32_t node = 0;
-  for (int32_t i = 0; i < v->model->node_count; i++) {
-    motion_of(v, x, i, here);
+  for (int32_t i = 0; i < vibration->model->node_count; i++) {
+    motion_of(vibration, vector, i, here);
     if (hypot(here[0], here[1]) <= most * (1 + 1e-9)) continue; /* of equal ones the first */
     most = hypot(here[0], here[1]), node = i, d[0] = here[0], d[1] = here[1];
   }
@@ -58,30 +59,31 @@ static int side_of(const double lead[2], const double d[2]) {
 }
 
 /* Names the nodes of one side, the leading one first; returns how many there are. */
-static int name_side(const strut_vibration *v, const double *x, int32_t leader,
+static int name_side(const strut_vibration *vibration, const double *vector, int32_t leader,
                      const double lead[2], int side, const char *before, strut_mode *mode) {
   int count = 0;
   double least = MOVES * hypot(lead[0], lead[1]), d[2];
-  for (int32_t k = -1; k < v->model->node_count; k++) {
+  for (int32_t k = -1; k < vibration->model->node_count; k++) {
     int32_t i = k < 0 ? leader : k;
     if (k == leader || (k < 0 && side != 1)) continue;
-    motion_of(v, x, i, d);
+    motion_of(vibration, vector, i, d);
     if (hypot(d[0], d[1]) < least || side_of(lead, d) != side) continue;
     if (count < MOST_NODES)
-      append_text(mode, "%s%s", count ? ", " : before, v->model->scene->nodes[i].name);
+      append_text(mode, "%s%s", count ? ", " : before, vibration->model->scene->nodes[i].name);
     count++;
   }
   if (count > MOST_NODES) append_text(mode, " and %d more", count - MOST_NODES);
   return count;
 }
 
-static void describe_nodes(const strut_vibration *v, const double *x, strut_mode *mode) {
+static void describe_nodes(const strut_vibration *vibration, const double *vector,
+                           strut_mode *mode) {
   double lead[2];
-  int32_t leader = largest_node(v, x, lead);
-  int count = name_side(v, x, leader, lead, 1, "", mode);
+  int32_t leader = largest_node(vibration, vector, lead);
+  int count = name_side(vibration, vector, leader, lead, 1, "", mode);
   append_text(mode, count == 1 ? " moves%s" : " move%s", direction_text(lead));
-  name_side(v, x, leader, lead, -1, " against ", mode);
-  if (name_side(v, x, leader, lead, 0, ", ", mode) > 0) append_text(mode, " sideways");
+  name_side(vibration, vector, leader, lead, -1, " against ", mode);
+  if (name_side(vibration, vector, leader, lead, 0, ", ", mode) > 0) append_text(mode, " sideways");
 }
 
 /* Energies of half a stiffness each: stretch of the members, closed contacts. */
@@ -104,11 +106,11 @@ static int32_t count_items(const strut_model *model) {
 static int32_t item_of(const strut_model *model, const strut_force *force) {
   size_t before = 0;
   if (force->kind == STRUT_FORCE_MEMBER) return force->index;
-  const strut_element *e = &model->elements.element[force->index];
-  if (e->role == STRUT_ELEMENT_LOAD || e->role == STRUT_ELEMENT_CONTACT) return -1;
-  strut_thing thing = strut_element_thing(e->role);
+  const strut_element *element = &model->elements.element[force->index];
+  if (element->role == STRUT_ELEMENT_LOAD || element->role == STRUT_ELEMENT_CONTACT) return -1;
+  strut_thing thing = strut_element_thing(element->role);
   for (int k = 0; kinds[k] != thing; k++) before += strut_thing_count(model->scene, kinds[k]);
-  return (int32_t)before + e->item;
+  return (int32_t)before + element->item;
 }
 
 static const char *name_of_item(const strut_scene *scene, size_t j) {
@@ -118,14 +120,16 @@ static const char *name_of_item(const strut_scene *scene, size_t j) {
 }
 
 /* Energies of slopes, not of bends of strains, in a motion; `energy` of the items, a member's with those of its elements. */
-static energies find_energies(const strut_vibration *v, const double *x, double *energy) {
+static energies find_energies(const strut_vibration *vibration, const double *vector,
+                              double *energy) {
   energies e = {0};
   strut_force force;
-  for (int32_t i = 0; i < strut_force_count(v->model, true); i++) {
-    if (!strut_vibration_force_at(v, i, &force)) continue;
-    double along = strut_vibration_strain(v, &force, x), own = force.pose.slope * along * along;
+  for (int32_t i = 0; i < strut_force_count(vibration->model, true); i++) {
+    if (!strut_vibration_force_at(vibration, i, &force)) continue;
+    double along = strut_vibration_strain(vibration, &force, vector),
+           own = force.pose.slope * along * along;
     bool ground = force.kind == STRUT_FORCE_CONTACT;
-    int32_t item = ground ? -1 : item_of(v->model, &force);
+    int32_t item = ground ? -1 : item_of(vibration->model, &force);
     if (ground) e.ground += own;
     if (item >= 0) energy[item] += own, e.members += own;
   }
@@ -133,13 +137,13 @@ static energies find_energies(const strut_vibration *v, const double *x, double 
   return e;
 }
 
-static void describe_members(const strut_vibration *v, const double *energy, const energies *e,
-                             strut_mode *mode) {
-  const strut_scene *scene = v->model->scene;
-  int32_t named[MOST_MEMBERS], items = count_items(v->model);
+static void describe_members(const strut_vibration *vibration, const double *energy,
+                             const energies *self, strut_mode *mode) {
+  const strut_scene *scene = vibration->model->scene;
+  int32_t named[MOST_MEMBERS], items = count_items(vibration->model);
   int count = 0;
   for (; count < MOST_MEMBERS; count++) {
-    double most = COUNTS * e->all;
+    double most = COUNTS * self->all;
     named[count] = -1;
     for (int32_t j = 0; j < items; j++) {
       bool known = false;
@@ -149,19 +153,21 @@ static void describe_members(const strut_vibration *v, const double *energy, con
     int32_t j = named[count];
     if (j < 0) break;
     append_text(mode, "%s%s %.0f %%", count ? ", " : "; ", name_of_item(scene, (size_t)j),
-                100.0 * energy[j] / e->all);
+                100.0 * energy[j] / self->all);
   }
-  if (e->ground > 0.05 * e->all)
-    append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ", 100.0 * e->ground / e->all);
+  if (self->ground > 0.05 * self->all)
+    append_text(mode, "%sthe ground %.0f %%", count++ ? ", " : "; ",
+                100.0 * self->ground / self->all);
   if (count) append_text(mode, " of the energy");
 }
 
-static void describe_rigid(const strut_vibration *v, const double *x, strut_mode *mode) {
+static void describe_rigid(const strut_vibration *vibration, const double *vector,
+                           strut_mode *mode) {
   double first[2], d[2];
-  largest_node(v, x, first);
+  largest_node(vibration, vector, first);
   bool shift = true;
-  for (int32_t i = 0; i < v->model->node_count; i++) {
-    motion_of(v, x, i, d);
+  for (int32_t i = 0; i < vibration->model->node_count; i++) {
+    motion_of(vibration, vector, i, d);
     shift = shift && hypot(d[0] - first[0], d[1] - first[1]) < 1e-6 * hypot(first[0], first[1]);
   }
   const char *way = direction_text(first);
@@ -172,35 +178,36 @@ static void describe_rigid(const strut_vibration *v, const double *x, strut_mode
 }
 
 /* Members that the mechanism would stretch one way, and let go the other. */
-static void describe_idle(const strut_modes_work *work, const double *x, strut_mode *mode) {
-  const strut_vibration *v = work->v;
+static void describe_idle(const strut_modes_work *work, const double *vector, strut_mode *mode) {
+  const strut_vibration *vibration = work->v;
   double lead[2];
-  largest_node(v, x, lead);
+  largest_node(vibration, vector, lead);
   strut_force force;
   int32_t count = 0, first = -1;
-  for (int32_t j = 0; j < v->model->members.count; j++) {
+  for (int32_t j = 0; j < vibration->model->members.count; j++) {
     if (work->idleness[j] != STRUT_JUST_TAUT) continue;
-    strut_vibration_force_at(v, j, &force);
-    if (fabs(strut_vibration_strain(v, &force, x)) <= 1e-6 * hypot(lead[0], lead[1])) continue;
+    strut_vibration_force_at(vibration, j, &force);
+    if (fabs(strut_vibration_strain(vibration, &force, vector)) <= 1e-6 * hypot(lead[0], lead[1]))
+      continue;
     if (!count++) first = j;
   }
   mode->just_taut = count;
   if (count == 1)
-    append_text(mode, ", as '%.24s' is just taut", v->model->scene->members[first].name);
+    append_text(mode, ", as '%.24s' is just taut", vibration->model->scene->members[first].name);
   if (count > 1) append_text(mode, ", as %d members are just taut", (int)count);
 }
 
-void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode) {
-  const strut_vibration *v = work->v;
+void strut_modes_describe(const strut_modes_work *work, const double *vector, strut_mode *mode) {
+  const strut_vibration *vibration = work->v;
   mode->description[0] = '\0';
   if (mode->kind == STRUT_MODE_RIGID) {
-    describe_rigid(v, x, mode);
+    describe_rigid(vibration, vector, mode);
     return;
   }
-  describe_nodes(v, x, mode);
+  describe_nodes(vibration, vector, mode);
   if (mode->kind == STRUT_MODE_MECHANISM) {
     append_text(mode, "; no stiffness resists");
-    describe_idle(work, x, mode);
+    describe_idle(work, vector, mode);
     return;
   }
   if (mode->kind == STRUT_MODE_UNKNOWN) {
@@ -209,16 +216,16 @@ void strut_modes_describe(const strut_modes_work *work, const double *x, strut_m
       append_text(mode, ", about %.3g Hz", mode->angular_frequency / STRUT_TAU);
     return;
   }
-  size_t items = (size_t)count_items(v->model);
+  size_t items = (size_t)count_items(vibration->model);
   double *energy = strut_allocate(items + 1, sizeof *energy);
   if (!energy) return; /* the mode stays, with fewer words */
-  energies e = find_energies(v, x, energy);
-  strut_vibration_multiply(v, v->m, x, v->work);
-  double stiffness = mode->eigenvalue * strut_dot(x, v->work, v->n);
+  energies e = find_energies(vibration, vector, energy);
+  strut_vibration_multiply(vibration, vibration->m, vector, vibration->work);
+  double stiffness = mode->eigenvalue * strut_dot(vector, vibration->work, vibration->n);
   bool geometric = e.all < 0.5 * fabs(stiffness);
   if (geometric)
     append_text(mode, "; %.0f %% of the stiffness is geometric",
                 fmin(100.0 * (1.0 - e.all / fabs(stiffness)), 100.0));
-  if (!(e.all < 0.01 * fabs(stiffness))) describe_members(v, energy, &e, mode);
+  if (!(e.all < 0.01 * fabs(stiffness))) describe_members(vibration, energy, &e, mode);
   strut_release(energy);
 }

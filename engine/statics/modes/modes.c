@@ -52,51 +52,54 @@ static strut_status hold_stuck(const strut_model *model, const strut_rest_state 
 }
 
 static strut_status check_problem(strut_modes_work *work, strut_error *error) {
-  const strut_vibration *v = work->v;
-  if (v->n == 0 || v->massive == 0)
+  const strut_vibration *vibration = work->v;
+  if (vibration->n == 0 || vibration->massive == 0)
     return strut_fail(
         error, STRUT_BAD_SCENE,
-        v->n == 0 ? "no node is free to move, so there are no modes"
-                  : "no free node has mass, so there are no modes; give nodes or members a mass");
-  if (!isfinite(v->largest) || v->largest > LARGEST)
+        vibration->n == 0
+            ? "no node is free to move, so there are no modes"
+            : "no free node has mass, so there are no modes; give nodes or members a mass");
+  if (!isfinite(vibration->largest) || vibration->largest > LARGEST)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "stiffnesses are so large beside the masses that frequencies cannot be "
                       "computed; check their units");
-  if (v->massive == v->n) return STRUT_OK;
-  strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+  if (vibration->massive == vibration->n) return STRUT_OK;
+  strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
   const strut_inertia *inertia = &work->solver.inertia;
-  if (inertia->smallest > 1e-13 || v->mass[inertia->row] > 0) return STRUT_OK;
-  return strut_fail(error, STRUT_SINGULAR,
-                    "node '%s' has no mass and can move without stiffness, so it has no frequency; "
-                    "give it a mass or hold it",
-                    v->model->scene->nodes[v->shape->coordinate[inertia->row] / 2].name);
+  if (inertia->smallest > 1e-13 || vibration->mass[inertia->row] > 0) return STRUT_OK;
+  return strut_fail(
+      error, STRUT_SINGULAR,
+      "node '%s' has no mass and can move without stiffness, so it has no frequency; "
+      "give it a mass or hold it",
+      vibration->model->scene->nodes[vibration->shape->coordinate[inertia->row] / 2].name);
 }
 
-static double mass_product(const strut_modes_work *work, const double *x, const double *y) {
-  strut_vibration_multiply(work->v, work->v->m, x, work->v->work);
+static double mass_product(const strut_modes_work *work, const double *vector, const double *y) {
+  strut_vibration_multiply(work->v, work->v->m, vector, work->v->work);
   return strut_dot(y, work->v->work, work->v->n);
 }
 
 /* Takes from x its shares in the first `count` of the vectors; returns what is left, squared. */
 static double remove_shares(const strut_modes_work *work, const double *vectors, int32_t count,
-                            double *x) {
+                            double *vector) {
   size_t n = (size_t)work->v->n;
   for (int pass = 0; pass < 2; pass++)
     for (int32_t k = 0; k < count; k++) {
       const double *y = vectors + (size_t)k * n;
-      double share = mass_product(work, x, y);
-      for (size_t i = 0; i < n; i++) x[i] -= share * y[i];
+      double share = mass_product(work, vector, y);
+      for (size_t i = 0; i < n; i++) vector[i] -= share * y[i];
     }
-  return mass_product(work, x, x);
+  return mass_product(work, vector, vector);
 }
 
 /* The rigid motions that supports and closed contacts leave, orthonormal in the mass. */
 static strut_status find_rigid(strut_modes_work *work, strut_error *error) {
-  const strut_vibration *v = work->v;
-  size_t n = (size_t)v->n;
+  const strut_vibration *vibration = work->v;
+  size_t n = (size_t)vibration->n;
   work->rigid = strut_arena_allocate(work->arena, 3 * n, sizeof *work->rigid);
   if (!work->rigid) return strut_no_memory(error, "");
-  int32_t count = strut_rigid_motions(v->shape, v->q, v->closed, work->rigid);
+  int32_t count =
+      strut_rigid_motions(vibration->shape, vibration->q, vibration->closed, work->rigid);
   work->rigid_count = 0;
   for (int32_t k = 0; k < count; k++) {
     double *x = work->rigid + (size_t)work->rigid_count * n;
@@ -187,11 +190,11 @@ static double condition_of(const strut_modes_work *work, bool dense) {
 static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind kind,
                               strut_mode *mode) {
   const strut_eigen_set *set = &work->set;
-  const strut_vibration *v = work->v;
-  const double *x = set->vector + (size_t)i * (size_t)v->n;
+  const strut_vibration *vibration = work->v;
+  const double *x = set->vector + (size_t)i * (size_t)vibration->n;
   double value = set->value[i], largest = 0.0;
-  double beside = value != 0 ? fabs(value) : v->largest > 0 ? v->largest : 1.0;
-  mode->shape = strut_arena_allocate(work->arena, (size_t)v->model->length, sizeof(double));
+  double beside = value != 0 ? fabs(value) : vibration->largest > 0 ? vibration->largest : 1.0;
+  mode->shape = strut_arena_allocate(work->arena, (size_t)vibration->model->length, sizeof(double));
   if (!mode->shape) return STRUT_NO_MEMORY;
   mode->kind = kind;
   mode->eigenvalue = value;
@@ -200,9 +203,10 @@ static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind
   mode->residual = value != 0 ? set->residual[i] : set->error[i] / beside;
   mode->error = (set->error[i] + set->noise[i]) / beside;
   if (value != 0) mode->error = fmax(mode->error, DBL_EPSILON); /* it is handed out as a double */
-  for (int32_t k = 0; k < v->n; k++)
+  for (int32_t k = 0; k < vibration->n; k++)
     if (fabs(x[k]) > fabs(largest) * (1 + 1e-9)) largest = x[k];
-  for (int32_t k = 0; k < v->n; k++) mode->shape[v->shape->coordinate[k]] = x[k] / largest;
+  for (int32_t k = 0; k < vibration->n; k++)
+    mode->shape[vibration->shape->coordinate[k]] = x[k] / largest;
   strut_modes_describe(work, x, mode);
   return STRUT_OK;
 }
@@ -210,10 +214,10 @@ static strut_status fill_mode(strut_modes_work *work, int32_t i, strut_mode_kind
 /* What rounding hides is not given. */
 static void hide_unknown(strut_modes *modes) {
   for (size_t i = 0; i < modes->count; i++) {
-    strut_mode *m = &modes->list[i];
-    if (m->kind != STRUT_MODE_UNKNOWN) continue;
-    m->eigenvalue = m->angular_frequency = m->damping_ratio = (double)NAN;
-    m->damped_frequency = m->decay_rate = (double)NAN;
+    strut_mode *mode = &modes->list[i];
+    if (mode->kind != STRUT_MODE_UNKNOWN) continue;
+    mode->eigenvalue = mode->angular_frequency = mode->damping_ratio = (double)NAN;
+    mode->damped_frequency = mode->decay_rate = (double)NAN;
   }
 }
 
@@ -238,8 +242,8 @@ static strut_status fill_modes(strut_modes_work *work, int32_t wanted, strut_mod
 
 static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_modes *modes,
                                 strut_error *error) {
-  const strut_vibration *v = work->v;
-  strut_status status = strut_modes_solver_create(v, &work->solver, error);
+  const strut_vibration *vibration = work->v;
+  strut_status status = strut_modes_solver_create(vibration, &work->solver, error);
   work->solver.interrupt = work->experiment->interrupt;
   if (status == STRUT_OK) status = check_problem(work, error);
   if (status != STRUT_OK) return status;
@@ -247,7 +251,7 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   modes->idleness = work->idleness;
   if (status == STRUT_OK && modes->at_rest) status = strut_modes_settle(work, error);
   if (status != STRUT_OK) return status;
-  modes->coordinates = v->n;
+  modes->coordinates = vibration->n;
   status = strut_experiment_end(work->experiment, status, error);
   if (status != STRUT_OK) return status;
   status = modes->dense ? strut_modes_dense(work, error) : strut_modes_sparse(work, wanted, error);

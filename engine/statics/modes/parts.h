@@ -55,7 +55,7 @@ void strut_vibration_force(const strut_vibration *vibration, double *force);
 
 /** y = A x for K, M or D. */
 void strut_vibration_multiply(const strut_vibration *vibration, const double *matrix,
-                              const double *x, double *y);
+                              const double *vector, double *y);
 
 /**
  * Does a member or an element that acts one way only sit at the edge of that, to the last bits of its length
@@ -65,14 +65,14 @@ bool strut_vibration_is_borderline(const strut_vibration *vibration, int32_t num
 
 /** How the strain of a force changes in the motion x (n). */
 double strut_vibration_strain(const strut_vibration *vibration, const strut_force *force,
-                              const double *x);
+                              const double *vector);
 
 /** x' B x of a member or an element, B the second derivative of its strain, and the sum of its terms' sizes. */
 typedef struct strut_strain_bow {
   double sum, size;
 } strut_strain_bow;
 strut_strain_bow strut_vibration_bow(const strut_vibration *vibration, const strut_force *force,
-                                     const double *x);
+                                     const double *vector);
 
 /**
  * x' K x from strains, and a bound of its rounding. Stiff members that a motion hardly strains add
@@ -81,7 +81,8 @@ strut_strain_bow strut_vibration_bow(const strut_vibration *vibration, const str
 typedef struct strut_vibration_energy {
   double value, rounding;
 } strut_vibration_energy;
-strut_vibration_energy strut_vibration_energy_of(const strut_vibration *vibration, const double *x);
+strut_vibration_energy strut_vibration_energy_of(const strut_vibration *vibration,
+                                                 const double *vector);
 
 /*
  * (K + shift M) x = b by a factor L D L'. Its signs count the eigenvalues below -shift, if the shift
@@ -98,13 +99,13 @@ typedef struct strut_modes_solver {
 } strut_modes_solver;
 
 /** v must outlive it. STRUT_OK or STRUT_NO_MEMORY; strut_modes_solver_free either way. */
-strut_status strut_modes_solver_create(const strut_vibration *v, strut_modes_solver *solver,
+strut_status strut_modes_solver_create(const strut_vibration *vibration, strut_modes_solver *solver,
                                        strut_error *error);
 void strut_modes_solver_free(strut_modes_solver *solver);
 
 void strut_modes_factorise(strut_modes_solver *solver, double shift);
 /** x (n) becomes (K + shift M)^-1 x. */
-void strut_modes_solve(strut_modes_solver *solver, double *x);
+void strut_modes_solve(strut_modes_solver *solver, double *vector);
 
 /** A shift with which solutions have some digits whatever the matrix, of the largest eigenvalue. */
 static const double STRUT_FIRM = 1e-10;
@@ -157,7 +158,7 @@ strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, str
                                  strut_error *error);
 
 /** Describes a mode in words. */
-void strut_modes_describe(const strut_modes_work *work, const double *x, strut_mode *mode);
+void strut_modes_describe(const strut_modes_work *work, const double *vector, strut_mode *mode);
 
 /* A cell of a structure that repeats: which of its nodes are those of neighbouring cells. */
 

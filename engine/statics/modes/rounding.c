@@ -11,9 +11,9 @@
 
 enum { MOST_STEPS = 8, SAMPLES = 3 };
 
-static void move(strut_vibration *v, double *positions, const double *step, double sign) {
-  strut_potential_move(v->shape, step, sign, positions, positions);
-  strut_vibration_update(v);
+static void move(strut_vibration *vibration, double *positions, const double *step, double sign) {
+  strut_potential_move(vibration->shape, step, sign, positions, positions);
+  strut_vibration_update(vibration);
 }
 
 /* -1 to 1, from an index. */
@@ -25,17 +25,17 @@ static double stirred(uint64_t i) {
 }
 
 /* Last bits of a strain and of its natural one, and, in a shape that is not at rest, of the positions it is made of. */
-static double bits_of(const strut_vibration *v, const strut_force *force, bool at_rest) {
+static double bits_of(const strut_vibration *vibration, const strut_force *force, bool at_rest) {
   const strut_element_pose *pose = &force->pose;
   if (force->kind == STRUT_FORCE_MEMBER) {
-    double rest = v->model->members.rest[force->index];
+    double rest = vibration->model->members.rest[force->index];
     return DBL_EPSILON * (at_rest ? 0.5 * rest : pose->strain + rest);
   }
   double bits = DBL_EPSILON * (fabs(pose->strain) + fabs(pose->natural));
-  if (v->model->elements.element[force->index].strain == STRUT_STRAIN_ANGLE)
+  if (vibration->model->elements.element[force->index].strain == STRUT_STRAIN_ANGLE)
     bits += 4.0 * DBL_EPSILON; /* of directions */
   for (int32_t k = 0; k < force->nodes && !at_rest; k++) {
-    const double *at = v->q + force->at[k], *b = &pose->b[2 * k];
+    const double *at = vibration->q + force->at[k], *b = &pose->b[2 * k];
     bits += hypot(b[0], b[1]) * strut_coordinate_rounding(at, at);
   }
   return bits;
@@ -46,42 +46,43 @@ static double bits_of(const strut_vibration *v, const strut_force *force, bool a
  * the shape has come to rest again; or, in a shape that is not at rest, strains off by their last bits.
  */
 static void sample_noise(strut_modes_work *work, bool at_rest, uint64_t sample, double *noise,
-                         double *x) {
-  const strut_vibration *v = work->v;
-  uint64_t members = (uint64_t)v->model->members.count;
-  uint64_t elements = (uint64_t)v->model->elements.count;
-  int32_t count = strut_force_count(v->model, false);
+                         double *vector) {
+  const strut_vibration *vibration = work->v;
+  uint64_t members = (uint64_t)vibration->model->members.count;
+  uint64_t elements = (uint64_t)vibration->model->elements.count;
+  int32_t count = strut_force_count(vibration->model, false);
   strut_force force;
-  memset(x, 0, (size_t)v->n * sizeof *x);
+  memset(vector, 0, (size_t)vibration->n * sizeof *vector);
   for (int32_t i = 0; i < count; i++) {
-    bool acts = strut_vibration_force_at(v, i, &force);
+    bool acts = strut_vibration_force_at(vibration, i, &force);
     uint64_t own = (uint64_t)force.index, first = sample * members;
     if (force.kind == STRUT_FORCE_ELEMENT) first = SAMPLES * members + sample * elements;
     noise[i] =
-        acts ? -force.pose.slope * (bits_of(v, &force, at_rest) * stirred(first + own)) : 0.0;
+        acts ? -force.pose.slope * (bits_of(vibration, &force, at_rest) * stirred(first + own))
+             : 0.0;
     for (int32_t k = 0; k < 2 * force.nodes && at_rest && acts; k++) {
-      int32_t row = v->shape->row_of[strut_force_coordinate(&force, k)];
-      if (row >= 0) x[row] -= noise[i] * force.pose.b[k];
+      int32_t row = vibration->shape->row_of[strut_force_coordinate(&force, k)];
+      if (row >= 0) vector[row] -= noise[i] * force.pose.b[k];
     }
   }
   if (!at_rest) return;
-  strut_modes_solve(&work->solver, x);
+  strut_modes_solve(&work->solver, vector);
   for (int32_t i = 0; i < count; i++)
-    if (strut_vibration_force_at(v, i, &force))
-      noise[i] += force.pose.slope * strut_vibration_strain(v, &force, x);
+    if (strut_vibration_force_at(vibration, i, &force))
+      noise[i] += force.pose.slope * strut_vibration_strain(vibration, &force, vector);
 }
 
 static void measure_noise(strut_modes_work *work, const double *noise) {
-  const strut_vibration *v = work->v;
+  const strut_vibration *vibration = work->v;
   strut_eigen_set *set = &work->set;
   strut_force force;
   for (int32_t i = 0; i < set->count; i++) {
-    const double *x = set->vector + (size_t)i * (size_t)v->n;
+    const double *x = set->vector + (size_t)i * (size_t)vibration->n;
     double members = 0.0, elements = 0.0;
-    for (int32_t j = 0; j < strut_force_count(v->model, false); j++) {
+    for (int32_t j = 0; j < strut_force_count(vibration->model, false); j++) {
       if (noise[j] == 0) continue;
-      strut_vibration_force_at(v, j, &force);
-      double change = noise[j] * strut_vibration_bow(v, &force, x).sum;
+      strut_vibration_force_at(vibration, j, &force);
+      double change = noise[j] * strut_vibration_bow(vibration, &force, x).sum;
       members += force.kind == STRUT_FORCE_MEMBER ? change : 0.0;
       elements += force.kind == STRUT_FORCE_MEMBER ? 0.0 : fabs(change);
     }
@@ -95,25 +96,26 @@ static void measure_noise(strut_modes_work *work, const double *noise) {
  * It is that close already; a step that is not tiny, or does not help, is taken back.
  */
 strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
-  strut_vibration *v = work->v;
+  strut_vibration *vibration = work->v;
   strut_arena scratch = {0};
-  double *step = strut_arena_allocate(&scratch, (size_t)v->n, sizeof *step);
+  double *step = strut_arena_allocate(&scratch, (size_t)vibration->n, sizeof *step);
   if (!step) return strut_no_memory(error, "");
-  strut_vibration_force(v, step);
-  double force = strut_largest_magnitude(step, v->n);
+  strut_vibration_force(vibration, step);
+  double force = strut_largest_magnitude(step, vibration->n);
   for (int i = 0; i < MOST_STEPS && force > 0; i++) {
     double *positions =
-        i == 0 ? v->q : v->low; /* then q stays, and with it the rounding of lengths */
-    strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+        i == 0 ? vibration->q
+               : vibration->low; /* then q stays, and with it the rounding of lengths */
+    strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
     strut_modes_solve(&work->solver, step);
-    if (!(strut_largest_magnitude(step, v->n) < 1e-6 * v->model->size)) break;
-    move(v, positions, step, 1.0);
-    strut_vibration_force(v, v->work);
-    bool helped = strut_largest_magnitude(v->work, v->n) < force;
-    if (!helped) move(v, positions, step, -1.0);
+    if (!(strut_largest_magnitude(step, vibration->n) < 1e-6 * vibration->model->size)) break;
+    move(vibration, positions, step, 1.0);
+    strut_vibration_force(vibration, vibration->work);
+    bool helped = strut_largest_magnitude(vibration->work, vibration->n) < force;
+    if (!helped) move(vibration, positions, step, -1.0);
     if (!helped && i > 0) break;
-    strut_vibration_force(v, step);
-    force = strut_largest_magnitude(step, v->n);
+    strut_vibration_force(vibration, step);
+    force = strut_largest_magnitude(step, vibration->n);
   }
   strut_arena_free(&scratch);
   return STRUT_OK;
@@ -126,13 +128,13 @@ static const double KNOWN = 1e3, SOME = 1e-22;
 /* Largest noise of the forces of members and elements [N]. */
 static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *noise,
                                   strut_error *error) {
-  const strut_vibration *v = work->v;
-  size_t count = (size_t)strut_force_count(v->model, false);
+  const strut_vibration *vibration = work->v;
+  size_t count = (size_t)strut_force_count(vibration->model, false);
   strut_arena scratch = {0};
-  double *x = strut_arena_allocate(&scratch, (size_t)v->n, sizeof *x);
+  double *x = strut_arena_allocate(&scratch, (size_t)vibration->n, sizeof *x);
   double *one = strut_arena_allocate(&scratch, count, sizeof *one);
   bool good = x && one;
-  if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+  if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
   for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
     sample_noise(work, at_rest, sample, one, x);
     for (size_t i = 0; i < count; i++) noise[i] = fmax(noise[i], fabs(one[i]));
@@ -147,11 +149,11 @@ static bool is_known(double force, double noise, double largest) {
 
 /* Borderline ones; members among them are made to act for now. Their number. */
 static int32_t hold_borderline(strut_modes_work *work, uint8_t *borderline) {
-  strut_vibration *v = work->v;
+  strut_vibration *vibration = work->v;
   int32_t count = 0;
-  for (int32_t i = 0; i < strut_force_count(v->model, false); i++) {
-    if (!(borderline[i] = strut_vibration_is_borderline(v, i))) continue;
-    if (i < v->model->members.count) v->state[i] = 1;
+  for (int32_t i = 0; i < strut_force_count(vibration->model, false); i++) {
+    if (!(borderline[i] = strut_vibration_is_borderline(vibration, i))) continue;
+    if (i < vibration->model->members.count) vibration->state[i] = 1;
     count++;
   }
   return count;
@@ -160,30 +162,30 @@ static int32_t hold_borderline(strut_modes_work *work, uint8_t *borderline) {
 /* The member whose force this is, or -1. */
 static int32_t member_of(const strut_model *model, const strut_force *force) {
   if (force->kind == STRUT_FORCE_MEMBER) return force->index;
-  const strut_element *e = &model->elements.element[force->index];
-  return e->role == STRUT_ELEMENT_MEMBER ? e->item : -1;
+  const strut_element *element = &model->elements.element[force->index];
+  return element->role == STRUT_ELEMENT_MEMBER ? element->item : -1;
 }
 
 static void release_borderline(strut_modes_work *work, const uint8_t *borderline,
                                const double *noise) {
-  strut_vibration *v = work->v;
+  strut_vibration *vibration = work->v;
   strut_force force;
-  for (int32_t i = 0; i < strut_force_count(v->model, false); i++) {
+  for (int32_t i = 0; i < strut_force_count(vibration->model, false); i++) {
     if (!borderline[i]) continue;
-    bool acts = strut_vibration_force_at(v, i, &force);
+    bool acts = strut_vibration_force_at(vibration, i, &force);
     double most = force.pose.slope * force.pose.strain;
-    int32_t member = member_of(v->model, &force);
-    v->state[i] = acts && is_known(force.pose.force, noise[i], most) ? 0 : -1;
-    if (v->state[i] && member >= 0) work->idleness[member] = STRUT_JUST_TAUT;
+    int32_t member = member_of(vibration->model, &force);
+    vibration->state[i] = acts && is_known(force.pose.force, noise[i], most) ? 0 : -1;
+    if (vibration->state[i] && member >= 0) work->idleness[member] = STRUT_JUST_TAUT;
   }
 }
 
 static void find_slack(strut_modes_work *work) {
-  const strut_vibration *v = work->v;
+  const strut_vibration *vibration = work->v;
   strut_force force;
-  for (int32_t i = 0; i < strut_force_count(v->model, false); i++) {
-    bool acts = strut_vibration_force_at(v, i, &force);
-    int32_t member = member_of(v->model, &force);
+  for (int32_t i = 0; i < strut_force_count(vibration->model, false); i++) {
+    bool acts = strut_vibration_force_at(vibration, i, &force);
+    int32_t member = member_of(vibration->model, &force);
     bool plain = force.kind == STRUT_FORCE_MEMBER;
     if (acts || member < 0 || (plain && !(force.pose.slope > 0))) continue;
     if (work->idleness[member] == STRUT_ACTS) work->idleness[member] = STRUT_SLACK;
@@ -191,9 +193,9 @@ static void find_slack(strut_modes_work *work) {
 }
 
 strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_error *error) {
-  strut_vibration *v = work->v;
-  size_t members = (size_t)v->model->members.count;
-  size_t count = (size_t)strut_force_count(v->model, false);
+  strut_vibration *vibration = work->v;
+  size_t members = (size_t)vibration->model->members.count;
+  size_t count = (size_t)strut_force_count(vibration->model, false);
   strut_arena scratch = {0};
   uint8_t *borderline = strut_arena_allocate(&scratch, count, sizeof *borderline);
   double *noise = strut_arena_allocate(&scratch, count, sizeof *noise);
@@ -201,11 +203,11 @@ strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_erro
   bool good = borderline && noise && work->idleness;
   strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
   if (good && hold_borderline(work, borderline) > 0) {
-    strut_vibration_update(v);
+    strut_vibration_update(vibration);
     if (at_rest) status = strut_modes_settle(work, error);
     if (status == STRUT_OK) status = sample_forces(work, at_rest, noise, error);
     if (status == STRUT_OK) release_borderline(work, borderline, noise);
-    strut_vibration_update(v);
+    strut_vibration_update(vibration);
   }
   if (status == STRUT_OK) find_slack(work);
   strut_arena_free(&scratch);
@@ -213,12 +215,12 @@ strut_status strut_modes_loosen(strut_modes_work *work, bool at_rest, strut_erro
 }
 
 strut_status strut_modes_noise(strut_modes_work *work, bool at_rest, strut_error *error) {
-  strut_vibration *v = work->v;
-  double *step = strut_arena_allocate(work->arena, (size_t)v->n, sizeof *step);
-  double *noise =
-      strut_arena_allocate(work->arena, (size_t)strut_force_count(v->model, false), sizeof *noise);
+  strut_vibration *vibration = work->v;
+  double *step = strut_arena_allocate(work->arena, (size_t)vibration->n, sizeof *step);
+  double *noise = strut_arena_allocate(
+      work->arena, (size_t)strut_force_count(vibration->model, false), sizeof *noise);
   if (!step || !noise) return strut_no_memory(error, "");
-  if (at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * v->largest);
+  if (at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
   strut_status status = STRUT_OK;
   for (uint64_t sample = 0; sample < SAMPLES && status == STRUT_OK; sample++) {
     status = strut_experiment_end(work->experiment, status, error);
@@ -256,12 +258,12 @@ static double gap_of(const strut_modes_work *work, int32_t i) {
 }
 
 static void measure_value(strut_modes_work *work, int32_t i, double *mx) {
-  const strut_vibration *v = work->v;
+  const strut_vibration *vibration = work->v;
   strut_eigen_set *set = &work->set;
-  const double *x = set->vector + (size_t)i * (size_t)v->n;
-  const strut_vibration_energy energy = strut_vibration_energy_of(v, x);
-  strut_vibration_multiply(v, v->m, x, mx);
-  double size = strut_dot(x, mx, v->n);
+  const double *x = set->vector + (size_t)i * (size_t)vibration->n;
+  const strut_vibration_energy energy = strut_vibration_energy_of(vibration, x);
+  strut_vibration_multiply(vibration, vibration->m, x, mx);
+  double size = strut_dot(x, mx, vibration->n);
   set->value[i] = energy.value / size;
   set->noise[i] = (set->noise[i] + energy.rounding) / size;
 }
@@ -272,19 +274,20 @@ static void measure_value(strut_modes_work *work, int32_t i, double *mx) {
  * |r|^2 / k.
  */
 static void measure_error(strut_modes_work *work, int32_t i, double *kx, double *mx) {
-  const strut_vibration *v = work->v;
-  const strut_sparse *a = v->shape->pattern;
+  const strut_vibration *vibration = work->v;
+  const strut_sparse *matrix = vibration->shape->pattern;
   strut_eigen_set *set = &work->set;
-  const double *x = set->vector + (size_t)i * (size_t)v->n;
+  const double *x = set->vector + (size_t)i * (size_t)vibration->n;
   double rest = 0.0, idle = 0.0, r2 = 0.0, kx2 = 0.0, mx2 = 0.0, gap = gap_of(work, i);
-  strut_vibration_multiply(v, v->k, x, kx);
-  strut_vibration_multiply(v, v->m, x, mx);
-  double size = strut_dot(x, mx, v->n);
-  for (int32_t k = 0; k < v->n; k++) {
-    double inertia = set->value[i] * mx[k], r = kx[k] - inertia, own = fabs(v->k[a->start[k]]);
+  strut_vibration_multiply(vibration, vibration->k, x, kx);
+  strut_vibration_multiply(vibration, vibration->m, x, mx);
+  double size = strut_dot(x, mx, vibration->n);
+  for (int32_t k = 0; k < vibration->n; k++) {
+    double inertia = set->value[i] * mx[k], r = kx[k] - inertia,
+           own = fabs(vibration->k[matrix->start[k]]);
     r2 += r * r, kx2 += kx[k] * kx[k], mx2 += inertia * inertia;
-    if (v->mass[k] > 0)
-      rest += 2.0 * r * r / v->own_mass[k];
+    if (vibration->mass[k] > 0)
+      rest += 2.0 * r * r / vibration->own_mass[k];
     else if (own > 0)
       idle += r * r / own;
   }
@@ -295,35 +298,35 @@ static void measure_error(strut_modes_work *work, int32_t i, double *kx, double 
 
 /* Inverse iteration: takes out what the eigensolver left of stiffer motions, or of lighter nodes. */
 static void improve(strut_modes_work *work, int32_t i, double *kx, double *mx) {
-  const strut_vibration *v = work->v;
+  const strut_vibration *vibration = work->v;
   strut_eigen_set *set = &work->set;
-  double *x = set->vector + (size_t)i * (size_t)v->n, before = HUGE_VAL;
+  double *x = set->vector + (size_t)i * (size_t)vibration->n, before = HUGE_VAL;
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     double value = set->value[i], size = fabs(value), error = set->error[i];
     if (size <= 4.0 * set->noise[i]) return; /* a zero */
     if (error <= GOOD * size || error >= size || error > 0.5 * before) return;
     before = error;
     strut_modes_factorise(&work->solver, OFFSET * size - value);
-    strut_vibration_multiply(v, v->m, x, mx);
-    memcpy(x, mx, (size_t)v->n * sizeof *x);
+    strut_vibration_multiply(vibration, vibration->m, x, mx);
+    memcpy(x, mx, (size_t)vibration->n * sizeof *x);
     strut_modes_solve(&work->solver, x);
     for (int32_t j = i - 1; j >= 0 && together(work, set->value[j], value); j--) {
-      const double *y = set->vector + (size_t)j * (size_t)v->n;
-      strut_vibration_multiply(v, v->m, y, mx);
-      double share = strut_dot(x, mx, v->n);
-      for (int32_t r = 0; r < v->n; r++) x[r] -= share * y[r];
+      const double *y = set->vector + (size_t)j * (size_t)vibration->n;
+      strut_vibration_multiply(vibration, vibration->m, y, mx);
+      double share = strut_dot(x, mx, vibration->n);
+      for (int32_t r = 0; r < vibration->n; r++) x[r] -= share * y[r];
     }
-    strut_vibration_multiply(v, v->m, x, mx);
-    double length = sqrt(strut_dot(x, mx, v->n));
-    for (int32_t r = 0; r < v->n; r++) x[r] /= length;
+    strut_vibration_multiply(vibration, vibration->m, x, mx);
+    double length = sqrt(strut_dot(x, mx, vibration->n));
+    for (int32_t r = 0; r < vibration->n; r++) x[r] /= length;
     measure_value(work, i, mx);
     measure_error(work, i, kx, mx);
   }
 }
 
-static void swap(double *a, double *b) {
-  double c = *a;
-  *a = *b, *b = c;
+static void swap(double *first, double *second) {
+  double c = *first;
+  *first = *second, *second = c;
 }
 
 /* Insertion: what was sorted stays nearly so. */

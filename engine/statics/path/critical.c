@@ -14,13 +14,13 @@ static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue 
 static const double ONWARD = 0.02;   /* of a branch: change of the parameter by which it goes on */
 
 /* The node that a vector over the free coordinates moves most. */
-static int32_t most_moved(const strut_path_system *s, const gsl_vector *vector) {
+static int32_t most_moved(const strut_path_system *system, const gsl_vector *vector) {
   int32_t best = 0;
   double most = -1;
-  for (int32_t i = 0; i < s->n; i++) {
-    int32_t at = s->potential->coordinate[i];
+  for (int32_t i = 0; i < system->n; i++) {
+    int32_t at = system->potential->coordinate[i];
     double moved = gsl_vector_get(vector, (size_t)i), square = moved * moved;
-    if (i > 0 && s->potential->coordinate[i - 1] == at - 1 && at % 2 == 1) {
+    if (i > 0 && system->potential->coordinate[i - 1] == at - 1 && at % 2 == 1) {
       double other = gsl_vector_get(vector, (size_t)(i - 1));
       square += other * other;
     }
@@ -30,37 +30,38 @@ static int32_t most_moved(const strut_path_system *s, const gsl_vector *vector) 
 }
 
 /* The share of a unit vector that the parameter works on. */
-static double coupling(const strut_path_system *s, const gsl_vector *vector) {
+static double coupling(const strut_path_system *system, const gsl_vector *vector) {
   double work = 0, load = 0;
-  for (int32_t i = 0; i < s->n; i++)
-    work += s->latest.slope[i] * gsl_vector_get(vector, (size_t)i),
-        load += s->latest.slope[i] * s->latest.slope[i];
+  for (int32_t i = 0; i < system->n; i++)
+    work += system->latest.slope[i] * gsl_vector_get(vector, (size_t)i),
+        load += system->latest.slope[i] * system->latest.slope[i];
   return load > 0 ? fabs(work) / sqrt(load) : 0;
 }
 
-const char *strut_path_subject(const strut_path_walk *w) {
-  return w->path->over == STRUT_PATH_OVER_LOAD ? "the factor" : w->path->name;
+const char *strut_path_subject(const strut_path_walk *walk) {
+  return walk->path->over == STRUT_PATH_OVER_LOAD ? "the factor" : walk->path->name;
 }
 
-const char *strut_path_turn(const strut_path_walk *w, double turn) {
-  bool grew = (turn > 0) == (w->system.parameter.range > 0);
+const char *strut_path_turn(const strut_path_walk *walk, double turn) {
+  bool grew = (turn > 0) == (walk->system.parameter.range > 0);
   if (turn > 0) return grew ? "can grow no further" : "can fall no further";
   return grew ? "falls again from" : "grows again from";
 }
 
 /* Eigenvalues that are zero at y, beside what they are at the ends of the piece; `vectors` remain. */
-static int32_t count_null(strut_path_walk *w, const strut_path_piece *piece, const double *y,
-                          int32_t *first) {
-  strut_path_system *s = &w->system;
+static int32_t count_null(strut_path_walk *walk, const strut_path_piece *piece,
+                          const double *unknowns, int32_t *first) {
+  strut_path_system *system = &walk->system;
   int32_t count = 0;
-  for (int32_t i = 0; i < s->n; i++) w->scale[i] = 0;
+  for (int32_t i = 0; i < system->n; i++) walk->scale[i] = 0;
   for (int end = 0; end < 2; end++) {
-    if (!strut_path_spectrum(s, end ? piece->to : piece->from, STRUT_PATH_VALUES)) return 0;
-    for (int32_t i = 0; i < s->n; i++) w->scale[i] = fmax(w->scale[i], fabs(s->spectrum.value[i]));
+    if (!strut_path_spectrum(system, end ? piece->to : piece->from, STRUT_PATH_VALUES)) return 0;
+    for (int32_t i = 0; i < system->n; i++)
+      walk->scale[i] = fmax(walk->scale[i], fabs(system->spectrum.value[i]));
   }
-  if (!strut_path_spectrum(s, y, STRUT_PATH_VECTORS)) return 0;
-  for (int32_t i = 0; i < s->n; i++)
-    if (fabs(s->spectrum.value[i]) <= VANISHED * w->scale[i])
+  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_VECTORS)) return 0;
+  for (int32_t i = 0; i < system->n; i++)
+    if (fabs(system->spectrum.value[i]) <= VANISHED * walk->scale[i])
       if (!count++) *first = i;
   return count;
 }
@@ -73,27 +74,29 @@ typedef struct critical {
 } critical;
 
 /* Where the parameter turns back though no load works on what vanishes, another path may lead on. */
-static const strut_path_ray *find_way_on(const strut_path_walk *w, const strut_path_rays *rays) {
+static const strut_path_ray *find_way_on(const strut_path_walk *walk, const strut_path_rays *rays) {
   const strut_path_ray *best = NULL;
-  double sense = w->tangent[w->system.n] > 0 ? 1 : -1;
+  double sense = walk->tangent[walk->system.n] > 0 ? 1 : -1;
   for (int32_t k = 0; k < rays->count; k++) {
-    const strut_path_ray *r = &rays->ray[k];
-    if (r->own || !(sense * r->direction[w->system.n] > ONWARD)) continue;
-    if (!best || r->negative < best->negative) best = r;
+    const strut_path_ray *ray = &rays->ray[k];
+    if (ray->own || !(sense * ray->direction[walk->system.n] > ONWARD)) continue;
+    if (!best || ray->negative < best->negative) best = ray;
   }
   return best;
 }
 
-static void report(strut_path_walk *w, const double *y, const critical *c, bool leads_on) {
+static void report(strut_path_walk *walk, const double *unknowns, const critical *self,
+                   bool leads_on) {
   char detail[300], kernel[80] = "";
-  const char *name = w->system.model->scene->nodes[c->node].name;
-  const char *stable = c->before == 0 && c->after > 0   ? ", unstable from here"
-                       : c->after == 0 && c->before > 0 ? ", stable from here"
-                                                        : "";
-  if (c->null > 1) snprintf(kernel, sizeof kernel, " (the kernel has %d dimensions)", (int)c->null);
-  if (c->limit)
-    snprintf(detail, sizeof detail, "%s %s here%s; %s moves most%s", strut_path_subject(w),
-             strut_path_turn(w, w->tangent[w->system.n]), kernel, name, stable);
+  const char *name = walk->system.model->scene->nodes[self->node].name;
+  const char *stable = self->before == 0 && self->after > 0   ? ", unstable from here"
+                       : self->after == 0 && self->before > 0 ? ", stable from here"
+                                                              : "";
+  if (self->null > 1)
+    snprintf(kernel, sizeof kernel, " (the kernel has %d dimensions)", (int)self->null);
+  if (self->limit)
+    snprintf(detail, sizeof detail, "%s %s here%s; %s moves most%s", strut_path_subject(walk),
+             strut_path_turn(walk, walk->tangent[walk->system.n]), kernel, name, stable);
   else if (leads_on)
     snprintf(detail, sizeof detail,
              "the path ends in another one%s and goes on along it: %s moves most on the one that "
@@ -101,91 +104,95 @@ static void report(strut_path_walk *w, const double *y, const critical *c, bool 
              kernel, name, stable);
   else
     snprintf(detail, sizeof detail, "%s%s: %s moves most on %s%s",
-             c->null > 1 ? "other paths branch off" : "another path branches off", kernel, name,
-             c->null > 1 ? "one" : "it", stable);
-  strut_path_add_event(w, c->limit ? STRUT_PATH_LIMIT : STRUT_PATH_BIFURCATION, y, c->node,
-                       c->before, c->after, detail);
+             self->null > 1 ? "other paths branch off" : "another path branches off", kernel, name,
+             self->null > 1 ? "one" : "it", stable);
+  strut_path_add_event(walk, self->limit ? STRUT_PATH_LIMIT : STRUT_PATH_BIFURCATION, unknowns,
+                       self->node, self->before, self->after, detail);
 }
 
 /* Eigenvalues that vanish together at y: a limit point or a fork. True: the path goes on along `way`. */
-static bool meet_critical(strut_path_walk *w, const strut_path_piece *piece, const double *y,
-                          critical *c, strut_path_ray *way) {
-  strut_path_system *s = &w->system;
-  int32_t crossed = c->after - c->before, first = 0;
-  bool turned = strut_path_turns(w, w->tangent, w->next_tangent);
+static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
+                          const double *unknowns, critical *self, strut_path_ray *way) {
+  strut_path_system *system = &walk->system;
+  int32_t crossed = self->after - self->before, first = 0;
+  bool turned = strut_path_turns(walk, walk->tangent, walk->next_tangent);
   double works = 0;
-  c->null = count_null(w, piece, y, &first);
-  if (!c->null) { /* it passes within rounding: nearest to zero */
-    c->null = 1;
-    for (int32_t i = 1; i < s->n; i++)
-      if (fabs(s->spectrum.value[i]) < fabs(s->spectrum.value[first])) first = i;
+  self->null = count_null(walk, piece, unknowns, &first);
+  if (!self->null) { /* it passes within rounding: nearest to zero */
+    self->null = 1;
+    for (int32_t i = 1; i < system->n; i++)
+      if (fabs(system->spectrum.value[i]) < fabs(system->spectrum.value[first])) first = i;
   }
-  if (c->null < abs(crossed)) c->null = abs(crossed);
-  for (int32_t k = first; k < first + c->null && k < s->n; k++) {
-    gsl_vector_const_view null = gsl_matrix_const_column(s->algebra.vectors, (size_t)k);
-    works = fmax(works, coupling(s, &null.vector));
-    if (k == first) c->node = most_moved(s, &null.vector);
+  if (self->null < abs(crossed)) self->null = abs(crossed);
+  for (int32_t k = first; k < first + self->null && k < system->n; k++) {
+    gsl_vector_const_view null = gsl_matrix_const_column(system->algebra.vectors, (size_t)k);
+    works = fmax(works, coupling(system, &null.vector));
+    if (k == first) self->node = most_moved(system, &null.vector);
   }
   bool fork = !turned || works < WEAKLY; /* at a limit point that rounding makes of one, too */
-  bool ends = turned && fork && w->forks.path == 0; /* branches go on smoothly */
+  bool ends = turned && fork && walk->forks.path == 0; /* branches go on smoothly */
   strut_path_rays rays = {0};
-  if (ends || ((fork || c->null > 1) && strut_path_wants_fork(w, y)))
-    strut_path_find_rays(w, y, &rays);
-  const strut_path_ray *on = ends ? find_way_on(w, &rays) : NULL;
-  if (on) *way = *on, c->after = on->negative, c->null = rays.null;
-  c->limit = turned && works > COUPLED && !on;
-  report(w, y, c, on != NULL);
-  if (rays.count) strut_path_keep_fork(w, y, &rays, on);
+  if (ends || ((fork || self->null > 1) && strut_path_wants_fork(walk, unknowns)))
+    strut_path_find_rays(walk, unknowns, &rays);
+  const strut_path_ray *on = ends ? find_way_on(walk, &rays) : NULL;
+  if (on) *way = *on, self->after = on->negative, self->null = rays.null;
+  self->limit = turned && works > COUPLED && !on;
+  report(walk, unknowns, self, on != NULL);
+  if (rays.count) strut_path_keep_fork(walk, unknowns, &rays, on);
   return on != NULL;
 }
 
 /* The rate of the parameter along the path. */
-static double measure_turn(strut_path_system *s, const double *y, const strut_path_piece *piece,
-                           int32_t which) {
+static double measure_turn(strut_path_system *system, const double *unknowns,
+                           const strut_path_piece *piece, int32_t which) {
   (void)which;
-  if (!strut_path_tangent(s, y, piece->tangent, s->latest.row)) return (double)NAN;
-  return s->latest.row[s->n];
+  if (!strut_path_tangent(system, unknowns, piece->tangent, system->latest.row)) return (double)NAN;
+  return system->latest.row[system->n];
 }
 
 /* The part of a piece that is known to have all that changes on it, or all of it. */
-static strut_path_piece narrowed(const strut_path_walk *w, const strut_path_piece *piece) {
-  const double *row = w->part.tangent;
-  strut_path_piece part = {w->part.from, row, w->part.to, 0};
-  part.length = strut_path_dot(w, row, part.to) - strut_path_dot(w, row, part.from);
-  double end =
-      strut_path_dot(w, piece->tangent, part.to) - strut_path_dot(w, piece->tangent, piece->from);
-  return w->part.known && end <= piece->length ? part : *piece;
+static strut_path_piece narrowed(const strut_path_walk *walk, const strut_path_piece *piece) {
+  const double *row = walk->part.tangent;
+  strut_path_piece part = {walk->part.from, row, walk->part.to, 0};
+  part.length = strut_path_dot(walk, row, part.to) - strut_path_dot(walk, row, part.from);
+  double end = strut_path_dot(walk, piece->tangent, part.to) -
+               strut_path_dot(walk, piece->tangent, piece->from);
+  return walk->part.known && end <= piece->length ? part : *piece;
 }
 
-bool strut_path_find_criticals(strut_path_walk *w, const strut_path_piece *whole,
+bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *whole,
                                strut_path_ray *way) {
-  strut_path_system *s = &w->system;
-  const strut_path_piece part = narrowed(w, whole), *piece = &part;
-  if (!strut_path_spectrum(s, whole->to, STRUT_PATH_SIGNS)) return false;
-  int32_t before = w->negative, after = s->spectrum.negative, folded = s->spectrum.folded;
+  strut_path_system *system = &walk->system;
+  const strut_path_piece part = narrowed(walk, whole), *piece = &part;
+  if (!strut_path_spectrum(system, whole->to, STRUT_PATH_SIGNS)) return false;
+  int32_t before = walk->negative, after = system->spectrum.negative,
+          folded = system->spectrum.folded;
   int32_t sense = after > before ? 1 : -1, count = sense * (after - before), i = 0;
-  bool turned = strut_path_turns(w, w->tangent, w->next_tangent), leads_on = false, met = false;
-  for (int32_t k = 0; k < s->n; k++) w->values[k] = s->spectrum.value[k];
-  w->negative = after;
+  bool turned = strut_path_turns(walk, walk->tangent, walk->next_tangent), leads_on = false,
+       met = false;
+  for (int32_t k = 0; k < system->n; k++) walk->values[k] = system->spectrum.value[k];
+  walk->negative = after;
   if (before < 0 || !(piece->length > 0)) return false;
   while (i < count && !leads_on) {
     int32_t which = (sense > 0 ? before + i : before - 1 - i) - folded, last = i + 1;
-    double place = strut_path_locate(s, piece, strut_path_measure_eigenvalue, which, w->fork), next;
+    double place =
+               strut_path_locate(system, piece, strut_path_measure_eigenvalue, which, walk->fork),
+           next;
     for (; place >= 0 && last < count; last++) {
-      next = strut_path_locate(s, piece, strut_path_measure_eigenvalue, which + sense * (last - i),
-                               w->trial);
+      next = strut_path_locate(system, piece, strut_path_measure_eigenvalue,
+                               which + sense * (last - i), walk->trial);
       if (!(fabs(next - place) <= TOGETHER)) break;
     }
     critical c = {.before = before + sense * i, .after = before + sense * last};
     i = last;
     /* no sign at one end: a loose part, neutral there, and no branch */
     if (place < 0) continue;
-    leads_on = meet_critical(w, piece, w->fork, &c, way);
+    leads_on = meet_critical(walk, piece, walk->fork, &c, way);
     met = true;
   }
-  if (turned && !met && strut_path_locate(s, piece, measure_turn, -1, w->fork) >= 0) {
+  if (turned && !met && strut_path_locate(system, piece, measure_turn, -1, walk->fork) >= 0) {
     critical c = {.before = before, .after = after};
-    leads_on = meet_critical(w, piece, w->fork, &c, way);
+    leads_on = meet_critical(walk, piece, walk->fork, &c, way);
   }
   return leads_on;
 }

@@ -51,52 +51,55 @@ typedef struct reduction {
 } reduction;
 
 /* F + N b = 0 on the plane basis' (y - centre) = z: the matrix [s K, slope, N; basis', 0] at y. */
-static bool fill_system(reduction *r, const double *y) {
-  strut_path_system *s = &r->w->system;
-  size_t n = (size_t)s->n, d = (size_t)r->space, m = (size_t)r->null;
-  if (!strut_path_evaluate(s, y)) return false;
-  gsl_matrix_set_zero(r->system);
+static bool fill_system(reduction *self, const double *y) {
+  strut_path_system *system = &self->w->system;
+  size_t n = (size_t)system->n, d = (size_t)self->space, m = (size_t)self->null;
+  if (!strut_path_evaluate(system, y)) return false;
+  gsl_matrix_set_zero(self->system);
   for (size_t i = 0; i < n; i++) {
     for (size_t j = 0; j < n; j++)
-      gsl_matrix_set(r->system, i, j, s->size * gsl_matrix_get(s->algebra.hessian, i, j));
-    gsl_matrix_set(r->system, i, n, s->latest.slope[i]);
+      gsl_matrix_set(self->system, i, j,
+                     system->size * gsl_matrix_get(system->algebra.hessian, i, j));
+    gsl_matrix_set(self->system, i, n, system->latest.slope[i]);
     for (size_t k = 0; k < m; k++)
-      gsl_matrix_set(r->system, i, n + 1 + k, r->w->stiff * gsl_matrix_get(r->basis, i, k));
+      gsl_matrix_set(self->system, i, n + 1 + k,
+                     self->w->stiff * gsl_matrix_get(self->basis, i, k));
   }
   for (size_t k = 0; k < d; k++)
     for (size_t j = 0; j <= n; j++)
-      gsl_matrix_set(r->system, n + k, j, gsl_matrix_get(r->basis, j, k));
+      gsl_matrix_set(self->system, n + k, j, gsl_matrix_get(self->basis, j, k));
   return true;
 }
 
 /* r->y becomes the solution over centre + radius z, and b (null) what equilibrium lacks there. */
-static bool reduce(reduction *r, const double *z, double *b) {
-  strut_path_system *s = &r->w->system;
-  size_t n = (size_t)s->n, count = n + 1, d = (size_t)r->space, m = (size_t)r->null;
+static bool reduce(reduction *self, const double *z, double *b) {
+  strut_path_system *system = &self->w->system;
+  size_t n = (size_t)system->n, count = n + 1, d = (size_t)self->space, m = (size_t)self->null;
   double before = HUGE_VAL;
-  memcpy(r->y, r->centre, strut_path_bytes(r->w));
+  memcpy(self->y, self->centre, strut_path_bytes(self->w));
   for (size_t j = 0; j < count; j++)
-    for (size_t k = 0; k < d; k++) r->y[j] += r->radius * z[k] * gsl_matrix_get(r->basis, j, k);
+    for (size_t k = 0; k < d; k++)
+      self->y[j] += self->radius * z[k] * gsl_matrix_get(self->basis, j, k);
   for (int turn = 0; turn < ITERATIONS; turn++) {
     double change = 0;
-    if (!fill_system(r, r->y)) return false;
-    for (size_t i = 0; i < n; i++) gsl_vector_set(r->right, i, -s->latest.g[i]);
+    if (!fill_system(self, self->y)) return false;
+    for (size_t i = 0; i < n; i++) gsl_vector_set(self->right, i, -system->latest.g[i]);
     for (size_t k = 0; k < d; k++) {
-      double left = r->radius * z[k];
+      double left = self->radius * z[k];
       for (size_t j = 0; j < count; j++)
-        left -= gsl_matrix_get(r->basis, j, k) *
-                ((r->y[j] - r->centre[j]) + (r->y[count + j] - r->centre[count + j]));
-      gsl_vector_set(r->right, n + k, left);
+        left -= gsl_matrix_get(self->basis, j, k) *
+                ((self->y[j] - self->centre[j]) + (self->y[count + j] - self->centre[count + j]));
+      gsl_vector_set(self->right, n + k, left);
     }
-    if (!strut_solve_rows(r->system, r->right, r->order, r->solution)) return false;
+    if (!strut_solve_rows(self->system, self->right, self->order, self->solution)) return false;
     for (size_t j = 0; j < count; j++) {
-      double step = gsl_vector_get(r->solution, j);
+      double step = gsl_vector_get(self->solution, j);
       change = fmax(change, fabs(step));
-      strut_dd sum = dd_add((strut_dd){r->y[j], r->y[count + j]}, dd_of(step));
-      r->y[j] = sum.hi, r->y[count + j] = sum.lo;
+      strut_dd sum = dd_add((strut_dd){self->y[j], self->y[count + j]}, dd_of(step));
+      self->y[j] = sum.hi, self->y[count + j] = sum.lo;
     }
-    for (size_t k = 0; k < m; k++) b[k] = gsl_vector_get(r->solution, count + k);
-    if (!isfinite(change) || change > r->radius) return false;
+    for (size_t k = 0; k < m; k++) b[k] = gsl_vector_get(self->solution, count + k);
+    if (!isfinite(change) || change > self->radius) return false;
     if (change <= CONVERGED || (before <= NEAR && change > 0.3 * before)) return true;
     before = change;
   }
@@ -135,42 +138,42 @@ static void choose_direction(uint64_t *seed, int d, double *z) {
 }
 
 /* Fits the polynomial to b at pairs of opposite points on the sphere; false: somewhere there is none. */
-static bool fit_polynomial(reduction *r) {
-  int d = r->space;
+static bool fit_polynomial(reduction *self) {
+  int d = self->space;
   double z[MOST_SPACE] = {0}, b[MOST_NULL], terms[MOST_TERMS];
-  r->terms = list_terms(d, z, terms, NULL);
-  size_t pairs = (size_t)r->terms, rows = 2 * pairs, columns = (size_t)r->terms;
-  gsl_matrix *a = strut_arena_matrix(&r->arena, rows, columns);
-  gsl_matrix *values = strut_arena_matrix(&r->arena, rows, MOST_NULL);
-  gsl_vector *tau = strut_arena_vector(&r->arena, columns);
-  gsl_vector *x = strut_arena_vector(&r->arena, columns);
-  gsl_vector *left = strut_arena_vector(&r->arena, rows);
-  bool made = a && values && tau && x && left;
-  r->w->failed = r->w->failed || !made;
+  self->terms = list_terms(d, z, terms, NULL);
+  size_t pairs = (size_t)self->terms, rows = 2 * pairs, columns = (size_t)self->terms;
+  gsl_matrix *matrix = strut_arena_matrix(&self->arena, rows, columns);
+  gsl_matrix *values = strut_arena_matrix(&self->arena, rows, MOST_NULL);
+  gsl_vector *tau = strut_arena_vector(&self->arena, columns);
+  gsl_vector *vector = strut_arena_vector(&self->arena, columns);
+  gsl_vector *left = strut_arena_vector(&self->arena, rows);
+  bool made = matrix && values && tau && vector && left;
+  self->w->failed = self->w->failed || !made;
   uint64_t seed = 59;
   for (size_t i = 0; i < rows && made; i++) {
     if (i % 2 == 0) choose_direction(&seed, d, z);
     for (int k = 0; k < d && i % 2; k++) z[k] = -z[k];
-    made = reduce(r, z, b);
+    made = reduce(self, z, b);
     list_terms(d, z, terms, NULL);
-    for (size_t k = 0; k < columns; k++) gsl_matrix_set(a, i, k, terms[k]);
-    for (int32_t k = 0; k < r->null && made; k++) gsl_matrix_set(values, i, (size_t)k, b[k]);
+    for (size_t k = 0; k < columns; k++) gsl_matrix_set(matrix, i, k, terms[k]);
+    for (int32_t k = 0; k < self->null && made; k++) gsl_matrix_set(values, i, (size_t)k, b[k]);
   }
-  if (made) gsl_linalg_QR_decomp(a, tau);
-  for (int32_t k = 0; k < r->null && made; k++) {
+  if (made) gsl_linalg_QR_decomp(matrix, tau);
+  for (int32_t k = 0; k < self->null && made; k++) {
     gsl_vector_const_view column = gsl_matrix_const_column(values, (size_t)k);
     double most = 0;
-    made = gsl_linalg_QR_lssolve(a, tau, &column.vector, x, left) == 0;
-    for (size_t i = 0; i < columns; i++) most = fmax(most, fabs(gsl_vector_get(x, i)));
+    made = gsl_linalg_QR_lssolve(matrix, tau, &column.vector, vector, left) == 0;
+    for (size_t i = 0; i < columns; i++) most = fmax(most, fabs(gsl_vector_get(vector, i)));
     for (size_t i = 0; i < columns && made; i++)
-      r->polynomial[k][i] = gsl_vector_get(x, i) / (most > 0 ? most : 1.0);
+      self->polynomial[k][i] = gsl_vector_get(vector, i) / (most > 0 ? most : 1.0);
   }
   return made;
 }
 
 /* Newton's method for a zero of the polynomial on the unit sphere. */
-static bool find_root(const reduction *r, double *z) {
-  int d = r->space;
+static bool find_root(const reduction *self, double *z) {
+  int d = self->space;
   double terms[MOST_TERMS], rate[MOST_TERMS][MOST_SPACE];
   double a[MOST_SPACE * MOST_SPACE], right[MOST_SPACE], change[MOST_SPACE];
   size_t rows[MOST_SPACE];
@@ -180,10 +183,10 @@ static bool find_root(const reduction *r, double *z) {
     list_terms(d, z, terms, rate);
     memset(a, 0, sizeof a);
     memset(right, 0, sizeof right);
-    for (int k = 0; k < r->null; k++)
-      for (int t = 0; t < r->terms; t++) {
-        right[k] -= r->polynomial[k][t] * terms[t];
-        for (int c = 0; c < d; c++) a[k * d + c] += r->polynomial[k][t] * rate[t][c];
+    for (int k = 0; k < self->null; k++)
+      for (int t = 0; t < self->terms; t++) {
+        right[k] -= self->polynomial[k][t] * terms[t];
+        for (int c = 0; c < d; c++) a[k * d + c] += self->polynomial[k][t] * rate[t][c];
       }
     for (int c = 0; c < d; c++) a[(d - 1) * d + c] = z[c];
     gsl_matrix_view matrix = gsl_matrix_view_array(a, (size_t)d, (size_t)d);
@@ -204,47 +207,48 @@ static bool find_root(const reduction *r, double *z) {
 }
 
 /* Corrects a zero of the polynomial, by the full equations, and keeps it unless it is known. */
-static bool keep_ray(reduction *r, const double *z, strut_path_rays *rays) {
-  strut_path_walk *w = r->w;
-  strut_path_system *s = &w->system;
-  double b[MOST_NULL], *direction = w->spare, value = 0;
-  if (!reduce(r, z, b)) return false;
-  for (int32_t j = 0; j <= s->n; j++) {
+static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
+  strut_path_walk *walk = self->w;
+  strut_path_system *system = &walk->system;
+  double b[MOST_NULL], *direction = walk->spare, value = 0;
+  if (!reduce(self, z, b)) return false;
+  for (int32_t j = 0; j <= system->n; j++) {
     direction[j] = 0;
-    for (int32_t k = 0; k < r->space; k++)
-      direction[j] += z[k] * gsl_matrix_get(r->basis, (size_t)j, (size_t)k);
-    value += direction[j] * r->centre[j];
+    for (int32_t k = 0; k < self->space; k++)
+      direction[j] += z[k] * gsl_matrix_get(self->basis, (size_t)j, (size_t)k);
+    value += direction[j] * self->centre[j];
   }
-  if (strut_path_correct(s, direction, value + r->radius, r->y) < 0) return false;
-  double length = strut_path_distance(w, r->y, r->centre);
-  if (!(length < 1.5 * r->radius)) return false;
+  if (strut_path_correct(system, direction, value + self->radius, self->y) < 0) return false;
+  double length = strut_path_distance(walk, self->y, self->centre);
+  if (!(length < 1.5 * self->radius)) return false;
   for (int32_t k = 0; k < rays->count; k++)
-    if (strut_path_distance(w, r->y, rays->ray[k].y) < APART * r->radius) return true;
-  if (strut_path_is_switched(w, r->y)) return false;
+    if (strut_path_distance(walk, self->y, rays->ray[k].y) < APART * self->radius) return true;
+  if (strut_path_is_switched(walk, self->y)) return false;
   if (rays->count == STRUT_PATH_RAYS) return true;
   strut_path_ray *ray = &rays->ray[rays->count];
-  ray->y = strut_arena_copy(&s->arena, r->y, 1, strut_path_bytes(w));
-  ray->direction = strut_arena_allocate(&s->arena, (size_t)s->n + 1, sizeof(double));
-  w->failed = w->failed || !ray->y || !ray->direction;
-  if (w->failed) return false;
-  for (int32_t j = 0; j <= s->n; j++) ray->direction[j] = (r->y[j] - r->centre[j]) / length;
+  ray->y = strut_arena_copy(&system->arena, self->y, 1, strut_path_bytes(walk));
+  ray->direction = strut_arena_allocate(&system->arena, (size_t)system->n + 1, sizeof(double));
+  walk->failed = walk->failed || !ray->y || !ray->direction;
+  if (walk->failed) return false;
+  for (int32_t j = 0; j <= system->n; j++)
+    ray->direction[j] = (self->y[j] - self->centre[j]) / length;
   ray->done = false, ray->own = 0;
-  if (!strut_path_spectrum(s, r->y, STRUT_PATH_SIGNS)) return false;
-  ray->negative = s->spectrum.negative;
+  if (!strut_path_spectrum(system, self->y, STRUT_PATH_SIGNS)) return false;
+  ray->negative = system->spectrum.negative;
   rays->count++;
   return true;
 }
 
 /* Marks the path that is walked, before and after: nearest to its own points, or else to its tangent. */
-static void mark_own(const reduction *r, strut_path_rays *rays) {
+static void mark_own(const reduction *self, strut_path_rays *rays) {
   for (int side = -1; side <= 1; side += 2) {
-    const double *own = r->own[side > 0];
+    const double *own = self->own[side > 0];
     double least = OWN;
     int32_t best = -1;
     for (int32_t k = 0; k < rays->count; k++) {
       const strut_path_ray *ray = &rays->ray[k];
-      double off = own ? strut_path_distance(r->w, ray->y, own) / r->radius
-                       : 1.0 - side * strut_path_dot(r->w, ray->direction, r->w->tangent);
+      double off = own ? strut_path_distance(self->w, ray->y, own) / self->radius
+                       : 1.0 - side * strut_path_dot(self->w, ray->direction, self->w->tangent);
       if (off < least) least = off, best = k;
     }
     if (best >= 0) rays->ray[best].own = side;
@@ -252,17 +256,17 @@ static void mark_own(const reduction *r, strut_path_rays *rays) {
 }
 
 /* All zeros on the sphere; false: some could not be had. */
-static bool search_sphere(reduction *r, strut_path_rays *rays) {
-  int d = r->space, starts = STARTS << d;
+static bool search_sphere(reduction *self, strut_path_rays *rays) {
+  int d = self->space, starts = STARTS << d;
   double z[MOST_SPACE];
   uint64_t seed = 1;
-  double(*root)[MOST_SPACE] = strut_arena_allocate(&r->arena, STRUT_PATH_RAYS, sizeof *root);
+  double(*root)[MOST_SPACE] = strut_arena_allocate(&self->arena, STRUT_PATH_RAYS, sizeof *root);
   int32_t count = 0;
   bool all = true;
-  r->w->failed = r->w->failed || !root;
+  self->w->failed = self->w->failed || !root;
   for (int k = 0; k < starts && root && count < STRUT_PATH_RAYS; k++) {
     choose_direction(&seed, d, z);
-    if (!find_root(r, z)) continue;
+    if (!find_root(self, z)) continue;
     bool known = false;
     for (int32_t i = 0; i < count && !known; i++) {
       double square = 0;
@@ -271,55 +275,57 @@ static bool search_sphere(reduction *r, strut_path_rays *rays) {
     }
     if (!known) memcpy(root[count++], z, sizeof z);
   }
-  for (int32_t i = 0; i < count && !r->w->failed; i++) all = keep_ray(r, root[i], rays) && all;
-  mark_own(r, rays);
+  for (int32_t i = 0; i < count && !self->w->failed; i++)
+    all = keep_ray(self, root[i], rays) && all;
+  mark_own(self, rays);
   return all;
 }
 
 /* How many eigenvalues vanish at the centre, or at a point of the path not much more than a radius away. */
-static int32_t count_kernel(reduction *r, int32_t *first) {
-  strut_path_walk *w = r->w;
-  strut_path_system *s = &w->system;
-  double *change = w->scale, *here = w->spare;
+static int32_t count_kernel(reduction *self, int32_t *first) {
+  strut_path_walk *walk = self->w;
+  strut_path_system *system = &walk->system;
+  double *change = walk->scale, *here = walk->spare;
   int32_t count = 0;
-  if (!strut_path_spectrum(s, r->centre, STRUT_PATH_VALUES)) return 0;
-  for (int32_t i = 0; i < s->n; i++) here[i] = s->spectrum.value[i], change[i] = 0;
+  if (!strut_path_spectrum(system, self->centre, STRUT_PATH_VALUES)) return 0;
+  for (int32_t i = 0; i < system->n; i++) here[i] = system->spectrum.value[i], change[i] = 0;
   for (int side = -1; side <= 1; side += 2) {
-    double value = side * r->radius;
-    memcpy(r->y, r->centre, strut_path_bytes(w));
-    for (int32_t j = 0; j <= s->n; j++) {
-      value += w->tangent[j] * r->centre[j];
-      r->y[j] += side * r->radius * w->tangent[j];
+    double value = side * self->radius;
+    memcpy(self->y, self->centre, strut_path_bytes(walk));
+    for (int32_t j = 0; j <= system->n; j++) {
+      value += walk->tangent[j] * self->centre[j];
+      self->y[j] += side * self->radius * walk->tangent[j];
     }
-    if (strut_path_correct(s, w->tangent, value, r->y) < 0) continue;
-    r->own[side > 0] = strut_arena_copy(&r->arena, r->y, 1, strut_path_bytes(w));
-    if (!strut_path_spectrum(s, r->y, STRUT_PATH_VALUES)) continue;
-    for (int32_t i = 0; i < s->n; i++)
-      change[i] = fmax(change[i], fabs(s->spectrum.value[i] - here[i]));
+    if (strut_path_correct(system, walk->tangent, value, self->y) < 0) continue;
+    self->own[side > 0] = strut_arena_copy(&self->arena, self->y, 1, strut_path_bytes(walk));
+    if (!strut_path_spectrum(system, self->y, STRUT_PATH_VALUES)) continue;
+    for (int32_t i = 0; i < system->n; i++)
+      change[i] = fmax(change[i], fabs(system->spectrum.value[i] - here[i]));
   }
-  if (!strut_path_spectrum(s, r->centre, STRUT_PATH_VECTORS)) return 0;
-  w->stiff = 0;
-  for (int32_t i = 0; i < s->n; i++) {
-    double value = s->spectrum.value[i];
-    w->stiff = fmax(w->stiff, fabs(value));
+  if (!strut_path_spectrum(system, self->centre, STRUT_PATH_VECTORS)) return 0;
+  walk->stiff = 0;
+  for (int32_t i = 0; i < system->n; i++) {
+    double value = system->spectrum.value[i];
+    walk->stiff = fmax(walk->stiff, fabs(value));
     if (fabs(value) > WITHIN * change[i]) continue;
     if (!count++) *first = i;
   }
-  w->stiff *= s->size;
+  walk->stiff *= system->size;
   return count < MOST_NULL ? count : MOST_NULL;
 }
 
 /* The kernel, and the direction in which parameter and structure change together. */
-static bool make_basis(reduction *r, int32_t first) {
-  strut_path_system *s = &r->w->system;
-  size_t n = (size_t)s->n, m = (size_t)r->null;
-  gsl_matrix_set_zero(r->basis);
+static bool make_basis(reduction *self, int32_t first) {
+  strut_path_system *system = &self->w->system;
+  size_t n = (size_t)system->n, m = (size_t)self->null;
+  gsl_matrix_set_zero(self->basis);
   for (size_t k = 0; k < m; k++) {
-    gsl_vector_view own = gsl_matrix_subcolumn(r->basis, k, 0, n);
-    gsl_vector_const_view null = gsl_matrix_const_column(s->algebra.vectors, (size_t)first + k);
+    gsl_vector_view own = gsl_matrix_subcolumn(self->basis, k, 0, n);
+    gsl_vector_const_view null =
+        gsl_matrix_const_column(system->algebra.vectors, (size_t)first + k);
     gsl_vector_memcpy(&own.vector, &null.vector);
     for (size_t l = 0; l < k; l++) { /* where the stiffness has no symmetry */
-      gsl_vector_const_view other = gsl_matrix_const_subcolumn(r->basis, l, 0, n);
+      gsl_vector_const_view other = gsl_matrix_const_subcolumn(self->basis, l, 0, n);
       double along;
       gsl_blas_ddot(&own.vector, &other.vector, &along);
       gsl_blas_daxpy(-along, &other.vector, &own.vector);
@@ -328,84 +334,87 @@ static bool make_basis(reduction *r, int32_t first) {
     if (!(length > 0)) return false;
     gsl_vector_scale(&own.vector, 1.0 / length);
   }
-  gsl_matrix_set(r->basis, n, m, 1.0);
-  if (!fill_system(r, r->centre)) return false;
-  gsl_vector_set_zero(r->right);
-  gsl_vector_set(r->right, n + m, 1.0); /* the parameter changes by 1, nothing along the kernel */
-  if (!strut_solve_rows(r->system, r->right, r->order, r->solution)) return false;
-  gsl_vector_const_view change = gsl_vector_const_subvector(r->solution, 0, n + 1);
+  gsl_matrix_set(self->basis, n, m, 1.0);
+  if (!fill_system(self, self->centre)) return false;
+  gsl_vector_set_zero(self->right);
+  gsl_vector_set(self->right, n + m,
+                 1.0); /* the parameter changes by 1, nothing along the kernel */
+  if (!strut_solve_rows(self->system, self->right, self->order, self->solution)) return false;
+  gsl_vector_const_view change = gsl_vector_const_subvector(self->solution, 0, n + 1);
   double length = gsl_blas_dnrm2(&change.vector);
   for (size_t j = 0; j <= n; j++)
-    gsl_matrix_set(r->basis, j, m, gsl_vector_get(&change.vector, j) / length);
+    gsl_matrix_set(self->basis, j, m, gsl_vector_get(&change.vector, j) / length);
   return true;
 }
 
-static bool allocate_reduction(reduction *r) {
-  size_t n = (size_t)r->w->system.n, d = (size_t)r->space;
-  r->basis = strut_arena_matrix(&r->arena, n + 1, d);
-  r->system = strut_arena_matrix(&r->arena, n + d, n + d);
-  r->right = strut_arena_vector(&r->arena, n + d);
-  r->solution = strut_arena_vector(&r->arena, n + d);
-  r->order = strut_arena_order(&r->arena, n + d);
-  if (!r->basis || !r->system || !r->right || !r->solution || !r->order) r->w->failed = true;
-  return !r->w->failed;
+static bool allocate_reduction(reduction *self) {
+  size_t n = (size_t)self->w->system.n, d = (size_t)self->space;
+  self->basis = strut_arena_matrix(&self->arena, n + 1, d);
+  self->system = strut_arena_matrix(&self->arena, n + d, n + d);
+  self->right = strut_arena_vector(&self->arena, n + d);
+  self->solution = strut_arena_vector(&self->arena, n + d);
+  self->order = strut_arena_order(&self->arena, n + d);
+  if (!self->basis || !self->system || !self->right || !self->solution || !self->order)
+    self->w->failed = true;
+  return !self->w->failed;
 }
 
 /*
  * A symmetric structure whose numbers are rounded has an imperfect bifurcation, whose branches pass one another at
  * the cube root of a rounding: half way between them a force of that rounding is all that lacks.
  */
-bool strut_path_is_rounding(strut_path_walk *w, const double *from, const double *to) {
-  strut_path_system *s = &w->system;
-  double b[MOST_NULL], z[MOST_SPACE] = {0}, lack = 0, *centre = w->trial;
-  reduction r = {.w = w, .centre = centre, .radius = RADII[0], .null = 1, .space = 2};
+bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const double *to) {
+  strut_path_system *system = &walk->system;
+  double b[MOST_NULL], z[MOST_SPACE] = {0}, lack = 0, *centre = walk->trial;
+  reduction r = {.w = walk, .centre = centre, .radius = RADII[0], .null = 1, .space = 2};
   int32_t first = 0;
-  for (int32_t i = 0; i < 2 * (s->n + 1); i++) centre[i] = 0.5 * (from[i] + to[i]);
-  if (!strut_path_spectrum(s, centre, STRUT_PATH_VECTORS)) return false;
-  double level = s->spectrum.noise * s->size, stiff = 0;
-  for (int32_t i = 0; i < s->n; i++) {
-    double value = fabs(s->spectrum.value[i]);
+  for (int32_t i = 0; i < 2 * (system->n + 1); i++) centre[i] = 0.5 * (from[i] + to[i]);
+  if (!strut_path_spectrum(system, centre, STRUT_PATH_VECTORS)) return false;
+  double level = system->spectrum.noise * system->size, stiff = 0;
+  for (int32_t i = 0; i < system->n; i++) {
+    double value = fabs(system->spectrum.value[i]);
     stiff = fmax(stiff, value);
-    if (value < fabs(s->spectrum.value[first])) first = i;
+    if (value < fabs(system->spectrum.value[first])) first = i;
   }
-  w->stiff = stiff * s->size;
-  r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(w));
-  w->failed = w->failed || !r.y;
-  bool found = !w->failed && allocate_reduction(&r) && make_basis(&r, first) && reduce(&r, z, b);
-  if (found) lack = fabs(b[0]) * w->stiff;
+  walk->stiff = stiff * system->size;
+  r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(walk));
+  walk->failed = walk->failed || !r.y;
+  bool found = !walk->failed && allocate_reduction(&r) && make_basis(&r, first) && reduce(&r, z, b);
+  if (found) lack = fabs(b[0]) * walk->stiff;
   strut_arena_free(&r.arena);
   return found && lack <= ROUNDED * level;
 }
 
 /* All rays of one radius; false: some could not be had. */
-static bool find_at_radius(reduction *r, strut_path_rays *rays) {
+static bool find_at_radius(reduction *self, strut_path_rays *rays) {
   int32_t first = 0;
-  r->null = count_kernel(r, &first);
-  r->space = r->null + 1;
-  rays->null = r->null;
-  return r->null && allocate_reduction(r) && make_basis(r, first) && fit_polynomial(r) &&
-         search_sphere(r, rays);
+  self->null = count_kernel(self, &first);
+  self->space = self->null + 1;
+  rays->null = self->null;
+  return self->null && allocate_reduction(self) && make_basis(self, first) &&
+         fit_polynomial(self) && search_sphere(self, rays);
 }
 
-static int compare_rays(const void *a, const void *b) {
-  const strut_path_ray *s = a, *t = b;
-  return s->negative != t->negative ? (s->negative > t->negative) - (s->negative < t->negative)
-                                    : (s->order > t->order) - (s->order < t->order);
+static int compare_rays(const void *first, const void *second) {
+  const strut_path_ray *ray = first, *t = second;
+  return ray->negative != t->negative
+             ? (ray->negative > t->negative) - (ray->negative < t->negative)
+             : (ray->order > t->order) - (ray->order < t->order);
 }
 
-void strut_path_find_rays(strut_path_walk *w, const double *y, strut_path_rays *rays) {
+void strut_path_find_rays(strut_path_walk *walk, const double *y, strut_path_rays *rays) {
   strut_path_rays best = {0};
   strut_path_ray *room[2] = {0};
   for (int k = 0; k < 2; k++) {
-    room[k] = strut_arena_allocate(&w->system.arena, STRUT_PATH_RAYS, sizeof *room[k]);
-    w->failed = w->failed || !room[k];
+    room[k] = strut_arena_allocate(&walk->system.arena, STRUT_PATH_RAYS, sizeof *room[k]);
+    walk->failed = walk->failed || !room[k];
   }
   int other = 0;
-  for (size_t i = 0; i < sizeof RADII / sizeof *RADII && !w->failed; i++) {
-    reduction r = {.w = w, .centre = y, .radius = RADII[i]};
+  for (size_t i = 0; i < sizeof RADII / sizeof *RADII && !walk->failed; i++) {
+    reduction r = {.w = walk, .centre = y, .radius = RADII[i]};
     strut_path_rays found = {.ray = room[other], .radius = RADII[i]};
-    r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(w));
-    w->failed = w->failed || !r.y;
+    r.y = strut_arena_allocate(&r.arena, 1, strut_path_bytes(walk));
+    walk->failed = walk->failed || !r.y;
     bool all = r.y && find_at_radius(&r, &found);
     strut_arena_free(&r.arena);
     if (found.count > best.count) best = found, other = 1 - other;

@@ -50,12 +50,12 @@ const char *strut_path_end_word(strut_path_end end) {
   return "";
 }
 
-void strut_path_remark_steps(strut_path_walk *w, int32_t steps) {
-  const strut_path *path = w->path;
+void strut_path_remark_steps(strut_path_walk *walk, int32_t steps) {
+  const strut_path *path = walk->path;
   if (path->end != STRUT_PATH_STEPS || path->point_count == 0) return;
-  snprintf(w->path->remark, sizeof path->remark, "%d steps led to %s %.6g%s%s; --steps allows more",
-           (int)steps, strut_path_subject(w), path->points[path->point_count - 1].at.factor,
-           *path->unit ? " " : "", path->unit);
+  snprintf(walk->path->remark, sizeof path->remark,
+           "%d steps led to %s %.6g%s%s; --steps allows more", (int)steps, strut_path_subject(walk),
+           path->points[path->point_count - 1].at.factor, *path->unit ? " " : "", path->unit);
 }
 
 static strut_status no_such_load(const strut_scene *scene, const char *name, strut_error *error) {
@@ -136,16 +136,16 @@ typedef struct path_start {
 } path_start;
 
 /* Loads of the scene that is followed, at the factor that the path begins with. */
-static bool scale_loads(path_start *b) {
-  const strut_scene *drawn = b->drawn->scene;
-  strut_load *loads = strut_arena_allocate(&b->arena, drawn->load_count, sizeof *loads);
+static bool scale_loads(path_start *self) {
+  const strut_scene *drawn = self->drawn->scene;
+  strut_load *loads = strut_arena_allocate(&self->arena, drawn->load_count, sizeof *loads);
   if (!loads) return false;
-  b->setup.scene.loads = loads;
+  self->setup.scene.loads = loads;
   for (size_t i = 0; i < drawn->load_count; i++) {
     loads[i] = drawn->loads[i];
-    if (!is_followed(&loads[i], b->options->load)) continue;
+    if (!is_followed(&loads[i], self->options->load)) continue;
     loads[i].signal = -1;
-    strut_load_scale(&loads[i], b->options->from);
+    strut_load_scale(&loads[i], self->options->from);
   }
   return true;
 }
@@ -183,60 +183,63 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
 }
 
 /* A support where the path begins. */
-static bool move_support(path_start *b) {
-  const strut_scene *drawn = b->drawn->scene;
-  int32_t at = b->options->index;
-  strut_node *nodes = strut_arena_copy(&b->arena, drawn->nodes, drawn->node_count, sizeof *nodes);
+static bool move_support(path_start *self) {
+  const strut_scene *drawn = self->drawn->scene;
+  int32_t at = self->options->index;
+  strut_node *nodes =
+      strut_arena_copy(&self->arena, drawn->nodes, drawn->node_count, sizeof *nodes);
   if (!nodes) return false;
-  b->setup.scene.nodes = nodes;
-  if (nodes[at / 2].fixed[at % 2]) nodes[at / 2].start[at % 2] += b->options->from;
+  self->setup.scene.nodes = nodes;
+  if (nodes[at / 2].fixed[at % 2]) nodes[at / 2].start[at % 2] += self->options->from;
   return true;
 }
 
 /* Scene and model where the parameter is `from`. */
-static strut_status make_model(path_start *b, strut_error *error) {
-  const strut_path_options *o = b->options;
+static strut_status make_model(path_start *self, strut_error *error) {
+  const strut_path_options *options = self->options;
   strut_status status = STRUT_OK;
   bool made = true;
-  b->setup.scene = *b->drawn->scene;
-  if (o->over == STRUT_PATH_OVER_LOAD) made = scale_loads(b);
-  if (o->over == STRUT_PATH_OVER_COORDINATE) made = move_support(b);
-  if (o->over == STRUT_PATH_OVER_ACTUATOR)
-    status =
-        strut_path_set_actuator(b->drawn, o->index, o->from, &b->arena, &b->setup.scene, error);
+  self->setup.scene = *self->drawn->scene;
+  if (options->over == STRUT_PATH_OVER_LOAD) made = scale_loads(self);
+  if (options->over == STRUT_PATH_OVER_COORDINATE) made = move_support(self);
+  if (options->over == STRUT_PATH_OVER_ACTUATOR)
+    status = strut_path_set_actuator(self->drawn, options->index, options->from, &self->arena,
+                                     &self->setup.scene, error);
   if (!made) return strut_no_memory(error, "");
-  if (o->over == STRUT_PATH_OVER_SCENE) {
-    status = o->scene_at(o->context, o->from, &b->setup, error);
-    b->owned = status == STRUT_OK;
+  if (options->over == STRUT_PATH_OVER_SCENE) {
+    status = options->scene_at(options->context, options->from, &self->setup, error);
+    self->owned = status == STRUT_OK;
   }
-  return status ? status : strut_model_compile(&b->setup.scene, &b->model, error);
+  return status ? status : strut_model_compile(&self->setup.scene, &self->model, error);
 }
 
 /* Laws that fold go on from the piece, and cables that rub with the materials, that the path before left. */
-static void recall(path_start *b) {
-  const strut_path *after = b->options->after;
-  const strut_element_table *t = &b->model->elements;
-  double *rest = (double *)b->model->members.rest; /* of this path alone */
-  for (int32_t i = 0; i < t->count && after; i++) {
-    const strut_element *e = &t->element[i];
-    if (e->law == STRUT_LAW_FOLDING) rest[e->slot + STRUT_CURVE_PIECE] = after->piece[i];
-    for (int32_t k = 0; k + 1 < e->nodes && after->material && strut_has_capstan(e); k++)
-      rest[e->slot + 1 + k] = after->material[e->slot + 1 + k];
+static void recall(path_start *self) {
+  const strut_path *after = self->options->after;
+  const strut_element_table *elements = &self->model->elements;
+  double *rest = (double *)self->model->members.rest; /* of this path alone */
+  for (int32_t i = 0; i < elements->count && after; i++) {
+    const strut_element *element = &elements->element[i];
+    if (element->law == STRUT_LAW_FOLDING)
+      rest[element->slot + STRUT_CURVE_PIECE] = after->piece[i];
+    for (int32_t k = 0; k + 1 < element->nodes && after->material && strut_has_capstan(element);
+         k++)
+      rest[element->slot + 1 + k] = after->material[element->slot + 1 + k];
   }
 }
 
 /* Descends from b->q to an equilibrium, with the `held` coordinates fixed. */
-static strut_status descend_to_rest(const path_start *b, const uint8_t *held, bool without,
+static strut_status descend_to_rest(const path_start *self, const uint8_t *held, bool without,
                                     strut_error *error) {
   strut_potential *potential = NULL;
   strut_minimiser *minimiser = NULL;
   const char *where = without ? "without the load" : "at the start of the path";
-  strut_status status = strut_potential_create(b->model, held, true, &potential, error);
+  strut_status status = strut_potential_create(self->model, held, true, &potential, error);
   if (status == STRUT_OK && potential->n > 0)
     status = strut_minimiser_create(potential, &minimiser, error);
   if (status == STRUT_OK && potential->n > 0) {
-    strut_minimiser_watch(minimiser, b->setup.experiment.interrupt);
-    strut_descent descent = strut_minimise(minimiser, b->q, 0.0);
+    strut_minimiser_watch(minimiser, self->setup.experiment.interrupt);
+    strut_descent descent = strut_minimise(minimiser, self->q, 0.0);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "%s there is no equilibrium to start from: nothing holds the structure; "
@@ -253,110 +256,114 @@ static strut_status descend_to_rest(const path_start *b, const uint8_t *held, bo
 }
 
 /* The equilibrium of that name. Where friction is kept it may hold a shape that is none without it. */
-static strut_status start_at_name(path_start *b, const char *name, strut_error *error) {
+static strut_status start_at_name(path_start *self, const char *name, strut_error *error) {
   strut_rest_state rest;
   strut_status status =
-      strut_rest_state_find(b->model, &b->setup.experiment, name, &b->arena, &rest, error);
+      strut_rest_state_find(self->model, &self->setup.experiment, name, &self->arena, &rest, error);
   if (status) return status;
-  if (!rest.at_rest && !b->options->friction)
+  if (!rest.at_rest && !self->options->friction)
     return strut_fail(error, STRUT_NOT_SETTLED,
                       "'%.100s' is no equilibrium where the path starts: the residual is %.3g N",
                       rest.name, rest.residual);
-  memcpy(b->q, rest.q, (size_t)b->model->length * sizeof *b->q);
+  memcpy(self->q, rest.q, (size_t)self->model->length * sizeof *self->q);
   return STRUT_OK;
 }
 
 /* The equilibrium to begin at, in q. A free coordinate to be displaced is held from then on. */
-static strut_status find_start(path_start *b, strut_error *error) {
-  const strut_path_options *o = b->options;
-  size_t length = (size_t)b->model->length;
-  bool without = o->over == STRUT_PATH_OVER_LOAD && o->from == 0;
-  const strut_settle *settle = &b->setup.experiment.settle;
-  const char *at = o->at                                               ? o->at
-                   : o->friction && settle->wanted && settle->friction ? "start"
-                                                                       : NULL;
-  memcpy(b->q, o->start ? o->start : b->model->start, length * sizeof *b->q);
-  strut_status status = o->start ? STRUT_OK
-                        : at     ? start_at_name(b, at, error)
-                                 : descend_to_rest(b, NULL, without, error);
-  if (status == STRUT_NOT_SETTLED && o->friction && !at)
-    status = start_at_name(b, "start", error); /* friction alone may hold it */
-  if (status || o->over != STRUT_PATH_OVER_COORDINATE || b->model->fixed[o->index]) return status;
-  b->held = strut_arena_allocate(&b->arena, length, sizeof *b->held);
-  if (!b->held) return strut_no_memory(error, "");
-  b->held[o->index] = 1;
-  if (o->from == 0 || o->start) return STRUT_OK;
-  b->q[o->index] += o->from;
-  return descend_to_rest(b, b->held, false, error);
+static strut_status find_start(path_start *self, strut_error *error) {
+  const strut_path_options *options = self->options;
+  size_t length = (size_t)self->model->length;
+  bool without = options->over == STRUT_PATH_OVER_LOAD && options->from == 0;
+  const strut_settle *settle = &self->setup.experiment.settle;
+  const char *at = options->at                                               ? options->at
+                   : options->friction && settle->wanted && settle->friction ? "start"
+                                                                             : NULL;
+  memcpy(self->q, options->start ? options->start : self->model->start, length * sizeof *self->q);
+  strut_status status = options->start ? STRUT_OK
+                        : at           ? start_at_name(self, at, error)
+                                       : descend_to_rest(self, NULL, without, error);
+  if (status == STRUT_NOT_SETTLED && options->friction && !at)
+    status = start_at_name(self, "start", error); /* friction alone may hold it */
+  if (status || options->over != STRUT_PATH_OVER_COORDINATE || self->model->fixed[options->index])
+    return status;
+  self->held = strut_arena_allocate(&self->arena, length, sizeof *self->held);
+  if (!self->held) return strut_no_memory(error, "");
+  self->held[options->index] = 1;
+  if (options->from == 0 || options->start) return STRUT_OK;
+  self->q[options->index] += options->from;
+  return descend_to_rest(self, self->held, false, error);
 }
 
-static strut_status list_held(const path_start *b, strut_path *path, strut_error *error) {
-  size_t length = (size_t)b->model->length;
+static strut_status list_held(const path_start *self, strut_path *path, strut_error *error) {
+  size_t length = (size_t)self->model->length;
   uint8_t *held = strut_arena_allocate(&path->arena, length, sizeof *held);
   if (!held) return strut_no_memory(error, "");
-  for (size_t i = 0; i < length; i++) held[i] = b->model->fixed[i] || (b->held && b->held[i]);
+  for (size_t i = 0; i < length; i++)
+    held[i] = self->model->fixed[i] || (self->held && self->held[i]);
   path->held = held;
   return STRUT_OK;
 }
 
-static bool allocate_walk(strut_path_walk *w) {
-  size_t count = 2 * ((size_t)w->system.n + 1);
-  double **arrays[] = {&w->y,         &w->tangent,      &w->next,   &w->next_tangent, &w->trial,
-                       &w->spare,     &w->upward,       &w->fork,   &w->values,       &w->scale,
-                       &w->part.from, &w->part.tangent, &w->part.to};
+static bool allocate_walk(strut_path_walk *walk) {
+  size_t count = 2 * ((size_t)walk->system.n + 1);
+  double **arrays[] = {&walk->y,      &walk->tangent, &walk->next,      &walk->next_tangent,
+                       &walk->trial,  &walk->spare,   &walk->upward,    &walk->fork,
+                       &walk->values, &walk->scale,   &walk->part.from, &walk->part.tangent,
+                       &walk->part.to};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    *arrays[i] = strut_arena_allocate(&w->system.arena, count, sizeof(double));
+    *arrays[i] = strut_arena_allocate(&walk->system.arena, count, sizeof(double));
     if (!*arrays[i]) return false;
   }
-  w->upward[w->system.n] = 1.0;
-  w->step = 0.01;
+  walk->upward[walk->system.n] = 1.0;
+  walk->step = 0.01;
   return true;
 }
 
 /* Room for bifurcations and the paths that leave them. */
-static bool allocate_branches(strut_path_walk *w) {
-  w->forks.fork = strut_arena_allocate(&w->system.arena, STRUT_PATH_FORKS, sizeof *w->forks.fork);
-  w->path->branches = strut_allocate(STRUT_PATH_BRANCHES, sizeof *w->path->branches);
-  return w->forks.fork && w->path->branches;
+static bool allocate_branches(strut_path_walk *walk) {
+  walk->forks.fork =
+      strut_arena_allocate(&walk->system.arena, STRUT_PATH_FORKS, sizeof *walk->forks.fork);
+  walk->path->branches = strut_allocate(STRUT_PATH_BRANCHES, sizeof *walk->path->branches);
+  return walk->forks.fork && walk->path->branches;
 }
 
-static strut_status create_walk(path_start *b, double until, strut_path_walk *w,
+static strut_status create_walk(path_start *self, double until, strut_path_walk *walk,
                                 strut_error *error) {
-  strut_path_system *s = &w->system;
-  strut_status status = strut_path_system_create(b->model, b->held, s, error);
+  strut_path_system *system = &walk->system;
+  strut_status status = strut_path_system_create(self->model, self->held, system, error);
   if (status) return status;
-  if (s->n > STRUT_PATH_COORDINATES)
+  if (system->n > STRUT_PATH_COORDINATES)
     return strut_fail(error, STRUT_USAGE,
                       "the structure has %d free coordinates; paths are followed with up to %d",
-                      (int)s->n, STRUT_PATH_COORDINATES);
-  if (!allocate_walk(w) || (b->options->branches > 0 && !allocate_branches(w)))
+                      (int)system->n, STRUT_PATH_COORDINATES);
+  if (!allocate_walk(walk) || (self->options->branches > 0 && !allocate_branches(walk)))
     return strut_no_memory(error, "");
-  s->parameter = (strut_path_parameter){.options = b->options,
-                                        .model = b->model,
-                                        .load = b->load,
-                                        .from = b->options->from,
-                                        .range = until - b->options->from};
-  if (b->options->friction) {
-    bool grips = strut_path_friction_create(s);
-    if (!strut_path_guides_create(s, b->options->after)) return strut_no_memory(error, "");
-    w->path->grips = grips || strut_path_has_rubbing(s);
+  system->parameter = (strut_path_parameter){.options = self->options,
+                                             .model = self->model,
+                                             .load = self->load,
+                                             .from = self->options->from,
+                                             .range = until - self->options->from};
+  if (self->options->friction) {
+    bool grips = strut_path_friction_create(system);
+    if (!strut_path_guides_create(system, self->options->after)) return strut_no_memory(error, "");
+    walk->path->grips = grips || strut_path_has_rubbing(system);
   }
-  return strut_path_parameter_create(&s->parameter, b->q, &s->arena, error);
+  return strut_path_parameter_create(&system->parameter, self->q, &system->arena, error);
 }
 
 /* Keeps on which piece of its law each element is, and materials between guides; false: out of memory. */
-static bool keep_pieces(const strut_path_system *s, strut_path *path) {
-  size_t count = (size_t)s->model->elements.count;
+static bool keep_pieces(const strut_path_system *system, strut_path *path) {
+  size_t count = (size_t)system->model->elements.count;
   int *piece = strut_arena_allocate(&path->arena, count + 1, sizeof *piece);
-  for (size_t i = 0; i < count && piece; i++) piece[i] = s->elements.element[i].piece;
+  for (size_t i = 0; i < count && piece; i++) piece[i] = system->elements.element[i].piece;
   path->piece = piece;
-  if (s->elements.material)
-    path->material = strut_arena_copy(&path->arena, s->elements.material,
-                                      (size_t)s->model->members.slots, sizeof(double));
-  if (s->elements.material)
-    path->guide_mode = strut_arena_copy(&path->arena, s->elements.guide_mode,
-                                        (size_t)s->model->members.slots, sizeof(int));
-  return piece && ((path->material && path->guide_mode) || !s->elements.material);
+  if (system->elements.material)
+    path->material = strut_arena_copy(&path->arena, system->elements.material,
+                                      (size_t)system->model->members.slots, sizeof(double));
+  if (system->elements.material)
+    path->guide_mode = strut_arena_copy(&path->arena, system->elements.guide_mode,
+                                        (size_t)system->model->members.slots, sizeof(int));
+  return piece && ((path->material && path->guide_mode) || !system->elements.material);
 }
 
 /* How much of the path, or of its steps, is done. */
@@ -367,23 +374,23 @@ static double part_done(const strut_path *path, double until, int32_t step, int3
   return fmin(1.0, fmax(done, (at - from) / (until - from)));
 }
 
-static strut_status walk_from(path_start *b, double until, int32_t steps, strut_path *path,
+static strut_status walk_from(path_start *self, double until, int32_t steps, strut_path *path,
                               strut_error *error) {
   strut_path_walk w = {.path = path};
-  strut_status status = create_walk(b, until, &w, error);
+  strut_status status = create_walk(self, until, &w, error);
   if (status == STRUT_OK) {
-    strut_path_unplace(&w.system, b->q, w.y);
+    strut_path_unplace(&w.system, self->q, w.y);
     path->end = STRUT_PATH_STEPS;
     bool on = strut_path_walk_begin(&w);
-    for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&b->setup.experiment);
+    for (int32_t i = 0; i < steps && on && !strut_experiment_interrupted(&self->setup.experiment);
          i++) {
       on = strut_path_walk_step(&w);
-      strut_experiment_advance(&b->setup.experiment, part_done(path, until, i, steps));
+      strut_experiment_advance(&self->setup.experiment, part_done(path, until, i, steps));
     }
     strut_path_remark_steps(&w, steps);
     w.failed = w.failed || !keep_pieces(&w.system, path);
     if (w.forks.fork && path->point_count > 0)
-      strut_path_walk_branches(&w, path, &b->setup.experiment);
+      strut_path_walk_branches(&w, path, &self->setup.experiment);
     if (w.system.drifts && path->point_count == 0)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "nothing holds the structure against %s: it moves as a whole",
@@ -403,30 +410,32 @@ static strut_status walk_from(path_start *b, double until, int32_t steps, strut_
 static const double LONGEST_RANGE = 1e100;
 
 /* Unit of what the actuator drives. */
-static const char *unit_of_drive(const strut_actuator *a) {
-  return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
+static const char *unit_of_drive(const strut_actuator *actuator) {
+  return actuator->member >= 0 ? "m" : actuator->hinge >= 0 ? "rad" : "N/m";
 }
 
 /* Names the path's parameter for messages. */
-static strut_status name_parameter(const strut_model *model, const strut_path_options *o,
+static strut_status name_parameter(const strut_model *model, const strut_path_options *options,
                                    strut_path *path, strut_error *error) {
   const strut_scene *scene = model->scene;
-  path->over = o->over;
-  path->friction = o->friction;
+  path->over = options->over;
+  path->friction = options->friction;
   /* The names may be those of a call's options, which do not stay. */
-  if (o->load) path->load = strut_arena_text(&path->arena, o->load, strlen(o->load));
-  path->coordinate = o->over == STRUT_PATH_OVER_COORDINATE ? o->index : -1;
-  path->unit = o->over == STRUT_PATH_OVER_LOAD       ? ""
-               : o->over == STRUT_PATH_OVER_SCENE    ? o->unit
-               : o->over == STRUT_PATH_OVER_ACTUATOR ? unit_of_drive(&scene->actuators[o->index])
-                                                     : "m";
-  if (o->over == STRUT_PATH_OVER_LOAD) path->name = o->load ? path->load : "all loads";
-  if (o->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[o->index].name;
-  if (o->over == STRUT_PATH_OVER_SCENE)
-    path->name = strut_arena_text(&path->arena, o->name, strlen(o->name));
-  if (o->over == STRUT_PATH_OVER_COORDINATE)
-    path->name = strut_arena_format(&path->arena, "%s.%c", scene->nodes[o->index / 2].name,
-                                    o->index % 2 ? 'y' : 'x');
+  if (options->load)
+    path->load = strut_arena_text(&path->arena, options->load, strlen(options->load));
+  path->coordinate = options->over == STRUT_PATH_OVER_COORDINATE ? options->index : -1;
+  path->unit = options->over == STRUT_PATH_OVER_LOAD    ? ""
+               : options->over == STRUT_PATH_OVER_SCENE ? options->unit
+               : options->over == STRUT_PATH_OVER_ACTUATOR
+                   ? unit_of_drive(&scene->actuators[options->index])
+                   : "m";
+  if (options->over == STRUT_PATH_OVER_LOAD) path->name = options->load ? path->load : "all loads";
+  if (options->over == STRUT_PATH_OVER_ACTUATOR) path->name = scene->actuators[options->index].name;
+  if (options->over == STRUT_PATH_OVER_SCENE)
+    path->name = strut_arena_text(&path->arena, options->name, strlen(options->name));
+  if (options->over == STRUT_PATH_OVER_COORDINATE)
+    path->name = strut_arena_format(&path->arena, "%s.%c", scene->nodes[options->index / 2].name,
+                                    options->index % 2 ? 'y' : 'x');
   return path->name ? STRUT_OK : strut_no_memory(error, "");
 }
 

@@ -272,9 +272,9 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
 void strut_path_system_free(strut_path_system *system);
 
 /** y (2 n + 2) from positions of the free coordinates, at the parameter's start. */
-void strut_path_unplace(const strut_path_system *system, const double *q, double *y);
+void strut_path_unplace(const strut_path_system *system, const double *q, double *unknowns);
 /** The parameter's value at y. */
-double strut_path_value(const strut_path_system *system, const double *y);
+double strut_path_value(const strut_path_system *system, const double *unknowns);
 
 /** The force of an element. */
 static inline strut_force *strut_path_element_force(const strut_path_system *system,
@@ -288,7 +288,7 @@ void strut_path_add_force(strut_path_system *system, const strut_force *force,
 void strut_path_add_strain(strut_path_system *system, const strut_force *force, double rate);
 
 /** Everything at y, which need be no equilibrium; false: no scene has this value. */
-bool strut_path_evaluate(strut_path_system *system, const double *y);
+bool strut_path_evaluate(strut_path_system *system, const double *unknowns);
 /** After strut_path_evaluate: reactions (length), normal forces and friction of contacts. */
 void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact,
                           double *friction);
@@ -297,10 +297,11 @@ void strut_path_reactions(const strut_path_system *system, double *reaction, dou
  * Newton's method to equilibrium on the plane row . y = value. Iterations used, or -1: it does not
  * converge.
  */
-int strut_path_correct(strut_path_system *system, const double *row, double value, double *y);
+int strut_path_correct(strut_path_system *system, const double *row, double value,
+                       double *unknowns);
 
 /** The unit tangent with row . tangent > 0; false if the system is singular. */
-bool strut_path_tangent(strut_path_system *system, const double *y, const double *row,
+bool strut_path_tangent(strut_path_system *system, const double *unknowns, const double *row,
                         double *tangent);
 
 /** Detail of the stiffness's spectrum: each level costs several times the previous one. */
@@ -314,7 +315,7 @@ typedef enum strut_path_spectrum_detail {
  * Eigenvalues of the stiffness, ascending, into system->values, vectors into system->vectors, the
  * number of negative ones into system->negative. False: no scene has this value.
  */
-bool strut_path_spectrum(strut_path_system *system, const double *y,
+bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
                          strut_path_spectrum_detail wanted);
 
 /** Cables first, then contacts, corners of their surfaces, and their grips, then elements: what may change along
@@ -329,7 +330,7 @@ int32_t strut_path_first_element_switch(const strut_path_system *system);
  * Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value;
  * -INFINITY for what never changes: members that are no cables, kinks where an element does not act.
  */
-double strut_path_switch_value(strut_path_system *system, int32_t which, const double *y);
+double strut_path_switch_value(strut_path_system *system, int32_t which, const double *unknowns);
 bool strut_path_switch_is_on(const strut_path_system *system, int32_t which);
 void strut_path_switch_set(strut_path_system *system, int32_t which, bool on);
 
@@ -348,13 +349,13 @@ typedef double (*strut_path_measure)(strut_path_system *system, const double *y,
                                      const strut_path_piece *piece, int32_t which);
 
 /** The value of a switch, strut_path_switch_value. */
-double strut_path_measure_switch(strut_path_system *system, const double *y,
+double strut_path_measure_switch(strut_path_system *system, const double *unknowns,
                                  const strut_path_piece *piece, int32_t which);
 /** The same of the grip of a contact; where it slides, how fast the path leads it back. */
-double strut_path_measure_grip(strut_path_system *system, const double *y,
+double strut_path_measure_grip(strut_path_system *system, const double *unknowns,
                                const strut_path_piece *piece, int32_t which);
 /** An eigenvalue of the stiffness, counted from the lowest. */
-double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
+double strut_path_measure_eigenvalue(strut_path_system *system, const double *unknowns,
                                      const strut_path_piece *piece, int32_t which);
 
 /**
@@ -363,7 +364,7 @@ double strut_path_measure_eigenvalue(strut_path_system *system, const double *y,
  * switch leaves the path system->strayed is set, and y is the last point before.
  */
 double strut_path_locate(strut_path_system *system, const strut_path_piece *piece,
-                         strut_path_measure measure, int32_t which, double *y);
+                         strut_path_measure measure, int32_t which, double *unknowns);
 
 /* The walk along a path: what its steps share. For path.c, walk.c, events.c and branches.c. */
 
@@ -456,17 +457,17 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *pi
                                strut_path_ray *way);
 
 /** All paths through y, where eigenvalues vanish; that with walk->tangent is the walk's own. */
-void strut_path_find_rays(strut_path_walk *walk, const double *y, strut_path_rays *rays);
+void strut_path_find_rays(strut_path_walk *walk, const double *unknowns, strut_path_rays *rays);
 /** Does only rounding part two branches that pass between two points? */
 bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const double *to);
 /** Has an element, a cable or a contact to change before the point? */
-bool strut_path_is_switched(strut_path_walk *walk, const double *y);
+bool strut_path_is_switched(strut_path_walk *walk, const double *unknowns);
 
 /** Are branches to be followed from the bifurcation y? */
-bool strut_path_wants_fork(strut_path_walk *walk, const double *y);
+bool strut_path_wants_fork(strut_path_walk *walk, const double *unknowns);
 /** Keeps the bifurcation at y; the walk goes on along `way`, or NULL: along its own path. */
-void strut_path_keep_fork(strut_path_walk *walk, const double *y, const strut_path_rays *rays,
-                          const strut_path_ray *way);
+void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
+                          const strut_path_rays *rays, const strut_path_ray *way);
 /** After the walk along a path: the branches of the bifurcations kept, into path->branches. */
 void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
                               const strut_experiment *experiment);
@@ -527,13 +528,13 @@ static inline bool strut_path_turns(const strut_path_walk *walk, const double *b
   return (a > level && b < -level) || (a < -level && b > level);
 }
 /** a . b over the first n + 1 numbers. */
-double strut_path_dot(const strut_path_walk *walk, const double *a, const double *b);
+double strut_path_dot(const strut_path_walk *walk, const double *first, const double *second);
 /** Distance of two points of the path in y. */
-double strut_path_distance(const strut_path_walk *walk, const double *a, const double *b);
+double strut_path_distance(const strut_path_walk *walk, const double *first, const double *second);
 /** Keeps walk->y; `negative` beyond it. */
 void strut_path_add_point(strut_path_walk *walk, int32_t negative);
 /** Keeps y, in the order of the path. `detail` is copied. */
-void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *y,
+void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *unknowns,
                           int32_t index, int32_t before, int32_t after, const char *detail);
 
 #endif

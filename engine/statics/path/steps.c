@@ -22,44 +22,47 @@ static const double ROUNDED = 30;  /* the same over a step's length, where eleme
 static const double share[PARTS] = {0.23, 0.51, 0.74, 1.0};
 
 /* Is the step the chord of an arc with the tangents of its ends, or a jump to another one beside it? */
-static bool is_arc(const strut_path_walk *w) {
-  double length = strut_path_distance(w, w->next, w->y), sum = 0, aside = 0;
-  for (int32_t i = 0; i <= w->system.n; i++) {
-    double mean = w->tangent[i] + w->next_tangent[i];
+static bool is_arc(const strut_path_walk *walk) {
+  double length = strut_path_distance(walk, walk->next, walk->y), sum = 0, aside = 0;
+  for (int32_t i = 0; i <= walk->system.n; i++) {
+    double mean = walk->tangent[i] + walk->next_tangent[i];
     sum += mean * mean;
   }
-  for (int32_t i = 0; i <= w->system.n; i++) {
-    double mean = (w->tangent[i] + w->next_tangent[i]) / sqrt(sum);
-    double off = (w->next[i] - w->y[i]) / length - mean;
+  for (int32_t i = 0; i <= walk->system.n; i++) {
+    double mean = (walk->tangent[i] + walk->next_tangent[i]) / sqrt(sum);
+    double off = (walk->next[i] - walk->y[i]) / length - mean;
     aside += off * off;
   }
   return aside <= ASIDE * ASIDE;
 }
 
 /* A step of the present length: the next point and its tangent, which may differ from this one as `bend` says. */
-static bool try_step(strut_path_walk *w, double bend) {
-  strut_path_system *s = &w->system;
-  double here = strut_path_dot(w, w->tangent, w->y);
-  memcpy(w->next, w->y, strut_path_bytes(w));
-  for (int32_t i = 0; i <= s->n; i++) w->next[i] += w->step * w->tangent[i];
-  int used = strut_path_correct(s, w->tangent, here + w->step, w->next);
-  return used >= 0 && used <= SLOW && strut_path_distance(w, w->next, w->y) <= 1.5 * w->step &&
-         strut_path_tangent(s, w->next, w->tangent, w->next_tangent) &&
-         strut_path_dot(w, w->tangent, w->next_tangent) >= bend && (bend <= 0.0 || is_arc(w));
+static bool try_step(strut_path_walk *walk, double bend) {
+  strut_path_system *system = &walk->system;
+  double here = strut_path_dot(walk, walk->tangent, walk->y);
+  memcpy(walk->next, walk->y, strut_path_bytes(walk));
+  for (int32_t i = 0; i <= system->n; i++) walk->next[i] += walk->step * walk->tangent[i];
+  int used = strut_path_correct(system, walk->tangent, here + walk->step, walk->next);
+  return used >= 0 && used <= SLOW &&
+         strut_path_distance(walk, walk->next, walk->y) <= 1.5 * walk->step &&
+         strut_path_tangent(system, walk->next, walk->tangent, walk->next_tangent) &&
+         strut_path_dot(walk, walk->tangent, walk->next_tangent) >= bend &&
+         (bend <= 0.0 || is_arc(walk));
 }
 
 /* Cables that meet or leave a circle, or begin to rub, bend a path at once with no switch that says where. */
-static bool has_hidden_kinks(const strut_path_system *s) {
-  return strut_path_has_rubbing(s) || s->model->strains >> STRUT_STRAIN_WRAP & 1u;
+static bool has_hidden_kinks(const strut_path_system *system) {
+  return strut_path_has_rubbing(system) || system->model->strains >> STRUT_STRAIN_WRAP & 1u;
 }
 
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
-static bool find_next(strut_path_walk *w) {
-  for (; w->step >= SHORTEST; w->step *= 0.5)
-    if (try_step(w, BEND)) return true;
-  for (w->step = BLUNT; has_hidden_kinks(&w->system) && w->step >= SHORTEST; w->step *= 0.1)
-    if (try_step(w, 0.0)) return true;
-  w->step = SHORTEST;
+static bool find_next(strut_path_walk *walk) {
+  for (; walk->step >= SHORTEST; walk->step *= 0.5)
+    if (try_step(walk, BEND)) return true;
+  for (walk->step = BLUNT; has_hidden_kinks(&walk->system) && walk->step >= SHORTEST;
+       walk->step *= 0.1)
+    if (try_step(walk, 0.0)) return true;
+  walk->step = SHORTEST;
   return false;
 }
 
@@ -86,12 +89,12 @@ typedef struct check {
   strut_arena arena;
 } check;
 
-static bool allocate_check(const strut_path_walk *w, check *c) {
-  double **arrays[] = {&c->whole.y, &c->whole.tangent, &c->whole.end,
-                       &c->inner.y, &c->inner.tangent, &c->inner.end,
-                       &c->y,       &c->tangent,       &c->next_tangent};
+static bool allocate_check(const strut_path_walk *walk, check *self) {
+  double **arrays[] = {&self->whole.y, &self->whole.tangent, &self->whole.end,
+                       &self->inner.y, &self->inner.tangent, &self->inner.end,
+                       &self->y,       &self->tangent,       &self->next_tangent};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    if (!(*arrays[i] = strut_arena_allocate(&c->arena, 1, strut_path_bytes(w)))) return false;
+    if (!(*arrays[i] = strut_arena_allocate(&self->arena, 1, strut_path_bytes(walk)))) return false;
   return true;
 }
 
@@ -99,14 +102,14 @@ static bool allocate_check(const strut_path_walk *w, check *c) {
  * Eigenvalues below zero where the path continues along a tangent. Elements are evaluated in double: the rounding
  * of their forces moves a soft mode, near zero by more than a short step.
  */
-static bool find_side(strut_path_walk *w, const double *y, const double *tangent, double step,
-                      side *found, bool *blurred) {
-  strut_path_system *s = &w->system;
-  if (!strut_path_spectrum(s, y, STRUT_PATH_SIGNS)) return false;
-  double level = fmax(BLURRED * s->spectrum.noise, ROUNDED / step * s->elements.noise);
-  *found = (side){s->spectrum.negative, way_of(tangent[s->n])};
-  for (int32_t i = 0; i < s->n; i++)
-    if (fabs(s->spectrum.value[i]) < level) *blurred = true;
+static bool find_side(strut_path_walk *walk, const double *unknowns, const double *tangent,
+                      double step, side *found, bool *blurred) {
+  strut_path_system *system = &walk->system;
+  if (!strut_path_spectrum(system, unknowns, STRUT_PATH_SIGNS)) return false;
+  double level = fmax(BLURRED * system->spectrum.noise, ROUNDED / step * system->elements.noise);
+  *found = (side){system->spectrum.negative, way_of(tangent[system->n])};
+  for (int32_t i = 0; i < system->n; i++)
+    if (fabs(system->spectrum.value[i]) < level) *blurred = true;
   return true;
 }
 
@@ -114,78 +117,78 @@ static bool find_side(strut_path_walk *w, const double *y, const double *tangent
  * Takes a part again in shorter steps. False: they end elsewhere, or pass several changes, or one where the
  * part seemed to pass none. Else the part becomes the step on which the change is.
  */
-static bool narrow(strut_path_walk *w, check *c, bool changes) {
-  strut_path_system *s = &w->system;
-  size_t bytes = strut_path_bytes(w);
-  const double *row = c->whole.tangent;
-  double from = strut_path_dot(w, row, c->whole.y);
-  double length = strut_path_dot(w, row, c->whole.end) - from, at = 0;
-  side now = c->whole.before;
+static bool narrow(strut_path_walk *walk, check *self, bool changes) {
+  strut_path_system *system = &walk->system;
+  size_t bytes = strut_path_bytes(walk);
+  const double *row = self->whole.tangent;
+  double from = strut_path_dot(walk, row, self->whole.y);
+  double length = strut_path_dot(walk, row, self->whole.end) - from, at = 0;
+  side now = self->whole.before;
   int found = 0;
-  memcpy(c->y, c->whole.y, bytes);
-  memcpy(c->tangent, c->whole.tangent, bytes);
+  memcpy(self->y, self->whole.y, bytes);
+  memcpy(self->tangent, self->whole.tangent, bytes);
   for (int k = 0; k < PARTS; at = share[k++]) {
-    double step = (share[k] - at) * length / strut_path_dot(w, row, c->tangent);
+    double step = (share[k] - at) * length / strut_path_dot(walk, row, self->tangent);
     side next = now;
-    part *inner = found ? NULL : &c->inner;
+    part *inner = found ? NULL : &self->inner;
     if (inner) {
-      memcpy(inner->y, c->y, bytes);
-      memcpy(inner->tangent, c->tangent, bytes);
+      memcpy(inner->y, self->y, bytes);
+      memcpy(inner->tangent, self->tangent, bytes);
       inner->before = now;
     }
-    for (int32_t i = 0; i <= s->n; i++) c->y[i] += step * c->tangent[i];
-    if (strut_path_correct(s, row, from + share[k] * length, c->y) < 0 ||
-        !strut_path_tangent(s, c->y, c->tangent, c->next_tangent) ||
-        !(strut_path_dot(w, c->tangent, c->next_tangent) >= BEND) ||
-        !find_side(w, c->y, c->next_tangent, length, &next, &c->blurred))
+    for (int32_t i = 0; i <= system->n; i++) self->y[i] += step * self->tangent[i];
+    if (strut_path_correct(system, row, from + share[k] * length, self->y) < 0 ||
+        !strut_path_tangent(system, self->y, self->tangent, self->next_tangent) ||
+        !(strut_path_dot(walk, self->tangent, self->next_tangent) >= BEND) ||
+        !find_side(walk, self->y, self->next_tangent, length, &next, &self->blurred))
       return false;
     if (is_changed(now, next) && found++) return false;
-    if (inner && found) memcpy(inner->end, c->y, bytes);
-    memcpy(c->tangent, c->next_tangent, bytes);
+    if (inner && found) memcpy(inner->end, self->y, bytes);
+    memcpy(self->tangent, self->next_tangent, bytes);
     now = next;
   }
-  if (strut_path_distance(w, c->y, c->whole.end) > SAME * length) return false;
+  if (strut_path_distance(walk, self->y, self->whole.end) > SAME * length) return false;
   if (found != changes) return false;
-  part narrowed = c->inner;
-  if (found) c->inner = c->whole, c->whole = narrowed;
+  part narrowed = self->inner;
+  if (found) self->inner = self->whole, self->whole = narrowed;
   return true;
 }
 
 /* Does the step lead where shorter ones do, with what changes on it at one place? */
-static bool is_confirmed(strut_path_walk *w, check *c, side after) {
-  size_t bytes = strut_path_bytes(w);
-  side before = {w->negative, way_of(w->tangent[w->system.n])};
+static bool is_confirmed(strut_path_walk *walk, check *self, side after) {
+  size_t bytes = strut_path_bytes(walk);
+  side before = {walk->negative, way_of(walk->tangent[walk->system.n])};
   bool changes = is_changed(before, after);
   int32_t crossed = after.negative - before.negative;
   double finest = crossed * crossed == 1 && before.way * after.way < 0 ? PLAIN : FINEST;
-  memcpy(c->whole.y, w->y, bytes);
-  memcpy(c->whole.tangent, w->tangent, bytes);
-  memcpy(c->whole.end, w->next, bytes);
-  c->whole.before = before;
-  c->blurred = false;
-  double length = w->step;
+  memcpy(self->whole.y, walk->y, bytes);
+  memcpy(self->whole.tangent, walk->tangent, bytes);
+  memcpy(self->whole.end, walk->next, bytes);
+  self->whole.before = before;
+  self->blurred = false;
+  double length = walk->step;
   do {
-    if (!narrow(w, c, changes))
-      return length < w->step &&
-             (c->blurred || strut_path_is_rounding(w, c->whole.y, c->whole.end));
-    if (changes && (length > PLACED || !w->part.known)) {
-      memcpy(w->part.from, c->whole.y, bytes);
-      memcpy(w->part.tangent, c->whole.tangent, bytes);
-      memcpy(w->part.to, c->whole.end, bytes);
-      w->part.known = true;
+    if (!narrow(walk, self, changes))
+      return length < walk->step &&
+             (self->blurred || strut_path_is_rounding(walk, self->whole.y, self->whole.end));
+    if (changes && (length > PLACED || !walk->part.known)) {
+      memcpy(walk->part.from, self->whole.y, bytes);
+      memcpy(walk->part.tangent, self->whole.tangent, bytes);
+      memcpy(walk->part.to, self->whole.end, bytes);
+      walk->part.known = true;
     }
-    length = strut_path_distance(w, c->whole.y, c->whole.end);
-  } while (changes && length > finest && !c->blurred);
+    length = strut_path_distance(walk, self->whole.y, self->whole.end);
+  } while (changes && length > finest && !self->blurred);
   return true;
 }
 
 /* May an eigenvalue have passed zero on the step, or be about to? */
-static bool is_critical(const strut_path_walk *w) {
-  const strut_path_system *s = &w->system;
-  for (int32_t i = 0; i < s->n; i++) {
-    double here = w->values[i], there = s->spectrum.value[i];
+static bool is_critical(const strut_path_walk *walk) {
+  const strut_path_system *system = &walk->system;
+  for (int32_t i = 0; i < system->n; i++) {
+    double here = walk->values[i], there = system->spectrum.value[i];
     double near = fmin(fabs(here), fabs(there));
-    if (fabs(there - here) > fmax(SOON * near, BLURRED * s->spectrum.noise)) return true;
+    if (fabs(there - here) > fmax(SOON * near, BLURRED * system->spectrum.noise)) return true;
   }
   return false;
 }
@@ -194,27 +197,27 @@ static bool is_critical(const strut_path_walk *w) {
  * Near a limit point or bifurcation other solutions lie nearer than the step is long, and Newton's method may
  * end on one of them. There a step counts only if shorter ones find the same.
  */
-bool strut_path_find_next(strut_path_walk *w) {
-  strut_path_system *s = &w->system;
+bool strut_path_find_next(strut_path_walk *walk) {
+  strut_path_system *system = &walk->system;
   check c = {0};
-  w->part.known = false;
-  bool found = find_next(w), done = !found || w->negative < 0;
-  while (!done && w->step > FINEST) {
+  walk->part.known = false;
+  bool found = find_next(walk), done = !found || walk->negative < 0;
+  while (!done && walk->step > FINEST) {
     side after = {0};
     bool blurred = false;
-    if (!find_side(w, w->next, w->next_tangent, w->step, &after, &blurred)) break;
-    side before = {w->negative, way_of(w->tangent[s->n])};
-    if (!is_changed(before, after) && !is_critical(w)) break;
-    w->failed = w->failed || (!c.whole.y && !allocate_check(w, &c));
-    done = w->failed || is_confirmed(w, &c, after);
+    if (!find_side(walk, walk->next, walk->next_tangent, walk->step, &after, &blurred)) break;
+    side before = {walk->negative, way_of(walk->tangent[system->n])};
+    if (!is_changed(before, after) && !is_critical(walk)) break;
+    walk->failed = walk->failed || (!c.whole.y && !allocate_check(walk, &c));
+    done = walk->failed || is_confirmed(walk, &c, after);
     if (done) break;
-    w->part.known = false;
-    double whole = w->step;
-    w->step *= 1.0 / PARTS;
-    if (find_next(w) && w->step < whole) continue;
-    w->step = whole; /* no shorter step succeeds, or only a longer one over a kink: so be it */
-    found = find_next(w), done = true;
+    walk->part.known = false;
+    double whole = walk->step;
+    walk->step *= 1.0 / PARTS;
+    if (find_next(walk) && walk->step < whole) continue;
+    walk->step = whole; /* no shorter step succeeds, or only a longer one over a kink: so be it */
+    found = find_next(walk), done = true;
   }
   strut_arena_free(&c.arena);
-  return found && !w->failed;
+  return found && !walk->failed;
 }

@@ -14,134 +14,139 @@
 
 enum { ENTRIES = 4 }; /* of a column at most */
 
-static void add_entry(strut_equilibrium_matrix *a, int32_t row, double value) {
+static void add_entry(strut_equilibrium_matrix *matrix, int32_t row, double value) {
   if (row < 0 || value == 0.0) return;
-  int32_t at = a->start[a->columns]++;
-  a->row[at] = row;
-  a->value[at] = value;
+  int32_t at = matrix->start[matrix->columns]++;
+  matrix->row[at] = row;
+  matrix->value[at] = value;
 }
 
-static int compare_rows(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
+static int compare_rows(const void *first, const void *second) {
+  const double x = *(const double *)first, y = *(const double *)second;
   return x < y ? -1 : x > y;
 }
 
 /* The column after the last: the gradient of a force times `scale`, with the entries of a node that it meets twice summed. */
-static void add_gradient(const strut_force *force, double scale, strut_equilibrium_matrix *a) {
+static void add_gradient(const strut_force *force, double scale, strut_equilibrium_matrix *matrix) {
   double entry[STRUT_MOST_GRADIENT][2];
   size_t count = 0;
-  int32_t j = a->columns++;
-  a->start[j + 1] = a->start[j];
-  a->curved[j] = -1;
+  int32_t j = matrix->columns++;
+  matrix->start[j + 1] = matrix->start[j];
+  matrix->curved[j] = -1;
   for (int32_t k = 0; k < 2 * force->nodes; k++) {
-    int32_t row = a->row_of[strut_force_coordinate(force, k)];
+    int32_t row = matrix->row_of[strut_force_coordinate(force, k)];
     if (row >= 0) entry[count][0] = row, entry[count++][1] = scale * force->pose.b[k];
   }
   qsort(entry, count, sizeof entry[0], compare_rows);
   for (size_t k = 0; k < count; k++) {
     double sum = entry[k][1];
     while (k + 1 < count && entry[k + 1][0] == entry[k][0]) sum += entry[++k][1];
-    add_entry(a, (int32_t)entry[k][0], sum);
+    add_entry(matrix, (int32_t)entry[k][0], sum);
   }
-  a->scale[j] = scale;
-  a->length[j] = scale * force->pose.strain;
+  matrix->scale[j] = scale;
+  matrix->length[j] = scale * force->pose.strain;
 }
 
 /* The column of an element, and what its forces lend to motions across it, where that bends; false: out of memory. */
 static bool add_element(const strut_model *model, const strut_element *e, const double *q,
-                        strut_arena *arena, strut_equilibrium_matrix *a) {
+                        strut_arena *arena, strut_equilibrium_matrix *matrix) {
   strut_force force;
-  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / a->size
-                 : e->role == STRUT_ELEMENT_HINGE ? a->size
+  double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / matrix->size
+                 : e->role == STRUT_ELEMENT_HINGE ? matrix->size
                                                   : 1.0;
-  int32_t element = (int32_t)(e - model->elements.element), j = a->columns;
+  int32_t element = (int32_t)(e - model->elements.element), j = matrix->columns;
   strut_force_begin(model, model->members.count + element, &force);
   strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &force.pose);
-  add_gradient(&force, scale, a);
+  add_gradient(&force, scale, matrix);
   if (strut_element_is_of_member(e) && e->strain == STRUT_STRAIN_LENGTH) return true;
   size_t n = 2 * (size_t)e->nodes;
-  double *bend = a->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
+  double *bend = matrix->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
   if (!bend) return false;
-  a->curved[j] = element;
+  matrix->curved[j] = element;
   strut_element_bend(model, element, q, scale, bend);
-  double largest = a->curvature[j] = strut_largest_magnitude(bend, (ptrdiff_t)(n * n));
+  double largest = matrix->curvature[j] = strut_largest_magnitude(bend, (ptrdiff_t)(n * n));
   for (size_t k = 0; k < n * n && largest > 0; k++) bend[k] /= largest;
   return true;
 }
 
 static bool add_member(const strut_model *model, const double *q, strut_arena *arena,
-                       strut_equilibrium_matrix *a) {
-  const strut_member_table *t = &model->members;
-  int32_t j = a->columns;
-  strut_member_pose pose = strut_member_pose_at(t, t->rest, j, q);
+                       strut_equilibrium_matrix *matrix) {
+  const strut_member_table *members = &model->members;
+  int32_t j = matrix->columns;
+  strut_member_pose pose = strut_member_pose_at(members, members->rest, j, q);
   strut_force force;
-  a->direction[j][0] = pose.unit.x, a->direction[j][1] = pose.unit.y;
+  matrix->direction[j][0] = pose.unit.x, matrix->direction[j][1] = pose.unit.y;
   if (strut_member_is_element(&model->elements, j))
-    return add_element(model, strut_element_of_member(&model->elements, j), q, arena, a);
+    return add_element(model, strut_element_of_member(&model->elements, j), q, arena, matrix);
   strut_force_begin(model, j, &force);
-  strut_force_set_member(t->stiffness[j], 0.0, pose.unit, pose.length, pose.stretch, &force);
-  add_gradient(&force, 1.0, a);
+  strut_force_set_member(members->stiffness[j], 0.0, pose.unit, pose.length, pose.stretch, &force);
+  add_gradient(&force, 1.0, matrix);
   return true;
 }
 
 /* Hinges in the scene's order, then cells, then distances. */
 static bool add_elements(const strut_model *model, const double *q, strut_arena *arena,
-                         strut_equilibrium_matrix *a) {
-  const strut_element_table *t = &model->elements;
+                         strut_equilibrium_matrix *matrix) {
+  const strut_element_table *elements = &model->elements;
   size_t hinges = model->scene->hinge_count, cells = hinges + model->scene->cell_count,
          all = cells + model->scene->distance_count;
   const strut_element **element = strut_arena_allocate(arena, all + 1, sizeof *element);
   if (!element) return false;
-  for (int32_t i = 0; i < t->count; i++) {
-    const strut_element *e = &t->element[i];
+  for (int32_t i = 0; i < elements->count; i++) {
+    const strut_element *e = &elements->element[i];
     if (e->role == STRUT_ELEMENT_HINGE) element[e->item] = e;
     if (e->role == STRUT_ELEMENT_CELL) element[hinges + (size_t)e->item] = e;
     if (e->role == STRUT_ELEMENT_DISTANCE) element[cells + (size_t)e->item] = e;
   }
   for (size_t i = 0; i < all; i++)
-    if (!add_element(model, element[i], q, arena, a)) return false;
+    if (!add_element(model, element[i], q, arena, matrix)) return false;
   return true;
 }
 
 strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *q,
-                                            strut_arena *arena, strut_equilibrium_matrix *a) {
+                                            strut_arena *arena, strut_equilibrium_matrix *matrix) {
   size_t members = (size_t)model->members.count, length = (size_t)model->length;
   size_t columns = (size_t)strut_equilibrium_columns(model);
-  *a = (strut_equilibrium_matrix){.members = model->members.count,
-                                  .size = model->size > 0 ? model->size : 1.0};
-  a->coordinate = strut_arena_allocate(arena, length, sizeof *a->coordinate);
-  a->row_of = strut_arena_allocate(arena, length, sizeof *a->row_of);
-  a->length = strut_arena_allocate(arena, columns + 1, sizeof *a->length);
-  a->scale = strut_arena_allocate(arena, columns + 1, sizeof *a->scale);
-  a->direction = strut_arena_allocate(arena, columns + 1, sizeof *a->direction);
-  a->start = strut_arena_allocate(arena, columns + 1, sizeof *a->start);
-  a->curved = strut_arena_allocate(arena, columns + 1, sizeof *a->curved);
-  a->curvature = strut_arena_allocate(arena, columns + 1, sizeof *a->curvature);
-  a->bend = strut_arena_allocate(arena, columns + 1, sizeof *a->bend);
+  *matrix = (strut_equilibrium_matrix){.members = model->members.count,
+                                       .size = model->size > 0 ? model->size : 1.0};
+  matrix->coordinate = strut_arena_allocate(arena, length, sizeof *matrix->coordinate);
+  matrix->row_of = strut_arena_allocate(arena, length, sizeof *matrix->row_of);
+  matrix->length = strut_arena_allocate(arena, columns + 1, sizeof *matrix->length);
+  matrix->scale = strut_arena_allocate(arena, columns + 1, sizeof *matrix->scale);
+  matrix->direction = strut_arena_allocate(arena, columns + 1, sizeof *matrix->direction);
+  matrix->start = strut_arena_allocate(arena, columns + 1, sizeof *matrix->start);
+  matrix->curved = strut_arena_allocate(arena, columns + 1, sizeof *matrix->curved);
+  matrix->curvature = strut_arena_allocate(arena, columns + 1, sizeof *matrix->curvature);
+  matrix->bend = strut_arena_allocate(arena, columns + 1, sizeof *matrix->bend);
   size_t most = ENTRIES * members + 1;
   for (int32_t i = 0; i < model->elements.count; i++)
     most += 2 * (size_t)model->elements.element[i].nodes;
-  a->row = strut_arena_allocate(arena, most, sizeof *a->row);
-  a->value = strut_arena_allocate(arena, most, sizeof *a->value);
-  if (!a->coordinate || !a->row_of || !a->length || !a->scale || !a->direction || !a->start ||
-      !a->row || !a->value || !a->curved || !a->curvature || !a->bend)
+  matrix->row = strut_arena_allocate(arena, most, sizeof *matrix->row);
+  matrix->value = strut_arena_allocate(arena, most, sizeof *matrix->value);
+  if (!matrix->coordinate || !matrix->row_of || !matrix->length || !matrix->scale ||
+      !matrix->direction || !matrix->start || !matrix->row || !matrix->value || !matrix->curved ||
+      !matrix->curvature || !matrix->bend)
     return STRUT_NO_MEMORY;
-  a->rows = strut_number_free(model, NULL, a->row_of, a->coordinate);
+  matrix->rows = strut_number_free(model, NULL, matrix->row_of, matrix->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
-    if (!add_member(model, q, arena, a)) return STRUT_NO_MEMORY;
-  return add_elements(model, q, arena, a) ? STRUT_OK : STRUT_NO_MEMORY;
+    if (!add_member(model, q, arena, matrix)) return STRUT_NO_MEMORY;
+  return add_elements(model, q, arena, matrix) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
-void strut_equilibrium_multiply(const strut_equilibrium_matrix *a, const double *t, double *y) {
-  memset(y, 0, (size_t)a->rows * sizeof *y);
-  for (int32_t j = 0; j < a->columns; j++)
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++) y[a->row[k]] += a->value[k] * t[j];
+void strut_equilibrium_multiply(const strut_equilibrium_matrix *matrix, const double *t,
+                                double *y) {
+  memset(y, 0, (size_t)matrix->rows * sizeof *y);
+  for (int32_t j = 0; j < matrix->columns; j++)
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
+      y[matrix->row[k]] += matrix->value[k] * t[j];
 }
 
-void strut_equilibrium_elongate(const strut_equilibrium_matrix *a, const double *d, double *e) {
-  for (int32_t j = 0; j < a->columns; j++) {
+void strut_equilibrium_elongate(const strut_equilibrium_matrix *matrix, const double *change,
+                                double *e) {
+  for (int32_t j = 0; j < matrix->columns; j++) {
     e[j] = 0.0;
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++) e[j] += a->value[k] * d[a->row[k]];
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
+      e[j] += matrix->value[k] * change[matrix->row[k]];
   }
 }
 
@@ -154,63 +159,64 @@ typedef struct sums {
 } sums;
 
 /* Along its strain into the elastic part, across it into the geometric one; contacts into one of their own. */
-static void add_force(sums *s, const strut_force *force) {
+static void add_force(sums *self, const strut_force *force) {
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   int32_t n = 2 * force->nodes;
   bool contact = force->kind == STRUT_FORCE_CONTACT;
-  strut_triplets *elastic = contact ? &s->contact : &s->elastic;
-  s->touching += contact;
+  strut_triplets *elastic = contact ? &self->contact : &self->elastic;
+  self->touching += contact;
   if (contact || !(force->pose.strain > 0.0 || force->kind == STRUT_FORCE_ELEMENT)) {
-    strut_force_stiffness(s->model, force, s->q,
+    strut_force_stiffness(self->model, force, self->q,
                           k); /* or an isotropic spring, which has no direction */
-    if (contact || force->across > 0.0) strut_force_add(force, k, s->row_of, elastic);
+    if (contact || force->across > 0.0) strut_force_add(force, k, self->row_of, elastic);
     return;
   }
   strut_force_square(force, force->pose.slope, k);
-  strut_force_add(force, k, s->row_of, elastic);
+  strut_force_add(force, k, self->row_of, elastic);
   memset(k, 0, (size_t)(n * n) * sizeof *k);
-  strut_force_bend(s->model, force, s->q, 1.0, k);
-  strut_force_add(force, k, s->row_of, &s->geometric);
+  strut_force_bend(self->model, force, self->q, 1.0, k);
+  strut_force_add(force, k, self->row_of, &self->geometric);
 }
 
 /* Masses at the ends of a member, and what both share. */
-static void add_ends(sums *s, const uint32_t end[2], double first, double second, double shared) {
+static void add_ends(sums *self, const uint32_t end[2], double first, double second,
+                     double shared) {
   for (uint32_t k = 0; k < 2; k++) {
-    int32_t a = s->row_of[end[0] + k], b = s->row_of[end[1] + k];
-    if (a >= 0) strut_triplets_add(&s->mass, a, a, first);
-    if (b >= 0) strut_triplets_add(&s->mass, b, b, second);
-    if (a >= 0 && b >= 0 && shared > 0.0) strut_triplets_add(&s->mass, a, b, shared);
+    int32_t a = self->row_of[end[0] + k], b = self->row_of[end[1] + k];
+    if (a >= 0) strut_triplets_add(&self->mass, a, a, first);
+    if (b >= 0) strut_triplets_add(&self->mass, b, b, second);
+    if (a >= 0 && b >= 0 && shared > 0.0) strut_triplets_add(&self->mass, a, b, shared);
   }
 }
 
-static void add_masses(const strut_model *model, sums *s) {
-  const strut_member_table *t = &model->members;
+static void add_masses(const strut_model *model, sums *self) {
+  const strut_member_table *members = &model->members;
   bool consistent = model->scene->mass_model == STRUT_MASS_CONSISTENT;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
-    int32_t row = s->row_of[at];
-    if (row >= 0) strut_triplets_add(&s->mass, row, row, model->point_mass[at / 2]);
+    int32_t row = self->row_of[at];
+    if (row >= 0) strut_triplets_add(&self->mass, row, row, model->point_mass[at / 2]);
   }
-  for (int32_t j = 0; j < t->count; j++) {
-    const uint32_t end[2] = {t->from[j], t->to[j]};
-    double own = consistent ? t->mass[j] / 3.0 : t->mass[j] / 2.0;
-    add_ends(s, end, own, own, consistent ? t->mass[j] / 6.0 : 0.0);
+  for (int32_t j = 0; j < members->count; j++) {
+    const uint32_t end[2] = {members->from[j], members->to[j]};
+    double own = consistent ? members->mass[j] / 3.0 : members->mass[j] / 2.0;
+    add_ends(self, end, own, own, consistent ? members->mass[j] / 6.0 : 0.0);
   }
   for (int32_t i = 0; i < model->sliding.count; i++) {
     const strut_sliding_item *item = &model->sliding.item[i];
     double far = item->start, near = 1.0 - far;
-    add_ends(s, item->at, item->mass * near * near, item->mass * far * far,
+    add_ends(self, item->at, item->mass * near * near, item->mass * far * far,
              item->mass * near * far);
   }
 }
 
-static bool reserve(const strut_model *model, sums *s, strut_arena *scratch) {
+static bool reserve(const strut_model *model, sums *self, strut_arena *scratch) {
   size_t members = (size_t)model->members.count, contacts = (size_t)model->contacts.count;
   size_t most = strut_tangent_entries(model, false), sliding = (size_t)model->sliding.count;
-  return strut_triplets_reserve(&s->mass, (size_t)model->length + 6 * (members + sliding),
+  return strut_triplets_reserve(&self->mass, (size_t)model->length + 6 * (members + sliding),
                                 scratch) &&
-         strut_triplets_reserve(&s->elastic, most + 1, scratch) &&
-         strut_triplets_reserve(&s->geometric, most + 1, scratch) &&
-         strut_triplets_reserve(&s->contact, 3 * contacts + 1, scratch);
+         strut_triplets_reserve(&self->elastic, most + 1, scratch) &&
+         strut_triplets_reserve(&self->geometric, most + 1, scratch) &&
+         strut_triplets_reserve(&self->contact, 3 * contacts + 1, scratch);
 }
 
 strut_status strut_linear_matrices_build(const strut_model *model, const double *q,
@@ -256,64 +262,64 @@ typedef struct tall {
   double *u, *v, *s, *work;
 } tall;
 
-static bool allocate_tall(const strut_equilibrium_matrix *a, strut_arena *arena, tall *t) {
-  t->turned = a->columns > a->rows;
-  t->rows = (size_t)(t->turned ? a->columns : a->rows);
-  t->columns = (size_t)(t->turned ? a->rows : a->columns);
-  t->u = strut_arena_allocate(arena, t->rows * t->columns + 1, sizeof(double));
-  t->v = strut_arena_allocate(arena, t->columns * t->columns + 1, sizeof(double));
-  t->s = strut_arena_allocate(arena, t->columns + 1, sizeof(double));
-  t->work = strut_arena_allocate(arena, t->columns + 1, sizeof(double));
-  return t->u && t->v && t->s && t->work;
+static bool allocate_tall(const strut_equilibrium_matrix *matrix, strut_arena *arena, tall *self) {
+  self->turned = matrix->columns > matrix->rows;
+  self->rows = (size_t)(self->turned ? matrix->columns : matrix->rows);
+  self->columns = (size_t)(self->turned ? matrix->rows : matrix->columns);
+  self->u = strut_arena_allocate(arena, self->rows * self->columns + 1, sizeof(double));
+  self->v = strut_arena_allocate(arena, self->columns * self->columns + 1, sizeof(double));
+  self->s = strut_arena_allocate(arena, self->columns + 1, sizeof(double));
+  self->work = strut_arena_allocate(arena, self->columns + 1, sizeof(double));
+  return self->u && self->v && self->s && self->work;
 }
 
-static void fill_tall(const strut_equilibrium_matrix *a, tall *t) {
-  for (int32_t j = 0; j < a->columns; j++)
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++) {
-      size_t row = (size_t)(t->turned ? j : a->row[k]);
-      size_t column = (size_t)(t->turned ? a->row[k] : j);
-      t->u[row * t->columns + column] = a->value[k];
+static void fill_tall(const strut_equilibrium_matrix *matrix, tall *self) {
+  for (int32_t j = 0; j < matrix->columns; j++)
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++) {
+      size_t row = (size_t)(self->turned ? j : matrix->row[k]);
+      size_t column = (size_t)(self->turned ? matrix->row[k] : j);
+      self->u[row * self->columns + column] = matrix->value[k];
     }
 }
 
 /* Not by GSL's one-sided Jacobi: it stops early where several values are zero. */
-static int decompose(tall *t) {
-  gsl_matrix_view u = gsl_matrix_view_array(t->u, t->rows, t->columns);
-  gsl_matrix_view v = gsl_matrix_view_array(t->v, t->columns, t->columns);
-  gsl_vector_view s = gsl_vector_view_array(t->s, t->columns);
-  gsl_vector_view work = gsl_vector_view_array(t->work, t->columns);
+static int decompose(tall *self) {
+  gsl_matrix_view u = gsl_matrix_view_array(self->u, self->rows, self->columns);
+  gsl_matrix_view v = gsl_matrix_view_array(self->v, self->columns, self->columns);
+  gsl_vector_view s = gsl_vector_view_array(self->s, self->columns);
+  gsl_vector_view work = gsl_vector_view_array(self->work, self->columns);
   return gsl_linalg_SV_decomp(&u.matrix, &v.matrix, &s.vector, &work.vector);
 }
 
-static void decide_rank(const tall *t, strut_null_spaces *spaces) {
-  int32_t rank = 0, count = (int32_t)t->columns;
-  spaces->largest = t->s[0];
-  while (rank < count && t->s[rank] > STRUT_RANK_TOLERANCE * t->s[0]) rank++;
+static void decide_rank(const tall *self, strut_null_spaces *spaces) {
+  int32_t rank = 0, count = (int32_t)self->columns;
+  spaces->largest = self->s[0];
+  while (rank < count && self->s[rank] > STRUT_RANK_TOLERANCE * self->s[0]) rank++;
   spaces->rank = rank;
-  spaces->kept = rank > 0 ? t->s[rank - 1] : 0.0;
-  spaces->dropped = rank < count ? t->s[rank] : 0.0;
-  for (int32_t i = 0; i < rank; i++) spaces->weak += t->s[i] < STRUT_WEAK * t->s[0];
+  spaces->kept = rank > 0 ? self->s[rank - 1] : 0.0;
+  spaces->dropped = rank < count ? self->s[rank] : 0.0;
+  for (int32_t i = 0; i < rank; i++) spaces->weak += self->s[i] < STRUT_WEAK * self->s[0];
 }
 
 /* The right singular vectors of the values dropped, row by row. */
-static double *right_null(const tall *t, size_t rank, strut_arena *arena) {
-  size_t n = t->columns, count = n - rank;
+static double *right_null(const tall *self, size_t rank, strut_arena *arena) {
+  size_t n = self->columns, count = n - rank;
   double *basis = strut_arena_allocate(arena, count * n + 1, sizeof *basis);
   for (size_t i = 0; basis && i < count; i++)
-    for (size_t k = 0; k < n; k++) basis[i * n + k] = t->v[k * n + rank + i];
+    for (size_t k = 0; k < n; k++) basis[i * n + k] = self->v[k * n + rank + i];
   return basis;
 }
 
 /* Basis orthogonal to the left singular vectors kept: the last columns of the Q of their QR. */
-static double *left_null(const tall *t, size_t rank, strut_arena *scratch, strut_arena *arena) {
-  size_t m = t->rows, count = m - rank;
+static double *left_null(const tall *self, size_t rank, strut_arena *scratch, strut_arena *arena) {
+  size_t m = self->rows, count = m - rank;
   double *basis = strut_arena_allocate(arena, count * m + 1, sizeof *basis);
   double *qr = strut_arena_allocate(scratch, m * rank + 1, sizeof *qr);
   double *tau = strut_arena_allocate(scratch, rank + 1, sizeof *tau);
   double *unit = strut_arena_allocate(scratch, m, sizeof *unit);
   if (!basis || !qr || !tau || !unit) return NULL;
   for (size_t i = 0; i < m; i++)
-    for (size_t k = 0; k < rank; k++) qr[i * rank + k] = t->u[i * t->columns + k];
+    for (size_t k = 0; k < rank; k++) qr[i * rank + k] = self->u[i * self->columns + k];
   if (rank > 0) {
     gsl_matrix_view view = gsl_matrix_view_array(qr, m, rank);
     gsl_vector_view scale = gsl_vector_view_array(tau, rank);
@@ -334,30 +340,30 @@ static double *left_null(const tall *t, size_t rank, strut_arena *scratch, strut
 }
 
 /* Without rows or columns: rank 0, and unit vectors. */
-static strut_status trivial(const strut_equilibrium_matrix *a, strut_arena *arena,
+static strut_status trivial(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                             strut_null_spaces *spaces, strut_error *error) {
-  size_t n = (size_t)(a->columns + a->rows);
-  spaces->states = a->columns, spaces->motions = a->rows;
+  size_t n = (size_t)(matrix->columns + matrix->rows);
+  spaces->states = matrix->columns, spaces->motions = matrix->rows;
   if (n > MOST_VECTORS) return STRUT_OK;
   double *basis = strut_arena_allocate(arena, n * n + 1, sizeof *basis);
   if (!basis) return strut_no_memory(error, "");
   for (size_t i = 0; i < n; i++) basis[i * n + i] = 1.0;
-  spaces->state = a->columns ? basis : NULL;
-  spaces->motion = a->rows ? basis : NULL;
+  spaces->state = matrix->columns ? basis : NULL;
+  spaces->motion = matrix->rows ? basis : NULL;
   return STRUT_OK;
 }
 
-strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_arena *arena,
+strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                                      strut_null_spaces *spaces, strut_error *error) {
   *spaces = (strut_null_spaces){.dense = true};
-  if (a->rows == 0 || a->columns == 0) return trivial(a, arena, spaces, error);
+  if (matrix->rows == 0 || matrix->columns == 0) return trivial(matrix, arena, spaces, error);
   strut_arena scratch = {0};
   strut_status status = STRUT_OK;
   tall t = {0};
-  if (!allocate_tall(a, &scratch, &t)) {
+  if (!allocate_tall(matrix, &scratch, &t)) {
     status = strut_no_memory(error, "");
   } else {
-    fill_tall(a, &t);
+    fill_tall(matrix, &t);
     if (decompose(&t) != 0)
       status = strut_fail(error, STRUT_SINGULAR,
                           "the singular values of the equilibrium matrix did not converge");
@@ -366,7 +372,7 @@ strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_ar
     decide_rank(&t, spaces);
     size_t rank = (size_t)spaces->rank;
     double *right = right_null(&t, rank, arena), *left = left_null(&t, rank, &scratch, arena);
-    spaces->states = a->columns - spaces->rank, spaces->motions = a->rows - spaces->rank;
+    spaces->states = matrix->columns - spaces->rank, spaces->motions = matrix->rows - spaces->rank;
     spaces->state = t.turned ? left : right, spaces->motion = t.turned ? right : left;
     if (!right || !left) status = strut_no_memory(error, "");
   }
@@ -378,27 +384,27 @@ static bool few(int32_t count, int32_t length) {
   return count > 0 && count <= MOST_VECTORS && (int64_t)count * length <= MOST_NUMBERS;
 }
 
-strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_arena *arena,
+strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                                       strut_null_spaces *spaces, strut_error *error) {
   *spaces = (strut_null_spaces){.dropped = (double)NAN};
-  if (a->rows == 0 || a->columns == 0) return trivial(a, arena, spaces, error);
+  if (matrix->rows == 0 || matrix->columns == 0) return trivial(matrix, arena, spaces, error);
   strut_sparse_qr *qr = NULL;
   const strut_sparse_algebra_library *sparse = NULL;
   strut_status status = strut_sparse_algebra_load(&sparse, error);
   if (status != STRUT_OK) return status;
-  status =
-      sparse->create_qr(&(strut_sparse_columns){a->rows, a->columns, a->start, a->row, a->value},
-                        STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
+  status = sparse->create_qr(&(strut_sparse_columns){matrix->rows, matrix->columns, matrix->start,
+                                                     matrix->row, matrix->value},
+                             STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
   if (status != STRUT_OK) return status;
-  size_t rows = (size_t)a->rows, columns = (size_t)a->columns;
+  size_t rows = (size_t)matrix->rows, columns = (size_t)matrix->columns;
   spaces->rank = sparse->rank(qr);
   sparse->diagonal(qr, &spaces->kept, &spaces->largest);
-  spaces->states = a->columns - spaces->rank, spaces->motions = a->rows - spaces->rank;
-  if (few(spaces->states, a->columns)) {
+  spaces->states = matrix->columns - spaces->rank, spaces->motions = matrix->rows - spaces->rank;
+  if (few(spaces->states, matrix->columns)) {
     spaces->state = strut_arena_allocate(arena, (size_t)spaces->states * columns, sizeof(double));
     if (!spaces->state) status = strut_no_memory(error, "");
   }
-  if (few(spaces->motions, a->rows)) {
+  if (few(spaces->motions, matrix->rows)) {
     spaces->motion = strut_arena_allocate(arena, (size_t)spaces->motions * rows, sizeof(double));
     if (!spaces->motion) status = strut_no_memory(error, "");
   }
@@ -410,10 +416,10 @@ strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_a
   return status;
 }
 
-strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a, strut_arena *arena,
+strut_status strut_null_spaces_find(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                                     strut_null_spaces *spaces, strut_error *error) {
-  assert(a->rows >= 0 && a->columns >= 0);
-  int32_t most = a->rows > a->columns ? a->rows : a->columns;
-  return most <= STRUT_DENSE_RIGIDITY ? strut_null_spaces_dense(a, arena, spaces, error)
-                                      : strut_null_spaces_sparse(a, arena, spaces, error);
+  assert(matrix->rows >= 0 && matrix->columns >= 0);
+  int32_t most = matrix->rows > matrix->columns ? matrix->rows : matrix->columns;
+  return most <= STRUT_DENSE_RIGIDITY ? strut_null_spaces_dense(matrix, arena, spaces, error)
+                                      : strut_null_spaces_sparse(matrix, arena, spaces, error);
 }

@@ -35,105 +35,109 @@ typedef struct walker {
   strut_arena matrix;
 } walker;
 
-static bool allocate_walk(walker *w, const double *q, strut_arena *arena, int32_t rows) {
-  size_t length = (size_t)w->model->length;
-  size_t members = (size_t)strut_equilibrium_columns(w->model);
-  w->start = q;
-  w->q = strut_arena_allocate(arena, length, sizeof(double));
-  w->before = strut_arena_allocate(arena, length, sizeof(double));
-  w->motion = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
-  w->step = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
-  w->length = strut_arena_allocate(arena, members + 1, sizeof(double));
-  w->strain = strut_arena_allocate(arena, members + 1, sizeof(double));
-  w->gram = strut_arena_allocate(arena, members * members + 1, sizeof(double));
-  if (!w->q || !w->before || !w->motion || !w->step || !w->length || !w->strain || !w->gram)
+static bool allocate_walk(walker *self, const double *q, strut_arena *arena, int32_t rows) {
+  size_t length = (size_t)self->model->length;
+  size_t members = (size_t)strut_equilibrium_columns(self->model);
+  self->start = q;
+  self->q = strut_arena_allocate(arena, length, sizeof(double));
+  self->before = strut_arena_allocate(arena, length, sizeof(double));
+  self->motion = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
+  self->step = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
+  self->length = strut_arena_allocate(arena, members + 1, sizeof(double));
+  self->strain = strut_arena_allocate(arena, members + 1, sizeof(double));
+  self->gram = strut_arena_allocate(arena, members * members + 1, sizeof(double));
+  if (!self->q || !self->before || !self->motion || !self->step || !self->length || !self->strain ||
+      !self->gram)
     return false;
-  memcpy(w->q, q, length * sizeof *q);
+  memcpy(self->q, q, length * sizeof *q);
   return true;
 }
 
-static bool build_matrix(walker *w) {
-  strut_arena_free(&w->matrix);
-  return strut_equilibrium_matrix_build(w->model, w->q, &w->matrix, &w->a) == STRUT_OK;
+static bool build_matrix(walker *self) {
+  strut_arena_free(&self->matrix);
+  return strut_equilibrium_matrix_build(self->model, self->q, &self->matrix, &self->a) == STRUT_OK;
 }
 
 /* x (members) = (A' A + damping)^-1 x, by Cholesky; false where rounding spoils it. */
-static bool solve_gram(walker *w, double *x) {
-  const strut_equilibrium_matrix *a = &w->a;
-  size_t n = (size_t)a->columns;
+static bool solve_gram(walker *self, double *vector) {
+  const strut_equilibrium_matrix *matrix = &self->a;
+  size_t n = (size_t)matrix->columns;
   if (n == 0) return true;
-  for (int32_t j = 0; j < a->columns; j++) {
-    memset(w->step, 0, (size_t)a->rows * sizeof *w->step);
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++) w->step[a->row[k]] = a->value[k];
-    strut_equilibrium_elongate(a, w->step, w->gram + (size_t)j * n);
-    w->gram[(size_t)j * n + (size_t)j] += DAMPING;
+  for (int32_t j = 0; j < matrix->columns; j++) {
+    memset(self->step, 0, (size_t)matrix->rows * sizeof *self->step);
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
+      self->step[matrix->row[k]] = matrix->value[k];
+    strut_equilibrium_elongate(matrix, self->step, self->gram + (size_t)j * n);
+    self->gram[(size_t)j * n + (size_t)j] += DAMPING;
   }
-  gsl_matrix_view gram = gsl_matrix_view_array(w->gram, n, n);
-  gsl_vector_view view = gsl_vector_view_array(x, n);
+  gsl_matrix_view gram = gsl_matrix_view_array(self->gram, n, n);
+  gsl_vector_view view = gsl_vector_view_array(vector, n);
   if (gsl_linalg_cholesky_decomp1(&gram.matrix) != 0) return false;
   return gsl_linalg_cholesky_svx(&gram.matrix, &view.vector) == 0;
 }
 
-static double largest_strain(const walker *w) {
+static double largest_strain(const walker *self) {
   double largest = 0.0;
-  for (int32_t j = w->a.members; j < w->a.columns; j++) /* change of an angle */
-    largest = fmax(largest, fabs(w->a.length[j] - w->length[j]) / w->a.size);
-  for (int32_t j = 0; j < w->a.members; j++)
-    if (w->length[j] > 0)
-      largest = fmax(largest, fabs(w->a.length[j] - w->length[j]) / w->length[j]);
+  for (int32_t j = self->a.members; j < self->a.columns; j++) /* change of an angle */
+    largest = fmax(largest, fabs(self->a.length[j] - self->length[j]) / self->a.size);
+  for (int32_t j = 0; j < self->a.members; j++)
+    if (self->length[j] > 0)
+      largest = fmax(largest, fabs(self->a.length[j] - self->length[j]) / self->length[j]);
     else
-      largest = fmax(largest, w->a.length[j] / w->model->size);
+      largest = fmax(largest, self->a.length[j] / self->model->size);
   return largest;
 }
 
 /* Back to the lengths by the least displacement that does it. */
-static bool correct(walker *w, double *strain) {
+static bool correct(walker *self, double *strain) {
   for (int i = 0; i < MOST_CORRECTIONS; i++) {
-    if (!build_matrix(w)) return false;
-    *strain = largest_strain(w);
+    if (!build_matrix(self)) return false;
+    *strain = largest_strain(self);
     if (*strain <= KEPT) return true;
-    for (int32_t j = 0; j < w->a.columns; j++) w->strain[j] = w->length[j] - w->a.length[j];
-    if (!solve_gram(w, w->strain)) return false;
-    strut_equilibrium_multiply(&w->a, w->strain, w->step);
-    for (int32_t r = 0; r < w->a.rows; r++) w->q[w->a.coordinate[r]] += w->step[r];
+    for (int32_t j = 0; j < self->a.columns; j++)
+      self->strain[j] = self->length[j] - self->a.length[j];
+    if (!solve_gram(self, self->strain)) return false;
+    strut_equilibrium_multiply(&self->a, self->strain, self->step);
+    for (int32_t r = 0; r < self->a.rows; r++) self->q[self->a.coordinate[r]] += self->step[r];
   }
   return false;
 }
 
 /* The motion at hand without what stretches members here; largest entry 1. */
-static bool straighten(walker *w) {
-  strut_equilibrium_elongate(&w->a, w->motion, w->strain);
-  if (!solve_gram(w, w->strain)) return false;
-  strut_equilibrium_multiply(&w->a, w->strain, w->step);
+static bool straighten(walker *self) {
+  strut_equilibrium_elongate(&self->a, self->motion, self->strain);
+  if (!solve_gram(self, self->strain)) return false;
+  strut_equilibrium_multiply(&self->a, self->strain, self->step);
   double largest = 0.0;
-  for (int32_t r = 0; r < w->a.rows; r++) {
-    w->motion[r] -= w->step[r];
-    largest = fmax(largest, fabs(w->motion[r]));
+  for (int32_t r = 0; r < self->a.rows; r++) {
+    self->motion[r] -= self->step[r];
+    largest = fmax(largest, fabs(self->motion[r]));
   }
-  for (int32_t r = 0; r < w->a.rows; r++) w->motion[r] /= largest;
+  for (int32_t r = 0; r < self->a.rows; r++) self->motion[r] /= largest;
   return largest > 0.1;
 }
 
-static bool stride(walker *w, double stride_length, double *strain) {
+static bool stride(walker *self, double stride_length, double *strain) {
   double gone = 0.0;
-  memcpy(w->before, w->q, (size_t)w->model->length * sizeof *w->q);
-  for (int32_t r = 0; r < w->a.rows; r++) w->q[w->a.coordinate[r]] += stride_length * w->motion[r];
-  if (!correct(w, strain)) return false;
-  for (int32_t r = 0; r < w->a.rows; r++) {
-    int32_t at = w->a.coordinate[r];
-    w->motion[r] = w->q[at] - w->before[at];
-    gone = fmax(gone, fabs(w->motion[r]));
+  memcpy(self->before, self->q, (size_t)self->model->length * sizeof *self->q);
+  for (int32_t r = 0; r < self->a.rows; r++)
+    self->q[self->a.coordinate[r]] += stride_length * self->motion[r];
+  if (!correct(self, strain)) return false;
+  for (int32_t r = 0; r < self->a.rows; r++) {
+    int32_t at = self->a.coordinate[r];
+    self->motion[r] = self->q[at] - self->before[at];
+    gone = fmax(gone, fabs(self->motion[r]));
   }
-  for (int32_t r = 0; r < w->a.rows; r++) w->motion[r] /= gone > 0 ? gone : 1.0;
+  for (int32_t r = 0; r < self->a.rows; r++) self->motion[r] /= gone > 0 ? gone : 1.0;
   return gone >= PROGRESS * stride_length;
 }
 
 /* Largest change of the distance between two nodes: zero for rigid motions. */
-static double change_of_shape(const walker *w) {
+static double change_of_shape(const walker *self) {
   double largest = 0.0;
-  for (int32_t i = 0; i < w->model->node_count; i++)
+  for (int32_t i = 0; i < self->model->node_count; i++)
     for (int32_t k = 0; k < i; k++) {
-      const double *p = w->q, *s = w->start;
+      const double *p = self->q, *s = self->start;
       double now = strut_distance(p + 2 * k, p + 2 * i);
       double then = strut_distance(s + 2 * k, s + 2 * i);
       largest = fmax(largest, fabs(now - then));
@@ -202,156 +206,160 @@ const char *strut_motion_kind_name(strut_motion_kind kind) {
 }
 
 /* Collects the null space beside the rigid motions, vectors with the largest remainder first. */
-static void collect(sorter *s, const double *space, size_t count, size_t rigid) {
-  double *rest = s->turned;
-  memcpy(rest, space, count * s->rows * sizeof *rest);
+static void collect(sorter *self, const double *space, size_t count, size_t rigid) {
+  double *rest = self->turned;
+  memcpy(rest, space, count * self->rows * sizeof *rest);
   for (size_t i = 0; i < count; i++)
-    strut_remove_shares(s->motion, rigid, s->rows, rest + i * s->rows);
-  for (size_t k = 0; k < s->n; k++) {
-    double best = -1.0, *chosen = s->inner + k * s->rows;
+    strut_remove_shares(self->motion, rigid, self->rows, rest + i * self->rows);
+  for (size_t k = 0; k < self->n; k++) {
+    double best = -1.0, *chosen = self->inner + k * self->rows;
     for (size_t i = 0; i < count; i++) {
-      double left = strut_dot(rest + i * s->rows, rest + i * s->rows, (ptrdiff_t)s->rows);
+      double left = strut_dot(rest + i * self->rows, rest + i * self->rows, (ptrdiff_t)self->rows);
       if (left <= best * 1.0001) continue;
       best = left;
-      memcpy(chosen, rest + i * s->rows, s->rows * sizeof *rest);
+      memcpy(chosen, rest + i * self->rows, self->rows * sizeof *rest);
     }
-    double norm = sqrt(strut_remove_shares(s->motion, rigid + k, s->rows, chosen));
-    for (size_t c = 0; c < s->rows; c++) chosen[c] /= norm;
-    for (size_t i = 0; i < count; i++) strut_remove_shares(chosen, 1, s->rows, rest + i * s->rows);
+    double norm = sqrt(strut_remove_shares(self->motion, rigid + k, self->rows, chosen));
+    for (size_t c = 0; c < self->rows; c++) chosen[c] /= norm;
+    for (size_t i = 0; i < count; i++)
+      strut_remove_shares(chosen, 1, self->rows, rest + i * self->rows);
   }
 }
 
 /* Fills in the densities of member forces and returns the largest. */
-static double set_density(sorter *s, const double *force) {
+static double set_density(sorter *self, const double *force) {
   double largest = 0.0;
-  for (size_t j = 0; j < s->members; j++) {
-    s->density[j] = strut_column_density(s->a, (int32_t)j, force[j]);
-    largest = fmax(largest, fabs(s->density[j]));
+  for (size_t j = 0; j < self->members; j++) {
+    self->density[j] = strut_column_density(self->a, (int32_t)j, force[j]);
+    largest = fmax(largest, fabs(self->density[j]));
   }
   return largest;
 }
 
 /* The form of member forces on the inner motions; returns the largest density, its scale. */
-static double form_of(sorter *s, const double *force, double *form) {
-  double scale = set_density(s, force);
-  strut_stress_form_on(s->model, s->a, s->density, s->inner, (int32_t)s->n, form);
+static double form_of(sorter *self, const double *force, double *form) {
+  double scale = set_density(self, force);
+  strut_stress_form_on(self->model, self->a, self->density, self->inner, (int32_t)self->n, form);
   return scale;
 }
 
 /* Replaces the inner motions by the combinations that diagonalise a form, which it overwrites. */
-static bool rotate(sorter *s, double *form) {
-  if (!strut_symmetric_eigen(form, s->n, s->value, s->vector)) return false;
-  memset(s->turned, 0, s->n * s->rows * sizeof *s->turned);
-  for (size_t i = 0; i < s->n; i++)
-    for (size_t k = 0; k < s->n; k++)
-      for (size_t c = 0; c < s->rows; c++)
-        s->turned[i * s->rows + c] += s->vector[i * s->n + k] * s->inner[k * s->rows + c];
-  memcpy(s->inner, s->turned, s->n * s->rows * sizeof *s->turned);
+static bool rotate(sorter *self, double *form) {
+  if (!strut_symmetric_eigen(form, self->n, self->value, self->vector)) return false;
+  memset(self->turned, 0, self->n * self->rows * sizeof *self->turned);
+  for (size_t i = 0; i < self->n; i++)
+    for (size_t k = 0; k < self->n; k++)
+      for (size_t c = 0; c < self->rows; c++)
+        self->turned[i * self->rows + c] +=
+            self->vector[i * self->n + k] * self->inner[k * self->rows + c];
+  memcpy(self->inner, self->turned, self->n * self->rows * sizeof *self->turned);
   return true;
 }
 
-static bool compare_states(sorter *s) {
-  size_t square = s->n * s->n, count = (size_t)s->states->count;
-  if (!s->states->force || count > MOST_STATES || s->n > MOST_MOTIONS) return true;
-  s->forms = strut_arena_allocate(&s->scratch, count * square + 1, sizeof *s->forms);
-  s->scale = strut_arena_allocate(&s->scratch, count + 1, sizeof *s->scale);
-  if (!s->forms || !s->scale) return false;
+static bool compare_states(sorter *self) {
+  size_t square = self->n * self->n, count = (size_t)self->states->count;
+  if (!self->states->force || count > MOST_STATES || self->n > MOST_MOTIONS) return true;
+  self->forms = strut_arena_allocate(&self->scratch, count * square + 1, sizeof *self->forms);
+  self->scale = strut_arena_allocate(&self->scratch, count + 1, sizeof *self->scale);
+  if (!self->forms || !self->scale) return false;
   for (size_t i = 0; i < count; i++)
-    s->scale[i] = form_of(s, s->states->force + i * s->members, s->forms + i * square);
+    self->scale[i] =
+        form_of(self, self->states->force + i * self->members, self->forms + i * square);
   return true;
 }
 
 /* A state of self-stress that is positive on all inner motions, with cables pulled if it can. */
-static strut_status find_stiffener(sorter *s, strut_mechanisms *m) {
-  double *force = strut_arena_allocate(s->arena, s->members + 1, sizeof *force);
+static strut_status find_stiffener(sorter *self, strut_mechanisms *mechanisms) {
+  double *force = strut_arena_allocate(self->arena, self->members + 1, sizeof *force);
   if (!force) return STRUT_NO_MEMORY;
-  for (int cables = 1; cables >= 0 && s->forms; cables--) {
+  for (int cables = 1; cables >= 0 && self->forms; cables--) {
     strut_stress_wish wish = {
-        .cables = cables, .motions = (int32_t)s->n, .forms = s->forms, .scale = s->scale};
+        .cables = cables, .motions = (int32_t)self->n, .forms = self->forms, .scale = self->scale};
     bool found = false;
-    strut_status status = strut_self_stress_combine(s->model, s->states, &wish, force, &found);
+    strut_status status =
+        strut_self_stress_combine(self->model, self->states, &wish, force, &found);
     if (status != STRUT_OK) return status;
     if (!found) continue;
-    m->stiffener = force;
-    m->stiffener_pulls = cables;
+    mechanisms->stiffener = force;
+    mechanisms->stiffener_pulls = cables;
     return STRUT_OK;
   }
   return STRUT_OK;
 }
 
 /* Sorts motions that no state of self-stress affects first, by the sum of squared forms. */
-static bool separate(sorter *s, size_t *silent) {
-  size_t n = s->n, count = s->forms ? (size_t)s->states->count : 0;
-  memset(s->form, 0, n * n * sizeof *s->form);
+static bool separate(sorter *self, size_t *silent) {
+  size_t n = self->n, count = self->forms ? (size_t)self->states->count : 0;
+  memset(self->form, 0, n * n * sizeof *self->form);
   for (size_t i = 0; i < count; i++) {
-    const double *f = s->forms + i * n * n;
-    double size = s->scale[i];
+    const double *f = self->forms + i * n * n;
+    double size = self->scale[i];
     for (size_t r = 0; r < n && size > 0; r++)
       for (size_t c = 0; c < n; c++)
-        s->form[r * n + c] += strut_dot(f + r * n, f + c * n, (ptrdiff_t)n) / (size * size);
+        self->form[r * n + c] += strut_dot(f + r * n, f + c * n, (ptrdiff_t)n) / (size * size);
   }
-  if (!rotate(s, s->form)) return false;
+  if (!rotate(self, self->form)) return false;
   *silent = 0;
-  while (*silent < n && s->value[*silent] <= ROUNDING * ROUNDING) (*silent)++;
+  while (*silent < n && self->value[*silent] <= ROUNDING * ROUNDING) (*silent)++;
   return true;
 }
 
 /* The rigid-body motions over the same rows as A; returns how many, or -1: out of memory. */
-static int32_t rigid_motions(const sorter *s, double *motion) {
+static int32_t rigid_motions(const sorter *self, double *motion) {
   strut_potential *rows = NULL;
-  if (strut_potential_create(s->model, NULL, false, &rows, NULL) != STRUT_OK) return -1;
-  int32_t count = strut_rigid_motions(rows, s->q, NULL, motion);
+  if (strut_potential_create(self->model, NULL, false, &rows, NULL) != STRUT_OK) return -1;
+  int32_t count = strut_rigid_motions(rows, self->q, NULL, motion);
   strut_potential_free(rows);
   return count;
 }
 
-static strut_status follow(sorter *s, strut_mechanism *m) {
+static strut_status follow(sorter *self, strut_mechanism *mechanism) {
   finite_walk walk;
-  strut_status status = walk_finite_motion(s->model, s->q, m->motion, &walk);
-  m->moved = walk.moved, m->strain = walk.strain;
-  if (walk.arrived) m->kind = STRUT_MOTION_FINITE;
+  strut_status status = walk_finite_motion(self->model, self->q, mechanism->motion, &walk);
+  mechanism->moved = walk.moved, mechanism->strain = walk.strain;
+  if (walk.arrived) mechanism->kind = STRUT_MOTION_FINITE;
   return status;
 }
 
 /* Of two motions one state of self-stress stiffens some combinations and drives others: between
    them lie two that it leaves alone, which may be the ways of a linkage that lies flat. */
-static strut_status try_between(sorter *s, strut_mechanism *two) {
-  double *x = s->inner + (s->n - 2) * s->rows, *y = x + s->rows;
-  double scale = set_density(s, s->states->force);
-  double a = strut_stress_form(s->model, s->a, s->density, x, x);
-  double b = strut_stress_form(s->model, s->a, s->density, x, y);
-  double c = strut_stress_form(s->model, s->a, s->density, y, y), root = b * b - a * c;
+static strut_status try_between(sorter *self, strut_mechanism *two) {
+  double *x = self->inner + (self->n - 2) * self->rows, *y = x + self->rows;
+  double scale = set_density(self, self->states->force);
+  double a = strut_stress_form(self->model, self->a, self->density, x, x);
+  double b = strut_stress_form(self->model, self->a, self->density, x, y);
+  double c = strut_stress_form(self->model, self->a, self->density, y, y), root = b * b - a * c;
   if (!(root > ROUNDING * scale * scale)) return STRUT_OK;
-  double *way = strut_arena_allocate(s->arena, 2 * s->rows, sizeof *way);
+  double *way = strut_arena_allocate(self->arena, 2 * self->rows, sizeof *way);
   if (!way) return STRUT_NO_MEMORY;
   for (int k = 0; k < 2; k++) { /* a u^2 + 2 b u v + c v^2 = 0, without cancellation */
     double t = b + (b >= 0 ? sqrt(root) : -sqrt(root));
     double u = k == 0 ? -t : c, v = k == 0 ? a : -t, norm = hypot(u, v);
-    for (size_t i = 0; i < s->rows; i++)
-      way[(size_t)k * s->rows + i] = (u * x[i] + v * y[i]) / norm;
-    two[k].motion = way + (size_t)k * s->rows;
-    strut_status status = follow(s, &two[k]);
+    for (size_t i = 0; i < self->rows; i++)
+      way[(size_t)k * self->rows + i] = (u * x[i] + v * y[i]) / norm;
+    two[k].motion = way + (size_t)k * self->rows;
+    strut_status status = follow(self, &two[k]);
     if (status != STRUT_OK) return status;
   }
   return STRUT_OK;
 }
 
 /* Nothing stiffens them all: those without any form are walked along. */
-static strut_status try_to_walk(sorter *s, strut_mechanism *list) {
+static strut_status try_to_walk(sorter *self, strut_mechanism *list) {
   size_t silent = 0;
-  if (!separate(s, &silent)) return STRUT_NO_MEMORY;
-  bool judged = s->states->count == 0 || s->forms; /* else silence says nothing */
-  for (size_t i = 0; i < s->n; i++) {
+  if (!separate(self, &silent)) return STRUT_NO_MEMORY;
+  bool judged = self->states->count == 0 || self->forms; /* else silence says nothing */
+  for (size_t i = 0; i < self->n; i++) {
     list[i].kind = STRUT_MOTION_UNDECIDED;
     if (judged && i >= silent) continue;
     /* without self-stress members are independent, and every mechanism is a finite one */
-    if (s->states->count == 0) list[i].kind = STRUT_MOTION_FINITE;
+    if (self->states->count == 0) list[i].kind = STRUT_MOTION_FINITE;
     if (i >= MOST_MOTIONS) continue;
-    strut_status status = follow(s, &list[i]);
+    strut_status status = follow(self, &list[i]);
     if (status != STRUT_OK) return status;
   }
-  bool pair = judged && s->states->count == 1 && s->n - silent == 2;
-  return pair ? try_between(s, list + silent) : STRUT_OK;
+  bool pair = judged && self->states->count == 1 && self->n - silent == 2;
+  return pair ? try_between(self, list + silent) : STRUT_OK;
 }
 
 static strut_mechanism blank(strut_motion_kind kind, const double *motion) {
@@ -364,105 +372,115 @@ static strut_mechanism blank(strut_motion_kind kind, const double *motion) {
                            .strain = none};
 }
 
-static strut_status judge(sorter *s, const double *force, strut_mechanisms *m,
+static strut_status judge(sorter *self, const double *force, strut_mechanisms *mechanisms,
                           strut_mechanism *list) {
-  for (size_t i = 0; i < s->n; i++) list[i] = blank(STRUT_MOTION_UNDECIDED, s->inner + i * s->rows);
-  if (force && s->n <= MOST_MOTIONS) {
-    double size = form_of(s, force, s->form);
-    if (!rotate(s, s->form)) return STRUT_NO_MEMORY;
-    m->by_forces = s->value[0] > ROUNDING * size;
+  for (size_t i = 0; i < self->n; i++)
+    list[i] = blank(STRUT_MOTION_UNDECIDED, self->inner + i * self->rows);
+  if (force && self->n <= MOST_MOTIONS) {
+    double size = form_of(self, force, self->form);
+    if (!rotate(self, self->form)) return STRUT_NO_MEMORY;
+    mechanisms->by_forces = self->value[0] > ROUNDING * size;
   }
-  if (!compare_states(s)) return STRUT_NO_MEMORY;
-  strut_status status = find_stiffener(s, m);
+  if (!compare_states(self)) return STRUT_NO_MEMORY;
+  strut_status status = find_stiffener(self, mechanisms);
   if (status != STRUT_OK) return status;
-  if (m->stiffener && !force) { /* its own principal motions are the ones to show */
-    form_of(s, m->stiffener, s->form);
-    if (!rotate(s, s->form)) return STRUT_NO_MEMORY;
+  if (mechanisms->stiffener && !force) { /* its own principal motions are the ones to show */
+    form_of(self, mechanisms->stiffener, self->form);
+    if (!rotate(self, self->form)) return STRUT_NO_MEMORY;
   }
-  if (m->by_forces || m->stiffener) {
-    for (size_t i = 0; i < s->n; i++) list[i].kind = STRUT_MOTION_INFINITESIMAL;
+  if (mechanisms->by_forces || mechanisms->stiffener) {
+    for (size_t i = 0; i < self->n; i++) list[i].kind = STRUT_MOTION_INFINITESIMAL;
     return STRUT_OK;
   }
-  return try_to_walk(s, list);
+  return try_to_walk(self, list);
 }
 
-static double form_along(sorter *s, const double *force, const double *motion) {
-  set_density(s, force);
-  return strut_stress_form(s->model, s->a, s->density, motion, motion);
+static double form_along(sorter *self, const double *force, const double *motion) {
+  set_density(self, force);
+  return strut_stress_form(self->model, self->a, self->density, motion, motion);
 }
 
-static void measure_and_count(sorter *s, const double *force, strut_mechanisms *m) {
-  int32_t *count[] = {&m->rigid_body, &m->infinitesimal, &m->finite, &m->undecided};
-  for (int32_t i = 0; i < m->count; i++) {
-    strut_mechanism *mode = &m->list[i];
+static void measure_and_count(sorter *self, const double *force, strut_mechanisms *mechanisms) {
+  int32_t *count[] = {&mechanisms->rigid_body, &mechanisms->infinitesimal, &mechanisms->finite,
+                      &mechanisms->undecided};
+  for (int32_t i = 0; i < mechanisms->count; i++) {
+    strut_mechanism *mode = &mechanisms->list[i];
     ++*count[mode->kind];
     if (mode->kind == STRUT_MOTION_RIGID_BODY) continue;
-    if (force) mode->stiffness = form_along(s, force, mode->motion);
-    if (m->stiffener) mode->stress_form = form_along(s, m->stiffener, mode->motion);
+    if (force) mode->stiffness = form_along(self, force, mode->motion);
+    if (mechanisms->stiffener)
+      mode->stress_form = form_along(self, mechanisms->stiffener, mode->motion);
   }
 }
 
 /* Only counts motions where they are too many to list. */
-static strut_status only_count(sorter *s, strut_mechanisms *m) {
-  double *rigid = strut_arena_allocate(&s->scratch, 3 * s->rows + 1, sizeof *rigid);
+static strut_status only_count(sorter *self, strut_mechanisms *mechanisms) {
+  double *rigid = strut_arena_allocate(&self->scratch, 3 * self->rows + 1, sizeof *rigid);
   if (!rigid) return STRUT_NO_MEMORY;
-  m->rigid_body = rigid_motions(s, rigid);
-  int32_t others = m->count - m->rigid_body;
-  if (m->rigid_body < 0) return STRUT_NO_MEMORY;
-  if (s->states->count == 0)
-    m->finite = others;
+  mechanisms->rigid_body = rigid_motions(self, rigid);
+  int32_t others = mechanisms->count - mechanisms->rigid_body;
+  if (mechanisms->rigid_body < 0) return STRUT_NO_MEMORY;
+  if (self->states->count == 0)
+    mechanisms->finite = others;
   else
-    m->undecided = others;
+    mechanisms->undecided = others;
   return STRUT_OK;
 }
 
-static bool allocate_sorter(sorter *s, size_t count) {
-  size_t square = count * count + 1, room = (count + 3) * s->rows + 1;
-  s->motion = strut_arena_allocate(s->arena, room, sizeof(double));
-  s->turned = strut_arena_allocate(&s->scratch, room, sizeof(double));
-  s->density = strut_arena_allocate(&s->scratch, s->members + 1, sizeof(double));
-  s->form = strut_arena_allocate(&s->scratch, square, sizeof(double));
-  s->value = strut_arena_allocate(&s->scratch, count + 1, sizeof(double));
-  s->vector = strut_arena_allocate(&s->scratch, square, sizeof(double));
-  return s->motion && s->turned && s->density && s->form && s->value && s->vector;
+static bool allocate_sorter(sorter *self, size_t count) {
+  size_t square = count * count + 1, room = (count + 3) * self->rows + 1;
+  self->motion = strut_arena_allocate(self->arena, room, sizeof(double));
+  self->turned = strut_arena_allocate(&self->scratch, room, sizeof(double));
+  self->density = strut_arena_allocate(&self->scratch, self->members + 1, sizeof(double));
+  self->form = strut_arena_allocate(&self->scratch, square, sizeof(double));
+  self->value = strut_arena_allocate(&self->scratch, count + 1, sizeof(double));
+  self->vector = strut_arena_allocate(&self->scratch, square, sizeof(double));
+  return self->motion && self->turned && self->density && self->form && self->value && self->vector;
 }
 
-static double largest_motion(const sorter *s, const double *motion) {
+static double largest_motion(const sorter *self, const double *motion) {
   double largest = 0.0;
-  for (int32_t i = 0; i < s->model->length; i += 2) {
-    int32_t x = s->a->row_of[i], y = s->a->row_of[i + 1];
+  for (int32_t i = 0; i < self->model->length; i += 2) {
+    int32_t x = self->a->row_of[i], y = self->a->row_of[i + 1];
     largest = fmax(largest, hypot(x < 0 ? 0.0 : motion[x], y < 0 ? 0.0 : motion[y]));
   }
   return largest;
 }
 
-static strut_status sort(sorter *s, const strut_null_spaces *spaces, const double *force,
-                         strut_mechanisms *m) {
-  size_t count = (size_t)m->count;
-  m->list = strut_arena_allocate(s->arena, count, sizeof *m->list);
-  if (!m->list || !allocate_sorter(s, count)) return STRUT_NO_MEMORY;
-  int32_t found = rigid_motions(s, s->motion);
+static strut_status sort(sorter *self, const strut_null_spaces *spaces, const double *force,
+                         strut_mechanisms *mechanisms) {
+  size_t count = (size_t)mechanisms->count;
+  mechanisms->list = strut_arena_allocate(self->arena, count, sizeof *mechanisms->list);
+  if (!mechanisms->list || !allocate_sorter(self, count)) return STRUT_NO_MEMORY;
+  int32_t found = rigid_motions(self, self->motion);
   if (found < 0) return STRUT_NO_MEMORY;
   size_t rigid = (size_t)found < count ? (size_t)found : count;
-  s->n = count - rigid;
-  s->inner = s->motion + rigid * s->rows;
+  self->n = count - rigid;
+  self->inner = self->motion + rigid * self->rows;
   for (size_t i = 0; i < rigid; i++)
-    m->list[i] = blank(STRUT_MOTION_RIGID_BODY, s->motion + i * s->rows);
-  collect(s, spaces->motion, count, rigid);
-  strut_status status = s->n > 0 ? judge(s, force, m, m->list + rigid) : STRUT_OK;
-  if (status == STRUT_OK) measure_and_count(s, force, m);
-  for (size_t i = 0; i < count; i++) m->list[i].largest = largest_motion(s, m->list[i].motion);
+    mechanisms->list[i] = blank(STRUT_MOTION_RIGID_BODY, self->motion + i * self->rows);
+  collect(self, spaces->motion, count, rigid);
+  strut_status status =
+      self->n > 0 ? judge(self, force, mechanisms, mechanisms->list + rigid) : STRUT_OK;
+  if (status == STRUT_OK) measure_and_count(self, force, mechanisms);
+  for (size_t i = 0; i < count; i++)
+    mechanisms->list[i].largest = largest_motion(self, mechanisms->list[i].motion);
   return status;
 }
 
 strut_status strut_mechanisms_find(const strut_model *model, const double *q, const double *force,
-                                   strut_rigidity *r) {
-  r->mechanisms = (strut_mechanisms){.count = r->spaces.motions};
-  if (r->spaces.motions == 0) return STRUT_OK;
-  sorter s = {.model = model, .a = &r->matrix, .q = q, .states = &r->states, .arena = &r->arena};
-  s.rows = (size_t)r->matrix.rows, s.members = (size_t)r->matrix.columns;
-  strut_status status = r->spaces.motion ? sort(&s, &r->spaces, force, &r->mechanisms)
-                                         : only_count(&s, &r->mechanisms);
+                                   strut_rigidity *rigidity) {
+  rigidity->mechanisms = (strut_mechanisms){.count = rigidity->spaces.motions};
+  if (rigidity->spaces.motions == 0) return STRUT_OK;
+  sorter s = {.model = model,
+              .a = &rigidity->matrix,
+              .q = q,
+              .states = &rigidity->states,
+              .arena = &rigidity->arena};
+  s.rows = (size_t)rigidity->matrix.rows, s.members = (size_t)rigidity->matrix.columns;
+  strut_status status = rigidity->spaces.motion
+                            ? sort(&s, &rigidity->spaces, force, &rigidity->mechanisms)
+                            : only_count(&s, &rigidity->mechanisms);
   strut_arena_free(&s.scratch);
   return status;
 }

@@ -12,8 +12,8 @@ static const double NONE = 1e-9;    /* of the largest force: no force */
 static const double ON_LINE = 1e-9; /* of the size: a node on the outline */
 
 /* -1 pressed, 1 pulled, 0 neither, in the state that is judged. */
-static int sign_of(const strut_rigidity *r, int32_t j, double largest) {
-  double force = r->judged[j];
+static int sign_of(const strut_rigidity *rigidity, int32_t j, double largest) {
+  double force = rigidity->judged[j];
   return force > NONE * largest ? 1 : force < -NONE * largest ? -1 : 0;
 }
 
@@ -36,47 +36,48 @@ static bool on_outline(const strut_model *model, const double *q, uint32_t a, ui
 }
 
 /* Net: what is pulled is connected, struts end on it, and none lies on the outline. */
-static bool inside(const strut_model *model, const double *q, const strut_rigidity *r,
+static bool inside(const strut_model *model, const double *q, const strut_rigidity *rigidity,
                    double largest, int32_t *parent) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   int32_t net = -1;
   for (int32_t i = 0; i < model->node_count; i++) parent[i] = i;
-  for (int32_t j = 0; j < t->count; j++) {
-    const strut_member *m = &model->scene->members[j];
-    if (sign_of(r, j, largest) <= 0) continue;
-    net = (int32_t)(t->to[j] / 2);
-    for (size_t k = 0; k <= m->guide_count; k++)
-      parent[root(parent, strut_member_node(m, k))] = root(parent, net);
+  for (int32_t j = 0; j < members->count; j++) {
+    const strut_member *member = &model->scene->members[j];
+    if (sign_of(rigidity, j, largest) <= 0) continue;
+    net = (int32_t)(members->to[j] / 2);
+    for (size_t k = 0; k <= member->guide_count; k++)
+      parent[root(parent, strut_member_node(member, k))] = root(parent, net);
   }
   if (net < 0) return false;
-  for (int32_t j = 0; j < t->count; j++) {
-    int32_t end[2] = {(int32_t)(t->from[j] / 2), (int32_t)(t->to[j] / 2)};
-    int sign = sign_of(r, j, largest);
+  for (int32_t j = 0; j < members->count; j++) {
+    int32_t end[2] = {(int32_t)(members->from[j] / 2), (int32_t)(members->to[j] / 2)};
+    int sign = sign_of(rigidity, j, largest);
     for (int k = 0; k < 2 && sign != 0; k++)
       if (root(parent, end[k]) != root(parent, net)) return false;
-    if (sign < 0 && on_outline(model, q, t->from[j], t->to[j])) return false;
+    if (sign < 0 && on_outline(model, q, members->from[j], members->to[j])) return false;
   }
   return true;
 }
 
-static bool apart(const strut_model *model, const strut_rigidity *r, double largest,
+static bool apart(const strut_model *model, const strut_rigidity *rigidity, double largest,
                   int32_t *struts) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   int32_t all = 0;
   for (int32_t i = 0; i < model->node_count; i++) struts[i] = 0;
-  for (int32_t j = 0; j < t->count; j++) {
-    if (sign_of(r, j, largest) >= 0) continue;
+  for (int32_t j = 0; j < members->count; j++) {
+    if (sign_of(rigidity, j, largest) >= 0) continue;
     all++;
-    if (++struts[t->from[j] / 2] > 1 || ++struts[t->to[j] / 2] > 1) return false;
+    if (++struts[members->from[j] / 2] > 1 || ++struts[members->to[j] / 2] > 1) return false;
   }
   return all > 0;
 }
 
-static bool pulls_cables_only(const strut_model *model, const strut_rigidity *r, double largest) {
+static bool pulls_cables_only(const strut_model *model, const strut_rigidity *rigidity,
+                              double largest) {
   int32_t pulled = 0;
   for (int32_t j = 0; j < model->members.count; j++) {
     bool cable = model->scene->members[j].kind == STRUT_CABLE;
-    int sign = sign_of(r, j, largest);
+    int sign = sign_of(rigidity, j, largest);
     if (cable ? sign < 0 : sign > 0) return false;
     pulled += sign > 0;
   }
@@ -84,18 +85,20 @@ static bool pulls_cables_only(const strut_model *model, const strut_rigidity *r,
 }
 
 /* Every listed state that loads movable members must alone stiffen all mechanisms. */
-static bool all_states_stiffen(const strut_rigidity *r) {
-  return r->states.count == 1; /* of several, some combination presses what another pulls */
+static bool all_states_stiffen(const strut_rigidity *rigidity) {
+  return rigidity->states.count == 1; /* of several, some combination presses what another pulls */
 }
 
-static const char *label_of(const strut_tensegrity *t) {
-  if (!t->self_stress) return "no tensegrity: no state of self-stress";
-  if (!t->judged) return "not judged: too many states";
-  if (!t->cables) return "no tensegrity: members that are no cables are pulled, or cables pressed";
-  if (t->mechanism && t->all_states && t->struts_apart)
-    return t->struts_inside ? "ideal tensegrity" : "pure tensegrity";
-  if (t->mechanism) return "structure with tensegrity features of class 1";
-  if (t->struts_inside || t->struts_apart) return "structure with tensegrity features of class 2";
+static const char *label_of(const strut_tensegrity *tensegrity) {
+  if (!tensegrity->self_stress) return "no tensegrity: no state of self-stress";
+  if (!tensegrity->judged) return "not judged: too many states";
+  if (!tensegrity->cables)
+    return "no tensegrity: members that are no cables are pulled, or cables pressed";
+  if (tensegrity->mechanism && tensegrity->all_states && tensegrity->struts_apart)
+    return tensegrity->struts_inside ? "ideal tensegrity" : "pure tensegrity";
+  if (tensegrity->mechanism) return "structure with tensegrity features of class 1";
+  if (tensegrity->struts_inside || tensegrity->struts_apart)
+    return "structure with tensegrity features of class 2";
   return "no tensegrity: no stiffened mechanism, struts neither apart nor inside the net";
 }
 
@@ -109,23 +112,27 @@ static const char *label_of(const strut_tensegrity *t) {
  * I struts within one net of what is pulled. Ideal tensegrity: all of them, with every state; pure:
  * all but I; features of class 1: S, C, M with some state; of class 2: S, C and one of I and D.
  */
-static strut_status judge_tensegrity(const strut_model *model, const double *q, strut_rigidity *r) {
-  strut_tensegrity *t = &r->tensegrity;
-  *t = (strut_tensegrity){.self_stress = r->states.count > 0, .judged = r->judged != NULL};
-  if (r->judged) {
-    const strut_mechanisms *m = &r->mechanisms;
-    double largest = strut_largest_magnitude(r->judged, model->members.count);
+static strut_status judge_tensegrity(const strut_model *model, const double *q,
+                                     strut_rigidity *rigidity) {
+  strut_tensegrity *tensegrity = &rigidity->tensegrity;
+  *tensegrity = (strut_tensegrity){.self_stress = rigidity->states.count > 0,
+                                   .judged = rigidity->judged != NULL};
+  if (rigidity->judged) {
+    const strut_mechanisms *mechanisms = &rigidity->mechanisms;
+    double largest = strut_largest_magnitude(rigidity->judged, model->members.count);
     int32_t *scratch = strut_allocate((size_t)model->node_count + 1, sizeof *scratch);
     if (!scratch) return STRUT_NO_MEMORY;
-    t->cables = pulls_cables_only(model, r, largest);
-    t->mechanism = m->infinitesimal > 0 && m->infinitesimal + m->rigid_body == m->count &&
-                   (m->by_forces || (m->stiffener && m->stiffener_pulls));
-    t->all_states = t->mechanism && all_states_stiffen(r);
-    t->struts_apart = apart(model, r, largest, scratch);
-    t->struts_inside = inside(model, q, r, largest, scratch);
+    tensegrity->cables = pulls_cables_only(model, rigidity, largest);
+    tensegrity->mechanism =
+        mechanisms->infinitesimal > 0 &&
+        mechanisms->infinitesimal + mechanisms->rigid_body == mechanisms->count &&
+        (mechanisms->by_forces || (mechanisms->stiffener && mechanisms->stiffener_pulls));
+    tensegrity->all_states = tensegrity->mechanism && all_states_stiffen(rigidity);
+    tensegrity->struts_apart = apart(model, rigidity, largest, scratch);
+    tensegrity->struts_inside = inside(model, q, rigidity, largest, scratch);
     strut_release(scratch);
   }
-  t->label = label_of(t);
+  tensegrity->label = label_of(tensegrity);
   return STRUT_OK;
 }
 
@@ -135,38 +142,40 @@ static double resolved(double force, double stiffness, double size) {
   return fabs(force) > least ? force : 0.0;
 }
 
-static void measure_elements(const strut_model *model, const double *q, strut_rigidity *r) {
-  const strut_equilibrium_matrix *a = &r->matrix;
+static void measure_elements(const strut_model *model, const double *q, strut_rigidity *rigidity) {
+  const strut_equilibrium_matrix *matrix = &rigidity->matrix;
   strut_element_pose pose;
-  for (int32_t j = a->members; j < a->columns; j++) {
-    strut_element_evaluate(model, a->curved[j], model->members.rest, q, (double)NAN, &pose);
-    const strut_element *e = &model->elements.element[a->curved[j]];
-    double least = e->role == STRUT_ELEMENT_CELL ? 0.0 : fabs(pose.strain);
-    pose.force = resolved(pose.force, e->numbers.stiffness, least);
-    double force = r->force[j] = pose.force / a->scale[j] + 0.0; /* + 0.0: no -0 */
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++)
-      r->largest_force = fmax(r->largest_force, fabs(force * a->value[k]));
+  for (int32_t j = matrix->members; j < matrix->columns; j++) {
+    strut_element_evaluate(model, matrix->curved[j], model->members.rest, q, (double)NAN, &pose);
+    const strut_element *element = &model->elements.element[matrix->curved[j]];
+    double least = element->role == STRUT_ELEMENT_CELL ? 0.0 : fabs(pose.strain);
+    pose.force = resolved(pose.force, element->numbers.stiffness, least);
+    double force = rigidity->force[j] = pose.force / matrix->scale[j] + 0.0; /* + 0.0: no -0 */
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
+      rigidity->largest_force = fmax(rigidity->largest_force, fabs(force * matrix->value[k]));
   }
 }
 
-static bool measure_forces(const strut_model *model, const double *q, strut_rigidity *r) {
-  const strut_member_table *t = &model->members;
-  r->force = strut_arena_allocate(&r->arena, (size_t)r->matrix.columns + 1, sizeof *r->force);
-  r->density = strut_arena_allocate(&r->arena, (size_t)t->count + 1, sizeof *r->density);
-  if (!r->force || !r->density) return false;
-  for (int32_t j = 0; j < t->count; j++) {
-    double length = r->matrix.length[j];
-    r->force[j] = resolved(strut_member_elastic_tension(model, t->rest, j, q), t->stiffness[j],
-                           length + t->rest[j]) +
-                  0.0; /* no -0 */
+static bool measure_forces(const strut_model *model, const double *q, strut_rigidity *rigidity) {
+  const strut_member_table *members = &model->members;
+  rigidity->force = strut_arena_allocate(&rigidity->arena, (size_t)rigidity->matrix.columns + 1,
+                                         sizeof *rigidity->force);
+  rigidity->density =
+      strut_arena_allocate(&rigidity->arena, (size_t)members->count + 1, sizeof *rigidity->density);
+  if (!rigidity->force || !rigidity->density) return false;
+  for (int32_t j = 0; j < members->count; j++) {
+    double length = rigidity->matrix.length[j];
+    rigidity->force[j] = resolved(strut_member_elastic_tension(model, members->rest, j, q),
+                                  members->stiffness[j], length + members->rest[j]) +
+                         0.0; /* no -0 */
     if (length > 0)
-      r->density[j] = r->force[j] / length;
+      rigidity->density[j] = rigidity->force[j] / length;
     else
-      r->without_length++;
-    r->largest_force = fmax(r->largest_force, fabs(r->force[j]));
-    if (model->scene->members[j].kind == STRUT_CABLE) r->has_cables = true;
+      rigidity->without_length++;
+    rigidity->largest_force = fmax(rigidity->largest_force, fabs(rigidity->force[j]));
+    if (model->scene->members[j].kind == STRUT_CABLE) rigidity->has_cables = true;
   }
-  measure_elements(model, q, r);
+  measure_elements(model, q, rigidity);
   return true;
 }
 
@@ -183,116 +192,122 @@ static void add_outer_forces(const strut_model *model, const double *q, double *
     *scale = fmax(*scale, fabs(model->constant_force[at]));
   }
   for (const strut_force *force; (force = strut_force_next(&visit));) {
-    const strut_element *e =
+    const strut_element *element =
         force->kind == STRUT_FORCE_ELEMENT ? &model->elements.element[force->index] : NULL;
     bool outer = force->kind == STRUT_FORCE_CONTACT ||
-                 (e && (e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_LOAD));
+                 (element && (element->role == STRUT_ELEMENT_COLLISION ||
+                              element->role == STRUT_ELEMENT_LOAD));
     for (int32_t k = 0; k < 2 * force->nodes && outer; k++)
       net[strut_force_coordinate(force, k)] -= force->pose.force * force->pose.b[k];
   }
 }
 
-static double largest_free(const strut_equilibrium_matrix *a, const double *net) {
+static double largest_free(const strut_equilibrium_matrix *matrix, const double *net) {
   double largest = 0.0;
-  for (int32_t row = 0; row < a->rows; row++)
-    largest = fmax(largest, fabs(net[a->coordinate[row]]));
+  for (int32_t row = 0; row < matrix->rows; row++)
+    largest = fmax(largest, fabs(net[matrix->coordinate[row]]));
   return largest;
 }
 
-static bool measure_balance(const strut_model *model, const double *q, strut_rigidity *r) {
-  const strut_equilibrium_matrix *a = &r->matrix;
+static bool measure_balance(const strut_model *model, const double *q, strut_rigidity *rigidity) {
+  const strut_equilibrium_matrix *matrix = &rigidity->matrix;
   strut_arena scratch = {0};
   double *net = strut_arena_allocate(&scratch, (size_t)model->length, sizeof *net);
-  double *held = strut_arena_allocate(&scratch, (size_t)a->rows + 1, sizeof *held);
+  double *held = strut_arena_allocate(&scratch, (size_t)matrix->rows + 1, sizeof *held);
   bool good = net && held;
   if (good) {
-    double members = r->largest_force;
-    strut_equilibrium_multiply(a, r->force, held);
-    for (int32_t row = 0; row < a->rows; row++) net[a->coordinate[row]] = -held[row];
-    r->prestressed = members > 0;
-    r->self_equilibrium =
-        r->prestressed && largest_free(a, net) <= STRUT_BALANCE_TOLERANCE * members;
-    add_outer_forces(model, q, net, &r->largest_force);
-    r->residual = largest_free(a, net);
-    r->equilibrium = r->residual <= STRUT_BALANCE_TOLERANCE * r->largest_force;
+    double members = rigidity->largest_force;
+    strut_equilibrium_multiply(matrix, rigidity->force, held);
+    for (int32_t row = 0; row < matrix->rows; row++) net[matrix->coordinate[row]] = -held[row];
+    rigidity->prestressed = members > 0;
+    rigidity->self_equilibrium =
+        rigidity->prestressed && largest_free(matrix, net) <= STRUT_BALANCE_TOLERANCE * members;
+    add_outer_forces(model, q, net, &rigidity->largest_force);
+    rigidity->residual = largest_free(matrix, net);
+    rigidity->equilibrium = rigidity->residual <= STRUT_BALANCE_TOLERANCE * rigidity->largest_force;
   }
   strut_arena_free(&scratch);
   return good;
 }
 
-static bool count_bars(const strut_model *model, strut_rigidity *r) {
+static bool count_bars(const strut_model *model, strut_rigidity *rigidity) {
   int32_t *bars = strut_allocate((size_t)model->node_count + 1, sizeof *bars);
   if (!bars) return false;
   for (int32_t j = 0; j < model->members.count; j++) {
     if (model->scene->members[j].kind != STRUT_BAR) continue;
     uint32_t end[2] = {model->members.from[j] / 2, model->members.to[j] / 2};
     for (int k = 0; k < 2; k++)
-      if (++bars[end[k]] > r->bars_at_node) r->bars_at_node = bars[end[k]];
+      if (++bars[end[k]] > rigidity->bars_at_node) rigidity->bars_at_node = bars[end[k]];
   }
   strut_release(bars);
   return true;
 }
 
-static strut_status pull_cables(const strut_model *model, strut_rigidity *r) {
-  if (!r->states.force) return STRUT_OK;
-  double *force = strut_arena_allocate(&r->arena, (size_t)r->matrix.columns, sizeof *force);
+static strut_status pull_cables(const strut_model *model, strut_rigidity *rigidity) {
+  if (!rigidity->states.force) return STRUT_OK;
+  double *force =
+      strut_arena_allocate(&rigidity->arena, (size_t)rigidity->matrix.columns, sizeof *force);
   if (!force) return STRUT_NO_MEMORY;
-  if (r->states.count == 1) { /* it has been turned so that cables pull, if they can */
-    memcpy(force, r->states.force, (size_t)r->matrix.columns * sizeof *force);
-    r->cables_can_pull = r->states.cables_pull[0];
+  if (rigidity->states.count == 1) { /* it has been turned so that cables pull, if they can */
+    memcpy(force, rigidity->states.force, (size_t)rigidity->matrix.columns * sizeof *force);
+    rigidity->cables_can_pull = rigidity->states.cables_pull[0];
   } else {
     strut_status status =
-        strut_self_stress_pull_cables(model, &r->states, force, &r->cables_can_pull);
+        strut_self_stress_pull_cables(model, &rigidity->states, force, &rigidity->cables_can_pull);
     if (status != STRUT_OK) return status;
   }
-  if (r->cables_can_pull) r->feasible = force;
+  if (rigidity->cables_can_pull) rigidity->feasible = force;
   return STRUT_OK;
 }
 
-static void choose_stress(strut_rigidity *r) {
-  r->source = STRUT_STRESS_NONE;
-  if (!r->states.force) return;
-  if (r->states.count == 1) {
-    r->source = STRUT_STRESS_STATE;
-    r->judged = r->states.force;
-  } else if (r->self_equilibrium) {
-    r->source = STRUT_STRESS_SHAPE;
-    r->judged = r->force;
-  } else if (r->feasible) {
-    r->source = STRUT_STRESS_COMBINATION;
-    r->judged = r->feasible;
+static void choose_stress(strut_rigidity *rigidity) {
+  rigidity->source = STRUT_STRESS_NONE;
+  if (!rigidity->states.force) return;
+  if (rigidity->states.count == 1) {
+    rigidity->source = STRUT_STRESS_STATE;
+    rigidity->judged = rigidity->states.force;
+  } else if (rigidity->self_equilibrium) {
+    rigidity->source = STRUT_STRESS_SHAPE;
+    rigidity->judged = rigidity->force;
+  } else if (rigidity->feasible) {
+    rigidity->source = STRUT_STRESS_COMBINATION;
+    rigidity->judged = rigidity->feasible;
   } else {
-    r->source = STRUT_STRESS_FIRST;
-    r->judged = r->states.force;
+    rigidity->source = STRUT_STRESS_FIRST;
+    rigidity->judged = rigidity->states.force;
   }
 }
 
 /* A cable under compression rules out super stability, whatever the matrix. */
-static void respect_cables(const strut_model *model, strut_rigidity *r) {
-  double largest = strut_largest_magnitude(r->judged, r->matrix.columns);
-  for (int32_t j = 0; j < r->matrix.columns; j++)
-    if (strut_column_is_cable(model, j) && r->judged[j] < -1e-9 * largest)
-      r->stress.super_stable = false;
+static void respect_cables(const strut_model *model, strut_rigidity *rigidity) {
+  double largest = strut_largest_magnitude(rigidity->judged, rigidity->matrix.columns);
+  for (int32_t j = 0; j < rigidity->matrix.columns; j++)
+    if (strut_column_is_cable(model, j) && rigidity->judged[j] < -1e-9 * largest)
+      rigidity->stress.super_stable = false;
 }
 
-static strut_status find_all(const strut_model *model, const double *q, strut_rigidity *r,
+static strut_status find_all(const strut_model *model, const double *q, strut_rigidity *rigidity,
                              strut_error *error) {
-  strut_status status = strut_equilibrium_matrix_build(model, q, &r->arena, &r->matrix);
+  strut_status status =
+      strut_equilibrium_matrix_build(model, q, &rigidity->arena, &rigidity->matrix);
   if (status != STRUT_OK) return status;
-  if (!measure_forces(model, q, r) || !measure_balance(model, q, r) || !count_bars(model, r))
+  if (!measure_forces(model, q, rigidity) || !measure_balance(model, q, rigidity) ||
+      !count_bars(model, rigidity))
     return STRUT_NO_MEMORY;
-  status = strut_null_spaces_find(&r->matrix, &r->arena, &r->spaces, error);
-  if (status == STRUT_OK) status = strut_self_stress_sort(model, &r->spaces, &r->arena, &r->states);
-  if (status == STRUT_OK) status = pull_cables(model, r);
+  status = strut_null_spaces_find(&rigidity->matrix, &rigidity->arena, &rigidity->spaces, error);
+  if (status == STRUT_OK)
+    status = strut_self_stress_sort(model, &rigidity->spaces, &rigidity->arena, &rigidity->states);
+  if (status == STRUT_OK) status = pull_cables(model, rigidity);
   if (status != STRUT_OK) return status;
-  const double *force = r->prestressed && r->equilibrium ? r->force : NULL;
-  status = strut_mechanisms_find(model, q, force, r);
-  choose_stress(r);
-  if (status == STRUT_OK && r->judged) {
-    status = strut_stress_matrix_judge(model, &r->matrix, r->judged, &r->arena, &r->stress);
-    respect_cables(model, r);
+  const double *force = rigidity->prestressed && rigidity->equilibrium ? rigidity->force : NULL;
+  status = strut_mechanisms_find(model, q, force, rigidity);
+  choose_stress(rigidity);
+  if (status == STRUT_OK && rigidity->judged) {
+    status = strut_stress_matrix_judge(model, &rigidity->matrix, rigidity->judged, &rigidity->arena,
+                                       &rigidity->stress);
+    respect_cables(model, rigidity);
   }
-  return status == STRUT_OK ? judge_tensegrity(model, q, r) : status;
+  return status == STRUT_OK ? judge_tensegrity(model, q, rigidity) : status;
 }
 
 strut_status strut_rigidity_find(const strut_model *model, const double *q,

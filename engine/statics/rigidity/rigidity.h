@@ -52,23 +52,23 @@ static inline bool strut_column_is_cable(const strut_model *model, int32_t j) {
 }
 
 /** Force density of column j [N/m]: force / length, or force times curvature; 0 without length. */
-static inline double strut_column_density(const strut_equilibrium_matrix *a, int32_t j,
+static inline double strut_column_density(const strut_equilibrium_matrix *matrix, int32_t j,
                                           double force) {
-  if (a->curved[j] >= 0) return force * a->curvature[j];
-  return a->length[j] > 0 ? force / a->length[j] : 0.0;
+  if (matrix->curved[j] >= 0) return force * matrix->curvature[j];
+  return matrix->length[j] > 0 ? force / matrix->length[j] : 0.0;
 }
 
 /** A of the positions q (length), in the arena. STRUT_OK or STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *q,
                                                       strut_arena *arena,
-                                                      strut_equilibrium_matrix *a);
+                                                      strut_equilibrium_matrix *matrix);
 
 /** y (rows) = A t for t (columns). */
-STRUT_API void strut_equilibrium_multiply(const strut_equilibrium_matrix *a, const double *t,
+STRUT_API void strut_equilibrium_multiply(const strut_equilibrium_matrix *matrix, const double *t,
                                           double *y);
 /** e (columns) = A' d for d (rows). */
-STRUT_API void strut_equilibrium_elongate(const strut_equilibrium_matrix *a, const double *d,
-                                          double *e);
+STRUT_API void strut_equilibrium_elongate(const strut_equilibrium_matrix *matrix,
+                                          const double *change, double *e);
 
 /* The rank of an equilibrium matrix, with the gap that decides it, and its two null spaces.
  *
@@ -96,8 +96,9 @@ typedef struct strut_null_spaces {
 } strut_null_spaces;
 
 /** In the arena. STRUT_OK, STRUT_NO_MEMORY, or STRUT_SINGULAR where the decomposition fails. */
-STRUT_API strut_status strut_null_spaces_find(const strut_equilibrium_matrix *a, strut_arena *arena,
-                                              strut_null_spaces *spaces, strut_error *error);
+STRUT_API strut_status strut_null_spaces_find(const strut_equilibrium_matrix *matrix,
+                                              strut_arena *arena, strut_null_spaces *spaces,
+                                              strut_error *error);
 
 /* States of self-stress in readable form: local and scaled; and which of them cables can bear. */
 
@@ -187,15 +188,15 @@ typedef struct strut_mechanisms {
  */
 
 /** The bilinear form at motions x and y (rows) of the free coordinates; density (columns) [N/m]. */
-STRUT_API double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *a,
-                                   const double *density, const double *x, const double *y);
+STRUT_API double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *matrix,
+                                   const double *density, const double *vector, const double *y);
 
 /**
  * The form on the span of `count` motions (count, rows), as a symmetric (count, count) matrix.
  */
-STRUT_API void strut_stress_form_on(const strut_model *model, const strut_equilibrium_matrix *a,
-                                    const double *density, const double *motion, int32_t count,
-                                    double *form);
+STRUT_API void strut_stress_form_on(const strut_model *model,
+                                    const strut_equilibrium_matrix *matrix, const double *density,
+                                    const double *motion, int32_t count, double *form);
 
 typedef struct strut_stress_matrix {
   bool tested;         /* false: too large, or by_elements */
@@ -220,7 +221,7 @@ enum { STRUT_DENSE_STRESS = 300 };
  * a state of self-stress. STRUT_OK or STRUT_NO_MEMORY; eigenvalues in the arena.
  */
 STRUT_API strut_status strut_stress_matrix_judge(const strut_model *model,
-                                                 const strut_equilibrium_matrix *a,
+                                                 const strut_equilibrium_matrix *matrix,
                                                  const double *force, strut_arena *arena,
                                                  strut_stress_matrix *stress);
 

@@ -11,9 +11,9 @@
 
 /* Both decompositions that strut_null_spaces_find chooses from. */
 
-strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *a, strut_arena *arena,
+strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                                      strut_null_spaces *spaces, strut_error *error);
-strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *a, strut_arena *arena,
+strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                                       strut_null_spaces *spaces, strut_error *error);
 
 /* The sparse matrices of small motions about a shape. */

@@ -42,32 +42,34 @@ const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mecha
   return words;
 }
 
-static const char *why_not(const strut_rigidity *r) {
-  if (!r->stress.positive) return "the stress matrix has a negative eigenvalue";
-  if (r->stress.supported && r->stress.nullity > 0)
+static const char *why_not(const strut_rigidity *rigidity) {
+  if (!rigidity->stress.positive) return "the stress matrix has a negative eigenvalue";
+  if (rigidity->stress.supported && rigidity->stress.nullity > 0)
     return "the stress matrix is not definite on the free coordinates";
-  if (!r->stress.supported && r->stress.nullity > 3)
+  if (!rigidity->stress.supported && rigidity->stress.nullity > 3)
     return "the stress matrix vanishes on more than affine motions";
-  if (!r->stress.supported && r->stress.nullity < 3) return "the forces do not balance";
-  if (!r->stress.supported && r->stress.on_conic)
+  if (!rigidity->stress.supported && rigidity->stress.nullity < 3)
+    return "the forces do not balance";
+  if (!rigidity->stress.supported && rigidity->stress.on_conic)
     return "an affine motion keeps all lengths: the members have only two directions";
   return "a cable is in compression";
 }
 
-const char *strut_super_stability_words(const strut_rigidity *r, char words[STRUT_RIGIDITY_WORDS]) {
-  const char *source = stress_source_words(r->source);
-  if (r->states.count == 0)
+const char *strut_super_stability_words(const strut_rigidity *rigidity,
+                                        char words[STRUT_RIGIDITY_WORDS]) {
+  const char *source = stress_source_words(rigidity->source);
+  if (rigidity->states.count == 0)
     snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);
-  else if (r->stress.by_elements)
+  else if (rigidity->stress.by_elements)
     snprintf(words, STRUT_RIGIDITY_WORDS,
              "not judged: elements (hinges, cells, running cables) carry %s", source);
-  else if (!r->stress.tested)
+  else if (!rigidity->stress.tested)
     snprintf(words, STRUT_RIGIDITY_WORDS, "not tested: the structure is too large");
-  else if (r->stress.super_stable)
+  else if (rigidity->stress.super_stable)
     snprintf(words, STRUT_RIGIDITY_WORDS, "yes, by %s", source);
   else
     snprintf(words, STRUT_RIGIDITY_WORDS, "%s, by %s: %s",
-             r->states.count == 1 ? "no" : "not shown", source, why_not(r));
+             rigidity->states.count == 1 ? "no" : "not shown", source, why_not(rigidity));
   return words;
 }
 
@@ -81,21 +83,21 @@ size_t strut_column_of(const strut_scene *scene, strut_channel_owner owner, size
                                               : 0);
 }
 
-double strut_column_force(const strut_rigidity *r, strut_channel_owner owner, double force) {
-  return owner == STRUT_OWNER_HINGE  ? force * r->matrix.size
-         : owner == STRUT_OWNER_CELL ? -force / r->matrix.size + 0.0
+double strut_column_force(const strut_rigidity *rigidity, strut_channel_owner owner, double force) {
+  return owner == STRUT_OWNER_HINGE  ? force * rigidity->matrix.size
+         : owner == STRUT_OWNER_CELL ? -force / rigidity->matrix.size + 0.0
                                      : force;
 }
 
-double strut_column_extent(const strut_rigidity *r, strut_channel_owner owner, size_t j) {
-  double length = r->matrix.length[j];
-  return owner == STRUT_OWNER_HINGE  ? length / r->matrix.size
-         : owner == STRUT_OWNER_CELL ? length * r->matrix.size
+double strut_column_extent(const strut_rigidity *rigidity, strut_channel_owner owner, size_t j) {
+  double length = rigidity->matrix.length[j];
+  return owner == STRUT_OWNER_HINGE  ? length / rigidity->matrix.size
+         : owner == STRUT_OWNER_CELL ? length * rigidity->matrix.size
                                      : length;
 }
 
-bool strut_member_is_idle(const strut_rigidity *r, const strut_scene *scene, size_t j) {
-  return scene->members[j].kind == STRUT_CABLE && !(r->force[j] > 0.0);
+bool strut_member_is_idle(const strut_rigidity *rigidity, const strut_scene *scene, size_t j) {
+  return scene->members[j].kind == STRUT_CABLE && !(rigidity->force[j] > 0.0);
 }
 
 /* ---- forces of all columns, an array that is the object ---- */
@@ -116,8 +118,9 @@ static double distance_of(const strut_result_object *of, size_t i) {
   return item_of(of, STRUT_OWNER_DISTANCE, i);
 }
 static double density_of(const strut_result_object *of, size_t j) {
-  const strut_rigidity *r = strut_result_whole(of);
-  return r->matrix.length[j] > 0 ? ((const double *)of->at)[j] / r->matrix.length[j] : 0.0;
+  const strut_rigidity *rigidity = strut_result_whole(of);
+  return rigidity->matrix.length[j] > 0 ? ((const double *)of->at)[j] / rigidity->matrix.length[j]
+                                        : 0.0;
 }
 
 #define OTHERS(X, BEFORE)                                                                          \
@@ -163,16 +166,16 @@ STRUT_VALUES_HERE(self_stress_values, SELF_STRESS, const strut_rigidity *r = of-
 
 /* Scaled so that the node that moves most moves by 1. */
 static double motion_of(const strut_result_object *of, size_t k) {
-  const strut_rigidity *r = strut_result_whole(of);
+  const strut_rigidity *rigidity = strut_result_whole(of);
   const strut_mechanism *mode = of->at;
-  int32_t row = r->matrix.row_of[k];
+  int32_t row = rigidity->matrix.row_of[k];
   double moves = row < 0 ? 0.0 : mode->motion[row], largest = mode->largest;
   return !(largest > 0) ? moves : fabs(moves) < 1e-13 * largest ? 0.0 : moves / largest;
 }
 
 static void write_test(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  const strut_rigidity *r = strut_result_whole(of);
-  strut_mechanism_words(&r->mechanisms, of->at, text);
+  const strut_rigidity *rigidity = strut_result_whole(of);
+  strut_mechanism_words(&rigidity->mechanisms, of->at, text);
 }
 
 #define MODE(X)                                                                                    \
@@ -231,9 +234,10 @@ static void write_super_stability(const strut_result_object *of, char text[STRUT
 }
 
 /* Of several states another combination might do it. */
-static bool is_judged(const strut_rigidity *r) {
-  bool single = r->states.count <= 1;
-  return r->states.count == 0 || (r->stress.tested && (single || r->stress.super_stable));
+static bool is_judged(const strut_rigidity *rigidity) {
+  bool single = rigidity->states.count <= 1;
+  return rigidity->states.count == 0 ||
+         (rigidity->stress.tested && (single || rigidity->stress.super_stable));
 }
 
 static const char *name_of_idle(const strut_result_object *of, size_t j) {

@@ -79,10 +79,10 @@ typedef struct candidate {
   const double *row;
 } candidate;
 
-static int compare_member_counts(const void *a, const void *b) {
-  const candidate *x = a, *y = b;
-  if (x->members != y->members) return x->members < y->members ? -1 : 1;
-  return x->number < y->number ? -1 : x->number > y->number;
+static int compare_member_counts(const void *first, const void *second) {
+  const candidate *self = first, *y = second;
+  if (self->members != y->members) return self->members < y->members ? -1 : 1;
+  return self->number < y->number ? -1 : self->number > y->number;
 }
 
 /* Echelon forms from every member on; the states of fewest members that are add_if_independent. */
@@ -191,88 +191,93 @@ static void combine_states(const strut_self_stress *states, size_t members, cons
   for (size_t j = 0; j < members && largest > 0; j++) force[j] /= largest;
 }
 
-static bool allocate(search *s, strut_arena *scratch) {
-  size_t square = s->motions * s->motions + 1;
-  s->weight = strut_arena_allocate(scratch, s->states_count, sizeof(double));
-  s->pull = strut_arena_allocate(scratch, s->states_count, sizeof(double));
-  s->cable = strut_arena_allocate(scratch, s->members, sizeof(double));
-  s->form = strut_arena_allocate(scratch, square, sizeof(double));
-  s->value = strut_arena_allocate(scratch, s->motions + 1, sizeof(double));
-  s->vector = strut_arena_allocate(scratch, square, sizeof(double));
-  return s->weight && s->pull && s->cable && s->form && s->value && s->vector;
+static bool allocate(search *self, strut_arena *scratch) {
+  size_t square = self->motions * self->motions + 1;
+  self->weight = strut_arena_allocate(scratch, self->states_count, sizeof(double));
+  self->pull = strut_arena_allocate(scratch, self->states_count, sizeof(double));
+  self->cable = strut_arena_allocate(scratch, self->members, sizeof(double));
+  self->form = strut_arena_allocate(scratch, square, sizeof(double));
+  self->value = strut_arena_allocate(scratch, self->motions + 1, sizeof(double));
+  self->vector = strut_arena_allocate(scratch, square, sizeof(double));
+  return self->weight && self->pull && self->cable && self->form && self->value && self->vector;
 }
 
-static void measure_cables(search *s) {
-  for (size_t j = 0; j < s->members; j++) {
-    if (!s->wish->cables || !strut_column_is_cable(s->model, (int32_t)j)) continue;
-    for (size_t i = 0; i < s->states_count; i++) {
-      double t = s->states->force[i * s->members + j];
-      s->cable[j] += t * t;
+static void measure_cables(search *self) {
+  for (size_t j = 0; j < self->members; j++) {
+    if (!self->wish->cables || !strut_column_is_cable(self->model, (int32_t)j)) continue;
+    for (size_t i = 0; i < self->states_count; i++) {
+      double t = self->states->force[i * self->members + j];
+      self->cable[j] += t * t;
     }
-    s->cable[j] = sqrt(s->cable[j]);
+    self->cable[j] = sqrt(self->cable[j]);
   }
 }
 
-static double norm(const double *x, size_t n) { return sqrt(strut_dot(x, x, (ptrdiff_t)n)); }
+static double norm(const double *vector, size_t n) {
+  return sqrt(strut_dot(vector, vector, (ptrdiff_t)n));
+}
 
 /* The demand of the cable that is pressed most, relative to its coefficients; false: none is. */
-static bool demand_of_worst_cable(search *s) {
-  double worst = MARGIN * norm(s->weight, s->states_count);
-  size_t at = s->members;
-  for (size_t j = 0; j < s->members; j++) {
-    if (s->cable[j] == 0.0) continue;
+static bool demand_of_worst_cable(search *self) {
+  double worst = MARGIN * norm(self->weight, self->states_count);
+  size_t at = self->members;
+  for (size_t j = 0; j < self->members; j++) {
+    if (self->cable[j] == 0.0) continue;
     double force = 0.0;
-    for (size_t i = 0; i < s->states_count; i++)
-      force += s->weight[i] * s->states->force[i * s->members + j];
-    if (force / s->cable[j] > worst) continue;
-    worst = force / s->cable[j];
+    for (size_t i = 0; i < self->states_count; i++)
+      force += self->weight[i] * self->states->force[i * self->members + j];
+    if (force / self->cable[j] > worst) continue;
+    worst = force / self->cable[j];
     at = j;
   }
-  if (at == s->members) return false;
-  for (size_t i = 0; i < s->states_count; i++)
-    s->pull[i] = s->states->force[i * s->members + at] / s->cable[at];
+  if (at == self->members) return false;
+  for (size_t i = 0; i < self->states_count; i++)
+    self->pull[i] = self->states->force[i * self->members + at] / self->cable[at];
   return true;
 }
 
-static void set_pull_of_forms(search *s, const double *v) {
-  size_t m = s->motions;
-  for (size_t i = 0; i < s->states_count; i++) {
-    const double *form = s->wish->forms + i * m * m;
-    s->pull[i] = 0.0;
+static void set_pull_of_forms(search *self, const double *v) {
+  size_t m = self->motions;
+  for (size_t i = 0; i < self->states_count; i++) {
+    const double *form = self->wish->forms + i * m * m;
+    self->pull[i] = 0.0;
     for (size_t r = 0; r < m; r++)
-      for (size_t c = 0; c < m; c++) s->pull[i] += v[r] * form[r * m + c] * v[c];
+      for (size_t c = 0; c < m; c++) self->pull[i] += v[r] * form[r * m + c] * v[c];
   }
-  double size = norm(s->pull, s->states_count);
-  for (size_t i = 0; i < s->states_count && size > 0; i++) s->pull[i] /= size;
+  double size = norm(self->pull, self->states_count);
+  for (size_t i = 0; i < self->states_count && size > 0; i++) self->pull[i] /= size;
 }
 
 /* The demand of the softest motion; *failed: it has none, so that nothing helps. */
-static bool demand_of_softest_motion(search *s, bool *failed) {
-  size_t m = s->motions;
+static bool demand_of_softest_motion(search *self, bool *failed) {
+  size_t m = self->motions;
   if (m == 0) return false;
-  memset(s->form, 0, m * m * sizeof *s->form);
-  for (size_t i = 0; i < s->states_count; i++)
-    for (size_t k = 0; k < m * m; k++) s->form[k] += s->weight[i] * s->wish->forms[i * m * m + k];
-  if (!strut_symmetric_eigen(s->form, m, s->value, s->vector)) {
+  memset(self->form, 0, m * m * sizeof *self->form);
+  for (size_t i = 0; i < self->states_count; i++)
+    for (size_t k = 0; k < m * m; k++)
+      self->form[k] += self->weight[i] * self->wish->forms[i * m * m + k];
+  if (!strut_symmetric_eigen(self->form, m, self->value, self->vector)) {
     *failed = true;
     return true;
   }
   double scale = 0.0;
-  for (size_t i = 0; i < s->states_count; i++) scale += fabs(s->weight[i]) * s->wish->scale[i];
-  if (s->value[0] > MARGIN * scale) return false;
-  set_pull_of_forms(s, s->vector);
-  *failed = norm(s->pull, s->states_count) == 0.0;
+  for (size_t i = 0; i < self->states_count; i++)
+    scale += fabs(self->weight[i]) * self->wish->scale[i];
+  if (self->value[0] > MARGIN * scale) return false;
+  set_pull_of_forms(self, self->vector);
+  *failed = norm(self->pull, self->states_count) == 0.0;
   return true;
 }
 
-static bool find_combination(search *s) {
+static bool find_combination(search *self) {
   bool failed = false;
-  int most = s->motions > 0 ? MOST_FORM_ROUNDS : MOST_ROUNDS;
+  int most = self->motions > 0 ? MOST_FORM_ROUNDS : MOST_ROUNDS;
   /* start from the states that pull cables by themselves */
-  for (size_t i = 0; i < s->states_count; i++) s->weight[i] = s->states->cables_pull[i] ? 1 : 0.1;
+  for (size_t i = 0; i < self->states_count; i++)
+    self->weight[i] = self->states->cables_pull[i] ? 1 : 0.1;
   for (int round = 0; round < most && !failed; round++) {
-    if (!demand_of_worst_cable(s) && !demand_of_softest_motion(s, &failed)) return true;
-    for (size_t i = 0; i < s->states_count; i++) s->weight[i] += s->pull[i];
+    if (!demand_of_worst_cable(self) && !demand_of_softest_motion(self, &failed)) return true;
+    for (size_t i = 0; i < self->states_count; i++) self->weight[i] += self->pull[i];
   }
   return false;
 }
@@ -304,32 +309,32 @@ typedef struct cables {
   int32_t *member; /* (count) cables that some state loads */
 } cables;
 
-static double force_of(const cables *c, int32_t state, int32_t member) {
-  return c->states->force[(size_t)state * c->members + (size_t)member];
+static double force_of(const cables *self, int32_t state, int32_t member) {
+  return self->states->force[(size_t)state * self->members + (size_t)member];
 }
 
-static bool list_cables(const strut_model *model, cables *c, strut_arena *scratch) {
-  c->member = strut_arena_allocate(scratch, c->members + 1, sizeof *c->member);
-  if (!c->member) return false;
+static bool list_cables(const strut_model *model, cables *self, strut_arena *scratch) {
+  self->member = strut_arena_allocate(scratch, self->members + 1, sizeof *self->member);
+  if (!self->member) return false;
   for (int32_t j = 0; j < model->members.count; j++) {
     bool loaded = false;
-    for (int32_t i = 0; i < c->states->count; i++) loaded |= force_of(c, i, j) != 0.0;
-    if (loaded && model->scene->members[j].kind == STRUT_CABLE) c->member[c->count++] = j;
+    for (int32_t i = 0; i < self->states->count; i++) loaded |= force_of(self, i, j) != 0.0;
+    if (loaded && model->scene->members[j].kind == STRUT_CABLE) self->member[self->count++] = j;
   }
   return true;
 }
 
 /* A column for each state, a row for each cable: its force is at least 1. */
-static bool build_program(const cables *c, strut_linear_program *program, strut_arena *scratch) {
-  size_t entries = (size_t)c->count * (size_t)c->states->count;
-  if (!strut_linear_program_create(program, c->count, c->states->count, entries, scratch))
+static bool build_program(const cables *self, strut_linear_program *program, strut_arena *scratch) {
+  size_t entries = (size_t)self->count * (size_t)self->states->count;
+  if (!strut_linear_program_create(program, self->count, self->states->count, entries, scratch))
     return false;
-  for (int32_t i = 0; i < c->states->count; i++) program->low[i] = -HUGE_VAL;
-  for (int32_t r = 0; r < c->count; r++) {
+  for (int32_t i = 0; i < self->states->count; i++) program->low[i] = -HUGE_VAL;
+  for (int32_t r = 0; r < self->count; r++) {
     program->row_low[r] = 1.0;
     program->row_high[r] = HUGE_VAL;
-    for (int32_t i = 0; i < c->states->count; i++) {
-      double force = force_of(c, i, c->member[r]);
+    for (int32_t i = 0; i < self->states->count; i++) {
+      double force = force_of(self, i, self->member[r]);
       program->cost[i] += force;
       strut_linear_program_add(program, r, i, force);
     }

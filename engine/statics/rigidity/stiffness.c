@@ -16,65 +16,65 @@
 static const double ROUNDING = 1e-9;
 
 /* Motion of a node of a member along x or y; 0 where held. */
-static double moved(const strut_equilibrium_matrix *a, const double *motion, uint32_t at) {
-  int32_t row = a->row_of[at];
+static double moved(const strut_equilibrium_matrix *matrix, const double *motion, uint32_t at) {
+  int32_t row = matrix->row_of[at];
   return row < 0 ? 0.0 : motion[row];
 }
 
 /* x' bend y of a running cable or a hinge. */
-static double bend_form(const strut_model *model, const strut_equilibrium_matrix *a, int32_t j,
-                        const double *x, const double *y) {
-  const strut_element *e = &model->elements.element[a->curved[j]];
-  const uint32_t *at = model->elements.at + e->first;
-  int32_t n = 2 * e->nodes;
+static double bend_form(const strut_model *model, const strut_equilibrium_matrix *matrix, int32_t j,
+                        const double *vector, const double *y) {
+  const strut_element *element = &model->elements.element[matrix->curved[j]];
+  const uint32_t *at = model->elements.at + element->first;
+  int32_t n = 2 * element->nodes;
   double sum = 0.0;
   for (int32_t r = 0; r < n; r++) {
-    double left = moved(a, x, at[r / 2] + (uint32_t)(r % 2));
+    double left = moved(matrix, vector, at[r / 2] + (uint32_t)(r % 2));
     for (int32_t c = 0; c < n && left != 0.0; c++)
-      sum += left * a->bend[j][r * n + c] * moved(a, y, at[c / 2] + (uint32_t)(c % 2));
+      sum += left * matrix->bend[j][r * n + c] * moved(matrix, y, at[c / 2] + (uint32_t)(c % 2));
   }
   return sum;
 }
 
-double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *a,
-                         const double *density, const double *x, const double *y) {
+double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *matrix,
+                         const double *density, const double *vector, const double *y) {
   double sum = 0.0;
-  for (int32_t j = 0; j < a->columns; j++) {
+  for (int32_t j = 0; j < matrix->columns; j++) {
     if (density[j] == 0.0) continue;
-    if (a->curved[j] >= 0) {
-      sum += density[j] * bend_form(model, a, j, x, y);
+    if (matrix->curved[j] >= 0) {
+      sum += density[j] * bend_form(model, matrix, j, vector, y);
       continue;
     }
     uint32_t from = model->members.from[j], to = model->members.to[j];
-    double dx = moved(a, x, to) - moved(a, x, from);
-    double dy = moved(a, x, to + 1) - moved(a, x, from + 1);
-    double ex = moved(a, y, to) - moved(a, y, from);
-    double ey = moved(a, y, to + 1) - moved(a, y, from + 1);
+    double dx = moved(matrix, vector, to) - moved(matrix, vector, from);
+    double dy = moved(matrix, vector, to + 1) - moved(matrix, vector, from + 1);
+    double ex = moved(matrix, y, to) - moved(matrix, y, from);
+    double ey = moved(matrix, y, to + 1) - moved(matrix, y, from + 1);
     sum += density[j] * (dx * ex + dy * ey);
   }
   return sum;
 }
 
-void strut_stress_form_on(const strut_model *model, const strut_equilibrium_matrix *a,
+void strut_stress_form_on(const strut_model *model, const strut_equilibrium_matrix *matrix,
                           const double *density, const double *motion, int32_t count,
                           double *form) {
-  size_t n = (size_t)count, rows = (size_t)a->rows;
+  size_t n = (size_t)count, rows = (size_t)matrix->rows;
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k <= i; k++)
       form[i * n + k] = form[k * n + i] =
-          strut_stress_form(model, a, density, motion + i * rows, motion + k * rows);
+          strut_stress_form(model, matrix, density, motion + i * rows, motion + k * rows);
 }
 
 /* Do the densities balance at every node, held ones too? Then supports have nothing to carry. */
-static bool balances_alone(const strut_model *model, const strut_equilibrium_matrix *a,
+static bool balances_alone(const strut_model *model, const strut_equilibrium_matrix *matrix,
                            const double *force, double *sum) {
   double largest = 0.0;
-  for (int32_t j = 0; j < a->members; j++) {
+  for (int32_t j = 0; j < matrix->members; j++) {
     uint32_t from = model->members.from[j], to = model->members.to[j];
     largest = fmax(largest, fabs(force[j]));
     for (uint32_t k = 0; k < 2; k++) {
-      sum[from + k] += force[j] * a->direction[j][k];
-      sum[to + k] -= force[j] * a->direction[j][k];
+      sum[from + k] += force[j] * matrix->direction[j][k];
+      sum[to + k] -= force[j] * matrix->direction[j][k];
     }
   }
   for (int32_t at = 0; at < 2 * model->node_count; at++)
@@ -110,11 +110,12 @@ static void fill_matrix(const strut_model *model, const strut_equilibrium_matrix
 }
 
 /* Is there a symmetric Q with u' Q u = 0 for all members that carry force? */
-static bool lies_on_conic(const strut_equilibrium_matrix *a) {
+static bool lies_on_conic(const strut_equilibrium_matrix *matrix) {
   double gram[9] = {0}, value[3], vector[9];
-  for (int32_t j = 0; j < a->members; j++) {
-    if (a->curved[j] >= 0) continue;
-    double x = a->direction[j][0], y = a->direction[j][1], row[3] = {x * x, 2 * x * y, y * y};
+  for (int32_t j = 0; j < matrix->members; j++) {
+    if (matrix->curved[j] >= 0) continue;
+    double x = matrix->direction[j][0], y = matrix->direction[j][1],
+           row[3] = {x * x, 2 * x * y, y * y};
     for (int i = 0; i < 3; i++)
       for (int k = 0; k < 3; k++) gram[3 * i + k] += row[i] * row[k];
   }
@@ -133,11 +134,11 @@ static int32_t count_nodes(const strut_model *model, int32_t *row) {
 }
 
 /* Densities may cancel at every node: eigenvalues are small beside them, not beside themselves. */
-static void judge(const strut_equilibrium_matrix *a, const double *force,
+static void judge(const strut_equilibrium_matrix *matrix, const double *force,
                   strut_stress_matrix *stress) {
   double largest = 0.0;
-  for (int32_t j = 0; j < a->members; j++)
-    if (a->length[j] > 0) largest = fmax(largest, fabs(force[j]) / a->length[j]);
+  for (int32_t j = 0; j < matrix->members; j++)
+    if (matrix->length[j] > 0) largest = fmax(largest, fabs(force[j]) / matrix->length[j]);
   stress->positive = largest > 0;
   for (int32_t i = 0; i < stress->count; i++) {
     if (fabs(stress->eigenvalues[i]) <= ROUNDING * largest) stress->nullity++;
@@ -148,10 +149,10 @@ static void judge(const strut_equilibrium_matrix *a, const double *force,
 }
 
 /* Does a running cable or a hinge carry a part of the forces? Its energy is no quadratic form. */
-static bool are_elements_loaded(const strut_equilibrium_matrix *a, const double *force) {
-  double largest = strut_largest_magnitude(force, a->columns);
-  for (int32_t j = 0; j < a->columns; j++)
-    if (a->curved[j] >= 0 && fabs(force[j]) > ROUNDING * largest) return true;
+static bool are_elements_loaded(const strut_equilibrium_matrix *matrix, const double *force) {
+  double largest = strut_largest_magnitude(force, matrix->columns);
+  for (int32_t j = 0; j < matrix->columns; j++)
+    if (matrix->curved[j] >= 0 && fabs(force[j]) > ROUNDING * largest) return true;
   return false;
 }
 
@@ -198,125 +199,126 @@ struct strut_node_stiffness {
   strut_arena arena;
 };
 
-static void add_sparse(stiff *s, const strut_sparse *a) {
-  for (int32_t j = 0; a && j < a->n; j++)
-    for (int32_t at = a->start[j]; at < a->start[j + 1]; at++) {
-      size_t r = (size_t)a->row[at], c = (size_t)j;
-      s->k[r * s->n + c] += a->value[at];
-      if (r != c) s->k[c * s->n + r] += a->value[at];
+static void add_sparse(stiff *self, const strut_sparse *matrix) {
+  for (int32_t j = 0; matrix && j < matrix->n; j++)
+    for (int32_t at = matrix->start[j]; at < matrix->start[j + 1]; at++) {
+      size_t r = (size_t)matrix->row[at], c = (size_t)j;
+      self->k[r * self->n + c] += matrix->value[at];
+      if (r != c) self->k[c * self->n + r] += matrix->value[at];
     }
 }
 
 /* Adds to K a contact stiffness along the ground, equal to that normal to it. */
-static void hold_contacts(stiff *s, const strut_model *model, const double *q,
+static void hold_contacts(stiff *self, const strut_model *model, const double *q,
                           const int32_t *row_of) {
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t i = 0; i < c->count; i++) {
-    uint32_t at = c->at[i];
-    const strut_contact_pose pose = strut_contact_pose_at(c, i, q, NULL, -1);
+  const strut_contact_table *contacts = &model->contacts;
+  for (int32_t i = 0; i < contacts->count; i++) {
+    uint32_t at = contacts->at[i];
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, NULL, -1);
     const double *t = pose.axes.tangent;
     if (!(pose.gap < 0)) continue;
     for (uint32_t a = 0; a < 2; a++)
       for (uint32_t b = 0; b < 2; b++)
         if (row_of[at + a] >= 0 && row_of[at + b] >= 0)
-          s->k[(size_t)row_of[at + a] * s->n + (size_t)row_of[at + b]] +=
-              c->entry[i].stiffness * t[a] * t[b];
+          self->k[(size_t)row_of[at + a] * self->n + (size_t)row_of[at + b]] +=
+              contacts->entry[i].stiffness * t[a] * t[b];
   }
 }
 
 /* Finds the rigid motions without stiffness in K, as combinations, and adds stiffness against them. */
-static void lift_rigid(stiff *s) {
-  size_t n = s->n;
+static void lift_rigid(stiff *self) {
+  size_t n = self->n;
   double largest = 0.0;
-  gsl_matrix_view k = gsl_matrix_view_array(s->k, n, n);
-  for (size_t i = 0; i < n; i++) largest = fmax(largest, fabs(s->k[i * n + i]));
-  for (size_t m = 0; m < (size_t)s->rigid_count; m++) {
-    gsl_vector_view x = gsl_vector_view_array(s->rigid + m * n, n);
-    gsl_vector_view image = gsl_vector_view_array(s->load + m * n, n);
+  gsl_matrix_view k = gsl_matrix_view_array(self->k, n, n);
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, fabs(self->k[i * n + i]));
+  for (size_t m = 0; m < (size_t)self->rigid_count; m++) {
+    gsl_vector_view x = gsl_vector_view_array(self->rigid + m * n, n);
+    gsl_vector_view image = gsl_vector_view_array(self->load + m * n, n);
     gsl_blas_dsymv(CblasLower, 1.0, &k.matrix, &x.vector, 0.0, &image.vector);
   }
-  s->rigid_count =
-      strut_rigid_motions_free((int32_t)n, NOTHING * largest, s->rigid_count, s->rigid, s->load);
-  for (size_t m = 0; m < (size_t)s->rigid_count; m++) {
-    gsl_vector_view x = gsl_vector_view_array(s->rigid + m * n, n);
+  self->rigid_count = strut_rigid_motions_free((int32_t)n, NOTHING * largest, self->rigid_count,
+                                               self->rigid, self->load);
+  for (size_t m = 0; m < (size_t)self->rigid_count; m++) {
+    gsl_vector_view x = gsl_vector_view_array(self->rigid + m * n, n);
     gsl_blas_dsyr(CblasLower, largest, &x.vector, &k.matrix);
   }
 }
 
 /* False where K is not positive definite. */
-static bool factorise(stiff *s) {
-  gsl_matrix_view k = gsl_matrix_view_array(s->k, s->n, s->n);
-  for (size_t i = 0; i < s->n; i++) s->load[i] = s->k[i * s->n + i];
+static bool factorise(stiff *self) {
+  gsl_matrix_view k = gsl_matrix_view_array(self->k, self->n, self->n);
+  for (size_t i = 0; i < self->n; i++) self->load[i] = self->k[i * self->n + i];
   bool good = gsl_linalg_cholesky_decomp1(&k.matrix) == 0;
-  for (size_t i = 0; i < s->n && good; i++) {
-    double root = s->k[i * s->n + i];
-    good = root * root > PIVOT * s->load[i];
+  for (size_t i = 0; i < self->n && good; i++) {
+    double root = self->k[i * self->n + i];
+    good = root * root > PIVOT * self->load[i];
   }
   return good;
 }
 
-double strut_node_stiffness_along(stiff *s, int32_t node, const double direction[2]) {
-  const int32_t *row_of = &s->potential->row_of[2 * node];
-  for (size_t i = 0; i < s->n; i++) s->load[i] = 0.0;
+double strut_node_stiffness_along(stiff *self, int32_t node, const double direction[2]) {
+  const int32_t *row_of = &self->potential->row_of[2 * node];
+  for (size_t i = 0; i < self->n; i++) self->load[i] = 0.0;
   for (int d = 0; d < 2; d++)
-    if (row_of[d] >= 0) s->load[row_of[d]] = direction[d];
-  for (int32_t m = 0; m < s->rigid_count; m++) {
-    const double *x = s->rigid + (size_t)m * s->n;
+    if (row_of[d] >= 0) self->load[row_of[d]] = direction[d];
+  for (int32_t m = 0; m < self->rigid_count; m++) {
+    const double *x = self->rigid + (size_t)m * self->n;
     double along = 0.0;
     for (int d = 0; d < 2; d++)
       if (row_of[d] >= 0) along += direction[d] * x[row_of[d]];
-    for (size_t i = 0; i < s->n; i++) s->load[i] -= along * x[i];
+    for (size_t i = 0; i < self->n; i++) self->load[i] -= along * x[i];
   }
-  gsl_matrix_view factor = gsl_matrix_view_array(s->k, s->n, s->n);
-  gsl_vector_view load = gsl_vector_view_array(s->load, s->n);
+  gsl_matrix_view factor = gsl_matrix_view_array(self->k, self->n, self->n);
+  gsl_vector_view load = gsl_vector_view_array(self->load, self->n);
   gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &factor.matrix, &load.vector);
-  double compliance = strut_dot(s->load, s->load, (ptrdiff_t)s->n); /* |L^-1 d|^2 = d' K^-1 d */
+  double compliance =
+      strut_dot(self->load, self->load, (ptrdiff_t)self->n); /* |L^-1 d|^2 = d' K^-1 d */
   return compliance > 0.0 ? 1.0 / compliance : (double)NAN;
 }
 
 /* K at q, with its rigid motions lifted, factored; or why not. */
-static strut_status fill_stiffness(stiff *s, const strut_model *model, const double *q,
+static strut_status fill_stiffness(stiff *self, const strut_model *model, const double *q,
                                    const char **reason) {
   strut_linear_matrices matrices;
-  s->k = strut_arena_allocate(&s->arena, s->n * s->n, sizeof *s->k);
-  s->rigid = strut_arena_allocate(&s->arena, 3 * s->n, sizeof *s->rigid);
-  s->load = strut_arena_allocate(&s->arena, 3 * s->n, sizeof *s->load);
-  strut_status status = s->k && s->rigid && s->load
-                            ? strut_linear_matrices_build(model, q, &s->arena, &matrices)
+  self->k = strut_arena_allocate(&self->arena, self->n * self->n, sizeof *self->k);
+  self->rigid = strut_arena_allocate(&self->arena, 3 * self->n, sizeof *self->rigid);
+  self->load = strut_arena_allocate(&self->arena, 3 * self->n, sizeof *self->load);
+  strut_status status = self->k && self->rigid && self->load
+                            ? strut_linear_matrices_build(model, q, &self->arena, &matrices)
                             : STRUT_NO_MEMORY;
   if (status) return status;
-  add_sparse(s, matrices.elastic);
-  add_sparse(s, matrices.geometric);
-  add_sparse(s, matrices.contact);
-  hold_contacts(s, model, q, s->potential->row_of);
-  s->rigid_count = strut_rigid_motions(s->potential, q, NULL, s->rigid);
-  lift_rigid(s);
-  if (!factorise(s)) *reason = "a motion has no stiffness";
+  add_sparse(self, matrices.elastic);
+  add_sparse(self, matrices.geometric);
+  add_sparse(self, matrices.contact);
+  hold_contacts(self, model, q, self->potential->row_of);
+  self->rigid_count = strut_rigid_motions(self->potential, q, NULL, self->rigid);
+  lift_rigid(self);
+  if (!factorise(self)) *reason = "a motion has no stiffness";
   return STRUT_OK;
 }
 
 strut_status strut_node_stiffness_create(const strut_model *model, const double *q, stiff **to,
                                          const char **reason, strut_error *error) {
-  stiff *s = strut_allocate(1, sizeof *s);
+  stiff *self = strut_allocate(1, sizeof *self);
   *to = NULL;
   *reason = NULL;
-  if (!s) return strut_no_memory(error, "");
-  strut_status status = strut_potential_create(model, NULL, true, &s->potential, error);
-  if (!status) s->n = (size_t)s->potential->n;
-  if (!status && s->n == 0) *reason = "nothing can move";
-  if (!status && s->n > STRUT_STIFFNESS_COORDINATES) *reason = "more than 1000 free coordinates";
-  if (!status && !*reason) status = fill_stiffness(s, model, q, reason);
+  if (!self) return strut_no_memory(error, "");
+  strut_status status = strut_potential_create(model, NULL, true, &self->potential, error);
+  if (!status) self->n = (size_t)self->potential->n;
+  if (!status && self->n == 0) *reason = "nothing can move";
+  if (!status && self->n > STRUT_STIFFNESS_COORDINATES) *reason = "more than 1000 free coordinates";
+  if (!status && !*reason) status = fill_stiffness(self, model, q, reason);
   if (status == STRUT_NO_MEMORY) strut_no_memory(error, "");
   if (status || *reason)
-    strut_node_stiffness_free(s);
+    strut_node_stiffness_free(self);
   else
-    *to = s;
+    *to = self;
   return status;
 }
 
-void strut_node_stiffness_free(stiff *s) {
-  if (!s) return;
-  strut_potential_free(s->potential);
-  strut_arena_free(&s->arena);
-  strut_release(s);
+void strut_node_stiffness_free(stiff *self) {
+  if (!self) return;
+  strut_potential_free(self->potential);
+  strut_arena_free(&self->arena);
+  strut_release(self);
 }

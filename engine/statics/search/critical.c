@@ -39,72 +39,74 @@ typedef struct search {
   strut_error *error;
 } search;
 
-static bool reserve_hits(search *s) {
-  if ((int64_t)s->all.count <= s->room) return true;
-  int64_t room = 2 * (int64_t)s->all.count + 16;
-  int64_t *larger = strut_reallocate(s->hits, (size_t)room, sizeof *larger);
+static bool reserve_hits(search *self) {
+  if ((int64_t)self->all.count <= self->room) return true;
+  int64_t room = 2 * (int64_t)self->all.count + 16;
+  int64_t *larger = strut_reallocate(self->hits, (size_t)room, sizeof *larger);
   if (!larger) return false;
-  memset(larger + s->room, 0, (size_t)(room - s->room) * sizeof *larger);
-  s->hits = larger, s->room = room;
+  memset(larger + self->room, 0, (size_t)(room - self->room) * sizeof *larger);
+  self->hits = larger, self->room = room;
   return true;
 }
 
 /* Reads one result into the points. */
-static strut_status read_result(search *s, const strut_task *task,
+static strut_status read_result(search *self, const strut_task *task,
                                 const strut_task_result *result) {
   bool start = task->kind <= STRUT_TASK_RANDOM, down = task->kind == STRUT_TASK_DOWN, fresh;
   int32_t index;
-  if (start) s->set->starts++;
-  if (!start && !down) s->set->saddle_starts++;
-  if (start && result->end == STRUT_DESCENT_RUNAWAY) s->set->runaway++;
-  if (start && result->end == STRUT_DESCENT_EXHAUSTED) s->set->exhausted++;
+  if (start) self->set->starts++;
+  if (!start && !down) self->set->saddle_starts++;
+  if (start && result->end == STRUT_DESCENT_RUNAWAY) self->set->runaway++;
+  if (start && result->end == STRUT_DESCENT_EXHAUSTED) self->set->exhausted++;
   if (result->end != STRUT_DESCENT_REACHED) return STRUT_OK;
-  strut_status status = strut_stationary_set_add(&s->all, result->q, &index, &fresh, s->error);
+  strut_status status =
+      strut_stationary_set_add(&self->all, result->q, &index, &fresh, self->error);
   if (status) return status;
-  if (!reserve_hits(s)) return strut_no_memory(s->error, "");
-  if (task->kind == STRUT_TASK_RANDOM) s->hits[index]++;
+  if (!reserve_hits(self)) return strut_no_memory(self->error, "");
+  if (task->kind == STRUT_TASK_RANDOM) self->hits[index]++;
   if (!down) return STRUT_OK;
-  s->all.points[index].found--;
-  if (strut_is_minimum(&s->all.points[index]))
-    s->all.points[task->from].down[task->side > 0 ? 0 : 1] = index;
+  self->all.points[index].found--;
+  if (strut_is_minimum(&self->all.points[index]))
+    self->all.points[task->from].down[task->side > 0 ? 0 : 1] = index;
   return STRUT_OK;
 }
 
-static strut_status run_tasks(search *s) {
-  const strut_flag *interrupt = s->effort->interrupt;
-  const strut_task_result *result = strut_search_tasks_run(s->batch, s->task, s->tasks, interrupt);
+static strut_status run_tasks(search *self) {
+  const strut_flag *interrupt = self->effort->interrupt;
+  const strut_task_result *result =
+      strut_search_tasks_run(self->batch, self->task, self->tasks, interrupt);
   if (interrupt && *interrupt)
-    return strut_fail(s->error, STRUT_INTERRUPTED, "interrupted while searching");
+    return strut_fail(self->error, STRUT_INTERRUPTED, "interrupted while searching");
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < s->tasks && !status; i++) {
-    s->spent += s->cost * (double)result[i].hessian_count;
-    status = read_result(s, &s->task[i], &result[i]);
+  for (size_t i = 0; i < self->tasks && !status; i++) {
+    self->spent += self->cost * (double)result[i].hessian_count;
+    status = read_result(self, &self->task[i], &result[i]);
   }
-  s->tasks = 0;
+  self->tasks = 0;
   return status;
 }
 
 /* Appends a task to the batch, which runs when full. */
-static strut_status add_task(search *s, strut_task task) {
-  assert(s->tasks < s->batch_size && s->batch_size <= STRUT_BATCH);
-  s->task[s->tasks++] = task;
-  return s->tasks == s->batch_size ? run_tasks(s) : STRUT_OK;
+static strut_status add_task(search *self, strut_task task) {
+  assert(self->tasks < self->batch_size && self->batch_size <= STRUT_BATCH);
+  self->task[self->tasks++] = task;
+  return self->tasks == self->batch_size ? run_tasks(self) : STRUT_OK;
 }
 
 /* True, and the search cut short, if this share of the budget is spent. */
-static bool is_over_budget(search *s, double share) {
-  if (s->spent <= share * s->budget) return false;
-  s->set->cut_short = true;
+static bool is_over_budget(search *self, double share) {
+  if (self->spent <= share * self->budget) return false;
+  self->set->cut_short = true;
   return true;
 }
 
-static void set_budget(search *s) {
-  double n = s->potential->n, descent, size;
-  s->cost = n * n * (n + 30.0);
-  s->budget = MOST_WORK / (s->effort->searches > 1 ? s->effort->searches : 1);
-  descent = 60.0 * s->cost + 1.0;
-  size = 0.05 * s->budget / descent;
-  s->batch_size = size < 4.0 ? 4 : size > STRUT_BATCH ? STRUT_BATCH : (size_t)size;
+static void set_budget(search *self) {
+  double n = self->potential->n, descent, size;
+  self->cost = n * n * (n + 30.0);
+  self->budget = MOST_WORK / (self->effort->searches > 1 ? self->effort->searches : 1);
+  descent = 60.0 * self->cost + 1.0;
+  size = 0.05 * self->budget / descent;
+  self->batch_size = size < 4.0 ? 4 : size > STRUT_BATCH ? STRUT_BATCH : (size_t)size;
 }
 
 /* Number of descents or climbs affordable at this size: their cost grows with n^3. */
@@ -114,18 +116,18 @@ static int64_t affordable_count(int32_t n, double budget, int64_t least, int64_t
 }
 
 /* Starts from the model's own shape, its folds, and the caller's shapes. */
-static strut_status search_known_shapes(search *s) {
-  const double *own = s->potential->model->start;
-  strut_status status = add_task(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
-  for (size_t i = 0; i < s->effort->extra_count && !status; i++)
-    status = add_task(s, (strut_task){.kind = STRUT_TASK_SHAPE, .q = s->effort->extra[i]});
-  int64_t most = affordable_count(s->potential->n, 4e6, 4, 256),
-          folds = strut_fold_count(s->potential);
-  if (s->potential->n > STRUT_DENSE_STATICS) folds = 0;
+static strut_status search_known_shapes(search *self) {
+  const double *own = self->potential->model->start;
+  strut_status status = add_task(self, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
+  for (size_t i = 0; i < self->effort->extra_count && !status; i++)
+    status = add_task(self, (strut_task){.kind = STRUT_TASK_SHAPE, .q = self->effort->extra[i]});
+  int64_t most = affordable_count(self->potential->n, 4e6, 4, 256),
+          folds = strut_fold_count(self->potential);
+  if (self->potential->n > STRUT_DENSE_STATICS) folds = 0;
   if (folds > most) folds = most;
-  for (int64_t i = 0; i < folds && !status && !is_over_budget(s, KNOWN_BY); i++)
-    status = add_task(s, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
-  return status ? status : run_tasks(s);
+  for (int64_t i = 0; i < folds && !status && !is_over_budget(self, KNOWN_BY); i++)
+    status = add_task(self, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
+  return status ? status : run_tasks(self);
 }
 
 /* Minima that random starts have met at all, exactly once, exactly twice, and never. */
@@ -133,95 +135,96 @@ typedef struct meetings {
   int64_t distinct, once, twice, never;
 } meetings;
 
-static meetings count_meetings(const search *s) {
+static meetings count_meetings(const search *self) {
   meetings m = {0};
-  for (size_t i = 0; i < s->all.count; i++) {
-    if (!strut_is_minimum(&s->all.points[i])) continue;
-    m.distinct += s->hits[i] > 0;
-    m.once += s->hits[i] == 1;
-    m.twice += s->hits[i] == 2;
-    m.never += s->hits[i] == 0;
+  for (size_t i = 0; i < self->all.count; i++) {
+    if (!strut_is_minimum(&self->all.points[i])) continue;
+    m.distinct += self->hits[i] > 0;
+    m.once += self->hits[i] == 1;
+    m.twice += self->hits[i] == 2;
+    m.never += self->hits[i] == 0;
   }
   return m;
 }
 
-static bool has_enough_starts(search *s, int64_t most) {
-  meetings m = count_meetings(s);
+static bool has_enough_starts(search *self, int64_t most) {
+  meetings m = count_meetings(self);
   int64_t least = PER_MINIMUM * m.distinct;
   if (least < LEAST_RANDOM) least = LEAST_RANDOM;
-  if (s->random >= least && 150 * m.once <= s->random) return true;
-  if (s->random >= most) s->set->cut_short = true;
-  return s->random >= most || is_over_budget(s, RANDOM_BY);
+  if (self->random >= least && 150 * m.once <= self->random) return true;
+  if (self->random >= most) self->set->cut_short = true;
+  return self->random >= most || is_over_budget(self, RANDOM_BY);
 }
 
-static strut_status search_random_shapes(search *s) {
-  int32_t n = s->potential->n;
-  int64_t wanted = s->effort->starts, most = affordable_count(n, 1.5e7, 4, 4000);
+static strut_status search_random_shapes(search *self) {
+  int32_t n = self->potential->n;
+  int64_t wanted = self->effort->starts, most = affordable_count(n, 1.5e7, 4, 4000);
   strut_status status = STRUT_OK;
   if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
-  double before = s->spent;
-  int64_t size = (int64_t)s->batch_size;
-  while (!status && (wanted > 0 ? s->random < wanted : !has_enough_starts(s, most))) {
-    int64_t left = (wanted > 0 ? wanted : most) - s->random;
+  double before = self->spent;
+  int64_t size = (int64_t)self->batch_size;
+  while (!status && (wanted > 0 ? self->random < wanted : !has_enough_starts(self, most))) {
+    int64_t left = (wanted > 0 ? wanted : most) - self->random;
     for (int64_t i = 0; i < left && i < size && !status; i++)
-      status = add_task(s, (strut_task){.kind = STRUT_TASK_RANDOM, .number = s->random++});
-    if (!status) status = run_tasks(s);
+      status = add_task(self, (strut_task){.kind = STRUT_TASK_RANDOM, .number = self->random++});
+    if (!status) status = run_tasks(self);
   }
-  if (wanted > 0) s->budget += s->spent - before; /* requested starts cost no budget */
+  if (wanted > 0) self->budget += self->spent - before; /* requested starts cost no budget */
   return status;
 }
 
 /* Folds of the minima found: a shape that random starts seldom meet often lies next to one. */
-static strut_status search_folded_minima(search *s) {
-  int32_t n = s->potential->n;
-  int64_t folds = strut_fold_count(s->potential), left = s->random / 2;
+static strut_status search_folded_minima(search *self) {
+  int32_t n = self->potential->n;
+  int64_t folds = strut_fold_count(self->potential), left = self->random / 2;
   strut_status status = STRUT_OK;
   if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int64_t fold = 0; fold < folds && left > 0 && !status; fold++)
-    for (size_t i = 0; i < s->all.count && left > 0 && !status && !is_over_budget(s, FOLDS_BY);
-         i++, left--)
+    for (size_t i = 0;
+         i < self->all.count && left > 0 && !status && !is_over_budget(self, FOLDS_BY); i++, left--)
       status = add_task(
-          s, (strut_task){.kind = STRUT_TASK_FOLD, .q = s->all.points[i].q, .number = fold});
-  return status ? status : run_tasks(s);
+          self, (strut_task){.kind = STRUT_TASK_FOLD, .q = self->all.points[i].q, .number = fold});
+  return status ? status : run_tasks(self);
 }
 
 /*
  * Part of one minimum and the rest of another, in all pairs: where a structure has several bistable
  * parts, its rare states are made of those that its common ones have.
  */
-static strut_status search_crossed_minima(search *s) {
-  int32_t n = s->potential->n;
-  int64_t left = s->random / PART_CROSSED, number = 0;
+static strut_status search_crossed_minima(search *self) {
+  int32_t n = self->potential->n;
+  int64_t left = self->random / PART_CROSSED, number = 0;
   strut_status status = STRUT_OK;
-  size_t end = s->all.count;
+  size_t end = self->all.count;
   if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int turn = 0; turn < CROSSINGS; turn++)
     for (size_t i = 1; i < end && !status; i++)
-      for (size_t k = 0; k < i && left > 0 && !status && !is_over_budget(s, CROSSES_BY);
+      for (size_t k = 0; k < i && left > 0 && !status && !is_over_budget(self, CROSSES_BY);
            k++, left--)
-        status = add_task(s, (strut_task){.kind = STRUT_TASK_CROSS,
-                                          .q = s->all.points[i].q,
-                                          .other = s->all.points[k].q,
-                                          .number = number++});
-  return status ? status : run_tasks(s);
+        status = add_task(self, (strut_task){.kind = STRUT_TASK_CROSS,
+                                             .q = self->all.points[i].q,
+                                             .other = self->all.points[k].q,
+                                             .number = number++});
+  return status ? status : run_tasks(self);
 }
 
 /*
  * Shakes minima that random starts found at most once: neighbours of small basins may be small too.
  */
-static strut_status shake_rare_minima(search *s) {
+static strut_status shake_rare_minima(search *self) {
   strut_status status = STRUT_OK;
-  size_t end = s->all.count;
-  if (s->potential->n == 0 || s->potential->n > STRUT_DENSE_STATICS) return STRUT_OK;
-  for (; s->shaken < end && !status; s->shaken++) {
-    const double *q = s->all.points[s->shaken].q;
-    if (!strut_is_minimum(&s->all.points[s->shaken]) || s->hits[s->shaken] > 1) continue;
-    for (int64_t k = 0; k < SHAKES && !status && !is_over_budget(s, CLIMBS_BY); k++)
-      status = add_task(
-          s, (strut_task){
-                 .kind = STRUT_TASK_SHAKE, .q = q, .number = SHAKES * (int64_t)s->shaken + k});
+  size_t end = self->all.count;
+  if (self->potential->n == 0 || self->potential->n > STRUT_DENSE_STATICS) return STRUT_OK;
+  for (; self->shaken < end && !status; self->shaken++) {
+    const double *q = self->all.points[self->shaken].q;
+    if (!strut_is_minimum(&self->all.points[self->shaken]) || self->hits[self->shaken] > 1)
+      continue;
+    for (int64_t k = 0; k < SHAKES && !status && !is_over_budget(self, CLIMBS_BY); k++)
+      status = add_task(self, (strut_task){.kind = STRUT_TASK_SHAKE,
+                                           .q = q,
+                                           .number = SHAKES * (int64_t)self->shaken + k});
   }
-  return status ? status : run_tasks(s);
+  return status ? status : run_tasks(self);
 }
 
 /* Upper 95 % limit of the mean of a count with this variance; of a count of none it is exact. */
@@ -244,135 +247,137 @@ strut_missed strut_estimate_missed(int64_t starts, int64_t distinct, int64_t onc
   return missed;
 }
 
-static void estimate_missed(search *s) {
-  meetings m = count_meetings(s);
-  s->set->missed = strut_estimate_missed(s->random, m.distinct, m.once, m.twice);
-  if (s->random == 0) return;
-  s->set->unmet = m.never;
-  s->set->unseen = (int64_t)fmax(0.0, s->set->missed.count - (double)(m.distinct + m.never));
+static void estimate_missed(search *self) {
+  meetings m = count_meetings(self);
+  self->set->missed = strut_estimate_missed(self->random, m.distinct, m.once, m.twice);
+  if (self->random == 0) return;
+  self->set->unmet = m.never;
+  self->set->unseen = (int64_t)fmax(0.0, self->set->missed.count - (double)(m.distinct + m.never));
 }
 
-static strut_status climb_from(search *s, strut_task task) {
-  if (s->climbs_left-- <= 0) s->set->cut_short = true;
-  return s->climbs_left >= 0 && !is_over_budget(s, CLIMBS_BY) ? add_task(s, task) : STRUT_OK;
+static strut_status climb_from(search *self, strut_task task) {
+  if (self->climbs_left-- <= 0) self->set->cut_short = true;
+  return self->climbs_left >= 0 && !is_over_budget(self, CLIMBS_BY) ? add_task(self, task)
+                                                                    : STRUT_OK;
 }
 
 /* Along the softest modes of every minimum not yet climbed from. */
-static strut_status climb_modes(search *s) {
+static strut_status climb_modes(search *self) {
   strut_status status = STRUT_OK;
-  size_t end = s->all.count;
-  for (; s->climbed < end && !status; s->climbed++) {
-    const strut_critical_point *point = &s->all.points[s->climbed];
-    int64_t modes = s->potential->n < MODES_CLIMBED ? s->potential->n : MODES_CLIMBED;
+  size_t end = self->all.count;
+  for (; self->climbed < end && !status; self->climbed++) {
+    const strut_critical_point *point = &self->all.points[self->climbed];
+    int64_t modes = self->potential->n < MODES_CLIMBED ? self->potential->n : MODES_CLIMBED;
     const double *q = point->q;
     if (!strut_is_minimum(point)) continue;
     for (int64_t k = 0; k < 2 * modes && !status; k++)
       status = climb_from(
-          s,
+          self,
           (strut_task){
               .kind = STRUT_TASK_CLIMB_MODE, .q = q, .number = k / 2, .side = k % 2 ? -1.0 : 1.0});
   }
-  return status ? status : run_tasks(s);
+  return status ? status : run_tasks(self);
 }
 
 /* Between every two minima, in all different placements of the second; copies of one included. */
-static strut_status climb_pairs(search *s) {
+static strut_status climb_pairs(search *self) {
   strut_status status = STRUT_OK;
-  size_t end = s->all.count;
-  for (; s->paired < end && !status; s->paired++) {
-    if (!strut_is_minimum(&s->all.points[s->paired])) continue;
-    for (size_t i = 0; i <= s->paired && !status; i++) {
-      if (!strut_is_minimum(&s->all.points[i])) continue;
-      const double *a = s->all.points[i].q, *b;
-      for (int32_t k = i == s->paired; k < 3 && !status; k++) {
-        b = strut_stationary_set_placement(&s->all, (int32_t)s->paired, k);
+  size_t end = self->all.count;
+  for (; self->paired < end && !status; self->paired++) {
+    if (!strut_is_minimum(&self->all.points[self->paired])) continue;
+    for (size_t i = 0; i <= self->paired && !status; i++) {
+      if (!strut_is_minimum(&self->all.points[i])) continue;
+      const double *a = self->all.points[i].q, *b;
+      for (int32_t k = i == self->paired; k < 3 && !status; k++) {
+        b = strut_stationary_set_placement(&self->all, (int32_t)self->paired, k);
         if (!b) break;
-        status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
+        status = climb_from(self, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
         if (!status)
           status = climb_from(
-              s, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b, .side = 1.0});
+              self, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b, .side = 1.0});
       }
     }
   }
-  return status ? status : run_tasks(s);
+  return status ? status : run_tasks(self);
 }
 
 /* Down both sides of every saddle with one unstable direction, from point `begin` on. */
-static strut_status descend_from_saddles(search *s, size_t begin) {
+static strut_status descend_from_saddles(search *self, size_t begin) {
   strut_status status = STRUT_OK;
-  size_t end = s->all.count;
-  for (size_t i = begin; i < end && !status && !is_over_budget(s, 1.0); i++) {
-    const strut_critical_point *point = &s->all.points[i];
+  size_t end = self->all.count;
+  for (size_t i = begin; i < end && !status && !is_over_budget(self, 1.0); i++) {
+    const strut_critical_point *point = &self->all.points[i];
     const double *q = point->q, *direction = point->softest;
     if (strut_is_minimum(point) || point->negative != 1) continue;
     for (int k = 0; k < 2 && !status; k++)
-      status = add_task(s, (strut_task){.kind = STRUT_TASK_DOWN,
-                                        .q = q,
-                                        .other = direction,
-                                        .side = k ? -1.0 : 1.0,
-                                        .from = (int32_t)i});
+      status = add_task(self, (strut_task){.kind = STRUT_TASK_DOWN,
+                                           .q = q,
+                                           .other = direction,
+                                           .side = k ? -1.0 : 1.0,
+                                           .from = (int32_t)i});
   }
-  return status ? status : run_tasks(s);
+  return status ? status : run_tasks(self);
 }
 
 /* Even numbers start from a shaken minimum, each in turn; odd ones from a random shape. */
-static strut_task random_climb_task(const search *s, int64_t number) {
+static strut_task random_climb_task(const search *self, int64_t number) {
   strut_task task = {.kind = STRUT_TASK_CLIMB_RANDOM, .number = number};
   int64_t minima = 0, wanted;
-  for (size_t i = 0; i < s->all.count; i++) minima += strut_is_minimum(&s->all.points[i]);
+  for (size_t i = 0; i < self->all.count; i++) minima += strut_is_minimum(&self->all.points[i]);
   if (number % 2 || minima == 0) return task;
   wanted = number / 2 % minima;
-  for (size_t i = 0; i < s->all.count && !task.q; i++)
-    if (strut_is_minimum(&s->all.points[i]) && wanted-- == 0) task.q = s->all.points[i].q;
+  for (size_t i = 0; i < self->all.count && !task.q; i++)
+    if (strut_is_minimum(&self->all.points[i]) && wanted-- == 0) task.q = self->all.points[i].q;
   return task;
 }
 
-static strut_status climb_hints(search *s) {
+static strut_status climb_hints(search *self) {
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < s->effort->hint_count && !status; i++)
-    status = climb_from(s, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = s->effort->hint[i]});
-  return status ? status : run_tasks(s);
+  for (size_t i = 0; i < self->effort->hint_count && !status; i++)
+    status =
+        climb_from(self, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = self->effort->hint[i]});
+  return status ? status : run_tasks(self);
 }
 
-static int64_t count_passes(const search *s) {
+static int64_t count_passes(const search *self) {
   int64_t count = 0;
-  for (size_t i = 0; i < s->all.count; i++)
-    count += !strut_is_minimum(&s->all.points[i]) && s->all.points[i].negative == 1;
+  for (size_t i = 0; i < self->all.count; i++)
+    count += !strut_is_minimum(&self->all.points[i]) && self->all.points[i].negative == 1;
   return count;
 }
 
 /* Climbs from random shapes until a whole batch finds no new pass. */
-static strut_status climb_at_random(search *s) {
+static strut_status climb_at_random(search *self) {
   strut_status status = STRUT_OK;
   int64_t number = 0;
   for (int turn = 0; turn < RANDOM_CLIMBS && !status; turn++) {
-    int64_t before = count_passes(s);
+    int64_t before = count_passes(self);
     for (int i = 0; i < STRUT_BATCH && !status; i++, number++)
-      status = climb_from(s, random_climb_task(s, number));
-    if (!status) status = run_tasks(s);
-    if (count_passes(s) == before) break;
+      status = climb_from(self, random_climb_task(self, number));
+    if (!status) status = run_tasks(self);
+    if (count_passes(self) == before) break;
   }
   return status;
 }
 
-static strut_status find_saddles(search *s) {
-  int32_t n = s->potential->n;
+static strut_status find_saddles(search *self) {
+  int32_t n = self->potential->n;
   strut_status status = STRUT_OK;
   size_t gone = 0;
-  if (!s->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
-  s->climbs_left = affordable_count(n, 4e6, 4, 2000);
+  if (!self->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
+  self->climbs_left = affordable_count(n, 4e6, 4, 2000);
   for (int turn = 0; turn < ROUNDS && !status; turn++) {
-    status = turn == 0 ? climb_hints(s) : shake_rare_minima(s);
-    if (!status) status = climb_modes(s);
-    if (!status) status = climb_pairs(s);
-    if (!status && turn == 0) status = climb_at_random(s);
+    status = turn == 0 ? climb_hints(self) : shake_rare_minima(self);
+    if (!status) status = climb_modes(self);
+    if (!status) status = climb_pairs(self);
+    if (!status && turn == 0) status = climb_at_random(self);
     while (!status &&
-           gone < s->all.count) { /* what lies below may be new, and a saddle's end too */
+           gone < self->all.count) { /* what lies below may be new, and a saddle's end too */
       size_t begin = gone;
-      gone = s->all.count;
-      status = descend_from_saddles(s, begin);
+      gone = self->all.count;
+      status = descend_from_saddles(self, begin);
     }
-    if (s->climbed == s->all.count) break;
+    if (self->climbed == self->all.count) break;
   }
   return status;
 }
@@ -381,35 +386,36 @@ static int kind_rank(const strut_critical_point *point) {
   return strut_is_minimum(point) ? 0 : point->label == STRUT_SADDLE ? 1 : 2;
 }
 
-static bool comes_before(const strut_critical_point *a, const strut_critical_point *b) {
-  return kind_rank(a) != kind_rank(b) ? kind_rank(a) < kind_rank(b) : a->potential < b->potential;
+static bool comes_before(const strut_critical_point *first, const strut_critical_point *second) {
+  return kind_rank(first) != kind_rank(second) ? kind_rank(first) < kind_rank(second)
+                                               : first->potential < second->potential;
 }
 
 /* Sorts the points into the set, minima first, by energy, and renumbers the saddles' ends. */
-static strut_status sort_into_set(search *s) {
-  size_t count = s->all.count;
+static strut_status sort_into_set(search *self) {
+  size_t count = self->all.count;
   strut_arena scratch = {0};
   int32_t *order = strut_arena_allocate(&scratch, count, sizeof *order);
   int32_t *place = strut_arena_allocate(&scratch, count, sizeof *place);
-  s->set->points = strut_arena_allocate(&s->set->arena, count, sizeof *s->set->points);
-  bool good = order && place && s->set->points;
+  self->set->points = strut_arena_allocate(&self->set->arena, count, sizeof *self->set->points);
+  bool good = order && place && self->set->points;
   for (size_t i = 0; i < count && good; i++) {
     size_t k = i;
-    for (; k > 0 && comes_before(&s->all.points[i], &s->all.points[order[k - 1]]); k--)
+    for (; k > 0 && comes_before(&self->all.points[i], &self->all.points[order[k - 1]]); k--)
       order[k] = order[k - 1];
     order[k] = (int32_t)i;
   }
   for (size_t i = 0; i < count && good; i++) place[order[i]] = (int32_t)i;
   for (size_t i = 0; i < count && good; i++) {
-    strut_critical_point *point = &s->set->points[i];
-    *point = s->all.points[order[i]];
+    strut_critical_point *point = &self->set->points[i];
+    *point = self->all.points[order[i]];
     for (int k = 0; k < 2; k++)
       if (point->down[k] >= 0) point->down[k] = place[point->down[k]];
   }
-  if (good) strut_number_shapes(&s->all, s->set->points, count);
-  s->set->count = good ? count : 0;
+  if (good) strut_number_shapes(&self->all, self->set->points, count);
+  self->set->count = good ? count : 0;
   strut_arena_free(&scratch);
-  return good ? STRUT_OK : strut_no_memory(s->error, "");
+  return good ? STRUT_OK : strut_no_memory(self->error, "");
 }
 
 strut_status strut_critical_search(const strut_potential *potential,

@@ -69,8 +69,8 @@ void strut_rigid_fit_apply(const strut_rigid_fit *fit, const double at[2], doubl
  * Largest distance between corresponding nodes after the best rigid motion carries b onto a, mirror
  * images allowed if `mirror`; *mirrored: one was used (may be NULL) [m].
  */
-STRUT_API double strut_shape_distance(const strut_model *model, const double *a, const double *b,
-                                      bool mirror, bool *mirrored);
+STRUT_API double strut_shape_distance(const strut_model *model, const double *first,
+                                      const double *second, bool mirror, bool *mirrored);
 
 /* Descents and climbs side by side: each task by itself, results read in the tasks' order.
  *

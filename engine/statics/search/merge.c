@@ -36,21 +36,21 @@ void strut_rigid_fit_apply(const strut_rigid_fit *fit, const double at[2], doubl
 }
 
 /* b, mirrored in x where `side` is -1, turned and shifted onto a by least squares. */
-static double aligned_distance(const strut_model *model, const double *a, const double *b,
+static double aligned_distance(const strut_model *model, const double *first, const double *second,
                                double side) {
-  const strut_rigid_fit fit = strut_rigid_fit_find(model->node_count, a, b, side);
+  const strut_rigid_fit fit = strut_rigid_fit_find(model->node_count, first, second, side);
   double largest = 0.0, moved[2];
   for (int32_t at = 0; at < 2 * model->node_count; at += 2) {
-    strut_rigid_fit_apply(&fit, b + at, moved);
-    largest = fmax(largest, hypot(a[at] - moved[0], a[at + 1] - moved[1]));
+    strut_rigid_fit_apply(&fit, second + at, moved);
+    largest = fmax(largest, hypot(first[at] - moved[0], first[at + 1] - moved[1]));
   }
   return largest;
 }
 
-double strut_shape_distance(const strut_model *model, const double *a, const double *b, bool mirror,
-                            bool *mirrored) {
-  double plain = aligned_distance(model, a, b, 1.0);
-  double other = mirror ? aligned_distance(model, a, b, -1.0) : HUGE_VAL;
+double strut_shape_distance(const strut_model *model, const double *first, const double *second,
+                            bool mirror, bool *mirrored) {
+  double plain = aligned_distance(model, first, second, 1.0);
+  double other = mirror ? aligned_distance(model, first, second, -1.0) : HUGE_VAL;
   if (mirrored) *mirrored = other < plain;
   return fmin(plain, other);
 }
@@ -71,29 +71,31 @@ typedef struct judgement {
 } judgement;
 
 /* The direction of a mode without its share of rigid-body motions; false where little is left. */
-static bool without_rigid(const judgement *j, const double *mode, double *direction) {
-  size_t n = (size_t)j->potential->n;
+static bool without_rigid(const judgement *self, const double *mode, double *direction) {
+  size_t n = (size_t)self->potential->n;
   memcpy(direction, mode, n * sizeof *direction);
-  double square = strut_remove_shares(j->motion, (size_t)j->rigid, n, direction);
+  double square = strut_remove_shares(self->motion, (size_t)self->rigid, n, direction);
   if (square < 0.25) return false;
   for (size_t i = 0; i < n; i++) direction[i] /= sqrt(square);
   return true;
 }
 
 /* The first of `count` modes (count, n), softest first, that is no rigid motion, as the softest. */
-static void set_softest(const judgement *j, const double *modes, int32_t count, double *direction,
-                        strut_critical_point *point) {
-  const strut_potential *p = j->potential;
+static void set_softest(const judgement *self, const double *modes, int32_t count,
+                        double *direction, strut_critical_point *point) {
+  const strut_potential *potential = self->potential;
   for (size_t i = 0; i < (size_t)count; i++) {
-    if (!without_rigid(j, modes + i * (size_t)p->n, direction)) continue;
-    for (int32_t k = 0; k < p->n; k++) point->softest[p->coordinate[k]] = direction[k];
+    if (!without_rigid(self, modes + i * (size_t)potential->n, direction)) continue;
+    for (int32_t k = 0; k < potential->n; k++)
+      point->softest[potential->coordinate[k]] = direction[k];
     return;
   }
 }
 
-static double largest_diagonal(const strut_sparse *h) {
+static double largest_diagonal(const strut_sparse *matrix) {
   double largest = 0.0;
-  for (int32_t j = 0; j < h->n; j++) largest = fmax(largest, fabs(h->value[h->start[j]]));
+  for (int32_t j = 0; j < matrix->n; j++)
+    largest = fmax(largest, fabs(matrix->value[matrix->start[j]]));
   return largest;
 }
 
@@ -104,10 +106,10 @@ enum { WANTED = 6 };
 /*
  * Negative eigenvalues of H + shift; -1 without memory. A shift that meets a zero pivot is moved.
  */
-static int32_t count_negative(const judgement *j, strut_ldl *ldl, double shift) {
+static int32_t count_negative(const judgement *self, strut_ldl *ldl, double shift) {
   strut_inertia inertia;
   for (int i = 0; i < 8; i++, shift *= 1.125) {
-    strut_status status = strut_ldl_factorise(ldl, j->hessian, shift, &inertia);
+    strut_status status = strut_ldl_factorise(ldl, self->hessian, shift, &inertia);
     if (status == STRUT_OK) return inertia.negative;
     if (status == STRUT_NO_MEMORY) return -1;
   }
@@ -119,55 +121,55 @@ typedef struct shifted {
   size_t n;
 } shifted;
 
-static void solve(void *context, double *x) {
+static void solve(void *context, double *vector) {
   const shifted *factor = context;
-  strut_ldl_solve(factor->ldl, x);
+  strut_ldl_solve(factor->ldl, vector);
 }
 
-static void copy(void *context, const double *x, double *y) {
+static void copy(void *context, const double *vector, double *y) {
   const shifted *factor = context;
-  memcpy(y, x, factor->n * sizeof *y);
+  memcpy(y, vector, factor->n * sizeof *y);
 }
 
 /* Those next above minus the shift of a factor that is positive definite, the shift as small as powers of ten allow. */
-static strut_status find_lowest(const judgement *j, strut_ldl *ldl, double shift, double *value,
+static strut_status find_lowest(const judgement *self, strut_ldl *ldl, double shift, double *value,
                                 double *vector, strut_error *error) {
   strut_inertia inertia;
   int left = 25;
-  while (left-- > 0 && (strut_ldl_factorise(ldl, j->hessian, shift, &inertia) != STRUT_OK ||
+  while (left-- > 0 && (strut_ldl_factorise(ldl, self->hessian, shift, &inertia) != STRUT_OK ||
                         inertia.negative > 0))
     shift *= 10.0;
-  shifted factor = {ldl, (size_t)j->hessian->n};
+  shifted factor = {ldl, (size_t)self->hessian->n};
   const strut_lanczos_problem problem = {
-      .n = j->hessian->n, .shift = -shift, .context = &factor, .solve = solve, .mass = copy};
+      .n = self->hessian->n, .shift = -shift, .context = &factor, .solve = solve, .mass = copy};
   if (left < 0) return strut_no_memory(error, "");
-  return j->sparse->lowest_eigenpairs(&problem, WANTED, value, vector, error);
+  return self->sparse->lowest_eigenpairs(&problem, WANTED, value, vector, error);
 }
 
 /* Signs of D and the lowest eigenvalues. */
-static strut_status judge_sparse(const judgement *j, strut_arena *arena,
+static strut_status judge_sparse(const judgement *self, strut_arena *arena,
                                  strut_critical_point *point, strut_error *error) {
-  size_t n = (size_t)j->hessian->n;
+  size_t n = (size_t)self->hessian->n;
   strut_arena scratch = {0};
   strut_ldl *ldl = NULL;
-  double noise = 64.0 * DBL_EPSILON * largest_diagonal(j->hessian) + 1e-300;
+  double noise = 64.0 * DBL_EPSILON * largest_diagonal(self->hessian) + 1e-300;
   double *vector = strut_arena_allocate(&scratch, WANTED * n, sizeof *vector);
   point->eigenvalues = strut_arena_allocate(arena, WANTED, sizeof *point->eigenvalues);
-  bool good = vector && point->eigenvalues && !strut_ldl_create(j->hessian, &ldl, NULL);
-  int32_t above = good ? count_negative(j, ldl, -noise) : -1;
+  bool good = vector && point->eigenvalues && !strut_ldl_create(self->hessian, &ldl, NULL);
+  int32_t above = good ? count_negative(self, ldl, -noise) : -1;
   /* where none is below the upper bound, none is below the lower one */
-  int32_t below = above > 0 ? count_negative(j, ldl, noise) : above;
+  int32_t below = above > 0 ? count_negative(self, ldl, noise) : above;
   strut_status status = STRUT_NO_MEMORY;
   if (below < 0) {
     strut_no_memory(error, "");
   } else {
     point->negative = below;
     point->zero = above > below ? above - below : 0;
-    status = find_lowest(j, ldl, noise, point->eigenvalues, vector, error);
+    status = find_lowest(self, ldl, noise, point->eigenvalues, vector, error);
   }
   if (!status) {
     point->eigenvalue_count = WANTED;
-    set_softest(j, vector, WANTED, j->work, point);
+    set_softest(self, vector, WANTED, self->work, point);
   }
   strut_ldl_free(ldl);
   strut_arena_free(&scratch);
@@ -185,12 +187,12 @@ const char *strut_stability_name(strut_stability stability) {
 }
 
 /* Few coordinates: all eigenvalues, each with its own error. */
-static strut_status judge_dense(const judgement *j, const double *q, strut_arena *arena,
+static strut_status judge_dense(const judgement *self, const double *q, strut_arena *arena,
                                 strut_critical_point *point, strut_error *error) {
-  int32_t n = j->potential->n;
+  int32_t n = self->potential->n;
   strut_spectrum spectrum;
-  strut_spectrum_workspace *room = strut_spectrum_create(j->potential);
-  bool good = room && strut_spectrum_compute(room, q, j->least, true, &spectrum);
+  strut_spectrum_workspace *room = strut_spectrum_create(self->potential);
+  bool good = room && strut_spectrum_compute(room, q, self->least, true, &spectrum);
   point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
   if (good && point->eigenvalues) {
     for (int32_t i = 0; i < n; i++) {
@@ -199,7 +201,7 @@ static strut_status judge_dense(const judgement *j, const double *q, strut_arena
       if (fabs(value) <= wrong) point->zero++;
     }
     point->eigenvalue_count = n;
-    set_softest(j, spectrum.vector, n, j->work, point);
+    set_softest(self, spectrum.vector, n, self->work, point);
   }
   strut_spectrum_free(room);
   return good && point->eigenvalues ? STRUT_OK : strut_no_memory(error, "");
@@ -212,34 +214,36 @@ static strut_stability label_of(const strut_critical_point *point, int32_t n) {
 }
 
 /* True if products of two entries, as factors and eigenvalues form them, cannot overflow. */
-static bool is_finite(const strut_sparse *h) {
-  for (int32_t k = 0; k < h->start[h->n]; k++)
-    if (!(fabs(h->value[k]) < LARGEST)) return false;
+static bool is_finite(const strut_sparse *matrix) {
+  for (int32_t k = 0; k < matrix->start[matrix->n]; k++)
+    if (!(fabs(matrix->value[k]) < LARGEST)) return false;
   return true;
 }
 
-static strut_status judge_point(judgement *j, const double *q, strut_arena *arena,
+static strut_status judge_point(judgement *self, const double *q, strut_arena *arena,
                                 strut_critical_point *point, strut_error *error) {
-  const strut_potential *p = j->potential;
-  double size = p->model->size > 0 ? p->model->size : 1.0;
-  strut_potential_gradient(p, q, j->work);
-  point->residual = strut_largest_magnitude(j->work, p->n);
-  point->potential = strut_potential_value(p, q);
-  j->least = 32.0 * strut_potential_rounding(p, q);
-  strut_potential_hessian_above(p, q, j->least, j->hessian);
-  double noise = p->n * DBL_EPSILON * largest_diagonal(j->hessian) + 64.0 * j->least / size;
-  j->rigid = strut_rigid_motions(p, q, NULL, j->motion);
-  for (int32_t i = 0; i < j->rigid * p->n; i += p->n)
-    strut_sparse_multiply(j->hessian, j->motion + i, j->work + i);
-  j->rigid = strut_rigid_motions_free(p->n, noise, j->rigid, j->motion, j->work);
-  point->rigid = j->rigid;
-  bool dense =
-      p->n <= STRUT_DENSE_STATICS || strut_sparse_algebra_load(&j->sparse, NULL) != STRUT_OK;
+  const strut_potential *potential = self->potential;
+  double size = potential->model->size > 0 ? potential->model->size : 1.0;
+  strut_potential_gradient(potential, q, self->work);
+  point->residual = strut_largest_magnitude(self->work, potential->n);
+  point->potential = strut_potential_value(potential, q);
+  self->least = 32.0 * strut_potential_rounding(potential, q);
+  strut_potential_hessian_above(potential, q, self->least, self->hessian);
+  double noise =
+      potential->n * DBL_EPSILON * largest_diagonal(self->hessian) + 64.0 * self->least / size;
+  self->rigid = strut_rigid_motions(potential, q, NULL, self->motion);
+  for (int32_t i = 0; i < self->rigid * potential->n; i += potential->n)
+    strut_sparse_multiply(self->hessian, self->motion + i, self->work + i);
+  self->rigid =
+      strut_rigid_motions_free(potential->n, noise, self->rigid, self->motion, self->work);
+  point->rigid = self->rigid;
+  bool dense = potential->n <= STRUT_DENSE_STATICS ||
+               strut_sparse_algebra_load(&self->sparse, NULL) != STRUT_OK;
   strut_status status =
-      dense ? judge_dense(j, q, arena, point, error) : judge_sparse(j, arena, point, error);
+      dense ? judge_dense(self, q, arena, point, error) : judge_sparse(self, arena, point, error);
   if (status) return status;
   if (point->zero < point->rigid) point->zero = point->rigid;
-  point->label = label_of(point, p->n);
+  point->label = label_of(point, potential->n);
   return STRUT_OK;
 }
 
@@ -284,71 +288,73 @@ struct strut_congruent_copy {
 };
 
 /* Finds the rigid motions that no support, load or ground forbids. */
-static void find_free_motions(strut_stationary_set *g) {
-  const strut_potential *p = g->potential;
-  const strut_model *model = p->model;
+static void find_free_motions(strut_stationary_set *set) {
+  const strut_potential *potential = set->potential;
+  const strut_model *model = potential->model;
   int32_t fixed[2] = {0, 0}, first = -1;
-  bool at_one_node = true, loaded = p->force_scale > 0;
+  bool at_one_node = true, loaded = potential->force_scale > 0;
   for (int32_t at = 0; at < 2 * model->node_count; at++) {
-    if (p->row_of[at] >= 0) continue;
+    if (potential->row_of[at] >= 0) continue;
     fixed[at % 2]++;
     at_one_node = at_one_node && (first < 0 || first == at / 2);
     first = at / 2;
   }
-  bool grounded = p->ground && model->contacts.count > 0;
+  bool grounded = potential->ground && model->contacts.count > 0;
   double net[2] = {0.0, 0.0};
-  for (int32_t at = 0; at < 2 * model->node_count; at++) net[at % 2] += p->force[at];
-  g->congruent = fixed[0] + fixed[1] <= 3 && strut_model_may_turn(model);
-  g->shifts[0] =
+  for (int32_t at = 0; at < 2 * model->node_count; at++) net[at % 2] += potential->force[at];
+  set->congruent = fixed[0] + fixed[1] <= 3 && strut_model_may_turn(model);
+  set->shifts[0] =
       fixed[0] == 0 && net[0] == 0 && !(grounded && !strut_contacts_are_level(&model->contacts));
-  g->shifts[1] = fixed[1] == 0 && net[1] == 0 && !grounded;
-  g->turns = at_one_node && !loaded && !grounded && strut_model_may_turn(model);
+  set->shifts[1] = fixed[1] == 0 && net[1] == 0 && !grounded;
+  set->turns = at_one_node && !loaded && !grounded && strut_model_may_turn(model);
 }
 
-void strut_stationary_set_start(strut_stationary_set *g, const strut_potential *potential,
+void strut_stationary_set_start(strut_stationary_set *set, const strut_potential *potential,
                                 strut_arena *arena) {
   const strut_model *model = potential->model;
   double size = model->size > 0 ? model->size : 1.0;
-  *g = (strut_stationary_set){.potential = potential, .arena = arena};
-  g->near = 1e-6 * size;
-  g->flat = 1e-15 * strut_stiffest(model) * size * size + 1e-12 * potential->force_scale * size;
-  find_free_motions(g);
+  *set = (strut_stationary_set){.potential = potential, .arena = arena};
+  set->near = 1e-6 * size;
+  set->flat = 1e-15 * strut_stiffest(model) * size * size + 1e-12 * potential->force_scale * size;
+  find_free_motions(set);
 }
 
-void strut_stationary_set_free(strut_stationary_set *g) {
-  strut_release(g->points);
-  strut_release(g->placement);
-  g->points = NULL, g->placement = NULL, g->count = g->room = 0;
+void strut_stationary_set_free(strut_stationary_set *set) {
+  strut_release(set->points);
+  strut_release(set->placement);
+  set->points = NULL, set->placement = NULL, set->count = set->room = 0;
 }
 
 /* Largest distance between two placements, up to the free rigid motions. */
-static double place_distance(const strut_stationary_set *g, const double *a, const double *b) {
-  const strut_model *model = g->potential->model;
+static double place_distance(const strut_stationary_set *set, const double *first,
+                             const double *second) {
+  const strut_model *model = set->potential->model;
   double mean[2] = {0.0, 0.0}, largest = 0.0;
-  if (g->turns) return strut_shape_distance(model, a, b, false, NULL);
+  if (set->turns) return strut_shape_distance(model, first, second, false, NULL);
   for (int32_t at = 0; at < 2 * model->node_count; at++)
-    if (g->shifts[at % 2]) mean[at % 2] += (a[at] - b[at]) / model->node_count;
+    if (set->shifts[at % 2]) mean[at % 2] += (first[at] - second[at]) / model->node_count;
   for (int32_t at = 0; at < 2 * model->node_count; at++)
-    largest = fmax(largest, fabs(a[at] - b[at] - mean[at % 2]));
+    largest = fmax(largest, fabs(first[at] - second[at] - mean[at % 2]));
   return largest;
 }
 
-static bool same_energy(const strut_stationary_set *g, double a, double b) {
-  return fabs(a - b) <= g->flat + 1e-9 * fmin(fabs(a), fabs(b));
+static bool same_energy(const strut_stationary_set *set, double a, double b) {
+  return fabs(a - b) <= set->flat + 1e-9 * fmin(fabs(a), fabs(b));
 }
 
-static bool same_point(const strut_stationary_set *g, const double *q, const double *known,
+static bool same_point(const strut_stationary_set *set, const double *q, const double *known,
                        double near) {
-  if (place_distance(g, q, known) <= near) return true;
-  return g->congruent && strut_shape_distance(g->potential->model, q, known, true, NULL) <= near;
+  if (place_distance(set, q, known) <= near) return true;
+  return set->congruent &&
+         strut_shape_distance(set->potential->model, q, known, true, NULL) <= near;
 }
 
 /*
  * Close to a fork the softest direction is so soft that a point is known there only to the rounding
  * of the forces over that stiffness: each of two copies to no more than strut_minimise allows.
  */
-static double position_blur(const strut_stationary_set *g, const strut_critical_point *point) {
-  const strut_potential *p = g->potential;
+static double position_blur(const strut_stationary_set *set, const strut_critical_point *point) {
+  const strut_potential *potential = set->potential;
   double soft = 0.0, last = 0.0;
   for (int32_t skip = 0; skip <= point->zero; skip++) { /* the next larger one, in magnitude */
     soft = HUGE_VAL;
@@ -358,36 +364,38 @@ static double position_blur(const strut_stationary_set *g, const strut_critical_
     }
     last = soft;
   }
-  double far = 16.0 * sqrt((double)p->n) * strut_potential_rounding(p, point->q) / soft;
-  return fmin(far, MOST_BLUR * g->near);
+  double far =
+      16.0 * sqrt((double)potential->n) * strut_potential_rounding(potential, point->q) / soft;
+  return fmin(far, MOST_BLUR * set->near);
 }
 
-static int32_t find_point(const strut_stationary_set *g, const double *q, double energy) {
-  for (size_t i = 0; i < g->count; i++)
-    if (same_energy(g, energy, g->points[i].potential) && same_point(g, q, g->points[i].q, g->near))
+static int32_t find_point(const strut_stationary_set *set, const double *q, double energy) {
+  for (size_t i = 0; i < set->count; i++)
+    if (same_energy(set, energy, set->points[i].potential) &&
+        same_point(set, q, set->points[i].q, set->near))
       return (int32_t)i;
-  for (size_t i = 0; i < g->count; i++) {
-    const strut_critical_point *known = &g->points[i];
-    if (fabs(energy - known->potential) > g->flat + 1e-12 * fabs(energy)) continue;
-    double near = position_blur(g, known);
-    if (near > g->near && same_point(g, q, known->q, near)) return (int32_t)i;
+  for (size_t i = 0; i < set->count; i++) {
+    const strut_critical_point *known = &set->points[i];
+    if (fabs(energy - known->potential) > set->flat + 1e-12 * fabs(energy)) continue;
+    double near = position_blur(set, known);
+    if (near > set->near && same_point(set, q, known->q, near)) return (int32_t)i;
   }
   return -1;
 }
 
 /* Index of the point that q equals, or -1. */
-static int32_t stationary_set_find(const strut_stationary_set *g, const double *q) {
-  return find_point(g, q, strut_potential_value(g->potential, q));
+static int32_t stationary_set_find(const strut_stationary_set *set, const double *q) {
+  return find_point(set, q, strut_potential_value(set->potential, q));
 }
 
-static bool remember_placement(strut_stationary_set *g, int32_t index, const double *q) {
-  strut_congruent_copy **end = &g->placement[index];
-  double near = fmax(g->near, position_blur(g, &g->points[index]));
+static bool remember_placement(strut_stationary_set *set, int32_t index, const double *q) {
+  strut_congruent_copy **end = &set->placement[index];
+  double near = fmax(set->near, position_blur(set, &set->points[index]));
   for (; *end; end = &(*end)->next)
-    if (place_distance(g, q, (*end)->q) <= near) return true;
-  size_t length = (size_t)g->potential->model->length;
-  double *copy = strut_arena_allocate(g->arena, length, sizeof *copy);
-  *end = strut_arena_allocate(g->arena, 1, sizeof **end);
+    if (place_distance(set, q, (*end)->q) <= near) return true;
+  size_t length = (size_t)set->potential->model->length;
+  double *copy = strut_arena_allocate(set->arena, length, sizeof *copy);
+  *end = strut_arena_allocate(set->arena, 1, sizeof **end);
   if (!copy || !*end) {
     *end = NULL;
     return false;
@@ -397,16 +405,16 @@ static bool remember_placement(strut_stationary_set *g, int32_t index, const dou
   return true;
 }
 
-static bool reserve_points(strut_stationary_set *g) {
-  if (g->count < g->room) return true;
-  size_t room = g->room ? 2 * g->room : 16;
-  strut_critical_point *points = strut_reallocate(g->points, room, sizeof *points);
+static bool reserve_points(strut_stationary_set *set) {
+  if (set->count < set->room) return true;
+  size_t room = set->room ? 2 * set->room : 16;
+  strut_critical_point *points = strut_reallocate(set->points, room, sizeof *points);
   if (!points) return false;
-  g->points = points;
-  strut_congruent_copy **placement = strut_reallocate(g->placement, room, sizeof *placement);
+  set->points = points;
+  strut_congruent_copy **placement = strut_reallocate(set->placement, room, sizeof *placement);
   if (!placement) return false;
-  g->placement = placement;
-  g->room = room;
+  set->placement = placement;
+  set->room = room;
   return true;
 }
 
@@ -414,18 +422,18 @@ static bool reserve_points(strut_stationary_set *g) {
 static bool is_degenerate(const strut_critical_point *point) { return point->zero > point->rigid; }
 
 /* A continuum counts as one point: all of one energy, its ends included. */
-static int32_t find_degenerate(const strut_stationary_set *g, const strut_critical_point *point) {
-  for (size_t i = 0; i < g->count; i++)
-    if ((is_degenerate(point) || is_degenerate(&g->points[i])) &&
-        strut_is_minimum(point) == strut_is_minimum(&g->points[i]) &&
-        same_energy(g, point->potential, g->points[i].potential))
+static int32_t find_degenerate(const strut_stationary_set *set, const strut_critical_point *point) {
+  for (size_t i = 0; i < set->count; i++)
+    if ((is_degenerate(point) || is_degenerate(&set->points[i])) &&
+        strut_is_minimum(point) == strut_is_minimum(&set->points[i]) &&
+        same_energy(set, point->potential, set->points[i].potential))
       return (int32_t)i;
   return -1;
 }
 
-static int32_t count_placements(const strut_stationary_set *g, int32_t index) {
+static int32_t count_placements(const strut_stationary_set *set, int32_t index) {
   int32_t count = 0;
-  for (const strut_congruent_copy *at = g->placement[index]; at; at = at->next) count++;
+  for (const strut_congruent_copy *at = set->placement[index]; at; at = at->next) count++;
   return count;
 }
 
@@ -438,38 +446,38 @@ static void make_degenerate(strut_critical_point *known, const strut_critical_po
   known->down[0] = before.down[0], known->down[1] = before.down[1];
 }
 
-strut_status strut_stationary_set_add(strut_stationary_set *g, const double *q, int32_t *index,
+strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,
                                       bool *fresh, strut_error *error) {
   strut_critical_point point;
-  *index = stationary_set_find(g, q);
+  *index = stationary_set_find(set, q);
   *fresh = *index < 0;
   if (*fresh) {
-    strut_status status = critical_judge(g->potential, q, g->arena, &point, error);
+    strut_status status = critical_judge(set->potential, q, set->arena, &point, error);
     if (status) return status;
-    *index = find_degenerate(g, &point);
+    *index = find_degenerate(set, &point);
     *fresh = *index < 0;
-    if (!*fresh && is_degenerate(&point)) make_degenerate(&g->points[*index], &point);
+    if (!*fresh && is_degenerate(&point)) make_degenerate(&set->points[*index], &point);
   }
   if (*fresh) {
-    if (!reserve_points(g)) return strut_no_memory(error, "");
-    *index = (int32_t)g->count++;
-    g->placement[*index] = NULL;
-    g->points[*index] = point;
-    g->points[*index].found = 0;
+    if (!reserve_points(set)) return strut_no_memory(error, "");
+    *index = (int32_t)set->count++;
+    set->placement[*index] = NULL;
+    set->points[*index] = point;
+    set->points[*index].found = 0;
   }
-  strut_critical_point *known = &g->points[*index];
+  strut_critical_point *known = &set->points[*index];
   known->found++;
   if (is_degenerate(known) && !*fresh) return STRUT_OK;
-  if (!remember_placement(g, *index, q)) return strut_no_memory(error, "");
-  known->placements = count_placements(g, *index);
+  if (!remember_placement(set, *index, q)) return strut_no_memory(error, "");
+  known->placements = count_placements(set, *index);
   return STRUT_OK;
 }
 
-const double *strut_stationary_set_placement(const strut_stationary_set *g, int32_t index,
+const double *strut_stationary_set_placement(const strut_stationary_set *set, int32_t index,
                                              int32_t k) {
-  assert(index >= 0 && (size_t)index < g->count);
+  assert(index >= 0 && (size_t)index < set->count);
   assert(k >= 0);
-  const strut_congruent_copy *at = g->placement[index];
+  const strut_congruent_copy *at = set->placement[index];
   while (at && k-- > 0) at = at->next;
   return at ? at->q : NULL;
 }

@@ -32,22 +32,23 @@ typedef struct source {
 } source;
 
 /* In [-1, 1). */
-static double signed_unit(source *s) {
-  return (double)(counted_bits(s->seed, s->index, &s->counter) >> 11) * 0x1p-52 - 1.0;
+static double signed_unit(source *self) {
+  return (double)(counted_bits(self->seed, self->index, &self->counter) >> 11) * 0x1p-52 - 1.0;
 }
 
-static int64_t random_below(source *s, int64_t count) {
+static int64_t random_below(source *self, int64_t count) {
   assert(count > 0);
-  return (int64_t)(counted_bits(s->seed, s->index, &s->counter) % (uint64_t)count);
+  return (int64_t)(counted_bits(self->seed, self->index, &self->counter) % (uint64_t)count);
 }
 
-int64_t strut_fold_count(const strut_potential *p) {
-  return WHOLE + 4 * (int64_t)p->model->members.count;
+int64_t strut_fold_count(const strut_potential *potential) {
+  return WHOLE + 4 * (int64_t)potential->model->members.count;
 }
 
-static void set_node(const strut_potential *p, double *q, int32_t node, const double at[2]) {
+static void set_node(const strut_potential *potential, double *q, int32_t node,
+                     const double at[2]) {
   for (int c = 0; c < 2; c++)
-    if (p->row_of[2 * node + c] >= 0) q[2 * node + c] = at[c];
+    if (potential->row_of[2 * node + c] >= 0) q[2 * node + c] = at[c];
 }
 
 /* The mirror image of a node in the line through a with direction u (not of unit length). */
@@ -59,109 +60,110 @@ static void mirror_point(const double *at, const double *a, const double u[2], d
 }
 
 /* All nodes on one side of a member's line go to the other. */
-static void fold_side(const strut_potential *p, int32_t member, double side, double *q) {
-  const strut_member_table *t = &p->model->members;
-  double a[2] = {q[t->from[member]], q[t->from[member] + 1]};
-  double u[2] = {q[t->to[member]] - a[0], q[t->to[member] + 1] - a[1]};
-  for (int32_t i = 0; i < p->model->node_count; i++) {
+static void fold_side(const strut_potential *potential, int32_t member, double side, double *q) {
+  const strut_member_table *members = &potential->model->members;
+  double a[2] = {q[members->from[member]], q[members->from[member] + 1]};
+  double u[2] = {q[members->to[member]] - a[0], q[members->to[member] + 1] - a[1]};
+  for (int32_t i = 0; i < potential->model->node_count; i++) {
     double *at = q + 2 * i, image[2];
     if (!(side * (u[0] * (at[1] - a[1]) - u[1] * (at[0] - a[0])) > 0)) continue;
     mirror_point(at, a, u, image);
-    set_node(p, q, i, image);
+    set_node(potential, q, i, image);
   }
 }
 
 /* Mirrors one end of a member in the line through its other end and a further neighbour. */
-static void flip_end(const strut_potential *p, int32_t member, bool first, double *q) {
-  const strut_member_table *t = &p->model->members;
-  uint32_t moved = first ? t->from[member] : t->to[member];
-  uint32_t hinge = first ? t->to[member] : t->from[member];
-  for (int32_t k = 1; k < t->count; k++) {
-    int32_t j = (member + k) % t->count;
-    if (t->from[j] != moved && t->to[j] != moved) continue;
-    uint32_t other = t->from[j] == moved ? t->to[j] : t->from[j];
+static void flip_end(const strut_potential *potential, int32_t member, bool first, double *q) {
+  const strut_member_table *members = &potential->model->members;
+  uint32_t moved = first ? members->from[member] : members->to[member];
+  uint32_t hinge = first ? members->to[member] : members->from[member];
+  for (int32_t k = 1; k < members->count; k++) {
+    int32_t j = (member + k) % members->count;
+    if (members->from[j] != moved && members->to[j] != moved) continue;
+    uint32_t other = members->from[j] == moved ? members->to[j] : members->from[j];
     if (other == hinge) continue;
     double u[2] = {q[other] - q[hinge], q[other + 1] - q[hinge + 1]}, image[2];
     mirror_point(q + moved, q + hinge, u, image);
-    set_node(p, q, (int32_t)(moved / 2), image);
+    set_node(potential, q, (int32_t)(moved / 2), image);
     return;
   }
 }
 
-static void mirror_whole(const strut_potential *p, int axis, double *q) {
+static void mirror_whole(const strut_potential *potential, int axis, double *q) {
   double low = HUGE_VAL, high = -HUGE_VAL;
-  for (int32_t i = 0; i < p->model->node_count; i++) {
+  for (int32_t i = 0; i < potential->model->node_count; i++) {
     low = fmin(low, q[2 * i + axis]);
     high = fmax(high, q[2 * i + axis]);
   }
-  for (int32_t i = 0; i < p->model->node_count; i++)
-    if (p->row_of[2 * i + axis] >= 0) q[2 * i + axis] = low + high - q[2 * i + axis];
+  for (int32_t i = 0; i < potential->model->node_count; i++)
+    if (potential->row_of[2 * i + axis] >= 0) q[2 * i + axis] = low + high - q[2 * i + axis];
 }
 
 /* q (length) becomes fold number `fold` of itself; held coordinates stay. */
-static void strut_fold(const strut_potential *p, int64_t fold, double *q) {
-  assert(fold >= 0 && fold < strut_fold_count(p));
+static void strut_fold(const strut_potential *potential, int64_t fold, double *q) {
+  assert(fold >= 0 && fold < strut_fold_count(potential));
   if (fold < WHOLE) {
-    mirror_whole(p, (int)fold, q);
+    mirror_whole(potential, (int)fold, q);
     return;
   }
   int32_t member = (int32_t)((fold - WHOLE) / 4), variant = (int32_t)((fold - WHOLE) % 4);
   if (variant < 2)
-    fold_side(p, member, variant == 0 ? 1.0 : -1.0, q);
+    fold_side(potential, member, variant == 0 ? 1.0 : -1.0, q);
   else
-    flip_end(p, member, variant == 2, q);
+    flip_end(potential, member, variant == 2, q);
 }
 
 /* Nodes anywhere in a box about the middle of the start. */
-static void scatter_nodes(const strut_potential *p, source *s, double half, double *q) {
-  const strut_model *model = p->model;
+static void scatter_nodes(const strut_potential *potential, source *self, double half, double *q) {
+  const strut_model *model = potential->model;
   double middle[2] = {0.0, 0.0};
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     middle[at % 2] += model->start[at] / model->node_count;
-  for (int32_t i = 0; i < p->n; i++) {
-    int32_t at = p->coordinate[i];
-    q[at] = middle[at % 2] + half * signed_unit(s);
+  for (int32_t i = 0; i < potential->n; i++) {
+    int32_t at = potential->coordinate[i];
+    q[at] = middle[at % 2] + half * signed_unit(self);
   }
 }
 
-static void shake_nodes(const strut_potential *p, source *s, double by, double *q) {
-  for (int32_t i = 0; i < p->n; i++) q[p->coordinate[i]] += by * signed_unit(s);
+static void shake_nodes(const strut_potential *potential, source *self, double by, double *q) {
+  for (int32_t i = 0; i < potential->n; i++) q[potential->coordinate[i]] += by * signed_unit(self);
 }
 
 /* Random shape number `index` of `seed`: positions at random, or a shaken or folded start. */
-static void random_shape(const strut_potential *p, uint64_t seed, uint64_t index, double *q) {
+static void random_shape(const strut_potential *potential, uint64_t seed, uint64_t index,
+                         double *q) {
   source s = {seed, index, 0};
-  double size = p->model->size > 0 ? p->model->size : 1.0;
-  memcpy(q, p->model->start, (size_t)p->model->length * sizeof *q);
+  double size = potential->model->size > 0 ? potential->model->size : 1.0;
+  memcpy(q, potential->model->start, (size_t)potential->model->length * sizeof *q);
   int64_t kind = random_below(&s, 4);
   double part = 0.65 + 0.35 * signed_unit(&s); /* 0.3 to 1 */
   if (kind < 2) {
-    scatter_nodes(p, &s, size * part, q);
+    scatter_nodes(potential, &s, size * part, q);
   } else if (kind == 2) {
-    shake_nodes(p, &s, size * part / (double)(1 << random_below(&s, 5)), q);
+    shake_nodes(potential, &s, size * part / (double)(1 << random_below(&s, 5)), q);
   } else {
     for (int64_t folds = 1 + random_below(&s, 3); folds > 0; folds--)
-      strut_fold(p, random_below(&s, strut_fold_count(p)), q);
-    shake_nodes(p, &s, 0.02 * size, q);
+      strut_fold(potential, random_below(&s, strut_fold_count(potential)), q);
+    shake_nodes(potential, &s, 0.02 * size, q);
   }
 }
 
 /* q shaken by a random part of the structure's size, from a hundredth to a half. */
-static void shake(const strut_potential *p, uint64_t seed, uint64_t index, double *q) {
+static void shake(const strut_potential *potential, uint64_t seed, uint64_t index, double *q) {
   source s = {seed, index, 0};
-  double size = p->model->size > 0 ? p->model->size : 1.0;
+  double size = potential->model->size > 0 ? potential->model->size : 1.0;
   double part = 0.375 + 0.125 * signed_unit(&s); /* a quarter to a half */
-  shake_nodes(p, &s, size * part / (double)(1 << random_below(&s, 5)), q);
+  shake_nodes(potential, &s, size * part / (double)(1 << random_below(&s, 5)), q);
 }
 
 /*
  * Replaces nodes of q by those of `other`, chosen by the bits of random number `index` of `seed`.
  */
-static void cross(const strut_potential *p, uint64_t seed, uint64_t index, const double *other,
-                  double *q) {
+static void cross(const strut_potential *potential, uint64_t seed, uint64_t index,
+                  const double *other, double *q) {
   source s = {seed, index, 0};
-  for (int32_t i = 0; i < p->model->node_count; i++)
-    if (random_below(&s, 2)) set_node(p, q, i, other + 2 * i);
+  for (int32_t i = 0; i < potential->model->node_count; i++)
+    if (random_below(&s, 2)) set_node(potential, q, i, other + 2 * i);
 }
 
 /* Climbs and crossings draw from numbers of their own. */
@@ -193,24 +195,26 @@ static int thread_count(void) {
 
 strut_status strut_search_tasks_create(const strut_potential *potential, uint64_t seed, bool climbs,
                                        strut_search_tasks **batch, strut_error *error) {
-  strut_search_tasks *b = *batch = strut_allocate(1, sizeof *b);
+  strut_search_tasks *tasks = *batch = strut_allocate(1, sizeof *tasks);
   size_t length = (size_t)potential->model->length;
-  if (!b) return strut_no_memory(error, "");
-  b->potential = potential;
-  b->seed = seed;
-  b->worker_count = thread_count();
-  b->workers = strut_arena_allocate(&b->arena, (size_t)b->worker_count, sizeof *b->workers);
-  bool good = b->workers != NULL;
+  if (!tasks) return strut_no_memory(error, "");
+  tasks->potential = potential;
+  tasks->seed = seed;
+  tasks->worker_count = thread_count();
+  tasks->workers =
+      strut_arena_allocate(&tasks->arena, (size_t)tasks->worker_count, sizeof *tasks->workers);
+  bool good = tasks->workers != NULL;
   for (int i = 0; i < STRUT_BATCH && good; i++)
-    good = (b->result[i].q = strut_arena_allocate(&b->arena, length, sizeof(double)));
-  for (int i = 0; i < b->worker_count && good; i++) {
-    worker *w = &b->workers[i];
-    w->direction = strut_arena_allocate(&b->arena, (size_t)potential->n, sizeof *w->direction);
-    good = w->direction && strut_minimiser_create(potential, &w->minimiser, NULL) == STRUT_OK;
-    if (good && climbs) good = (w->climber = strut_climber_create(potential));
+    good = (tasks->result[i].q = strut_arena_allocate(&tasks->arena, length, sizeof(double)));
+  for (int i = 0; i < tasks->worker_count && good; i++) {
+    worker *self = &tasks->workers[i];
+    self->direction =
+        strut_arena_allocate(&tasks->arena, (size_t)potential->n, sizeof *self->direction);
+    good = self->direction && strut_minimiser_create(potential, &self->minimiser, NULL) == STRUT_OK;
+    if (good && climbs) good = (self->climber = strut_climber_create(potential));
   }
   if (good) return STRUT_OK;
-  strut_search_tasks_free(b);
+  strut_search_tasks_free(tasks);
   *batch = NULL;
   return strut_no_memory(error, "");
 }
@@ -226,91 +230,97 @@ void strut_search_tasks_free(strut_search_tasks *batch) {
 }
 
 /* Shift along x that brings b over a; 0 if something holds the structure along x. */
-static double slide_onto(const strut_potential *p, const double *a, const double *b) {
+static double slide_onto(const strut_potential *potential, const double *first,
+                         const double *second) {
   double sum = 0.0;
-  int32_t nodes = p->model->node_count;
+  int32_t nodes = potential->model->node_count;
   for (int32_t i = 0; i < nodes; i++) {
-    if (p->row_of[2 * i] < 0 || p->force[2 * i] != 0.0) return 0.0;
-    sum += a[2 * i] - b[2 * i];
+    if (potential->row_of[2 * i] < 0 || potential->force[2 * i] != 0.0) return 0.0;
+    sum += first[2 * i] - second[2 * i];
   }
-  if (p->ground && p->model->contacts.count && !strut_contacts_are_level(&p->model->contacts))
+  if (potential->ground && potential->model->contacts.count &&
+      !strut_contacts_are_level(&potential->model->contacts))
     return 0.0;
   return nodes ? sum / nodes : 0.0;
 }
 
 /* The highest of seven points on the straight line from a to b. */
-static void highest_between(const strut_potential *p, const double *a, const double *b, double *q) {
-  size_t length = (size_t)p->model->length;
-  double highest = -HUGE_VAL, best = 0.5, slide = slide_onto(p, a, b);
+static void highest_between(const strut_potential *potential, const double *first,
+                            const double *second, double *q) {
+  size_t length = (size_t)potential->model->length;
+  double highest = -HUGE_VAL, best = 0.5, slide = slide_onto(potential, first, second);
   for (int k = 1; k <= 8; k++) { /* the eighth time for good */
     double t = k < 8 ? k / 8.0 : best;
-    for (size_t i = 0; i < length; i++) q[i] = a[i] + t * (b[i] + (i % 2 ? 0.0 : slide) - a[i]);
-    double value = strut_potential_value(p, q);
+    for (size_t i = 0; i < length; i++)
+      q[i] = first[i] + t * (second[i] + (i % 2 ? 0.0 : slide) - first[i]);
+    double value = strut_potential_value(potential, q);
     if (k < 8 && value > highest) highest = value, best = t;
   }
 }
 
-static bool climb_task(const strut_search_tasks *b, worker *w, const strut_task *task, double *q) {
-  assert(w->climber);
-  const strut_potential *p = b->potential;
-  double far = 0.02 * (p->model->size > 0 ? p->model->size : 1.0);
-  size_t bytes = (size_t)p->model->length * sizeof *q;
+static bool climb_task(const strut_search_tasks *tasks, worker *self, const strut_task *task,
+                       double *q) {
+  assert(self->climber);
+  const strut_potential *potential = tasks->potential;
+  double far = 0.02 * (potential->model->size > 0 ? potential->model->size : 1.0);
+  size_t bytes = (size_t)potential->model->length * sizeof *q;
   if (task->kind == STRUT_TASK_CLIMB_MODE) {
     memcpy(q, task->q, bytes);
-    return strut_climb_away(w->climber, (int32_t)task->number, task->side * far, q, w->direction) &&
-           strut_climb(w->climber, 1, w->direction, q);
+    return strut_climb_away(self->climber, (int32_t)task->number, task->side * far, q,
+                            self->direction) &&
+           strut_climb(self->climber, 1, self->direction, q);
   }
   int32_t index = 1;
   if (task->kind == STRUT_TASK_CLIMB_PAIR) {
-    highest_between(p, task->q, task->other, q);
+    highest_between(potential, task->q, task->other, q);
   } else if (task->kind == STRUT_TASK_CLIMB_SHAPE) {
     memcpy(q, task->q, bytes);
   } else if (task->q) {
     memcpy(q, task->q, bytes);
-    shake(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
+    shake(potential, tasks->seed ^ CLIMBS, (uint64_t)task->number, q);
   } else {
-    random_shape(p, b->seed ^ CLIMBS, (uint64_t)task->number, q);
-    index = 1 + (int32_t)(task->number / 2 % (p->n < 4 ? p->n : 4));
+    random_shape(potential, tasks->seed ^ CLIMBS, (uint64_t)task->number, q);
+    index = 1 + (int32_t)(task->number / 2 % (potential->n < 4 ? potential->n : 4));
   }
-  return index <= p->n && strut_climb(w->climber, index, NULL, q);
+  return index <= potential->n && strut_climb(self->climber, index, NULL, q);
 }
 
-static strut_descent_end descend_task(const strut_search_tasks *b, worker *w,
+static strut_descent_end descend_task(const strut_search_tasks *tasks, worker *self,
                                       const strut_task *task, double *q) {
-  const strut_potential *p = b->potential;
+  const strut_potential *potential = tasks->potential;
   if (task->kind == STRUT_TASK_RANDOM)
-    random_shape(p, b->seed, (uint64_t)task->number, q);
+    random_shape(potential, tasks->seed, (uint64_t)task->number, q);
   else
-    memcpy(q, task->q, (size_t)p->model->length * sizeof *q);
-  if (task->kind == STRUT_TASK_FOLD) strut_fold(p, task->number, q);
+    memcpy(q, task->q, (size_t)potential->model->length * sizeof *q);
+  if (task->kind == STRUT_TASK_FOLD) strut_fold(potential, task->number, q);
   if (task->kind == STRUT_TASK_CROSS) {
-    cross(p, b->seed ^ CROSSES, (uint64_t)task->number, task->other, q);
-    return strut_descend_gently(w->minimiser, q);
+    cross(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, task->other, q);
+    return strut_descend_gently(self->minimiser, q);
   }
   if (task->kind == STRUT_TASK_SHAKE) {
-    shake(p, b->seed ^ CROSSES, (uint64_t)task->number, q);
-    return strut_descend_gently(w->minimiser, q);
+    shake(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, q);
+    return strut_descend_gently(self->minimiser, q);
   }
-  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(w->minimiser, q, 0.0).end;
-  return strut_descend_along(w->minimiser, task->other, task->side, q) ? STRUT_DESCENT_REACHED
-                                                                       : STRUT_DESCENT_EXHAUSTED;
+  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(self->minimiser, q, 0.0).end;
+  return strut_descend_along(self->minimiser, task->other, task->side, q) ? STRUT_DESCENT_REACHED
+                                                                          : STRUT_DESCENT_EXHAUSTED;
 }
 
-static int64_t hessians_of(const worker *w) {
-  return strut_minimiser_hessian_count(w->minimiser) +
-         (w->climber ? strut_climber_hessian_count(w->climber) : 0);
+static int64_t hessians_of(const worker *self) {
+  return strut_minimiser_hessian_count(self->minimiser) +
+         (self->climber ? strut_climber_hessian_count(self->climber) : 0);
 }
 
-static void run_task(strut_search_tasks *b, worker *w, const strut_task *task,
+static void run_task(strut_search_tasks *tasks, worker *self, const strut_task *task,
                      strut_task_result *result) {
   bool up = task->kind >= STRUT_TASK_CLIMB_MODE && task->kind <= STRUT_TASK_CLIMB_RANDOM;
-  int64_t before = hessians_of(w);
+  int64_t before = hessians_of(self);
   if (up)
     result->end =
-        climb_task(b, w, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
+        climb_task(tasks, self, task, result->q) ? STRUT_DESCENT_REACHED : STRUT_DESCENT_EXHAUSTED;
   else
-    result->end = descend_task(b, w, task, result->q);
-  result->hessian_count = hessians_of(w) - before;
+    result->end = descend_task(tasks, self, task, result->q);
+  result->hessian_count = hessians_of(self) - before;
 }
 
 const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const strut_task *task,
@@ -322,11 +332,11 @@ const strut_task_result *strut_search_tasks_run(strut_search_tasks *batch, const
 #endif
   for (size_t i = 0; i < count; i++) {
 #ifdef _OPENMP
-    worker *w = &batch->workers[omp_get_thread_num()];
+    worker *self = &batch->workers[omp_get_thread_num()];
 #else
-    worker *w = &batch->workers[0];
+    worker *self = &batch->workers[0];
 #endif
-    if (!interrupt || !*interrupt) run_task(batch, w, &task[i], &batch->result[i]);
+    if (!interrupt || !*interrupt) run_task(batch, self, &task[i], &batch->result[i]);
   }
   return batch->result;
 }

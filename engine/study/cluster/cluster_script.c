@@ -31,28 +31,28 @@ static bool has_controls(const char *text) {
   return *text;
 }
 
-static strut_status check_texts(const strut_cluster_script *s, strut_error *error) {
-  const char *const texts[] = {s->program, s->folder, s->study, s->output};
+static strut_status check_texts(const strut_cluster_script *script, strut_error *error) {
+  const char *const texts[] = {script->program, script->folder, script->study, script->output};
   bool wild = false;
   for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) wild = wild || has_controls(texts[i]);
-  for (size_t i = 0; i < s->word_count; i++) wild = wild || has_controls(s->words[i]);
+  for (size_t i = 0; i < script->word_count; i++) wild = wild || has_controls(script->words[i]);
   if (!wild) return STRUT_OK;
   return strut_fail(error, STRUT_USAGE,
                     "a path or an option for the script has a line break or another control "
                     "character; choose one without");
 }
 
-static strut_status check(const strut_cluster_script *s, strut_error *error) {
-  if (s->shards < 1 || s->shards > STRUT_MOST_SHARDS)
+static strut_status check(const strut_cluster_script *script, strut_error *error) {
+  if (script->shards < 1 || script->shards > STRUT_MOST_SHARDS)
     return strut_fail(error, STRUT_USAGE, "a study has 1 to %d shards", STRUT_MOST_SHARDS);
-  if (!is_plain(s->time, ":-"))
+  if (!is_plain(script->time, ":-"))
     return strut_fail(error, STRUT_USAGE,
                       "'%s' is not a time for Slurm: minutes, H:M:S or D-H:M:S, such as 12:00:00",
-                      s->time);
-  if (!is_plain(s->memory, "KMGT"))
+                      script->time);
+  if (!is_plain(script->memory, "KMGT"))
     return strut_fail(error, STRUT_USAGE, "'%s' is not an amount of memory, such as 500M or 2G",
-                      s->memory);
-  return check_texts(s, error);
+                      script->memory);
+  return check_texts(script, error);
 }
 
 /* A name for the queue: letters, digits, dots, dashes and underscores. */
@@ -96,8 +96,8 @@ static const placeholder *find(const placeholder *all, const char *text, size_t 
 /* Copies a line of the template with its placeholders filled in, unless one has no value. */
 static void add_line(strut_buffer *to, const char *line, size_t length, const placeholder *all) {
   for (size_t i = 0; i < length; i++) {
-    const placeholder *p = line[i] == '@' ? find(all, line + i, length - i) : NULL;
-    if (p && !p->value) return;
+    const placeholder *self = line[i] == '@' ? find(all, line + i, length - i) : NULL;
+    if (self && !self->value) return;
   }
   for (size_t i = 0; i < length; i++) {
     const placeholder *p = line[i] == '@' ? find(all, line + i, length - i) : NULL;
@@ -121,26 +121,26 @@ static char *fill(const strut_embedded *template, const placeholder *all) {
   return strut_buffer_take(&text);
 }
 
-strut_status strut_cluster_script_write(const strut_cluster_script *s, char **text,
+strut_status strut_cluster_script_write(const strut_cluster_script *script, char **text,
                                         strut_error *error) {
   strut_arena arena = {0};
   *text = NULL;
-  strut_status status = check(s, error);
+  strut_status status = check(script, error);
   if (status != STRUT_OK) return status;
   const placeholder all[] = {
-      {"job", plain_name(s->name && *s->name ? s->name : "study", &arena)},
-      {"strut", quote(&s->program, 1, &arena)},
-      {"folder", quote(&s->folder, 1, &arena)},
-      {"study", quote(&s->study, 1, &arena)},
-      {"results", quote(&s->output, 1, &arena)},
-      {"shards", strut_arena_format(&arena, "%lld", (long long)s->shards)},
-      {"last", strut_arena_format(&arena, "%lld", (long long)s->shards - 1)},
-      {"cpus", strut_arena_format(&arena, "%lld", (long long)s->cpus)},
-      {"words", s->word_count ? quote(s->words, s->word_count, &arena) : NULL},
-      {"time", s->time},
-      {"memory", s->memory},
+      {"job", plain_name(script->name && *script->name ? script->name : "study", &arena)},
+      {"strut", quote(&script->program, 1, &arena)},
+      {"folder", quote(&script->folder, 1, &arena)},
+      {"study", quote(&script->study, 1, &arena)},
+      {"results", quote(&script->output, 1, &arena)},
+      {"shards", strut_arena_format(&arena, "%lld", (long long)script->shards)},
+      {"last", strut_arena_format(&arena, "%lld", (long long)script->shards - 1)},
+      {"cpus", strut_arena_format(&arena, "%lld", (long long)script->cpus)},
+      {"words", script->word_count ? quote(script->words, script->word_count, &arena) : NULL},
+      {"time", script->time},
+      {"memory", script->memory},
       {NULL, NULL}};
-  bool good = !s->word_count || all[8].value;
+  bool good = !script->word_count || all[8].value;
   for (size_t i = 0; i < 8; i++) good = good && all[i].value;
   if (good) *text = fill(strut_slurm_template, all);
   strut_arena_free(&arena);

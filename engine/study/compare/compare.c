@@ -35,8 +35,8 @@ static void put_friction(strut_compare_work *work, const strut_scene *scene) {
   }
   double mu[2] = {HUGE_VAL, 0.0};
   for (size_t i = 0; i < scene->contact_count; i++) {
-    const strut_friction *f = &scene->contacts[i].friction;
-    double here = f->law == STRUT_FRICTION_NONE ? 0.0 : f->mu_kinetic;
+    const strut_friction *friction = &scene->contacts[i].friction;
+    double here = friction->law == STRUT_FRICTION_NONE ? 0.0 : friction->mu_kinetic;
     mu[0] = fmin(mu[0], here);
     mu[1] = fmax(mu[1], here);
   }

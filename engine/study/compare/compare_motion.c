@@ -52,15 +52,16 @@ static strut_status run_window(const strut_compare_work *work, const strut_summa
   return strut_simulate(model, &e, &wanted, window, error);
 }
 
-static strut_status put_contacts(strut_compare_work *work, const strut_summary *s) {
-  strut_compare_column *c = work->column;
+static strut_status put_contacts(strut_compare_work *work, const strut_summary *summary) {
+  strut_compare_column *column = work->column;
   double sum = 0.0, touching = 0.0;
-  c->contacts = strut_arena_allocate(work->arena, s->end.contact_count + 1, sizeof *c->contacts);
-  if (!c->contacts) return STRUT_NO_MEMORY;
-  for (size_t i = 0; i < s->end.contact_count; i++) {
-    c->contacts[c->contact_count++] = s->end.contacts[i];
-    if (s->end.contacts[i].duty > 0.0) touching++;
-    sum += s->end.contacts[i].duty;
+  column->contacts =
+      strut_arena_allocate(work->arena, summary->end.contact_count + 1, sizeof *column->contacts);
+  if (!column->contacts) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < summary->end.contact_count; i++) {
+    column->contacts[column->contact_count++] = summary->end.contacts[i];
+    if (summary->end.contacts[i].duty > 0.0) touching++;
+    sum += summary->end.contacts[i].duty;
   }
   if (touching > 0.0)
     strut_compare_put(work, STRUT_COMPARE_DUTY, sum / touching);
@@ -97,35 +98,36 @@ static void put_energy(strut_compare_work *work, double drive_work, double secon
                                               : "the drives do no work");
 }
 
-static void put_velocity(strut_compare_work *work, const strut_summary *s, double period) {
-  strut_compare_put(work, STRUT_COMPARE_VELOCITY, s->velocity);
-  strut_compare_put(work, STRUT_COMPARE_VELOCITY_ERROR, s->accuracy.expected);
+static void put_velocity(strut_compare_work *work, const strut_summary *summary, double period) {
+  strut_compare_put(work, STRUT_COMPARE_VELOCITY, summary->velocity);
+  strut_compare_put(work, STRUT_COMPARE_VELOCITY_ERROR, summary->accuracy.expected);
   if (period > 0.0)
-    strut_compare_put(work, STRUT_COMPARE_TRAVEL, s->velocity * period);
+    strut_compare_put(work, STRUT_COMPARE_TRAVEL, summary->velocity * period);
   else
     strut_compare_leave(work, STRUT_COMPARE_TRAVEL, STRUT_COMPARE_TRAVEL,
                         "the run is not given in periods");
 }
 
-static void put_cost(strut_compare_work *work, const strut_summary *s, double cpu) {
-  double spent = (double)(s->spent.evaluations + s->accuracy.check_evaluations);
-  strut_compare_put(work, STRUT_COMPARE_EVALUATIONS, spent / s->duration);
-  strut_compare_put(work, STRUT_COMPARE_CPU, cpu / s->duration);
+static void put_cost(strut_compare_work *work, const strut_summary *summary, double cpu) {
+  double spent = (double)(summary->spent.evaluations + summary->accuracy.check_evaluations);
+  strut_compare_put(work, STRUT_COMPARE_EVALUATIONS, spent / summary->duration);
+  strut_compare_put(work, STRUT_COMPARE_CPU, cpu / summary->duration);
 }
 
 static strut_status put_motion(strut_compare_work *work, const strut_summary *run,
                                const strut_snapshot *end, double cpu) {
-  strut_compare_column *c = work->column;
+  strut_compare_column *column = work->column;
   strut_error error = {0};
-  double period = strut_experiment_span(&c->input->setup->experiment, c->model->scene).period,
+  double period =
+             strut_experiment_span(&column->input->setup->experiment, column->model->scene).period,
          seconds = run->duration;
-  c->motion = word_of(run->steady.kind);
-  c->repeats = run->steady.kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
-  c->how = strut_arena_format(work->arena, "%s", run->accuracy.why);
-  if (!c->how) return STRUT_NO_MEMORY;
-  c->inaccurate = strut_summary_is_inaccurate(run);
+  column->motion = word_of(run->steady.kind);
+  column->repeats = run->steady.kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
+  column->how = strut_arena_format(work->arena, "%s", run->accuracy.why);
+  if (!column->how) return STRUT_NO_MEMORY;
+  column->inaccurate = strut_summary_is_inaccurate(run);
   double uncertain = run->accuracy.expected * fmax(fabs(run->velocity), run->accuracy.scale);
-  c->still = fabs(run->velocity) <= uncertain;
+  column->still = fabs(run->velocity) <= uncertain;
   put_velocity(work, run, period);
   put_cost(work, run, cpu);
   strut_summary window = {0};
@@ -144,10 +146,11 @@ static strut_status put_motion(strut_compare_work *work, const strut_summary *ru
 }
 
 strut_status strut_compare_motion(strut_compare_work *work, const strut_model *model) {
-  strut_experiment *e = &work->column->input->setup->experiment;
-  const char *none = work->options->no_motion               ? "not requested"
-                     : !(e->duration > 0 || e->periods > 0) ? "the model has no run"
-                                                            : NULL;
+  strut_experiment *experiment = &work->column->input->setup->experiment;
+  const char *none = work->options->no_motion ? "not requested"
+                     : !(experiment->duration > 0 || experiment->periods > 0)
+                         ? "the model has no run"
+                         : NULL;
   if (none) {
     strut_compare_leave(work, STRUT_COMPARE_VELOCITY, STRUT_COMPARE_CPU, none);
     return STRUT_OK;
@@ -159,12 +162,12 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
       .v = strut_arena_allocate(work->arena, (size_t)model->length, sizeof *end.v),
       .memory = strut_arena_allocate(work->arena, strut_history_count(model), sizeof *end.memory)};
   if (!end.q || !end.v || !end.memory) return STRUT_NO_MEMORY;
-  e->accuracy = work->options->accuracy;
-  e->steady.wanted = e->periods > 0.0;
-  e->quantity_count = 0; /* the accuracy is that of the velocity */
+  experiment->accuracy = work->options->accuracy;
+  experiment->steady.wanted = experiment->periods > 0.0;
+  experiment->quantity_count = 0; /* the accuracy is that of the velocity */
   const strut_run_options wanted = {.interrupt = work->options->interrupt, .to = &end};
   double began = strut_tradeoff_cpu_clock();
-  strut_status status = strut_simulate_accurately(model, e, &wanted, &summary, &error);
+  strut_status status = strut_simulate_accurately(model, experiment, &wanted, &summary, &error);
   double cpu = strut_tradeoff_cpu_clock() - began;
   if (status == STRUT_OK)
     status = put_motion(work, &summary, &end, cpu);
@@ -177,15 +180,15 @@ strut_status strut_compare_motion(strut_compare_work *work, const strut_model *m
 
 /* Properties of a structure at rest: rigidity, forces, states, frequencies. */
 
-static void put_counts(strut_compare_work *work, const strut_rigidity *r) {
-  const strut_mechanisms *m = &r->mechanisms;
-  strut_compare_put(work, STRUT_COMPARE_SELF_STRESSES, r->states.count);
-  strut_compare_put(work, STRUT_COMPARE_MECHANISMS, m->count - m->rigid_body);
-  strut_compare_put(work, STRUT_COMPARE_FINITE, m->finite);
-  strut_compare_put(work, STRUT_COMPARE_RIGID_MOTIONS, m->rigid_body);
+static void put_counts(strut_compare_work *work, const strut_rigidity *rigidity) {
+  const strut_mechanisms *mechanisms = &rigidity->mechanisms;
+  strut_compare_put(work, STRUT_COMPARE_SELF_STRESSES, rigidity->states.count);
+  strut_compare_put(work, STRUT_COMPARE_MECHANISMS, mechanisms->count - mechanisms->rigid_body);
+  strut_compare_put(work, STRUT_COMPARE_FINITE, mechanisms->finite);
+  strut_compare_put(work, STRUT_COMPARE_RIGID_MOTIONS, mechanisms->rigid_body);
 }
 
-static void put_forces(strut_compare_work *work, const strut_rigidity *r, size_t count) {
+static void put_forces(strut_compare_work *work, const strut_rigidity *rigidity, size_t count) {
   double squares = 0.0, tension = 0.0, compression = 0.0;
   if (count == 0) {
     strut_compare_leave(work, STRUT_COMPARE_PRESTRESS, STRUT_COMPARE_COMPRESSION,
@@ -193,9 +196,9 @@ static void put_forces(strut_compare_work *work, const strut_rigidity *r, size_t
     return;
   }
   for (size_t j = 0; j < count; j++) {
-    squares += r->force[j] * r->force[j];
-    tension = fmax(tension, r->force[j]);
-    compression = fmax(compression, -r->force[j]);
+    squares += rigidity->force[j] * rigidity->force[j];
+    tension = fmax(tension, rigidity->force[j]);
+    compression = fmax(compression, -rigidity->force[j]);
   }
   strut_compare_put(work, STRUT_COMPARE_PRESTRESS, sqrt(squares / (double)count));
   strut_compare_put(work, STRUT_COMPARE_TENSION, tension);
@@ -239,26 +242,28 @@ strut_status strut_compare_rigidity(strut_compare_work *work, const strut_model 
 /* ---- states ---- */
 
 /* Adds a state to those before it, which are in order; of one energy they stay in the list's. */
-static void insert_by_energy(strut_compare_column *c, strut_compare_state state) {
-  size_t k = c->state_count++;
-  for (; k > 0 && c->states[k - 1].energy > state.energy; k--) c->states[k] = c->states[k - 1];
-  c->states[k] = state;
+static void insert_by_energy(strut_compare_column *column, strut_compare_state state) {
+  size_t k = column->state_count++;
+  for (; k > 0 && column->states[k - 1].energy > state.energy; k--)
+    column->states[k] = column->states[k - 1];
+  column->states[k] = state;
 }
 
 static strut_status keep_states(strut_compare_work *work, const strut_equilibria *all) {
-  strut_compare_column *c = work->column;
-  c->states = strut_arena_allocate(work->arena, all->count + 1, sizeof *c->states);
-  c->barriers = strut_arena_allocate(work->arena, all->barrier_count + 1, sizeof *c->barriers);
+  strut_compare_column *column = work->column;
+  column->states = strut_arena_allocate(work->arena, all->count + 1, sizeof *column->states);
+  column->barriers =
+      strut_arena_allocate(work->arena, all->barrier_count + 1, sizeof *column->barriers);
   const char **names = strut_arena_allocate(work->arena, all->count + 1, sizeof *names);
-  if (!c->states || !c->barriers || !names) return STRUT_NO_MEMORY;
+  if (!column->states || !column->barriers || !names) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < all->count; i++) {
     names[i] = strut_arena_format(work->arena, "%s", all->list[i].name);
     if (!names[i]) return STRUT_NO_MEMORY;
     if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
-      insert_by_energy(c, (strut_compare_state){names[i], all->list[i].energy});
+      insert_by_energy(column, (strut_compare_state){names[i], all->list[i].energy});
   }
   for (size_t i = 0; i < all->barrier_count; i++)
-    c->barriers[c->barrier_count++] = (strut_compare_barrier){
+    column->barriers[column->barrier_count++] = (strut_compare_barrier){
         names[all->barriers[i].from], names[all->barriers[i].to], all->barriers[i].height};
   return STRUT_OK;
 }
@@ -269,15 +274,15 @@ static const char *start_name(const strut_compare_work *work, const strut_model 
   const double *q = work->rest.q;
   if (!q) return NULL;
   for (size_t i = 0; i < all->count; i++) {
-    const strut_equilibrium *e = &all->list[i];
-    const double *p = e->rest ? e->rest : e->point.q;
+    const strut_equilibrium *equilibrium = &all->list[i];
+    const double *p = equilibrium->rest ? equilibrium->rest : equilibrium->point.q;
     double shift = p[0] - q[0], apart = 0.0; /* along the ground it may lie anywhere */
-    if (e->outcome != STRUT_OUTCOME_STANDS) continue;
+    if (equilibrium->outcome != STRUT_OUTCOME_STANDS) continue;
     for (int32_t k = 0; k < 2 * model->node_count; k++)
       apart = fmax(apart,
                    fabs(p[k] - q[k] -
                         (k % 2 || !strut_contacts_allow_travel(&model->contacts) ? 0.0 : shift)));
-    if (apart <= 1e-3 * model->size) return e->name;
+    if (apart <= 1e-3 * model->size) return equilibrium->name;
   }
   return NULL;
 }
@@ -297,16 +302,16 @@ static void put_barrier(strut_compare_work *work, const char *from, const strut_
 }
 
 static void put_states(strut_compare_work *work, const char *from, const strut_equilibria *all) {
-  const strut_compare_column *c = work->column;
-  strut_compare_put(work, STRUT_COMPARE_STATES, (double)c->state_count);
-  if (c->state_count == 0) {
+  const strut_compare_column *column = work->column;
+  strut_compare_put(work, STRUT_COMPARE_STATES, (double)column->state_count);
+  if (column->state_count == 0) {
     const char *why = strut_arena_format(
         work->arena, "%s", all->remark[0] ? all->remark : "there is no state in which it stands");
     strut_compare_leave(work, STRUT_COMPARE_LOWEST_ENERGY, STRUT_COMPARE_LOWEST_BARRIER,
                         why ? why : "there is none");
     return;
   }
-  double low = c->states[0].energy, high = c->states[c->state_count - 1].energy;
+  double low = column->states[0].energy, high = column->states[column->state_count - 1].energy;
   strut_compare_put(work, STRUT_COMPARE_LOWEST_ENERGY, low);
   strut_compare_put(work, STRUT_COMPARE_ENERGY_SPAN, high - low);
   put_barrier(work, from, all);
@@ -360,15 +365,16 @@ strut_status strut_compare_frequencies(strut_compare_work *work, const strut_mod
 /* ---- stiffness of every node ---- */
 
 static void put_softest(strut_compare_work *work, const strut_model *model) {
-  strut_compare_column *c = work->column;
+  strut_compare_column *column = work->column;
   for (int d = 0; d < 2; d++) {
     const strut_compare_quantity at = d ? STRUT_COMPARE_STIFFNESS_Y : STRUT_COMPARE_STIFFNESS_X;
     for (int32_t i = 0; i < model->node_count; i++) {
-      bool softer = c->softest[d] < 0 || c->stiffness[i][d] < c->stiffness[c->softest[d]][d];
-      if (isfinite(c->stiffness[i][d]) && softer) c->softest[d] = i;
+      bool softer = column->softest[d] < 0 ||
+                    column->stiffness[i][d] < column->stiffness[column->softest[d]][d];
+      if (isfinite(column->stiffness[i][d]) && softer) column->softest[d] = i;
     }
-    if (c->softest[d] >= 0)
-      strut_compare_put(work, at, c->stiffness[c->softest[d]][d]);
+    if (column->softest[d] >= 0)
+      strut_compare_put(work, at, column->stiffness[column->softest[d]][d]);
     else
       strut_compare_leave(work, at, at, "no node can move in that direction");
   }
@@ -377,7 +383,7 @@ static void put_softest(strut_compare_work *work, const strut_model *model) {
 strut_status strut_compare_stiffness(strut_compare_work *work, const strut_model *model) {
   static const double axes[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
   strut_node_stiffness *stiffness = NULL;
-  strut_compare_column *c = work->column;
+  strut_compare_column *column = work->column;
   const char *reason;
   strut_error error = {0};
   strut_status status =
@@ -387,12 +393,13 @@ strut_status strut_compare_stiffness(strut_compare_work *work, const strut_model
     strut_compare_leave(work, STRUT_COMPARE_STIFFNESS_X, STRUT_COMPARE_STIFFNESS_Y, reason);
     return STRUT_OK;
   }
-  c->stiffness = strut_arena_allocate(work->arena, (size_t)model->node_count, sizeof *c->stiffness);
-  for (int32_t i = 0; i < model->node_count && c->stiffness; i++)
+  column->stiffness =
+      strut_arena_allocate(work->arena, (size_t)model->node_count, sizeof *column->stiffness);
+  for (int32_t i = 0; i < model->node_count && column->stiffness; i++)
     for (int d = 0; d < 2; d++)
-      c->stiffness[i][d] = strut_node_stiffness_along(stiffness, i, axes[d]);
+      column->stiffness[i][d] = strut_node_stiffness_along(stiffness, i, axes[d]);
   strut_node_stiffness_free(stiffness);
-  if (!c->stiffness) return STRUT_NO_MEMORY;
+  if (!column->stiffness) return STRUT_NO_MEMORY;
   put_softest(work, model);
   return STRUT_OK;
 }

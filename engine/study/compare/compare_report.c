@@ -7,8 +7,8 @@
 
 #include "engine/output/result_values.h"
 
-static const strut_scene *scene_of(const strut_compare_column *c) {
-  return &c->input->setup->scene;
+static const strut_scene *scene_of(const strut_compare_column *column) {
+  return &column->input->setup->scene;
 }
 
 static const char *quantity_name(const strut_result_object *of, size_t i) {
@@ -81,8 +81,8 @@ static const char *missing_name(const strut_result_object *of, size_t i) {
   return ((const strut_compare_column *)of->at)->input->without[i];
 }
 
-static const char *softest_node(const strut_compare_column *c, int axis) {
-  return c->softest[axis] < 0 ? NULL : scene_of(c)->nodes[c->softest[axis]].name;
+static const char *softest_node(const strut_compare_column *column, int axis) {
+  return column->softest[axis] < 0 ? NULL : scene_of(column)->nodes[column->softest[axis]].name;
 }
 
 #define MODEL(X)                                                                                   \
@@ -121,8 +121,8 @@ static const strut_scene *scene_of_model(const strut_result_object *of, size_t i
   return scene_of(&((const strut_compare *)of->at)->columns[i]);
 }
 
-static strut_value models_of(const strut_compare *r) {
-  strut_value list = STRUT_VALUE_AS_LIST(r->columns, r->count);
+static strut_value models_of(const strut_compare *compare) {
+  strut_value list = STRUT_VALUE_AS_LIST(compare->columns, compare->count);
   list.scene = scene_of_model;
   return list;
 }
@@ -134,10 +134,10 @@ static strut_value models_of(const strut_compare *r) {
   X("models", "", BY(models_of(r)), "in their order", .rows = &model_values, .label = {""})
 STRUT_VALUES(strut_compare_values, COMPARISON, const strut_compare *r = of->at)
 
-char *strut_compare_csv(const strut_compare *r) {
-  return strut_values_csv(&strut_compare_values, "models", NULL, r, NULL);
+char *strut_compare_csv(const strut_compare *compare) {
+  return strut_values_csv(&strut_compare_values, "models", NULL, compare, NULL);
 }
 
-char *strut_compare_json(const strut_compare *r) {
-  return strut_values_json(&strut_compare_values, r, NULL);
+char *strut_compare_json(const strut_compare *compare) {
+  return strut_values_json(&strut_compare_values, compare, NULL);
 }

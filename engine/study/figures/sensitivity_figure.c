@@ -24,29 +24,29 @@ static size_t find_result(const strut_sensitivity_result *result, size_t i, size
   return parameters;
 }
 
-static void add_point(strut_series *s, double x, double y) {
-  ((double *)s->x)[s->count] = fmin(MOST, fmax(LEAST, x));
-  if (isnan(x)) ((double *)s->x)[s->count] = x;
-  ((double *)s->y)[s->count++] = y;
+static void add_point(strut_series *series, double x, double y) {
+  ((double *)series->x)[series->count] = fmin(MOST, fmax(LEAST, x));
+  if (isnan(x)) ((double *)series->x)[series->count] = x;
+  ((double *)series->y)[series->count++] = y;
 }
 
-static void add_line(strut_series *s, double x1, double y1, double x2, double y2) {
-  add_point(s, x1, y1);
-  add_point(s, x2, y2);
-  add_point(s, (double)NAN, (double)NAN);
+static void add_line(strut_series *series, double x1, double y1, double x2, double y2) {
+  add_point(series, x1, y1);
+  add_point(series, x2, y2);
+  add_point(series, (double)NAN, (double)NAN);
 }
 
 /* Bars of the first order and of the whole, the first parameter at the top, and their whiskers. */
 static void add_bars(strut_series *series, const strut_sensitivity_row *row, double place) {
   for (int k = 0; k < 2; k++) {
-    const strut_estimate *e = &row[k].estimate;
+    const strut_estimate *estimate = &row[k].estimate;
     double y = place + (k ? -0.5 : 0.5) * BAR;
-    if (!isfinite(e->value)) continue;
-    add_line(&series[k], 0, y, e->value, y);
-    if (!isfinite(e->low) || !isfinite(e->high)) continue;
-    add_line(&series[2], e->low, y, e->high, y);
-    add_line(&series[2], e->low, y - CAP, e->low, y + CAP);
-    add_line(&series[2], e->high, y - CAP, e->high, y + CAP);
+    if (!isfinite(estimate->value)) continue;
+    add_line(&series[k], 0, y, estimate->value, y);
+    if (!isfinite(estimate->low) || !isfinite(estimate->high)) continue;
+    add_line(&series[2], estimate->low, y, estimate->high, y);
+    add_line(&series[2], estimate->low, y - CAP, estimate->low, y + CAP);
+    add_line(&series[2], estimate->high, y - CAP, estimate->high, y + CAP);
   }
 }
 
@@ -125,9 +125,9 @@ static strut_status draw_over(const strut_plot *plot, const strut_study *study, 
                               strut_error *error) {
   strut_table t = {.column_count = COLUMNS};
   size_t column = 0;
-  const strut_study_column *x = last_numbers(study, &column);
+  const strut_study_column *study_column = last_numbers(study, &column);
   *drawn = false;
-  if (!x) return STRUT_OK;
+  if (!study_column) return STRUT_OK;
   double *value[2];
   const char **text[2];
   bool fine = true;
@@ -137,17 +137,20 @@ static strut_status draw_over(const strut_plot *plot, const strut_study *study, 
     fine = fine && value[i] && text[i];
   }
   strut_table_column columns[COLUMNS] = {
-      [X] = {.name = x->name, .unit = strcmp(x->unit, "1") ? x->unit : "", .value = value[0]},
+      [X] = {.name = study_column->name,
+             .unit = strcmp(study_column->unit, "1") ? study_column->unit : "",
+             .value = value[0]},
       [OF] = {.name = "of", .unit = "", .text = text[0]},
       [PARAMETER] = {.name = "parameter", .unit = "", .text = text[1]},
       [VALUE] = {.name = "total index", .unit = "", .value = value[1]}};
   for (size_t i = 0; i < result->count && fine; i++) {
-    const strut_sensitivity_row *r = &result->rows[i];
-    if (r->measure != STRUT_SENSITIVITY_TOTAL && r->measure != STRUT_SENSITIVITY_SHARE) continue;
-    value[0][t.row_count] = axis_value(slots, r->point, column);
-    value[1][t.row_count] = r->estimate.value;
-    text[0][t.row_count] = r->of;
-    text[1][t.row_count++] = r->parameter ? r->parameter : "share";
+    const strut_sensitivity_row *row = &result->rows[i];
+    if (row->measure != STRUT_SENSITIVITY_TOTAL && row->measure != STRUT_SENSITIVITY_SHARE)
+      continue;
+    value[0][t.row_count] = axis_value(slots, row->point, column);
+    value[1][t.row_count] = row->estimate.value;
+    text[0][t.row_count] = row->of;
+    text[1][t.row_count++] = row->parameter ? row->parameter : "share";
   }
   *drawn = t.row_count > 0;
   t.columns = columns;

@@ -14,11 +14,13 @@
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static bool of_runs(const strut_study_figure *f) {
-  return f->kind >= STRUT_FIGURE_MOTION && f->kind <= STRUT_FIGURE_SNAPSHOTS;
+static bool of_runs(const strut_study_figure *figure) {
+  return figure->kind >= STRUT_FIGURE_MOTION && figure->kind <= STRUT_FIGURE_SNAPSHOTS;
 }
 
-static bool of_search(const strut_study_figure *f) { return f->kind >= STRUT_FIGURE_BEST; }
+static bool of_search(const strut_study_figure *figure) {
+  return figure->kind >= STRUT_FIGURE_BEST;
+}
 
 /* ---- maps of the finest grid ---- */
 
@@ -30,11 +32,11 @@ static bool is_of_axis(const strut_study *study, size_t axis, const char *name) 
 }
 
 /* Does the figure show the two axes that are refined? */
-static bool shows_refined_axes(const strut_sweep_plan *plan, const strut_study_figure *f) {
+static bool shows_refined_axes(const strut_sweep_plan *plan, const strut_study_figure *figure) {
   const strut_study *study = plan->study;
   const size_t *axes = study->refine.axes;
-  return (is_of_axis(study, axes[0], f->x) && is_of_axis(study, axes[1], f->y)) ||
-         (is_of_axis(study, axes[1], f->x) && is_of_axis(study, axes[0], f->y));
+  return (is_of_axis(study, axes[0], figure->x) && is_of_axis(study, axes[1], figure->y)) ||
+         (is_of_axis(study, axes[1], figure->x) && is_of_axis(study, axes[0], figure->y));
 }
 
 /* The row of each known point, + 1; 0: none. */
@@ -53,20 +55,20 @@ static size_t refined_value(const strut_sweep_plan *plan, const char *name) {
   const strut_study *study = plan->study;
   for (size_t i = 0; i < plan->axis_columns; i++) {
     size_t axis;
-    const strut_study_column *c = strut_grid_column(study, i, &axis);
+    const strut_study_column *column = strut_grid_column(study, i, &axis);
     bool refined = axis == study->refine.axes[0] || axis == study->refine.axes[1];
-    if (refined && strcmp(c->name, name) == 0) return i;
+    if (refined && strcmp(column->name, name) == 0) return i;
   }
   return plan->axis_columns;
 }
 
 static bool make_column(strut_table *to, const strut_table_column *from, size_t rows, size_t i) {
-  strut_table_column *c = &to->columns[i];
-  c->name = from->name;
-  c->unit = from->unit;
-  c->text = strut_arena_allocate(&to->arena, rows, sizeof *c->text);
-  if (from->value) c->value = strut_arena_allocate(&to->arena, rows, sizeof *c->value);
-  return c->text && (!from->value || c->value);
+  strut_table_column *column = &to->columns[i];
+  column->name = from->name;
+  column->unit = from->unit;
+  column->text = strut_arena_allocate(&to->arena, rows, sizeof *column->text);
+  if (from->value) column->value = strut_arena_allocate(&to->arena, rows, sizeof *column->value);
+  return column->text && (!from->value || column->value);
 }
 
 /* Fills a row for `point` from the row `source` of `from`. */
@@ -74,12 +76,12 @@ static bool fill_row(const strut_sweep_plan *plan, const strut_table *from, size
                      const strut_study_value *values, strut_table *to) {
   size_t row = to->row_count++;
   for (size_t i = 0; i < from->column_count; i++) {
-    const strut_table_column *c = &from->columns[i];
+    const strut_table_column *column = &from->columns[i];
     const char **text = (const char **)to->columns[i].text;
     double *value = (double *)to->columns[i].value;
-    size_t k = refined_value(plan, c->name);
-    text[row] = c->text[source];
-    if (value) value[row] = c->value[source];
+    size_t k = refined_value(plan, column->name);
+    text[row] = column->text[source];
+    if (value) value[row] = column->value[source];
     if (k == plan->axis_columns || !value) continue;
     char number[STRUT_NUMBER_TEXT];
     size_t length = strut_number_text(values[k].number, number);
@@ -140,11 +142,11 @@ static strut_axis_choice axis_of(const char *label, const double limits[2]) {
   return (strut_axis_choice){label, limits[0] < limits[1], limits[0], limits[1]};
 }
 
-static strut_plot plot_of(const strut_study_figure *f, const char *path) {
+static strut_plot plot_of(const strut_study_figure *figure, const char *path) {
   return (strut_plot){.path = path,
-                      .title = f->title,
-                      .x = axis_of(f->x_label, f->x_limits),
-                      .y = axis_of(f->y_label, f->y_limits)};
+                      .title = figure->title,
+                      .x = axis_of(figure->x_label, figure->x_limits),
+                      .y = axis_of(figure->y_label, figure->y_limits)};
 }
 
 static strut_status draw_table(const strut_study_figure *f, const char *path,
@@ -171,43 +173,44 @@ static strut_status draw_table(const strut_study_figure *f, const char *path,
 }
 
 static strut_status draw_motion(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *f, const char *path, strut_error *error) {
+                                const strut_study_figure *figure, const char *path,
+                                strut_error *error) {
   strut_table motion = {0};
-  strut_status status = strut_study_motion(plan, directory, f, &motion, error);
-  if (!status) status = draw_table(f, path, &motion, error);
+  strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
+  if (!status) status = draw_table(figure, path, &motion, error);
   strut_arena_free(&motion.arena);
   return status;
 }
 
 /* A map of the finest grid. */
-static strut_status draw_refined(const strut_sweep_plan *plan, const strut_study_figure *f,
+static strut_status draw_refined(const strut_sweep_plan *plan, const strut_study_figure *figure,
                                  const char *path, const strut_table *table,
                                  const strut_refinement *refinement, strut_error *error) {
   strut_table fine = {0};
   strut_status status = expand_refined(plan, refinement, table, &fine, error);
-  if (!status) status = draw_table(f, path, &fine, error);
+  if (!status) status = draw_table(figure, path, &fine, error);
   strut_arena_free(&fine.arena);
   return status;
 }
 
 strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *f, const strut_table *table,
+                                const strut_study_figure *figure, const strut_table *table,
                                 const strut_refinement *refinement, strut_error *error) {
   strut_arena arena = {0};
-  const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, f->name);
+  const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, figure->name);
   strut_status status = STRUT_OK;
   if (!file)
     status = strut_no_memory(error, "");
-  else if (f->kind == STRUT_FIGURE_MOTION)
-    status = draw_motion(plan, directory, f, file, error);
-  else if (of_search(f))
-    status = strut_search_figure(plan, f, file, table, error);
-  else if (of_runs(f))
-    status = strut_study_pictures(plan, directory, f, PAGE, error);
-  else if (refinement && f->kind == STRUT_FIGURE_MAP && shows_refined_axes(plan, f))
-    status = draw_refined(plan, f, file, table, refinement, error);
+  else if (figure->kind == STRUT_FIGURE_MOTION)
+    status = draw_motion(plan, directory, figure, file, error);
+  else if (of_search(figure))
+    status = strut_search_figure(plan, figure, file, table, error);
+  else if (of_runs(figure))
+    status = strut_study_pictures(plan, directory, figure, PAGE, error);
+  else if (refinement && figure->kind == STRUT_FIGURE_MAP && shows_refined_axes(plan, figure))
+    status = draw_refined(plan, figure, file, table, refinement, error);
   else
-    status = draw_table(f, file, table, error);
+    status = draw_table(figure, file, table, error);
   strut_arena_free(&arena);
   return status;
 }
@@ -222,38 +225,40 @@ typedef struct tracker {
   size_t outer; /* columns of the axes before the searches */
 } tracker;
 
-static double value_at(const tracker *t, int column, size_t row) {
-  const double *value = column >= 0 ? t->table->columns[column].value : NULL;
+static double value_at(const tracker *self, int column, size_t row) {
+  const double *value = column >= 0 ? self->table->columns[column].value : NULL;
   return value ? value[row] : (double)NAN;
 }
 
-static bool same_text(const tracker *t, size_t column, size_t a, size_t b) {
-  const char *const *text = t->table->columns[column].text;
-  return text && text[a] && text[b] ? strcmp(text[a], text[b]) == 0
-                                    : value_at(t, (int)column, a) == value_at(t, (int)column, b);
+static bool same_text(const tracker *self, size_t column, size_t a, size_t b) {
+  const char *const *text = self->table->columns[column].text;
+  return text && text[a] && text[b]
+             ? strcmp(text[a], text[b]) == 0
+             : value_at(self, (int)column, a) == value_at(self, (int)column, b);
 }
 
 /* Are both rows of one search, or even of one evaluation? Column 0 is the point. */
-static bool same_search(const tracker *t, size_t a, size_t b) {
-  bool same = value_at(t, t->number, a) == value_at(t, t->number, b);
-  for (size_t i = 1; i <= t->outer && same; i++) same = same_text(t, i, a, b);
+static bool same_search(const tracker *self, size_t a, size_t b) {
+  bool same = value_at(self, self->number, a) == value_at(self, self->number, b);
+  for (size_t i = 1; i <= self->outer && same; i++) same = same_text(self, i, a, b);
   return same;
 }
 
-static bool same_evaluation(const tracker *t, size_t a, size_t b) {
-  return same_search(t, a, b) && value_at(t, t->evaluation, a) == value_at(t, t->evaluation, b);
+static bool same_evaluation(const tracker *self, size_t a, size_t b) {
+  return same_search(self, a, b) &&
+         value_at(self, self->evaluation, a) == value_at(self, self->evaluation, b);
 }
 
 /* The worst of the scenarios from `row` on, NAN where a condition is broken; *next: the row behind. */
-static double judge(const tracker *t, int column, size_t row, size_t *next) {
-  double worst = value_at(t, column, row);
+static double judge(const tracker *self, int column, size_t row, size_t *next) {
+  double worst = value_at(self, column, row);
   bool broken = false;
   size_t i = row;
-  for (; i < t->table->row_count && same_evaluation(t, row, i); i++) {
-    double value = value_at(t, column, i);
-    bool worse = t->search->maximise ? value < worst : value > worst;
+  for (; i < self->table->row_count && same_evaluation(self, row, i); i++) {
+    double value = value_at(self, column, i);
+    bool worse = self->search->maximise ? value < worst : value > worst;
     if (worse || isnan(value)) worst = value;
-    broken = broken || isnan(value) || value_at(t, t->violation, i) > 0.0;
+    broken = broken || isnan(value) || value_at(self, self->violation, i) > 0.0;
   }
   *next = i;
   return broken ? (double)NAN : worst;
@@ -272,18 +277,18 @@ static tracker track(const strut_sweep_plan *plan, const strut_table *table) {
 }
 
 /* Fills the best objective so far, in each row of a search, and marks the row of the best of each. */
-static void follow(const tracker *t, double *best, bool *shown, bool *marked) {
+static void follow(const tracker *self, double *best, bool *shown, bool *marked) {
   double so_far = (double)NAN;
   size_t at = 0, next = 0;
   bool any = false;
-  for (size_t row = 0; row < t->table->row_count; row = next) {
-    bool begins = row == 0 || !same_search(t, row - 1, row);
+  for (size_t row = 0; row < self->table->row_count; row = next) {
+    bool begins = row == 0 || !same_search(self, row - 1, row);
     if (begins && any) marked[at] = true;
     if (begins) so_far = (double)NAN, any = false;
-    double value = judge(t, t->objective, row, &next);
-    bool proper = value_at(t, t->number, row) > 0.0;
+    double value = judge(self, self->objective, row, &next);
+    bool proper = value_at(self, self->number, row) > 0.0;
     if (proper && isfinite(value) &&
-        (isnan(so_far) || (t->search->maximise ? value > so_far : value < so_far)))
+        (isnan(so_far) || (self->search->maximise ? value > so_far : value < so_far)))
       so_far = value, at = row, any = true;
     for (size_t i = row; i < next; i++) {
       best[i] = proper ? so_far : (double)NAN;
@@ -294,21 +299,21 @@ static void follow(const tracker *t, double *best, bool *shown, bool *marked) {
 }
 
 /* Marks the points that no other of the same axes beats in both goals. */
-static bool mark_front(const tracker *t, const bool *shown, bool *marked, strut_arena *arena) {
-  size_t rows = t->table->row_count, next;
-  double sign = t->search->maximise ? -1.0 : 1.0;
+static bool mark_front(const tracker *self, const bool *shown, bool *marked, strut_arena *arena) {
+  size_t rows = self->table->row_count, next;
+  double sign = self->search->maximise ? -1.0 : 1.0;
   double(*goal)[2] = strut_arena_allocate(arena, rows, sizeof *goal);
   for (size_t i = 0; goal && i < rows; i++) {
     marked[i] = false;
     if (!shown[i]) continue;
-    goal[i][0] = sign * judge(t, t->objective, i, &next);
-    goal[i][1] = sign * judge(t, t->second, i, &next);
+    goal[i][0] = sign * judge(self, self->objective, i, &next);
+    goal[i][1] = sign * judge(self, self->second, i, &next);
     marked[i] = !isnan(goal[i][0]) && !isnan(goal[i][1]);
   }
   for (size_t i = 0; goal && i < rows; i++)
     for (size_t k = 0; k < rows && marked[i]; k++) {
       bool same = shown[k];
-      for (size_t c = 1; c <= t->outer && same; c++) same = same_text(t, c, i, k);
+      for (size_t c = 1; c <= self->outer && same; c++) same = same_text(self, c, i, k);
       bool better = same && goal[k][0] <= goal[i][0] && goal[k][1] <= goal[i][1] &&
                     (goal[k][0] < goal[i][0] || goal[k][1] < goal[i][1]);
       if (better) marked[i] = false;
@@ -344,15 +349,15 @@ static int choose(const strut_table *table, const char *only, const char **text,
 }
 
 /* The best objective over the evaluations of each search. */
-static strut_status draw_best(const tracker *t, const strut_study_figure *f, strut_plot *plot,
+static strut_status draw_best(const tracker *self, const strut_study_figure *f, strut_plot *plot,
                               const strut_table *table, strut_table_figure *figure,
                               strut_error *error) {
-  const char *series = f->series ? f->series : t->search->starts > 1 ? "search" : NULL;
-  figure->x = t->evaluation;
-  figure->y[0] = (int)t->table->column_count;
-  figure->by = column_of(t->table, series);
-  figure->panels = column_of(t->table, f->panels);
-  if (!plot->y.label) plot->y.label = t->search->goal.text;
+  const char *series = f->series ? f->series : self->search->starts > 1 ? "search" : NULL;
+  figure->x = self->evaluation;
+  figure->y[0] = (int)self->table->column_count;
+  figure->by = column_of(self->table, series);
+  figure->panels = column_of(self->table, f->panels);
+  if (!plot->y.label) plot->y.label = self->search->goal.text;
   return strut_table_draw(plot, figure, table, error);
 }
 
@@ -409,10 +414,10 @@ static strut_status set_up(const strut_sweep_plan *plan, const strut_search_poin
   return status;
 }
 
-strut_status strut_search_winner_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                        const char *path, const strut_search_point *best,
-                                        double width, const strut_flag *interrupt,
-                                        strut_error *error) {
+strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
+                                        const strut_study_figure *figure, const char *path,
+                                        const strut_search_point *best, double width,
+                                        const strut_flag *interrupt, strut_error *error) {
   strut_setup setups[2];
   strut_compare result = {0};
   const strut_compare_input inputs[] = {{.label = "start", .setup = &setups[0]},
@@ -425,7 +430,7 @@ strut_status strut_search_winner_figure(const strut_sweep_plan *plan, const stru
                                            .no_motion = plan->study->compute != STRUT_COMPUTE_RUN,
                                            .no_states = true,
                                            .interrupt = interrupt};
-    const strut_plot plot = {.path = path, .title = f->title, .width = width};
+    const strut_plot plot = {.path = path, .title = figure->title, .width = width};
     status = strut_compare_make(inputs, 2, &options, &result, error);
     if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);
     strut_compare_free(&result);

@@ -20,16 +20,16 @@ typedef struct panel {
   strut_arena *arena;
 } panel;
 
-static bool add_group(panel *p, const char *name) {
-  p->groups[p->group_count] = strut_arena_format(p->arena, "%s", name);
-  return p->groups[p->group_count++] != NULL;
+static bool add_group(panel *self, const char *name) {
+  self->groups[self->group_count] = strut_arena_format(self->arena, "%s", name);
+  return self->groups[self->group_count++] != NULL;
 }
 
 /* A point of the diagram, and one more at the upper edge where some of its runs diverged. */
-static bool add_saving(panel *p, const strut_tradeoff *r, const strut_tradeoff_row *row,
+static bool add_saving(panel *self, const strut_tradeoff *tradeoff, const strut_tradeoff_row *row,
                        const strut_spread *spread, bool label) {
   char text[STRUT_TRADEOFF_TEXT];
-  strut_saving lost = {.group = (int)p->group_count - 1,
+  strut_saving lost = {.group = (int)self->group_count - 1,
                        .cost = row->evaluations,
                        .error = HUGE_VAL,
                        .low = (double)NAN,
@@ -37,67 +37,68 @@ static bool add_saving(panel *p, const strut_tradeoff *r, const strut_tradeoff_r
   strut_saving saving = lost;
   bool gone = !(spread->median <= BEYOND);
   const double *errors = spread == &row->total_spread ? row->total : row->error;
-  if (label) saving.label = strut_arena_format(p->arena, "%s", strut_tradeoff_step_text(row, text));
+  if (label)
+    saving.label = strut_arena_format(self->arena, "%s", strut_tradeoff_step_text(row, text));
   if (!gone) saving.error = spread->median;
-  if (!gone && r->point_count > 1) {
+  if (!gone && tradeoff->point_count > 1) {
     saving.low = saving.high = spread->median;
-    for (size_t k = 0; k < r->point_count && !(spread->worst <= BEYOND); k++)
+    for (size_t k = 0; k < tradeoff->point_count && !(spread->worst <= BEYOND); k++)
       if (errors[k] <= BEYOND) saving.high = fmax(saving.high, errors[k]);
     if (spread->worst <= BEYOND) saving.high = spread->worst;
   }
-  p->savings[p->count++] = saving;
-  if (row->diverged && !gone) p->savings[p->count++] = lost;
+  self->savings[self->count++] = saving;
+  if (row->diverged && !gone) self->savings[self->count++] = lost;
   return !label || saving.label;
 }
 
 /* Step errors of the unchanged model, a group for each method. */
-static bool fill_methods(panel *p, const strut_tradeoff *r) {
+static bool fill_methods(panel *self, const strut_tradeoff *tradeoff) {
   int last = -1;
-  for (size_t i = 0; i < r->row_count; i++) {
-    const strut_tradeoff_row *row = &r->rows[i];
+  for (size_t i = 0; i < tradeoff->row_count; i++) {
+    const strut_tradeoff_row *row = &tradeoff->rows[i];
     char text[STRUT_TRADEOFF_TEXT];
     if (row->variant != 0) continue;
-    if (row->group != last && p->group_count == MOST_GROUPS) break;
-    if (row->group != last && !add_group(p, strut_tradeoff_group_text(row, text))) return false;
+    if (row->group != last && self->group_count == MOST_GROUPS) break;
+    if (row->group != last && !add_group(self, strut_tradeoff_group_text(row, text))) return false;
     last = row->group;
-    if (!add_saving(p, r, row, &row->error_spread, row->front)) return false;
+    if (!add_saving(self, tradeoff, row, &row->error_spread, row->front)) return false;
   }
   return true;
 }
 
-static bool on_total_front(const strut_tradeoff *r, const strut_tradeoff_row *a) {
-  if (!(a->total_spread.worst <= BEYOND)) return false;
-  for (size_t i = 0; i < r->row_count; i++) {
-    const strut_tradeoff_row *b = &r->rows[i];
-    if (b->variant == a->variant && b->evaluations <= a->evaluations &&
-        b->total_spread.worst < a->total_spread.worst)
+static bool on_total_front(const strut_tradeoff *tradeoff, const strut_tradeoff_row *row) {
+  if (!(row->total_spread.worst <= BEYOND)) return false;
+  for (size_t i = 0; i < tradeoff->row_count; i++) {
+    const strut_tradeoff_row *tradeoff_row = &tradeoff->rows[i];
+    if (tradeoff_row->variant == row->variant && tradeoff_row->evaluations <= row->evaluations &&
+        tradeoff_row->total_spread.worst < row->total_spread.worst)
       return false;
   }
   return true;
 }
 
 /* Total errors, a group for each model with those of its rows that no other of it beats, by cost. */
-static bool fill_models(panel *p, const strut_tradeoff *r) {
-  for (size_t v = 0; v < r->variant_count; v++) {
-    if (!r->variants[v].run) continue;
-    if (!add_group(p, r->variants[v].name)) return false;
+static bool fill_models(panel *self, const strut_tradeoff *tradeoff) {
+  for (size_t v = 0; v < tradeoff->variant_count; v++) {
+    if (!tradeoff->variants[v].run) continue;
+    if (!add_group(self, tradeoff->variants[v].name)) return false;
     const strut_tradeoff_row *next = NULL;
     for (double done = 0;; done = next->evaluations) {
       next = NULL;
-      for (size_t i = 0; i < r->row_count; i++) {
-        const strut_tradeoff_row *row = &r->rows[i];
-        if (row->variant != (int)v || !(row->evaluations > done) || !on_total_front(r, row))
+      for (size_t i = 0; i < tradeoff->row_count; i++) {
+        const strut_tradeoff_row *row = &tradeoff->rows[i];
+        if (row->variant != (int)v || !(row->evaluations > done) || !on_total_front(tradeoff, row))
           continue;
         if (!next || row->evaluations < next->evaluations) next = row;
       }
       if (!next) break;
-      if (!add_saving(p, r, next, &next->total_spread, false)) return false;
+      if (!add_saving(self, tradeoff, next, &next->total_spread, false)) return false;
     }
   }
   return true;
 }
 
-strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *r,
+strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *tradeoff,
                                    strut_error *error) {
   static const char *const titles[] = {"Methods: unchanged model (beyond 1000 %: diverged)",
                                        "Models: cheapest method for each error"};
@@ -108,23 +109,25 @@ strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff 
   char text[3 * STRUT_TRADEOFF_TEXT];
   strut_c_locale locale = strut_c_locale_enter();
   const char *cost = strut_arena_format(&arena, "cost in force evaluations, %s = 1",
-                                        strut_tradeoff_base_text(r, text));
-  for (size_t i = 0; i < r->variant_count; i++) models += r->variants[i].run ? 1 : 0;
+                                        strut_tradeoff_base_text(tradeoff, text));
+  for (size_t i = 0; i < tradeoff->variant_count; i++) models += tradeoff->variants[i].run ? 1 : 0;
   bool fine = cost != NULL;
   for (int i = 0; i < 2 && fine; i++) {
-    panel *p = &gathered[i];
+    panel *self = &gathered[i];
     const char *measure = strut_arena_format(&arena, "%s error of the %s%s", i ? "total" : "step",
-                                             strut_tradeoff_measure_text(r->measure),
-                                             r->point_count > 1 ? ", median to worst" : "");
-    p->savings = strut_arena_allocate(&arena, 2 * r->row_count + 1, sizeof *p->savings);
-    fine = measure && p->savings && (i ? fill_models(p, r) : fill_methods(p, r));
+                                             strut_tradeoff_measure_text(tradeoff->measure),
+                                             tradeoff->point_count > 1 ? ", median to worst" : "");
+    self->savings =
+        strut_arena_allocate(&arena, 2 * tradeoff->row_count + 1, sizeof *self->savings);
+    fine = measure && self->savings &&
+           (i ? fill_models(self, tradeoff) : fill_methods(self, tradeoff));
     const strut_work_precision diagram = {.title = titles[i],
                                           .cost = strut_axis_of(cost, ""),
                                           .error = strut_axis_of(measure, ""),
-                                          .group_count = p->group_count,
-                                          .count = p->count,
-                                          .groups = p->groups,
-                                          .bargains = p->savings};
+                                          .group_count = self->group_count,
+                                          .count = self->count,
+                                          .groups = self->groups,
+                                          .bargains = self->savings};
     fine = fine && strut_work_precision_fill(&diagram, &arena, &panels[i]);
   }
   const strut_figure figure = {.panel_count = models > 1 ? 2 : 1, .panels = panels};

@@ -16,68 +16,70 @@ enum { STEPS_PER_PERIOD = 200 };
 
 /* ---- following ---- */
 
-static void note(strut_follow_result *r, const char *text) {
-  if (r->note_count == sizeof r->notes / sizeof r->notes[0]) return;
-  snprintf(r->notes[r->note_count++], STRUT_FOLLOW_NOTE, "%s", text);
+static void note(strut_follow_result *result, const char *text) {
+  if (result->note_count == sizeof result->notes / sizeof result->notes[0]) return;
+  snprintf(result->notes[result->note_count++], STRUT_FOLLOW_NOTE, "%s", text);
 }
 
 /* The curve through a special point of a branch, unless it is known. */
-static strut_status follow_from(const strut_follow_options *o, strut_follow_result *r,
-                                strut_follow_surface *u, const strut_follow_point *p,
+static strut_status follow_from(const strut_follow_options *options, strut_follow_result *result,
+                                strut_follow_surface *surface, const strut_follow_point *point,
                                 strut_error *error) {
-  bool gap = p->kind == STRUT_FOLLOW_TOUCH || p->kind == STRUT_FOLLOW_LIFT;
-  const strut_follow_curve_start start = {.kind = p->kind,
-                                          .node = gap ? p->node : NULL,
-                                          .value = {p->value, o->second.value},
-                                          .y = p->y};
+  bool gap = point->kind == STRUT_FOLLOW_TOUCH || point->kind == STRUT_FOLLOW_LIFT;
+  const strut_follow_curve_start start = {.kind = point->kind,
+                                          .node = gap ? point->node : NULL,
+                                          .value = {point->value, options->second.value},
+                                          .y = point->y};
   const strut_follow_curve_limits limits = {
-      .steps = o->steps > 0 ? o->steps : STRUT_FOLLOW_USUAL_CURVE_STEPS, .longest = LONGEST};
-  for (size_t i = 0; i < r->curve_count; i++)
-    if (strut_follow_curve_passes(u, &r->curves[i], &start)) return STRUT_OK;
-  if (r->curve_count == STRUT_FOLLOW_MOST_CURVES) return STRUT_OK;
-  strut_follow_curve *c = &r->curves[r->curve_count];
-  int64_t steps = u->s.how.steps_per_period;
-  if (gap && steps < STEPS_PER_PERIOD) u->s.how.steps_per_period = STEPS_PER_PERIOD;
-  strut_status status = strut_follow_curve_make(u, &start, &limits, c, error);
-  u->s.how.steps_per_period = steps;
-  if (c->count > 1 && (!status || status == STRUT_INTERRUPTED)) {
-    r->curve_count++;
+      .steps = options->steps > 0 ? options->steps : STRUT_FOLLOW_USUAL_CURVE_STEPS,
+      .longest = LONGEST};
+  for (size_t i = 0; i < result->curve_count; i++)
+    if (strut_follow_curve_passes(surface, &result->curves[i], &start)) return STRUT_OK;
+  if (result->curve_count == STRUT_FOLLOW_MOST_CURVES) return STRUT_OK;
+  strut_follow_curve *curve = &result->curves[result->curve_count];
+  int64_t steps = surface->s.how.steps_per_period;
+  if (gap && steps < STEPS_PER_PERIOD) surface->s.how.steps_per_period = STEPS_PER_PERIOD;
+  strut_status status = strut_follow_curve_make(surface, &start, &limits, curve, error);
+  surface->s.how.steps_per_period = steps;
+  if (curve->count > 1 && (!status || status == STRUT_INTERRUPTED)) {
+    result->curve_count++;
     return status;
   }
   if (!status) {
     char text[STRUT_FOLLOW_NOTE];
-    const char *word = strut_follow_kind_word(p->kind);
+    const char *word = strut_follow_kind_word(point->kind);
     snprintf(text, sizeof text, "the curve of the %s%s%.60s at %s is not followed: %.120s", word,
-             gap ? " of " : "", gap ? p->node : "",
-             strut_quantity_of_any(p->value, 6, *r->unit ? r->unit : "1").text,
-             c->count ? c->ends[1] : c->ends[0]);
-    note(r, text);
+             gap ? " of " : "", gap ? point->node : "",
+             strut_quantity_of_any(point->value, 6, *result->unit ? result->unit : "1").text,
+             curve->count ? curve->ends[1] : curve->ends[0]);
+    note(result, text);
   }
-  strut_follow_curve_free(c);
+  strut_follow_curve_free(curve);
   return status;
 }
 
-strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follow_result *r,
-                                      const strut_follow_system *like, strut_error *error) {
-  strut_follow_surface u = {.scenes = o->second.scenes,
-                            .low = {o->low, o->second.low},
-                            .high = {o->high, o->second.high},
+strut_status strut_follow_find_curves(const strut_follow_options *options,
+                                      strut_follow_result *result, const strut_follow_system *like,
+                                      strut_error *error) {
+  strut_follow_surface u = {.scenes = options->second.scenes,
+                            .low = {options->low, options->second.low},
+                            .high = {options->high, options->second.high},
                             .s = {.how.method = like->how.method,
                                   .how.tolerance = like->how.tolerance,
                                   .how.steps_per_period = like->how.steps_per_period,
                                   .how.repeats = 1,
-                                  .how.threads = o->threads,
-                                  .how.interrupt = o->interrupt}};
-  const double value[2] = {0.5 * (o->low + o->high), o->second.value};
+                                  .how.threads = options->threads,
+                                  .how.interrupt = options->interrupt}};
+  const double value[2] = {0.5 * (options->low + options->high), options->second.value};
   strut_status status = strut_follow_surface_open(&u, value, error);
   u.s.length = like->length, u.s.speed = like->speed;
-  for (size_t i = 0; i < r->count && !status; i++) {
-    const strut_follow_branch *b = &r->branches[i].branch;
-    for (size_t k = 0; k < b->count && !status; k++) {
-      if (!strut_follow_curve_known(b->points[k].kind)) continue;
-      u.s.how.repeats = b->repeats;
+  for (size_t i = 0; i < result->count && !status; i++) {
+    const strut_follow_branch *branch = &result->branches[i].branch;
+    for (size_t k = 0; k < branch->count && !status; k++) {
+      if (!strut_follow_curve_known(branch->points[k].kind)) continue;
+      u.s.how.repeats = branch->repeats;
       u.s.value = (double)NAN; /* the maps are made again, with their repeats and steps */
-      status = follow_from(o, r, &u, &b->points[k], error);
+      status = follow_from(options, result, &u, &branch->points[k], error);
     }
   }
   strut_follow_surface_close(&u);
@@ -112,16 +114,17 @@ STRUT_VALUES_HERE(point_values, POINT, const strut_follow_result *r = strut_resu
                   const strut_follow_curve_point *p = of->at)
 
 static strut_value cusp_of(const strut_result_object *of, size_t k) {
-  const strut_follow_curve_point *p = &((const strut_follow_curve *)of->at)->points[k];
-  return STRUT_VALUE_AS_IF(p->cusp, NUMBERS(p->value, 2));
+  const strut_follow_curve_point *point = &((const strut_follow_curve *)of->at)->points[k];
+  return STRUT_VALUE_AS_IF(point->cusp, NUMBERS(point->value, 2));
 }
 
 /* A parameter's value at a cusp. */
 static strut_value cusp_value_of(const strut_result_object *of, size_t k) {
-  const strut_follow_result *r = strut_result_whole(of);
-  const strut_follow_curve_point *p = &((const strut_follow_curve *)of->at)->points[k / 2];
-  return STRUT_VALUE_AS_IF(p->cusp, CALLED(k % 2 ? r->second.name : r->name,
-                                           k % 2 ? r->second.unit : r->unit, p->value[k % 2]));
+  const strut_follow_result *result = strut_result_whole(of);
+  const strut_follow_curve_point *point = &((const strut_follow_curve *)of->at)->points[k / 2];
+  return STRUT_VALUE_AS_IF(point->cusp,
+                           CALLED(k % 2 ? result->second.name : result->name,
+                                  k % 2 ? result->second.unit : result->unit, point->value[k % 2]));
 }
 
 #define CURVE(X)                                                                                   \
@@ -146,8 +149,8 @@ STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_curve *c = of->at)
     .label = {"curve"})
 STRUT_VALUES(strut_follow_curves_values, CURVES, const strut_follow_result *r = of->at)
 
-char *strut_follow_curves_csv(const strut_follow_result *r) {
-  return strut_values_csv(&strut_follow_curves_values, "curves.points", NULL, r, NULL);
+char *strut_follow_curves_csv(const strut_follow_result *result) {
+  return strut_values_csv(&strut_follow_curves_values, "curves.points", NULL, result, NULL);
 }
 
 /*
@@ -173,50 +176,53 @@ static const kick kicks[STRUT_FOLLOW_KICKS] = {
 const char *strut_follow_kick_name(int i) { return kicks[i].name; }
 
 /* Does the motion come back from a kick of this speed [m/s]? `y`, `work` (both): on it; scratch. */
-static bool comes_back(strut_follow_system *s, const double *y, const kick *k, double speed,
-                       double *work) {
-  const strut_model *m = s->model;
-  const double *t = m->contacts.tangent, *n = m->contacts.normal;
-  bool ground = m->contacts.count > 0;
-  memcpy(work, y, s->both * sizeof(double));
-  for (int32_t i = 0; i < 2 * m->node_count; i++) {
+static bool comes_back(strut_follow_system *system, const double *unknowns, const kick *self,
+                       double speed, double *work) {
+  const strut_model *model = system->model;
+  const double *t = model->contacts.tangent, *n = model->contacts.normal;
+  bool ground = model->contacts.count > 0;
+  memcpy(work, unknowns, system->both * sizeof(double));
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
     double along = ground ? t[i % 2] : i % 2 == 0, outward = ground ? n[i % 2] : i % 2 == 1;
-    if (!m->fixed[i]) work[m->length + i] += speed * (k->along * along + k->outward * outward);
+    if (!model->fixed[i])
+      work[model->length + i] += speed * (self->along * along + self->outward * outward);
   }
-  for (int period = 0; period < PERIODS; period += s->how.repeats) {
-    if (!isfinite(strut_follow_apply(s, work, false).travel)) return false;
-    strut_follow_centre(s, work);
+  for (int period = 0; period < PERIODS; period += system->how.repeats) {
+    if (!isfinite(strut_follow_apply(system, work, false).travel)) return false;
+    strut_follow_centre(system, work);
     double off = 0.0;
-    for (size_t i = 0; i < s->n; i++)
-      off = fmax(off, fabs(work[s->place[i]] - y[s->place[i]]) / strut_follow_unit(s, i));
+    for (size_t i = 0; i < system->n; i++)
+      off = fmax(off, fabs(work[system->place[i]] - unknowns[system->place[i]]) /
+                          strut_follow_unit(system, i));
     if (off < NEAR) return true;
   }
   return false;
 }
 
 /* Speed of the smallest kick found from which it does not come back [m/s]; INFINITY: none up to LARGEST. */
-static double smallest_kick(strut_follow_system *s, const double *y, const kick *k, double *work) {
-  double low = 0.0, high = FIRST * s->speed;
-  while (comes_back(s, y, k, high, work)) {
+static double smallest_kick(strut_follow_system *system, const double *unknowns, const kick *self,
+                            double *work) {
+  double low = 0.0, high = FIRST * system->speed;
+  while (comes_back(system, unknowns, self, high, work)) {
     low = high, high *= GROWTH;
-    if (high > LARGEST * s->speed) return HUGE_VAL;
-    if (s->how.interrupt && *s->how.interrupt) return (double)NAN;
+    if (high > LARGEST * system->speed) return HUGE_VAL;
+    if (system->how.interrupt && *system->how.interrupt) return (double)NAN;
   }
   for (int i = 0; i < HALVINGS; i++) {
     double middle = low > 0.0 ? sqrt(low * high) : 0.5 * high;
-    *(comes_back(s, y, k, middle, work) ? &low : &high) = middle;
-    if (s->how.interrupt && *s->how.interrupt) return (double)NAN;
+    *(comes_back(system, unknowns, self, middle, work) ? &low : &high) = middle;
+    if (system->how.interrupt && *system->how.interrupt) return (double)NAN;
   }
   return high;
 }
 
-strut_status strut_follow_push(strut_follow_system *s, const double *y, strut_follow_basin *basin,
-                               strut_error *error) {
-  double *work = strut_arena_allocate(&s->arena, s->both, sizeof(double));
+strut_status strut_follow_push(strut_follow_system *system, const double *unknowns,
+                               strut_follow_basin *basin, strut_error *error) {
+  double *work = strut_arena_allocate(&system->arena, system->both, sizeof(double));
   if (!work) return strut_no_memory(error, "");
   for (int i = 0; i < STRUT_FOLLOW_KICKS; i++)
-    basin->kick[i] = smallest_kick(s, y, &kicks[i], work);
-  if (s->how.interrupt && *s->how.interrupt)
+    basin->kick[i] = smallest_kick(system, unknowns, &kicks[i], work);
+  if (system->how.interrupt && *system->how.interrupt)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted while motions were kicked");
   return STRUT_OK;
 }

@@ -13,15 +13,16 @@
 #include "engine/study/sweep/sweep.h"
 
 /** Finds the smallest kicks that a stable motion y (both) at the system's value does not survive. */
-strut_status strut_follow_push(strut_follow_system *s, const double *y, strut_follow_basin *basin,
-                               strut_error *error);
+strut_status strut_follow_push(strut_follow_system *system, const double *unknowns,
+                               strut_follow_basin *basin, strut_error *error);
 
 /**
  * Follows the curves through all special points of the result's branches; `like` is an open system over the
  * first parameter with the motions' units.
  */
-strut_status strut_follow_find_curves(const strut_follow_options *o, strut_follow_result *r,
-                                      const strut_follow_system *like, strut_error *error);
+strut_status strut_follow_find_curves(const strut_follow_options *options,
+                                      strut_follow_result *result, const strut_follow_system *like,
+                                      strut_error *error);
 /** What results tell of curves, and tables of a multiplier. */
 extern const strut_value_rows strut_follow_curves_values, strut_follow_multiplier_values;
 /** Header and cell of a column of the axes, as CSV, in the arena. False: out of memory. */

@@ -65,10 +65,10 @@ typedef struct all_points {
 } all_points;
 
 strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error) {
-  const strut_study_follow *f = plan->study->follow;
+  const strut_study_follow *follow = plan->study->follow;
   for (size_t i = 0; i < ROW_COLUMNS; i++) {
     const char *unit = row_columns[i].unit;
-    if (strcmp(unit, "over") == 0) unit = *f->unit ? f->unit : "1";
+    if (strcmp(unit, "over") == 0) unit = *follow->unit ? follow->unit : "1";
     if (!strut_sweep_add_column(plan, "", row_columns[i].name, unit, false))
       return strut_no_memory(error, "");
   }
@@ -78,70 +78,73 @@ strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *er
 /* ---- what is followed at a point ---- */
 
 static strut_status setup_at(void *context, double value, strut_setup *setup, strut_error *error) {
-  const point_work *w = context;
-  return w->options->setup(w->options->context, w->values, value, setup, error);
+  const point_work *self = context;
+  return self->options->setup(self->options->context, self->values, value, setup, error);
 }
 
-static double own_value(const strut_study_follow *f, const strut_scene *scene) {
+static double own_value(const strut_study_follow *follow, const strut_scene *scene) {
   for (size_t i = 0; i < scene->parameter_count; i++) {
     double value = scene->parameters[i].value;
-    if (strcmp(scene->parameters[i].name, f->over) == 0 && value >= f->from && value <= f->to)
+    if (strcmp(scene->parameters[i].name, follow->over) == 0 && value >= follow->from &&
+        value <= follow->to)
       return value;
   }
-  return 0.5 * (f->from + f->to);
+  return 0.5 * (follow->from + follow->to);
 }
 
 /* Every value of `at` from every configuration. */
-static strut_status make_starts(point_work *w, strut_follow_options *o) {
-  const strut_study_follow *f = w->plan->study->follow;
-  size_t values = f->at_count ? f->at_count : 1, names = f->start_count ? f->start_count : 1;
+static strut_status make_starts(point_work *self, strut_follow_options *options) {
+  const strut_study_follow *follow = self->plan->study->follow;
+  size_t values = follow->at_count ? follow->at_count : 1,
+         names = follow->start_count ? follow->start_count : 1;
   double own = (double)NAN;
   strut_setup setup;
-  strut_follow_start *starts = strut_arena_allocate(w->arena, values * names, sizeof *starts);
-  if (!starts) return strut_no_memory(&w->error, "");
-  if (!f->at_count) {
+  strut_follow_start *starts = strut_arena_allocate(self->arena, values * names, sizeof *starts);
+  if (!starts) return strut_no_memory(&self->error, "");
+  if (!follow->at_count) {
     strut_status status =
-        w->plan->scenes.setup(w->plan->scenes.context, w->values, &setup, &w->error);
+        self->plan->scenes.setup(self->plan->scenes.context, self->values, &setup, &self->error);
     if (status) return status;
-    own = own_value(f, &setup.scene);
+    own = own_value(follow, &setup.scene);
     strut_setup_free(&setup);
   }
   for (size_t v = 0; v < values; v++)
     for (size_t k = 0; k < names; k++)
-      starts[o->start_count++] = (strut_follow_start){f->at_count ? f->at[v] : own,
-                                                      f->start_count ? f->start_from[k] : NULL};
-  o->starts = starts;
+      starts[options->start_count++] =
+          (strut_follow_start){follow->at_count ? follow->at[v] : own,
+                               follow->start_count ? follow->start_from[k] : NULL};
+  options->starts = starts;
   return STRUT_OK;
 }
 
-static strut_status follow_point(point_work *w, int threads) {
-  const strut_study_follow *f = w->plan->study->follow;
-  strut_follow_options o = {.name = f->over,
-                            .unit = f->unit,
-                            .low = f->from,
-                            .high = f->to,
-                            .scenes = {setup_at, w},
-                            .method = f->integrator,
-                            .accuracy = f->accuracy,
-                            .steps = f->steps,
-                            .basins = f->basins,
+static strut_status follow_point(point_work *self, int threads) {
+  const strut_study_follow *follow = self->plan->study->follow;
+  strut_follow_options o = {.name = follow->over,
+                            .unit = follow->unit,
+                            .low = follow->from,
+                            .high = follow->to,
+                            .scenes = {setup_at, self},
+                            .method = follow->integrator,
+                            .accuracy = follow->accuracy,
+                            .steps = follow->steps,
+                            .basins = follow->basins,
                             .threads = threads,
-                            .interrupt = w->options->interrupt};
-  strut_status status = make_starts(w, &o);
-  return status ? status : strut_follow_make(&o, w->result, &w->error);
+                            .interrupt = self->options->interrupt};
+  strut_status status = make_starts(self, &o);
+  return status ? status : strut_follow_make(&o, self->result, &self->error);
 }
 
 strut_status strut_follow_points_check(const strut_sweep_plan *plan,
                                        const strut_follow_points_options *options,
                                        strut_error *error) {
-  const strut_study_follow *f = plan->study->follow;
+  const strut_study_follow *follow = plan->study->follow;
   strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
   point_work w = {.plan = plan, .options = options, .values = values};
   const strut_follow_options o = {.scenes = {setup_at, &w},
-                                  .low = f->from,
-                                  .high = f->to,
-                                  .method = f->integrator,
-                                  .accuracy = f->accuracy};
+                                  .low = follow->from,
+                                  .high = follow->to,
+                                  .method = follow->integrator,
+                                  .accuracy = follow->accuracy};
   if (!values) return strut_no_memory(error, "");
   strut_grid_values(plan->study, 0, values);
   strut_status status = strut_follow_possible(&o, error);
@@ -152,77 +155,80 @@ strut_status strut_follow_points_check(const strut_sweep_plan *plan,
 
 /* ---- the row and the files of a point ---- */
 
-static void take_extreme(extreme *e, double value, double at, bool larger) {
-  if (!isnan(e->velocity) && !(larger ? value > e->velocity : value < e->velocity)) return;
-  *e = (extreme){value, at};
+static void take_extreme(extreme *self, double value, double at, bool larger) {
+  if (!isnan(self->velocity) && !(larger ? value > self->velocity : value < self->velocity)) return;
+  *self = (extreme){value, at};
 }
 
-static counts count_branches(const strut_follow_result *r) {
+static counts count_branches(const strut_follow_result *result) {
   const extreme none = {(double)NAN, (double)NAN};
-  counts c = {.branches = r->count, .high = none, .low = none, .wide = none};
-  for (size_t i = 0; i < r->count; i++) {
-    const strut_follow_branch *b = &r->branches[i].branch;
-    for (size_t k = 0; k < b->count; k++) {
-      const strut_follow_point *p = &b->points[k];
+  counts c = {.branches = result->count, .high = none, .low = none, .wide = none};
+  for (size_t i = 0; i < result->count; i++) {
+    const strut_follow_branch *branch = &result->branches[i].branch;
+    for (size_t k = 0; k < branch->count; k++) {
+      const strut_follow_point *point = &branch->points[k];
       c.points++;
-      c.kinds[p->kind]++;
-      c.events += p->kind > STRUT_FOLLOW_TORUS;
-      if (p->stable && b->travels) take_extreme(&c.high, p->velocity, p->value, true);
-      if (p->stable && b->travels) take_extreme(&c.low, p->velocity, p->value, false);
-      if (p->stable && !b->travels) take_extreme(&c.wide, p->amplitude, p->value, true);
+      c.kinds[point->kind]++;
+      c.events += point->kind > STRUT_FOLLOW_TORUS;
+      if (point->stable && branch->travels)
+        take_extreme(&c.high, point->velocity, point->value, true);
+      if (point->stable && branch->travels)
+        take_extreme(&c.low, point->velocity, point->value, false);
+      if (point->stable && !branch->travels)
+        take_extreme(&c.wide, point->amplitude, point->value, true);
     }
   }
   return c;
 }
 
 /* Cells of the axes as the tables have them, and their headers, each followed by a comma. */
-static bool format_axes(const point_work *w, const char **names, const char **cells) {
-  const strut_sweep_plan *plan = w->plan;
+static bool format_axes(const point_work *self, const char **names, const char **cells) {
+  const strut_sweep_plan *plan = self->plan;
   *names = *cells = "";
   for (size_t i = 0; i < plan->axis_columns && *names && *cells; i++) {
     char *name, *cell;
-    if (!strut_follow_axis_cell(&plan->columns[i], w->values[i], w->arena, &name, &cell))
+    if (!strut_follow_axis_cell(&plan->columns[i], self->values[i], self->arena, &name, &cell))
       return false;
-    *names = strut_arena_format(w->arena, "%s%s,", *names, name);
-    *cells = strut_arena_format(w->arena, "%s%s,", *cells, cell);
+    *names = strut_arena_format(self->arena, "%s%s,", *names, name);
+    *cells = strut_arena_format(self->arena, "%s%s,", *cells, cell);
   }
   return *names && *cells;
 }
 
-static strut_status write_branches(point_work *w, bool partial) {
+static strut_status write_branches(point_work *self, bool partial) {
   const char *names, *cells;
   char csv[64], json[64];
-  const char *folder = strut_arena_format(w->arena, "%s/branches", w->options->directory);
-  if (!folder || !format_axes(w, &names, &cells)) return strut_no_memory(&w->error, "");
-  snprintf(csv, sizeof csv, "%09lld%s.csv", (long long)w->point, partial ? "-partial" : "");
-  snprintf(json, sizeof json, "%09lld.json", (long long)w->point);
-  strut_status status = strut_directory_create(folder, &w->error);
+  const char *folder = strut_arena_format(self->arena, "%s/branches", self->options->directory);
+  if (!folder || !format_axes(self, &names, &cells)) return strut_no_memory(&self->error, "");
+  snprintf(csv, sizeof csv, "%09lld%s.csv", (long long)self->point, partial ? "-partial" : "");
+  snprintf(json, sizeof json, "%09lld.json", (long long)self->point);
+  strut_status status = strut_directory_create(folder, &self->error);
   if (!status)
-    status = strut_file_write_block(folder, csv, strut_follow_csv_beside(w->result, names, cells),
-                                    &w->error);
+    status = strut_file_write_block(
+        folder, csv, strut_follow_csv_beside(self->result, names, cells), &self->error);
   if (status || partial) return status;
-  status = strut_file_write_block(folder, json, strut_follow_json(w->result), &w->error);
-  snprintf(csv, sizeof csv, "%09lld-partial.csv", (long long)w->point);
+  status = strut_file_write_block(folder, json, strut_follow_json(self->result), &self->error);
+  snprintf(csv, sizeof csv, "%09lld-partial.csv", (long long)self->point);
   if (!status) strut_file_remove(folder, csv);
   return status;
 }
 
-static void fill_row(const point_work *w, strut_status status, strut_row_buffer *cells) {
-  const strut_sweep_plan *plan = w->plan;
+static void fill_row(const point_work *self, strut_status status, strut_row_buffer *cells) {
+  const strut_sweep_plan *plan = self->plan;
   for (size_t i = 0; i < plan->axis_columns; i++) {
     if (plan->columns[i].word)
-      strut_sweep_word(cells, w->values[i].word);
+      strut_sweep_word(cells, self->values[i].word);
     else
-      strut_sweep_number(cells, w->values[i].number);
+      strut_sweep_number(cells, self->values[i].number);
   }
-  const counts all = count_branches(w->result), *c = &all;
+  const counts all = count_branches(self->result), *c = &all;
   const double values[] = {
 #define ROW_VALUE(name, unit, value) value,
       ROW_TABLE(ROW_VALUE)};
   for (size_t i = 0; i < ROW_COLUMNS; i++)
     strut_sweep_number(cells, status ? (double)NAN : values[i]);
   snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
-           status ? w->error.message : "");
+           status ? self->error.message : "");
   cells->row = (strut_result_slot){.status = status,
                                    .numbers = cells->numbers,
                                    .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
@@ -236,19 +242,19 @@ static bool stops(strut_status status) {
   return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
 }
 
-static strut_status follow_into(point_work *w, strut_row_buffer *cells, int threads) {
-  strut_status status = follow_point(w, threads);
-  bool partial = status == STRUT_INTERRUPTED && w->result->count > 0;
+static strut_status follow_into(point_work *self, strut_row_buffer *cells, int threads) {
+  strut_status status = follow_point(self, threads);
+  bool partial = status == STRUT_INTERRUPTED && self->result->count > 0;
   if (!status || partial) {
     strut_status written;
 #ifdef _OPENMP
 #pragma omp critical(strut_follow_points_files) /* the folder keeps one list of its files */
 #endif
-    written = write_branches(w, partial);
+    written = write_branches(self, partial);
     if (written) return written;
   }
   if (stops(status)) return status;
-  fill_row(w, status, cells);
+  fill_row(self, status, cells);
   return STRUT_OK;
 }
 

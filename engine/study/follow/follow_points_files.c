@@ -63,7 +63,7 @@ static strut_status report_missing(int64_t point, strut_error *error) {
 /* Headers of the table: those of the axes and of the branches. */
 static strut_status write_header(FILE *to, const strut_sweep_plan *plan, bool partial,
                                  strut_arena *arena, strut_error *error) {
-  const strut_study_follow *f = plan->study->follow;
+  const strut_study_follow *follow = plan->study->follow;
   strut_follow_result *none = strut_arena_allocate(arena, 1, sizeof *none);
   const char *names = "";
   for (size_t i = 0; i < plan->axis_columns && names; i++) {
@@ -74,8 +74,8 @@ static strut_status write_header(FILE *to, const strut_sweep_plan *plan, bool pa
     names = strut_arena_format(arena, "%s%s,", names, name);
   }
   if (!none || !names) return strut_no_memory(error, "");
-  none->name = strut_arena_format(arena, "%s", f->over);
-  none->unit = strut_arena_format(arena, "%s", f->unit);
+  none->name = strut_arena_format(arena, "%s", follow->over);
+  none->unit = strut_arena_format(arena, "%s", follow->unit);
   char *header = none->name && none->unit ? strut_follow_csv_beside(none, names, "") : NULL;
   if (!header) return strut_no_memory(error, "");
   fprintf(to, "%.*s%s\n", (int)strcspn(header, "\n"), header, partial ? ",finished" : "");
@@ -178,16 +178,16 @@ STRUT_VALUES(strut_follow_points_values, POINTS, )
 
 strut_status strut_follow_points_json(const strut_sweep_plan *plan, strut_slots *slots,
                                       const char *directory, char **text, strut_error *error) {
-  const strut_study_follow *f = plan->study->follow;
+  const strut_study_follow *follow = plan->study->follow;
   strut_arena arena = {0};
   strut_json json = strut_json_begin();
   strut_status status = STRUT_OK;
   const point_rows rows = {plan, slots};
   const strut_result_object whole = {&rows, NULL, NULL, 0};
   strut_json_text(&json, json.root, "study", plan->study->name);
-  strut_json_text(&json, json.root, "over", f->over);
-  strut_json_number(&json, json.root, "from", f->from);
-  strut_json_number(&json, json.root, "to", f->to);
+  strut_json_text(&json, json.root, "over", follow->over);
+  strut_json_number(&json, json.root, "from", follow->from);
+  strut_json_number(&json, json.root, "to", follow->to);
   struct cJSON *points = strut_json_array(&json, json.root, "points");
   for (int64_t point = 0; point < plan->points && !status; point++) {
     strut_result_slot row;

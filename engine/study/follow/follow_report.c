@@ -120,13 +120,16 @@ STRUT_VALUES_HERE(note_values, NOTE, )
   X(NULL, "", LIST(r->notes, r->note_count), "", .rows = &note_values, .label = {"notes"})
 STRUT_VALUES(strut_follow_values, FOLLOWED, const strut_follow_result *r = of->at)
 
-char *strut_follow_csv_beside(const strut_follow_result *r, const char *names, const char *values) {
+char *strut_follow_csv_beside(const strut_follow_result *result, const char *names,
+                              const char *values) {
   const char *const before[] = {names, values};
-  return strut_values_csv(&strut_follow_values, "branches.points", before, r, NULL);
+  return strut_values_csv(&strut_follow_values, "branches.points", before, result, NULL);
 }
 
-char *strut_follow_csv(const strut_follow_result *r) { return strut_follow_csv_beside(r, "", ""); }
+char *strut_follow_csv(const strut_follow_result *result) {
+  return strut_follow_csv_beside(result, "", "");
+}
 
-char *strut_follow_json(const strut_follow_result *r) {
-  return strut_values_json(&strut_follow_values, r, NULL);
+char *strut_follow_json(const strut_follow_result *result) {
+  return strut_values_json(&strut_follow_values, result, NULL);
 }

@@ -34,40 +34,41 @@ typedef struct follower {
   bool opened, stepped; /* stepped: fixed steps, whose number has been chosen */
 } follower;
 
-__attribute__((format(printf, 2, 3))) static void note(follower *f, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static void note(follower *self, const char *format, ...) {
   va_list arguments;
-  if (f->r->note_count == sizeof f->r->notes / sizeof f->r->notes[0]) return;
+  if (self->r->note_count == sizeof self->r->notes / sizeof self->r->notes[0]) return;
   va_start(arguments, format);
-  vsnprintf(f->r->notes[f->r->note_count++], STRUT_FOLLOW_NOTE, format, arguments);
+  vsnprintf(self->r->notes[self->r->note_count++], STRUT_FOLLOW_NOTE, format, arguments);
   va_end(arguments);
 }
 
-static void name_start(const follower *f, const strut_follow_start *start, char *text,
+static void name_start(const follower *self, const strut_follow_start *start, char *text,
                        size_t size) {
   snprintf(text, size, "%s%s%s", start->from ? start->from : "", start->from ? " at " : "",
-           strut_quantity_of_any(start->value, 6, *f->o->unit ? f->o->unit : "1").text);
+           strut_quantity_of_any(start->value, 6, *self->o->unit ? self->o->unit : "1").text);
 }
 
 /* ---- starts ---- */
 
-static strut_status place_start(follower *f, const strut_follow_start *start, strut_setup *setup) {
+static strut_status place_start(follower *self, const strut_follow_start *start,
+                                strut_setup *setup) {
   strut_scene *scene = &setup->scene;
   if (start->from) {
     scene->start_equilibrium = strut_thing_find(scene, STRUT_THING_CONFIGURATION, start->from);
     if (scene->start_equilibrium < 0)
-      return strut_fail(f->error, STRUT_USAGE, "the model has no configuration '%s' to start from",
-                        start->from);
+      return strut_fail(self->error, STRUT_USAGE,
+                        "the model has no configuration '%s' to start from", start->from);
     setup->experiment.settle.wanted = false;
   }
-  return strut_resolve_start_equilibrium(setup, f->error);
+  return strut_resolve_start_equilibrium(setup, self->error);
 }
 
 /* Runs from the start until the motion is steady; `y` becomes a state of it at the start of a period. */
-static strut_status run_start(follower *f, const strut_setup *setup, const strut_model *model,
-                              double *y, strut_summary *summary) {
+static strut_status run_start(follower *self, const strut_setup *setup, const strut_model *model,
+                              double *unknowns, strut_summary *summary) {
   strut_experiment e = setup->experiment;
   size_t length = (size_t)model->length;
-  strut_snapshot end = {.q = y, .v = y + length};
+  strut_snapshot end = {.q = unknowns, .v = unknowns + length};
   e.accuracy = START_ACCURACY;
   e.steady.wanted = true;
   e.steady.tolerance = START_TOLERANCE;
@@ -75,90 +76,94 @@ static strut_status run_start(follower *f, const strut_setup *setup, const strut
   e.periods = fmin(fmax(e.periods, LEAST_PERIODS), MOST_PERIODS);
   e.measure_last = fmin(e.measure_last, e.periods);
   e.output_last = 0.0;
-  strut_run_options options = {.interrupt = f->o->interrupt, .without_balance = true, .to = &end};
-  strut_status status = strut_simulate_accurately(model, &e, &options, summary, f->error);
-  y[2 * length] = 0.0;
+  strut_run_options options = {
+      .interrupt = self->o->interrupt, .without_balance = true, .to = &end};
+  strut_status status = strut_simulate_accurately(model, &e, &options, summary, self->error);
+  unknowns[2 * length] = 0.0;
   return status;
 }
 
-static double accuracy_of(const follower *f) {
-  return f->o->accuracy > 0.0 ? f->o->accuracy : ACCURACY;
+static double accuracy_of(const follower *self) {
+  return self->o->accuracy > 0.0 ? self->o->accuracy : ACCURACY;
 }
 
 /* Opens the system at the value with a method. */
-static strut_status open_with(follower *f, double value, const char *method) {
-  strut_follow_system *s = &f->s;
+static strut_status open_with(follower *self, double value, const char *method) {
+  strut_follow_system *system = &self->s;
   bool adaptive = strcmp(method, strut_integrator_for(STRUT_ROLE_REFERENCE)->name) == 0;
-  *s = (strut_follow_system){.scenes = f->o->scenes,
-                             .low = f->o->low,
-                             .high = f->o->high,
-                             .how.method = method,
-                             .how.tolerance = fmin(2.5e-6, accuracy_of(f) * TOLERANCE),
-                             .how.steps_per_period = adaptive ? STEPS_PER_PERIOD : FIXED_STEPS,
-                             .how.repeats = 1,
-                             .how.threads = f->o->threads,
-                             .how.interrupt = f->o->interrupt};
-  snprintf(f->r->method, sizeof f->r->method, "%s", method);
-  f->r->tolerance = s->how.tolerance;
-  f->opened = true;
-  return strut_follow_open(s, value, f->error);
+  *system = (strut_follow_system){.scenes = self->o->scenes,
+                                  .low = self->o->low,
+                                  .high = self->o->high,
+                                  .how.method = method,
+                                  .how.tolerance = fmin(2.5e-6, accuracy_of(self) * TOLERANCE),
+                                  .how.steps_per_period = adaptive ? STEPS_PER_PERIOD : FIXED_STEPS,
+                                  .how.repeats = 1,
+                                  .how.threads = self->o->threads,
+                                  .how.interrupt = self->o->interrupt};
+  snprintf(self->r->method, sizeof self->r->method, "%s", method);
+  self->r->tolerance = system->how.tolerance;
+  self->opened = true;
+  return strut_follow_open(system, value, self->error);
 }
 
 /*
  * Fixed steps make the smoothest period map; where variations cannot follow them, or there would be too many,
  * the method with error control serves.
  */
-static strut_status open_system(follower *f, double value) {
-  strut_follow_system *s = &f->s;
+static strut_status open_system(follower *self, double value) {
+  strut_follow_system *system = &self->s;
   const char *fixed = strut_integrator_for(STRUT_ROLE_EXACT_STICK)->name;
   const char *careful = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-  if (f->opened) return strut_follow_set_value(s, value, f->error);
-  strut_status status = open_with(f, value, f->o->method ? f->o->method : fixed);
-  bool good = !f->o->method && s->variation;
-  if (!status && good) status = strut_follow_choose_steps(s, accuracy_of(f), &good, f->error);
-  f->stepped = good;
-  if (!status && !good && !f->o->method) {
-    strut_follow_close(s);
-    status = open_with(f, value, careful);
+  if (self->opened) return strut_follow_set_value(system, value, self->error);
+  strut_status status = open_with(self, value, self->o->method ? self->o->method : fixed);
+  bool good = !self->o->method && system->variation;
+  if (!status && good)
+    status = strut_follow_choose_steps(system, accuracy_of(self), &good, self->error);
+  self->stepped = good;
+  if (!status && !good && !self->o->method) {
+    strut_follow_close(system);
+    status = open_with(self, value, careful);
   }
   if (status) return status;
-  f->r->title =
-      strut_arena_format(&f->r->arena, "%s", s->setup.scene.name ? s->setup.scene.name : "model");
-  return f->r->title ? STRUT_OK : strut_no_memory(f->error, "");
+  self->r->title = strut_arena_format(
+      &self->r->arena, "%s", system->setup.scene.name ? system->setup.scene.name : "model");
+  return self->r->title ? STRUT_OK : strut_no_memory(self->error, "");
 }
 
 /* Is the motion on a branch that is known? Notes it. */
-static strut_status find_known(follower *f, const double *y, const char *label, bool *known) {
+static strut_status find_known(follower *self, const double *unknowns, const char *label,
+                               bool *known) {
   *known = false;
-  for (size_t i = 0; i < f->r->count && !*known; i++) {
-    const strut_follow_branch *b = &f->r->branches[i].branch;
-    if (b->repeats != f->s.how.repeats) continue;
-    strut_status status = strut_follow_is_on(&f->s, b, y, known, f->error);
+  for (size_t i = 0; i < self->r->count && !*known; i++) {
+    const strut_follow_branch *branch = &self->r->branches[i].branch;
+    if (branch->repeats != self->s.how.repeats) continue;
+    strut_status status = strut_follow_is_on(&self->s, branch, unknowns, known, self->error);
     if (status) return status;
-    if (*known) note(f, "the motion from %s is on branch %zu", label, i + 1);
+    if (*known) note(self, "the motion from %s is on branch %zu", label, i + 1);
   }
   return STRUT_OK;
 }
 
-static strut_status add_branch(follower *f, const double *y, const double *direction,
+static strut_status add_branch(follower *self, const double *unknowns, const double *direction,
                                const char *label, int32_t parent) {
-  if (f->r->count == STRUT_FOLLOW_MOST_BRANCHES) {
-    note(f, "there are more branches, which were not followed");
+  if (self->r->count == STRUT_FOLLOW_MOST_BRANCHES) {
+    note(self, "there are more branches, which were not followed");
     return STRUT_OK;
   }
-  strut_followed_branch *b = &f->r->branches[f->r->count];
-  b->parent = parent;
-  snprintf(b->label, sizeof b->label, "%s", label);
-  strut_status status =
-      strut_follow_branch_make(&f->s, y, direction, &f->limits, &b->branch, f->error);
-  if ((status && status != STRUT_INTERRUPTED) || b->branch.count < 2) {
-    const char *why = b->branch.ends[1];
+  strut_followed_branch *branch = &self->r->branches[self->r->count];
+  branch->parent = parent;
+  snprintf(branch->label, sizeof branch->label, "%s", label);
+  strut_status status = strut_follow_branch_make(&self->s, unknowns, direction, &self->limits,
+                                                 &branch->branch, self->error);
+  if ((status && status != STRUT_INTERRUPTED) || branch->branch.count < 2) {
+    const char *why = branch->branch.ends[1];
     if (!status)
-      note(f, "no branch leads away from %s%s%s", label, why && *why ? ": " : "", why ? why : "");
-    strut_follow_branch_free(&b->branch);
+      note(self, "no branch leads away from %s%s%s", label, why && *why ? ": " : "",
+           why ? why : "");
+    strut_follow_branch_free(&branch->branch);
     return status;
   }
-  f->r->count++;
+  self->r->count++;
   return status;
 }
 
@@ -166,62 +171,63 @@ static strut_status add_branch(follower *f, const double *y, const double *direc
  * Makes the motion exact. Where Newton's method does not get there, as at kinks, a stable motion is
  * approached by running on.
  */
-static strut_status make_exact(follower *f, double *y, bool *found, char reason[200]) {
-  strut_follow_system *s = &f->s;
-  strut_status status = strut_follow_correct(s, y, found, reason, f->error);
+static strut_status make_exact(follower *self, double *unknowns, bool *found, char reason[200]) {
+  strut_follow_system *system = &self->s;
+  strut_status status = strut_follow_correct(system, unknowns, found, reason, self->error);
   for (int k = 0; k < MORE_RUNS && !status && !*found; k++) {
     for (int i = 0; i < MORE_PERIODS; i++)
-      if (!isfinite(strut_follow_apply(s, y, false).travel)) return STRUT_OK;
-    strut_follow_centre(s, y);
-    status = strut_follow_correct(s, y, found, reason, f->error);
+      if (!isfinite(strut_follow_apply(system, unknowns, false).travel)) return STRUT_OK;
+    strut_follow_centre(system, unknowns);
+    status = strut_follow_correct(system, unknowns, found, reason, self->error);
   }
   return status;
 }
 
 /* The motion at the start, which the run has found, and its branch. */
-static strut_status follow_motion(follower *f, const char *label, double *y, int32_t repeats) {
+static strut_status follow_motion(follower *self, const char *label, double *unknowns,
+                                  int32_t repeats) {
   char reason[200] = "";
   bool found = false, known = false;
-  strut_status status = strut_follow_set_repeats(&f->s, repeats, f->error);
+  strut_status status = strut_follow_set_repeats(&self->s, repeats, self->error);
   if (status) return status;
-  if (f->r->count == 0 && !strut_follow_set_units(&f->s, y)) return STRUT_OK;
-  strut_follow_centre(&f->s, y);
-  status = make_exact(f, y, &found, reason);
-  if (!status && found && f->stepped && f->r->count == 0)
-    status = strut_follow_check_steps(&f->s, y, accuracy_of(f), f->error);
+  if (self->r->count == 0 && !strut_follow_set_units(&self->s, unknowns)) return STRUT_OK;
+  strut_follow_centre(&self->s, unknowns);
+  status = make_exact(self, unknowns, &found, reason);
+  if (!status && found && self->stepped && self->r->count == 0)
+    status = strut_follow_check_steps(&self->s, unknowns, accuracy_of(self), self->error);
   if (status) return status;
   if (!found) {
-    note(f, "the motion from %s: %s", label, reason);
+    note(self, "the motion from %s: %s", label, reason);
     return STRUT_OK;
   }
-  strut_follow_centre(&f->s, y);
-  status = find_known(f, y, label, &known);
-  return status || known ? status : add_branch(f, y, NULL, label, -1);
+  strut_follow_centre(&self->s, unknowns);
+  status = find_known(self, unknowns, label, &known);
+  return status || known ? status : add_branch(self, unknowns, NULL, label, -1);
 }
 
-static strut_status follow_start(follower *f, const strut_follow_start *start) {
+static strut_status follow_start(follower *self, const strut_follow_start *start) {
   char label[STRUT_FOLLOW_LABEL];
   strut_setup setup;
   strut_model *model = NULL;
   strut_summary summary = {0};
-  name_start(f, start, label, sizeof label);
-  strut_status status = open_system(f, start->value);
+  name_start(self, start, label, sizeof label);
+  strut_status status = open_system(self, start->value);
   if (status) return status;
-  status = f->o->scenes.setup(f->o->scenes.context, start->value, &setup, f->error);
+  status = self->o->scenes.setup(self->o->scenes.context, start->value, &setup, self->error);
   if (status) return status;
-  status = place_start(f, start, &setup);
-  if (!status) status = strut_model_compile(&setup.scene, &model, f->error);
-  double *y = status ? NULL : strut_allocate(f->s.both, sizeof *y);
-  if (!status && !y) status = strut_no_memory(f->error, "");
-  if (!status) status = run_start(f, &setup, model, y, &summary);
+  status = place_start(self, start, &setup);
+  if (!status) status = strut_model_compile(&setup.scene, &model, self->error);
+  double *y = status ? NULL : strut_allocate(self->s.both, sizeof *y);
+  if (!status && !y) status = strut_no_memory(self->error, "");
+  if (!status) status = run_start(self, &setup, model, y, &summary);
   if (status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT) {
-    note(f, "the run from %.80s failed: %.200s", label, f->error->message);
+    note(self, "the run from %.80s failed: %.200s", label, self->error->message);
     status = STRUT_OK;
   } else if (!status && summary.steady.kind != STRUT_MOTION_PERIODIC) {
-    note(f, "the motion from %s is %s after %" PRId64 " periods, which starts no branch", label,
+    note(self, "the motion from %s is %s after %" PRId64 " periods, which starts no branch", label,
          strut_motion_name(summary.steady.kind), summary.steady.periods);
   } else if (!status) {
-    status = follow_motion(f, label, y, summary.steady.repeats > 0 ? summary.steady.repeats : 1);
+    status = follow_motion(self, label, y, summary.steady.repeats > 0 ? summary.steady.repeats : 1);
   }
   strut_summary_free(&summary);
   strut_release(y);
@@ -232,30 +238,30 @@ static strut_status follow_start(follower *f, const strut_follow_start *start) {
 
 /* ---- doubled branches ---- */
 
-static strut_status follow_doubling(follower *f, size_t index, const strut_follow_point *p) {
+static strut_status follow_doubling(follower *self, size_t index, const strut_follow_point *point) {
   char label[STRUT_FOLLOW_LABEL];
-  int32_t repeats = 2 * f->r->branches[index].branch.repeats;
+  int32_t repeats = 2 * self->r->branches[index].branch.repeats;
   if (repeats > MOST_REPEATS) return STRUT_OK;
   snprintf(label, sizeof label, "the period doubling of branch %zu at %s", index + 1,
-           strut_quantity_of_any(p->value, 6, *f->o->unit ? f->o->unit : "1").text);
-  strut_status status = strut_follow_set_value(&f->s, p->value, f->error);
-  if (!status) status = strut_follow_set_repeats(&f->s, repeats, f->error);
+           strut_quantity_of_any(point->value, 6, *self->o->unit ? self->o->unit : "1").text);
+  strut_status status = strut_follow_set_value(&self->s, point->value, self->error);
+  if (!status) status = strut_follow_set_repeats(&self->s, repeats, self->error);
   /* it may be known from another doubling, at its other end */
-  for (size_t i = 0; i < f->r->count && !status; i++) {
-    const strut_followed_branch *b = &f->r->branches[i];
-    if (b->parent != (int32_t)index || b->branch.count == 0) continue;
-    const strut_follow_point *last = &b->branch.points[b->branch.count - 1];
-    if (fabs(last->value - p->value) < 2e-3 * (f->o->high - f->o->low)) return STRUT_OK;
+  for (size_t i = 0; i < self->r->count && !status; i++) {
+    const strut_followed_branch *branch = &self->r->branches[i];
+    if (branch->parent != (int32_t)index || branch->branch.count == 0) continue;
+    const strut_follow_point *last = &branch->branch.points[branch->branch.count - 1];
+    if (fabs(last->value - point->value) < 2e-3 * (self->o->high - self->o->low)) return STRUT_OK;
   }
-  return status ? status : add_branch(f, p->y, p->critical, label, (int32_t)index);
+  return status ? status : add_branch(self, point->y, point->critical, label, (int32_t)index);
 }
 
-static strut_status follow_doublings(follower *f) {
-  for (size_t i = 0; i < f->r->count; i++)
-    for (size_t k = 0; k < f->r->branches[i].branch.count; k++) {
-      const strut_follow_point *p = &f->r->branches[i].branch.points[k];
-      if (p->kind != STRUT_FOLLOW_DOUBLING || !p->critical) continue;
-      strut_status status = follow_doubling(f, i, p);
+static strut_status follow_doublings(follower *self) {
+  for (size_t i = 0; i < self->r->count; i++)
+    for (size_t k = 0; k < self->r->branches[i].branch.count; k++) {
+      const strut_follow_point *point = &self->r->branches[i].branch.points[k];
+      if (point->kind != STRUT_FOLLOW_DOUBLING || !point->critical) continue;
+      strut_status status = follow_doubling(self, i, point);
       if (status) return status;
     }
   return STRUT_OK;
@@ -264,42 +270,42 @@ static strut_status follow_doublings(follower *f) {
 /* ---- basins ---- */
 
 /* The motion of a branch between two of its points, made exact; kicked where it is stable. */
-static strut_status push_between(follower *f, size_t index, size_t k, double value) {
-  const strut_follow_branch *b = &f->r->branches[index].branch;
-  const strut_follow_point *from = &b->points[k], *to = from + 1;
-  strut_follow_basin *basin = &f->r->basins[f->r->basin_count];
+static strut_status push_between(follower *self, size_t index, size_t k, double value) {
+  const strut_follow_branch *branch = &self->r->branches[index].branch;
+  const strut_follow_point *from = &branch->points[k], *to = from + 1;
+  strut_follow_basin *basin = &self->r->basins[self->r->basin_count];
   double part = to->value != from->value ? (value - from->value) / (to->value - from->value) : 0.0;
   char reason[200];
   bool found = false;
-  if (!from->stable || !to->stable || f->r->basin_count == STRUT_FOLLOW_MOST_BASINS)
+  if (!from->stable || !to->stable || self->r->basin_count == STRUT_FOLLOW_MOST_BASINS)
     return STRUT_OK;
-  strut_status status = strut_follow_set_value(&f->s, value, f->error);
-  if (!status) status = strut_follow_set_repeats(&f->s, b->repeats, f->error);
-  double *y = status ? NULL : strut_arena_allocate(&f->r->arena, f->s.both, sizeof(double));
-  if (!y) return status ? status : strut_no_memory(f->error, "");
-  for (size_t i = 0; i < f->s.both; i++) y[i] = from->y[i] + part * (to->y[i] - from->y[i]);
-  status = strut_follow_correct(&f->s, y, &found, reason, f->error);
+  strut_status status = strut_follow_set_value(&self->s, value, self->error);
+  if (!status) status = strut_follow_set_repeats(&self->s, branch->repeats, self->error);
+  double *y = status ? NULL : strut_arena_allocate(&self->r->arena, self->s.both, sizeof(double));
+  if (!y) return status ? status : strut_no_memory(self->error, "");
+  for (size_t i = 0; i < self->s.both; i++) y[i] = from->y[i] + part * (to->y[i] - from->y[i]);
+  status = strut_follow_correct(&self->s, y, &found, reason, self->error);
   if (status || !found) return status;
-  strut_follow_centre(&f->s, y);
+  strut_follow_centre(&self->s, y);
   *basin = (strut_follow_basin){.branch = index, .value = value};
   basin->velocity = from->velocity + part * (to->velocity - from->velocity);
-  status = strut_follow_push(&f->s, y, basin, f->error);
-  if (!status) f->r->basin_count++;
+  status = strut_follow_push(&self->s, y, basin, self->error);
+  if (!status) self->r->basin_count++;
   return status;
 }
 
-static strut_status push_motions(follower *f) {
-  for (size_t v = 0; v < f->o->start_count; v++) {
-    double value = f->o->starts[v].value;
+static strut_status push_motions(follower *self) {
+  for (size_t v = 0; v < self->o->start_count; v++) {
+    double value = self->o->starts[v].value;
     bool again = false;
-    for (size_t i = 0; i < v; i++) again = again || f->o->starts[i].value == value;
-    for (size_t i = 0; i < f->r->count && !again; i++) {
-      const strut_follow_branch *b = &f->r->branches[i].branch;
-      for (size_t k = 0; k + 1 < b->count; k++) {
-        double low = b->points[k].value, high = b->points[k + 1].value;
+    for (size_t i = 0; i < v; i++) again = again || self->o->starts[i].value == value;
+    for (size_t i = 0; i < self->r->count && !again; i++) {
+      const strut_follow_branch *branch = &self->r->branches[i].branch;
+      for (size_t k = 0; k + 1 < branch->count; k++) {
+        double low = branch->points[k].value, high = branch->points[k + 1].value;
         bool within = low < high ? low <= value && value < high : high < value && value <= low;
-        if (b->points[k + 1].value == value && k + 2 == b->count) within = true;
-        strut_status status = within ? push_between(f, i, k, value) : STRUT_OK;
+        if (branch->points[k + 1].value == value && k + 2 == branch->count) within = true;
+        strut_status status = within ? push_between(self, i, k, value) : STRUT_OK;
         if (status) return status;
       }
     }
@@ -308,13 +314,13 @@ static strut_status push_motions(follower *f) {
 }
 
 /* The second parameter, with texts that stay. */
-static strut_status keep_second(strut_follow_result *r, const strut_follow_second *second,
+static strut_status keep_second(strut_follow_result *result, const strut_follow_second *second,
                                 strut_error *error) {
-  r->second = *second;
-  r->second.name = strut_arena_format(&r->arena, "%s", second->name);
-  r->second.unit = strut_arena_format(&r->arena, "%s", second->unit);
-  r->second.scenes = (strut_follow_plane){NULL, NULL};
-  return r->second.name && r->second.unit ? STRUT_OK : strut_no_memory(error, "");
+  result->second = *second;
+  result->second.name = strut_arena_format(&result->arena, "%s", second->name);
+  result->second.unit = strut_arena_format(&result->arena, "%s", second->unit);
+  result->second.scenes = (strut_follow_plane){NULL, NULL};
+  return result->second.name && result->second.unit ? STRUT_OK : strut_no_memory(error, "");
 }
 
 strut_status strut_follow_make(const strut_follow_options *options, strut_follow_result *result,

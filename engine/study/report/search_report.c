@@ -29,18 +29,20 @@ static strut_value variable_value(const strut_result_object *of, size_t i) {
 /* "friction = 0.1, start = I": the axes before the searches, at a best point. */
 static void write_outer(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
   const strut_search_worth *worth = of->at;
-  const strut_search_report *r = strut_result_whole(of);
-  const strut_study *study = r->plan->study;
+  const strut_search_report *report = strut_result_whole(of);
+  const strut_study *study = report->plan->study;
   strut_study_value values[64];
   size_t count = 0, used = 0;
-  for (size_t i = 0; i < r->search->axis; i++) count += study->axes[i].column_count;
-  if (!count || r->plan->axis_columns > sizeof values / sizeof values[0]) return;
-  strut_grid_values(study, r->result->outcomes[worth->best].best.worst, values);
+  for (size_t i = 0; i < report->search->axis; i++) count += study->axes[i].column_count;
+  if (!count || report->plan->axis_columns > sizeof values / sizeof values[0]) return;
+  strut_grid_values(study, report->result->outcomes[worth->best].best.worst, values);
   for (size_t i = 0; i < count && used < STRUT_VALUE_ROOM; i++)
     used += (size_t)snprintf(
-        text + used, STRUT_VALUE_ROOM - used, "%s%s = %s", i ? ", " : "", r->plan->columns[i].name,
-        values[i].word ? values[i].word
-                       : strut_quantity_of_any(values[i].number, 6, r->plan->columns[i].unit).text);
+        text + used, STRUT_VALUE_ROOM - used, "%s%s = %s", i ? ", " : "",
+        report->plan->columns[i].name,
+        values[i].word
+            ? values[i].word
+            : strut_quantity_of_any(values[i].number, 6, report->plan->columns[i].unit).text);
 }
 
 #define POINT(X)                                                                                   \

@@ -61,11 +61,12 @@ STRUT_VALUES_HERE(counted_values, PROGRESS, const strut_slots_progress *p = of->
 
 /* "3, 7 to 9": the first ranges of missing points. */
 static void write_gaps(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  const strut_slots_progress *p = of->at;
-  for (size_t i = 0, used = 0; i < p->gap_count && used < STRUT_VALUE_ROOM; i++)
-    used += (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used,
-                             p->gaps[i][0] < p->gaps[i][1] ? "%s%.0f to %.0f" : "%s%.0f",
-                             i ? ", " : "", p->gaps[i][0], p->gaps[i][1]);
+  const strut_slots_progress *progress = of->at;
+  for (size_t i = 0, used = 0; i < progress->gap_count && used < STRUT_VALUE_ROOM; i++)
+    used +=
+        (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used,
+                         progress->gaps[i][0] < progress->gaps[i][1] ? "%s%.0f to %.0f" : "%s%.0f",
+                         i ? ", " : "", progress->gaps[i][0], progress->gaps[i][1]);
 }
 
 #define STATUS(X)                                                                                  \

@@ -48,79 +48,84 @@ static strut_status no_memory(strut_error *error, const char *path) {
   return strut_fail(error, STRUT_NO_MEMORY, "out of memory for the results in '%s'", path);
 }
 
-static int64_t offset_of(const strut_slots *s, int64_t i) {
-  return (int64_t)s->layout.header_bytes + i * (int64_t)s->layout.slot_bytes;
+static int64_t offset_of(const strut_slots *slots, int64_t i) {
+  return (int64_t)slots->layout.header_bytes + i * (int64_t)slots->layout.slot_bytes;
 }
 
 /* The slot of a point, or -1. */
-static int64_t slot_of(const strut_slots *s, int64_t point) {
-  int64_t from = point - s->plan.first;
+static int64_t slot_of(const strut_slots *slots, int64_t point) {
+  int64_t from = point - slots->plan.first;
   if (from < 0) return -1;
-  if (s->plan.stride == 1) return from < s->plan.count ? from : -1;
-  int64_t i = from / s->plan.stride;
-  return i * s->plan.stride == from && i < s->plan.count ? i : -1;
+  if (slots->plan.stride == 1) return from < slots->plan.count ? from : -1;
+  int64_t i = from / slots->plan.stride;
+  return i * slots->plan.stride == from && i < slots->plan.count ? i : -1;
 }
 
-static uint64_t checksum_of(const strut_slots *s, const unsigned char *slot) {
+static uint64_t checksum_of(const strut_slots *slots, const unsigned char *slot) {
   size_t head = sizeof(uint64_t);
-  uint64_t sum = strut_checksum(slot + head, s->layout.slot_bytes - head, s->seed);
+  uint64_t sum = strut_checksum(slot + head, slots->layout.slot_bytes - head, slots->seed);
   return sum ? sum : 1;
 }
 
 /* Are these bytes a complete slot i? */
-static bool is_whole(const strut_slots *s, int64_t i, const unsigned char *slot) {
+static bool is_whole(const strut_slots *slots, int64_t i, const unsigned char *slot) {
   slot_head head;
   memcpy(&head, slot, sizeof head);
-  return head.checksum && head.point == strut_slots_point(s, i) &&
-         head.status < STRUT_STATUS_COUNT && head.checksum == checksum_of(s, slot);
+  return head.checksum && head.point == strut_slots_point(slots, i) &&
+         head.status < STRUT_STATUS_COUNT && head.checksum == checksum_of(slots, slot);
 }
 
-static void mark(strut_slots *s, int64_t i, uint32_t status) {
-  atomic_fetch_or_explicit(&s->done[i / BITS], (uint64_t)1 << i % BITS, memory_order_release);
-  atomic_fetch_sub_explicit(&s->missing, 1, memory_order_relaxed);
-  if (status != STRUT_OK) atomic_fetch_add_explicit(&s->failed, 1, memory_order_relaxed);
+static void mark(strut_slots *slots, int64_t i, uint32_t status) {
+  atomic_fetch_or_explicit(&slots->done[i / BITS], (uint64_t)1 << i % BITS, memory_order_release);
+  atomic_fetch_sub_explicit(&slots->missing, 1, memory_order_relaxed);
+  if (status != STRUT_OK) atomic_fetch_add_explicit(&slots->failed, 1, memory_order_relaxed);
 }
 
 /* Reads the block of slots that starts at i, up to the end of the file. */
-static strut_status load(strut_slots *s, int64_t i, strut_error *error) {
-  int64_t count = s->plan.count - i < s->block_slots ? s->plan.count - i : s->block_slots;
-  s->block_count = 0;
-  s->block_rewritten = atomic_load(&s->rewritten);
-  int64_t got = strut_slots_pread(s->descriptor, s->block, (size_t)count * s->layout.slot_bytes,
-                                  offset_of(s, i));
-  if (got < 0) return strut_slots_trouble(error, "read", s->path, errno);
-  s->block_first = i;
-  s->block_count = got / (int64_t)s->layout.slot_bytes;
+static strut_status load(strut_slots *slots, int64_t i, strut_error *error) {
+  int64_t count =
+      slots->plan.count - i < slots->block_slots ? slots->plan.count - i : slots->block_slots;
+  slots->block_count = 0;
+  slots->block_rewritten = atomic_load(&slots->rewritten);
+  int64_t got = strut_slots_pread(slots->descriptor, slots->block,
+                                  (size_t)count * slots->layout.slot_bytes, offset_of(slots, i));
+  if (got < 0) return strut_slots_trouble(error, "read", slots->path, errno);
+  slots->block_first = i;
+  slots->block_count = got / (int64_t)slots->layout.slot_bytes;
   return STRUT_OK;
 }
 
 /* Determines which slots exist. */
-static strut_status scan(strut_slots *s, strut_error *error) {
+static strut_status scan(strut_slots *slots, strut_error *error) {
   strut_status status = STRUT_OK;
-  for (int64_t at = 0; at < s->plan.count && status == STRUT_OK; at += s->block_count) {
-    status = load(s, at, error);
-    if (status == STRUT_OK && s->block_count == 0) break; /* the end of the file */
-    for (int64_t i = 0; i < s->block_count; i++) {
-      const unsigned char *slot = s->block + (size_t)i * s->layout.slot_bytes;
+  for (int64_t at = 0; at < slots->plan.count && status == STRUT_OK; at += slots->block_count) {
+    status = load(slots, at, error);
+    if (status == STRUT_OK && slots->block_count == 0) break; /* the end of the file */
+    for (int64_t i = 0; i < slots->block_count; i++) {
+      const unsigned char *slot = slots->block + (size_t)i * slots->layout.slot_bytes;
       slot_head head;
       memcpy(&head, slot, sizeof head);
-      if (is_whole(s, at + i, slot)) mark(s, at + i, head.status);
+      if (is_whole(slots, at + i, slot)) mark(slots, at + i, head.status);
     }
   }
   return status;
 }
 
 /* Allocates everything that the slots of a plan need. */
-static strut_status prepare(strut_slots *s, strut_error *error) {
-  size_t words = (size_t)(s->plan.count / BITS + 1);
-  s->block_slots = BLOCK_BYTES / (int64_t)s->layout.slot_bytes;
-  s->done = strut_allocate(words, sizeof *s->done);
-  s->block = strut_arena_allocate(&s->arena, (size_t)s->block_slots, s->layout.slot_bytes);
-  s->numbers = strut_arena_allocate(&s->arena, s->layout.number_count + 1, sizeof *s->numbers);
-  s->words = strut_arena_allocate(&s->arena, s->layout.word_count + 1, sizeof *s->words);
-  if (!s->done || !s->block || !s->numbers || !s->words) return no_memory(error, s->path);
-  atomic_store(&s->missing, s->plan.count);
-  memcpy(&s->seed, s->plan.hash, sizeof s->seed);
+static strut_status prepare(strut_slots *slots, strut_error *error) {
+  size_t words = (size_t)(slots->plan.count / BITS + 1);
+  slots->block_slots = BLOCK_BYTES / (int64_t)slots->layout.slot_bytes;
+  slots->done = strut_allocate(words, sizeof *slots->done);
+  slots->block =
+      strut_arena_allocate(&slots->arena, (size_t)slots->block_slots, slots->layout.slot_bytes);
+  slots->numbers =
+      strut_arena_allocate(&slots->arena, slots->layout.number_count + 1, sizeof *slots->numbers);
+  slots->words =
+      strut_arena_allocate(&slots->arena, slots->layout.word_count + 1, sizeof *slots->words);
+  if (!slots->done || !slots->block || !slots->numbers || !slots->words)
+    return no_memory(error, slots->path);
+  atomic_store(&slots->missing, slots->plan.count);
+  memcpy(&slots->seed, slots->plan.hash, sizeof slots->seed);
   return STRUT_OK;
 }
 
@@ -128,55 +133,57 @@ static strut_status prepare(strut_slots *s, strut_error *error) {
  * Locks the file against other writers, a shared one only against those that do not share it. Without file
  * locks all would write the same bytes.
  */
-static strut_status lock(const strut_slots *s, strut_error *error) {
-  struct flock wanted = {.l_type = s->shared ? F_RDLCK : F_WRLCK,
+static strut_status lock(const strut_slots *slots, strut_error *error) {
+  struct flock wanted = {.l_type = slots->shared ? F_RDLCK : F_WRLCK,
                          .l_whence = SEEK_SET,
-                         .l_len = s->shared ? 1 : 0}; /* 0: all of it */
-  if (fcntl(s->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN))
+                         .l_len = slots->shared ? 1 : 0}; /* 0: all of it */
+  if (fcntl(slots->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN))
     return STRUT_OK;
   char who[48] = "another process";
-  if (fcntl(s->descriptor, F_GETLK, &wanted) == 0 && wanted.l_type != F_UNLCK && wanted.l_pid > 0)
+  if (fcntl(slots->descriptor, F_GETLK, &wanted) == 0 && wanted.l_type != F_UNLCK &&
+      wanted.l_pid > 0)
     snprintf(who, sizeof who, "another process (%ld)", (long)wanted.l_pid);
   return strut_fail(error, STRUT_FILE_TROUBLE, "%s is writing '%s': wait for it, or stop it first",
-                    who, s->path);
+                    who, slots->path);
 }
 
 /*
  * The header of a new file, or of one whose header was never finished. It covers all that is there, so that
  * those who share a file may begin it at the same time.
  */
-static strut_status begin(strut_slots *s, const strut_slots_description *plan, strut_error *error) {
-  s->plan = *plan;
-  if (!strut_slots_own(&s->plan, &s->arena)) return no_memory(error, s->path);
-  strut_status status = strut_slots_lay_out(&s->plan, &s->layout, error);
+static strut_status begin(strut_slots *slots, const strut_slots_description *plan,
+                          strut_error *error) {
+  slots->plan = *plan;
+  if (!strut_slots_own(&slots->plan, &slots->arena)) return no_memory(error, slots->path);
+  strut_status status = strut_slots_lay_out(&slots->plan, &slots->layout, error);
   if (status != STRUT_OK) return status;
-  unsigned char *header = strut_slots_header(&s->plan, &s->layout, &s->arena);
-  if (!header) return no_memory(error, s->path);
-  if (!strut_slots_pwrite(s->descriptor, header, s->layout.header_bytes, 0) ||
-      (fsync(s->descriptor) != 0 && errno != EINVAL))
-    return strut_slots_trouble(error, "write", s->path, errno);
+  unsigned char *header = strut_slots_header(&slots->plan, &slots->layout, &slots->arena);
+  if (!header) return no_memory(error, slots->path);
+  if (!strut_slots_pwrite(slots->descriptor, header, slots->layout.header_bytes, 0) ||
+      (fsync(slots->descriptor) != 0 && errno != EINVAL))
+    return strut_slots_trouble(error, "write", slots->path, errno);
   return STRUT_OK;
 }
 
 /* Reads the existing header, which must belong to this plan. */
-static strut_status resume(strut_slots *s, const strut_slots_description *plan,
+static strut_status resume(strut_slots *slots, const strut_slots_description *plan,
                            strut_error *error) {
   bool torn = false;
   strut_slots_description own = *plan;
-  strut_status status = strut_slots_lay_out(&own, &s->layout, error);
-  size_t header = s->layout.header_bytes;
-  if (status == STRUT_OK) status = lock(s, error);
+  strut_status status = strut_slots_lay_out(&own, &slots->layout, error);
+  size_t header = slots->layout.header_bytes;
+  if (status == STRUT_OK) status = lock(slots, error);
   if (status == STRUT_OK)
-    status = strut_slots_read_header(&(strut_slots_file){s->descriptor, s->path, header}, &s->plan,
-                                     &s->layout, &s->arena, &torn, error);
-  if (status == STRUT_OK && torn) return begin(s, plan, error);
-  return status == STRUT_OK ? strut_slots_compare(s->path, &s->plan, plan, error) : status;
+    status = strut_slots_read_header(&(strut_slots_file){slots->descriptor, slots->path, header},
+                                     &slots->plan, &slots->layout, &slots->arena, &torn, error);
+  if (status == STRUT_OK && torn) return begin(slots, plan, error);
+  return status == STRUT_OK ? strut_slots_compare(slots->path, &slots->plan, plan, error) : status;
 }
 
-static strut_status look(strut_slots *s, strut_error *error) {
+static strut_status look(strut_slots *slots, strut_error *error) {
   bool torn = false; /* unused: an unfinished header cannot be read */
-  return strut_slots_read_header(&(strut_slots_file){s->descriptor, s->path, 0}, &s->plan,
-                                 &s->layout, &s->arena, &torn, error);
+  return strut_slots_read_header(&(strut_slots_file){slots->descriptor, slots->path, 0},
+                                 &slots->plan, &slots->layout, &slots->arena, &torn, error);
 }
 
 /* Opens for writing if there is a plan, otherwise read-only. */
@@ -251,8 +258,8 @@ int64_t strut_slots_point(const strut_slots *slots, int64_t i) {
   return slots->plan.first + i * slots->plan.stride;
 }
 
-static bool is_done(const strut_slots *s, int64_t i) {
-  return atomic_load_explicit(&s->done[i / BITS], memory_order_acquire) >> i % BITS & 1;
+static bool is_done(const strut_slots *slots, int64_t i) {
+  return atomic_load_explicit(&slots->done[i / BITS], memory_order_acquire) >> i % BITS & 1;
 }
 
 bool strut_slots_done(const strut_slots *slots, int64_t point) {
@@ -278,45 +285,45 @@ static void fill_text(unsigned char *field, size_t room, const char *text) {
 }
 
 /* Encodes a slot; all NANs become the same one. */
-static void fill_slot(const strut_slots *s, int64_t point, const strut_result_slot *row,
+static void fill_slot(const strut_slots *slots, int64_t point, const strut_result_slot *row,
                       unsigned char *slot) {
   slot_head head = {.point = point, .status = (uint32_t)row->status};
   unsigned char *at = slot + sizeof head;
-  memset(slot, 0, s->layout.slot_bytes);
-  for (size_t i = 0; i < s->layout.number_count; i++, at += sizeof(double)) {
+  memset(slot, 0, slots->layout.slot_bytes);
+  for (size_t i = 0; i < slots->layout.number_count; i++, at += sizeof(double)) {
     double number = isnan(row->numbers[i]) ? (double)NAN : row->numbers[i];
     memcpy(at, &number, sizeof number);
   }
-  for (size_t i = 0; i < s->layout.word_count; i++, at += STRUT_SLOT_WORD)
+  for (size_t i = 0; i < slots->layout.word_count; i++, at += STRUT_SLOT_WORD)
     fill_text(at, STRUT_SLOT_WORD, row->words[i]);
   fill_text(at, STRUT_SLOT_MESSAGE, row->message);
   memcpy(slot, &head, sizeof head);
-  head.checksum = checksum_of(s, slot);
+  head.checksum = checksum_of(slots, slot);
   memcpy(slot, &head, sizeof head);
 }
 
 /* Does slot i have a row, which another process may have written since the file was opened? */
-static bool is_written(strut_slots *s, int64_t i) {
+static bool is_written(strut_slots *slots, int64_t i) {
   unsigned char slot[STRUT_SLOT_MOST];
-  int64_t length = (int64_t)s->layout.slot_bytes;
+  int64_t length = (int64_t)slots->layout.slot_bytes;
   slot_head head;
-  if (is_done(s, i)) return true;
-  if (!s->shared) return false;
-  if (strut_slots_pread(s->descriptor, slot, (size_t)length, offset_of(s, i)) < length ||
-      !is_whole(s, i, slot))
+  if (is_done(slots, i)) return true;
+  if (!slots->shared) return false;
+  if (strut_slots_pread(slots->descriptor, slot, (size_t)length, offset_of(slots, i)) < length ||
+      !is_whole(slots, i, slot))
     return false;
   memcpy(&head, slot, sizeof head);
-  mark(s, i, head.status);
+  mark(slots, i, head.status);
   return true;
 }
 
 /* Locks (F_WRLCK) or unlocks (F_UNLCK) the bytes of slot i. False: another process has them. */
-static bool lock_slot(const strut_slots *s, int64_t i, short type) {
+static bool lock_slot(const strut_slots *slots, int64_t i, short type) {
   struct flock wanted = {.l_type = type,
                          .l_whence = SEEK_SET,
-                         .l_start = offset_of(s, i),
-                         .l_len = (off_t)s->layout.slot_bytes};
-  return fcntl(s->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN);
+                         .l_start = offset_of(slots, i),
+                         .l_len = (off_t)slots->layout.slot_bytes};
+  return fcntl(slots->descriptor, F_SETLK, &wanted) == 0 || (errno != EACCES && errno != EAGAIN);
 }
 
 bool strut_slots_claim(strut_slots *slots, int64_t point) {
@@ -355,15 +362,15 @@ strut_status strut_slots_sync(strut_slots *slots, strut_error *error) {
 }
 
 /* The bytes of slot i, from the block in memory or from the file; NULL if it is missing. */
-static const unsigned char *find(strut_slots *s, int64_t i) {
+static const unsigned char *find(strut_slots *slots, int64_t i) {
   for (int pass = 0; pass < 2; pass++) { /* it may have been written since the block was read */
-    int64_t at = i - s->block_first;
-    bool fresh = s->block_rewritten == atomic_load(&s->rewritten);
-    if (at >= 0 && at < s->block_count && (fresh || pass)) {
-      const unsigned char *slot = s->block + (size_t)at * s->layout.slot_bytes;
-      if (is_whole(s, i, slot)) return slot;
+    int64_t at = i - slots->block_first;
+    bool fresh = slots->block_rewritten == atomic_load(&slots->rewritten);
+    if (at >= 0 && at < slots->block_count && (fresh || pass)) {
+      const unsigned char *slot = slots->block + (size_t)at * slots->layout.slot_bytes;
+      if (is_whole(slots, i, slot)) return slot;
     }
-    if (pass == 0 && load(s, i, NULL) != STRUT_OK) return NULL;
+    if (pass == 0 && load(slots, i, NULL) != STRUT_OK) return NULL;
   }
   return NULL;
 }

@@ -236,21 +236,23 @@ strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_d
   return status == STRUT_OK && agree ? STRUT_OK : foreign(error, path, damaged);
 }
 
-static bool same_columns(const strut_slots_description *a, const strut_slots_description *b) {
-  bool same = a->column_count == b->column_count;
-  for (size_t i = 0; same && i < a->column_count; i++)
-    same = strcmp(a->columns[i].name, b->columns[i].name) == 0 &&
-           strcmp(a->columns[i].unit, b->columns[i].unit) == 0 &&
-           a->columns[i].word == b->columns[i].word;
+static bool same_columns(const strut_slots_description *first,
+                         const strut_slots_description *second) {
+  bool same = first->column_count == second->column_count;
+  for (size_t i = 0; same && i < first->column_count; i++)
+    same = strcmp(first->columns[i].name, second->columns[i].name) == 0 &&
+           strcmp(first->columns[i].unit, second->columns[i].unit) == 0 &&
+           first->columns[i].word == second->columns[i].word;
   return same;
 }
 
-const char *strut_slots_difference(const strut_slots_description *a,
-                                   const strut_slots_description *b) {
-  if (strcmp(a->version, b->version) != 0) return "the version of strut";
-  if (a->points != b->points) return "the number of points";
-  if (!same_columns(a, b)) return "the columns";
-  if (memcmp(a->hash, b->hash, sizeof a->hash) != 0) return "the model, its parameters or the axes";
+const char *strut_slots_difference(const strut_slots_description *first,
+                                   const strut_slots_description *second) {
+  if (strcmp(first->version, second->version) != 0) return "the version of strut";
+  if (first->points != second->points) return "the number of points";
+  if (!same_columns(first, second)) return "the columns";
+  if (memcmp(first->hash, second->hash, sizeof first->hash) != 0)
+    return "the model, its parameters or the axes";
   return NULL;
 }
 

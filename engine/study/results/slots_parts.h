@@ -40,8 +40,8 @@ strut_status strut_slots_read_header(const strut_slots_file *file, strut_slots_d
                                      strut_slots_layout *layout, strut_arena *arena, bool *torn,
                                      strut_error *error);
 /** Names a difference between two plans, such as "the columns"; NULL: none. */
-const char *strut_slots_difference(const strut_slots_description *a,
-                                   const strut_slots_description *b);
+const char *strut_slots_difference(const strut_slots_description *first,
+                                   const strut_slots_description *second);
 /** STRUT_USAGE with the difference, unless both have the same study and points. */
 strut_status strut_slots_compare(const char *path, const strut_slots_description *there,
                                  const strut_slots_description *wanted, strut_error *error);

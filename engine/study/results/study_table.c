@@ -377,19 +377,19 @@ static int64_t name_absent(const strut_shards_found *found, strut_buffer *text) 
 }
 
 /* Reports missing shards and incomplete shards in one sentence. */
-static strut_status check_gaps(const merge *m, strut_error *error) {
+static strut_status check_gaps(const merge *self, strut_error *error) {
   strut_buffer text = {0};
   int unfinished = 0;
-  int64_t absent = name_absent(&m->found, &text);
+  int64_t absent = name_absent(&self->found, &text);
   if (absent) strut_buffer_add(&text, ")");
-  for (size_t i = 0; i < m->count; i++) {
-    int64_t missing = m->sources[i] ? strut_slots_missing(m->sources[i]) : 0;
+  for (size_t i = 0; i < self->count; i++) {
+    int64_t missing = self->sources[i] ? strut_slots_missing(self->sources[i]) : 0;
     if (missing == 0) continue;
-    long long of = (long long)strut_slots_description_of(m->sources[i])->count;
-    if (!m->found.count)
+    long long of = (long long)strut_slots_description_of(self->sources[i])->count;
+    if (!self->found.count)
       return strut_fail(error, STRUT_FILE_TROUBLE,
                         "'%s': %lld of %lld points are missing: run the study again to resume it",
-                        m->directory, (long long)missing, of);
+                        self->directory, (long long)missing, of);
     if (unfinished < MOST_NAMED)
       strut_buffer_add(&text, "%s shard %zu lacks %lld of its %lld points",
                        unfinished || absent ? "," : "", i, (long long)missing, of);
@@ -399,31 +399,31 @@ static strut_status check_gaps(const merge *m, strut_error *error) {
   char gone[80] = "";
   if (absent)
     snprintf(gone, sizeof gone, " %lld of %lld shards %s missing (", (long long)absent,
-             (long long)m->found.count, absent == 1 ? "is" : "are");
+             (long long)self->found.count, absent == 1 ? "is" : "are");
   strut_status status = text.failed
                             ? strut_no_memory(error, "for shards")
                             : strut_fail(error, STRUT_FILE_TROUBLE,
                                          "'%s':%s%.400s; run these shards again to resume them",
-                                         m->directory, gone, text.text);
+                                         self->directory, gone, text.text);
   strut_release(text.text);
   return status;
 }
 
 /* Opens the existing shards; the others stay NULL. */
-static strut_status open_sources(merge *m, strut_error *error) {
+static strut_status open_sources(merge *self, strut_error *error) {
   strut_status status = STRUT_OK;
-  m->sources = strut_arena_allocate(&m->arena, m->count, sizeof *m->sources);
-  if (!m->sources) return strut_no_memory(error, "for shards");
-  for (size_t i = 0; i < m->count && status == STRUT_OK; i++) {
+  self->sources = strut_arena_allocate(&self->arena, self->count, sizeof *self->sources);
+  if (!self->sources) return strut_no_memory(error, "for shards");
+  for (size_t i = 0; i < self->count && status == STRUT_OK; i++) {
     strut_slots_description plan;
-    if (m->found.count && !m->found.there[i]) continue;
-    strut_shard shard = {(int64_t)i, m->found.count};
-    char *path = strut_shard_path(m->directory, shard, &m->arena);
-    status = path ? strut_slots_read(path, &m->sources[i], &plan, error)
+    if (self->found.count && !self->found.there[i]) continue;
+    strut_shard shard = {(int64_t)i, self->found.count};
+    char *path = strut_shard_path(self->directory, shard, &self->arena);
+    status = path ? strut_slots_read(path, &self->sources[i], &plan, error)
                   : strut_no_memory(error, "for shards");
     if (status != STRUT_OK) break;
     strut_shard_points(shard, &plan);
-    const strut_slots_description *own = strut_slots_description_of(m->sources[i]);
+    const strut_slots_description *own = strut_slots_description_of(self->sources[i]);
     if (plan.first != own->first || plan.count != own->count || plan.stride != own->stride)
       status = strut_fail(
           error, STRUT_USAGE,
@@ -433,43 +433,44 @@ static strut_status open_sources(merge *m, strut_error *error) {
 }
 
 /* Checks that all files belong to one study. */
-static strut_status check_study(const merge *m, strut_error *error) {
+static strut_status check_study(const merge *self, strut_error *error) {
   size_t first = 0;
-  while (first < m->count && !m->sources[first]) first++;
-  for (size_t i = first + 1; i < m->count; i++) {
-    if (!m->sources[i]) continue;
-    const char *difference = strut_slots_difference(strut_slots_description_of(m->sources[first]),
-                                                    strut_slots_description_of(m->sources[i]));
+  while (first < self->count && !self->sources[first]) first++;
+  for (size_t i = first + 1; i < self->count; i++) {
+    if (!self->sources[i]) continue;
+    const char *difference =
+        strut_slots_difference(strut_slots_description_of(self->sources[first]),
+                               strut_slots_description_of(self->sources[i]));
     if (difference)
       return strut_fail(
           error, STRUT_USAGE,
           "'%s': shards %zu and %zu belong to different studies, which differ in %s: remove "
           "those that are outdated and run them again",
-          m->directory, first, i, difference);
+          self->directory, first, i, difference);
   }
   return STRUT_OK;
 }
 
-static strut_status find(merge *m, strut_error *error) {
-  strut_status status = strut_shards_find(m->directory, &m->found, &m->arena, error);
+static strut_status find(merge *self, strut_error *error) {
+  strut_status status = strut_shards_find(self->directory, &self->found, &self->arena, error);
   if (status != STRUT_OK) return status;
-  if (!m->found.whole && !m->found.count)
+  if (!self->found.whole && !self->found.count)
     return strut_fail(
         error, STRUT_FILE_TROUBLE,
         "'%s' holds no results of a study: it has neither 'points.slots' nor 'shards'",
-        m->directory);
-  if (m->found.whole && m->found.count)
+        self->directory);
+  if (self->found.whole && self->found.count)
     return strut_fail(error, STRUT_USAGE,
                       "'%s' holds the study twice, in one piece ('points.slots') and in 'shards': "
                       "remove one of them",
-                      m->directory);
-  if (m->found.other)
+                      self->directory);
+  if (self->found.other)
     return strut_fail(
         error, STRUT_USAGE,
         "'%s' holds shards of %lld and shards of %lld, which overlap: remove those of "
         "one kind",
-        m->directory, (long long)m->found.count, (long long)m->found.other);
-  m->count = m->found.count ? (size_t)m->found.count : 1;
+        self->directory, (long long)self->found.count, (long long)self->found.other);
+  self->count = self->found.count ? (size_t)self->found.count : 1;
   return STRUT_OK;
 }
 

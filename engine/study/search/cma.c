@@ -72,72 +72,74 @@ static double from_box(double x) {
 }
 
 /* Weights and rates: table 1 of the tutorial. */
-static void choose_constants(strut_cma *c) {
-  double n = (double)c->n, lambda = (double)c->population;
+static void choose_constants(strut_cma *cma) {
+  double n = (double)cma->n, lambda = (double)cma->population;
   double sum[2] = {0}, squares[2] = {0};
-  for (size_t i = 0; i < c->population; i++) {
+  for (size_t i = 0; i < cma->population; i++) {
     double w = log((lambda + 1.0) / 2.0) - log((double)(i + 1));
-    int side = i >= c->parents;
-    c->weight[i] = w;
+    int side = i >= cma->parents;
+    cma->weight[i] = w;
     sum[side] += fabs(w);
     squares[side] += w * w;
   }
   double mass = sum[0] * sum[0] / squares[0], negative_mass = sum[1] * sum[1] / squares[1];
-  c->mass = mass;
-  c->sigma_rate = (mass + 2.0) / (n + mass + 5.0);
-  c->sigma_damping = 1.0 + 2.0 * fmax(0.0, sqrt((mass - 1.0) / (n + 1.0)) - 1.0) + c->sigma_rate;
-  c->path_rate = (4.0 + mass / n) / (n + 4.0 + 2.0 * mass / n);
-  c->one_rate = 2.0 / ((n + 1.3) * (n + 1.3) + mass);
-  c->mu_rate = fmin(1.0 - c->one_rate,
-                    2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0) * (n + 2.0) + mass));
-  c->expected = sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
-  double limit = fmin(1.0 + c->one_rate / c->mu_rate, 1.0 + 2.0 * negative_mass / (mass + 2.0));
-  limit = fmin(limit, (1.0 - c->one_rate - c->mu_rate) / (n * c->mu_rate));
-  c->weight_sum = 0.0;
-  for (size_t i = 0; i < c->population; i++) {
-    int side = i >= c->parents;
-    c->weight[i] *= (side ? fmax(limit, 0.0) : 1.0) / sum[side];
-    c->weight_sum += c->weight[i];
+  cma->mass = mass;
+  cma->sigma_rate = (mass + 2.0) / (n + mass + 5.0);
+  cma->sigma_damping =
+      1.0 + 2.0 * fmax(0.0, sqrt((mass - 1.0) / (n + 1.0)) - 1.0) + cma->sigma_rate;
+  cma->path_rate = (4.0 + mass / n) / (n + 4.0 + 2.0 * mass / n);
+  cma->one_rate = 2.0 / ((n + 1.3) * (n + 1.3) + mass);
+  cma->mu_rate = fmin(1.0 - cma->one_rate,
+                      2.0 * (0.25 + mass + 1.0 / mass - 2.0) / ((n + 2.0) * (n + 2.0) + mass));
+  cma->expected = sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
+  double limit = fmin(1.0 + cma->one_rate / cma->mu_rate, 1.0 + 2.0 * negative_mass / (mass + 2.0));
+  limit = fmin(limit, (1.0 - cma->one_rate - cma->mu_rate) / (n * cma->mu_rate));
+  cma->weight_sum = 0.0;
+  for (size_t i = 0; i < cma->population; i++) {
+    int side = i >= cma->parents;
+    cma->weight[i] *= (side ? fmax(limit, 0.0) : 1.0) / sum[side];
+    cma->weight_sum += cma->weight[i];
   }
-  c->refresh = (int64_t)fmax(1.0, floor(1.0 / (10.0 * n * (c->one_rate + c->mu_rate))));
+  cma->refresh = (int64_t)fmax(1.0, floor(1.0 / (10.0 * n * (cma->one_rate + cma->mu_rate))));
 }
 
-static bool allocate(strut_cma *c) {
-  size_t n = c->n, m = c->population;
-  double **vectors[] = {&c->mean,      &c->length,  &c->sigma_path, &c->path,
-                        &c->mean_step, &c->scratch, &c->work,       &c->best};
+static bool allocate(strut_cma *cma) {
+  size_t n = cma->n, m = cma->population;
+  double **vectors[] = {&cma->mean,      &cma->length,  &cma->sigma_path, &cma->path,
+                        &cma->mean_step, &cma->scratch, &cma->work,       &cma->best};
   bool fine = true;
   for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
-    *vectors[i] = strut_arena_allocate(&c->arena, n, sizeof(double));
+    *vectors[i] = strut_arena_allocate(&cma->arena, n, sizeof(double));
     fine = fine && *vectors[i];
   }
-  c->weight = strut_arena_allocate(&c->arena, m, sizeof *c->weight);
-  c->order = strut_arena_allocate(&c->arena, m, sizeof *c->order);
-  c->steps = strut_arena_allocate(&c->arena, m, n * sizeof(double));
-  c->points = strut_arena_allocate(&c->arena, m, n * sizeof(double));
-  c->covariance = strut_arena_allocate(&c->arena, n, n * sizeof(double));
-  c->axes = strut_arena_allocate(&c->arena, n, n * sizeof(double));
+  cma->weight = strut_arena_allocate(&cma->arena, m, sizeof *cma->weight);
+  cma->order = strut_arena_allocate(&cma->arena, m, sizeof *cma->order);
+  cma->steps = strut_arena_allocate(&cma->arena, m, n * sizeof(double));
+  cma->points = strut_arena_allocate(&cma->arena, m, n * sizeof(double));
+  cma->covariance = strut_arena_allocate(&cma->arena, n, n * sizeof(double));
+  cma->axes = strut_arena_allocate(&cma->arena, n, n * sizeof(double));
   /* As many generations as stagnation is judged by, and half as many again. */
-  c->history_capacity = 120 + 30 * n / m + 20;
-  c->history = strut_arena_allocate(&c->arena, c->history_capacity, sizeof *c->history);
-  c->wraps = strut_arena_allocate(&c->arena, n, sizeof *c->wraps);
-  c->rng = gsl_rng_alloc(gsl_rng_mt19937);
-  return fine && c->wraps && c->weight && c->order && c->steps && c->points && c->covariance &&
-         c->axes && c->history && c->rng;
+  cma->history_capacity = 120 + 30 * n / m + 20;
+  cma->history = strut_arena_allocate(&cma->arena, cma->history_capacity, sizeof *cma->history);
+  cma->wraps = strut_arena_allocate(&cma->arena, n, sizeof *cma->wraps);
+  cma->rng = gsl_rng_alloc(gsl_rng_mt19937);
+  return fine && cma->wraps && cma->weight && cma->order && cma->steps && cma->points &&
+         cma->covariance && cma->axes && cma->history && cma->rng;
 }
 
-static strut_status check_options(const strut_cma_options *o, strut_error *error) {
-  if (o->dimension < 1 || o->dimension > STRUT_CMA_MOST_NUMBERS)
+static strut_status check_options(const strut_cma_options *options, strut_error *error) {
+  if (options->dimension < 1 || options->dimension > STRUT_CMA_MOST_NUMBERS)
     return strut_fail(error, STRUT_USAGE, "CMA-ES searches over 1 to %d numbers, not %zu",
-                      STRUT_CMA_MOST_NUMBERS, o->dimension);
-  if (o->population == 1 || o->population == 2 || o->population == 3 ||
-      o->population > STRUT_CMA_MOST_POPULATION || o->multiple > STRUT_CMA_MOST_POPULATION)
+                      STRUT_CMA_MOST_NUMBERS, options->dimension);
+  if (options->population == 1 || options->population == 2 || options->population == 3 ||
+      options->population > STRUT_CMA_MOST_POPULATION ||
+      options->multiple > STRUT_CMA_MOST_POPULATION)
     return strut_fail(error, STRUT_USAGE, "the population of CMA-ES must be 4 to %d, not %zu",
-                      STRUT_CMA_MOST_POPULATION, o->population);
-  for (size_t i = 0; i < o->dimension && o->start; i++)
-    if (!(o->start[i] >= 0.0 && o->start[i] <= 1.0))
+                      STRUT_CMA_MOST_POPULATION, options->population);
+  for (size_t i = 0; i < options->dimension && options->start; i++)
+    if (!(options->start[i] >= 0.0 && options->start[i] <= 1.0))
       return strut_fail(error, STRUT_USAGE, "the start of CMA-ES must lie in the box");
-  if (o->spread < 0.0 || !isfinite(o->spread))
+  if (options->spread < 0.0 || !isfinite(options->spread))
     return strut_fail(error, STRUT_USAGE, "the spread of CMA-ES must be positive");
   return STRUT_OK;
 }
@@ -177,42 +179,42 @@ strut_status strut_cma_create(const strut_cma_options *options, strut_cma **cma,
   return STRUT_OK;
 }
 
-void strut_cma_free(strut_cma *c) {
-  if (!c) return;
-  gsl_rng_free(c->rng);
-  strut_arena_free(&c->arena);
-  strut_release(c);
+void strut_cma_free(strut_cma *cma) {
+  if (!cma) return;
+  gsl_rng_free(cma->rng);
+  strut_arena_free(&cma->arena);
+  strut_release(cma);
 }
 
-size_t strut_cma_population(const strut_cma *c) { return c->population; }
-strut_cma_stop strut_cma_stopped(const strut_cma *c) { return c->stop; }
-int64_t strut_cma_evaluations(const strut_cma *c) { return c->evaluations; }
+size_t strut_cma_population(const strut_cma *cma) { return cma->population; }
+strut_cma_stop strut_cma_stopped(const strut_cma *cma) { return cma->stop; }
+int64_t strut_cma_evaluations(const strut_cma *cma) { return cma->evaluations; }
 
-double strut_cma_deviation(const strut_cma *c, size_t k) {
-  return c->sigma * sqrt(fmax(c->covariance[k * c->n + k], 0.0));
+double strut_cma_deviation(const strut_cma *cma, size_t k) {
+  return cma->sigma * sqrt(fmax(cma->covariance[k * cma->n + k], 0.0));
 }
 
-const double *strut_cma_best(const strut_cma *c, double *value) {
-  *value = c->best_value;
-  return isfinite(c->best_value) ? c->best : NULL;
+const double *strut_cma_best(const strut_cma *cma, double *value) {
+  *value = cma->best_value;
+  return isfinite(cma->best_value) ? cma->best : NULL;
 }
 
-const double *strut_cma_ask(strut_cma *c) {
-  size_t n = c->n;
-  for (size_t p = 0; p < c->population && !c->asked; p++) {
-    double *step = &c->steps[p * n];
+const double *strut_cma_ask(strut_cma *cma) {
+  size_t n = cma->n;
+  for (size_t p = 0; p < cma->population && !cma->asked; p++) {
+    double *step = &cma->steps[p * n];
     memset(step, 0, n * sizeof *step);
     for (size_t k = 0; k < n; k++) {
-      double along = c->length[k] * gsl_ran_gaussian(c->rng, 1.0);
-      for (size_t i = 0; i < n; i++) step[i] += along * c->axes[k * n + i];
+      double along = cma->length[k] * gsl_ran_gaussian(cma->rng, 1.0);
+      for (size_t i = 0; i < n; i++) step[i] += along * cma->axes[k * n + i];
     }
     for (size_t i = 0; i < n; i++) {
-      double y = c->mean[i] + c->sigma * step[i];
-      c->points[p * n + i] = c->wraps[i] ? y - floor(y) : into_box(y);
+      double y = cma->mean[i] + cma->sigma * step[i];
+      cma->points[p * n + i] = cma->wraps[i] ? y - floor(y) : into_box(y);
     }
   }
-  c->asked = true;
-  return c->points;
+  cma->asked = true;
+  return cma->points;
 }
 
 /* Equal values in the order of the points. */
@@ -222,26 +224,26 @@ static int by_value(const void *a, const void *b) {
   return (first->index > second->index) - (first->index < second->index);
 }
 
-static void rank_points(strut_cma *c, const double *values) {
-  for (size_t p = 0; p < c->population; p++)
-    c->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
-  qsort(c->order, c->population, sizeof *c->order, by_value);
-  const ranked *first = &c->order[0];
-  if (isfinite(first->value) && !(c->best_value <= first->value)) {
-    c->best_value = first->value;
-    memcpy(c->best, &c->points[first->index * c->n], c->n * sizeof *c->best);
+static void rank_points(strut_cma *cma, const double *values) {
+  for (size_t p = 0; p < cma->population; p++)
+    cma->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
+  qsort(cma->order, cma->population, sizeof *cma->order, by_value);
+  const ranked *first = &cma->order[0];
+  if (isfinite(first->value) && !(cma->best_value <= first->value)) {
+    cma->best_value = first->value;
+    memcpy(cma->best, &cma->points[first->index * cma->n], cma->n * sizeof *cma->best);
   }
 }
 
 /* to = C^(-1/2) from. */
-static void whiten(const strut_cma *c, const double *from, double *to) {
-  size_t n = c->n;
+static void whiten(const strut_cma *cma, const double *from, double *to) {
+  size_t n = cma->n;
   memset(to, 0, n * sizeof *to);
   for (size_t k = 0; k < n; k++) {
-    const double *axis = &c->axes[k * n];
+    const double *axis = &cma->axes[k * n];
     double along = 0.0;
     for (size_t i = 0; i < n; i++) along += axis[i] * from[i];
-    along /= c->length[k];
+    along /= cma->length[k];
     for (size_t i = 0; i < n; i++) to[i] += along * axis[i];
   }
 }
@@ -254,70 +256,70 @@ static double squared_length(const double *v, size_t n) {
 
 /* Moves the mean, then both evolution paths. Returns 1, or 0 where the latter's update is stalled since
  * sigma grows fast. */
-static double move_mean(strut_cma *c) {
-  size_t n = c->n;
-  memset(c->mean_step, 0, n * sizeof *c->mean_step);
-  for (size_t p = 0; p < c->parents; p++)
+static double move_mean(strut_cma *cma) {
+  size_t n = cma->n;
+  memset(cma->mean_step, 0, n * sizeof *cma->mean_step);
+  for (size_t p = 0; p < cma->parents; p++)
     for (size_t i = 0; i < n; i++)
-      c->mean_step[i] += c->weight[p] * c->steps[c->order[p].index * n + i];
-  whiten(c, c->mean_step, c->scratch);
-  double rate = c->sigma_rate, gain = sqrt(rate * (2.0 - rate) * c->mass);
+      cma->mean_step[i] += cma->weight[p] * cma->steps[cma->order[p].index * n + i];
+  whiten(cma, cma->mean_step, cma->scratch);
+  double rate = cma->sigma_rate, gain = sqrt(rate * (2.0 - rate) * cma->mass);
   for (size_t i = 0; i < n; i++) {
-    c->mean[i] += c->sigma * c->mean_step[i];
-    c->sigma_path[i] = (1.0 - rate) * c->sigma_path[i] + gain * c->scratch[i];
+    cma->mean[i] += cma->sigma * cma->mean_step[i];
+    cma->sigma_path[i] = (1.0 - rate) * cma->sigma_path[i] + gain * cma->scratch[i];
   }
-  double length = sqrt(squared_length(c->sigma_path, n));
-  double settled = sqrt(1.0 - pow(1.0 - rate, 2.0 * (double)(c->generation + 1)));
-  double open = length / settled < (1.4 + 2.0 / ((double)n + 1.0)) * c->expected ? 1.0 : 0.0;
-  gain = open * sqrt(c->path_rate * (2.0 - c->path_rate) * c->mass);
+  double length = sqrt(squared_length(cma->sigma_path, n));
+  double settled = sqrt(1.0 - pow(1.0 - rate, 2.0 * (double)(cma->generation + 1)));
+  double open = length / settled < (1.4 + 2.0 / ((double)n + 1.0)) * cma->expected ? 1.0 : 0.0;
+  gain = open * sqrt(cma->path_rate * (2.0 - cma->path_rate) * cma->mass);
   for (size_t i = 0; i < n; i++)
-    c->path[i] = (1.0 - c->path_rate) * c->path[i] + gain * c->mean_step[i];
-  c->sigma *= exp(fmin(1.0, rate / c->sigma_damping * (length / c->expected - 1.0)));
+    cma->path[i] = (1.0 - cma->path_rate) * cma->path[i] + gain * cma->mean_step[i];
+  cma->sigma *= exp(fmin(1.0, rate / cma->sigma_damping * (length / cma->expected - 1.0)));
   return open;
 }
 
-static void adapt_covariance(strut_cma *c, double open) {
-  size_t n = c->n;
-  double stalled = (1.0 - open) * c->path_rate * (2.0 - c->path_rate);
-  double keep = 1.0 + c->one_rate * stalled - c->one_rate - c->mu_rate * c->weight_sum;
+static void adapt_covariance(strut_cma *cma, double open) {
+  size_t n = cma->n;
+  double stalled = (1.0 - open) * cma->path_rate * (2.0 - cma->path_rate);
+  double keep = 1.0 + cma->one_rate * stalled - cma->one_rate - cma->mu_rate * cma->weight_sum;
   for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k <= i; k++)
-      c->covariance[i * n + k] =
-          keep * c->covariance[i * n + k] + c->one_rate * c->path[i] * c->path[k];
-  for (size_t p = 0; p < c->population; p++) {
-    const double *step = &c->steps[c->order[p].index * n];
-    double weight = c->weight[p];
+      cma->covariance[i * n + k] =
+          keep * cma->covariance[i * n + k] + cma->one_rate * cma->path[i] * cma->path[k];
+  for (size_t p = 0; p < cma->population; p++) {
+    const double *step = &cma->steps[cma->order[p].index * n];
+    double weight = cma->weight[p];
     if (weight < 0.0) { /* as long as the mean one, so that the matrix stays positive definite */
-      whiten(c, step, c->scratch);
-      weight *= (double)n / fmax(squared_length(c->scratch, n), 1e-300);
+      whiten(cma, step, cma->scratch);
+      weight *= (double)n / fmax(squared_length(cma->scratch, n), 1e-300);
     }
     for (size_t i = 0; i < n; i++)
       for (size_t k = 0; k <= i; k++)
-        c->covariance[i * n + k] += c->mu_rate * weight * step[i] * step[k];
+        cma->covariance[i * n + k] += cma->mu_rate * weight * step[i] * step[k];
   }
   for (size_t i = 0; i < n; i++)
-    for (size_t k = 0; k < i; k++) c->covariance[k * n + i] = c->covariance[i * n + k];
+    for (size_t k = 0; k < i; k++) cma->covariance[k * n + i] = cma->covariance[i * n + k];
 }
 
 /* Decomposes the covariance matrix. False: its condition is too large, or it is no covariance. */
-static bool decompose(strut_cma *c) {
-  size_t n = c->n;
+static bool decompose(strut_cma *cma) {
+  size_t n = cma->n;
   double least = (double)INFINITY, most = 0.0;
-  memcpy(c->axes, c->covariance, n * n * sizeof *c->axes);
-  if (!strut_eigen(c->axes, (int32_t)n, c->length, c->work)) return false;
+  memcpy(cma->axes, cma->covariance, n * n * sizeof *cma->axes);
+  if (!strut_eigen(cma->axes, (int32_t)n, cma->length, cma->work)) return false;
   for (size_t k = 0; k < n; k++) {
-    least = fmin(least, c->length[k]);
-    most = fmax(most, c->length[k]);
-    c->length[k] = sqrt(fmax(c->length[k], 0.0));
+    least = fmin(least, cma->length[k]);
+    most = fmax(most, cma->length[k]);
+    cma->length[k] = sqrt(fmax(cma->length[k], 0.0));
   }
   return least > 0.0 && most < MOST_CONDITION * least;
 }
 
 /* Bounds what mirrored points cannot show: a distribution wider than the box. */
-static void limit_width(strut_cma *c) {
+static void limit_width(strut_cma *cma) {
   double widest = 0.0;
-  for (size_t i = 0; i < c->n; i++) widest = fmax(widest, strut_cma_deviation(c, i));
-  if (widest > WIDEST) c->sigma *= WIDEST / widest;
+  for (size_t i = 0; i < cma->n; i++) widest = fmax(widest, strut_cma_deviation(cma, i));
+  if (widest > WIDEST) cma->sigma *= WIDEST / widest;
 }
 
 static double median(const double *values, size_t count, double *sorted) {
@@ -331,63 +333,63 @@ static double median(const double *values, size_t count, double *sorted) {
   return sorted[count / 2];
 }
 
-static bool is_narrow(const strut_cma *c) {
-  for (size_t i = 0; i < c->n; i++)
-    if (strut_cma_deviation(c, i) > c->point_tolerance) return false;
+static bool is_narrow(const strut_cma *cma) {
+  for (size_t i = 0; i < cma->n; i++)
+    if (strut_cma_deviation(cma, i) > cma->point_tolerance) return false;
   return true;
 }
 
 /* Do the best values of the latest generations and all values of this one agree? */
-static bool is_flat(const strut_cma *c) {
-  size_t wanted = 10 + (30 * c->n + c->population - 1) / c->population;
-  if (c->history_count < wanted) return false;
-  double low = c->order[0].value, high = c->order[c->population - 1].value;
-  for (size_t i = c->history_count - wanted; i < c->history_count; i++) {
-    low = fmin(low, c->history[i]);
-    high = fmax(high, c->history[i]);
+static bool is_flat(const strut_cma *cma) {
+  size_t wanted = 10 + (30 * cma->n + cma->population - 1) / cma->population;
+  if (cma->history_count < wanted) return false;
+  double low = cma->order[0].value, high = cma->order[cma->population - 1].value;
+  for (size_t i = cma->history_count - wanted; i < cma->history_count; i++) {
+    low = fmin(low, cma->history[i]);
+    high = fmax(high, cma->history[i]);
   }
-  return low == high || high - low <= c->value_tolerance; /* also where all are infinite */
+  return low == high || high - low <= cma->value_tolerance; /* also where all are infinite */
 }
 
 /* Have the medians of the first and the last twenty generations of a long stretch come no closer to a
  * minimum? */
-static bool is_stagnant(const strut_cma *c) {
+static bool is_stagnant(const strut_cma *cma) {
   double sorted[20];
-  if (c->history_count < c->history_capacity) return false;
-  double before = median(c->history, 20, sorted);
-  return median(&c->history[c->history_count - 20], 20, sorted) >= before;
+  if (cma->history_count < cma->history_capacity) return false;
+  double before = median(cma->history, 20, sorted);
+  return median(&cma->history[cma->history_count - 20], 20, sorted) >= before;
 }
 
-static void remember(strut_cma *c) {
-  if (c->history_count == c->history_capacity) {
-    c->history_count--;
-    memmove(c->history, c->history + 1, c->history_count * sizeof *c->history);
+static void remember(strut_cma *cma) {
+  if (cma->history_count == cma->history_capacity) {
+    cma->history_count--;
+    memmove(cma->history, cma->history + 1, cma->history_count * sizeof *cma->history);
   }
-  c->history[c->history_count++] = c->order[0].value;
+  cma->history[cma->history_count++] = cma->order[0].value;
 }
 
-static strut_cma_stop find_stop(const strut_cma *c, bool decomposed) {
-  if (c->has_target && c->best_value <= c->target) return STRUT_CMA_TARGET;
-  if (c->evaluations >= c->most_evaluations) return STRUT_CMA_EVALUATIONS;
+static strut_cma_stop find_stop(const strut_cma *cma, bool decomposed) {
+  if (cma->has_target && cma->best_value <= cma->target) return STRUT_CMA_TARGET;
+  if (cma->evaluations >= cma->most_evaluations) return STRUT_CMA_EVALUATIONS;
   if (!decomposed) return STRUT_CMA_CONDITION;
-  if (is_narrow(c)) return STRUT_CMA_POINT;
-  if (is_flat(c)) return STRUT_CMA_FLAT;
-  return is_stagnant(c) ? STRUT_CMA_STAGNANT : STRUT_CMA_GOES_ON;
+  if (is_narrow(cma)) return STRUT_CMA_POINT;
+  if (is_flat(cma)) return STRUT_CMA_FLAT;
+  return is_stagnant(cma) ? STRUT_CMA_STAGNANT : STRUT_CMA_GOES_ON;
 }
 
-void strut_cma_tell(strut_cma *c, const double *values) {
+void strut_cma_tell(strut_cma *cma, const double *values) {
   bool decomposed = true;
-  strut_cma_ask(c);
-  rank_points(c, values);
-  c->evaluations += (int64_t)c->population;
-  remember(c);
-  if (isfinite(c->order[0].value)) { /* else nothing is known of this generation */
-    double open = move_mean(c);
-    adapt_covariance(c, open);
-    if ((c->generation + 1) % c->refresh == 0) decomposed = decompose(c);
-    limit_width(c);
+  strut_cma_ask(cma);
+  rank_points(cma, values);
+  cma->evaluations += (int64_t)cma->population;
+  remember(cma);
+  if (isfinite(cma->order[0].value)) { /* else nothing is known of this generation */
+    double open = move_mean(cma);
+    adapt_covariance(cma, open);
+    if ((cma->generation + 1) % cma->refresh == 0) decomposed = decompose(cma);
+    limit_width(cma);
   }
-  c->generation++;
-  c->asked = false;
-  c->stop = find_stop(c, decomposed);
+  cma->generation++;
+  cma->asked = false;
+  cma->stop = find_stop(cma, decomposed);
 }

@@ -21,12 +21,12 @@ static size_t rank_of(const strut_sweep_plan *plan, size_t column) {
 }
 
 /* The columns of a program become ranks, once the table is known. */
-static bool resolve(const strut_sweep_plan *plan, strut_search_formula *f) {
-  if (f->program.length > MOST || f->program.depth > MOST) return false;
-  for (size_t i = 0; i < f->program.length; i++) {
-    strut_instruction *p = &f->program.program[i];
-    if (p->operation != STRUT_OPERATION_COLUMN) continue;
-    p->column.item = (int32_t)rank_of(plan, (size_t)p->column.item);
+static bool resolve(const strut_sweep_plan *plan, strut_search_formula *formula) {
+  if (formula->program.length > MOST || formula->program.depth > MOST) return false;
+  for (size_t i = 0; i < formula->program.length; i++) {
+    strut_instruction *instruction = &formula->program.program[i];
+    if (instruction->operation != STRUT_OPERATION_COLUMN) continue;
+    instruction->column.item = (int32_t)rank_of(plan, (size_t)instruction->column.item);
   }
   return true;
 }
@@ -36,11 +36,11 @@ strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error
   bool two = search->second.text != NULL;
   bool fine = resolve(plan, &search->goal) && (!two || resolve(plan, &search->second));
   for (size_t i = 0; i < search->condition_count && fine; i++) {
-    strut_search_condition *c = &search->conditions[i];
-    if (c->word)
-      c->column = rank_of(plan, c->column);
+    strut_search_condition *condition = &search->conditions[i];
+    if (condition->word)
+      condition->column = rank_of(plan, condition->column);
     else
-      fine = resolve(plan, &c->left) && resolve(plan, &c->right);
+      fine = resolve(plan, &condition->left) && resolve(plan, &condition->right);
   }
   if (!fine) return strut_fail(error, STRUT_USAGE, "an expression of the search is too long");
   const char *unit = search->second.program.unit;
@@ -51,25 +51,25 @@ strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error
   return STRUT_OK;
 }
 
-static double evaluate(const strut_search_formula *f, const double *numbers) {
+static double evaluate(const strut_search_formula *formula, const double *numbers) {
   size_t index[MOST];
   double stack[MOST];
-  for (size_t i = 0; i < f->program.length; i++)
-    index[i] = f->program.program[i].operation == STRUT_OPERATION_COLUMN
-                   ? (size_t)f->program.program[i].column.item
+  for (size_t i = 0; i < formula->program.length; i++)
+    index[i] = formula->program.program[i].operation == STRUT_OPERATION_COLUMN
+                   ? (size_t)formula->program.program[i].column.item
                    : 0;
-  return strut_quantity_program_evaluate(&f->program, index, numbers, stack, NULL);
+  return strut_quantity_program_evaluate(&formula->program, index, numbers, stack, NULL);
 }
 
-static double broken_by(const strut_search_condition *c, const double *numbers,
+static double broken_by(const strut_search_condition *condition, const double *numbers,
                         const char (*words)[STRUT_SLOT_WORD]) {
-  if (c->word) {
-    bool same = strcmp(words[c->column], c->word) == 0;
-    return same == (c->relation == STRUT_SEARCH_IS) ? 0.0 : 1.0;
+  if (condition->word) {
+    bool same = strcmp(words[condition->column], condition->word) == 0;
+    return same == (condition->relation == STRUT_SEARCH_IS) ? 0.0 : 1.0;
   }
-  double left = evaluate(&c->left, numbers), right = evaluate(&c->right, numbers);
+  double left = evaluate(&condition->left, numbers), right = evaluate(&condition->right, numbers);
   double size = fabs(right) > 0.0 ? fabs(right) : 1.0;
-  double excess = (c->relation == STRUT_SEARCH_BELOW ? left - right : right - left) / size;
+  double excess = (condition->relation == STRUT_SEARCH_BELOW ? left - right : right - left) / size;
   return isfinite(excess) ? excess : 1.0;
 }
 
@@ -111,14 +111,15 @@ static bool has_values(const strut_sweep_plan *plan, const strut_result_slot *ro
   return same;
 }
 
-bool strut_search_better(const strut_study_search *search, const strut_search_point *a,
-                         const strut_search_point *b) {
-  bool known = a->evaluation >= 0 && !isnan(a->objective);
-  bool other = b->evaluation >= 0 && !isnan(b->objective);
+bool strut_search_better(const strut_study_search *search, const strut_search_point *first,
+                         const strut_search_point *second) {
+  bool known = first->evaluation >= 0 && !isnan(first->objective);
+  bool other = second->evaluation >= 0 && !isnan(second->objective);
   if (!known || !other) return known && !other;
-  if (a->violation != b->violation && (a->violation > 0.0 || b->violation > 0.0))
-    return a->violation < b->violation;
-  return search->maximise ? a->objective > b->objective : a->objective < b->objective;
+  if (first->violation != second->violation && (first->violation > 0.0 || second->violation > 0.0))
+    return first->violation < second->violation;
+  return search->maximise ? first->objective > second->objective
+                          : first->objective < second->objective;
 }
 
 strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots, int64_t outer,
@@ -174,127 +175,134 @@ void strut_search_values(const strut_sweep_plan *plan, int64_t point,
 static const double BESIDE = 0.01, AGREEING = 0.01;
 
 /* A value beside another. False: there is none. */
-static bool beside(const strut_search_variable *v, strut_study_value at, int side,
+static bool beside(const strut_search_variable *variable, strut_study_value at, int side,
                    strut_study_value *value) {
-  double number = strut_search_number(v, at), step = BESIDE;
-  if (v->choice_count) return false;
-  if (v->integer) step = 1.0 / (double)strut_search_count(v);
+  double number = strut_search_number(variable, at), step = BESIDE;
+  if (variable->choice_count) return false;
+  if (variable->integer) step = 1.0 / (double)strut_search_count(variable);
   number += side * step;
-  if (!v->wraps && (number < 0.0 || number > 1.0)) return false;
-  *value = strut_search_value(v, number);
+  if (!variable->wraps && (number < 0.0 || number > 1.0)) return false;
+  *value = strut_search_value(variable, number);
   return !strut_search_same(*value, at);
 }
 
 /* The best search of an outer point, or SIZE_MAX. */
-static size_t best_of(const strut_search_batch *b, const strut_search_result *r, int64_t outer) {
-  const strut_study_search *search = b->plan->study->search;
+static size_t best_of(const strut_search_batch *batch, const strut_search_result *result,
+                      int64_t outer) {
+  const strut_study_search *search = batch->plan->study->search;
   size_t best = SIZE_MAX;
-  for (size_t i = 0; i < r->outcome_count; i++) {
-    const strut_search_outcome *o = &r->outcomes[i];
-    if (o->outer != outer || o->best.evaluation < 0) continue;
-    if (best == SIZE_MAX || strut_search_better(search, &o->best, &r->outcomes[best].best))
+  for (size_t i = 0; i < result->outcome_count; i++) {
+    const strut_search_outcome *outcome = &result->outcomes[i];
+    if (outcome->outer != outer || outcome->best.evaluation < 0) continue;
+    if (best == SIZE_MAX ||
+        strut_search_better(search, &outcome->best, &result->outcomes[best].best))
       best = i;
   }
   return best;
 }
 
-static int32_t count_agreeing(const strut_search_result *r, size_t best) {
-  const strut_search_outcome *first = &r->outcomes[best];
+static int32_t count_agreeing(const strut_search_result *result, size_t best) {
+  const strut_search_outcome *first = &result->outcomes[best];
   double size = strut_search_size(first);
   int32_t count = 0;
   if (size == 0.0) size = first->most - first->least;
-  for (size_t i = 0; i < r->outcome_count; i++) {
-    const strut_search_outcome *o = &r->outcomes[i];
-    double apart = fabs(o->best.objective - first->best.objective);
-    bool alike = (o->best.violation > 0.0) == (first->best.violation > 0.0);
-    count +=
-        o->outer == first->outer && o->best.evaluation >= 0 && alike && apart <= AGREEING * size;
+  for (size_t i = 0; i < result->outcome_count; i++) {
+    const strut_search_outcome *outcome = &result->outcomes[i];
+    double apart = fabs(outcome->best.objective - first->best.objective);
+    bool alike = (outcome->best.violation > 0.0) == (first->best.violation > 0.0);
+    count += outcome->outer == first->outer && outcome->best.evaluation >= 0 && alike &&
+             apart <= AGREEING * size;
   }
   return count;
 }
 
-static strut_study_value *copy_values(strut_search_batch *b, strut_search_result *r,
+static strut_study_value *copy_values(strut_search_batch *batch, strut_search_result *result,
                                       const strut_study_value *values) {
-  size_t n = b->plan->study->search->variable_count;
-  strut_study_value *copy = strut_arena_allocate(&r->arena, n, sizeof *copy);
+  size_t n = batch->plan->study->search->variable_count;
+  strut_study_value *copy = strut_arena_allocate(&result->arena, n, sizeof *copy);
   if (copy) memcpy(copy, values, n * sizeof *copy);
   return copy;
 }
 
 /* Lists the points to be computed about a best one. False: no memory. */
-static bool list_points(strut_search_batch *b, strut_search_result *r, strut_search_worth *w) {
-  const strut_study_search *search = b->plan->study->search;
-  const strut_search_outcome *o = &r->outcomes[w->best];
+static bool list_points(strut_search_batch *batch, strut_search_result *result,
+                        strut_search_worth *worth) {
+  const strut_study_search *search = batch->plan->study->search;
+  const strut_search_outcome *outcome = &result->outcomes[worth->best];
   size_t n = search->variable_count;
-  w->agreeing = count_agreeing(r, w->best);
-  w->checked = b->plan->study->compute == STRUT_COMPUTE_RUN;
-  w->bound = strut_arena_allocate(&r->arena, n, sizeof *w->bound);
-  w->neighbours = strut_arena_allocate(&r->arena, n, sizeof *w->neighbours);
-  if (!w->bound || !w->neighbours) return false;
-  w->check.values = o->best.values;
-  bool fine = !w->checked || strut_search_batch_add(b, o->outer, b->first_check, o->best.values);
+  worth->agreeing = count_agreeing(result, worth->best);
+  worth->checked = batch->plan->study->compute == STRUT_COMPUTE_RUN;
+  worth->bound = strut_arena_allocate(&result->arena, n, sizeof *worth->bound);
+  worth->neighbours = strut_arena_allocate(&result->arena, n, sizeof *worth->neighbours);
+  if (!worth->bound || !worth->neighbours) return false;
+  worth->check.values = outcome->best.values;
+  bool fine = !worth->checked || strut_search_batch_add(batch, outcome->outer, batch->first_check,
+                                                        outcome->best.values);
   for (size_t i = 0; i < n && fine; i++) {
-    w->bound[i] = strut_search_bound(&search->variables[i], o->best.values[i]);
+    worth->bound[i] = strut_search_bound(&search->variables[i], outcome->best.values[i]);
     for (int side = 0; side < 2 && fine; side++) {
-      strut_search_neighbour *near = &w->neighbours[i][side];
+      strut_search_neighbour *near = &worth->neighbours[i][side];
       strut_study_value value;
       near->point.objective = (double)NAN;
-      near->there = beside(&search->variables[i], o->best.values[i], side ? 1 : -1, &value);
+      near->there = beside(&search->variables[i], outcome->best.values[i], side ? 1 : -1, &value);
       if (!near->there) continue;
-      strut_study_value *values = copy_values(b, r, o->best.values);
+      strut_study_value *values = copy_values(batch, result, outcome->best.values);
       if (!values) return false;
       values[i] = value;
       near->point.values = values;
-      fine =
-          strut_search_batch_add(b, o->outer, b->first_check + 1 + 2 * (int64_t)i + side, values);
+      fine = strut_search_batch_add(batch, outcome->outer,
+                                    batch->first_check + 1 + 2 * (int64_t)i + side, values);
     }
   }
   return fine;
 }
 
-static strut_status judge(strut_search_batch *b, int64_t outer, int64_t row,
+static strut_status judge(strut_search_batch *batch, int64_t outer, int64_t row,
                           strut_search_point *point) {
   double broken[STRUT_SEARCH_MOST_CONDITIONS];
-  return strut_search_judge(b->plan, b->points.slots, outer, row, point, broken, b->points.error);
+  return strut_search_judge(batch->plan, batch->points.slots, outer, row, point, broken,
+                            batch->points.error);
 }
 
-static strut_status judge_points(strut_search_batch *b, strut_search_result *r,
-                                 strut_search_worth *w) {
-  int64_t outer = r->outcomes[w->best].outer;
+static strut_status judge_points(strut_search_batch *batch, strut_search_result *result,
+                                 strut_search_worth *worth) {
+  int64_t outer = result->outcomes[worth->best].outer;
   strut_status status = STRUT_OK;
-  if (w->checked) status = judge(b, outer, b->first_check, &w->check);
-  for (size_t i = 0; i < b->plan->study->search->variable_count && !status; i++)
+  if (worth->checked) status = judge(batch, outer, batch->first_check, &worth->check);
+  for (size_t i = 0; i < batch->plan->study->search->variable_count && !status; i++)
     for (int side = 0; side < 2 && !status; side++)
-      if (w->neighbours[i][side].there)
-        status = judge(b, outer, b->first_check + 1 + 2 * (int64_t)i + side,
-                       &w->neighbours[i][side].point);
+      if (worth->neighbours[i][side].there)
+        status = judge(batch, outer, batch->first_check + 1 + 2 * (int64_t)i + side,
+                       &worth->neighbours[i][side].point);
   return status;
 }
 
-strut_status strut_search_find_worth(strut_search_batch *b, strut_search_result *r) {
-  const strut_search_layout l = strut_search_layout_of(b->plan);
-  r->worths = strut_arena_allocate(&r->arena, (size_t)l.outers, sizeof *r->worths);
-  if (!r->worths) return strut_no_memory(b->points.error, "");
-  if (r->front_count) return STRUT_OK; /* there is no one best */
+strut_status strut_search_find_worth(strut_search_batch *batch, strut_search_result *result) {
+  const strut_search_layout l = strut_search_layout_of(batch->plan);
+  result->worths = strut_arena_allocate(&result->arena, (size_t)l.outers, sizeof *result->worths);
+  if (!result->worths) return strut_no_memory(batch->points.error, "");
+  if (result->front_count) return STRUT_OK; /* there is no one best */
   for (int64_t outer = 0; outer < l.outers; outer++) {
-    size_t best = best_of(b, r, outer);
+    size_t best = best_of(batch, result, outer);
     if (best == SIZE_MAX) continue;
-    strut_search_worth *w = &r->worths[r->worth_count++];
-    w->best = best;
-    if (!list_points(b, r, w)) return strut_no_memory(b->points.error, "");
+    strut_search_worth *worth = &result->worths[result->worth_count++];
+    worth->best = best;
+    if (!list_points(batch, result, worth)) return strut_no_memory(batch->points.error, "");
   }
-  strut_status status = strut_search_batch_run(b);
-  for (size_t i = 0; i < r->worth_count && !status; i++) status = judge_points(b, r, &r->worths[i]);
+  strut_status status = strut_search_batch_run(batch);
+  for (size_t i = 0; i < result->worth_count && !status; i++)
+    status = judge_points(batch, result, &result->worths[i]);
   return status;
 }
 
 /* The points of two goals that no other point is better than in both. See search_parts.h. */
 
 /* Is a at least as good as b in both goals? */
-static bool covers(const strut_study_search *search, const strut_search_point *a,
-                   const strut_search_point *b) {
-  if (search->maximise) return a->objective >= b->objective && a->second >= b->second;
-  return a->objective <= b->objective && a->second <= b->second;
+static bool covers(const strut_study_search *search, const strut_search_point *first,
+                   const strut_search_point *second) {
+  if (search->maximise)
+    return first->objective >= second->objective && first->second >= second->second;
+  return first->objective <= second->objective && first->second <= second->second;
 }
 
 static bool make_room(strut_search_front *front, strut_arena *arena) {

@@ -59,31 +59,31 @@ bool strut_search_knows_conditions(strut_search_method method) {
 }
 
 /* Asks for a point, unless it is the latest one. */
-static double look_at(nlopt_search *s, const double *point) {
-  size_t n = s->task->dimension;
-  if (s->asked > 0 && memcmp(point, s->last, n * sizeof *point) == 0) {
-    if (++s->stuck > MOST_STUCK && s->opt) nlopt_force_stop(s->opt);
-    return s->value;
+static double look_at(nlopt_search *self, const double *point) {
+  size_t n = self->task->dimension;
+  if (self->asked > 0 && memcmp(point, self->last, n * sizeof *point) == 0) {
+    if (++self->stuck > MOST_STUCK && self->opt) nlopt_force_stop(self->opt);
+    return self->value;
   }
-  s->stuck = 0;
-  if (s->ended || s->asked >= s->most) {
-    if (s->opt) nlopt_force_stop(s->opt);
-    return s->value;
+  self->stuck = 0;
+  if (self->ended || self->asked >= self->most) {
+    if (self->opt) nlopt_force_stop(self->opt);
+    return self->value;
   }
-  double value = s->value;
-  if (!s->asker->ask(s->asker->context, 1, point, &value, s->broken)) {
-    s->ended = true;
-    if (s->opt) nlopt_force_stop(s->opt);
-    return s->value;
+  double value = self->value;
+  if (!self->asker->ask(self->asker->context, 1, point, &value, self->broken)) {
+    self->ended = true;
+    if (self->opt) nlopt_force_stop(self->opt);
+    return self->value;
   }
-  s->asked++;
-  memcpy(s->last, point, n * sizeof *point);
-  s->value = value;
+  self->asked++;
+  memcpy(self->last, point, n * sizeof *point);
+  self->value = value;
   double excess = 0.0;
-  for (size_t i = 0; i < s->task->conditions; i++) excess = fmax(excess, s->broken[i]);
-  if (excess <= 0.0 && value < s->least) {
-    s->least = value;
-    memcpy(s->best, point, n * sizeof *point);
+  for (size_t i = 0; i < self->task->conditions; i++) excess = fmax(excess, self->broken[i]);
+  if (excess <= 0.0 && value < self->least) {
+    self->least = value;
+    memcpy(self->best, point, n * sizeof *point);
   }
   return value;
 }
@@ -95,65 +95,65 @@ static double objective(unsigned n, const double *point, double *gradient, void 
 
 static void conditions(unsigned m, double *result, unsigned n, const double *point,
                        double *gradient, void *context) {
-  nlopt_search *s = context;
+  nlopt_search *self = context;
   (void)n, (void)gradient;
-  look_at(s, point);
-  memcpy(result, s->broken, m * sizeof *result);
+  look_at(self, point);
+  memcpy(result, self->broken, m * sizeof *result);
 }
 
 /* Bounds: what wraps may go on beyond them, where a method walks from a point. */
-static bool set_bounds(nlopt_search *s, bool global) {
-  size_t n = s->task->dimension;
+static bool set_bounds(nlopt_search *self, bool global) {
+  size_t n = self->task->dimension;
   double *bound = strut_allocate(2 * n, sizeof *bound);
   if (!bound) return false;
   for (size_t i = 0; i < n; i++) {
-    bool beyond = s->task->wraps[i] && !global;
-    bound[i] = beyond ? s->best[i] - 1.0 : 0.0;
-    bound[n + i] = beyond ? s->best[i] + 1.0 : 1.0;
+    bool beyond = self->task->wraps[i] && !global;
+    bound[i] = beyond ? self->best[i] - 1.0 : 0.0;
+    bound[n + i] = beyond ? self->best[i] + 1.0 : 1.0;
   }
-  bool fine =
-      nlopt_set_lower_bounds(s->opt, bound) >= 0 && nlopt_set_upper_bounds(s->opt, bound + n) >= 0;
+  bool fine = nlopt_set_lower_bounds(self->opt, bound) >= 0 &&
+              nlopt_set_upper_bounds(self->opt, bound + n) >= 0;
   strut_release(bound);
   return fine;
 }
 
 /* The population of a global method: the usual one, or less where evaluations are few. */
-static unsigned population(const nlopt_search *s, strut_search_method method) {
-  double n = (double)s->task->dimension, few = floor((double)s->most / 3.0);
+static unsigned population(const nlopt_search *self, strut_search_method method) {
+  double n = (double)self->task->dimension, few = floor((double)self->most / 3.0);
   double usual = method == STRUT_SEARCH_CRS2 ? 10.0 * (n + 1.0) : 20.0 * (n + 1.0);
   return (unsigned)fmax(n + 3.0, fmin(usual, few));
 }
 
 /* Runs one method from s->best. False: no memory. */
-static bool run(nlopt_search *s, strut_search_method method, double first_step, int64_t most) {
+static bool run(nlopt_search *self, strut_search_method method, double first_step, int64_t most) {
   const struct method_row *row = &rows[method];
-  size_t n = s->task->dimension, m = s->task->conditions;
+  size_t n = self->task->dimension, m = self->task->conditions;
   double value;
-  s->opt = nlopt_create(row->algorithm, (unsigned)n);
+  self->opt = nlopt_create(row->algorithm, (unsigned)n);
   double *point = strut_allocate(n, sizeof *point);
-  bool fine = s->opt && point && set_bounds(s, row->global);
-  s->asked = s->stuck = 0;
-  s->most = most;
+  bool fine = self->opt && point && set_bounds(self, row->global);
+  self->asked = self->stuck = 0;
+  self->most = most;
   if (fine) {
-    memcpy(point, s->best, n * sizeof *point);
-    nlopt_set_min_objective(s->opt, objective, s);
+    memcpy(point, self->best, n * sizeof *point);
+    nlopt_set_min_objective(self->opt, objective, self);
     if (m) {
       double *tolerance = strut_allocate(m, sizeof *tolerance);
-      fine = tolerance &&
-             nlopt_add_inequality_mconstraint(s->opt, (unsigned)m, conditions, s, tolerance) >= 0;
+      fine = tolerance && nlopt_add_inequality_mconstraint(self->opt, (unsigned)m, conditions, self,
+                                                           tolerance) >= 0;
       strut_release(tolerance);
     }
-    nlopt_set_xtol_abs1(s->opt, FINEST);
-    if (!row->global) nlopt_set_initial_step1(s->opt, first_step);
+    nlopt_set_xtol_abs1(self->opt, FINEST);
+    if (!row->global) nlopt_set_initial_step1(self->opt, first_step);
     if (method == STRUT_SEARCH_CRS2 || method == STRUT_SEARCH_ISRES)
-      nlopt_set_population(s->opt, population(s, method));
+      nlopt_set_population(self->opt, population(self, method));
   }
   if (fine) {
-    nlopt_srand(s->task->seed); /* of this thread */
-    fine = nlopt_optimize(s->opt, point, &value) != NLOPT_OUT_OF_MEMORY;
+    nlopt_srand(self->task->seed); /* of this thread */
+    fine = nlopt_optimize(self->opt, point, &value) != NLOPT_OUT_OF_MEMORY;
   }
-  if (s->opt) nlopt_destroy(s->opt);
-  s->opt = NULL;
+  if (self->opt) nlopt_destroy(self->opt);
+  self->opt = NULL;
   strut_release(point);
   return fine;
 }
@@ -162,65 +162,68 @@ static bool run(nlopt_search *s, strut_search_method method, double first_step, 
  * Asks at once for the start and for points spread evenly over the box, together a share of the evaluations, and
  * keeps them in s->spread. Controlled random search alone, which begins at random, misses a narrow basin more often.
  */
-static bool spread_points(nlopt_search *s, double share) {
-  size_t n = s->task->dimension;
-  const strut_search_spread sequence = strut_search_spread_begin(n, s->task->seed);
+static bool spread_points(nlopt_search *self, double share) {
+  size_t n = self->task->dimension;
+  const strut_search_spread sequence = strut_search_spread_begin(n, self->task->seed);
   double usual = 20.0 * ((double)n + 1.0);
-  int64_t count = (int64_t)fmax(fmin(usual, floor(share * (double)s->task->evaluations)), 1.0);
-  s->spread = strut_allocate((size_t)count * n, sizeof *s->spread);
-  s->spread_values = strut_allocate((size_t)count, sizeof *s->spread_values);
-  if (!s->spread || !s->spread_values) return false;
+  int64_t count = (int64_t)fmax(fmin(usual, floor(share * (double)self->task->evaluations)), 1.0);
+  self->spread = strut_allocate((size_t)count * n, sizeof *self->spread);
+  self->spread_values = strut_allocate((size_t)count, sizeof *self->spread_values);
+  if (!self->spread || !self->spread_values) return false;
   for (int64_t k = 0; k < count; k++)
     for (size_t i = 0; i < n; i++)
-      s->spread[(size_t)k * n + i] =
-          k == 0 ? s->task->start[i] : strut_search_spread_at(&sequence, k, i);
-  s->spread_count = (size_t)count;
-  s->asked = count;
-  s->ended = !s->asker->ask(s->asker->context, s->spread_count, s->spread, s->spread_values, NULL);
-  for (size_t k = 0; k < s->spread_count && !s->ended; k++) {
-    if (s->spread_values[k] >= s->least) continue;
-    s->least = s->spread_values[k];
-    memcpy(s->best, s->spread + k * n, n * sizeof *s->best);
+      self->spread[(size_t)k * n + i] =
+          k == 0 ? self->task->start[i] : strut_search_spread_at(&sequence, k, i);
+  self->spread_count = (size_t)count;
+  self->asked = count;
+  self->ended = !self->asker->ask(self->asker->context, self->spread_count, self->spread,
+                                  self->spread_values, NULL);
+  for (size_t k = 0; k < self->spread_count && !self->ended; k++) {
+    if (self->spread_values[k] >= self->least) continue;
+    self->least = self->spread_values[k];
+    memcpy(self->best, self->spread + k * n, n * sizeof *self->best);
   }
   return true;
 }
 
 /* Is the point within APART of another one, in every number? */
-static bool is_near(const nlopt_search *s, const double *point, const double *other) {
+static bool is_near(const nlopt_search *self, const double *point, const double *other) {
   double largest = 0.0;
-  for (size_t i = 0; i < s->task->dimension; i++) {
+  for (size_t i = 0; i < self->task->dimension; i++) {
     double apart = fabs(point[i] - other[i]);
-    if (s->task->wraps[i]) apart = fmin(apart, 1.0 - apart);
+    if (self->task->wraps[i]) apart = fmin(apart, 1.0 - apart);
     largest = fmax(largest, apart);
   }
   return largest <= APART;
 }
 
 /* The best of the spread points that is near to none of `others`; NULL: there is none. */
-static const double *best_apart(const nlopt_search *s, const double *const *others, size_t count) {
-  size_t n = s->task->dimension;
-  size_t best = s->spread_count;
-  for (size_t k = 0; k < s->spread_count; k++) {
+static const double *best_apart(const nlopt_search *self, const double *const *others,
+                                size_t count) {
+  size_t n = self->task->dimension;
+  size_t best = self->spread_count;
+  for (size_t k = 0; k < self->spread_count; k++) {
     bool near = false;
-    for (size_t i = 0; i < count && !near; i++) near = is_near(s, s->spread + k * n, others[i]);
-    if (!near && (best == s->spread_count || s->spread_values[k] < s->spread_values[best]))
+    for (size_t i = 0; i < count && !near; i++)
+      near = is_near(self, self->spread + k * n, others[i]);
+    if (!near && (best == self->spread_count || self->spread_values[k] < self->spread_values[best]))
       best = k;
   }
-  return best < s->spread_count ? s->spread + best * n : NULL;
+  return best < self->spread_count ? self->spread + best * n : NULL;
 }
 
 /* A descent from a point. s->best becomes the best of what it was and of the descent. */
-static bool descend(nlopt_search *s, const double *from, double first_step, int64_t most,
+static bool descend(nlopt_search *self, const double *from, double first_step, int64_t most,
                     double *before) {
-  size_t n = s->task->dimension;
-  double least = s->least;
-  memcpy(before, s->best, n * sizeof *before);
-  memcpy(s->best, from, n * sizeof *from);
-  s->least = HUGE_VAL;
-  bool fine = run(s, STRUT_SEARCH_SBPLX, first_step, most);
-  if (least <= s->least) {
-    memcpy(s->best, before, n * sizeof *before);
-    s->least = least;
+  size_t n = self->task->dimension;
+  double least = self->least;
+  memcpy(before, self->best, n * sizeof *before);
+  memcpy(self->best, from, n * sizeof *from);
+  self->least = HUGE_VAL;
+  bool fine = run(self, STRUT_SEARCH_SBPLX, first_step, most);
+  if (least <= self->least) {
+    memcpy(self->best, before, n * sizeof *before);
+    self->least = least;
   }
   return fine;
 }
@@ -229,26 +232,26 @@ static bool descend(nlopt_search *s, const double *from, double first_step, int6
  * Descends from the best spread points that lie apart, and continues from the better end: a narrow basin may be
  * deeper than the one with the best of the spread points.
  */
-static bool descend_from_spread(nlopt_search *s) {
-  size_t n = s->task->dimension, count = 0;
+static bool descend_from_spread(nlopt_search *self) {
+  size_t n = self->task->dimension, count = 0;
   const double *from[DESCENTS];
   double *before = strut_allocate(n, sizeof *before);
   bool fine = before != NULL;
-  while (count < DESCENTS && (from[count] = best_apart(s, from, count))) count++;
-  double rest = (double)(s->task->evaluations - s->asked) * DESCENT_SHARE;
+  while (count < DESCENTS && (from[count] = best_apart(self, from, count))) count++;
+  double rest = (double)(self->task->evaluations - self->asked) * DESCENT_SHARE;
   int64_t most = (int64_t)fmax(ceil(rest / (double)(count ? count : 1)), 1.0);
-  for (size_t i = 0; i < count && fine && !s->ended; i++)
-    fine = descend(s, from[i], REFINED_STEP, most, before);
-  if (fine && !s->ended) fine = run(s, STRUT_SEARCH_SBPLX, LAST_STEP, INT64_MAX);
+  for (size_t i = 0; i < count && fine && !self->ended; i++)
+    fine = descend(self, from[i], REFINED_STEP, most, before);
+  if (fine && !self->ended) fine = run(self, STRUT_SEARCH_SBPLX, LAST_STEP, INT64_MAX);
   strut_release(before);
   return fine;
 }
 
 /* Controlled random search, then a descent from the best point. */
-static bool search_and_descend(nlopt_search *s) {
-  double rest = (double)(s->task->evaluations - s->asked) * GLOBAL_SHARE;
-  bool fine = run(s, STRUT_SEARCH_CRS2, FIRST_STEP, (int64_t)fmax(ceil(rest), 1.0));
-  return fine && (s->ended || run(s, STRUT_SEARCH_SBPLX, REFINED_STEP, INT64_MAX));
+static bool search_and_descend(nlopt_search *self) {
+  double rest = (double)(self->task->evaluations - self->asked) * GLOBAL_SHARE;
+  bool fine = run(self, STRUT_SEARCH_CRS2, FIRST_STEP, (int64_t)fmax(ceil(rest), 1.0));
+  return fine && (self->ended || run(self, STRUT_SEARCH_SBPLX, REFINED_STEP, INT64_MAX));
 }
 
 bool strut_search_optimise_by_nlopt(const strut_search_task *task,

@@ -75,13 +75,13 @@ double strut_search_spread_at(const strut_search_spread *spread, int64_t i, size
   return at - floor(at);
 }
 
-int64_t strut_search_count(const strut_search_variable *v) {
-  if (v->choice_count) return (int64_t)v->choice_count;
-  return v->integer ? (int64_t)(floor(v->to) - ceil(v->from)) + 1 : 0;
+int64_t strut_search_count(const strut_search_variable *variable) {
+  if (variable->choice_count) return (int64_t)variable->choice_count;
+  return variable->integer ? (int64_t)(floor(variable->to) - ceil(variable->from)) + 1 : 0;
 }
 
-static double bring_in(const strut_search_variable *v, double number) {
-  if (v->wraps) number -= floor(number);
+static double bring_in(const strut_search_variable *variable, double number) {
+  if (variable->wraps) number -= floor(number);
   return fmin(fmax(number, 0.0), 1.0); /* NaN becomes 0 */
 }
 
@@ -92,31 +92,31 @@ static int64_t part_of(double number, int64_t count) {
 }
 
 /* A value between the bounds, to 15 digits, so that tables have round numbers where they are. */
-static double between(const strut_search_variable *v, double value) {
-  value = strut_grid_rounded(value, fmax(fabs(v->from), fabs(value)));
-  return fmin(fmax(value, v->from), v->to);
+static double between(const strut_search_variable *variable, double value) {
+  value = strut_grid_rounded(value, fmax(fabs(variable->from), fabs(value)));
+  return fmin(fmax(value, variable->from), variable->to);
 }
 
-strut_study_value strut_search_value(const strut_search_variable *v, double number) {
+strut_study_value strut_search_value(const strut_search_variable *variable, double number) {
   strut_study_value value = {.number = (double)NAN};
-  int64_t count = strut_search_count(v);
-  number = bring_in(v, number);
-  if (v->choice_count) {
+  int64_t count = strut_search_count(variable);
+  number = bring_in(variable, number);
+  if (variable->choice_count) {
     int64_t i = part_of(number, count);
-    if (v->word)
-      value.word = v->words[i];
+    if (variable->word)
+      value.word = variable->words[i];
     else
-      value.number = v->numbers[i];
-  } else if (v->integer) {
-    value.number = ceil(v->from) + (double)part_of(number, count);
+      value.number = variable->numbers[i];
+  } else if (variable->integer) {
+    value.number = ceil(variable->from) + (double)part_of(number, count);
   } else if (number == 0.0) {
-    value.number = v->from; /* its own bits */
+    value.number = variable->from; /* its own bits */
   } else if (number == 1.0) {
-    value.number = v->wraps ? v->from : v->to;
-  } else if (v->logarithmic) {
-    value.number = between(v, v->from * pow(v->to / v->from, number));
+    value.number = variable->wraps ? variable->from : variable->to;
+  } else if (variable->logarithmic) {
+    value.number = between(variable, variable->from * pow(variable->to / variable->from, number));
   } else {
-    value.number = between(v, v->from + (v->to - v->from) * number);
+    value.number = between(variable, variable->from + (variable->to - variable->from) * number);
   }
   return value;
 }
@@ -126,30 +126,31 @@ bool strut_search_same(strut_study_value a, strut_study_value b) {
   return a.number == b.number;
 }
 
-double strut_search_number(const strut_search_variable *v, strut_study_value value) {
-  int64_t count = strut_search_count(v);
-  if (v->choice_count) {
+double strut_search_number(const strut_search_variable *variable, strut_study_value value) {
+  int64_t count = strut_search_count(variable);
+  if (variable->choice_count) {
     int64_t i = 0;
-    while (i + 1 < count &&
-           !(v->word ? strcmp(v->words[i], value.word) == 0 : v->numbers[i] == value.number))
+    while (i + 1 < count && !(variable->word ? strcmp(variable->words[i], value.word) == 0
+                                             : variable->numbers[i] == value.number))
       i++;
     return ((double)i + 0.5) / (double)count;
   }
-  if (v->integer) return (value.number - ceil(v->from) + 0.5) / (double)count;
-  if (v->logarithmic) return log(value.number / v->from) / log(v->to / v->from);
-  return (value.number - v->from) / (v->to - v->from);
+  if (variable->integer) return (value.number - ceil(variable->from) + 0.5) / (double)count;
+  if (variable->logarithmic)
+    return log(value.number / variable->from) / log(variable->to / variable->from);
+  return (value.number - variable->from) / (variable->to - variable->from);
 }
 
-double strut_search_start(const strut_search_variable *v) {
-  strut_study_value value = {.number = v->start};
-  if (v->choice_count) value = strut_search_value(v, 0.0);
-  return strut_search_number(v, value);
+double strut_search_start(const strut_search_variable *variable) {
+  strut_study_value value = {.number = variable->start};
+  if (variable->choice_count) value = strut_search_value(variable, 0.0);
+  return strut_search_number(variable, value);
 }
 
-int strut_search_bound(const strut_search_variable *v, strut_study_value value) {
-  if (v->choice_count || v->wraps) return 0;
-  if (value.number <= (v->integer ? ceil(v->from) : v->from)) return -1;
-  return value.number >= (v->integer ? floor(v->to) : v->to) ? 1 : 0;
+int strut_search_bound(const strut_search_variable *variable, strut_study_value value) {
+  if (variable->choice_count || variable->wraps) return 0;
+  if (value.number <= (variable->integer ? ceil(variable->from) : variable->from)) return -1;
+  return value.number >= (variable->integer ? floor(variable->to) : variable->to) ? 1 : 0;
 }
 
 /*
@@ -178,11 +179,11 @@ typedef struct evolution {
   individual *all;         /* (2 size) */
 } evolution;
 
-static double share(evolution *e) { return strut_search_share(&e->state); }
+static double share(evolution *self) { return strut_search_share(&self->state); }
 
-static bool dominates(const individual *a, const individual *b) {
-  return a->value[0] <= b->value[0] && a->value[1] <= b->value[1] &&
-         (a->value[0] < b->value[0] || a->value[1] < b->value[1]);
+static bool dominates(const individual *first, const individual *second) {
+  return first->value[0] <= second->value[0] && first->value[1] <= second->value[1] &&
+         (first->value[0] < second->value[0] || first->value[1] < second->value[1]);
 }
 
 /* The number of individuals that a chain of dominations passes through before each. */
@@ -221,35 +222,35 @@ static void find_crowding(individual *all, size_t count) {
   }
 }
 
-static int by_worth(const void *a, const void *b) {
-  const individual *x = a, *y = b;
-  if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
-  if (x->crowding != y->crowding) return x->crowding > y->crowding ? -1 : 1;
-  return x->index < y->index ? -1 : 1;
+static int by_worth(const void *first, const void *second) {
+  const individual *self = first, *y = second;
+  if (self->rank != y->rank) return self->rank < y->rank ? -1 : 1;
+  if (self->crowding != y->crowding) return self->crowding > y->crowding ? -1 : 1;
+  return self->index < y->index ? -1 : 1;
 }
 
-static void sort(evolution *e, size_t count) {
+static void sort(evolution *self, size_t count) {
   for (size_t i = 0; i < count; i++) {
-    e->all[i] = (individual){.point = e->points + i * e->n, .index = i};
-    memcpy(e->all[i].value, e->values + 2 * i, sizeof e->all[i].value);
+    self->all[i] = (individual){.point = self->points + i * self->n, .index = i};
+    memcpy(self->all[i].value, self->values + 2 * i, sizeof self->all[i].value);
   }
-  rank_all(e->all, count);
-  find_crowding(e->all, count);
-  qsort(e->all, count, sizeof *e->all, by_worth);
+  rank_all(self->all, count);
+  find_crowding(self->all, count);
+  qsort(self->all, count, sizeof *self->all, by_worth);
 }
 
 /* The better half become the parents. False: no memory. */
-static bool select_parents(evolution *e) {
-  double *points = strut_allocate(e->size * e->n, sizeof *points);
-  double *values = strut_allocate(2 * e->size, sizeof *values);
+static bool select_parents(evolution *self) {
+  double *points = strut_allocate(self->size * self->n, sizeof *points);
+  double *values = strut_allocate(2 * self->size, sizeof *values);
   bool fine = points && values;
-  for (size_t i = 0; fine && i < e->size; i++) {
-    memcpy(points + i * e->n, e->all[i].point, e->n * sizeof *points);
-    memcpy(values + 2 * i, e->all[i].value, 2 * sizeof *values);
+  for (size_t i = 0; fine && i < self->size; i++) {
+    memcpy(points + i * self->n, self->all[i].point, self->n * sizeof *points);
+    memcpy(values + 2 * i, self->all[i].value, 2 * sizeof *values);
   }
   if (fine) {
-    memcpy(e->points, points, e->size * e->n * sizeof *points);
-    memcpy(e->values, values, 2 * e->size * sizeof *values);
+    memcpy(self->points, points, self->size * self->n * sizeof *points);
+    memcpy(self->values, values, 2 * self->size * sizeof *values);
   }
   strut_release(points);
   strut_release(values);
@@ -257,39 +258,41 @@ static bool select_parents(evolution *e) {
 }
 
 /* The better of two parents by chance; parents are in order. */
-static size_t choose(evolution *e) {
-  size_t a = (size_t)(share(e) * (double)e->size), b = (size_t)(share(e) * (double)e->size);
+static size_t choose(evolution *self) {
+  size_t a = (size_t)(share(self) * (double)self->size),
+         b = (size_t)(share(self) * (double)self->size);
   return a < b ? a : b;
 }
 
-static double mutate(evolution *e, double x, bool wraps) {
-  double u = share(e), power = 1.0 / (MUTATION + 1.0);
-  if (share(e) * (double)e->n > 1.0) return x;
+static double mutate(evolution *self, double x, bool wraps) {
+  double u = share(self), power = 1.0 / (MUTATION + 1.0);
+  if (share(self) * (double)self->n > 1.0) return x;
   x += u < 0.5 ? pow(2.0 * u, power) - 1.0 : 1.0 - pow(2.0 - 2.0 * u, power);
   return wraps ? x - floor(x) : fmin(fmax(x, 0.0), 1.0);
 }
 
 /* Two children behind the parents. */
-static void make_children(evolution *e, size_t at) {
-  const double *a = e->points + choose(e) * e->n, *b = e->points + choose(e) * e->n;
-  double *first = e->points + at * e->n, *second = first + e->n;
-  bool crossed = share(e) < CROSSED;
-  for (size_t i = 0; i < e->n; i++) {
-    double u = share(e), power = 1.0 / (CROSSOVER + 1.0);
+static void make_children(evolution *self, size_t at) {
+  const double *a = self->points + choose(self) * self->n,
+               *b = self->points + choose(self) * self->n;
+  double *first = self->points + at * self->n, *second = first + self->n;
+  bool crossed = share(self) < CROSSED;
+  for (size_t i = 0; i < self->n; i++) {
+    double u = share(self), power = 1.0 / (CROSSOVER + 1.0);
     double spread = u < 0.5 ? pow(2.0 * u, power) : pow(0.5 / (1.0 - u), power);
-    if (!crossed || share(e) < 0.5) spread = 1.0;
+    if (!crossed || share(self) < 0.5) spread = 1.0;
     double middle = 0.5 * (a[i] + b[i]), half = 0.5 * spread * (b[i] - a[i]);
-    first[i] = mutate(e, fmin(fmax(middle - half, 0.0), 1.0), e->task->wraps[i]);
-    second[i] = mutate(e, fmin(fmax(middle + half, 0.0), 1.0), e->task->wraps[i]);
+    first[i] = mutate(self, fmin(fmax(middle - half, 0.0), 1.0), self->task->wraps[i]);
+    second[i] = mutate(self, fmin(fmax(middle + half, 0.0), 1.0), self->task->wraps[i]);
   }
 }
 
-static void spread_points(evolution *e, size_t count) {
-  strut_search_spread spread = strut_search_spread_begin(e->n, e->task->seed);
-  memcpy(e->points, e->task->start, e->n * sizeof *e->points);
+static void spread_points(evolution *self, size_t count) {
+  strut_search_spread spread = strut_search_spread_begin(self->n, self->task->seed);
+  memcpy(self->points, self->task->start, self->n * sizeof *self->points);
   for (size_t i = 1; i < count; i++)
-    for (size_t k = 0; k < e->n; k++)
-      e->points[i * e->n + k] = strut_search_spread_at(&spread, (int64_t)i, k);
+    for (size_t k = 0; k < self->n; k++)
+      self->points[i * self->n + k] = strut_search_spread_at(&spread, (int64_t)i, k);
 }
 
 bool strut_search_optimise_by_nsga2(const strut_search_task *task,

@@ -52,45 +52,45 @@ typedef struct conductor {
 /* ---- beginning and ending a search ---- */
 
 /* The first search begins where the study says, the others anywhere. */
-static void choose_start(const conductor *c, const search *s, double *start) {
+static void choose_start(const conductor *self, const search *s, double *start) {
   uint64_t state = (uint64_t)s->task.seed;
-  for (size_t i = 0; i < c->layout.variables; i++) {
+  for (size_t i = 0; i < self->layout.variables; i++) {
     double share = strut_search_share(&state);
-    start[i] = s->outcome->start == 0 ? strut_search_start(&c->what->variables[i]) : share;
+    start[i] = s->outcome->start == 0 ? strut_search_start(&self->what->variables[i]) : share;
   }
 }
 
-static void free_search(search *s) {
-  strut_dialogue_end(s->dialogue);
-  strut_release(s->answers);
-  strut_release(s->list);
-  strut_release(s->heads);
-  strut_arena_free(&s->arena);
-  strut_release(s);
+static void free_search(search *self) {
+  strut_dialogue_end(self->dialogue);
+  strut_release(self->answers);
+  strut_release(self->list);
+  strut_release(self->heads);
+  strut_arena_free(&self->arena);
+  strut_release(self);
 }
 
-static search *begin_search(conductor *c, strut_search_outcome *outcome) {
+static search *begin_search(conductor *self, strut_search_outcome *outcome) {
   search *s = strut_allocate(1, sizeof *s);
   if (!s) return NULL;
-  size_t n = c->layout.variables;
-  int64_t most = c->what->evaluations;
+  size_t n = self->layout.variables;
+  int64_t most = self->what->evaluations;
   double *start = strut_arena_allocate(&s->arena, n, sizeof *start);
   bool *wraps = strut_arena_allocate(&s->arena, n, sizeof *wraps);
   for (s->hashes = 64; s->hashes < 2 * most;) s->hashes *= 2;
   s->list = strut_allocate((size_t)most, sizeof *s->list);
   s->heads = strut_allocate(s->hashes, sizeof *s->heads);
   s->outcome = outcome;
-  s->task = (strut_search_task){.method = (strut_search_method)c->what->method,
+  s->task = (strut_search_task){.method = (strut_search_method)self->what->method,
                                 .dimension = n,
-                                .conditions = c->penalise ? 0 : c->layout.conditions,
+                                .conditions = self->penalise ? 0 : self->layout.conditions,
                                 .start = start,
                                 .wraps = wraps,
                                 .evaluations = most,
-                                .seed = (uint32_t)(c->what->seed + outcome->start)};
+                                .seed = (uint32_t)(self->what->seed + outcome->start)};
   if (start && wraps && s->list && s->heads) {
     for (uint32_t i = 0; i < s->hashes; i++) s->heads[i] = -1;
-    for (size_t i = 0; i < n; i++) wraps[i] = c->what->variables[i].wraps;
-    choose_start(c, s, start);
+    for (size_t i = 0; i < n; i++) wraps[i] = self->what->variables[i].wraps;
+    choose_start(self, s, start);
     s->dialogue = strut_dialogue_begin(&s->task);
     if (s->dialogue) return s;
   }
@@ -99,45 +99,46 @@ static search *begin_search(conductor *c, strut_search_outcome *outcome) {
 }
 
 /* The values of a point as owned by the result. */
-static bool keep_best(conductor *c, search *s) {
-  strut_search_outcome *o = s->outcome;
-  size_t n = c->layout.variables;
-  strut_study_value *values = strut_arena_allocate(&c->result->arena, n, sizeof *values);
+static bool keep_best(conductor *self, search *s) {
+  strut_search_outcome *outcome = s->outcome;
+  size_t n = self->layout.variables;
+  strut_study_value *values = strut_arena_allocate(&self->result->arena, n, sizeof *values);
   if (!values) return false;
-  if (o->best.evaluation >= 0) memcpy(values, o->best.values, n * sizeof *values);
-  o->best.values = values;
+  if (outcome->best.evaluation >= 0) memcpy(values, outcome->best.values, n * sizeof *values);
+  outcome->best.values = values;
   return true;
 }
 
 /* ---- known points ---- */
 
-static uint32_t hash_of(const conductor *c, const strut_study_value *values) {
+static uint32_t hash_of(const conductor *self, const strut_study_value *values) {
   uint64_t sum = 0;
-  for (size_t i = 0; i < c->layout.variables; i++)
+  for (size_t i = 0; i < self->layout.variables; i++)
     sum = values[i].word ? strut_checksum(values[i].word, strlen(values[i].word), sum)
                          : strut_checksum(&values[i].number, sizeof values[i].number, sum);
   return (uint32_t)(sum ^ sum >> 32);
 }
 
-static bool same_values(const conductor *c, const strut_study_value *a,
-                        const strut_study_value *b) {
+static bool same_values(const conductor *self, const strut_study_value *first,
+                        const strut_study_value *second) {
   bool same = true;
-  for (size_t i = 0; i < c->layout.variables && same; i++) same = strut_search_same(a[i], b[i]);
+  for (size_t i = 0; i < self->layout.variables && same; i++)
+    same = strut_search_same(first[i], second[i]);
   return same;
 }
 
 /* The point with these values, a new one if necessary; -1: no evaluation is left; -2: no memory. */
-static int32_t find_point(const conductor *c, search *s, const strut_study_value *values) {
-  uint32_t hash = hash_of(c, values) & (s->hashes - 1);
+static int32_t find_point(const conductor *self, search *s, const strut_study_value *values) {
+  uint32_t hash = hash_of(self, values) & (s->hashes - 1);
   int32_t i = s->heads[hash];
-  while (i >= 0 && !same_values(c, s->list[i].values, values)) i = s->list[i].same_hash;
+  while (i >= 0 && !same_values(self, s->list[i].values, values)) i = s->list[i].same_hash;
   if (i >= 0) return i;
-  if (s->count >= c->what->evaluations) return -1;
+  if (s->count >= self->what->evaluations) return -1;
   known *k = &s->list[s->count];
-  k->values = strut_arena_allocate(&s->arena, c->layout.variables, sizeof *k->values);
-  k->broken = strut_arena_allocate(&s->arena, c->layout.conditions + 1, sizeof *k->broken);
+  k->values = strut_arena_allocate(&s->arena, self->layout.variables, sizeof *k->values);
+  k->broken = strut_arena_allocate(&s->arena, self->layout.conditions + 1, sizeof *k->broken);
   if (!k->values || !k->broken) return -2;
-  memcpy(k->values, values, c->layout.variables * sizeof *values);
+  memcpy(k->values, values, self->layout.variables * sizeof *values);
   k->same_hash = s->heads[hash];
   return s->heads[hash] = s->count++;
 }
@@ -145,18 +146,18 @@ static int32_t find_point(const conductor *c, search *s, const strut_study_value
 /* ---- questions ---- */
 
 /* How many points there are in all; 0: a continuum, or too many to count. */
-static int64_t count_all(const conductor *c) {
+static int64_t count_all(const conductor *self) {
   int64_t all = 1;
-  for (size_t i = 0; i < c->layout.variables && all > 0; i++) {
-    int64_t count = strut_search_count(&c->what->variables[i]);
+  for (size_t i = 0; i < self->layout.variables && all > 0; i++) {
+    int64_t count = strut_search_count(&self->what->variables[i]);
     all = count > 0 && all < INT32_MAX / count ? all * count : 0;
   }
   return all;
 }
 
 /* Finds the points of the question, and lists those that are to be computed. */
-static bool take_question(conductor *c, search *s) {
-  size_t n = c->layout.variables;
+static bool take_question(conductor *self, search *s) {
+  size_t n = self->layout.variables;
   strut_study_value values[STRUT_SEARCH_MOST_VARIABLES];
   if (s->question.count > s->answer_room) {
     strut_release(s->answers);
@@ -168,66 +169,68 @@ static bool take_question(conductor *c, search *s) {
   for (size_t i = 0; i < s->question.count; i++) {
     int32_t before = s->count;
     for (size_t k = 0; k < n; k++)
-      values[k] = strut_search_value(&c->what->variables[k], s->question.points[i * n + k]);
-    s->answers[i] = find_point(c, s, values);
+      values[k] = strut_search_value(&self->what->variables[k], s->question.points[i * n + k]);
+    s->answers[i] = find_point(self, s, values);
     if (s->answers[i] == -2) return false;
     bool repeated = s->answers[i] >= 0 && s->count == before;
     s->repeats = repeated ? s->repeats + 1 : 0;
     s->outcome->repeated += repeated;
     if (s->count == before) continue;
-    int64_t row = s->outcome->start * c->what->evaluations + before;
-    if (!strut_search_batch_add(&c->batch, s->outcome->outer, row, s->list[before].values))
+    int64_t row = s->outcome->start * self->what->evaluations + before;
+    if (!strut_search_batch_add(&self->batch, s->outcome->outer, row, s->list[before].values))
       return false;
   }
   return true;
 }
 
 /* Puts an objective among the best ones of a search. */
-static void rank_objective(const conductor *c, strut_search_outcome *o, double objective) {
+static void rank_objective(const conductor *self, strut_search_outcome *outcome, double objective) {
   size_t at = 0;
-  while (at < o->top_count &&
-         (c->what->maximise ? o->top[at] >= objective : o->top[at] <= objective))
+  while (at < outcome->top_count &&
+         (self->what->maximise ? outcome->top[at] >= objective : outcome->top[at] <= objective))
     at++;
   if (at == STRUT_SEARCH_LATEST) return;
-  if (o->top_count < STRUT_SEARCH_LATEST) o->top_count++;
-  memmove(o->top + at + 1, o->top + at, (o->top_count - at - 1) * sizeof *o->top);
-  o->top[at] = objective;
+  if (outcome->top_count < STRUT_SEARCH_LATEST) outcome->top_count++;
+  memmove(outcome->top + at + 1, outcome->top + at,
+          (outcome->top_count - at - 1) * sizeof *outcome->top);
+  outcome->top[at] = objective;
 }
 
 /* Takes the rows of a new point in. */
-static strut_status judge_point(conductor *c, search *s, int32_t i) {
-  strut_search_outcome *o = s->outcome;
+static strut_status judge_point(conductor *self, search *s, int32_t i) {
+  strut_search_outcome *outcome = s->outcome;
   known *k = &s->list[i];
-  strut_sweep_state *state = c->batch.points.state;
-  int64_t row = o->start * c->what->evaluations + i;
+  strut_sweep_state *state = self->batch.points.state;
+  int64_t row = outcome->start * self->what->evaluations + i;
   k->point.values = k->values;
-  strut_status status = strut_search_judge(c->plan, c->batch.points.slots, o->outer, row, &k->point,
-                                           k->broken, c->batch.points.error);
+  strut_status status = strut_search_judge(self->plan, self->batch.points.slots, outcome->outer,
+                                           row, &k->point, k->broken, self->batch.points.error);
   if (status) return status;
-  o->evaluations++;
-  o->failed += k->point.failed;
-  o->valueless += !k->point.failed && k->point.valueless;
+  outcome->evaluations++;
+  outcome->failed += k->point.failed;
+  outcome->valueless += !k->point.failed && k->point.valueless;
   if (isnan(k->point.objective)) return STRUT_OK;
   bool feasible = k->point.violation <= 0.0;
-  o->feasible += feasible;
+  outcome->feasible += feasible;
   if (s->scale == 0.0) {
     s->scale = k->point.objective != 0.0 ? fabs(k->point.objective) : 1.0;
     s->first = k->point.objective;
     s->second_scale = k->point.second != 0.0 ? fabs(k->point.second) : 1.0;
-    o->constant = true;
-    o->least = o->most = s->first;
+    outcome->constant = true;
+    outcome->least = outcome->most = s->first;
   }
-  o->least = fmin(o->least, k->point.objective);
-  o->most = fmax(o->most, k->point.objective);
-  o->constant = o->constant && k->point.objective == s->first;
-  if (feasible) rank_objective(c, o, k->point.objective);
-  if (feasible && c->result->front_count &&
-      !strut_search_front_take(c->what, &c->result->fronts[o->outer], &k->point, &c->result->arena))
-    return strut_no_memory(c->batch.points.error, "");
-  if (strut_search_better(c->what, &k->point, &o->best)) o->best = k->point;
+  outcome->least = fmin(outcome->least, k->point.objective);
+  outcome->most = fmax(outcome->most, k->point.objective);
+  outcome->constant = outcome->constant && k->point.objective == s->first;
+  if (feasible) rank_objective(self, outcome, k->point.objective);
+  if (feasible && self->result->front_count &&
+      !strut_search_front_take(self->what, &self->result->fronts[outcome->outer], &k->point,
+                               &self->result->arena))
+    return strut_no_memory(self->batch.points.error, "");
+  if (strut_search_better(self->what, &k->point, &outcome->best)) outcome->best = k->point;
   bool best =
-      feasible && (!state->has_best || (c->what->maximise ? k->point.objective > state->best
-                                                          : k->point.objective < state->best));
+      feasible && (!state->has_best || (self->what->maximise ? k->point.objective > state->best
+                                                             : k->point.objective < state->best));
   if (best) state->best = k->point.objective, state->has_best = true;
   return STRUT_OK;
 }
@@ -237,11 +240,11 @@ static strut_status judge_point(conductor *c, search *s, int32_t i) {
  * itself, those of feasible points are pressed into (-1, 1), and the others are above. A failed point is
  * worse than all before it.
  */
-static double as_asked(const conductor *c, search *s, const known *k, bool second) {
+static double as_asked(const conductor *self, search *s, const known *k, bool second) {
   double value = second ? k->point.second / s->second_scale : k->point.objective / s->scale;
   if (isnan(k->point.objective)) return s->worst + 1.0;
-  if (c->what->maximise) value = -value;
-  if (c->penalise && c->layout.conditions > 0)
+  if (self->what->maximise) value = -value;
+  if (self->penalise && self->layout.conditions > 0)
     value = k->point.violation > 0.0 ? 1.0 + fmin(k->point.violation, 1e9)
                                      : value / (1.0 + fabs(value));
   value = fmin(fmax(value, -1e300), 1e300);
@@ -249,47 +252,48 @@ static double as_asked(const conductor *c, search *s, const known *k, bool secon
   return value;
 }
 
-double strut_search_size(const strut_search_outcome *o) {
-  double size = fabs(o->best.objective);
-  double last = o->top_count ? fabs(o->top[o->top_count - 1]) : size;
+double strut_search_size(const strut_search_outcome *outcome) {
+  double size = fabs(outcome->best.objective);
+  double last = outcome->top_count ? fabs(outcome->top[outcome->top_count - 1]) : size;
   return size >= 0.05 * last ? size : 0.0;
 }
 
 /* Why the search must end now, if it must. */
-static bool must_end(const conductor *c, search *s, int64_t all) {
-  strut_search_outcome *o = s->outcome;
+static bool must_end(const conductor *self, search *s, int64_t all) {
+  strut_search_outcome *outcome = s->outcome;
   bool used_up = false;
   for (size_t i = 0; i < s->question.count; i++) used_up = used_up || s->answers[i] < 0;
-  if (used_up || s->count >= c->what->evaluations)
-    o->end = STRUT_SEARCH_USED_UP;
+  if (used_up || s->count >= self->what->evaluations)
+    outcome->end = STRUT_SEARCH_USED_UP;
   else if (all > 0 && s->count >= all)
-    o->end = STRUT_SEARCH_ENUMERATED;
+    outcome->end = STRUT_SEARCH_ENUMERATED;
   else if (s->repeats > MOST_REPEATS)
-    o->end = STRUT_SEARCH_REPEATS;
+    outcome->end = STRUT_SEARCH_REPEATS;
   else
     return false;
   return true;
 }
 
 /* Answers the question of a search whose points are all in the file. */
-static strut_status answer_question(conductor *c, search *s, int64_t all) {
-  const strut_question *q = &s->question;
+static strut_status answer_question(conductor *self, search *s, int64_t all) {
+  const strut_question *question = &s->question;
   size_t m = s->task.conditions;
   for (int32_t i = s->new; i < s->count; i++) {
-    strut_status status = judge_point(c, s, i);
+    strut_status status = judge_point(self, s, i);
     if (status) return status;
   }
-  s->over = must_end(c, s, all);
-  for (size_t i = 0; i < q->count && !s->over; i++) {
+  s->over = must_end(self, s, all);
+  for (size_t i = 0; i < question->count && !s->over; i++) {
     const known *k = &s->list[s->answers[i]];
-    if (c->result->front_count) {
-      q->values[2 * i] = as_asked(c, s, k, false);
-      q->values[2 * i + 1] = as_asked(c, s, k, true);
+    if (self->result->front_count) {
+      question->values[2 * i] = as_asked(self, s, k, false);
+      question->values[2 * i + 1] = as_asked(self, s, k, true);
     } else {
-      q->values[i] = as_asked(c, s, k, false);
+      question->values[i] = as_asked(self, s, k, false);
     }
     for (size_t j = 0; j < m; j++)
-      q->broken[i * m + j] = isnan(k->point.objective) ? 1.0 : fmin(fmax(k->broken[j], -1e9), 1e9);
+      question->broken[i * m + j] =
+          isnan(k->point.objective) ? 1.0 : fmin(fmax(k->broken[j], -1e9), 1e9);
   }
   if (!s->over) strut_dialogue_answer(s->dialogue);
   return STRUT_OK;
@@ -297,62 +301,65 @@ static strut_status answer_question(conductor *c, search *s, int64_t all) {
 
 /* ---- all searches ---- */
 
-static bool fill_active(conductor *c) {
-  while (c->active_count < MOST_ACTIVE && c->next < c->result->outcome_count) {
-    search *s = begin_search(c, &c->result->outcomes[c->next]);
+static bool fill_active(conductor *self) {
+  while (self->active_count < MOST_ACTIVE && self->next < self->result->outcome_count) {
+    search *s = begin_search(self, &self->result->outcomes[self->next]);
     if (!s) return false;
-    c->active[c->active_count++] = s;
-    c->next++;
+    self->active[self->active_count++] = s;
+    self->next++;
   }
   return true;
 }
 
 /* Waits for all questions; searches without one have ended. */
-static bool collect_questions(conductor *c) {
+static bool collect_questions(conductor *self) {
   size_t left = 0;
   bool fine = true;
-  for (size_t i = 0; i < c->active_count; i++) {
-    search *s = c->active[i];
+  for (size_t i = 0; i < self->active_count; i++) {
+    search *s = self->active[i];
     if (!s->over && fine && strut_dialogue_question(s->dialogue, &s->question)) {
-      c->active[left++] = s;
-      fine = take_question(c, s);
+      self->active[left++] = s;
+      fine = take_question(self, s);
       continue;
     }
     if (!s->over) s->outcome->end = STRUT_SEARCH_CONVERGED;
-    fine = keep_best(c, s) && fine;
+    fine = keep_best(self, s) && fine;
     fine = strut_dialogue_end(s->dialogue) && fine;
     s->dialogue = NULL;
     free_search(s);
   }
-  c->active_count = left;
+  self->active_count = left;
   return fine;
 }
 
-static strut_status run_searches(conductor *c) {
-  int64_t all = count_all(c);
+static strut_status run_searches(conductor *self) {
+  int64_t all = count_all(self);
   strut_status status = STRUT_OK;
-  while (!status && (c->active_count > 0 || c->next < c->result->outcome_count)) {
-    if (!fill_active(c) || !collect_questions(c)) return strut_no_memory(c->batch.points.error, "");
-    status = strut_search_batch_run(&c->batch);
-    for (size_t i = 0; i < c->active_count && !status; i++)
-      status = answer_question(c, c->active[i], all);
+  while (!status && (self->active_count > 0 || self->next < self->result->outcome_count)) {
+    if (!fill_active(self) || !collect_questions(self))
+      return strut_no_memory(self->batch.points.error, "");
+    status = strut_search_batch_run(&self->batch);
+    for (size_t i = 0; i < self->active_count && !status; i++)
+      status = answer_question(self, self->active[i], all);
   }
   return status;
 }
 
-static bool make_outcomes(conductor *c) {
-  size_t starts = (size_t)c->what->starts;
-  strut_search_result *r = c->result;
-  r->outcome_count = (size_t)c->layout.outers * starts;
-  r->outcomes = strut_arena_allocate(&r->arena, r->outcome_count, sizeof *r->outcomes);
-  for (size_t i = 0; r->outcomes && i < r->outcome_count; i++) {
-    r->outcomes[i].outer = (int64_t)(i / starts);
-    r->outcomes[i].start = (int32_t)(i % starts);
-    r->outcomes[i].best = (strut_search_point){.evaluation = -1, .objective = (double)NAN};
+static bool make_outcomes(conductor *self) {
+  size_t starts = (size_t)self->what->starts;
+  strut_search_result *result = self->result;
+  result->outcome_count = (size_t)self->layout.outers * starts;
+  result->outcomes =
+      strut_arena_allocate(&result->arena, result->outcome_count, sizeof *result->outcomes);
+  for (size_t i = 0; result->outcomes && i < result->outcome_count; i++) {
+    result->outcomes[i].outer = (int64_t)(i / starts);
+    result->outcomes[i].start = (int32_t)(i % starts);
+    result->outcomes[i].best = (strut_search_point){.evaluation = -1, .objective = (double)NAN};
   }
-  r->front_count = c->what->second.text ? (size_t)c->layout.outers : 0;
-  r->fronts = strut_arena_allocate(&r->arena, r->front_count + 1, sizeof *r->fronts);
-  return r->outcomes != NULL && r->fronts != NULL;
+  result->front_count = self->what->second.text ? (size_t)self->layout.outers : 0;
+  result->fronts =
+      strut_arena_allocate(&result->arena, result->front_count + 1, sizeof *result->fronts);
+  return result->outcomes != NULL && result->fronts != NULL;
 }
 
 strut_status strut_search_run(const strut_sweep_plan *plan, strut_slots *slots,

@@ -119,7 +119,8 @@ STRUT_API void strut_search_values(const strut_sweep_plan *plan, int64_t point,
 STRUT_API double strut_search_size(const strut_search_outcome *outcome);
 
 /** Is point a better than b for the study? */
-STRUT_API bool strut_search_better(const strut_study_search *search, const strut_search_point *a,
-                                   const strut_search_point *b);
+STRUT_API bool strut_search_better(const strut_study_search *search,
+                                   const strut_search_point *first,
+                                   const strut_search_point *second);
 
 #endif

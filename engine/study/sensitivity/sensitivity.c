@@ -57,18 +57,18 @@ static size_t find_column(const strut_slot_column *columns, size_t count, const 
 
 bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
                              size_t count, const char **missing) {
-  const strut_study_sensitivity *s = &study->sensitivity;
-  for (size_t i = 0; i < s->of_count; i++)
-    if (find_column(columns, count, s->of[i]) == count) {
-      *missing = s->of[i];
+  const strut_study_sensitivity *sensitivity = &study->sensitivity;
+  for (size_t i = 0; i < sensitivity->of_count; i++)
+    if (find_column(columns, count, sensitivity->of[i]) == count) {
+      *missing = sensitivity->of[i];
       return false;
     }
   return true;
 }
 
-static bool add_target(analysis *a, target t) {
-  if (a->target_count == a->target_room) return true; /* more texts than are described */
-  a->targets[a->target_count++] = t;
+static bool add_target(analysis *self, target t) {
+  if (self->target_count == self->target_room) return true; /* more texts than are described */
+  self->targets[self->target_count++] = t;
   return t.name != NULL;
 }
 
@@ -83,17 +83,18 @@ static size_t note_text(char texts[][STRUT_SLOT_WORD], size_t count, const char 
 }
 
 /* A target for each text that a column has at any point. */
-static bool add_texts(analysis *a, target t) {
+static bool add_texts(analysis *self, target t) {
   char texts[MOST_TEXTS + 1][STRUT_SLOT_WORD];
   size_t count = 0;
   strut_result_slot row;
-  for (int64_t p = 0; p < strut_slots_description_of(a->slots)->points; p++)
-    if (strut_slots_get(a->slots, p, &row) && row.status == STRUT_OK)
+  for (int64_t p = 0; p < strut_slots_description_of(self->slots)->points; p++)
+    if (strut_slots_get(self->slots, p, &row) && row.status == STRUT_OK)
       count = note_text(texts, count, row.words[t.place]);
   for (size_t i = 0; i < count; i++) {
-    t.text = strut_arena_format(&a->scratch, "%s", texts[i]);
-    t.name = strut_arena_format(&a->result->arena, "%s = %s", a->columns[t.column].name, texts[i]);
-    if (!t.text || !add_target(a, t)) return false;
+    t.text = strut_arena_format(&self->scratch, "%s", texts[i]);
+    t.name =
+        strut_arena_format(&self->result->arena, "%s = %s", self->columns[t.column].name, texts[i]);
+    if (!t.text || !add_target(self, t)) return false;
   }
   return true;
 }
@@ -102,67 +103,69 @@ static bool add_texts(analysis *a, target t) {
  * Targets for the sign of a column: whether it is above 0; or above, within and below a threshold in both
  * directions.
  */
-static bool add_signs(analysis *a, target t) {
-  strut_arena *arena = &a->result->arena;
-  const char *name = a->columns[t.column].name;
+static bool add_signs(analysis *self, target t) {
+  strut_arena *arena = &self->result->arena;
+  const char *name = self->columns[t.column].name;
   char text[STRUT_NUMBER_TEXT];
-  strut_number_text(a->s->threshold, text);
+  strut_number_text(self->s->threshold, text);
   t.kind = ABOVE;
   t.name = strut_arena_format(arena, "%s > %s", name, text);
-  bool fine = add_target(a, t);
-  if (!fine || a->s->threshold == 0.0) return fine;
+  bool fine = add_target(self, t);
+  if (!fine || self->s->threshold == 0.0) return fine;
   t.kind = WITHIN;
   t.name = strut_arena_format(arena, "|%s| <= %s", name, text);
-  fine = add_target(a, t);
+  fine = add_target(self, t);
   t.kind = BELOW;
   t.name = strut_arena_format(arena, "%s < -%s", name, text);
-  return fine && add_target(a, t);
+  return fine && add_target(self, t);
 }
 
-static bool list_targets(analysis *a) {
+static bool list_targets(analysis *self) {
   bool fine = true;
-  a->target_room = a->s->of_count * MOST_TEXTS;
-  a->targets = strut_arena_allocate(&a->scratch, a->target_room + 1, sizeof *a->targets);
-  for (size_t i = 0; i < a->s->of_count && fine && a->targets; i++) {
-    target t = {.column = find_column(a->columns, a->column_count, a->s->of[i])};
-    const strut_slot_column *c = &a->columns[t.column];
-    for (size_t k = 0; k < t.column; k++) t.place += a->columns[k].word == c->word;
-    if (c->word) {
-      fine = add_texts(a, t);
+  self->target_room = self->s->of_count * MOST_TEXTS;
+  self->targets =
+      strut_arena_allocate(&self->scratch, self->target_room + 1, sizeof *self->targets);
+  for (size_t i = 0; i < self->s->of_count && fine && self->targets; i++) {
+    target t = {.column = find_column(self->columns, self->column_count, self->s->of[i])};
+    const strut_slot_column *column = &self->columns[t.column];
+    for (size_t k = 0; k < t.column; k++) t.place += self->columns[k].word == column->word;
+    if (column->word) {
+      fine = add_texts(self, t);
       continue;
     }
-    t.name = strut_arena_format(&a->result->arena, "%s", c->name);
-    fine = add_target(a, t);
-    if (a->s->samples > 0) fine = fine && add_signs(a, t);
+    t.name = strut_arena_format(&self->result->arena, "%s", column->name);
+    fine = add_target(self, t);
+    if (self->s->samples > 0) fine = fine && add_signs(self, t);
   }
-  return fine && a->targets;
+  return fine && self->targets;
 }
 
-static bool is_condition(const target *t) { return t->text || t->kind != NUMBER; }
+static bool is_condition(const target *self) { return self->text || self->kind != NUMBER; }
 
-static double value_of(const target *t, double threshold, const strut_result_slot *row) {
+static double value_of(const target *self, double threshold, const strut_result_slot *row) {
   if (row->status != STRUT_OK) return (double)NAN;
-  if (t->text)
-    return *row->words[t->place] ? strcmp(row->words[t->place], t->text) == 0 : (double)NAN;
-  double number = row->numbers[t->place];
-  if (t->kind == NUMBER || !isfinite(number)) return number;
-  return t->kind == ABOVE   ? number > threshold
-         : t->kind == BELOW ? number < -threshold
-                            : fabs(number) <= threshold;
+  if (self->text)
+    return *row->words[self->place] ? strcmp(row->words[self->place], self->text) == 0
+                                    : (double)NAN;
+  double number = row->numbers[self->place];
+  if (self->kind == NUMBER || !isfinite(number)) return number;
+  return self->kind == ABOVE   ? number > threshold
+         : self->kind == BELOW ? number < -threshold
+                               : fabs(number) <= threshold;
 }
 
 /* The values of a target at the points from `first` on. */
-static void read_values(analysis *a, int64_t first, const target *t) {
-  for (int64_t p = 0; p < a->block; p++) {
+static void read_values(analysis *self, int64_t first, const target *t) {
+  for (int64_t p = 0; p < self->block; p++) {
     strut_result_slot row;
-    bool there = strut_slots_get(a->slots, first + p, &row);
-    a->values[p] = there ? value_of(t, a->s->threshold, &row) : (double)NAN;
+    bool there = strut_slots_get(self->slots, first + p, &row);
+    self->values[p] = there ? value_of(t, self->s->threshold, &row) : (double)NAN;
   }
 }
 
-static bool add_row(analysis *a, strut_sensitivity_row row) {
-  if (a->result->count == a->room) return false;
-  a->result->rows[a->result->count++] = row;
+static bool add_row(analysis *self, strut_sensitivity_row row) {
+  if (self->result->count == self->room) return false;
+  self->result->rows[self->result->count++] = row;
   return row.unit != NULL;
 }
 
@@ -173,91 +176,91 @@ static strut_estimate scaled(strut_estimate e, double factor) {
 }
 
 /* "m/s/(N/m)", "m/kg", "1/s" */
-static const char *quotient_unit(analysis *a, const char *of, const char *by) {
+static const char *quotient_unit(analysis *self, const char *of, const char *by) {
   bool several = strpbrk(by, "/ ") != NULL;
   if (strcmp(by, "1") == 0) return of;
-  return strut_arena_format(&a->result->arena, several ? "%s/(%s)" : "%s/%s", of, by);
+  return strut_arena_format(&self->result->arena, several ? "%s/(%s)" : "%s/%s", of, by);
 }
 
-static bool add_derivatives(analysis *a, int64_t first, const target *t) {
-  const double *f = a->values;
-  const char *of = a->columns[t->column].unit;
-  for (size_t k = 0; k < a->axis->column_count; k++) {
-    const strut_study_column *column = &a->axis->columns[k];
+static bool add_derivatives(analysis *self, int64_t first, const target *t) {
+  const double *f = self->values;
+  const char *of = self->columns[t->column].unit;
+  for (size_t k = 0; k < self->axis->column_count; k++) {
+    const strut_study_column *column = &self->axis->columns[k];
     int64_t at = strut_sensitivity_moved(k, 0);
     const double *x = column->number, moved[] = {f[at], f[at + 1], f[at + 2], f[at + 3]};
     size_t used = 0;
     for (int i = 0; i < 4; i++) used += isfinite(moved[i]) ? 1 : 0;
     strut_estimate d = strut_sensitivity_derivative(moved, x[at] - x[at + 1], x[at + 2] - x[at + 3],
-                                                    a->s->accuracy * fabs(f[0]));
+                                                    self->s->accuracy * fabs(f[0]));
     strut_sensitivity_row row = {
         .point = first, .of = t->name, .parameter = column->name, .used = used};
     row.measure = STRUT_SENSITIVITY_DERIVATIVE;
     row.estimate = d;
-    row.unit = quotient_unit(a, of, column->unit);
-    if (!add_row(a, row)) return false;
+    row.unit = quotient_unit(self, of, column->unit);
+    if (!add_row(self, row)) return false;
     row.measure = STRUT_SENSITIVITY_ELASTICITY;
     row.estimate = f[0] != 0.0 ? scaled(d, x[0] / f[0]) : MISSING;
     row.unit = "1";
-    if (!add_row(a, row)) return false;
+    if (!add_row(self, row)) return false;
   }
   return true;
 }
 
 /* Mean and deviation, or the share, of the independent samples A and B. */
-static bool add_statistics(analysis *a, int64_t first, const target *t) {
-  size_t count = a->axis->column_count, n = 0;
-  for (int64_t j = 0; j < a->s->samples; j++) {
-    int64_t at = strut_sensitivity_sample(a->s, count, j);
-    a->design[n++] = a->values[at];
-    a->design[n++] = a->values[at + (int64_t)count + 1];
+static bool add_statistics(analysis *self, int64_t first, const target *t) {
+  size_t count = self->axis->column_count, n = 0;
+  for (int64_t j = 0; j < self->s->samples; j++) {
+    int64_t at = strut_sensitivity_sample(self->s, count, j);
+    self->design[n++] = self->values[at];
+    self->design[n++] = self->values[at + (int64_t)count + 1];
   }
   size_t used = 0;
-  for (size_t i = 0; i < n; i++) used += isfinite(a->design[i]) ? 1 : 0;
+  for (size_t i = 0; i < n; i++) used += isfinite(self->design[i]) ? 1 : 0;
   strut_sensitivity_row row = {.point = first, .of = t->name, .unit = "1", .used = used};
   if (is_condition(t)) {
     row.measure = STRUT_SENSITIVITY_SHARE;
-    row.estimate = strut_sensitivity_share(a->design, n);
-    return add_row(a, row);
+    row.estimate = strut_sensitivity_share(self->design, n);
+    return add_row(self, row);
   }
-  row.unit = a->columns[t->column].unit;
+  row.unit = self->columns[t->column].unit;
   row.measure = STRUT_SENSITIVITY_MEAN;
-  row.estimate = strut_sensitivity_mean(a->design, n);
-  if (!add_row(a, row)) return false;
+  row.estimate = strut_sensitivity_mean(self->design, n);
+  if (!add_row(self, row)) return false;
   row.measure = STRUT_SENSITIVITY_DEVIATION;
   row.estimate = MISSING;
-  row.estimate.value = strut_sensitivity_deviation(a->design, n);
-  return add_row(a, row);
+  row.estimate.value = strut_sensitivity_deviation(self->design, n);
+  return add_row(self, row);
 }
 
-static strut_status add_indices(analysis *a, int64_t first, const target *t) {
+static strut_status add_indices(analysis *self, int64_t first, const target *t) {
   strut_estimate of_first[STRUT_SENSITIVITY_MOST], of_total[STRUT_SENSITIVITY_MOST];
-  size_t count = a->axis->column_count, used;
-  const double *design = a->values + strut_sensitivity_sample(a->s, count, 0);
-  strut_status status = strut_sensitivity_indices(design, (size_t)a->s->samples, count, a->s->seed,
-                                                  of_first, of_total, &used);
+  size_t count = self->axis->column_count, used;
+  const double *design = self->values + strut_sensitivity_sample(self->s, count, 0);
+  strut_status status = strut_sensitivity_indices(design, (size_t)self->s->samples, count,
+                                                  self->s->seed, of_first, of_total, &used);
   for (size_t k = 0; k < count && !status; k++) {
     strut_sensitivity_row row = {.point = first,
                                  .of = t->name,
-                                 .parameter = a->axis->columns[k].name,
+                                 .parameter = self->axis->columns[k].name,
                                  .unit = "1",
                                  .used = used,
                                  .measure = STRUT_SENSITIVITY_FIRST_ORDER,
                                  .estimate = of_first[k]};
-    bool fine = add_row(a, row);
+    bool fine = add_row(self, row);
     row.measure = STRUT_SENSITIVITY_TOTAL;
     row.estimate = of_total[k];
-    if (!fine || !add_row(a, row)) status = STRUT_NO_MEMORY;
+    if (!fine || !add_row(self, row)) status = STRUT_NO_MEMORY;
   }
   return status;
 }
 
-static strut_status analyse_target(analysis *a, int64_t first, const target *t) {
-  read_values(a, first, t);
-  if (a->s->derivatives && !is_condition(t) && !add_derivatives(a, first, t))
+static strut_status analyse_target(analysis *self, int64_t first, const target *t) {
+  read_values(self, first, t);
+  if (self->s->derivatives && !is_condition(t) && !add_derivatives(self, first, t))
     return STRUT_NO_MEMORY;
-  if (a->s->samples == 0) return STRUT_OK;
-  return add_statistics(a, first, t) ? add_indices(a, first, t) : STRUT_NO_MEMORY;
+  if (self->s->samples == 0) return STRUT_OK;
+  return add_statistics(self, first, t) ? add_indices(self, first, t) : STRUT_NO_MEMORY;
 }
 
 strut_status strut_sensitivity_find(const strut_study *study, strut_slots *slots,
@@ -318,9 +321,9 @@ static double finite(double value) { return isfinite(value) ? value : (double)NA
 
 /* What is missing, and that a number never changes its sign, is in the file only. */
 static bool is_shown(const strut_result_object *of, size_t i) {
-  const strut_sensitivity_row *r = &((const strut_sensitivity_result *)of->at)->rows[i];
-  double value = r->estimate.value;
-  return isfinite(value) && !(strstr(r->of, " > 0") && (value == 0.0 || value == 1.0));
+  const strut_sensitivity_row *row = &((const strut_sensitivity_result *)of->at)->rows[i];
+  double value = row->estimate.value;
+  return isfinite(value) && !(strstr(row->of, " > 0") && (value == 0.0 || value == 1.0));
 }
 
 #define EFFECT(X)                                                                                  \
@@ -369,41 +372,41 @@ static bool is_whole(const double *row, size_t width) {
 }
 
 static bool take_whole(const double *result, size_t all, size_t count, strut_arena *arena,
-                       samples *s) {
+                       samples *self) {
   size_t width = count + 2;
   double sum = 0.0;
-  *s = (samples){.count = count};
-  s->result = strut_arena_allocate(arena, all * width + 1, sizeof *s->result);
-  if (!s->result) return false;
+  *self = (samples){.count = count};
+  self->result = strut_arena_allocate(arena, all * width + 1, sizeof *self->result);
+  if (!self->result) return false;
   for (size_t j = 0; j < all; j++) {
     const double *row = result + j * width;
     if (!is_whole(row, width)) continue;
-    memcpy(s->result + s->used++ * width, row, width * sizeof *row);
+    memcpy(self->result + self->used++ * width, row, width * sizeof *row);
     sum += row[0] + row[width - 1];
   }
-  double mean = s->used ? sum / (2.0 * (double)s->used) : 0.0;
-  for (size_t i = 0; i < s->used * width; i++) s->result[i] -= mean;
+  double mean = self->used ? sum / (2.0 * (double)self->used) : 0.0;
+  for (size_t i = 0; i < self->used * width; i++) self->result[i] -= mean;
   return true;
 }
 
 /* Indices of the base samples that `pick` (used) lists; index (2, count). False: no variance. */
-static bool estimate_indices(const samples *s, const size_t *pick, double *index) {
-  size_t width = s->count + 2, n = s->used;
+static bool estimate_indices(const samples *self, const size_t *pick, double *index) {
+  size_t width = self->count + 2, n = self->used;
   double sum = 0.0, square = 0.0;
-  memset(index, 0, 2 * s->count * sizeof *index);
+  memset(index, 0, 2 * self->count * sizeof *index);
   for (size_t j = 0; j < n; j++) {
-    const double *row = s->result + pick[j] * width;
+    const double *row = self->result + pick[j] * width;
     double a = row[0], b = row[width - 1];
     sum += a + b;
     square += a * a + b * b;
-    for (size_t k = 0; k < s->count; k++) {
+    for (size_t k = 0; k < self->count; k++) {
       double mixed = row[1 + k];
       index[k] += b * (mixed - a);
-      index[s->count + k] += 0.5 * (a - mixed) * (a - mixed);
+      index[self->count + k] += 0.5 * (a - mixed) * (a - mixed);
     }
   }
   double mean = sum / (2.0 * (double)n), variance = square / (2.0 * (double)n) - mean * mean;
-  for (size_t k = 0; k < 2 * s->count; k++) index[k] /= (double)n * variance;
+  for (size_t k = 0; k < 2 * self->count; k++) index[k] /= (double)n * variance;
   return variance > 1e-12 * square / (2.0 * (double)n) && variance > 0.0;
 }
 
@@ -420,17 +423,17 @@ static strut_estimate describe(double value, double *drawn, size_t count) {
 }
 
 /* Estimates again from base samples drawn with replacement; drawn (2 count, BOOTSTRAPS). */
-static size_t bootstrap(const samples *s, uint32_t seed, size_t *pick, double *index,
+static size_t bootstrap(const samples *self, uint32_t seed, size_t *pick, double *index,
                         double *drawn) {
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
   size_t count = 0;
   if (!rng) return 0;
   gsl_rng_set(rng, seed ? seed : 1);
   for (int b = 0; b < BOOTSTRAPS; b++) {
-    for (size_t j = 0; j < s->used; j++)
-      pick[j] = (size_t)gsl_rng_uniform_int(rng, (unsigned long)s->used);
-    if (!estimate_indices(s, pick, index)) continue;
-    for (size_t k = 0; k < 2 * s->count; k++) drawn[k * BOOTSTRAPS + count] = index[k];
+    for (size_t j = 0; j < self->used; j++)
+      pick[j] = (size_t)gsl_rng_uniform_int(rng, (unsigned long)self->used);
+    if (!estimate_indices(self, pick, index)) continue;
+    for (size_t k = 0; k < 2 * self->count; k++) drawn[k * BOOTSTRAPS + count] = index[k];
     count++;
   }
   gsl_rng_free(rng);

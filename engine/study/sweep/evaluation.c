@@ -28,12 +28,12 @@ strut_status strut_goals_check(const strut_study *study, const strut_scene *scen
   for (size_t i = 0; i < study->goal.shape_count && !status; i++)
     status = check_node(scene, "shape", study->goal.shape_nodes[i], error);
   if (status || !study->goal.like) return status;
-  const strut_configuration *c = strut_configuration_named(scene, study->goal.like);
-  if (!c)
+  const strut_configuration *configuration = strut_configuration_named(scene, study->goal.like);
+  if (!configuration)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "'like' of the study: the model has no configuration '%.60s'",
                       study->goal.like);
-  if (!c->shaped)
+  if (!configuration->shaped)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "'like' of the study: configuration '%.60s' gives no positions of its shape",
                       study->goal.like);
@@ -82,9 +82,9 @@ double strut_goals_shape_distance(const strut_study *study, const strut_scene *s
 /* The force that holds the displaced coordinate, at a displacement; NAN: not reached. */
 static double force_at(const strut_path *path, double displacement) {
   for (size_t i = 0; i < path->point_count; i++) {
-    const strut_path_point *p = &path->points[i], *before = i ? p - 1 : p;
-    double u = p->at.factor, u0 = before->at.factor;
-    double f = p->at.reaction[path->coordinate], f0 = before->at.reaction[path->coordinate];
+    const strut_path_point *point = &path->points[i], *before = i ? point - 1 : point;
+    double u = point->at.factor, u0 = before->at.factor;
+    double f = point->at.reaction[path->coordinate], f0 = before->at.reaction[path->coordinate];
     if (u == displacement) return f;
     if (i && (u0 - displacement) * (u - displacement) < 0.0)
       return f0 + (f - f0) * (displacement - u0) / (u - u0);
@@ -103,19 +103,20 @@ double strut_goals_curve_distance(const strut_study *study, const strut_path *pa
 }
 
 strut_status strut_goals_stiffness(const strut_study *study, const strut_model *model,
-                                   const double *q, double *stiffness, strut_error *error) {
-  strut_node_stiffness *s;
+                                   const double *positions, double *stiffness, strut_error *error) {
+  strut_node_stiffness *node_stiffness;
   const char *reason;
   int32_t node =
       study->goal.stiffness_node ? find_node(model->scene, study->goal.stiffness_node) : -1;
   *stiffness = (double)NAN;
   if (node < 0) return STRUT_OK;
-  strut_status status = strut_node_stiffness_create(model, q, &s, &reason, error);
-  if (status || !s) return status;
+  strut_status status =
+      strut_node_stiffness_create(model, positions, &node_stiffness, &reason, error);
+  if (status || !node_stiffness) return status;
   const double direction[2] = {cos(study->goal.stiffness_direction),
                                sin(study->goal.stiffness_direction)};
-  *stiffness = strut_node_stiffness_along(s, node, direction);
-  strut_node_stiffness_free(s);
+  *stiffness = strut_node_stiffness_along(node_stiffness, node, direction);
+  strut_node_stiffness_free(node_stiffness);
   return STRUT_OK;
 }
 
@@ -148,81 +149,83 @@ struct strut_equilibrium_cache {
 };
 
 static void add(void *context, double value) {
-  structure *s = context;
-  if (s->length == s->capacity && !s->failed) {
-    size_t capacity = s->capacity ? 2 * s->capacity : 256;
-    double *key = strut_reallocate(s->key, capacity, sizeof *key);
+  structure *self = context;
+  if (self->length == self->capacity && !self->failed) {
+    size_t capacity = self->capacity ? 2 * self->capacity : 256;
+    double *key = strut_reallocate(self->key, capacity, sizeof *key);
     if (key) {
-      s->key = key;
-      s->capacity = capacity;
+      self->key = key;
+      self->capacity = capacity;
     }
-    s->failed = !key;
+    self->failed = !key;
   }
-  if (!s->failed) s->key[s->length++] = value;
+  if (!self->failed) self->key[self->length++] = value;
 }
 
-static void free_structure(structure *s) {
-  for (size_t i = 0; s->configurations && i < s->count; i++) strut_release(s->configurations[i].q);
-  if (s->configurations) pthread_mutex_destroy(&s->lock);
-  strut_release(s->configurations);
-  strut_release(s->key);
-  strut_release(s);
+static void free_structure(structure *self) {
+  for (size_t i = 0; self->configurations && i < self->count; i++)
+    strut_release(self->configurations[i].q);
+  if (self->configurations) pthread_mutex_destroy(&self->lock);
+  strut_release(self->configurations);
+  strut_release(self->key);
+  strut_release(self);
 }
 
 /* NULL: memory is out. */
 static structure *describe(const strut_setup *setup) {
   const strut_scene *scene = &setup->scene;
-  structure *s = strut_allocate(1, sizeof *s);
-  if (!s) return NULL;
-  s->count = scene->configuration_count;
-  strut_setup_at_rest(setup, add, s);
-  if (!s->failed) s->configurations = strut_allocate(s->count, sizeof *s->configurations);
-  if (s->configurations && pthread_mutex_init(&s->lock, NULL) == 0) return s;
-  strut_release(s->configurations);
-  s->configurations = NULL;
-  free_structure(s);
+  structure *self = strut_allocate(1, sizeof *self);
+  if (!self) return NULL;
+  self->count = scene->configuration_count;
+  strut_setup_at_rest(setup, add, self);
+  if (!self->failed)
+    self->configurations = strut_allocate(self->count, sizeof *self->configurations);
+  if (self->configurations && pthread_mutex_init(&self->lock, NULL) == 0) return self;
+  strut_release(self->configurations);
+  self->configurations = NULL;
+  free_structure(self);
   return NULL;
 }
 
-static bool alike(const structure *a, const structure *b) {
-  return a->count == b->count && a->length == b->length &&
-         memcmp(a->key, b->key, a->length * sizeof *a->key) == 0;
+static bool alike(const structure *first, const structure *second) {
+  return first->count == second->count && first->length == second->length &&
+         memcmp(first->key, second->key, first->length * sizeof *first->key) == 0;
 }
 
 /* The structure of a scene, kept or new; *own: the caller frees it. NULL: memory is out. */
 static structure *structure_of(strut_equilibrium_cache *standing, const strut_setup *setup,
                                bool *own) {
-  structure *s = describe(setup), *same = NULL;
+  structure *self = describe(setup), *same = NULL;
   *own = false;
-  if (!s) return NULL;
+  if (!self) return NULL;
   pthread_mutex_lock(&standing->lock);
   for (size_t i = 0; i < standing->count && !same; i++)
-    if (alike(standing->kept[i], s)) same = standing->kept[i];
+    if (alike(standing->kept[i], self)) same = standing->kept[i];
   if (!same && standing->count < MOST_KEPT)
-    standing->kept[standing->count++] = s;
+    standing->kept[standing->count++] = self;
   else
     *own = !same;
   pthread_mutex_unlock(&standing->lock);
-  if (same) free_structure(s);
-  return same ? same : s;
+  if (same) free_structure(self);
+  return same ? same : self;
 }
 
-static void find_equilibrium(const strut_setup *setup, size_t configuration, found *f) {
+static void find_equilibrium(const strut_setup *setup, size_t configuration, found *self) {
   const strut_scene *scene = &setup->scene;
   strut_model *model = NULL;
   strut_arena arena = {0};
   strut_rest_state stand;
   size_t size = 2 * scene->node_count;
-  f->known = true;
-  f->status = strut_model_compile(scene, &model, &f->error);
-  if (!f->status)
-    f->status =
+  self->known = true;
+  self->status = strut_model_compile(scene, &model, &self->error);
+  if (!self->status)
+    self->status =
         strut_rest_state_find(model, &setup->experiment, scene->configurations[configuration].name,
-                              &arena, &stand, &f->error);
-  if (!f->status && !(f->q = strut_allocate(size, sizeof *f->q)))
-    f->status = strut_fail(&f->error, STRUT_NO_MEMORY, "out of memory");
-  if (!f->status) memcpy(f->q, stand.q, size * sizeof *f->q);
-  if (f->status == STRUT_NO_MEMORY) f->known = false; /* retry later */
+                              &arena, &stand, &self->error);
+  if (!self->status && !(self->q = strut_allocate(size, sizeof *self->q)))
+    self->status = strut_fail(&self->error, STRUT_NO_MEMORY, "out of memory");
+  if (!self->status) memcpy(self->q, stand.q, size * sizeof *self->q);
+  if (self->status == STRUT_NO_MEMORY) self->known = false; /* retry later */
   strut_arena_free(&arena);
   strut_model_free(model);
 }
@@ -231,12 +234,12 @@ static void find_equilibrium(const strut_setup *setup, size_t configuration, fou
  * The equilibrium of a configuration; its positions are valid as long as the structure. A copy, since another
  * thread searches again where memory was out.
  */
-static found find(structure *s, const strut_setup *setup, size_t configuration) {
-  found *f = &s->configurations[configuration];
-  pthread_mutex_lock(&s->lock);
+static found find(structure *self, const strut_setup *setup, size_t configuration) {
+  found *f = &self->configurations[configuration];
+  pthread_mutex_lock(&self->lock);
   if (!f->known) find_equilibrium(setup, configuration, f);
   found copy = *f;
-  pthread_mutex_unlock(&s->lock);
+  pthread_mutex_unlock(&self->lock);
   return copy;
 }
 
@@ -259,37 +262,37 @@ strut_status strut_equilibrium_cache_resolve(strut_equilibrium_cache *standing, 
   strut_scene *scene = &setup->scene;
   bool own;
   if (scene->start_equilibrium < 0) return STRUT_OK;
-  structure *s = structure_of(standing, setup, &own);
-  if (!s) return strut_no_memory(error, "");
-  const found f = find(s, setup, (size_t)scene->start_equilibrium);
+  structure *self = structure_of(standing, setup, &own);
+  if (!self) return strut_no_memory(error, "");
+  const found f = find(self, setup, (size_t)scene->start_equilibrium);
   strut_status status = f.status;
   if (status) strut_fail(error, status, "%s", f.error.message);
   for (size_t i = 0; i < scene->node_count && !status; i++)
     for (size_t c = 0; c < 2; c++)
       if (!scene->nodes[i].fixed[c]) scene->nodes[i].start[c] = f.q[2 * i + c];
   if (!status) scene->start_equilibrium = -1;
-  if (own) free_structure(s);
+  if (own) free_structure(self);
   return status;
 }
 
-static double extent(const double *q, size_t nodes) {
+static double extent(const double *positions, size_t nodes) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = 0; i < 2 * nodes; i++) {
-    low[i % 2] = fmin(low[i % 2], q[i]);
-    high[i % 2] = fmax(high[i % 2], q[i]);
+    low[i % 2] = fmin(low[i % 2], positions[i]);
+    high[i % 2] = fmax(high[i % 2], positions[i]);
   }
   return fmax(high[0] - low[0], high[1] - low[1]);
 }
 
 /* *index: -1 where none is near. STRUT_OK or STRUT_NO_MEMORY. */
-static strut_status nearest(structure *s, const strut_setup *setup, const double *positions,
+static strut_status nearest(structure *self, const strut_setup *setup, const double *positions,
                             int32_t *index, strut_error *error) {
   const strut_scene *scene = &setup->scene;
   const strut_model shape = {.node_count =
                                  (int32_t)scene->node_count}; /* all fields that are read */
   double least = HUGE_VAL;
   for (size_t i = 0; i < scene->configuration_count; i++) {
-    const found f = find(s, setup, i);
+    const found f = find(self, setup, i);
     if (f.status == STRUT_NO_MEMORY) return strut_fail(error, f.status, "%s", f.error.message);
     if (f.status) continue;
     double d = strut_shape_distance(&shape, f.q, positions, !scene->configurations[i].shaped, NULL);
@@ -317,10 +320,10 @@ strut_status strut_equilibrium_cache_nearest(strut_equilibrium_cache *standing,
       if (!drawn.scene.nodes[i].fixed[c])
         drawn.scene.nodes[i].start[c] = drawn.scene.nodes[i].position[c];
   }
-  structure *s = drawn.scene.nodes ? structure_of(standing, &drawn, &own) : NULL;
+  structure *self = drawn.scene.nodes ? structure_of(standing, &drawn, &own) : NULL;
   strut_status status =
-      s ? nearest(s, &drawn, positions, index, error) : strut_no_memory(error, "");
+      self ? nearest(self, &drawn, positions, index, error) : strut_no_memory(error, "");
   strut_release(drawn.scene.nodes);
-  if (own) free_structure(s);
+  if (own) free_structure(self);
   return status;
 }

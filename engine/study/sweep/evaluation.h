@@ -31,7 +31,7 @@ double strut_goals_shape_distance(const strut_study *study, const strut_scene *s
 double strut_goals_curve_distance(const strut_study *study, const strut_path *path);
 /** Stiffness at the study's node along its direction, at the equilibrium q [N/m]; NAN: none. */
 strut_status strut_goals_stiffness(const strut_study *study, const strut_model *model,
-                                   const double *q, double *stiffness, strut_error *error);
+                                   const double *positions, double *stiffness, strut_error *error);
 
 /* Equilibria of a study's scenes, found once for all points with the same statics.
  *

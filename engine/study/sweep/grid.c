@@ -108,18 +108,18 @@ static int64_t stride_of(const strut_study *study, size_t axis) {
   return stride;
 }
 
-static strut_status find_column(strut_refinement *r, strut_error *error) {
-  const strut_sweep_plan *plan = r->plan;
+static strut_status find_column(strut_refinement *refinement, strut_error *error) {
+  const strut_sweep_plan *plan = refinement->plan;
   size_t words = 0, numbers = 0;
   for (size_t i = 0; i < plan->column_count; i++) {
-    const strut_slot_column *c = &plan->columns[i];
-    if (strcmp(c->name, plan->study->refine.where) == 0) {
-      r->word = c->word;
-      r->cell = c->word ? words : numbers;
+    const strut_slot_column *column = &plan->columns[i];
+    if (strcmp(column->name, plan->study->refine.where) == 0) {
+      refinement->word = column->word;
+      refinement->cell = column->word ? words : numbers;
       return STRUT_OK;
     }
-    words += c->word;
-    numbers += !c->word;
+    words += column->word;
+    numbers += !column->word;
   }
   return strut_fail(error, STRUT_BAD_SCENE,
                     "refine: the table has no column '%.60s'; 'keep' chooses the columns",
@@ -152,32 +152,33 @@ strut_status strut_refinement_create(const strut_sweep_plan *plan, strut_refinem
   return status;
 }
 
-void strut_refinement_free(strut_refinement *r) {
-  if (!r) return;
-  strut_release(r->known);
-  strut_release(r->wanted);
-  strut_release(r->value);
-  strut_release(r);
+void strut_refinement_free(strut_refinement *refinement) {
+  if (!refinement) return;
+  strut_release(refinement->known);
+  strut_release(refinement->wanted);
+  strut_release(refinement->value);
+  strut_release(refinement);
 }
 
 /* What two rows are compared by. */
-static uint64_t value_of(const strut_refinement *r, const strut_result_slot *row) {
+static uint64_t value_of(const strut_refinement *refinement, const strut_result_slot *row) {
   uint64_t bits;
   if (row->status) return strut_checksum(&row->status, sizeof row->status, 1);
-  if (r->word) return strut_checksum(row->words[r->cell], strlen(row->words[r->cell]), 0);
-  memcpy(&bits, &row->numbers[r->cell], sizeof bits);
+  if (refinement->word)
+    return strut_checksum(row->words[refinement->cell], strlen(row->words[refinement->cell]), 0);
+  memcpy(&bits, &row->numbers[refinement->cell], sizeof bits);
   return bits;
 }
 
-void strut_refinement_learn(strut_refinement *r, strut_slots *slots) {
+void strut_refinement_learn(strut_refinement *refinement, strut_slots *slots) {
   int64_t count = strut_slots_description_of(slots)->count;
   for (int64_t i = 0; i < count; i++) {
     strut_result_slot row;
     int64_t point = strut_slots_point(slots, i);
-    if (r->known[point] || !strut_slots_done(slots, point)) continue;
+    if (refinement->known[point] || !strut_slots_done(slots, point)) continue;
     if (!strut_slots_get(slots, point, &row)) continue;
-    r->value[point] = value_of(r, &row);
-    r->known[point] = 1 + (row.status != STRUT_OK);
+    refinement->value[point] = value_of(refinement, &row);
+    refinement->known[point] = 1 + (row.status != STRUT_OK);
   }
 }
 
@@ -189,68 +190,69 @@ typedef struct seen {
   double low, high;
 } seen;
 
-static void look_at(const strut_refinement *r, int64_t point, seen *s) {
-  if (!r->known[point]) return;
+static void look_at(const strut_refinement *refinement, int64_t point, seen *self) {
+  if (!refinement->known[point]) return;
   double number = (double)NAN;
-  bool failed = r->known[point] == 2;
-  if (!r->word && !failed) memcpy(&number, &r->value[point], sizeof number);
-  bool plain = !r->word && !failed && !isnan(number);
+  bool failed = refinement->known[point] == 2;
+  if (!refinement->word && !failed) memcpy(&number, &refinement->value[point], sizeof number);
+  bool plain = !refinement->word && !failed && !isnan(number);
   uint8_t kind = failed ? 2 : plain ? 1 : 0;
-  uint64_t value = plain || (!failed && !r->word) ? 0 : r->value[point];
-  if (s->any && (s->kind != kind || s->first != value)) s->mixed = true;
+  uint64_t value = plain || (!failed && !refinement->word) ? 0 : refinement->value[point];
+  if (self->any && (self->kind != kind || self->first != value)) self->mixed = true;
   if (plain) {
-    s->low = s->any ? fmin(s->low, number) : number;
-    s->high = s->any ? fmax(s->high, number) : number;
+    self->low = self->any ? fmin(self->low, number) : number;
+    self->high = self->any ? fmax(self->high, number) : number;
   }
-  if (!s->any) s->first = value, s->kind = kind;
-  s->any = true;
+  if (!self->any) self->first = value, self->kind = kind;
+  self->any = true;
 }
 
-static bool differs(const strut_refinement *r, int64_t corner, int64_t side) {
-  int64_t a = r->stride[0], b = r->stride[1];
+static bool differs(const strut_refinement *refinement, int64_t corner, int64_t side) {
+  int64_t a = refinement->stride[0], b = refinement->stride[1];
   seen s = {.any = false};
   for (int64_t i = 0; i <= side; i++) {
-    look_at(r, corner + i * a, &s);
-    look_at(r, corner + i * a + side * b, &s);
-    look_at(r, corner + i * b, &s);
-    look_at(r, corner + i * b + side * a, &s);
+    look_at(refinement, corner + i * a, &s);
+    look_at(refinement, corner + i * a + side * b, &s);
+    look_at(refinement, corner + i * b, &s);
+    look_at(refinement, corner + i * b + side * a, &s);
   }
-  return s.mixed || (s.kind == 1 && s.high - s.low > r->by);
+  return s.mixed || (s.kind == 1 && s.high - s.low > refinement->by);
 }
 
 /* Wants the points that divide the cell, if it has to be, and its quarters'. */
-static void divide(strut_refinement *r, int64_t corner, int64_t side) {
-  int64_t half = side / 2, a = half * r->stride[0], b = half * r->stride[1];
+static void divide(strut_refinement *refinement, int64_t corner, int64_t side) {
+  int64_t half = side / 2, a = half * refinement->stride[0], b = half * refinement->stride[1];
   const int64_t middle[5] = {corner + a, corner + b, corner + a + b, corner + a + 2 * b,
                              corner + 2 * a + b};
   bool all = true;
-  if (side == 1 || !differs(r, corner, side)) return;
+  if (side == 1 || !differs(refinement, corner, side)) return;
   for (int i = 0; i < 5; i++) {
-    r->wanted[middle[i]] = 1;
-    all = all && r->known[middle[i]];
+    refinement->wanted[middle[i]] = 1;
+    all = all && refinement->known[middle[i]];
   }
   if (!all) return; /* their values first */
-  divide(r, corner, half);
-  divide(r, corner + a, half);
-  divide(r, corner + b, half);
-  divide(r, corner + a + b, half);
+  divide(refinement, corner, half);
+  divide(refinement, corner + a, half);
+  divide(refinement, corner + b, half);
+  divide(refinement, corner + a + b, half);
 }
 
 /* The place of a point on one of the two axes. */
-static int64_t place(const strut_refinement *r, int64_t point, int axis) {
-  return point / r->stride[axis] % r->count[axis];
+static int64_t place(const strut_refinement *refinement, int64_t point, int axis) {
+  return point / refinement->stride[axis] % refinement->count[axis];
 }
 
-int64_t strut_refinement_choose(strut_refinement *r) {
+int64_t strut_refinement_choose(strut_refinement *refinement) {
   int64_t unknown = 0;
-  for (int64_t point = 0; point < r->plan->points; point++) {
-    int64_t i = place(r, point, 0), k = place(r, point, 1);
-    if (i % r->side || k % r->side) continue;
-    r->wanted[point] = 1;
-    if (i + r->side < r->count[0] && k + r->side < r->count[1]) divide(r, point, r->side);
+  for (int64_t point = 0; point < refinement->plan->points; point++) {
+    int64_t i = place(refinement, point, 0), k = place(refinement, point, 1);
+    if (i % refinement->side || k % refinement->side) continue;
+    refinement->wanted[point] = 1;
+    if (i + refinement->side < refinement->count[0] && k + refinement->side < refinement->count[1])
+      divide(refinement, point, refinement->side);
   }
-  for (int64_t point = 0; point < r->plan->points; point++)
-    unknown += r->wanted[point] && !r->known[point];
+  for (int64_t point = 0; point < refinement->plan->points; point++)
+    unknown += refinement->wanted[point] && !refinement->known[point];
   return unknown;
 }
 
@@ -259,13 +261,13 @@ bool strut_refinement_wants(const void *refinement, int64_t point) {
   return r->wanted[point];
 }
 
-void strut_refinement_count(const strut_refinement *r, strut_slots *slots, int64_t *wanted,
+void strut_refinement_count(const strut_refinement *refinement, strut_slots *slots, int64_t *wanted,
                             int64_t *done) {
   int64_t count = strut_slots_description_of(slots)->count;
   *wanted = *done = 0;
   for (int64_t i = 0; i < count; i++) {
     int64_t point = strut_slots_point(slots, i);
-    if (!r->wanted[point]) continue;
+    if (!refinement->wanted[point]) continue;
     ++*wanted;
     *done += strut_slots_done(slots, point);
   }
@@ -281,22 +283,22 @@ int64_t strut_refinement_coarse(const strut_sweep_plan *plan) {
   return points;
 }
 
-int64_t strut_refinement_stand_in(const strut_refinement *r, int64_t point) {
-  int64_t i = place(r, point, 0), k = place(r, point, 1);
-  if (r->known[point]) return point;
-  for (int64_t side = 2; side <= r->side; side *= 2) {
+int64_t strut_refinement_stand_in(const strut_refinement *refinement, int64_t point) {
+  int64_t i = place(refinement, point, 0), k = place(refinement, point, 1);
+  if (refinement->known[point]) return point;
+  for (int64_t side = 2; side <= refinement->side; side *= 2) {
     int64_t low[2] = {i / side * side, k / side * side}, high[2];
     high[0] = i % side ? low[0] + side : low[0];
     high[1] = k % side ? low[1] + side : low[1];
-    int64_t base = point - i * r->stride[0] - k * r->stride[1];
+    int64_t base = point - i * refinement->stride[0] - k * refinement->stride[1];
     bool all = true;
     for (int c = 0; c < 4; c++)
-      all = all && r->known[base + (c & 1 ? high : low)[0] * r->stride[0] +
-                            (c & 2 ? high : low)[1] * r->stride[1]];
+      all = all && refinement->known[base + (c & 1 ? high : low)[0] * refinement->stride[0] +
+                                     (c & 2 ? high : low)[1] * refinement->stride[1]];
     if (!all) continue;
     int64_t near_i = 2 * (i - low[0]) < side ? low[0] : high[0];
     int64_t near_k = 2 * (k - low[1]) < side ? low[1] : high[1];
-    return base + near_i * r->stride[0] + near_k * r->stride[1];
+    return base + near_i * refinement->stride[0] + near_k * refinement->stride[1];
   }
   return -1;
 }

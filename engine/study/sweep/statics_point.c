@@ -35,37 +35,38 @@ typedef struct rest_result {
 
 /* ---- single numbers ---- */
 
-static double state_energy(const rest_result *r, size_t i) {
-  return i < r->stable_count ? r->equilibria.list[r->stable[i]].energy : (double)NAN;
+static double state_energy(const rest_result *result, size_t i) {
+  return i < result->stable_count ? result->equilibria.list[result->stable[i]].energy : (double)NAN;
 }
 
 /* The lowest barrier out of a stable state. */
-static double state_barrier(const rest_result *r, size_t i) {
+static double state_barrier(const rest_result *result, size_t i) {
   double lowest = (double)NAN;
-  for (size_t k = 0; k < r->equilibria.barrier_count && i < r->stable_count; k++) {
-    const strut_barrier *b = &r->equilibria.barriers[k];
-    if (b->from == r->stable[i]) lowest = fmin(lowest, b->height);
+  for (size_t k = 0; k < result->equilibria.barrier_count && i < result->stable_count; k++) {
+    const strut_barrier *barrier = &result->equilibria.barriers[k];
+    if (barrier->from == result->stable[i]) lowest = fmin(lowest, barrier->height);
   }
   return lowest;
 }
 
 /* The lowest barrier out of any stable state. */
-static double lowest_barrier(const rest_result *r) {
+static double lowest_barrier(const rest_result *result) {
   double lowest = (double)NAN;
-  for (size_t i = 0; i < r->stable_count; i++) lowest = fmin(lowest, state_barrier(r, i));
+  for (size_t i = 0; i < result->stable_count; i++) lowest = fmin(lowest, state_barrier(result, i));
   return lowest;
 }
 
 /* Distance of positions from the shape that the study wants. */
-static double shape_distance(const rest_result *r, const double *q) {
-  return q ? strut_goals_shape_distance(r->study, r->model->scene, q) : (double)NAN;
+static double shape_distance(const rest_result *result, const double *positions) {
+  return positions ? strut_goals_shape_distance(result->study, result->model->scene, positions)
+                   : (double)NAN;
 }
 
 /* That of the stable state nearest to it. */
-static double nearest_shape(const rest_result *r) {
+static double nearest_shape(const rest_result *result) {
   double least = (double)NAN;
-  for (size_t i = 0; i < r->stable_count; i++)
-    least = fmin(least, shape_distance(r, r->equilibria.list[r->stable[i]].point.q));
+  for (size_t i = 0; i < result->stable_count; i++)
+    least = fmin(least, shape_distance(result, result->equilibria.list[result->stable[i]].point.q));
   return least;
 }
 
@@ -89,15 +90,17 @@ static double frequency_of(const strut_mode *mode) {
   return mode ? mode->angular_frequency / turn : (double)NAN;
 }
 
-static bool is_limit(const strut_path_event *e) {
-  return e->kind == STRUT_PATH_LIMIT || e->kind == STRUT_PATH_KINK_LIMIT;
+static bool is_limit(const strut_path_event *event) {
+  return event->kind == STRUT_PATH_LIMIT || event->kind == STRUT_PATH_KINK_LIMIT;
 }
 
-static bool is_bifurcation(const strut_path_event *e) {
-  return e->kind == STRUT_PATH_BIFURCATION || e->kind == STRUT_PATH_KINK_BIFURCATION;
+static bool is_bifurcation(const strut_path_event *event) {
+  return event->kind == STRUT_PATH_BIFURCATION || event->kind == STRUT_PATH_KINK_BIFURCATION;
 }
 
-static bool loses_stability(const strut_path_event *e) { return e->before == 0 && e->after > 0; }
+static bool loses_stability(const strut_path_event *event) {
+  return event->before == 0 && event->after > 0;
+}
 
 /* The factor of the first event of a kind. */
 static double first_factor(const strut_path *path, bool (*matches)(const strut_path_event *)) {
@@ -111,10 +114,11 @@ static double last_factor(const strut_path *path) {
 }
 
 /* 0 or 1; missing where another combination of several states might be super stable. */
-static double super_stability(const strut_rigidity *r) {
-  bool known = r->states.count == 0 ||
-               (r->stress.tested && (r->states.count == 1 || r->stress.super_stable));
-  return known ? (double)r->stress.super_stable : (double)NAN;
+static double super_stability(const strut_rigidity *rigidity) {
+  bool known =
+      rigidity->states.count == 0 ||
+      (rigidity->stress.tested && (rigidity->states.count == 1 || rigidity->stress.super_stable));
+  return known ? (double)rigidity->stress.super_stable : (double)NAN;
 }
 
 /* ---- the columns ---- */
@@ -128,51 +132,54 @@ typedef enum column_shape {
 
 /* Columns of each computation: word, name, unit, shape, value of a number (the i-th). */
 #define EQUILIBRIA_COLUMNS(X)                                                                      \
-  X(STABLE, "stable_count", "1", NUMBER, (double)r->stable_count)                                  \
-  X(FOUND, "equilibrium_count", "1", NUMBER, (double)r->equilibria.count)                          \
+  X(STABLE, "stable_count", "1", NUMBER, (double)result->stable_count)                             \
+  X(FOUND, "equilibrium_count", "1", NUMBER, (double)result->equilibria.count)                     \
   X(STATES, "state", "1", WORDS, (double)NAN)                                                      \
-  X(ENERGIES, "energy", "J", NUMBERS, state_energy(r, i))                                          \
-  X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(r, i))                                        \
-  X(STARTS, "starts", "1", NUMBER, (double)r->equilibria.starts)                                   \
-  X(MISSED, "missed_probability", "1", NUMBER, r->equilibria.missed.probability)                   \
-  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(r))                              \
-  X(SHAPE, "shape_distance", "m", NUMBER, nearest_shape(r))
+  X(ENERGIES, "energy", "J", NUMBERS, state_energy(result, i))                                          \
+  X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(result, i))                                        \
+  X(STARTS, "starts", "1", NUMBER, (double)result->equilibria.starts)                              \
+  X(MISSED, "missed_probability", "1", NUMBER, result->equilibria.missed.probability)              \
+  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(result))                              \
+  X(SHAPE, "shape_distance", "m", NUMBER, nearest_shape(result))
 #define MODES_COLUMNS(X)                                                                           \
   X(AT, "at", "1", WORD, (double)NAN)                                                              \
-  X(FREQUENCIES, "frequency", "Hz", NUMBERS, frequency_of(elastic_mode(&r->modes, i)))             \
+  X(FREQUENCIES, "frequency", "Hz", NUMBERS, frequency_of(elastic_mode(&result->modes, i)))        \
   X(DAMPING_RATIOS, "damping_ratio", "1", NUMBERS,                                                 \
-    elastic_mode(&r->modes, i) ? elastic_mode(&r->modes, i)->damping_ratio : (double)NAN)          \
-  X(MODE_COUNTS, "rigid_body_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_RIGID))        \
-  X(MODE_COUNTS, "mechanism_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_MECHANISM))     \
-  X(MODE_COUNTS, "unstable_modes", "1", NUMBER, count_modes(&r->modes, STRUT_MODE_UNSTABLE))       \
-  X(CONDITION, "condition", "1", NUMBER, r->modes.condition)                                       \
-  X(STIFFNESS, "stiffness", "N/m", NUMBER, r->stiffness)                                           \
-  X(SHAPE, "shape_distance", "m", NUMBER, shape_distance(r, r->modes.q))
+    elastic_mode(&result->modes, i) ? elastic_mode(&result->modes, i)->damping_ratio               \
+                                    : (double)NAN)                                                 \
+  X(MODE_COUNTS, "rigid_body_modes", "1", NUMBER, count_modes(&result->modes, STRUT_MODE_RIGID))   \
+  X(MODE_COUNTS, "mechanism_modes", "1", NUMBER,                                                   \
+    count_modes(&result->modes, STRUT_MODE_MECHANISM))                                             \
+  X(MODE_COUNTS, "unstable_modes", "1", NUMBER, count_modes(&result->modes, STRUT_MODE_UNSTABLE))  \
+  X(CONDITION, "condition", "1", NUMBER, result->modes.condition)                                  \
+  X(STIFFNESS, "stiffness", "N/m", NUMBER, result->stiffness)                                      \
+  X(SHAPE, "shape_distance", "m", NUMBER, shape_distance(result, result->modes.q))
 #define RIGIDITY_COLUMNS(X)                                                                        \
-  X(RANK, "rank", "1", NUMBER, (double)r->rigidity.spaces.rank)                                    \
-  X(SELF_STRESS, "self_stress_count", "1", NUMBER, (double)r->rigidity.states.count)               \
-  X(MECHANISMS, "mechanism_count", "1", NUMBER, (double)r->rigidity.mechanisms.count)              \
-  X(MECHANISM_KINDS, "rigid_body", "1", NUMBER, (double)r->rigidity.mechanisms.rigid_body)         \
-  X(MECHANISM_KINDS, "infinitesimal", "1", NUMBER, (double)r->rigidity.mechanisms.infinitesimal)   \
-  X(MECHANISM_KINDS, "finite", "1", NUMBER, (double)r->rigidity.mechanisms.finite)                 \
-  X(MECHANISM_KINDS, "undecided", "1", NUMBER, (double)r->rigidity.mechanisms.undecided)           \
-  X(SUPER_STABLE, "super_stable", "1", NUMBER, super_stability(&r->rigidity))                      \
+  X(RANK, "rank", "1", NUMBER, (double)result->rigidity.spaces.rank)                               \
+  X(SELF_STRESS, "self_stress_count", "1", NUMBER, (double)result->rigidity.states.count)          \
+  X(MECHANISMS, "mechanism_count", "1", NUMBER, (double)result->rigidity.mechanisms.count)         \
+  X(MECHANISM_KINDS, "rigid_body", "1", NUMBER, (double)result->rigidity.mechanisms.rigid_body)    \
+  X(MECHANISM_KINDS, "infinitesimal", "1", NUMBER,                                                 \
+    (double)result->rigidity.mechanisms.infinitesimal)                                             \
+  X(MECHANISM_KINDS, "finite", "1", NUMBER, (double)result->rigidity.mechanisms.finite)            \
+  X(MECHANISM_KINDS, "undecided", "1", NUMBER, (double)result->rigidity.mechanisms.undecided)      \
+  X(SUPER_STABLE, "super_stable", "1", NUMBER, super_stability(&result->rigidity))                 \
   X(LABEL, "label", "1", WORD, (double)NAN)                                                        \
-  X(RESIDUAL, "residual", "N", NUMBER, r->rigidity.residual)
+  X(RESIDUAL, "residual", "N", NUMBER, result->rigidity.residual)
 #define PATH_COLUMNS(X)                                                                            \
-  X(LIMIT, "limit_factor", NULL, NUMBER, first_factor(&r->path, is_limit))                         \
-  X(BIFURCATION, "bifurcation_factor", NULL, NUMBER, first_factor(&r->path, is_bifurcation))       \
-  X(CRITICAL, "critical_factor", NULL, NUMBER, first_factor(&r->path, loses_stability))            \
-  X(LAST_FACTOR, "last_factor", NULL, NUMBER, last_factor(&r->path))                               \
-  X(PATH_EVENTS, "event_count", "1", NUMBER, (double)r->path.event_count)                          \
+  X(LIMIT, "limit_factor", NULL, NUMBER, first_factor(&result->path, is_limit))                    \
+  X(BIFURCATION, "bifurcation_factor", NULL, NUMBER, first_factor(&result->path, is_bifurcation))  \
+  X(CRITICAL, "critical_factor", NULL, NUMBER, first_factor(&result->path, loses_stability))       \
+  X(LAST_FACTOR, "last_factor", NULL, NUMBER, last_factor(&result->path))                          \
+  X(PATH_EVENTS, "event_count", "1", NUMBER, (double)result->path.event_count)                     \
   X(END, "end", "1", WORD, (double)NAN)                                                            \
-  X(CURVE, "curve_distance", "N", NUMBER, strut_goals_curve_distance(r->study, &r->path))
+  X(CURVE, "curve_distance", "N", NUMBER, strut_goals_curve_distance(result->study, &result->path))
 #define FORM_COLUMNS(X)                                                                            \
-  X(MOVED, "moved", "m", NUMBER, r->form.moved)                                                    \
-  X(RESIDUAL, "residual", "N", NUMBER, r->form.residual)                                           \
-  X(DENSITY_CHANGE, "density_change", "1", NUMBER, r->form.density_change)                         \
-  X(LEAST_TENSION, "least_tension", "N", NUMBER, r->form.least_tension)                            \
-  X(LARGEST_FORCE, "largest_force", "N", NUMBER, r->form.largest_force)
+  X(MOVED, "moved", "m", NUMBER, result->form.moved)                                               \
+  X(RESIDUAL, "residual", "N", NUMBER, result->form.residual)                                      \
+  X(DENSITY_CHANGE, "density_change", "1", NUMBER, result->form.density_change)                    \
+  X(LEAST_TENSION, "least_tension", "N", NUMBER, result->form.least_tension)                       \
+  X(LARGEST_FORCE, "largest_force", "N", NUMBER, result->form.largest_force)
 
 typedef struct column {
   strut_compute compute;
@@ -197,7 +204,7 @@ static const column columns[] = {EQUILIBRIA_COLUMNS(IN_EQUILIBRIA) MODES_COLUMNS
 enum { COLUMNS = sizeof columns / sizeof columns[0], MOST_OF_ONE = 16 };
 
 /* The i-th value of the k-th column of the computation. */
-static double value_of(const rest_result *r, strut_compute compute, size_t k, size_t i) {
+static double value_of(const rest_result *result, strut_compute compute, size_t k, size_t i) {
   double values[MOST_OF_ONE] = {0};
   size_t n = 0;
 #define STORE(keep, name, unit, shape, value) values[n++] = value;
@@ -223,13 +230,13 @@ static const char *short_label(const char *label, char word[STRUT_SLOT_WORD]) {
 }
 
 /* The i-th word of a column. */
-static const char *word_of(const rest_result *r, strut_keep keep, size_t i,
+static const char *word_of(const rest_result *result, strut_keep keep, size_t i,
                            char word[STRUT_SLOT_WORD]) {
   if (keep == STRUT_KEEP_STATES)
-    return i < r->stable_count ? r->equilibria.list[r->stable[i]].name : "";
-  if (keep == STRUT_KEEP_AT) return r->modes.at;
-  if (keep == STRUT_KEEP_LABEL) return short_label(r->rigidity.tensegrity.label, word);
-  return strut_path_end_word(r->path.end);
+    return i < result->stable_count ? result->equilibria.list[result->stable[i]].name : "";
+  if (keep == STRUT_KEEP_AT) return result->modes.at;
+  if (keep == STRUT_KEEP_LABEL) return short_label(result->rigidity.tensegrity.label, word);
+  return strut_path_end_word(result->path.end);
 }
 
 /* Columns that only a study which asks for them has. */
@@ -250,14 +257,15 @@ static size_t lowest_of(const strut_study *study) {
   return study->lowest > 0 ? (size_t)study->lowest : STRUT_STUDY_LOWEST;
 }
 
-static bool is_kept(const strut_sweep_plan *plan, const column *c) {
-  return c->compute == (strut_compute)plan->study->compute && strut_keep_has(&plan->keep, c->keep);
+static bool is_kept(const strut_sweep_plan *plan, const column *self) {
+  return self->compute == (strut_compute)plan->study->compute &&
+         strut_keep_has(&plan->keep, self->keep);
 }
 
 /* ---- what a path follows ---- */
 
-static const char *unit_of_actuator(const strut_actuator *a) {
-  return a->member >= 0 ? "m" : a->hinge >= 0 ? "rad" : "N/m";
+static const char *unit_of_actuator(const strut_actuator *actuator) {
+  return actuator->member >= 0 ? "m" : actuator->hinge >= 0 ? "rad" : "N/m";
 }
 
 /* Does it follow the stages of the model's file? */
@@ -332,14 +340,14 @@ bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   if (plan->study->compute == STRUT_COMPUTE_PATH)
     choose_path(plan->study, setup, &options, &factor, &error);
   for (size_t k = 0; k < COLUMNS && fine; k++) {
-    const column *c = &columns[k];
-    bool word = c->shape == WORD || c->shape == WORDS;
-    bool several = c->shape == NUMBERS || c->shape == WORDS;
-    const char *unit = c->unit ? c->unit : factor;
-    if (!is_kept(plan, c)) continue;
-    if (!several) fine = strut_sweep_add_column(plan, "", c->name, unit, word);
+    const column *self = &columns[k];
+    bool word = self->shape == WORD || self->shape == WORDS;
+    bool several = self->shape == NUMBERS || self->shape == WORDS;
+    const char *unit = self->unit ? self->unit : factor;
+    if (!is_kept(plan, self)) continue;
+    if (!several) fine = strut_sweep_add_column(plan, "", self->name, unit, word);
     for (size_t i = 0; several && i < lowest_of(plan->study) && fine; i++) {
-      const char *name = strut_arena_format(&plan->arena, "%s_%zu", c->name, i + 1);
+      const char *name = strut_arena_format(&plan->arena, "%s_%zu", self->name, i + 1);
       fine = name && strut_sweep_add_column(plan, "", name, unit, word);
     }
   }
@@ -360,24 +368,24 @@ static int by_energy(const void *a, const void *b) {
   return (first->index > second->index) - (first->index < second->index);
 }
 
-static bool rank_states(rest_result *r) {
-  const strut_equilibria *all = &r->equilibria;
-  ranked *list = strut_arena_allocate(&r->arena, all->count, sizeof *list);
-  r->stable = strut_arena_allocate(&r->arena, all->count, sizeof *r->stable);
-  if (!list || !r->stable) return false;
+static bool rank_states(rest_result *result) {
+  const strut_equilibria *all = &result->equilibria;
+  ranked *list = strut_arena_allocate(&result->arena, all->count, sizeof *list);
+  result->stable = strut_arena_allocate(&result->arena, all->count, sizeof *result->stable);
+  if (!list || !result->stable) return false;
   for (size_t i = 0; i < all->count; i++)
     if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
-      list[r->stable_count++] = (ranked){all->list[i].energy, (int32_t)i};
-  if (r->stable_count) qsort(list, r->stable_count, sizeof *list, by_energy);
-  for (size_t i = 0; i < r->stable_count; i++) r->stable[i] = list[i].index;
+      list[result->stable_count++] = (ranked){all->list[i].energy, (int32_t)i};
+  if (result->stable_count) qsort(list, result->stable_count, sizeof *list, by_energy);
+  for (size_t i = 0; i < result->stable_count; i++) result->stable[i] = list[i].index;
   return true;
 }
 
 /* Warns where something carries more than it can, as the commands do. */
-static void warn_of_overload(strut_sweep_job *job, const strut_model *model, const double *q,
-                             const char *where) {
+static void warn_of_overload(strut_sweep_job *job, const strut_model *model,
+                             const double *positions, const char *where) {
   strut_overload worst;
-  if (job->warning_count > 0 || !strut_history_overload(model, q, &worst)) return;
+  if (job->warning_count > 0 || !strut_history_overload(model, positions, &worst)) return;
   strut_warning *warning = &job->warnings[job->warning_count++];
   warning->code = "overload";
   snprintf(warning->text, sizeof warning->text,
@@ -387,96 +395,105 @@ static void warn_of_overload(strut_sweep_job *job, const strut_model *model, con
            worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }
 
-static strut_status find_equilibria(const strut_sweep_worker *w, strut_sweep_job *job,
-                                    rest_result *r) {
-  const strut_equilibria_options options = {.interrupt = strut_sweep_interrupt_of(w, job)};
-  strut_equilibria *all = &r->equilibria;
+static strut_status find_equilibria(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                    rest_result *result) {
+  const strut_equilibria_options options = {.interrupt = strut_sweep_interrupt_of(worker, job)};
+  strut_equilibria *all = &result->equilibria;
   strut_status status =
-      strut_equilibria_find(r->model, &job->setup.experiment, &options, all, &job->error);
+      strut_equilibria_find(result->model, &job->setup.experiment, &options, all, &job->error);
   if (status) return status;
-  if (!rank_states(r)) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
-  for (size_t i = 0; i < r->stable_count; i++)
-    warn_of_overload(job, r->model, all->list[r->stable[i]].point.q, all->list[r->stable[i]].name);
+  if (!rank_states(result)) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
+  for (size_t i = 0; i < result->stable_count; i++)
+    warn_of_overload(job, result->model, all->list[result->stable[i]].point.q,
+                     all->list[result->stable[i]].name);
   if (!all->count) /* that there is none is a result, and this is why */
     snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
              (int)sizeof job->cells.message - 1, all->remark);
   return STRUT_OK;
 }
 
-static strut_status find_modes(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+static strut_status find_modes(const strut_study *study, strut_sweep_job *job,
+                               rest_result *result) {
   int32_t wanted = (int32_t)lowest_of(study) + 3; /* motions of the whole come first */
   strut_modes_options options = {.at = study->at, .count = 0};
   int32_t free_coordinates = 0;
-  for (int32_t i = 0; i < 2 * r->model->node_count; i++) free_coordinates += !r->model->fixed[i];
+  for (int32_t i = 0; i < 2 * result->model->node_count; i++)
+    free_coordinates += !result->model->fixed[i];
   if (free_coordinates > STRUT_DENSE_MODES && wanted > STRUT_SPARSE_MODES) options.count = wanted;
-  strut_status status =
-      strut_modes_find(r->model, &job->setup.experiment, &options, &r->modes, &job->error);
-  if (!status) warn_of_overload(job, r->model, r->modes.q, r->modes.at);
+  strut_status status = strut_modes_find(result->model, &job->setup.experiment, &options,
+                                         &result->modes, &job->error);
+  if (!status) warn_of_overload(job, result->model, result->modes.q, result->modes.at);
   if (!status && study->goal.stiffness_node)
-    status = strut_goals_stiffness(study, r->model, r->modes.q, &r->stiffness, &job->error);
+    status = strut_goals_stiffness(study, result->model, result->modes.q, &result->stiffness,
+                                   &job->error);
   return status;
 }
 
-static strut_status find_rigidity(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+static strut_status find_rigidity(const strut_study *study, strut_sweep_job *job,
+                                  rest_result *result) {
   strut_rest_state shape;
   strut_status status =
-      strut_rest_state_find(r->model, &job->setup.experiment, study->at ? study->at : "drawn",
-                            &r->arena, &shape, &job->error);
-  if (!status) status = strut_rigidity_find(r->model, shape.q, &r->rigidity, &job->error);
+      strut_rest_state_find(result->model, &job->setup.experiment, study->at ? study->at : "drawn",
+                            &result->arena, &shape, &job->error);
+  if (!status) status = strut_rigidity_find(result->model, shape.q, &result->rigidity, &job->error);
   return status;
 }
 
-static strut_status follow_path(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+static strut_status follow_path(const strut_study *study, strut_sweep_job *job,
+                                rest_result *result) {
   strut_path_options options;
   const char *unit;
   const strut_experiment *experiment = &job->setup.experiment;
   strut_status status = choose_path(study, &job->setup, &options, &unit, &job->error);
   if (!status)
-    status = follows_stages(study, &job->setup)
-                 ? strut_path_follow_stages(r->model, experiment, &options, &r->path, &job->error)
-                 : strut_path_follow(r->model, experiment, &options, &r->path, &job->error);
-  if (!status && r->path.remark[0]) /* why it ended early */
+    status =
+        follows_stages(study, &job->setup)
+            ? strut_path_follow_stages(result->model, experiment, &options, &result->path,
+                                       &job->error)
+            : strut_path_follow(result->model, experiment, &options, &result->path, &job->error);
+  if (!status && result->path.remark[0]) /* why it ended early */
     snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
-             (int)sizeof job->cells.message - 1, r->path.remark);
+             (int)sizeof job->cells.message - 1, result->path.remark);
   return status;
 }
 
-static strut_status find_form(const strut_study *study, strut_sweep_job *job, rest_result *r) {
+static strut_status find_form(const strut_study *study, strut_sweep_job *job, rest_result *result) {
   const strut_form_options options = {.from = (strut_form_source)study->form.from,
                                       .objective = (strut_form_objective)study->form.objective,
                                       .least_tension = study->form.least_tension,
                                       .least_density = study->form.least_density};
-  return strut_form_find(&job->setup, &options, &r->form, &job->error);
+  return strut_form_find(&job->setup, &options, &result->form, &job->error);
 }
 
-static strut_status compute(const strut_sweep_worker *w, strut_sweep_job *job, rest_result *r) {
-  const strut_study *study = w->plan->study;
+static strut_status compute(const strut_sweep_worker *worker, strut_sweep_job *job,
+                            rest_result *result) {
+  const strut_study *study = worker->plan->study;
   switch ((strut_compute)study->compute) {
-    case STRUT_COMPUTE_EQUILIBRIA: return find_equilibria(w, job, r);
-    case STRUT_COMPUTE_MODES: return find_modes(study, job, r);
-    case STRUT_COMPUTE_RIGIDITY: return find_rigidity(study, job, r);
-    case STRUT_COMPUTE_PATH: return follow_path(study, job, r);
-    case STRUT_COMPUTE_FORM: return find_form(study, job, r);
+    case STRUT_COMPUTE_EQUILIBRIA: return find_equilibria(worker, job, result);
+    case STRUT_COMPUTE_MODES: return find_modes(study, job, result);
+    case STRUT_COMPUTE_RIGIDITY: return find_rigidity(study, job, result);
+    case STRUT_COMPUTE_PATH: return follow_path(study, job, result);
+    case STRUT_COMPUTE_FORM: return find_form(study, job, result);
     case STRUT_COMPUTE_RUN:
     case STRUT_COMPUTE_COUNT: break;
   }
   return STRUT_OK;
 }
 
-static void fill_columns(const strut_sweep_plan *plan, const rest_result *r,
+static void fill_columns(const strut_sweep_plan *plan, const rest_result *result,
                          strut_row_buffer *cells) {
   strut_compute computed = (strut_compute)plan->study->compute;
   size_t first = 0;
   while (first < COLUMNS && columns[first].compute != computed) first++;
   for (size_t k = first; k < COLUMNS; k++) {
-    const column *c = &columns[k];
-    size_t count = c->shape == NUMBERS || c->shape == WORDS ? lowest_of(plan->study) : 1;
+    const column *self = &columns[k];
+    size_t count = self->shape == NUMBERS || self->shape == WORDS ? lowest_of(plan->study) : 1;
     char word[STRUT_SLOT_WORD];
-    for (size_t i = 0; i < count && is_kept(plan, c); i++) {
-      if (c->shape == WORD || c->shape == WORDS)
-        strut_sweep_word(cells, word_of(r, c->keep, i, word));
+    for (size_t i = 0; i < count && is_kept(plan, self); i++) {
+      if (self->shape == WORD || self->shape == WORDS)
+        strut_sweep_word(cells, word_of(result, self->keep, i, word));
       else
-        strut_sweep_number(cells, value_of(r, computed, k - first, i));
+        strut_sweep_number(cells, value_of(result, computed, k - first, i));
     }
   }
 }
@@ -499,25 +516,26 @@ static strut_status fill_form(const strut_sweep_plan *plan, strut_sweep_job *job
   return STRUT_OK;
 }
 
-strut_status strut_statics_point(const strut_sweep_worker *w, strut_sweep_job *job) {
+strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job) {
   strut_model *model = NULL;
-  rest_result *r = strut_allocate(1, sizeof *r);
-  if (!r) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
+  rest_result *result = strut_allocate(1, sizeof *result);
+  if (!result) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
   strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
-  r->model = model;
-  r->study = w->plan->study;
-  r->stiffness = (double)NAN;
-  job->setup.experiment.interrupt = strut_sweep_interrupt_of(w, job);
-  strut_sweep_fill_counts(w->plan, model, &job->cells);
-  if (!status) status = compute(w, job, r);
-  if (!status) fill_columns(w->plan, r, &job->cells);
-  if (!status && w->plan->study->compute == STRUT_COMPUTE_FORM) status = fill_form(w->plan, job);
-  strut_equilibria_free(&r->equilibria);
-  strut_modes_free(&r->modes);
-  strut_rigidity_free(&r->rigidity);
-  strut_path_free(&r->path);
-  strut_arena_free(&r->arena);
+  result->model = model;
+  result->study = worker->plan->study;
+  result->stiffness = (double)NAN;
+  job->setup.experiment.interrupt = strut_sweep_interrupt_of(worker, job);
+  strut_sweep_fill_counts(worker->plan, model, &job->cells);
+  if (!status) status = compute(worker, job, result);
+  if (!status) fill_columns(worker->plan, result, &job->cells);
+  if (!status && worker->plan->study->compute == STRUT_COMPUTE_FORM)
+    status = fill_form(worker->plan, job);
+  strut_equilibria_free(&result->equilibria);
+  strut_modes_free(&result->modes);
+  strut_rigidity_free(&result->rigidity);
+  strut_path_free(&result->path);
+  strut_arena_free(&result->arena);
   strut_model_free(model);
-  strut_release(r);
+  strut_release(result);
   return status;
 }

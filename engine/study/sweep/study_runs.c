@@ -32,60 +32,62 @@ bool strut_study_shows(const strut_study_figure *figure, const char *column, con
 
 /* Values of the axes at a point. */
 static strut_status read_values(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                int64_t point, strut_study_opened *o, bool *shown,
+                                int64_t point, strut_study_opened *opened, bool *shown,
                                 strut_error *error) {
   size_t count = plan->axis_columns;
-  o->values = strut_arena_allocate(&o->arena, count + 1, sizeof *o->values);
-  o->texts = strut_arena_allocate(&o->arena, count + 1, sizeof *o->texts);
-  if (!o->values || !o->texts) return strut_no_memory(error, "while drawing");
-  strut_grid_values(plan->study, point, o->values);
+  opened->values = strut_arena_allocate(&opened->arena, count + 1, sizeof *opened->values);
+  opened->texts = strut_arena_allocate(&opened->arena, count + 1, sizeof *opened->texts);
+  if (!opened->values || !opened->texts) return strut_no_memory(error, "while drawing");
+  strut_grid_values(plan->study, point, opened->values);
   for (size_t i = 0; i < count; i++) {
     char number[STRUT_NUMBER_TEXT];
-    strut_number_text(o->values[i].number, number);
-    o->texts[i] =
-        o->values[i].word ? o->values[i].word : strut_arena_text(&o->arena, number, strlen(number));
-    if (!o->texts[i]) return strut_no_memory(error, "while drawing");
-    *shown = *shown && strut_study_shows(figure, plan->columns[i].name, o->texts[i]);
+    strut_number_text(opened->values[i].number, number);
+    opened->texts[i] = opened->values[i].word
+                           ? opened->values[i].word
+                           : strut_arena_text(&opened->arena, number, strlen(number));
+    if (!opened->texts[i]) return strut_no_memory(error, "while drawing");
+    *shown = *shown && strut_study_shows(figure, plan->columns[i].name, opened->texts[i]);
   }
   return STRUT_OK;
 }
 
 strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *directory,
                                   const strut_study_figure *figure, int64_t point,
-                                  strut_study_opened *o, bool *there, strut_error *error) {
+                                  strut_study_opened *opened, bool *there, strut_error *error) {
   struct stat found;
-  *o = (strut_study_opened){.motion = {0}};
+  *opened = (strut_study_opened){.motion = {0}};
   *there = false;
   bool shown = true;
-  strut_status status = read_values(plan, figure, point, o, &shown, error);
+  strut_status status = read_values(plan, figure, point, opened, &shown, error);
   if (status || !shown) return status;
-  const char *folder = strut_arena_format(&o->arena, "%s/runs/%09lld", directory, (long long)point);
-  const char *file = folder ? strut_arena_format(&o->arena, "%s/trajectory.h5", folder) : NULL;
+  const char *folder =
+      strut_arena_format(&opened->arena, "%s/runs/%09lld", directory, (long long)point);
+  const char *file = folder ? strut_arena_format(&opened->arena, "%s/trajectory.h5", folder) : NULL;
   if (!file) return strut_no_memory(error, "while drawing");
   if (stat(file, &found) != 0) return STRUT_OK; /* it failed before recording anything */
-  status = plan->scenes.setup(plan->scenes.context, o->values, &o->setup, error);
+  status = plan->scenes.setup(plan->scenes.context, opened->values, &opened->setup, error);
   if (!status)
-    status =
-        strut_trajectory_read(folder, &o->setup.scene, STRUT_TRAJECTORY_ROOM, &o->motion, error);
-  if (!status && !o->motion.position)
+    status = strut_trajectory_read(folder, &opened->setup.scene, STRUT_TRAJECTORY_ROOM,
+                                   &opened->motion, error);
+  if (!status && !opened->motion.position)
     status = strut_fail(error, STRUT_USAGE,
                         "figure '%.60s' of the study: the runs recorded no "
                         "positions ('output: {channels: [position]}')",
                         figure->name);
-  o->run = (strut_study_run){.point = point,
-                             .values = o->values,
-                             .texts = o->texts,
-                             .scene = &o->setup.scene,
-                             .motion = &o->motion};
-  *there = !status && o->motion.frames > 0;
+  opened->run = (strut_study_run){.point = point,
+                                  .values = opened->values,
+                                  .texts = opened->texts,
+                                  .scene = &opened->setup.scene,
+                                  .motion = &opened->motion};
+  *there = !status && opened->motion.frames > 0;
   return status;
 }
 
-void strut_study_run_close(strut_study_opened *o) {
-  strut_trajectory_free(&o->motion);
-  strut_setup_free(&o->setup);
-  strut_arena_free(&o->arena);
-  *o = (strut_study_opened){.motion = {0}};
+void strut_study_run_close(strut_study_opened *opened) {
+  strut_trajectory_free(&opened->motion);
+  strut_setup_free(&opened->setup);
+  strut_arena_free(&opened->arena);
+  *opened = (strut_study_opened){.motion = {0}};
 }
 
 /* The table being built. */
@@ -111,81 +113,89 @@ static bool grow_numbers(double **column, size_t capacity) {
   return more != NULL;
 }
 
-static bool reserve(builder *b, size_t rows) {
-  if (rows <= b->capacity) return true;
-  size_t capacity = rows + rows / 2, axes = b->plan->axis_columns;
+static bool reserve(builder *self, size_t rows) {
+  if (rows <= self->capacity) return true;
+  size_t capacity = rows + rows / 2, axes = self->plan->axis_columns;
   bool fine = true;
-  for (size_t i = 0; i <= axes && fine; i++) fine = grow_texts(&b->texts[i], capacity);
-  for (size_t i = 0; i < axes && fine; i++) fine = grow_numbers(&b->axes[i], capacity);
-  for (size_t i = 0; i < NUMBERS && fine; i++) fine = grow_numbers(&b->numbers[i], capacity);
-  if (fine) b->capacity = capacity;
+  for (size_t i = 0; i <= axes && fine; i++) fine = grow_texts(&self->texts[i], capacity);
+  for (size_t i = 0; i < axes && fine; i++) fine = grow_numbers(&self->axes[i], capacity);
+  for (size_t i = 0; i < NUMBERS && fine; i++) fine = grow_numbers(&self->numbers[i], capacity);
+  if (fine) self->capacity = capacity;
   return fine;
 }
 
-static void add_row(builder *b, const strut_study_run *run, const char *const *texts, size_t frame,
-                    size_t node, const char *name) {
-  const strut_trajectory *m = run->motion;
-  const double *at = m->position + 2 * (frame * m->node_count + node);
-  const double *from = m->position + 2 * node;
-  const double numbers[NUMBERS] = {
-      m->time[frame], m->time[frame] - m->time[0], at[0], at[1], at[0] - from[0], at[1] - from[1]};
-  size_t row = b->rows++;
-  for (size_t i = 0; i < b->plan->axis_columns; i++) {
-    b->texts[i][row] = texts[i];
-    b->axes[i][row] = run->values[i].number;
+static void add_row(builder *self, const strut_study_run *run, const char *const *texts,
+                    size_t frame, size_t node, const char *name) {
+  const strut_trajectory *trajectory = run->motion;
+  const double *at = trajectory->position + 2 * (frame * trajectory->node_count + node);
+  const double *from = trajectory->position + 2 * node;
+  const double numbers[NUMBERS] = {trajectory->time[frame],
+                                   trajectory->time[frame] - trajectory->time[0],
+                                   at[0],
+                                   at[1],
+                                   at[0] - from[0],
+                                   at[1] - from[1]};
+  size_t row = self->rows++;
+  for (size_t i = 0; i < self->plan->axis_columns; i++) {
+    self->texts[i][row] = texts[i];
+    self->axes[i][row] = run->values[i].number;
   }
-  b->texts[b->plan->axis_columns][row] = name;
-  for (size_t i = 0; i < NUMBERS; i++) b->numbers[i][row] = numbers[i];
+  self->texts[self->plan->axis_columns][row] = name;
+  for (size_t i = 0; i < NUMBERS; i++) self->numbers[i][row] = numbers[i];
 }
 
 /* Texts that outlive the run, in the table's arena. */
-static const char *kept(builder *b, const char *text) {
-  return strut_arena_text(&b->table->arena, text, strlen(text));
+static const char *kept(builder *self, const char *text) {
+  return strut_arena_text(&self->table->arena, text, strlen(text));
 }
 
-static strut_status add_run(builder *b, const strut_study_run *run, strut_error *error) {
-  const strut_trajectory *m = run->motion;
+static strut_status add_run(builder *self, const strut_study_run *run, strut_error *error) {
+  const strut_trajectory *trajectory = run->motion;
   const char *texts[64];
-  for (size_t i = 0; i < b->plan->axis_columns; i++) {
-    texts[i] = kept(b, run->texts[i]);
+  for (size_t i = 0; i < self->plan->axis_columns; i++) {
+    texts[i] = kept(self, run->texts[i]);
     if (!texts[i]) return strut_no_memory(error, "while drawing");
   }
-  if (m->frames > MOST_ROWS / m->node_count || b->rows > MOST_ROWS - m->frames * m->node_count)
+  if (trajectory->frames > MOST_ROWS / trajectory->node_count ||
+      self->rows > MOST_ROWS - trajectory->frames * trajectory->node_count)
     return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: more than %zu rows",
-                      b->figure->name, MOST_ROWS);
-  for (size_t node = 0; node < m->node_count; node++) {
-    if (!strut_study_shows(b->figure, "node", run->scene->nodes[node].name)) continue;
-    const char *name = kept(b, run->scene->nodes[node].name);
-    if (!name || !reserve(b, b->rows + m->frames)) return strut_no_memory(error, "while drawing");
-    for (size_t f = 0; f < m->frames; f++)
-      if (m->time[f] >= b->figure->from && m->time[f] <= b->figure->to)
-        add_row(b, run, texts, f, node, name);
+                      self->figure->name, MOST_ROWS);
+  for (size_t node = 0; node < trajectory->node_count; node++) {
+    if (!strut_study_shows(self->figure, "node", run->scene->nodes[node].name)) continue;
+    const char *name = kept(self, run->scene->nodes[node].name);
+    if (!name || !reserve(self, self->rows + trajectory->frames))
+      return strut_no_memory(error, "while drawing");
+    for (size_t f = 0; f < trajectory->frames; f++)
+      if (trajectory->time[f] >= self->figure->from && trajectory->time[f] <= self->figure->to)
+        add_row(self, run, texts, f, node, name);
   }
   return STRUT_OK;
 }
 
 /* Copies into the table's arena, which owns all of it. */
-static const void *owned(builder *b, const void *block, size_t size) {
-  void *copy = strut_arena_allocate(&b->table->arena, b->rows, size);
-  if (copy && b->rows) memcpy(copy, block, b->rows * size); /* no rows: block may be NULL */
+static const void *owned(builder *self, const void *block, size_t size) {
+  void *copy = strut_arena_allocate(&self->table->arena, self->rows, size);
+  if (copy && self->rows) memcpy(copy, block, self->rows * size); /* no rows: block may be NULL */
   return copy;
 }
 
-static strut_status finish(builder *b, strut_error *error) {
-  strut_table *t = b->table;
-  size_t axes = b->plan->axis_columns;
-  t->row_count = b->rows;
-  t->columns = strut_arena_allocate(&t->arena, axes + COLUMNS, sizeof *t->columns);
-  if (!t->columns) return strut_no_memory(error, "while drawing");
+static strut_status finish(builder *self, strut_error *error) {
+  strut_table *table = self->table;
+  size_t axes = self->plan->axis_columns;
+  table->row_count = self->rows;
+  table->columns = strut_arena_allocate(&table->arena, axes + COLUMNS, sizeof *table->columns);
+  if (!table->columns) return strut_no_memory(error, "while drawing");
   for (size_t i = 0; i < axes + COLUMNS; i++) {
-    bool axis = i < axes, word = axis ? b->plan->columns[i].word : i == axes;
-    strut_table_column *c = &t->columns[t->column_count++];
-    const char *unit = axis ? b->plan->columns[i].unit : columns[i - axes].unit;
-    c->name = axis ? b->plan->columns[i].name : columns[i - axes].name;
-    c->unit = strcmp(unit, "1") == 0 ? "" : unit;
-    if (i <= axes) c->text = owned(b, b->texts[i], sizeof(char *));
-    if (!word) c->value = owned(b, axis ? b->axes[i] : b->numbers[i - axes - 1], sizeof(double));
-    if ((i <= axes && !c->text) || (!word && !c->value))
+    bool axis = i < axes, word = axis ? self->plan->columns[i].word : i == axes;
+    strut_table_column *column = &table->columns[table->column_count++];
+    const char *unit = axis ? self->plan->columns[i].unit : columns[i - axes].unit;
+    column->name = axis ? self->plan->columns[i].name : columns[i - axes].name;
+    column->unit = strcmp(unit, "1") == 0 ? "" : unit;
+    if (i <= axes) column->text = owned(self, self->texts[i], sizeof(char *));
+    if (!word)
+      column->value =
+          owned(self, axis ? self->axes[i] : self->numbers[i - axes - 1], sizeof(double));
+    if ((i <= axes && !column->text) || (!word && !column->value))
       return strut_no_memory(error, "while drawing");
   }
   return STRUT_OK;
@@ -243,8 +253,8 @@ static int64_t partner(const strut_study *study, size_t axis, int64_t point) {
 
 /* NAME-TEXT-TEXT.svg, with texts made valid as file names. */
 static const char *file_of(const strut_sweep_plan *plan, const char *directory,
-                           const strut_study_figure *figure, strut_study_opened *o) {
-  char *name = strut_arena_format(&o->arena, "%s", figure->name);
+                           const strut_study_figure *figure, strut_study_opened *opened) {
+  char *name = strut_arena_format(&opened->arena, "%s", figure->name);
   for (size_t i = 0; name && i < plan->axis_columns; i++) {
     const char *column = plan->columns[i].name;
     size_t axis, before = SIZE_MAX, length = figure->only ? strcspn(figure->only, "=") : 0;
@@ -255,11 +265,11 @@ static const char *file_of(const strut_sweep_plan *plan, const char *directory,
     if (figure->difference && strcmp(column, figure->difference) == 0) named = false;
     if (figure->only && strlen(column) == length && memcmp(column, figure->only, length) == 0)
       named = false;
-    if (named) name = strut_arena_format(&o->arena, "%s-%s", name, o->texts[i]);
+    if (named) name = strut_arena_format(&opened->arena, "%s-%s", name, opened->texts[i]);
   }
   for (char *c = name; c && *c; c++)
     if (*c == '/') *c = '_';
-  return name ? strut_arena_format(&o->arena, "%s/%s.svg", directory, name) : NULL;
+  return name ? strut_arena_format(&opened->arena, "%s/%s.svg", directory, name) : NULL;
 }
 
 /* The pictures of a figure: one for each point. */
@@ -272,47 +282,49 @@ typedef struct pictures {
   bool drawn;  /* some are */
 } pictures;
 
-static strut_status draw(const pictures *p, strut_study_opened *o, const strut_study_opened *other,
-                         const char *other_name, strut_error *error) {
-  const strut_study_figure *figure = p->figure;
+static strut_status draw(const pictures *self, strut_study_opened *opened,
+                         const strut_study_opened *other, const char *other_name,
+                         strut_error *error) {
+  const strut_study_figure *figure = self->figure;
   strut_model *model = NULL;
   const strut_run_figure picture = {
-      .experiment = &o->setup.experiment,
+      .experiment = &opened->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
-      .width = p->width,
+      .width = self->width,
       .scale = {figure->scale[0], figure->scale[1]},
       .time_count = figure->time_count,
       .times = figure->times,
       .other = other ? &other->motion : NULL,
       .other_name = other_name};
-  const char *path = file_of(p->plan, p->directory, figure, o);
+  const char *path = file_of(self->plan, self->directory, figure, opened);
   if (!path) return strut_no_memory(error, "while drawing");
-  strut_status status = strut_model_compile(&o->setup.scene, &model, error);
-  if (!status) status = strut_run_figure_draw(path, &picture, model, &o->motion, NULL, error);
+  strut_status status = strut_model_compile(&opened->setup.scene, &model, error);
+  if (!status) status = strut_run_figure_draw(path, &picture, model, &opened->motion, NULL, error);
   strut_model_free(model);
   return status;
 }
 
 /* Draws the figure of one point, if it has one. */
-static strut_status draw_point(pictures *p, int64_t point, strut_error *error) {
-  const strut_sweep_plan *plan = p->plan;
+static strut_status draw_point(pictures *self, int64_t point, strut_error *error) {
+  const strut_sweep_plan *plan = self->plan;
   strut_study_opened o, other;
-  bool there = false, beside = false, pairs = p->axis < plan->study->axis_count;
-  int64_t with = pairs ? partner(plan->study, p->axis, point) : point;
+  bool there = false, beside = false, pairs = self->axis < plan->study->axis_count;
+  int64_t with = pairs ? partner(plan->study, self->axis, point) : point;
   if (pairs && with == point) return STRUT_OK; /* drawn over its partner */
   strut_status status =
-      strut_study_run_open(plan, p->directory, p->figure, point, &o, &there, error);
+      strut_study_run_open(plan, self->directory, self->figure, point, &o, &there, error);
   if (!status && there && pairs) {
-    status = strut_study_run_open(plan, p->directory, p->figure, with, &other, &beside, error);
+    status =
+        strut_study_run_open(plan, self->directory, self->figure, with, &other, &beside, error);
     const char *name = NULL;
     for (size_t i = 0; i < plan->axis_columns && !status; i++)
-      if (strcmp(plan->columns[i].name, p->figure->difference) == 0) name = other.texts[i];
-    if (!status) status = draw(p, &o, beside ? &other : NULL, name, error);
+      if (strcmp(plan->columns[i].name, self->figure->difference) == 0) name = other.texts[i];
+    if (!status) status = draw(self, &o, beside ? &other : NULL, name, error);
     strut_study_run_close(&other);
   } else if (!status && there) {
-    status = draw(p, &o, NULL, NULL, error);
+    status = draw(self, &o, NULL, NULL, error);
   }
-  p->drawn = p->drawn || there;
+  self->drawn = self->drawn || there;
   strut_study_run_close(&o);
   return status;
 }

@@ -48,19 +48,19 @@ static const entry entries[] = {
     {STRUT_KEEP_COST, "work_per_distance", "work_per_distance"}};
 enum { ENTRIES = sizeof entries / sizeof entries[0] };
 
-static const strut_value_rows *rows_of(const entry *e) {
-  return e->keep == STRUT_KEEP_COST ? &strut_summary_column_values : &strut_summary_values;
+static const strut_value_rows *rows_of(const entry *self) {
+  return self->keep == STRUT_KEEP_COST ? &strut_summary_column_values : &strut_summary_values;
 }
 
-static const char *unit_of(const entry *e) {
-  if (e->keep == STRUT_KEEP_DISTANCE) return "m";
-  if (!e->path) return "1";
-  const char *unit = strut_value_at(rows_of(e), e->path, NULL, NULL)->unit;
+static const char *unit_of(const entry *self) {
+  if (self->keep == STRUT_KEEP_DISTANCE) return "m";
+  if (!self->path) return "1";
+  const char *unit = strut_value_at(rows_of(self), self->path, NULL, NULL)->unit;
   return *unit ? unit : "1";
 }
 
-static bool is_word(const entry *e) {
-  return e->keep == STRUT_KEEP_MOTION || e->keep == STRUT_KEEP_METHOD;
+static bool is_word(const entry *self) {
+  return self->keep == STRUT_KEEP_MOTION || self->keep == STRUT_KEEP_METHOD;
 }
 
 /* The structure of a point: word, name, unit, value of a model. */
@@ -142,21 +142,21 @@ static bool is_kept(const strut_study *study, const char *quantity) {
 }
 
 /* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
-static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *e) {
-  for (size_t i = 0; i < e->quantity_count; i++) {
-    const strut_quantity_definition *d = &e->quantities[i];
-    if (!keeps(plan, STRUT_KEEP_QUANTITIES) && !is_kept(plan->study, d->name)) continue;
-    const char *name = strut_arena_text(&plan->arena, d->name, strlen(d->name));
-    const char *unit = strut_arena_text(&plan->arena, d->unit, strlen(d->unit));
+static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *experiment) {
+  for (size_t i = 0; i < experiment->quantity_count; i++) {
+    const strut_quantity_definition *definition = &experiment->quantities[i];
+    if (!keeps(plan, STRUT_KEEP_QUANTITIES) && !is_kept(plan->study, definition->name)) continue;
+    const char *name = strut_arena_text(&plan->arena, definition->name, strlen(definition->name));
+    const char *unit = strut_arena_text(&plan->arena, definition->unit, strlen(definition->unit));
     if (!name || !unit) return false;
-    plan->names_member[plan->quantity_count] = strut_quantity_names_member(d);
+    plan->names_member[plan->quantity_count] = strut_quantity_names_member(definition);
     plan->quantities[plan->quantity_count++] = name;
     bool taken =
         is_taken(plan, plan->column_count, name) && !is_taken(plan, plan->axis_columns, name);
     if (!strut_sweep_add_column(plan, taken ? "measured_" : "", name, unit, false)) return false;
     const char *member = strut_arena_format(&plan->arena, "%s_member", name);
-    if (!member ||
-        (strut_quantity_names_member(d) && !strut_sweep_add_column(plan, "", member, "1", true)))
+    if (!member || (strut_quantity_names_member(definition) &&
+                    !strut_sweep_add_column(plan, "", member, "1", true)))
       return false;
   }
   return true;
@@ -175,8 +175,8 @@ static bool add_entries(strut_sweep_plan *plan) {
 static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   bool fine = keep_names(plan, &setup->scene), run = plan->study->compute == STRUT_COMPUTE_RUN;
   for (size_t i = 0; i < plan->axis_columns && fine; i++) {
-    const strut_study_column *c = strut_grid_column(plan->study, i, NULL);
-    fine = strut_sweep_add_column(plan, "", c->name, c->unit, c->word);
+    const strut_study_column *column = strut_grid_column(plan->study, i, NULL);
+    fine = strut_sweep_add_column(plan, "", column->name, column->unit, column->word);
   }
   for (size_t i = 0; i < COUNTS && fine; i++)
     if (keeps(plan, counts[i].keep))
@@ -275,37 +275,38 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
 }
 
 /* The value of an entry without a result of its own. */
-static double combine(const strut_summary *s, const strut_setup *setup, strut_keep keep) {
+static double combine(const strut_summary *summary, const strut_setup *setup, strut_keep keep) {
   double period = strut_experiment_span(&setup->experiment, &setup->scene).period;
-  bool watched = s->steady.kind != STRUT_MOTION_NOT_WATCHED;
-  if (keep == STRUT_KEEP_CHECKS) return (double)s->accuracy.check_evaluations;
-  if (keep == STRUT_KEEP_PERIODS && watched) return (double)s->steady.periods;
+  bool watched = summary->steady.kind != STRUT_MOTION_NOT_WATCHED;
+  if (keep == STRUT_KEEP_CHECKS) return (double)summary->accuracy.check_evaluations;
+  if (keep == STRUT_KEEP_PERIODS && watched) return (double)summary->steady.periods;
   if (!(period > 0.0)) return (double)NAN;
-  return keep == STRUT_KEEP_PERIODS ? s->duration / period : s->velocity * period;
+  return keep == STRUT_KEEP_PERIODS ? summary->duration / period : summary->velocity * period;
 }
 
-static strut_value value_at(const strut_summary *s, const strut_scene *scene,
+static strut_value value_at(const strut_summary *summary, const strut_scene *scene,
                             const strut_value_rows *rows, const char *path) {
   strut_value value = {0};
-  strut_value_at(rows, path, &(strut_result_object){.at = s, .scene = scene}, &value);
+  strut_value_at(rows, path, &(strut_result_object){.at = summary, .scene = scene}, &value);
   return value;
 }
 
 /* NAN if the summary has none. */
-static double result_of(const strut_summary *s, const strut_scene *scene,
+static double result_of(const strut_summary *summary, const strut_scene *scene,
                         const strut_value_rows *rows, const char *path) {
-  strut_value value = value_at(s, scene, rows, path);
+  strut_value value = value_at(summary, scene, rows, path);
   bool number = value.kind == STRUT_VALUE_NUMBER || value.kind == STRUT_VALUE_COUNT ||
                 value.kind == STRUT_VALUE_FLAG;
   return number ? value.number : (double)NAN;
 }
 
-static double number_of(const strut_summary *s, const strut_setup *setup, const entry *e) {
-  return e->path ? result_of(s, &setup->scene, rows_of(e), e->path) : combine(s, setup, e->keep);
+static double number_of(const strut_summary *summary, const strut_setup *setup, const entry *self) {
+  return self->path ? result_of(summary, &setup->scene, rows_of(self), self->path)
+                    : combine(summary, setup, self->keep);
 }
 
-static const char *word_of(const strut_summary *s, const strut_scene *scene, size_t index) {
-  const char *word = value_at(s, scene, &strut_summary_values, entries[index].path).text;
+static const char *word_of(const strut_summary *summary, const strut_scene *scene, size_t index) {
+  const char *word = value_at(summary, scene, &strut_summary_values, entries[index].path).text;
   return word ? word : "";
 }
 
@@ -353,28 +354,29 @@ void strut_sweep_fill_positions(const strut_sweep_plan *plan, const strut_scene 
 }
 
 static void fill_contacts(const strut_sweep_plan *plan, const strut_scene *scene,
-                          const strut_summary *s, strut_row_buffer *cells) {
+                          const strut_summary *summary, strut_row_buffer *cells) {
   for (size_t i = 0; i < plan->contact_count; i++) {
     int64_t at = strut_sweep_named(plan->contacts[i], i, scene, STRUT_OWNER_CONTACT);
-    if (at >= (int64_t)s->end.contact_count) at = -1;
-    strut_sweep_number(cells, at >= 0 ? s->end.contacts[at].duty : (double)NAN);
-    strut_sweep_number(cells, at >= 0 ? s->end.contacts[at].max_height : (double)NAN);
+    if (at >= (int64_t)summary->end.contact_count) at = -1;
+    strut_sweep_number(cells, at >= 0 ? summary->end.contacts[at].duty : (double)NAN);
+    strut_sweep_number(cells, at >= 0 ? summary->end.contacts[at].max_height : (double)NAN);
   }
 }
 
 /* A variant may lack a quantity of the first point, which names the columns: NULL. */
-static const strut_measured *find_measured(const strut_summary *s, const char *name) {
-  for (size_t i = 0; s && i < s->measured_count; i++)
-    if (strcmp(s->measured[i].name, name) == 0) return &s->measured[i];
+static const strut_measured *find_measured(const strut_summary *summary, const char *name) {
+  for (size_t i = 0; summary && i < summary->measured_count; i++)
+    if (strcmp(summary->measured[i].name, name) == 0) return &summary->measured[i];
   return NULL;
 }
 
-static void fill_measured(const strut_sweep_plan *plan, const strut_summary *s,
+static void fill_measured(const strut_sweep_plan *plan, const strut_summary *summary,
                           strut_row_buffer *cells) {
   for (size_t i = 0; i < plan->quantity_count; i++) {
-    const strut_measured *m = find_measured(s, plan->quantities[i]);
-    strut_sweep_number(cells, m ? m->value : (double)NAN);
-    if (plan->names_member[i]) strut_sweep_word(cells, m && m->member ? m->member : "");
+    const strut_measured *measured = find_measured(summary, plan->quantities[i]);
+    strut_sweep_number(cells, measured ? measured->value : (double)NAN);
+    if (plan->names_member[i])
+      strut_sweep_word(cells, measured && measured->member ? measured->member : "");
   }
 }
 

@@ -30,30 +30,31 @@ static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   while (cells->number_count < plan->column_count - words) strut_sweep_number(cells, (double)NAN);
 }
 
-const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *w,
+const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
                                            const strut_sweep_job *job) {
-  return w->watch ? &job->stop : w->options->interrupt;
+  return worker->watch ? &job->stop : worker->options->interrupt;
 }
 
 /* What an interrupted computation means: its own time has passed, or the sweep is interrupted. */
-static strut_status explain_interrupt(const strut_sweep_worker *w, strut_sweep_job *job,
+static strut_status explain_interrupt(const strut_sweep_worker *worker, strut_sweep_job *job,
                                       strut_status status) {
-  bool passed = strut_sweep_watch_end(w->watch, job);
+  bool passed = strut_sweep_watch_end(worker->watch, job);
   if (status != STRUT_INTERRUPTED || !passed) return status;
   return strut_fail(&job->error, STRUT_WORK_LIMIT,
                     "stopped after %.4g s by the clock, the study's limit: another machine may get "
                     "further",
-                    w->plan->study->limit.time);
+                    worker->plan->study->limit.time);
 }
 
 /* Ends the point with its row, or with an error that stops the sweep. */
-static void finish_point(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status) {
+static void finish_point(const strut_sweep_worker *worker, strut_sweep_job *job,
+                         strut_status status) {
   strut_row_buffer *cells = &job->cells;
-  status = explain_interrupt(w, job, status);
+  status = explain_interrupt(worker, job, status);
   job->status = stops(status) ? status : STRUT_OK;
   if (job->status) return;
   if (status) {
-    pad_cells(w->plan, cells);
+    pad_cells(worker->plan, cells);
     snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
              job->error.message);
   }
@@ -64,25 +65,25 @@ static void finish_point(const strut_sweep_worker *w, strut_sweep_job *job, stru
 }
 
 /* The same where the point has a scene. */
-static void finish_with_scene(const strut_sweep_worker *w, strut_sweep_job *job,
+static void finish_with_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
                               strut_status status) {
   strut_setup_free(&job->setup);
-  finish_point(w, job, status);
+  finish_point(worker, job, status);
 }
 
-static void set_options(const strut_sweep_worker *w, strut_sweep_job *job) {
-  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(w, job),
-                                     .most_evaluations = w->plan->study->limit.evaluations};
+static void set_options(const strut_sweep_worker *worker, strut_sweep_job *job) {
+  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(worker, job),
+                                     .most_evaluations = worker->plan->study->limit.evaluations};
 }
 
 /* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
-static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *job) {
-  set_options(w, job);
+static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_job *job) {
+  set_options(worker, job);
   job->files = NULL;
-  if (!w->plan->study->trajectories || !w->options->directory) return STRUT_OK;
-  char *text = w->plan->scenes.text(&job->setup);
+  if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
+  char *text = worker->plan->scenes.text(&job->setup);
   if (!text) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
-  job->files = strut_sweep_record_begin(w->options->directory, job->point, text, &job->error);
+  job->files = strut_sweep_record_begin(worker->options->directory, job->point, text, &job->error);
   strut_release(text);
   if (!job->files) return job->error.status;
   job->sinks[0] = strut_sweep_record_sink(job->files);
@@ -92,16 +93,16 @@ static strut_status begin_record(const strut_sweep_worker *w, strut_sweep_job *j
 }
 
 /* False: the point has ended already. True: it has a scene to be run with its options. */
-static bool begin_job(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
-  const strut_sweep_plan *plan = w->plan;
+static bool begin_job(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = worker->plan;
   strut_row_buffer *cells = &job->cells;
   cells->number_count = cells->word_count = 0;
   cells->message[0] = '\0';
   job->point = point;
   job->warning_count = 0;
   job->error = (strut_error){0};
-  strut_sweep_watch_begin(w->watch, job);
-  const strut_sweep_options *options = w->options;
+  strut_sweep_watch_begin(worker->watch, job);
+  const strut_sweep_options *options = worker->options;
   strut_grid_values(plan->study, point, cells->values);
   if (options->values) options->values(options->point_context, point, cells->values);
   for (size_t i = 0; i < plan->axis_columns; i++) {
@@ -113,54 +114,54 @@ static bool begin_job(const strut_sweep_worker *w, int64_t point, strut_sweep_jo
   strut_status status =
       plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
   if (status) {
-    finish_point(w, job, status);
+    finish_point(worker, job, status);
     return false;
   }
   bool run = plan->study->compute == STRUT_COMPUTE_RUN;
   if (options->adjust) options->adjust(options->point_context, point, &job->setup);
   if (!run)
-    status = strut_statics_point(w, job);
+    status = strut_statics_point(worker, job);
   else
-    status = strut_equilibrium_cache_resolve(w->standing, &job->setup, &job->error);
-  if (run && !status) status = begin_record(w, job);
+    status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
+  if (run && !status) status = begin_record(worker, job);
   if (run && !status) return true;
-  finish_with_scene(w, job, status);
+  finish_with_scene(worker, job, status);
   return false;
 }
 
 /* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
-static strut_status name_outcome(const strut_sweep_worker *w, strut_sweep_job *job,
+static strut_status name_outcome(const strut_sweep_worker *worker, strut_sweep_job *job,
                                  const strut_summary *summary, char *name) {
   const strut_scene *scene = &job->setup.scene;
   int32_t index = -1;
-  if (!strut_keep_has(&w->plan->keep, STRUT_KEEP_OUTCOME) || !scene->configuration_count)
+  if (!strut_keep_has(&worker->plan->keep, STRUT_KEEP_OUTCOME) || !scene->configuration_count)
     return STRUT_OK;
   strut_status status = strut_equilibrium_cache_nearest(
-      w->standing, &job->setup, summary->end.positions, &index, &job->error);
+      worker->standing, &job->setup, summary->end.positions, &index, &job->error);
   snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
   return status;
 }
 
 /* Refines the experiment for the check. */
-static void refine_experiment(const strut_study *study, strut_experiment *e) {
+static void refine_experiment(const strut_study *study, strut_experiment *experiment) {
   if (study->check_accuracy > 0.0) {
-    e->accuracy = study->check_accuracy;
-  } else if (e->accuracy > 0.0) {
-    e->accuracy /= 2.0;
+    experiment->accuracy = study->check_accuracy;
+  } else if (experiment->accuracy > 0.0) {
+    experiment->accuracy /= 2.0;
   } else {
-    e->step /= 2.0;
-    e->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
+    experiment->step /= 2.0;
+    experiment->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
   }
 }
 
-static const char *outcome_word(const strut_sweep_worker *w, const strut_summary *summary,
+static const char *outcome_word(const strut_sweep_worker *worker, const strut_summary *summary,
                                 const char *outcome) {
-  return w->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
+  return worker->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
 }
 
 /* True: another run is to check it. */
-static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, strut_status status,
-                             const strut_summary *summary) {
+static bool finish_first_run(const strut_sweep_worker *worker, strut_sweep_job *job,
+                             strut_status status, const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
   bool began = status == STRUT_OK || status == STRUT_DIVERGED;
   if (job->files) {
@@ -169,59 +170,59 @@ static bool finish_first_run(const strut_sweep_worker *w, strut_sweep_job *job, 
         strut_sweep_record_end(job->files, &job->setup.scene, summary, began, &late);
     if (written) status = strut_fail(&job->error, written, "%s", late.message);
   }
-  if (!status) status = name_outcome(w, job, summary, outcome);
+  if (!status) status = name_outcome(worker, job, summary, outcome);
   if (!status) {
     job->warning_count = summary->warning_count;
     memcpy(job->warnings, summary->warnings, sizeof job->warnings);
-    strut_sweep_fill(w->plan, &job->setup, summary, outcome, &job->cells);
+    strut_sweep_fill(worker->plan, &job->setup, summary, outcome, &job->cells);
   }
-  if (status || !w->plan->check) {
-    finish_with_scene(w, job, status);
+  if (status || !worker->plan->check) {
+    finish_with_scene(worker, job, status);
     return false;
   }
-  snprintf(job->first, sizeof job->first, "%s", outcome_word(w, summary, outcome));
-  refine_experiment(w->plan->study, &job->setup.experiment);
-  set_options(w, job);
+  snprintf(job->first, sizeof job->first, "%s", outcome_word(worker, summary, outcome));
+  refine_experiment(worker->plan->study, &job->setup.experiment);
+  set_options(worker, job);
   job->error = (strut_error){0};
   return true;
 }
 
 /* A second run that fails counts as another outcome. */
-static void finish_second_run(const strut_sweep_worker *w, strut_sweep_job *job,
+static void finish_second_run(const strut_sweep_worker *worker, strut_sweep_job *job,
                               strut_status status, const strut_summary *summary) {
   char outcome[STRUT_SLOT_WORD] = "";
   strut_row_buffer *cells = &job->cells;
-  status = explain_interrupt(w, job, status);
-  if (!status) status = name_outcome(w, job, summary, outcome);
-  const char *word = status ? "failed" : outcome_word(w, summary, outcome);
+  status = explain_interrupt(worker, job, status);
+  if (!status) status = name_outcome(worker, job, summary, outcome);
+  const char *word = status ? "failed" : outcome_word(worker, summary, outcome);
   bool same = !status && strcmp(job->first, word) == 0;
   strut_sweep_number(cells, status ? (double)NAN : summary->velocity);
   strut_sweep_word(cells, word);
   strut_sweep_number(cells, same ? 0.0 : 1.0);
   if (stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
-  finish_with_scene(w, job, stops(status) ? status : STRUT_OK);
+  finish_with_scene(worker, job, stops(status) ? status : STRUT_OK);
 }
 
 /* Runs the scene of the job; its counts go before the cells of a first run. */
-static strut_status run_scene(const strut_sweep_worker *w, strut_sweep_job *job, bool first,
+static strut_status run_scene(const strut_sweep_worker *worker, strut_sweep_job *job, bool first,
                               strut_summary *summary) {
   const strut_experiment *experiment = &job->setup.experiment;
   strut_model *model = NULL;
   strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
   if (!status)
     status = strut_simulate_as_asked(model, experiment, &job->options, summary, &job->error);
-  if (first) strut_sweep_fill_counts(w->plan, model, &job->cells);
+  if (first) strut_sweep_fill_counts(worker->plan, model, &job->cells);
   strut_model_free(model);
   return status;
 }
 
-void strut_sweep_compute(const strut_sweep_worker *w, int64_t point, strut_sweep_job *job) {
+void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
   strut_summary summary = {0}, second = {0};
-  if (!begin_job(w, point, job)) return;
-  strut_status status = run_scene(w, job, true, &summary);
-  if (finish_first_run(w, job, status, &summary)) {
-    status = run_scene(w, job, false, &second);
-    finish_second_run(w, job, status, &second);
+  if (!begin_job(worker, point, job)) return;
+  strut_status status = run_scene(worker, job, true, &summary);
+  if (finish_first_run(worker, job, status, &summary)) {
+    status = run_scene(worker, job, false, &second);
+    finish_second_run(worker, job, status, &second);
   }
   strut_summary_free(&summary);
   strut_summary_free(&second);
@@ -345,14 +346,14 @@ typedef struct strut_sweep_watch {
 } strut_sweep_watch;
 
 /* True when the sweep is over. */
-static bool look_at_jobs(strut_sweep_watch *w) {
-  pthread_mutex_lock(&w->lock);
-  bool over = w->over, interrupted = w->interrupt && *w->interrupt;
+static bool look_at_jobs(strut_sweep_watch *watch) {
+  pthread_mutex_lock(&watch->lock);
+  bool over = watch->over, interrupted = watch->interrupt && *watch->interrupt;
   double now = strut_run_clock();
-  for (size_t i = 0; i < w->count; i++)
-    if (interrupted || (w->jobs[i].deadline > 0.0 && now > w->jobs[i].deadline))
-      w->jobs[i].stop = 1;
-  pthread_mutex_unlock(&w->lock);
+  for (size_t i = 0; i < watch->count; i++)
+    if (interrupted || (watch->jobs[i].deadline > 0.0 && now > watch->jobs[i].deadline))
+      watch->jobs[i].stop = 1;
+  pthread_mutex_unlock(&watch->lock);
   return over;
 }
 
@@ -364,40 +365,40 @@ static void *watch_jobs(void *context) {
 
 strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs, size_t count,
                                             const strut_flag *interrupt) {
-  strut_sweep_watch *w = strut_allocate(1, sizeof *w);
-  if (!w) return NULL;
-  w->seconds = seconds, w->jobs = jobs, w->count = count, w->interrupt = interrupt;
-  if (pthread_mutex_init(&w->lock, NULL) == 0) {
-    if (pthread_create(&w->thread, NULL, watch_jobs, w) == 0) return w;
-    pthread_mutex_destroy(&w->lock);
+  strut_sweep_watch *watch = strut_allocate(1, sizeof *watch);
+  if (!watch) return NULL;
+  watch->seconds = seconds, watch->jobs = jobs, watch->count = count, watch->interrupt = interrupt;
+  if (pthread_mutex_init(&watch->lock, NULL) == 0) {
+    if (pthread_create(&watch->thread, NULL, watch_jobs, watch) == 0) return watch;
+    pthread_mutex_destroy(&watch->lock);
   }
-  strut_release(w);
+  strut_release(watch);
   return NULL;
 }
 
-void strut_sweep_watch_free(strut_sweep_watch *w) {
-  if (!w) return;
-  pthread_mutex_lock(&w->lock);
-  w->over = true;
-  pthread_mutex_unlock(&w->lock);
-  pthread_join(w->thread, NULL);
-  pthread_mutex_destroy(&w->lock);
-  strut_release(w);
+void strut_sweep_watch_free(strut_sweep_watch *watch) {
+  if (!watch) return;
+  pthread_mutex_lock(&watch->lock);
+  watch->over = true;
+  pthread_mutex_unlock(&watch->lock);
+  pthread_join(watch->thread, NULL);
+  pthread_mutex_destroy(&watch->lock);
+  strut_release(watch);
 }
 
-void strut_sweep_watch_begin(strut_sweep_watch *w, strut_sweep_job *job) {
-  if (!w) return;
-  pthread_mutex_lock(&w->lock);
+void strut_sweep_watch_begin(strut_sweep_watch *watch, strut_sweep_job *job) {
+  if (!watch) return;
+  pthread_mutex_lock(&watch->lock);
   job->stop = 0;
-  job->deadline = strut_run_clock() + w->seconds;
-  pthread_mutex_unlock(&w->lock);
+  job->deadline = strut_run_clock() + watch->seconds;
+  pthread_mutex_unlock(&watch->lock);
 }
 
-bool strut_sweep_watch_end(strut_sweep_watch *w, strut_sweep_job *job) {
-  if (!w) return false;
-  pthread_mutex_lock(&w->lock);
-  bool passed = job->stop && !(w->interrupt && *w->interrupt);
+bool strut_sweep_watch_end(strut_sweep_watch *watch, strut_sweep_job *job) {
+  if (!watch) return false;
+  pthread_mutex_lock(&watch->lock);
+  bool passed = job->stop && !(watch->interrupt && *watch->interrupt);
   job->deadline = 0.0;
-  pthread_mutex_unlock(&w->lock);
+  pthread_mutex_unlock(&watch->lock);
   return passed;
 }

@@ -47,9 +47,9 @@ static double depth_at_rest(const strut_scene *scene, const strut_contact *conta
 static bool has_damped_ground(const strut_scene *scene) {
   bool any = false;
   for (size_t i = 0; i < scene->contact_count; i++) {
-    const strut_contact *c = &scene->contacts[i];
-    any = any || c->damping > 0 || c->dissipation > 0;
-    if (!(depth_at_rest(scene, c) > 0)) return false;
+    const strut_contact *contact = &scene->contacts[i];
+    any = any || contact->damping > 0 || contact->dissipation > 0;
+    if (!(depth_at_rest(scene, contact) > 0)) return false;
   }
   return any;
 }
@@ -70,65 +70,68 @@ static bool makes_sense(const strut_scene *scene, kind what) {
 }
 
 /* The regularisation speed for friction laws that need one [m/s]. */
-static double regularisation_speed(const tradeoff_study *s, const strut_friction *friction) {
+static double regularisation_speed(const tradeoff_study *study, const strut_friction *friction) {
   if (friction->stick_velocity > 0) return friction->stick_velocity;
-  return friction->width > 0 ? friction->width : s->scale[0];
+  return friction->width > 0 ? friction->width : study->scale[0];
 }
 
-static void describe(const tradeoff_study *s, kind what, strut_model_variant *f) {
-  const strut_scene *scene = &s->setups[0]->scene;
-  if (what == OWN) snprintf(f->name, sizeof f->name, "unchanged model");
-  if (what == COULOMB) snprintf(f->name, sizeof f->name, "Coulomb friction");
+static void describe(const tradeoff_study *study, kind what, strut_model_variant *variant) {
+  const strut_scene *scene = &study->setups[0]->scene;
+  if (what == OWN) snprintf(variant->name, sizeof variant->name, "unchanged model");
+  if (what == COULOMB) snprintf(variant->name, sizeof variant->name, "Coulomb friction");
   if (what == MASS)
-    snprintf(f->name, sizeof f->name, "%s masses",
+    snprintf(variant->name, sizeof variant->name, "%s masses",
              scene->mass_model == STRUT_MASS_LUMPED ? "consistent" : "lumped");
   if (what == RIGID)
-    snprintf(f->name, sizeof f->name, "%s bars",
+    snprintf(variant->name, sizeof variant->name, "%s bars",
              scene->bar_model == STRUT_BARS_RIGID ? "elastic" : "rigid");
   if (what == KARNOPP || what == SMOOTH) {
-    double speed = regularisation_speed(s, &scene->contacts[0].friction);
-    snprintf(f->name, sizeof f->name, "%s friction, %s", what == SMOOTH ? "smooth" : "Karnopp",
-             strut_quantity_of(speed, 3, "m/s").text);
+    double speed = regularisation_speed(study, &scene->contacts[0].friction);
+    snprintf(variant->name, sizeof variant->name, "%s friction, %s",
+             what == SMOOTH ? "smooth" : "Karnopp", strut_quantity_of(speed, 3, "m/s").text);
   }
   if (what != GROUND) return;
   bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
-  snprintf(f->name, sizeof f->name, "%s",
+  snprintf(variant->name, sizeof variant->name, "%s",
            printed ? "Hunt-Crossley ground" : "approach-only ground damping");
-  snprintf(f->remark, sizeof f->remark,
+  snprintf(variant->remark, sizeof variant->remark,
            "damped as by the scene's law at the depth at which the ground carries the weight, %s",
            strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
 }
 
 /* The kind of the i-th variant in the list. */
-static kind kind_of(const tradeoff_study *s, int variant) {
+static kind kind_of(const tradeoff_study *study, int variant) {
   int found = -1;
   for (int what = OWN; what < KINDS; what++)
-    if (makes_sense(&s->setups[0]->scene, (kind)what) && ++found == variant) return (kind)what;
+    if (makes_sense(&study->setups[0]->scene, (kind)what) && ++found == variant) return (kind)what;
   return OWN;
 }
 
-strut_status strut_tradeoff_list_variants(tradeoff_study *s) {
-  strut_tradeoff *r = s->result;
-  bool all = !s->options->own_model && r->measure != STRUT_TRADEOFF_ENERGY;
-  r->variants = strut_arena_allocate(&r->arena, KINDS, sizeof *r->variants);
-  if (!r->variants) return STRUT_NO_MEMORY;
+strut_status strut_tradeoff_list_variants(tradeoff_study *study) {
+  strut_tradeoff *tradeoff = study->result;
+  bool all = !study->options->own_model && tradeoff->measure != STRUT_TRADEOFF_ENERGY;
+  tradeoff->variants = strut_arena_allocate(&tradeoff->arena, KINDS, sizeof *tradeoff->variants);
+  if (!tradeoff->variants) return STRUT_NO_MEMORY;
   for (int what = OWN; what < KINDS; what++) {
-    if (!makes_sense(&s->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
-    strut_model_variant *f = &r->variants[r->variant_count++];
-    describe(s, (kind)what, f);
-    f->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof *f->value);
-    f->floor = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->floor);
-    f->model_error = strut_arena_allocate(&r->arena, r->point_count, sizeof *f->model_error);
-    if (!f->value || !f->floor || !f->model_error) return STRUT_NO_MEMORY;
+    if (!makes_sense(&study->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
+    strut_model_variant *variant = &tradeoff->variants[tradeoff->variant_count++];
+    describe(study, (kind)what, variant);
+    variant->value = strut_arena_allocate(
+        &tradeoff->arena, tradeoff->point_count * tradeoff->value_count, sizeof *variant->value);
+    variant->floor =
+        strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof *variant->floor);
+    variant->model_error =
+        strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof *variant->model_error);
+    if (!variant->value || !variant->floor || !variant->model_error) return STRUT_NO_MEMORY;
   }
   return STRUT_OK;
 }
 
-static void change_contact(const tradeoff_study *s, kind what, const strut_scene *scene,
+static void change_contact(const tradeoff_study *study, kind what, const strut_scene *scene,
                            strut_contact *contact) {
   double depth = depth_at_rest(scene, contact), slope = contact->stiffness * depth;
   bool rough = contact->friction.law != STRUT_FRICTION_NONE;
-  double speed = regularisation_speed(s, &contact->friction);
+  double speed = regularisation_speed(study, &contact->friction);
   if (what == GROUND && scene->ground.damping_law == STRUT_DAMPING_HUNT_CROSSLEY)
     contact->dissipation = contact->damping / slope;
   else if (what == GROUND)
@@ -141,9 +144,9 @@ static void change_contact(const tradeoff_study *s, kind what, const strut_scene
   if (what == SMOOTH) contact->friction.width = speed;
 }
 
-strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,
-                                         strut_arena *arena) {
-  kind what = kind_of(s, variant);
+strut_status strut_tradeoff_change_scene(const tradeoff_study *study, int variant,
+                                         strut_scene *scene, strut_arena *arena) {
+  kind what = kind_of(study, variant);
   if (what == MASS)
     scene->mass_model =
         scene->mass_model == STRUT_MASS_LUMPED ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED;
@@ -158,7 +161,7 @@ strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, s
                                     : STRUT_DAMPING_APPROACH;
   for (size_t i = 0; i < scene->contact_count; i++) {
     contacts[i] = scene->contacts[i];
-    change_contact(s, what, scene, &contacts[i]);
+    change_contact(study, what, scene, &contacts[i]);
   }
   scene->contacts = contacts;
   return STRUT_OK;
@@ -170,19 +173,20 @@ bool strut_tradeoff_has_switches(const strut_scene *scene) {
   return scene->contact_count > 0;
 }
 
-bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant) {
-  kind what = kind_of(s, variant);
-  bool own = has_friction(&s->setups[0]->scene, STRUT_FRICTION_COULOMB);
+bool strut_tradeoff_can_run(const tradeoff_study *study, const strut_integrator *method,
+                            int variant) {
+  kind what = kind_of(study, variant);
+  bool own = has_friction(&study->setups[0]->scene, STRUT_FRICTION_COULOMB);
   bool exact = own ? what <= GROUND : what == COULOMB;
   if (exact && !method->events) return false;
   return !method->events || strut_tradeoff_is_adaptive(method) ||
-         strut_tradeoff_has_switches(&s->setups[0]->scene);
+         strut_tradeoff_has_switches(&study->setups[0]->scene);
 }
 
-bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method,
+bool strut_tradeoff_is_wanted(const tradeoff_study *study, const strut_integrator *method,
                               int variant) {
-  bool wanted = s->options->method_count == 0;
-  for (size_t i = 0; i < s->options->method_count; i++)
-    wanted = wanted || s->options->methods[i] == method;
-  return wanted && strut_tradeoff_can_run(s, method, variant);
+  bool wanted = study->options->method_count == 0;
+  for (size_t i = 0; i < study->options->method_count; i++)
+    wanted = wanted || study->options->methods[i] == method;
+  return wanted && strut_tradeoff_can_run(study, method, variant);
 }

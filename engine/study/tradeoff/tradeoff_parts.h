@@ -56,34 +56,34 @@ typedef struct tradeoff_study {
 /** This thread's CPU time [s]. */
 double strut_tradeoff_cpu_clock(void);
 /** Force evaluations left until a share of the bound on work is spent; below 0: over. */
-double strut_tradeoff_work_left(const tradeoff_study *s, double share);
+double strut_tradeoff_work_left(const tradeoff_study *study, double share);
 /** Is there CPU time for so many force evaluations? Where not, the study is marked as cut. */
-bool strut_tradeoff_has_time(tradeoff_study *s, double evaluations);
+bool strut_tradeoff_has_time(tradeoff_study *study, double evaluations);
 /** Force evaluations that a setting plans at a point: what a run makes that no event interrupts. */
-double strut_tradeoff_planned(const tradeoff_study *s, size_t point, tradeoff_setting setting);
+double strut_tradeoff_planned(const tradeoff_study *study, size_t point, tradeoff_setting setting);
 /** strut_simulate's experiment for `point`, cut to the periods that are wanted. */
-strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point);
+strut_experiment strut_tradeoff_experiment(const tradeoff_study *study, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
-double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double step);
+double strut_tradeoff_fit_step(const tradeoff_study *study, size_t point, double step);
 /** Duration and period of that experiment. */
-strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point);
+strut_span strut_tradeoff_span(const tradeoff_study *study, size_t point);
 /** The longest step that can make sense: a part of the period, or else of the duration [s]. */
-double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point);
+double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point);
 /**
  * The largest step of a method worth trying in a variant at the first point [s], INFINITY where
  * nothing limits it. *cannot: the method cannot run it, and the study's error says why. Fails with
  * STRUT_NO_MEMORY alone.
  */
-strut_status strut_tradeoff_limit(tradeoff_study *s, int variant, const strut_integrator *method,
-                                  double *limit, bool *cannot);
+strut_status strut_tradeoff_limit(tradeoff_study *study, int variant,
+                                  const strut_integrator *method, double *limit, bool *cannot);
 /**
  * Runs a variant with a setting at an operating point; its values go into (value_count) `value`,
  * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.
  */
-strut_status strut_tradeoff_run(tradeoff_study *s, size_t point, int variant,
+strut_status strut_tradeoff_run(tradeoff_study *study, size_t point, int variant,
                                 tradeoff_setting setting, double *value, tradeoff_outcome *outcome);
 /** Distance of two answers at a point: that of errors. INFINITY where one is not a number. */
-double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
+double strut_tradeoff_distance(const tradeoff_study *study, size_t point, const double *value,
                                const double *reference);
 /** Can forces of the scene jump or have kinks? */
 bool strut_tradeoff_has_switches(const strut_scene *scene);
@@ -92,17 +92,19 @@ bool strut_tradeoff_is_adaptive(const strut_integrator *method);
  * Can the method run the variant's friction law, and does it differ from all other methods in this
  * scene? Without contacts and slack members there are no events to locate.
  */
-bool strut_tradeoff_can_run(const tradeoff_study *s, const strut_integrator *method, int variant);
+bool strut_tradeoff_can_run(const tradeoff_study *study, const strut_integrator *method,
+                            int variant);
 /** As strut_tradeoff_can_run, and the options do not exclude the method. */
-bool strut_tradeoff_is_wanted(const tradeoff_study *s, const strut_integrator *method, int variant);
+bool strut_tradeoff_is_wanted(const tradeoff_study *study, const strut_integrator *method,
+                              int variant);
 
 /** Lists the unchanged model and the variants that apply to it. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_tradeoff_list_variants(tradeoff_study *s);
+strut_status strut_tradeoff_list_variants(tradeoff_study *study);
 /** Changes a scene into that of a variant; new contacts come from the arena. */
-strut_status strut_tradeoff_change_scene(const tradeoff_study *s, int variant, strut_scene *scene,
-                                         strut_arena *arena);
+strut_status strut_tradeoff_change_scene(const tradeoff_study *study, int variant,
+                                         strut_scene *scene, strut_arena *arena);
 /** A point's model in a variant, compiled once and kept. Fails as strut_model_compile. */
-strut_status strut_tradeoff_compile(const tradeoff_study *s, size_t point, int variant,
+strut_status strut_tradeoff_compile(const tradeoff_study *study, size_t point, int variant,
                                     const strut_model **model);
 
 /** Two methods, refined in turn: state of the search for one variant's references. */
@@ -116,20 +118,21 @@ typedef struct tradeoff_reference {
 } tradeoff_reference;
 
 /** Chooses the methods. Without any, the variant is marked as not run, with a remark. */
-strut_status strut_tradeoff_reference_begin(tradeoff_study *s, int variant, tradeoff_reference *r);
+strut_status strut_tradeoff_reference_begin(tradeoff_study *study, int variant,
+                                            tradeoff_reference *self);
 /**
  * Refines until every floor is at most `target`; after the first two levels for `most`
  * evaluations.
  */
-strut_status strut_tradeoff_reference_refine(tradeoff_study *s, tradeoff_reference *r,
+strut_status strut_tradeoff_reference_refine(tradeoff_study *study, tradeoff_reference *self,
                                              double target, double most);
 
 /** Errors, spreads, costs and fronts of all rows, from values and references. */
-void strut_tradeoff_judge(tradeoff_study *s);
+void strut_tradeoff_judge(tradeoff_study *study);
 /** Errors of one row. */
-void strut_tradeoff_judge_row(tradeoff_study *s, strut_tradeoff_row *row);
+void strut_tradeoff_judge_row(tradeoff_study *study, strut_tradeoff_row *row);
 /** The smallest worst error of a row, not counting what a floor hides; 1 where there is none. */
-double strut_tradeoff_smallest_error(const tradeoff_study *s, int variant);
+double strut_tradeoff_smallest_error(const tradeoff_study *study, int variant);
 
 enum { MOST_STEP_SERIES = 64 };
 
@@ -152,16 +155,16 @@ typedef struct step_series_list {
 } step_series_list;
 
 /** Adds a series for each refinement of a method that makes a difference in this scene. */
-strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
+strut_status strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int variant,
                                        const strut_integrator *method);
 /**
  * Runs all series from coarse to fine, the cheapest row next, within a share of the bound on work;
  * reports progress between two fractions.
  */
-strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
+strut_status strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, double share,
                                        double from, double to);
 /** Adds the row of the base to its method's series, or to one of its own, if the share allows. */
-strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, double share);
+strut_status strut_tradeoff_run_base(tradeoff_study *study, step_series_list *own, double share);
 
 enum { STRUT_TRADEOFF_TEXT = 100 };
 

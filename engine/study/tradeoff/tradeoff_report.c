@@ -52,9 +52,10 @@ static void write_solver(const strut_tradeoff_row *row, char text[STRUT_VALUE_RO
   snprintf(at, (size_t)(end - at), "}");
 }
 
-const char *strut_tradeoff_base_text(const strut_tradeoff *r, char text[3 * STRUT_TRADEOFF_TEXT]) {
-  snprintf(text, 3 * STRUT_TRADEOFF_TEXT, "%s, %s", r->base_method->name,
-           strut_quantity_of(r->base_step, 3, "s").text);
+const char *strut_tradeoff_base_text(const strut_tradeoff *tradeoff,
+                                     char text[3 * STRUT_TRADEOFF_TEXT]) {
+  snprintf(text, 3 * STRUT_TRADEOFF_TEXT, "%s, %s", tradeoff->base_method->name,
+           strut_quantity_of(tradeoff->base_step, 3, "s").text);
   return text;
 }
 
@@ -70,8 +71,8 @@ const char *strut_tradeoff_base_text(const strut_tradeoff *r, char text[3 * STRU
 STRUT_VALUES_HERE(spread_values, SPREAD, const strut_spread *spread = of->at)
 
 static strut_value reference_name(const strut_result_object *of, size_t i) {
-  const strut_model_variant *f = of->at;
-  return STRUT_VALUE_AS_IF(f->reference[i][0], TEXT(f->reference[i]));
+  const strut_model_variant *variant = of->at;
+  return STRUT_VALUE_AS_IF(variant->reference[i][0], TEXT(variant->reference[i]));
 }
 
 #define VARIANT(X)                                                                                 \
@@ -126,10 +127,11 @@ STRUT_VALUES_HERE(setting_values, SETTING, const strut_tradeoff_row *row = of->a
                   const strut_tradeoff *r = of->outer->at)
 
 static void write_advice(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  const strut_tradeoff *r = of->at;
-  const strut_tradeoff_advice a = strut_tradeoff_advise(r, strut_tradeoff_level(r, of->index));
+  const strut_tradeoff *tradeoff = of->at;
+  const strut_tradeoff_advice a =
+      strut_tradeoff_advise(tradeoff, strut_tradeoff_level(tradeoff, of->index));
   if (a.row >= 0)
-    write_solver(&r->rows[a.row], text);
+    write_solver(&tradeoff->rows[a.row], text);
   else
     snprintf(text, STRUT_VALUE_ROOM, "%s",
              a.known ? "no setting measured keeps it" : "not known: the references differ by more");
@@ -171,8 +173,8 @@ static const strut_scene *scene_of(const strut_result_object *of, size_t i) {
   return &((const strut_tradeoff *)of->at)->setups[i]->scene;
 }
 
-static strut_value points_of(const strut_tradeoff *r) {
-  strut_value points = STRUT_VALUE_AS_LIST(r->setups, r->point_count);
+static strut_value points_of(const strut_tradeoff *tradeoff) {
+  strut_value points = STRUT_VALUE_AS_LIST(tradeoff->setups, tradeoff->point_count);
   points.scene = scene_of;
   return points;
 }
@@ -204,10 +206,10 @@ static void write_base(const strut_result_object *of, char text[STRUT_VALUE_ROOM
     .label = {""})
 STRUT_VALUES(strut_tradeoff_values, TRADEOFF, const strut_tradeoff *r = of->at)
 
-char *strut_tradeoff_csv(const strut_tradeoff *r) {
-  return strut_values_csv(&strut_tradeoff_values, "settings", NULL, r, NULL);
+char *strut_tradeoff_csv(const strut_tradeoff *tradeoff) {
+  return strut_values_csv(&strut_tradeoff_values, "settings", NULL, tradeoff, NULL);
 }
 
-char *strut_tradeoff_json(const strut_tradeoff *r) {
-  return strut_values_json(&strut_tradeoff_values, r, &r->setups[0]->scene);
+char *strut_tradeoff_json(const strut_tradeoff *tradeoff) {
+  return strut_values_json(&strut_tradeoff_values, tradeoff, &tradeoff->setups[0]->scene);
 }

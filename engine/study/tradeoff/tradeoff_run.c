@@ -17,25 +17,26 @@ double strut_tradeoff_cpu_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-double strut_tradeoff_work_left(const tradeoff_study *s, double share) {
-  return share * STRUT_TRADEOFF_MOST_WORK * s->result->work_unit - s->result->work;
+double strut_tradeoff_work_left(const tradeoff_study *study, double share) {
+  return share * STRUT_TRADEOFF_MOST_WORK * study->result->work_unit - study->result->work;
 }
 
-bool strut_tradeoff_has_time(tradeoff_study *s, double evaluations) {
-  bool is_known = s->stepping > LEAST_KNOWN;
-  double needed = is_known ? evaluations * s->stepping / s->result->work : 0;
-  if (strut_tradeoff_cpu_clock() - s->began + needed > s->budget) s->result->cut = true;
-  return !s->result->cut;
+bool strut_tradeoff_has_time(tradeoff_study *study, double evaluations) {
+  bool is_known = study->stepping > LEAST_KNOWN;
+  double needed = is_known ? evaluations * study->stepping / study->result->work : 0;
+  if (strut_tradeoff_cpu_clock() - study->began + needed > study->budget) study->result->cut = true;
+  return !study->result->cut;
 }
 
 bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
   return strut_experiment_is_adaptive(method->name);
 }
 
-strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point) {
-  strut_experiment e = s->setups[point]->experiment;
+strut_experiment strut_tradeoff_experiment(const tradeoff_study *study, size_t point) {
+  strut_experiment e = study->setups[point]->experiment;
   e.quantity_count = 0; /* only velocity and positions are compared */
-  double most = s->options->periods > 0 ? s->options->periods : STRUT_TRADEOFF_USUAL_PERIODS;
+  double most =
+      study->options->periods > 0 ? study->options->periods : STRUT_TRADEOFF_USUAL_PERIODS;
   e.accuracy = 0;
   e.steady = (strut_steady){.wanted = false};
   if (e.periods > most) {
@@ -48,22 +49,22 @@ strut_experiment strut_tradeoff_experiment(const tradeoff_study *s, size_t point
   return e;
 }
 
-strut_span strut_tradeoff_span(const tradeoff_study *s, size_t point) {
-  const strut_experiment e = strut_tradeoff_experiment(s, point);
-  return strut_experiment_span(&e, &s->setups[point]->scene);
+strut_span strut_tradeoff_span(const tradeoff_study *study, size_t point) {
+  const strut_experiment e = strut_tradeoff_experiment(study, point);
+  return strut_experiment_span(&e, &study->setups[point]->scene);
 }
 
-double strut_tradeoff_fit_step(const tradeoff_study *s, size_t point, double step) {
-  strut_span span = strut_tradeoff_span(s, point);
+double strut_tradeoff_fit_step(const tradeoff_study *study, size_t point, double step) {
+  strut_span span = strut_tradeoff_span(study, point);
   double turns = span.period > 0 ? span.duration / span.period : 0;
   bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
   double unit = whole ? span.period : span.duration;
   return unit / ceil(unit / step * (1 - 1e-9));
 }
 
-double strut_tradeoff_planned(const tradeoff_study *s, size_t point, tradeoff_setting setting) {
-  double steps =
-      strut_tradeoff_span(s, point).duration / strut_tradeoff_fit_step(s, point, setting.step);
+double strut_tradeoff_planned(const tradeoff_study *study, size_t point, tradeoff_setting setting) {
+  double steps = strut_tradeoff_span(study, point).duration /
+                 strut_tradeoff_fit_step(study, point, setting.step);
   return round(steps) * setting.method->evaluations;
 }
 
@@ -81,8 +82,8 @@ static strut_status end_clock(void *context, strut_status status, strut_error *e
   return STRUT_OK;
 }
 
-static void take_values(const tradeoff_study *s, const strut_summary *summary, double *value) {
-  switch (s->result->measure) {
+static void take_values(const tradeoff_study *study, const strut_summary *summary, double *value) {
+  switch (study->result->measure) {
     case STRUT_TRADEOFF_POSITION:
       memcpy(value, summary->end.positions, 2 * summary->end.node_count * sizeof *value);
       break;
@@ -94,8 +95,8 @@ static void take_values(const tradeoff_study *s, const strut_summary *summary, d
   }
 }
 
-double strut_tradeoff_longest_step(const tradeoff_study *s, size_t point) {
-  const strut_setup *setup = s->setups[point];
+double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point) {
+  const strut_setup *setup = study->setups[point];
   strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
   return (span.period > 0 ? span.period : span.duration) / 20;
 }
@@ -108,21 +109,21 @@ static bool is_permanent_failure(strut_status status) {
  * Where nothing vibrates, as for rigid bars swinging under gravity, the stability limit may exceed
  * the duration: then a part of the duration counts.
  */
-strut_status strut_tradeoff_limit(tradeoff_study *s, int variant, const strut_integrator *method,
-                                  double *limit, bool *cannot) {
+strut_status strut_tradeoff_limit(tradeoff_study *study, int variant,
+                                  const strut_integrator *method, double *limit, bool *cannot) {
   const strut_model *model = NULL;
-  strut_experiment e = strut_tradeoff_experiment(s, 0);
+  strut_experiment e = strut_tradeoff_experiment(study, 0);
   e.integrator = method->name;
   *limit = HUGE_VAL;
-  strut_status status = strut_tradeoff_compile(s, 0, variant, &model);
-  if (status == STRUT_OK) status = strut_integrator_check(model, &e, s->error);
-  if (status == STRUT_OK) status = strut_step_limit_for_method(model, method, limit, s->error);
-  if (isfinite(*limit)) *limit = fmin(*limit, strut_tradeoff_longest_step(s, 0));
+  strut_status status = strut_tradeoff_compile(study, 0, variant, &model);
+  if (status == STRUT_OK) status = strut_integrator_check(model, &e, study->error);
+  if (status == STRUT_OK) status = strut_step_limit_for_method(model, method, limit, study->error);
+  if (isfinite(*limit)) *limit = fmin(*limit, strut_tradeoff_longest_step(study, 0));
   *cannot = status != STRUT_OK;
   return status == STRUT_NO_MEMORY ? status : STRUT_OK;
 }
 
-static strut_status simulate(tradeoff_study *s, size_t point, int variant,
+static strut_status simulate(tradeoff_study *study, size_t point, int variant,
                              const strut_experiment *experiment, double *value,
                              tradeoff_outcome *outcome) {
   const strut_model *model = NULL;
@@ -130,51 +131,53 @@ static strut_status simulate(tradeoff_study *s, size_t point, int variant,
   strut_sink clock = {&outcome->seconds, begin_clock, NULL, end_clock, STRUT_CHANNEL_POSITION};
   strut_sink *sinks[] = {&clock};
   const strut_run_options options = {.force = true,
-                                     .interrupt = s->options->interrupt,
+                                     .interrupt = study->options->interrupt,
                                      .sinks = sinks,
                                      .sink_count = 1,
-                                     .most_evaluations = (int64_t)s->allowed};
-  strut_status status = strut_tradeoff_compile(s, point, variant, &model);
-  if (status == STRUT_OK) status = strut_simulate(model, experiment, &options, &summary, s->error);
+                                     .most_evaluations = (int64_t)study->allowed};
+  strut_status status = strut_tradeoff_compile(study, point, variant, &model);
+  if (status == STRUT_OK)
+    status = strut_simulate(model, experiment, &options, &summary, study->error);
   outcome->evaluations = (double)summary.spent.evaluations;
-  s->result->work += outcome->evaluations;
-  if (isfinite(outcome->seconds)) s->stepping += outcome->seconds;
+  study->result->work += outcome->evaluations;
+  if (isfinite(outcome->seconds)) study->stepping += outcome->seconds;
   outcome->cannot = is_permanent_failure(status);
   outcome->cut = status == STRUT_WORK_LIMIT;
   bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
   outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;
-  if (status == STRUT_OK) take_values(s, &summary, value);
+  if (status == STRUT_OK) take_values(study, &summary, value);
   strut_summary_free(&summary);
   return ours ? status : STRUT_OK;
 }
 
-strut_status strut_tradeoff_run(tradeoff_study *s, size_t point, int variant,
+strut_status strut_tradeoff_run(tradeoff_study *study, size_t point, int variant,
                                 tradeoff_setting setting, double *value,
                                 tradeoff_outcome *outcome) {
   *outcome = (tradeoff_outcome){.seconds = (double)NAN};
-  for (size_t i = 0; i < s->result->value_count; i++) value[i] = (double)NAN;
-  strut_experiment e = strut_tradeoff_experiment(s, point);
+  for (size_t i = 0; i < study->result->value_count; i++) value[i] = (double)NAN;
+  strut_experiment e = strut_tradeoff_experiment(study, point);
   e.integrator = setting.method->name;
-  e.step = strut_tradeoff_fit_step(s, point, setting.step);
+  e.step = strut_tradeoff_fit_step(study, point, setting.step);
   if (isfinite(setting.tolerance)) e.tolerance = setting.tolerance;
   e.refine = isfinite(setting.refine) ? setting.refine : 1;
-  e.output_every = strut_tradeoff_span(s, point).duration;
-  return simulate(s, point, variant, &e, value, outcome);
+  e.output_every = strut_tradeoff_span(study, point).duration;
+  return simulate(study, point, variant, &e, value, outcome);
 }
 
-double strut_tradeoff_distance(const tradeoff_study *s, size_t point, const double *value,
+double strut_tradeoff_distance(const tradeoff_study *study, size_t point, const double *value,
                                const double *reference) {
   double most = 0;
-  size_t count = s->result->value_count;
-  if (s->result->measure == STRUT_TRADEOFF_POSITION) {
+  size_t count = study->result->value_count;
+  if (study->result->measure == STRUT_TRADEOFF_POSITION) {
     for (size_t i = 0; i + 1 < count; i += 2) {
-      double d = hypot(value[i] - reference[i], value[i + 1] - reference[i + 1]) / s->size[point];
+      double d =
+          hypot(value[i] - reference[i], value[i + 1] - reference[i + 1]) / study->size[point];
       if (!(d <= most)) most = d;
     }
-  } else if (s->result->measure == STRUT_TRADEOFF_ENERGY) {
+  } else if (study->result->measure == STRUT_TRADEOFF_ENERGY) {
     most = fabs(value[0] - reference[0]);
   } else {
-    most = fabs(value[0] - reference[0]) / fmax(fabs(reference[0]), s->scale[point]);
+    most = fabs(value[0] - reference[0]) / fmax(fabs(reference[0]), study->scale[point]);
   }
   return isfinite(most) ? most : HUGE_VAL;
 }
@@ -192,45 +195,49 @@ static const double TENTH = 1.6;
 static const double FREE = 100, FREE_OF_BASE = 10;
 static const double above[ABOVE] = {2.5, 1.5, 1.1};
 
-static int step_count(const tradeoff_study *s) {
-  if (s->options->steps > 0) return s->options->steps;
-  return s->options->accuracy > 0 ? STRUT_TRADEOFF_MOST_STEPS : STRUT_TRADEOFF_USUAL_STEPS;
+static int step_count(const tradeoff_study *study) {
+  if (study->options->steps > 0) return study->options->steps;
+  return study->options->accuracy > 0 ? STRUT_TRADEOFF_MOST_STEPS : STRUT_TRADEOFF_USUAL_STEPS;
 }
 
-static void report_progress(const tradeoff_study *s, double fraction) {
-  if (s->options->progress) s->options->progress(s->options->progress_context, fraction);
+static void report_progress(const tradeoff_study *study, double fraction) {
+  if (study->options->progress)
+    study->options->progress(study->options->progress_context, fraction);
 }
 
-static strut_status out_of_memory(tradeoff_study *s) { return strut_no_memory(s->error, ""); }
+static strut_status out_of_memory(tradeoff_study *study) {
+  return strut_no_memory(study->error, "");
+}
 
 /* ---- rows ---- */
 
-static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
+static strut_tradeoff_row *new_row(tradeoff_study *study, const step_series *from,
                                    tradeoff_setting setting) {
-  strut_tradeoff *r = s->result;
-  if (r->row_count == s->row_capacity) {
-    size_t capacity = s->row_capacity ? 2 * s->row_capacity : 64;
-    strut_tradeoff_row *rows = strut_arena_allocate(&r->arena, capacity, sizeof *rows);
+  strut_tradeoff *tradeoff = study->result;
+  if (tradeoff->row_count == study->row_capacity) {
+    size_t capacity = study->row_capacity ? 2 * study->row_capacity : 64;
+    strut_tradeoff_row *rows = strut_arena_allocate(&tradeoff->arena, capacity, sizeof *rows);
     if (!rows) return NULL;
-    for (size_t i = 0; i < r->row_count; i++) rows[i] = r->rows[i];
-    r->rows = rows;
-    s->row_capacity = capacity;
+    for (size_t i = 0; i < tradeoff->row_count; i++) rows[i] = tradeoff->rows[i];
+    tradeoff->rows = rows;
+    study->row_capacity = capacity;
   }
-  strut_tradeoff_row *row = &r->rows[r->row_count];
+  strut_tradeoff_row *row = &tradeoff->rows[tradeoff->row_count];
   *row = (strut_tradeoff_row){.variant = from->variant,
                               .group = from->group,
                               .method = setting.method,
-                              .step = strut_tradeoff_fit_step(s, 0, setting.step),
+                              .step = strut_tradeoff_fit_step(study, 0, setting.step),
                               .tolerance = setting.tolerance,
                               .refine = setting.refine,
                               .cpu = (double)NAN,
                               .seconds = (double)NAN};
-  row->value = strut_arena_allocate(&r->arena, r->point_count * r->value_count, sizeof(double));
-  row->forces = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
-  row->error = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
-  row->total = strut_arena_allocate(&r->arena, r->point_count, sizeof(double));
+  row->value = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count * tradeoff->value_count,
+                                    sizeof(double));
+  row->forces = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof(double));
+  row->error = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof(double));
+  row->total = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof(double));
   if (!row->value || !row->forces || !row->error || !row->total) return NULL;
-  r->row_count++;
+  tradeoff->row_count++;
   return row;
 }
 
@@ -238,31 +245,31 @@ static strut_tradeoff_row *new_row(tradeoff_study *s, const step_series *from,
  * Runs a setting at every point as a new row; *made: NULL if its method cannot run it, or if the bound on
  * work ends the run, and with it the series.
  */
-static strut_status run_row(tradeoff_study *s, step_series *from, tradeoff_setting setting,
+static strut_status run_row(tradeoff_study *study, step_series *from, tradeoff_setting setting,
                             double most, strut_tradeoff_row **made) {
-  strut_tradeoff *r = s->result;
-  double began = r->work;
+  strut_tradeoff *tradeoff = study->result;
+  double began = tradeoff->work;
   tradeoff_outcome outcome = {0};
-  strut_tradeoff_row *row = new_row(s, from, setting);
+  strut_tradeoff_row *row = new_row(study, from, setting);
   size_t finished = 0;
-  strut_status status = row ? STRUT_OK : out_of_memory(s);
-  for (size_t p = 0; p < r->point_count && status == STRUT_OK && !outcome.cannot && !outcome.cut;
-       p++) {
-    s->allowed = fmax(1, most - (r->work - began));
-    status =
-        strut_tradeoff_run(s, p, row->variant, setting, row->value + p * r->value_count, &outcome);
+  strut_status status = row ? STRUT_OK : out_of_memory(study);
+  for (size_t p = 0;
+       p < tradeoff->point_count && status == STRUT_OK && !outcome.cannot && !outcome.cut; p++) {
+    study->allowed = fmax(1, most - (tradeoff->work - began));
+    status = strut_tradeoff_run(study, p, row->variant, setting,
+                                row->value + p * tradeoff->value_count, &outcome);
     bool good = outcome.status == STRUT_OK;
     row->forces[p] = good ? outcome.evaluations : (double)NAN;
     row->diverged += !good;
-    if (good) s->spare[finished++] = outcome.seconds;
+    if (good) study->spare[finished++] = outcome.seconds;
   }
-  s->allowed = 0;
+  study->allowed = 0;
   if (status != STRUT_OK) return status;
-  row->seconds = strut_spread_of(s->spare, finished, s->scratch).median;
+  row->seconds = strut_spread_of(study->spare, finished, study->scratch).median;
   row->above = from->limited && setting.step > from->first.step;
-  from->last_cost = r->work - began;
-  if (outcome.cut) from->over = true, r->left_out++;
-  if (outcome.cannot || outcome.cut) r->row_count--;
+  from->last_cost = tradeoff->work - began;
+  if (outcome.cut) from->over = true, tradeoff->left_out++;
+  if (outcome.cannot || outcome.cut) tradeoff->row_count--;
   *made = outcome.cannot || outcome.cut ? NULL : row;
   return STRUT_OK;
 }
@@ -270,13 +277,13 @@ static strut_status run_row(tradeoff_study *s, step_series *from, tradeoff_setti
 /* ---- series of steps ---- */
 
 /* The k-th setting of a series, the coarsest first. False after the last. */
-static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
+static bool setting_at(const tradeoff_study *study, const step_series *self, int k,
                        tradeoff_setting *setting) {
-  bool adaptive = strut_tradeoff_is_adaptive(l->first.method);
-  int extra = l->limited && !(s->options->accuracy > 0) ? ABOVE : 0;
-  if (k >= step_count(s) + (adaptive ? 0 : ABOVE) || (adaptive && k >= MOST_TOLERANCES))
+  bool adaptive = strut_tradeoff_is_adaptive(self->first.method);
+  int extra = self->limited && !(study->options->accuracy > 0) ? ABOVE : 0;
+  if (k >= step_count(study) + (adaptive ? 0 : ABOVE) || (adaptive && k >= MOST_TOLERANCES))
     return false;
-  *setting = l->first;
+  *setting = self->first;
   if (adaptive)
     setting->tolerance = 1.0 / pow(10.0, k + 2); /* the number that its decimal text gives */
   else if (k < extra)
@@ -286,26 +293,27 @@ static bool setting_at(const tradeoff_study *s, const step_series *l, int k,
   return true;
 }
 
-static step_series *add_series(tradeoff_study *s, step_series_list *all, int variant,
+static step_series *add_series(tradeoff_study *study, step_series_list *all, int variant,
                                tradeoff_setting first, bool limited) {
   if (all->count == MOST_STEP_SERIES) return NULL;
-  step_series *l = &all->at[all->count++];
-  *l = (step_series){.variant = variant,
-                     .group = (int)s->result->group_count++,
-                     .first = first,
-                     .limited = limited};
-  return l;
+  step_series *self = &all->at[all->count++];
+  *self = (step_series){.variant = variant,
+                        .group = (int)study->result->group_count++,
+                        .first = first,
+                        .limited = limited};
+  return self;
 }
 
 /* Do two refinements differ at one of the first points? They do not without touchdowns. */
-static strut_status differ(tradeoff_study *s, int variant, tradeoff_setting a, tradeoff_setting b,
-                           bool *different) {
+static strut_status differ(tradeoff_study *study, int variant, tradeoff_setting a,
+                           tradeoff_setting b, bool *different) {
   tradeoff_outcome one = {0}, other = {0};
   strut_status status = STRUT_OK;
   *different = false;
-  for (size_t p = 0; p < s->result->point_count && p < LOOKED_AT && !*different && !status; p++) {
-    status = strut_tradeoff_run(s, p, variant, a, s->scratch, &one);
-    if (!status) status = strut_tradeoff_run(s, p, variant, b, s->scratch, &other);
+  for (size_t p = 0; p < study->result->point_count && p < LOOKED_AT && !*different && !status;
+       p++) {
+    status = strut_tradeoff_run(study, p, variant, a, study->scratch, &one);
+    if (!status) status = strut_tradeoff_run(study, p, variant, b, study->scratch, &other);
     bool both = one.status == STRUT_OK && other.status == STRUT_OK;
     *different =
         !status && (one.status != other.status || (both && one.evaluations != other.evaluations));
@@ -314,7 +322,7 @@ static strut_status differ(tradeoff_study *s, int variant, tradeoff_setting a, t
 }
 
 /* Adds series with refined steps of an event method; `first` is the one without refinement. */
-static strut_status add_refined(tradeoff_study *s, step_series_list *all, int variant,
+static strut_status add_refined(tradeoff_study *study, step_series_list *all, int variant,
                                 tradeoff_setting first, bool limited) {
   static const double ways[] = {(double)NAN, 0, 8};
   tradeoff_setting setting[3];
@@ -327,38 +335,38 @@ static strut_status add_refined(tradeoff_study *s, step_series_list *all, int va
   for (int i = 1; i < 3 && !status; i++) {
     bool new = true;
     for (int k = 0; k < i && new && !status; k++)
-      status = differ(s, variant, setting[k], setting[i], &new);
+      status = differ(study, variant, setting[k], setting[i], &new);
     first.refine = ways[i];
-    if (!status && new && !add_series(s, all, variant, first, limited)) break;
+    if (!status && new && !add_series(study, all, variant, first, limited)) break;
   }
   return status;
 }
 
-strut_status strut_tradeoff_add_method(tradeoff_study *s, step_series_list *all, int variant,
+strut_status strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int variant,
                                        const strut_integrator *method) {
-  tradeoff_setting first = {method, s->base.step, (double)NAN, 1};
+  tradeoff_setting first = {method, study->base.step, (double)NAN, 1};
   bool adaptive = strut_tradeoff_is_adaptive(method), cannot = false;
   double limit = 0;
-  strut_status status = strut_tradeoff_limit(s, variant, method, &limit, &cannot);
+  strut_status status = strut_tradeoff_limit(study, variant, method, &limit, &cannot);
   if (status != STRUT_OK || cannot) return status;
-  if (adaptive) first.step = fmax(10 * first.step, s->limit), first.tolerance = 1e-2;
+  if (adaptive) first.step = fmax(10 * first.step, study->limit), first.tolerance = 1e-2;
   bool limited = !adaptive && isfinite(limit) && limit > 0;
   if (limited) first.step = limit;
   if (!limited && !adaptive) {
-    double most = s->limit > 0 ? FREE * s->limit : FREE_OF_BASE * first.step;
-    first.step = fmin(most, strut_tradeoff_longest_step(s, 0));
+    double most = study->limit > 0 ? FREE * study->limit : FREE_OF_BASE * first.step;
+    first.step = fmin(most, strut_tradeoff_longest_step(study, 0));
   }
   first.refine = (double)NAN;
-  if (!add_series(s, all, variant, first, limited)) return status;
-  return method->events && !adaptive ? add_refined(s, all, variant, first, limited) : status;
+  if (!add_series(study, all, variant, first, limited)) return status;
+  return method->events && !adaptive ? add_refined(study, all, variant, first, limited) : status;
 }
 
 /* Was this setting run already? With few steps per period several settings may coincide. */
-static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeoff_setting *setting,
-                     double step) {
-  for (size_t i = 0; i < r->row_count; i++) {
-    const strut_tradeoff_row *row = &r->rows[i];
-    if (row->group != l->group || fabs(row->step / step - 1) > 1e-9) continue;
+static bool is_known(const strut_tradeoff *tradeoff, const step_series *self,
+                     const tradeoff_setting *setting, double step) {
+  for (size_t i = 0; i < tradeoff->row_count; i++) {
+    const strut_tradeoff_row *row = &tradeoff->rows[i];
+    if (row->group != self->group || fabs(row->step / step - 1) > 1e-9) continue;
     if (!isfinite(setting->tolerance) || row->tolerance == setting->tolerance) return true;
   }
   return false;
@@ -368,29 +376,30 @@ static bool is_known(const strut_tradeoff *r, const step_series *l, const tradeo
  * Force evaluations to expect of a series' next row. An adaptive method begins near the explicit
  * limit.
  */
-static double predict(const tradeoff_study *s, const step_series *l, tradeoff_setting setting) {
+static double predict(const tradeoff_study *study, const step_series *self,
+                      tradeoff_setting setting) {
   double planned = 0;
   bool adaptive = strut_tradeoff_is_adaptive(setting.method);
-  if (adaptive && l->last_cost > 0) return TENTH * l->last_cost;
-  if (adaptive) setting.step = s->limit > 0 ? s->limit : s->base.step;
-  for (size_t p = 0; p < s->result->point_count; p++)
-    planned += strut_tradeoff_planned(s, p, setting);
+  if (adaptive && self->last_cost > 0) return TENTH * self->last_cost;
+  if (adaptive) setting.step = study->limit > 0 ? study->limit : study->base.step;
+  for (size_t p = 0; p < study->result->point_count; p++)
+    planned += strut_tradeoff_planned(study, p, setting);
   return planned;
 }
 
 /* The series whose next row is the cheapest; NULL: all are over. */
-static step_series *find_next(const tradeoff_study *s, step_series_list *all,
+static step_series *find_next(const tradeoff_study *study, step_series_list *all,
                               tradeoff_setting *setting, double *cost) {
   step_series *next = NULL;
   for (size_t i = 0; i < all->count; i++) {
-    step_series *l = &all->at[i];
+    step_series *self = &all->at[i];
     tradeoff_setting own;
-    bool left = !l->over && setting_at(s, l, l->next, &own);
-    while (left && is_known(s->result, l, &own, strut_tradeoff_fit_step(s, 0, own.step)))
-      left = setting_at(s, l, ++l->next, &own);
-    double expected = left ? predict(s, l, own) : HUGE_VAL;
+    bool left = !self->over && setting_at(study, self, self->next, &own);
+    while (left && is_known(study->result, self, &own, strut_tradeoff_fit_step(study, 0, own.step)))
+      left = setting_at(study, self, ++self->next, &own);
+    double expected = left ? predict(study, self, own) : HUGE_VAL;
     if (!left || (next && expected >= *cost)) continue;
-    next = l;
+    next = self;
     *setting = own;
     *cost = expected;
   }
@@ -402,49 +411,50 @@ static step_series *find_next(const tradeoff_study *s, step_series_list *all,
  * Of an accuracy, a series ends when three settings in a row keep half of it, and sooner where the
  * next costs more than that by which another series got there.
  */
-static void judge_series(tradeoff_study *s, step_series_list *all, step_series *l,
+static void judge_series(tradeoff_study *study, step_series_list *all, step_series *self,
                          strut_tradeoff_row *row) {
-  if (!(s->options->accuracy > 0)) return;
-  strut_tradeoff_judge_row(s, row);
-  l->kept = row->total_spread.worst <= 0.5 * s->options->accuracy ? l->kept + 1 : 0;
-  if (l->kept < CONFIRMED) return;
-  l->over = true;
-  all->cheapest = fmin(all->cheapest > 0 ? all->cheapest : HUGE_VAL, l->last_cost);
+  if (!(study->options->accuracy > 0)) return;
+  strut_tradeoff_judge_row(study, row);
+  self->kept = row->total_spread.worst <= 0.5 * study->options->accuracy ? self->kept + 1 : 0;
+  if (self->kept < CONFIRMED) return;
+  self->over = true;
+  all->cheapest = fmin(all->cheapest > 0 ? all->cheapest : HUGE_VAL, self->last_cost);
 }
 
-strut_status strut_tradeoff_run_series(tradeoff_study *s, step_series_list *all, double share,
+strut_status strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, double share,
                                        double from, double to) {
-  double most = strut_tradeoff_work_left(s, share), cost = 0;
+  double most = strut_tradeoff_work_left(study, share), cost = 0;
   tradeoff_setting setting;
-  step_series *l = NULL;
+  step_series *self = NULL;
   strut_status status = STRUT_OK;
-  while (status == STRUT_OK && (l = find_next(s, all, &setting, &cost))) {
-    double left = strut_tradeoff_work_left(s, share);
-    report_progress(s, to - (to - from) * fmax(0, left) / most);
-    bool useless = l->kept == 0 && all->cheapest > 0 && cost > all->cheapest;
-    bool possible = useless || (cost <= left && strut_tradeoff_has_time(s, cost));
-    l->over = useless || !possible;
-    s->result->left_out += !possible;
+  while (status == STRUT_OK && (self = find_next(study, all, &setting, &cost))) {
+    double left = strut_tradeoff_work_left(study, share);
+    report_progress(study, to - (to - from) * fmax(0, left) / most);
+    bool useless = self->kept == 0 && all->cheapest > 0 && cost > all->cheapest;
+    bool possible = useless || (cost <= left && strut_tradeoff_has_time(study, cost));
+    self->over = useless || !possible;
+    study->result->left_out += !possible;
     strut_tradeoff_row *row = NULL;
-    if (!l->over) status = run_row(s, l, setting, left, &row);
-    if (row) judge_series(s, all, l, row);
+    if (!self->over) status = run_row(study, self, setting, left, &row);
+    if (row) judge_series(study, all, self, row);
   }
   return status;
 }
 
-strut_status strut_tradeoff_run_base(tradeoff_study *s, step_series_list *own, double share) {
-  strut_tradeoff *r = s->result;
-  step_series alone = {.group = -1, .first = s->base}, *in = &alone;
+strut_status strut_tradeoff_run_base(tradeoff_study *study, step_series_list *own, double share) {
+  strut_tradeoff *tradeoff = study->result;
+  step_series alone = {.group = -1, .first = study->base}, *in = &alone;
   strut_tradeoff_row *row = NULL;
-  double cost = 0, most = strut_tradeoff_work_left(s, share);
+  double cost = 0, most = strut_tradeoff_work_left(study, share);
   for (size_t i = own->count; i-- > 0;)
-    if (own->at[i].first.method == s->base.method && !isfinite(own->at[i].first.refine))
+    if (own->at[i].first.method == study->base.method && !isfinite(own->at[i].first.refine))
       in = &own->at[i];
-  if (in == &alone) alone.group = (int)r->group_count++;
-  for (size_t p = 0; p < r->point_count; p++) cost += strut_tradeoff_planned(s, p, s->base);
+  if (in == &alone) alone.group = (int)tradeoff->group_count++;
+  for (size_t p = 0; p < tradeoff->point_count; p++)
+    cost += strut_tradeoff_planned(study, p, study->base);
   strut_status status = STRUT_OK;
-  if (cost <= most && strut_tradeoff_has_time(s, cost))
-    status = run_row(s, in, s->base, most, &row);
+  if (cost <= most && strut_tradeoff_has_time(study, cost))
+    status = run_row(study, in, study->base, most, &row);
   if (status == STRUT_OK && row) row->base = true;
   return status;
 }

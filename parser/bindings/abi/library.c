@@ -57,21 +57,21 @@ void strutlib_error_free(strutlib_error *error) {
 
 static strutlib_error *create(int status) {
   strut_arena arena = {0};
-  strutlib_error *e = strut_arena_allocate(&arena, 1, sizeof *e);
-  if (!e) strut_arena_free(&arena);
-  if (!e) return NULL;
-  e->arena = arena;
-  e->status = status;
-  return e;
+  strutlib_error *self = strut_arena_allocate(&arena, 1, sizeof *self);
+  if (!self) strut_arena_free(&arena);
+  if (!self) return NULL;
+  self->arena = arena;
+  self->status = status;
+  return self;
 }
 
-static int finish(strutlib_error **error, strutlib_error *e) {
-  if (e->message && e->report) {
-    *error = e;
-    return e->status;
+static int finish(strutlib_error **error, strutlib_error *self) {
+  if (self->message && self->report) {
+    *error = self;
+    return self->status;
   }
-  int status = e->status;
-  strutlib_error_free(e);
+  int status = self->status;
+  strutlib_error_free(self);
   abi_no_memory(error);
   return status;
 }
@@ -80,11 +80,11 @@ static int fail_with_text(strutlib_error **error, int status, const char *text) 
   if (!error) return status;
   if (status == STRUTLIB_NO_MEMORY && strcmp(text, "out of memory") == 0)
     return abi_no_memory(error);
-  strutlib_error *e = create(status);
-  if (!e) return abi_no_memory(error), status;
-  e->message = strut_arena_text(&e->arena, text, strlen(text));
-  e->report = strut_arena_format(&e->arena, "error: %s\n", text);
-  return finish(error, e);
+  strutlib_error *self = create(status);
+  if (!self) return abi_no_memory(error), status;
+  self->message = strut_arena_text(&self->arena, text, strlen(text));
+  self->report = strut_arena_format(&self->arena, "error: %s\n", text);
+  return finish(error, self);
 }
 
 int abi_fail(strutlib_error **error, int status, const char *format, ...) {
@@ -149,25 +149,26 @@ typedef struct key_search {
   char best[512];
 } key_search;
 
-static bool is_behind(strut_place place, const key_search *s) {
-  return place.line > s->line || (place.line == s->line && place.column > s->column);
+static bool is_behind(strut_place place, const key_search *self) {
+  return place.line > self->line || (place.line == self->line && place.column > self->column);
 }
 
 /* Walks in the text's order, and keeps the path of the last value that begins at or before the place. */
-static void walk(const strut_tree *node, size_t used, key_search *s, int depth) {
+static void walk(const strut_tree *node, size_t used, key_search *self, int depth) {
   const strut_tree *child = node->first;
   bool map = node->kind == STRUT_TREE_MAP;
   if (node->kind == STRUT_TREE_SCALAR || depth > 64) return;
   for (uint32_t i = 0; i < node->count && child; i++) {
     const strut_tree *key = map ? child : NULL, *value = map ? child->next : child;
-    if (!value || is_behind(key ? key->place : value->place, s)) return;
-    int more =
-        key ? snprintf(s->path + used, sizeof s->path - used, "%s%s", used ? "." : "", key->text)
-            : snprintf(s->path + used, sizeof s->path - used, "%s%u", used ? "." : "", (unsigned)i);
-    if (more < 0 || used + (size_t)more >= sizeof s->path) return;
-    memcpy(s->best, s->path, used + (size_t)more + 1);
-    walk(value, used + (size_t)more, s, depth + 1);
-    s->path[used] = '\0';
+    if (!value || is_behind(key ? key->place : value->place, self)) return;
+    int more = key ? snprintf(self->path + used, sizeof self->path - used, "%s%s", used ? "." : "",
+                              key->text)
+                   : snprintf(self->path + used, sizeof self->path - used, "%s%u", used ? "." : "",
+                              (unsigned)i);
+    if (more < 0 || used + (size_t)more >= sizeof self->path) return;
+    memcpy(self->best, self->path, used + (size_t)more + 1);
+    walk(value, used + (size_t)more, self, depth + 1);
+    self->path[used] = '\0';
     child = value->next;
   }
 }
@@ -208,23 +209,25 @@ static strut_document reread(const strut_diagnostics *found) {
 int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *found) {
   if (!error) return (int)status;
   const char *report = strut_diagnostics_render(found, MOST_MESSAGES); /* sorts them */
-  strutlib_error *e = report ? create((int)status) : NULL;
-  if (!e) return abi_no_memory(error), (int)status;
-  e->report = strut_arena_text(&e->arena, report, strlen(report));
-  e->items = strut_arena_allocate(&e->arena, found->count, sizeof *e->items);
+  strutlib_error *self = report ? create((int)status) : NULL;
+  if (!self) return abi_no_memory(error), (int)status;
+  self->report = strut_arena_text(&self->arena, report, strlen(report));
+  self->items = strut_arena_allocate(&self->arena, found->count, sizeof *self->items);
   strut_document document = reread(found);
-  bool good = e->items && e->report;
-  for (; good && e->count < found->count; e->count++)
-    good = fill_item(found, &document, &found->items[e->count], &e->arena, &e->items[e->count]);
+  bool good = self->items && self->report;
+  for (; good && self->count < found->count; self->count++)
+    good = fill_item(found, &document, &found->items[self->count], &self->arena,
+                     &self->items[self->count]);
   strut_document_free(&document);
-  if (good && e->count > 0 && e->items[0].line > 0)
-    e->message = strut_arena_format(&e->arena, "%s:%zu:%zu: %s", e->items[0].file, e->items[0].line,
-                                    e->items[0].column, e->items[0].text);
-  else if (good && e->count > 0)
-    e->message = e->items[0].text;
+  if (good && self->count > 0 && self->items[0].line > 0)
+    self->message =
+        strut_arena_format(&self->arena, "%s:%zu:%zu: %s", self->items[0].file, self->items[0].line,
+                           self->items[0].column, self->items[0].text);
+  else if (good && self->count > 0)
+    self->message = self->items[0].text;
   else if (good)
-    e->message = strut_status_text(status);
-  return finish(error, e);
+    self->message = strut_status_text(status);
+  return finish(error, self);
 }
 
 /* ---- what the header shows ---- */
@@ -274,14 +277,14 @@ void abi_add_warning(abi_messages *m, const char *text) {
 }
 
 static void hear(void *context, strut_message_kind kind, const char *command, const char *text) {
-  abi_messages *m = context;
+  abi_messages *self = context;
   (void)command;
   switch (kind) {
-    case STRUT_MESSAGE_USAGE: strut_fail(&m->error, STRUT_USAGE, "%s", text); break;
-    case STRUT_MESSAGE_ERROR: strut_fail(&m->error, STRUT_USAGE, "%s", text); break;
+    case STRUT_MESSAGE_USAGE: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
+    case STRUT_MESSAGE_ERROR: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
     case STRUT_MESSAGE_WARNING:
     case STRUT_MESSAGE_NOTE:
-    case STRUT_MESSAGE_REMARK: abi_add_warning(m, text); break;
+    case STRUT_MESSAGE_REMARK: abi_add_warning(self, text); break;
   }
 }
 
@@ -545,33 +548,33 @@ const strut_command *abi_command_at(size_t i) {
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 
-strut_status abi_scratch_begin(abi_scratch *s, const char *name, strut_error *error) {
+strut_status abi_scratch_begin(abi_scratch *self, const char *name, strut_error *error) {
   const char *temporary = getenv("TMPDIR");
-  bool usable = temporary && *temporary && strlen(temporary) < sizeof s->folder - 40;
-  snprintf(s->folder, sizeof s->folder, "%s/strut-XXXXXX", usable ? temporary : "/tmp");
-  if (!mkdtemp(s->folder))
+  bool usable = temporary && *temporary && strlen(temporary) < sizeof self->folder - 40;
+  snprintf(self->folder, sizeof self->folder, "%s/strut-XXXXXX", usable ? temporary : "/tmp");
+  if (!mkdtemp(self->folder))
     return strut_fail(error, STRUT_FILE_TROUBLE, "cannot create a temporary folder in '%s'",
                       usable ? temporary : "/tmp");
-  snprintf(s->path, sizeof s->path, "%s/%s", s->folder, name);
+  snprintf(self->path, sizeof self->path, "%s/%s", self->folder, name);
   return STRUT_OK;
 }
 
-char *abi_scratch_read(const abi_scratch *s, const char *name, strut_error *error) {
-  char path[sizeof s->path], *text = NULL;
+char *abi_scratch_read(const abi_scratch *self, const char *name, strut_error *error) {
+  char path[sizeof self->path], *text = NULL;
   size_t length;
-  snprintf(path, sizeof path, "%s/%s", s->folder, name);
+  snprintf(path, sizeof path, "%s/%s", self->folder, name);
   strut_file_read(path, &text, &length, error);
   return text;
 }
 
-static void remove_file(const abi_scratch *s, const char *name) {
-  char path[sizeof s->path];
-  snprintf(path, sizeof path, "%s/%s", s->folder, name);
+static void remove_file(const abi_scratch *self, const char *name) {
+  char path[sizeof self->path];
+  snprintf(path, sizeof path, "%s/%s", self->folder, name);
   unlink(path);
 }
 
-void abi_scratch_end(const abi_scratch *s, const char *const *names) {
-  for (size_t i = 0; names[i]; i++) remove_file(s, names[i]);
-  remove_file(s, STRUT_OWNERSHIP_LIST);
-  rmdir(s->folder);
+void abi_scratch_end(const abi_scratch *self, const char *const *names) {
+  for (size_t i = 0; names[i]; i++) remove_file(self, names[i]);
+  remove_file(self, STRUT_OWNERSHIP_LIST);
+  rmdir(self->folder);
 }

@@ -33,11 +33,11 @@ static const char figure_name[] = "figure.svg";
 static const char *const files[] = {figure_name, NULL};
 
 /* The figure that was drawn as a file, or NULL with the error; its folder goes. */
-static char *take_figure(const abi_scratch *s, strut_status status, strut_error *what,
+static char *take_figure(const abi_scratch *self, strut_status status, strut_error *what,
                          strutlib_error **error) {
-  char *text = status == STRUT_OK ? abi_scratch_read(s, figure_name, what) : NULL;
+  char *text = status == STRUT_OK ? abi_scratch_read(self, figure_name, what) : NULL;
   if (!text) abi_fail_with(error, what->status, what);
-  abi_scratch_end(s, files);
+  abi_scratch_end(self, files);
   return text;
 }
 
@@ -82,13 +82,13 @@ char *strutlib_result_svg(const strutlib_result *result, size_t count, const cha
 
 enum { WIDTH = 510, MARGIN = 24 }; /* [pt] of a drawing */
 
-static strut_status draw_structure(const strut_model *model, const double *q, const char *path,
-                                   strut_error *what) {
+static strut_status draw_structure(const strut_model *model, const double *positions,
+                                   const char *path, strut_error *what) {
   const strut_shape shape = {
-      .model = model, .q = q, .style.member_names = true, .ground = true, .names = true};
+      .model = model, .q = positions, .style.member_names = true, .ground = true, .names = true};
   strut_view view = {
       .shape_count = 1, .shapes = &shape, .bounds = strut_bounds_none(), .margin = MARGIN};
-  strut_bounds_add(&view.bounds, model, q);
+  strut_bounds_add(&view.bounds, model, positions);
   const strut_panel panel = {.view = &view};
   return strut_figure_draw(&(strut_plot){.path = path, .width = WIDTH},
                            &(strut_figure){.panel_count = 1, .panels = &panel, .aspect = 1.2},

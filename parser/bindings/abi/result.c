@@ -171,46 +171,47 @@ typedef struct extent {
   size_t stride[8];
 } extent;
 
-static void visit(const cJSON *at, const char *name, int depth, size_t offset, extent *e);
+static void visit(const cJSON *at, const char *name, int depth, size_t offset, extent *self);
 
-static void visit_children(const cJSON *at, const char *name, int depth, size_t offset, extent *e) {
+static void visit_children(const cJSON *at, const char *name, int depth, size_t offset,
+                           extent *self) {
   size_t i = 0;
-  if (depth >= e->most) {
-    e->wrong = true;
+  if (depth >= self->most) {
+    self->wrong = true;
     return;
   }
-  for (const cJSON *child = at->child; child && !e->wrong; child = child->next, i++)
-    visit(child, name, depth + 1, offset + (e->data ? i * e->stride[depth] : 0), e);
-  if (!e->data && i > e->shape[depth]) e->shape[depth] = i;
+  for (const cJSON *child = at->child; child && !self->wrong; child = child->next, i++)
+    visit(child, name, depth + 1, offset + (self->data ? i * self->stride[depth] : 0), self);
+  if (!self->data && i > self->shape[depth]) self->shape[depth] = i;
 }
 
-static void take_number(double value, int depth, size_t offset, extent *e) {
-  if (e->dimensions < 0) e->dimensions = depth;
-  if (e->dimensions != depth) e->wrong = true;
-  if (e->data && !e->wrong) e->data[offset] = value;
+static void take_number(double value, int depth, size_t offset, extent *self) {
+  if (self->dimensions < 0) self->dimensions = depth;
+  if (self->dimensions != depth) self->wrong = true;
+  if (self->data && !self->wrong) self->data[offset] = value;
 }
 
-static void visit(const cJSON *at, const char *name, int depth, size_t offset, extent *e) {
+static void visit(const cJSON *at, const char *name, int depth, size_t offset, extent *self) {
   const char *rest = name;
   if (cJSON_IsNull(at)) return; /* stays NAN */
   if (*name && cJSON_IsArray(at)) {
     int index = number_of(name, &rest);
     const cJSON *item = index >= 0 ? cJSON_GetArrayItem(at, index) : NULL;
     if (index < 0)
-      visit_children(at, name, depth, offset, e);
+      visit_children(at, name, depth, offset, self);
     else if (item)
-      visit(item, rest, depth, offset, e);
+      visit(item, rest, depth, offset, self);
   } else if (*name) {
     const cJSON *child = cJSON_IsObject(at) ? child_of(at, name, &rest) : NULL;
-    if (child) visit(child, rest, depth, offset, e);
+    if (child) visit(child, rest, depth, offset, self);
   } else if (cJSON_IsArray(at) || cJSON_IsObject(at)) {
-    visit_children(at, name, depth, offset, e);
+    visit_children(at, name, depth, offset, self);
   } else if (cJSON_IsNumber(at)) {
-    take_number(at->valuedouble, depth, offset, e);
+    take_number(at->valuedouble, depth, offset, self);
   } else if (cJSON_IsBool(at)) {
-    take_number(cJSON_IsTrue(at) ? 1.0 : 0.0, depth, offset, e);
+    take_number(cJSON_IsTrue(at) ? 1.0 : 0.0, depth, offset, self);
   } else {
-    e->wrong = true;
+    self->wrong = true;
   }
 }
 
@@ -356,18 +357,18 @@ bool abi_result_add_array(strutlib_result *result, const char *name, const char 
     if (count) memcpy(wider, result->arrays, count * sizeof *wider);
     result->arrays = wider;
   }
-  abi_array *a = &result->arrays[count];
-  *a = (abi_array){.name = strut_arena_text(&result->arena, name, strlen(name)),
-                   .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
-                   .data = data,
-                   .dimensions = dimensions};
+  abi_array *self = &result->arrays[count];
+  *self = (abi_array){.name = strut_arena_text(&result->arena, name, strlen(name)),
+                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
+                      .data = data,
+                      .dimensions = dimensions};
   size_t stride = 1;
   for (int d = dimensions - 1; d >= 0; d--) {
-    a->shape[d] = shape[d];
-    a->stride[d] = stride;
+    self->shape[d] = shape[d];
+    self->stride[d] = stride;
     stride *= shape[d];
   }
-  if (!a->name || !a->unit) return false;
+  if (!self->name || !self->unit) return false;
   result->array_count++;
   return true;
 }

@@ -86,13 +86,14 @@ static strut_status simulate(abi_call *call, const strutlib_result *result, run_
 
 /* ---- what it shows ---- */
 
-static bool add_arrays(strutlib_result *result, const strut_trajectory *m) {
+static bool add_arrays(strutlib_result *result, const strut_trajectory *trajectory) {
   const strut_channel_row *row;
-  bool good = m->frames == 0 ||
-              abi_result_add_array(result, "time", "s", m->time, 1, (const size_t[]){m->frames});
-  for (size_t i = 0; good && m->frames && (row = strut_channel_at(i)) != NULL; i++) {
-    const double *values = strut_trajectory_channel(m, row->id);
-    const size_t shape[] = {m->frames, strut_channel_things(row, &result->setup.scene),
+  bool good =
+      trajectory->frames == 0 || abi_result_add_array(result, "time", "s", trajectory->time, 1,
+                                                      (const size_t[]){trajectory->frames});
+  for (size_t i = 0; good && trajectory->frames && (row = strut_channel_at(i)) != NULL; i++) {
+    const double *values = strut_trajectory_channel(trajectory, row->id);
+    const size_t shape[] = {trajectory->frames, strut_channel_things(row, &result->setup.scene),
                             row->components};
     int dimensions = !strut_channel_is_whole(row) && row->components > 1 ? 3 : 2;
     if (values)

@@ -102,14 +102,14 @@ const char *strutlib_channel_column(const char *channel, size_t i) {
 
 static bool add(strutlib_scene *scene, size_t *at, const char *name, const char *unit, size_t count,
                 size_t components, double **data) {
-  abi_array *a = &scene->arrays[(*at)++];
+  abi_array *self = &scene->arrays[(*at)++];
   *data = strut_arena_allocate(&scene->arena, count * components, sizeof **data);
-  *a = (abi_array){.name = name, .unit = unit, .data = *data};
-  a->dimensions = components > 1 ? 2 : 1;
-  a->shape[0] = count;
-  a->shape[1] = components;
-  a->stride[0] = components;
-  a->stride[1] = 1;
+  *self = (abi_array){.name = name, .unit = unit, .data = *data};
+  self->dimensions = components > 1 ? 2 : 1;
+  self->shape[0] = count;
+  self->shape[1] = components;
+  self->stride[0] = components;
+  self->stride[1] = 1;
   return *data != NULL;
 }
 
@@ -226,8 +226,9 @@ static abi_tree *make_tree(const strutlib_scene *scene) {
   const strut_scene *s = &scene->setup.scene;
   bool good = tree != NULL;
   for (size_t i = 0; good && i < s->parameter_count; i++) {
-    const strut_parameter *p = &s->parameters[i];
-    good = abi_tree_set(tree, "parameters", p->name, p->value, isfinite(p->value) ? NULL : p->text);
+    const strut_parameter *parameter = &s->parameters[i];
+    good = abi_tree_set(tree, "parameters", parameter->name, parameter->value,
+                        isfinite(parameter->value) ? NULL : parameter->text);
   }
   strut_document_free(&document);
   strut_diagnostics_free(&unused);

@@ -21,9 +21,9 @@ typedef struct analysis_detail {
 } analysis_detail;
 
 static void release(void *detail) {
-  analysis_detail *d = detail;
-  strut_analysis_free(&d->analysis);
-  strut_release(d);
+  analysis_detail *self = detail;
+  strut_analysis_free(&self->analysis);
+  strut_release(self);
 }
 
 const strut_equilibria *abi_result_equilibria(const strutlib_result *result) {
@@ -33,36 +33,36 @@ const strut_equilibria *abi_result_equilibria(const strutlib_result *result) {
 
 static strut_status draw(const strutlib_result *result, const strut_arguments *arguments,
                          const char *path, strut_error *error) {
-  const strut_analysis *a = &((const analysis_detail *)result->detail)->analysis;
+  const strut_analysis *analysis = &((const analysis_detail *)result->detail)->analysis;
   strut_plot plot;
   strut_status status = abi_plot_read(arguments, path, &plot);
-  return status == STRUT_OK ? a->kind->draw(a, &plot, error) : status;
+  return status == STRUT_OK ? analysis->kind->draw(analysis, &plot, error) : status;
 }
 
 static strut_status compute_and_report(abi_call *call, const strutlib_scene *scene,
                                        strutlib_result *result, strut_error *what) {
   const strut_analysis_kind *kind = result->command->analysis;
   const abi_source *source = scene->source;
-  analysis_detail *d = strut_allocate(1, sizeof *d);
-  if (!d) return strut_no_memory(what, "");
-  strut_analysis *a = &d->analysis;
-  d->base.release = release;
-  result->detail = d;
+  analysis_detail *self = strut_allocate(1, sizeof *self);
+  if (!self) return strut_no_memory(what, "");
+  strut_analysis *analysis = &self->analysis;
+  self->base.release = release;
+  result->detail = self;
   result->draw = draw;
-  *a = (strut_analysis){.kind = kind,
-                        .arguments = &call->arguments,
-                        .setup = &result->setup,
-                        .model = result->model,
-                        .scenes = {.file = source->name,
-                                   .text = source->text,
-                                   .length = source->length,
-                                   .source = source->tree}};
-  strut_status status = strut_analysis_compute(a, what);
-  if (status == STRUT_OK && kind->verdict) status = kind->verdict(a, what);
+  *analysis = (strut_analysis){.kind = kind,
+                               .arguments = &call->arguments,
+                               .setup = &result->setup,
+                               .model = result->model,
+                               .scenes = {.file = source->name,
+                                          .text = source->text,
+                                          .length = source->length,
+                                          .source = source->tree}};
+  strut_status status = strut_analysis_compute(analysis, what);
+  if (status == STRUT_OK && kind->verdict) status = kind->verdict(analysis, what);
   if (status != STRUT_OK) return status;
-  if (kind->warn) kind->warn(a, &call->listener);
-  result->json = strut_analysis_json(a);
-  result->table = strut_analysis_text(a, STRUT_REPORT_WIDTH);
+  if (kind->warn) kind->warn(analysis, &call->listener);
+  result->json = strut_analysis_json(analysis);
+  result->table = strut_analysis_text(analysis, STRUT_REPORT_WIDTH);
   bool complete = result->json && result->table && !result->messages.out_of_memory;
   return complete ? STRUT_OK : strut_no_memory(what, "");
 }
@@ -90,20 +90,21 @@ static void put(entries *to, int32_t row, int32_t column, double value) {
   to->value[to->count++] = value;
 }
 
-static bool show(strutlib_result *result, const char *name, const char *unit, const entries *m) {
+static bool show(strutlib_result *result, const char *name, const char *unit, const entries *self) {
   const size_t two[] = {2};
   char text[60];
   double *size = strut_arena_allocate(&result->arena, 2, sizeof *size);
   if (!size) return false;
-  size[0] = (double)m->rows;
-  size[1] = (double)m->columns;
+  size[0] = (double)self->rows;
+  size[1] = (double)self->columns;
   const struct {
     const char *part, *unit;
     const double *data;
-  } parts[] = {{"row", "1", m->row}, {"column", "1", m->column}, {"value", unit, m->value}};
+  } parts[] = {
+      {"row", "1", self->row}, {"column", "1", self->column}, {"value", unit, self->value}};
   for (size_t i = 0; i < 3; i++) {
     snprintf(text, sizeof text, "%s.%s", name, parts[i].part);
-    if (!abi_result_add_array(result, text, parts[i].unit, parts[i].data, 1, &m->count))
+    if (!abi_result_add_array(result, text, parts[i].unit, parts[i].data, 1, &self->count))
       return false;
   }
   snprintf(text, sizeof text, "%s.size", name);
@@ -136,15 +137,17 @@ static bool add_connectivity(strutlib_result *result, const strut_scene *scene) 
   return show(result, "connectivity", "1", &m);
 }
 
-static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_matrix *a) {
+static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_matrix *matrix) {
   entries m;
-  size_t rows = (size_t)a->rows;
+  size_t rows = (size_t)matrix->rows;
   double *coordinate = strut_arena_allocate(&result->arena, rows, sizeof *coordinate);
-  if (!coordinate || !reserve(result, (size_t)a->start[a->columns], rows, (size_t)a->columns, &m))
+  if (!coordinate ||
+      !reserve(result, (size_t)matrix->start[matrix->columns], rows, (size_t)matrix->columns, &m))
     return false;
-  for (int32_t j = 0; j < a->columns; j++)
-    for (int32_t k = a->start[j]; k < a->start[j + 1]; k++) put(&m, a->row[k], j, a->value[k]);
-  for (size_t i = 0; i < rows; i++) coordinate[i] = a->coordinate[i];
+  for (int32_t j = 0; j < matrix->columns; j++)
+    for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
+      put(&m, matrix->row[k], j, matrix->value[k]);
+  for (size_t i = 0; i < rows; i++) coordinate[i] = matrix->coordinate[i];
   return show(result, "equilibrium", "1", &m) &&
          abi_result_add_array(result, "coordinates", "1", coordinate, 1, &rows);
 }
@@ -152,13 +155,14 @@ static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_mat
 /* Of a rigid bar that of the start, otherwise the rest length without drives. */
 static double made_length(const strut_model *model, size_t i) {
   const strut_scene *scene = model->scene;
-  const strut_member *m = &scene->members[i];
-  if (scene->bar_model != STRUT_BARS_RIGID || m->kind != STRUT_BAR) return model->members.rest[i];
-  return strut_distance(scene->nodes[m->node[0]].start, scene->nodes[m->node[1]].start);
+  const strut_member *member = &scene->members[i];
+  if (scene->bar_model != STRUT_BARS_RIGID || member->kind != STRUT_BAR)
+    return model->members.rest[i];
+  return strut_distance(scene->nodes[member->node[0]].start, scene->nodes[member->node[1]].start);
 }
 
 /* What programs need to write the structure in other formats. */
-static bool add_shape(strutlib_result *result, const strut_model *model, const double *q) {
+static bool add_shape(strutlib_result *result, const strut_model *model, const double *positions) {
   const strut_scene *scene = model->scene;
   const size_t n = scene->node_count, m = scene->member_count, by_node[] = {n, 2};
   strut_arena *arena = &result->arena;
@@ -169,13 +173,13 @@ static bool add_shape(strutlib_result *result, const strut_model *model, const d
   double *tension = strut_arena_allocate(arena, m, sizeof *tension);
   double *damping = strut_arena_allocate(arena, m, sizeof *damping);
   if (!position || !weight || !length || !rest || !tension || !damping) return false;
-  memcpy(position, q, 2 * n * sizeof *position);
+  memcpy(position, positions, 2 * n * sizeof *position);
   memcpy(weight, model->weight, n * sizeof *weight);
   for (size_t i = 0; i < m; i++) {
     bool running = scene->members[i].guide_count > 0;
-    length[i] = strut_member_path_length(model, (int32_t)i, q);
+    length[i] = strut_member_path_length(model, (int32_t)i, positions);
     rest[i] = made_length(model, i);
-    tension[i] = strut_member_elastic_tension(model, model->members.rest, (int32_t)i, q);
+    tension[i] = strut_member_elastic_tension(model, model->members.rest, (int32_t)i, positions);
     damping[i] = running ? scene->members[i].damping : model->members.damping[i];
   }
   return abi_result_add_array(result, "position", "m", position, 2, by_node) &&

@@ -37,8 +37,8 @@ strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
   return no_figures(error);
 }
 strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
-                                   const double *q, const char *at, const strut_rigidity *rigidity,
-                                   strut_error *error) {
+                                   const double *positions, const char *at,
+                                   const strut_rigidity *rigidity, strut_error *error) {
   return no_figures(error);
 }
 strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
@@ -52,7 +52,7 @@ strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figur
   return no_figures(error);
 }
 strut_bounds strut_bounds_none(void) { return (strut_bounds){{0.0}, {0.0}}; }
-void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *q) {}
+void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *positions) {}
 
 /* ---- pages, sparse algebra, optimisers ---- */
 

@@ -14,190 +14,195 @@
 
 enum { DEPTH_MOST = 64, LENGTH_MOST = 1000, PROGRAM_MOST = 10000 };
 
-static bool read_sum(strut_expression_reader *r, strut_quantity *q);
-static bool read_signed(strut_expression_reader *r, strut_quantity *q);
+static bool read_sum(strut_expression_reader *reader, strut_quantity *quantity);
+static bool read_signed(strut_expression_reader *reader, strut_quantity *quantity);
 
 static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-char strut_expression_peek(strut_expression_reader *r) {
-  while (r->at < r->length && is_blank(r->text[r->at])) r->at++;
-  return r->at < r->length ? r->text[r->at] : '\0';
+char strut_expression_peek(strut_expression_reader *reader) {
+  while (reader->at < reader->length && is_blank(reader->text[reader->at])) reader->at++;
+  return reader->at < reader->length ? reader->text[reader->at] : '\0';
 }
 
 static bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-size_t strut_expression_word(const strut_expression_reader *r, size_t at) {
+size_t strut_expression_word(const strut_expression_reader *reader, size_t at) {
   size_t begin = at;
-  if (at >= r->length || !is_letter(r->text[at])) return 0;
-  while (at < r->length && (is_letter(r->text[at]) || (r->text[at] >= '0' && r->text[at] <= '9')))
+  if (at >= reader->length || !is_letter(reader->text[at])) return 0;
+  while (at < reader->length &&
+         (is_letter(reader->text[at]) || (reader->text[at] >= '0' && reader->text[at] <= '9')))
     at++;
   return at - begin;
 }
 
-int strut_expression_lookup(const strut_expression_reader *r, const char *name, size_t length,
+int strut_expression_lookup(const strut_expression_reader *reader, const char *name, size_t length,
                             strut_quantity *quantity) {
-  if (!r->scope || !r->scope->lookup) return 0;
-  return r->scope->lookup(r->scope->context, name, length, quantity);
+  if (!reader->scope || !reader->scope->lookup) return 0;
+  return reader->scope->lookup(reader->scope->context, name, length, quantity);
 }
 
 bool strut_expression_reserved(const char *name, size_t length) {
   return (length == 2 && memcmp(name, "pi", 2) == 0) || strut_function_find(name, length);
 }
 
-static bool expect_character(strut_expression_reader *r, char wanted, const char *words) {
-  if (strut_expression_peek(r) != wanted) return strut_expression_unexpected(r, words);
-  r->at++;
+static bool expect_character(strut_expression_reader *reader, char wanted, const char *words) {
+  if (strut_expression_peek(reader) != wanted) return strut_expression_unexpected(reader, words);
+  reader->at++;
   return true;
 }
 
 /* Reads arguments and the closing parenthesis; the opening one has been read. */
-static bool read_call(strut_expression_reader *r, const strut_function *function, size_t begin,
-                      strut_quantity *q) {
+static bool read_call(strut_expression_reader *reader, const strut_function *function, size_t begin,
+                      strut_quantity *quantity) {
   strut_quantity arguments[STRUT_ARGUMENT_MOST];
   strut_reason reason;
   size_t count = 0;
   do {
-    if (count) r->at++;
+    if (count) reader->at++;
     if (count == STRUT_ARGUMENT_MOST)
-      return strut_expression_fail(r, begin, r->at, "more than %d arguments", STRUT_ARGUMENT_MOST);
-    if (!read_sum(r, &arguments[count])) return false;
+      return strut_expression_fail(reader, begin, reader->at, "more than %d arguments",
+                                   STRUT_ARGUMENT_MOST);
+    if (!read_sum(reader, &arguments[count])) return false;
     count++;
-  } while (strut_expression_peek(r) == ',');
-  if (!expect_character(r, ')', "an operator, ',' or ')'")) return false;
-  if (!strut_function_apply(function, arguments, count, q, &reason))
-    return strut_expression_fail(r, begin, r->at, "%s", reason.text);
-  strut_expression_emit(r, strut_function_operation(function), count, q);
+  } while (strut_expression_peek(reader) == ',');
+  if (!expect_character(reader, ')', "an operator, ',' or ')'")) return false;
+  if (!strut_function_apply(function, arguments, count, quantity, &reason))
+    return strut_expression_fail(reader, begin, reader->at, "%s", reason.text);
+  strut_expression_emit(reader, strut_function_operation(function), count, quantity);
   return true;
 }
 
-static bool read_name(strut_expression_reader *r, size_t length, strut_quantity *q) {
-  size_t begin = r->at;
-  const char *name = r->text + begin;
-  r->at += length;
-  if (strut_expression_peek(r) == '(') {
+static bool read_name(strut_expression_reader *reader, size_t length, strut_quantity *quantity) {
+  size_t begin = reader->at;
+  const char *name = reader->text + begin;
+  reader->at += length;
+  if (strut_expression_peek(reader) == '(') {
     const strut_function *function = strut_function_find(name, length);
-    if (!function) return strut_expression_unknown_function(r, begin, length);
-    r->at++;
-    return read_call(r, function, begin, q);
+    if (!function) return strut_expression_unknown_function(reader, begin, length);
+    reader->at++;
+    return read_call(reader, function, begin, quantity);
   }
   if (length == 2 && memcmp(name, "pi", 2) == 0) {
-    *q = (strut_quantity){.value = STRUT_PI, .bare = true};
-    strut_expression_emit_number(r, q);
+    *quantity = (strut_quantity){.value = STRUT_PI, .bare = true};
+    strut_expression_emit_number(reader, quantity);
     return true;
   }
-  int found = strut_expression_lookup(r, name, length, q);
+  int found = strut_expression_lookup(reader, name, length, quantity);
   if (found < 0) {
-    strut_expression_fail(r, begin, begin + length, "%s", "");
-    r->error->message[0] = '\0'; /* the lookup has reported it */
+    strut_expression_fail(reader, begin, begin + length, "%s", "");
+    reader->error->message[0] = '\0'; /* the lookup has reported it */
     return false;
   }
   if (found > 0) {
-    strut_expression_emit_number(r, q);
+    strut_expression_emit_number(reader, quantity);
     return true;
   }
-  found = strut_expression_column_word(r, begin, length, q);
-  return found > 0 || (found == 0 && strut_expression_unknown_name(r, begin, length));
+  found = strut_expression_column_word(reader, begin, length, quantity);
+  return found > 0 || (found == 0 && strut_expression_unknown_name(reader, begin, length));
 }
 
-static bool read_literal(strut_expression_reader *r, strut_quantity *q) {
-  if (!strut_expression_literal(r, q)) return false;
-  strut_expression_emit_number(r, q);
+static bool read_literal(strut_expression_reader *reader, strut_quantity *quantity) {
+  if (!strut_expression_literal(reader, quantity)) return false;
+  strut_expression_emit_number(reader, quantity);
   return true;
 }
 
-static bool read_primary(strut_expression_reader *r, strut_quantity *q) {
-  char c = strut_expression_peek(r);
-  int column = strut_expression_column(r, q);
+static bool read_primary(strut_expression_reader *reader, strut_quantity *quantity) {
+  char c = strut_expression_peek(reader);
+  int column = strut_expression_column(reader, quantity);
   if (column) return column > 0;
-  if ((c >= '0' && c <= '9') || c == '.') return read_literal(r, q);
+  if ((c >= '0' && c <= '9') || c == '.') return read_literal(reader, quantity);
   if (c == '(') {
-    r->at++;
-    return read_sum(r, q) && expect_character(r, ')', "an operator or ')'");
+    reader->at++;
+    return read_sum(reader, quantity) && expect_character(reader, ')', "an operator or ')'");
   }
-  size_t length = strut_expression_word(r, r->at);
-  if (length) return read_name(r, length, q);
-  return strut_expression_unexpected(r, "a number, a name or '('");
+  size_t length = strut_expression_word(reader, reader->at);
+  if (length) return read_name(reader, length, quantity);
+  return strut_expression_unexpected(reader, "a number, a name or '('");
 }
 
 /* *q = *q OP b, where the operands stand in text[begin..at). */
-static bool apply_operator(strut_expression_reader *r, size_t begin, char operation,
-                           strut_quantity *q, strut_quantity b) {
+static bool apply_operator(strut_expression_reader *reader, size_t begin, char operation,
+                           strut_quantity *quantity, strut_quantity b) {
   static const char signs[] = "+-*/^";
   static const strut_operation operations[] = {STRUT_OPERATION_ADD, STRUT_OPERATION_SUBTRACT,
                                                STRUT_OPERATION_MULTIPLY, STRUT_OPERATION_DIVIDE,
                                                STRUT_OPERATION_POWER};
   strut_reason reason;
-  if (!strut_quantity_operate(operation, q, b, &reason))
-    return strut_expression_fail(r, begin, r->at, "%s", reason.text);
-  strut_expression_emit(r, operations[strchr(signs, operation) - signs], 2, q);
+  if (!strut_quantity_operate(operation, quantity, b, &reason))
+    return strut_expression_fail(reader, begin, reader->at, "%s", reason.text);
+  strut_expression_emit(reader, operations[strchr(signs, operation) - signs], 2, quantity);
   return true;
 }
 
 /* A power binds tighter than a sign before it, and groups to the right. */
-static bool read_power(strut_expression_reader *r, strut_quantity *q) {
-  strut_expression_peek(r);
-  size_t begin = r->at;
+static bool read_power(strut_expression_reader *reader, strut_quantity *quantity) {
+  strut_expression_peek(reader);
+  size_t begin = reader->at;
   strut_quantity exponent;
-  if (!read_primary(r, q)) return false;
-  size_t end = r->at;
-  if (strut_expression_peek(r) != '^') {
-    r->at = end;
+  if (!read_primary(reader, quantity)) return false;
+  size_t end = reader->at;
+  if (strut_expression_peek(reader) != '^') {
+    reader->at = end;
     return true;
   }
-  r->at++;
-  return read_signed(r, &exponent) && apply_operator(r, begin, '^', q, exponent);
+  reader->at++;
+  return read_signed(reader, &exponent) && apply_operator(reader, begin, '^', quantity, exponent);
 }
 
 /* Every kind of nesting passes through here, so the depth is counted here. */
-static bool read_signed(strut_expression_reader *r, strut_quantity *q) {
-  char c = strut_expression_peek(r);
-  if (r->depth > DEPTH_MOST)
-    return strut_expression_fail(r, r->at, r->at + 1, "more than %d levels of nesting", DEPTH_MOST);
-  r->depth++;
+static bool read_signed(strut_expression_reader *reader, strut_quantity *quantity) {
+  char c = strut_expression_peek(reader);
+  if (reader->depth > DEPTH_MOST)
+    return strut_expression_fail(reader, reader->at, reader->at + 1,
+                                 "more than %d levels of nesting", DEPTH_MOST);
+  reader->depth++;
   bool sign = c == '-' || c == '+', fine;
-  if (sign) r->at++;
-  fine = sign ? read_signed(r, q) : read_power(r, q);
+  if (sign) reader->at++;
+  fine = sign ? read_signed(reader, quantity) : read_power(reader, quantity);
   if (fine && c == '-') {
-    q->value = -q->value;
-    strut_expression_emit(r, STRUT_OPERATION_NEGATE, 1, q);
+    quantity->value = -quantity->value;
+    strut_expression_emit(reader, STRUT_OPERATION_NEGATE, 1, quantity);
   }
-  r->depth--;
+  reader->depth--;
   return fine;
 }
 
-static bool read_product(strut_expression_reader *r, strut_quantity *q) {
-  strut_expression_peek(r);
-  size_t begin = r->at;
-  if (!read_signed(r, q)) return false;
+static bool read_product(strut_expression_reader *reader, strut_quantity *quantity) {
+  strut_expression_peek(reader);
+  size_t begin = reader->at;
+  if (!read_signed(reader, quantity)) return false;
   for (;;) {
-    size_t end = r->at;
-    char c = strut_expression_peek(r);
+    size_t end = reader->at;
+    char c = strut_expression_peek(reader);
     strut_quantity factor;
     if (c != '*' && c != '/') {
-      r->at = end;
+      reader->at = end;
       return true;
     }
-    r->at++;
-    if (!read_signed(r, &factor) || !apply_operator(r, begin, c, q, factor)) return false;
+    reader->at++;
+    if (!read_signed(reader, &factor) || !apply_operator(reader, begin, c, quantity, factor))
+      return false;
   }
 }
 
-static bool read_sum(strut_expression_reader *r, strut_quantity *q) {
-  strut_expression_peek(r);
-  size_t begin = r->at;
-  if (!read_product(r, q)) return false;
+static bool read_sum(strut_expression_reader *reader, strut_quantity *quantity) {
+  strut_expression_peek(reader);
+  size_t begin = reader->at;
+  if (!read_product(reader, quantity)) return false;
   for (;;) {
-    size_t end = r->at;
-    char c = strut_expression_peek(r);
+    size_t end = reader->at;
+    char c = strut_expression_peek(reader);
     strut_quantity term;
     if (c != '+' && c != '-') {
-      r->at = end;
+      reader->at = end;
       return true;
     }
-    r->at++;
-    if (!read_product(r, &term) || !apply_operator(r, begin, c, q, term)) return false;
+    reader->at++;
+    if (!read_product(reader, &term) || !apply_operator(reader, begin, c, quantity, term))
+      return false;
   }
 }
 
@@ -229,20 +234,20 @@ bool strut_expression_compile(const char *text, const strut_scope *scope, strut_
 /* Longest piece of the text that a message quotes. */
 enum { SHOWN_MOST = 40 };
 
-bool strut_expression_fail(strut_expression_reader *r, size_t begin, size_t end, const char *format,
-                           ...) {
-  if (r->scope && r->scope->unread) {
-    *r->error = (strut_expression_error){.message = "?"};
+bool strut_expression_fail(strut_expression_reader *reader, size_t begin, size_t end,
+                           const char *format, ...) {
+  if (reader->scope && reader->scope->unread) {
+    *reader->error = (strut_expression_error){.message = "?"};
     return false;
   }
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(r->error->message, sizeof r->error->message, format, arguments);
+  vsnprintf(reader->error->message, sizeof reader->error->message, format, arguments);
   va_end(arguments);
-  if (end > r->length) end = r->length;
+  if (end > reader->length) end = reader->length;
   if (begin > end) begin = end;
-  r->error->offset = strut_text_points(r->text, begin);
-  r->error->length = strut_text_points(r->text + begin, end - begin);
+  reader->error->offset = strut_text_points(reader->text, begin);
+  reader->error->length = strut_text_points(reader->text + begin, end - begin);
   return false;
 }
 
@@ -272,16 +277,16 @@ static const char *next_candidate(const void *context, size_t i) {
   return unit ? unit->name : NULL;
 }
 
-static bool fail_with_hint(strut_expression_reader *r, size_t begin, size_t length,
+static bool fail_with_hint(strut_expression_reader *reader, size_t begin, size_t length,
                            const char *what, bool parameters, bool functions, bool units) {
   char word[SHOWN_MOST + 1];
   bool cut = length > SHOWN_MOST;
-  snprintf(word, sizeof word, "%.*s", cut ? SHOWN_MOST : (int)length, r->text + begin);
-  bool named = parameters && r->scope && r->scope->names;
-  candidates all = {r->scope, named, functions, units, 0, 0};
-  bool silent = cut || (r->scope && r->scope->no_hints);
+  snprintf(word, sizeof word, "%.*s", cut ? SHOWN_MOST : (int)length, reader->text + begin);
+  bool named = parameters && reader->scope && reader->scope->names;
+  candidates all = {reader->scope, named, functions, units, 0, 0};
+  bool silent = cut || (reader->scope && reader->scope->no_hints);
   const char *near = silent ? NULL : strut_did_you_mean(word, next_candidate, &all);
-  return strut_expression_fail(r, begin, begin + length, "unknown %s '%s%s'%s%s%s", what, word,
+  return strut_expression_fail(reader, begin, begin + length, "unknown %s '%s%s'%s%s%s", what, word,
                                cut ? "..." : "", near ? "; did you mean '" : "", near ? near : "",
                                near ? "'?" : "");
 }
@@ -289,60 +294,62 @@ static bool fail_with_hint(strut_expression_reader *r, size_t begin, size_t leng
 /* Bytes of the first of two units that the word joins, as in Ns for N s; 0: it is no such word. */
 static size_t first_of_two_units(const char *word, size_t length) {
   for (size_t first = length; first-- > 1;) {
-    const strut_unit *a = strut_unit_find(word, first);
+    const strut_unit *unit = strut_unit_find(word, first);
     const strut_unit *b = strut_unit_find(word + first, length - first);
-    if (a && b && !strut_dimension_equal(a->dimension, b->dimension)) return first;
+    if (unit && b && !strut_dimension_equal(unit->dimension, b->dimension)) return first;
   }
   return 0;
 }
 
-static bool is_word(const strut_expression_reader *r, size_t begin, size_t length,
+static bool is_word(const strut_expression_reader *reader, size_t begin, size_t length,
                     const char *word) {
-  return strlen(word) == length && memcmp(r->text + begin, word, length) == 0;
+  return strlen(word) == length && memcmp(reader->text + begin, word, length) == 0;
 }
 
-bool strut_expression_unknown_unit(strut_expression_reader *r, size_t begin, size_t length) {
+bool strut_expression_unknown_unit(strut_expression_reader *reader, size_t begin, size_t length) {
   strut_quantity ignored;
-  if (length <= SHOWN_MOST && (strut_expression_reserved(r->text + begin, length) ||
-                               strut_expression_lookup(r, r->text + begin, length, &ignored) != 0))
-    return strut_expression_fail(r, begin, begin + length,
+  if (length <= SHOWN_MOST &&
+      (strut_expression_reserved(reader->text + begin, length) ||
+       strut_expression_lookup(reader, reader->text + begin, length, &ignored) != 0))
+    return strut_expression_fail(reader, begin, begin + length,
                                  "expected an operator before '%.*s'; write '*' to multiply",
-                                 (int)length, r->text + begin);
-  size_t first = first_of_two_units(r->text + begin, length);
+                                 (int)length, reader->text + begin);
+  size_t first = first_of_two_units(reader->text + begin, length);
   if (first)
-    return strut_expression_fail(r, begin, begin + length,
+    return strut_expression_fail(reader, begin, begin + length,
                                  "unknown unit '%.*s'; did you mean '%.*s %.*s'?", (int)length,
-                                 r->text + begin, (int)first, r->text + begin,
-                                 (int)(length - first), r->text + begin + first);
-  return fail_with_hint(r, begin, length, "unit", false, false, true);
+                                 reader->text + begin, (int)first, reader->text + begin,
+                                 (int)(length - first), reader->text + begin + first);
+  return fail_with_hint(reader, begin, length, "unit", false, false, true);
 }
 
-bool strut_expression_unknown_name(strut_expression_reader *r, size_t begin, size_t length) {
+bool strut_expression_unknown_name(strut_expression_reader *reader, size_t begin, size_t length) {
   static const char *const not_numbers[] = {"nan", "NaN", "NAN", "inf", "Inf", "INF", "infinity"};
   for (size_t i = 0; i < sizeof not_numbers / sizeof not_numbers[0]; i++)
-    if (is_word(r, begin, length, not_numbers[i]))
-      return strut_expression_fail(r, begin, begin + length,
+    if (is_word(reader, begin, length, not_numbers[i]))
+      return strut_expression_fail(reader, begin, begin + length,
                                    "'%s' is not allowed, expected a finite number", not_numbers[i]);
-  if (strut_function_find(r->text + begin, length))
-    return strut_expression_fail(r, begin, begin + length,
+  if (strut_function_find(reader->text + begin, length))
+    return strut_expression_fail(reader, begin, begin + length,
                                  "the function '%.*s' needs its arguments in parentheses",
-                                 (int)length, r->text + begin);
-  if (strut_unit_find(r->text + begin, length))
-    return strut_expression_fail(r, begin, begin + length,
-                                 "the unit '%.*s' needs a number before it, such as '1 %.*s'",
-                                 (int)length, r->text + begin, (int)length, r->text + begin);
-  bool parameters = r->scope && r->scope->lookup;
-  return fail_with_hint(r, begin, length, parameters ? "parameter" : "name", true, true, true);
+                                 (int)length, reader->text + begin);
+  if (strut_unit_find(reader->text + begin, length))
+    return strut_expression_fail(
+        reader, begin, begin + length, "the unit '%.*s' needs a number before it, such as '1 %.*s'",
+        (int)length, reader->text + begin, (int)length, reader->text + begin);
+  bool parameters = reader->scope && reader->scope->lookup;
+  return fail_with_hint(reader, begin, length, parameters ? "parameter" : "name", true, true, true);
 }
 
-bool strut_expression_unknown_function(strut_expression_reader *r, size_t begin, size_t length) {
+bool strut_expression_unknown_function(strut_expression_reader *reader, size_t begin,
+                                       size_t length) {
   strut_quantity ignored;
-  if (strut_expression_reserved(r->text + begin, length) ||
-      strut_expression_lookup(r, r->text + begin, length, &ignored) != 0)
-    return strut_expression_fail(r, begin, begin + length,
-                                 "'%.*s' is not a function; write '*' to multiply",
-                                 length > SHOWN_MOST ? SHOWN_MOST : (int)length, r->text + begin);
-  return fail_with_hint(r, begin, length, "function", false, true, false);
+  if (strut_expression_reserved(reader->text + begin, length) ||
+      strut_expression_lookup(reader, reader->text + begin, length, &ignored) != 0)
+    return strut_expression_fail(
+        reader, begin, begin + length, "'%.*s' is not a function; write '*' to multiply",
+        length > SHOWN_MOST ? SHOWN_MOST : (int)length, reader->text + begin);
+  return fail_with_hint(reader, begin, length, "function", false, true, false);
 }
 
 /* Characters that are typed or pasted instead of plain ones. */
@@ -369,22 +376,22 @@ static const struct lookalike {
     {'=', "a value is one expression"},
 };
 
-bool strut_expression_unexpected(strut_expression_reader *r, const char *expected) {
-  if (strut_expression_peek(r) == '\0' && r->at >= r->length)
-    return strut_expression_fail(r, r->length, r->length,
+bool strut_expression_unexpected(strut_expression_reader *reader, const char *expected) {
+  if (strut_expression_peek(reader) == '\0' && reader->at >= reader->length)
+    return strut_expression_fail(reader, reader->length, reader->length,
                                  "the expression ends too early, expected %s", expected);
   uint32_t code;
-  const char *here = r->text + r->at;
-  size_t size = strut_text_decode(here, r->length - r->at, &code);
+  const char *here = reader->text + reader->at;
+  size_t size = strut_text_decode(here, reader->length - reader->at, &code);
   for (size_t i = 0; i < sizeof lookalikes / sizeof lookalikes[0]; i++)
     if (lookalikes[i].code == code)
-      return strut_expression_fail(r, r->at, r->at + size, "unexpected '%.*s'; %s", (int)size, here,
-                                   lookalikes[i].advice);
-  if (r->at && here[0] == '*' && here[-1] == '*')
-    return strut_expression_fail(r, r->at - 1, r->at + 1,
+      return strut_expression_fail(reader, reader->at, reader->at + size, "unexpected '%.*s'; %s",
+                                   (int)size, here, lookalikes[i].advice);
+  if (reader->at && here[0] == '*' && here[-1] == '*')
+    return strut_expression_fail(reader, reader->at - 1, reader->at + 1,
                                  "unexpected '**'; powers are written '^'");
-  size_t word = strut_expression_word(r, r->at);
+  size_t word = strut_expression_word(reader, reader->at);
   if (word) size = word > SHOWN_MOST ? SHOWN_MOST : word;
-  return strut_expression_fail(r, r->at, r->at + size, "unexpected '%.*s', expected %s", (int)size,
-                               here, expected);
+  return strut_expression_fail(reader, reader->at, reader->at + size,
+                               "unexpected '%.*s', expected %s", (int)size, here, expected);
 }

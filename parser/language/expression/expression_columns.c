@@ -13,48 +13,49 @@ static bool is_name_byte(char c) {
 
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-static strut_compiled *push(strut_expression_reader *r) {
-  strut_compiler *c = r->compiler;
-  return &c->program[c->length++];
+static strut_compiled *push(strut_expression_reader *reader) {
+  strut_compiler *compiler = reader->compiler;
+  return &compiler->program[compiler->length++];
 }
 
 /* Numbers on the stack after the instructions so far. */
-static size_t stacked(const strut_compiler *c) {
+static size_t stacked(const strut_compiler *compiler) {
   static const size_t operands[] = {
 #define STRUT_OPERANDS(id, count, ...) count,
       STRUT_OPERATION_TABLE(STRUT_OPERANDS)
 #undef STRUT_OPERANDS
   };
   size_t count = 0;
-  for (size_t i = 0; i < c->length; i++) count += 1 - operands[c->program[i].instruction.operation];
+  for (size_t i = 0; i < compiler->length; i++)
+    count += 1 - operands[compiler->program[i].instruction.operation];
   return count;
 }
 
-static void note_depth(strut_compiler *c) {
-  size_t depth = stacked(c);
-  if (depth > c->depth) c->depth = depth;
+static void note_depth(strut_compiler *compiler) {
+  size_t depth = stacked(compiler);
+  if (depth > compiler->depth) compiler->depth = depth;
 }
 
-void strut_expression_emit_number(strut_expression_reader *r, const strut_quantity *number) {
-  if (!r->compiler) return;
-  *push(r) = (strut_compiled){
+void strut_expression_emit_number(strut_expression_reader *reader, const strut_quantity *number) {
+  if (!reader->compiler) return;
+  *push(reader) = (strut_compiled){
       .instruction = {.operation = STRUT_OPERATION_NUMBER, .number = number->value},
       .dimension = number->bare ? STRUT_DIM_NONE : number->dimension};
-  note_depth(r->compiler);
+  note_depth(reader->compiler);
 }
 
-void strut_expression_emit(strut_expression_reader *r, strut_operation operation, size_t operands,
-                           const strut_quantity *result) {
-  strut_compiler *c = r->compiler;
-  if (!c) return;
+void strut_expression_emit(strut_expression_reader *reader, strut_operation operation,
+                           size_t operands, const strut_quantity *result) {
+  strut_compiler *compiler = reader->compiler;
+  if (!compiler) return;
   if (!result->varies) { /* then each operand is one number */
-    assert(c->length >= operands);
-    c->length -= operands;
-    strut_expression_emit_number(r, result);
+    assert(compiler->length >= operands);
+    compiler->length -= operands;
+    strut_expression_emit_number(reader, result);
     return;
   }
   for (size_t i = operands > 1 ? 1 : 0; i < (operands > 1 ? operands : 1); i++)
-    *push(r) = (strut_compiled){.instruction = {.operation = operation}};
+    *push(reader) = (strut_compiled){.instruction = {.operation = operation}};
 }
 
 /* What a look-up finds: > 0 there; 0 not; < 0 refused. */
@@ -70,139 +71,147 @@ static looked_up nothing(void) {
 }
 
 /* Takes what a look-up has found for text[begin..end). */
-static int take(strut_expression_reader *r, size_t begin, size_t end, const looked_up *it,
-                strut_quantity *q) {
-  if (it->found < 0) strut_expression_fail(r, begin, end, "%s", it->refusal.text);
+static int take(strut_expression_reader *reader, size_t begin, size_t end, const looked_up *it,
+                strut_quantity *quantity) {
+  if (it->found < 0) strut_expression_fail(reader, begin, end, "%s", it->refusal.text);
   if (it->found <= 0) return it->found;
-  *push(r) =
+  *push(reader) =
       (strut_compiled){.instruction = {.operation = STRUT_OPERATION_COLUMN, .column = it->column}};
-  note_depth(r->compiler);
+  note_depth(reader->compiler);
   bool bare = isnan(it->dimension.kg);
-  *q = (strut_quantity){
+  *quantity = (strut_quantity){
       .value = 1, .dimension = bare ? STRUT_DIM_NONE : it->dimension, .bare = bare, .varies = true};
-  r->at = end;
+  reader->at = end;
   return 1;
 }
 
-static strut_piece piece(const strut_expression_reader *r, size_t begin, size_t end) {
-  return (strut_piece){r->text + begin, end - begin};
+static strut_piece piece(const strut_expression_reader *reader, size_t begin, size_t end) {
+  return (strut_piece){reader->text + begin, end - begin};
 }
 
-static int look_up(strut_expression_reader *r, const char *kind, size_t begin, strut_piece owner,
-                   size_t field, size_t end, strut_quantity *q) {
+static int look_up(strut_expression_reader *reader, const char *kind, size_t begin,
+                   strut_piece owner, size_t field, size_t end, strut_quantity *quantity) {
   looked_up it = nothing();
-  it.found = r->compiler->column(r->compiler->context, kind, owner, piece(r, field, end),
-                                 &it.column, &it.dimension, &it.refusal);
-  return take(r, begin, end, &it, q);
+  it.found =
+      reader->compiler->column(reader->compiler->context, kind, owner, piece(reader, field, end),
+                               &it.column, &it.dimension, &it.refusal);
+  return take(reader, begin, end, &it, quantity);
 }
 
 /* A name within parentheses, without blanks about it, and `last`, which follows it. */
-static bool read_raw_name(strut_expression_reader *r, char last, strut_piece *name) {
-  strut_expression_peek(r);
-  size_t begin = r->at;
-  while (r->at < r->length && !strchr("(),", r->text[r->at])) r->at++;
-  size_t end = r->at;
-  while (end > begin && r->text[end - 1] == ' ') end--;
-  *name = piece(r, begin, end);
-  if (end == begin) return strut_expression_unexpected(r, "a name");
-  if (r->at < r->length && r->text[r->at] == last) {
-    r->at++;
+static bool read_raw_name(strut_expression_reader *reader, char last, strut_piece *name) {
+  strut_expression_peek(reader);
+  size_t begin = reader->at;
+  while (reader->at < reader->length && !strchr("(),", reader->text[reader->at])) reader->at++;
+  size_t end = reader->at;
+  while (end > begin && reader->text[end - 1] == ' ') end--;
+  *name = piece(reader, begin, end);
+  if (end == begin) return strut_expression_unexpected(reader, "a name");
+  if (reader->at < reader->length && reader->text[reader->at] == last) {
+    reader->at++;
     return true;
   }
-  return strut_expression_unexpected(r, last == ',' ? "',' and a second node" : "')'");
+  return strut_expression_unexpected(reader, last == ',' ? "',' and a second node" : "')'");
 }
 
 /* node(NAME).FIELD, member(NAME).FIELD and the like, for names that expressions would take apart. */
-static int read_quoted(strut_expression_reader *r, const char *kind, size_t begin,
-                       strut_quantity *q) {
+static int read_quoted(strut_expression_reader *reader, const char *kind, size_t begin,
+                       strut_quantity *quantity) {
   strut_piece name;
-  if (!read_raw_name(r, ')', &name)) return -1;
-  size_t word =
-      r->at < r->length && r->text[r->at] == '.' ? strut_expression_word(r, r->at + 1) : 0;
+  if (!read_raw_name(reader, ')', &name)) return -1;
+  size_t word = reader->at < reader->length && reader->text[reader->at] == '.'
+                    ? strut_expression_word(reader, reader->at + 1)
+                    : 0;
   if (!word) {
-    strut_expression_fail(r, begin, r->at, "expected a column of the %s, such as %s(%.*s).%s", kind,
-                          kind, name.length > 40 ? 40 : (int)name.length, name.text,
+    strut_expression_fail(reader, begin, reader->at,
+                          "expected a column of the %s, such as %s(%.*s).%s", kind, kind,
+                          name.length > 40 ? 40 : (int)name.length, name.text,
                           kind[0] == 'n'   ? "y"
                           : kind[0] == 'h' ? "moment"
                           : kind[1] == 'e' ? "pressure"
                                            : "force");
     return -1;
   }
-  size_t field = r->at + 1;
-  return look_up(r, kind, begin, name, field, field + word, q);
+  size_t field = reader->at + 1;
+  return look_up(reader, kind, begin, name, field, field + word, quantity);
 }
 
-static int read_pair(strut_expression_reader *r, strut_piece word, size_t begin,
-                     strut_quantity *q) {
+static int read_pair(strut_expression_reader *reader, strut_piece word, size_t begin,
+                     strut_quantity *quantity) {
   strut_piece first, second;
-  if (!read_raw_name(r, ',', &first) || !read_raw_name(r, ')', &second)) return -1;
+  if (!read_raw_name(reader, ',', &first) || !read_raw_name(reader, ')', &second)) return -1;
   looked_up it = nothing();
-  it.found = r->compiler->pair(r->compiler->context, word, first, second, &it.column, &it.dimension,
-                               &it.refusal);
-  return take(r, begin, r->at, &it, q);
+  it.found = reader->compiler->pair(reader->compiler->context, word, first, second, &it.column,
+                                    &it.dimension, &it.refusal);
+  return take(reader, begin, reader->at, &it, quantity);
 }
 
 /* rate(SENSOR) */
-static int read_rate(strut_expression_reader *r, size_t begin, strut_quantity *q) {
+static int read_rate(strut_expression_reader *reader, size_t begin, strut_quantity *quantity) {
   strut_piece name;
-  if (!read_raw_name(r, ')', &name)) return -1;
-  return look_up(r, "rate", begin, name, r->at, r->at, q);
+  if (!read_raw_name(reader, ')', &name)) return -1;
+  return look_up(reader, "rate", begin, name, reader->at, reader->at, quantity);
 }
 
 /*
  * What looks like a function: node(A).x, member(A).force, hinge(A).moment, cell(A).area, angle(A, B),
  * distance(A, B) of two nodes, distance(A).force.
  */
-static int read_call(strut_expression_reader *r, size_t begin, size_t length, strut_quantity *q) {
+static int read_call(strut_expression_reader *reader, size_t begin, size_t length,
+                     strut_quantity *quantity) {
   static const char *const words[] = {"node",   "member", "hinge",    "cell", "collision",
                                       "slider", "angle",  "distance", "rate"};
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-    if (strlen(words[i]) != length || memcmp(words[i], r->text + begin, length) != 0) continue;
-    r->at = begin + length;
-    if (strut_expression_peek(r) != '(') break;
-    r->at++;
-    if (i == 8) return read_rate(r, begin, q);
-    bool one = i == 7 && r->text[r->at + strcspn(r->text + r->at, "(),")] == ')';
-    return i < 6 || one ? read_quoted(r, words[i], begin, q)
-                        : read_pair(r, piece(r, begin, begin + length), begin, q);
+    if (strlen(words[i]) != length || memcmp(words[i], reader->text + begin, length) != 0) continue;
+    reader->at = begin + length;
+    if (strut_expression_peek(reader) != '(') break;
+    reader->at++;
+    if (i == 8) return read_rate(reader, begin, quantity);
+    bool one =
+        i == 7 && reader->text[reader->at + strcspn(reader->text + reader->at, "(),")] == ')';
+    return i < 6 || one ? read_quoted(reader, words[i], begin, quantity)
+                        : read_pair(reader, piece(reader, begin, begin + length), begin, quantity);
   }
-  r->at = begin;
+  reader->at = begin;
   return 0;
 }
 
 /* OWNER.FIELD with the longest owner that there is: its name may have dashes and dots. */
-static int read_dotted(strut_expression_reader *r, strut_quantity *q) {
-  size_t begin = r->at, end = begin;
-  while (end < r->length && (is_name_byte(r->text[end]) || strchr("-.", r->text[end]))) end++;
+static int read_dotted(strut_expression_reader *reader, strut_quantity *quantity) {
+  size_t begin = reader->at, end = begin;
+  while (end < reader->length &&
+         (is_name_byte(reader->text[end]) || strchr("-.", reader->text[end])))
+    end++;
   for (size_t dot = end; dot-- > begin + 1;) {
-    size_t word = r->text[dot] == '.' ? strut_expression_word(r, dot + 1) : 0;
+    size_t word = reader->text[dot] == '.' ? strut_expression_word(reader, dot + 1) : 0;
     if (!word) continue;
     size_t simple = begin;
-    while (is_name_byte(r->text[simple])) simple++;
-    bool plain = simple == dot && !is_digit(r->text[begin]);
+    while (is_name_byte(reader->text[simple])) simple++;
+    bool plain = simple == dot && !is_digit(reader->text[begin]);
     looked_up it = nothing();
-    it.found = r->compiler->column(r->compiler->context, NULL, piece(r, begin, dot),
-                                   piece(r, dot + 1, dot + 1 + word), &it.column, &it.dimension,
-                                   &it.refusal);
-    if (it.found > 0 || (it.found < 0 && plain)) return take(r, begin, dot + 1 + word, &it, q);
+    it.found = reader->compiler->column(reader->compiler->context, NULL, piece(reader, begin, dot),
+                                        piece(reader, dot + 1, dot + 1 + word), &it.column,
+                                        &it.dimension, &it.refusal);
+    if (it.found > 0 || (it.found < 0 && plain))
+      return take(reader, begin, dot + 1 + word, &it, quantity);
   }
   return 0;
 }
 
-int strut_expression_column(strut_expression_reader *r, strut_quantity *q) {
-  if (!r->compiler) return 0;
-  strut_expression_peek(r);
-  if (r->at >= r->length || !is_name_byte(r->text[r->at])) return 0;
-  size_t word = strut_expression_word(r, r->at);
-  int found = word ? read_call(r, r->at, word, q) : 0;
-  return found ? found : read_dotted(r, q);
+int strut_expression_column(strut_expression_reader *reader, strut_quantity *quantity) {
+  if (!reader->compiler) return 0;
+  strut_expression_peek(reader);
+  if (reader->at >= reader->length || !is_name_byte(reader->text[reader->at])) return 0;
+  size_t word = strut_expression_word(reader, reader->at);
+  int found = word ? read_call(reader, reader->at, word, quantity) : 0;
+  return found ? found : read_dotted(reader, quantity);
 }
 
-int strut_expression_column_word(strut_expression_reader *r, size_t begin, size_t length,
-                                 strut_quantity *q) {
-  size_t resume = r->at;
-  if (!r->compiler) return 0;
-  int found = look_up(r, NULL, begin, (strut_piece){"", 0}, begin, begin + length, q);
-  if (found > 0) r->at = resume;
+int strut_expression_column_word(strut_expression_reader *reader, size_t begin, size_t length,
+                                 strut_quantity *quantity) {
+  size_t resume = reader->at;
+  if (!reader->compiler) return 0;
+  int found = look_up(reader, NULL, begin, (strut_piece){"", 0}, begin, begin + length, quantity);
+  if (found > 0) reader->at = resume;
   return found;
 }

@@ -61,7 +61,7 @@ typedef struct strut_reason {
 } strut_reason;
 
 /** a = a OP b for one of + - * / ^. False with the reason. The result is finite, or varies. */
-bool strut_quantity_operate(char operation, strut_quantity *a, strut_quantity b,
+bool strut_quantity_operate(char operation, strut_quantity *quantity, strut_quantity b,
                             strut_reason *reason);
 
 typedef struct strut_function strut_function;

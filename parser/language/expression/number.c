@@ -105,38 +105,42 @@ static void multiply(unit_product *product, const strut_unit *unit, int power) {
 }
 
 /* An optional ^ and whole number behind a unit. */
-static bool read_power(strut_expression_reader *r, int *power) {
+static bool read_power(strut_expression_reader *reader, int *power) {
   *power = 1;
-  size_t resume = r->at;
-  if (strut_expression_peek(r) != '^') {
-    r->at = resume;
+  size_t resume = reader->at;
+  if (strut_expression_peek(reader) != '^') {
+    reader->at = resume;
     return true;
   }
-  r->at++;
-  char c = strut_expression_peek(r);
-  size_t begin = r->at;
-  if (c == '-' || c == '+') r->at++;
-  size_t digits = r->at;
+  reader->at++;
+  char c = strut_expression_peek(reader);
+  size_t begin = reader->at;
+  if (c == '-' || c == '+') reader->at++;
+  size_t digits = reader->at;
   int value = 0;
-  for (; r->at < r->length && r->text[r->at] >= '0' && r->text[r->at] <= '9'; r->at++)
-    if (value <= UNIT_POWER_MOST) value = value * 10 + (r->text[r->at] - '0');
-  size_t end = r->at;
-  if (end < r->length && (r->text[end] == '.' || strut_expression_word(r, end))) end++;
-  if (r->at == digits || end != r->at || value > UNIT_POWER_MOST)
-    return strut_expression_fail(r, begin, end, "the power of a unit is a whole number such as 2");
+  for (; reader->at < reader->length && reader->text[reader->at] >= '0' &&
+         reader->text[reader->at] <= '9';
+       reader->at++)
+    if (value <= UNIT_POWER_MOST) value = value * 10 + (reader->text[reader->at] - '0');
+  size_t end = reader->at;
+  if (end < reader->length && (reader->text[end] == '.' || strut_expression_word(reader, end)))
+    end++;
+  if (reader->at == digits || end != reader->at || value > UNIT_POWER_MOST)
+    return strut_expression_fail(reader, begin, end,
+                                 "the power of a unit is a whole number such as 2");
   *power = c == '-' ? -value : value;
   return true;
 }
 
-static const strut_unit *unit_here(const strut_expression_reader *r, size_t *length) {
-  *length = strut_expression_word(r, r->at);
-  if (!*length && r->at < r->length && r->text[r->at] == '%') *length = 1;
-  return *length ? strut_unit_find(r->text + r->at, *length) : NULL;
+static const strut_unit *unit_here(const strut_expression_reader *reader, size_t *length) {
+  *length = strut_expression_word(reader, reader->at);
+  if (!*length && reader->at < reader->length && reader->text[reader->at] == '%') *length = 1;
+  return *length ? strut_unit_find(reader->text + reader->at, *length) : NULL;
 }
 
 /* True where the word of that length at `at` is a function with its parenthesis: min( is no unit. */
-static bool is_call(const strut_expression_reader *r, size_t length) {
-  strut_expression_reader ahead = *r;
+static bool is_call(const strut_expression_reader *reader, size_t length) {
+  strut_expression_reader ahead = *reader;
   ahead.at += length;
   return strut_expression_peek(&ahead) == '(';
 }
@@ -145,90 +149,98 @@ static bool is_call(const strut_expression_reader *r, size_t length) {
  * Whether one more unit follows: 1 or -1 with r at its word (behind * or /), 0 with r unmoved. A
  * word that a parameter has too is refused: both readings would be sensible. 2: refused.
  */
-static int read_joint(strut_expression_reader *r, size_t *length) {
-  size_t resume = r->at;
-  char c = strut_expression_peek(r);
+static int read_joint(strut_expression_reader *reader, size_t *length) {
+  size_t resume = reader->at;
+  char c = strut_expression_peek(reader);
   bool operation = c == '*' || c == '/';
   if (operation) {
-    r->at++;
-    strut_expression_peek(r);
+    reader->at++;
+    strut_expression_peek(reader);
   }
-  const strut_unit *unit = strut_expression_word(r, r->at) ? unit_here(r, length) : NULL;
-  if (!unit || is_call(r, *length)) {
-    r->at = resume;
+  const strut_unit *unit =
+      strut_expression_word(reader, reader->at) ? unit_here(reader, length) : NULL;
+  if (!unit || is_call(reader, *length)) {
+    reader->at = resume;
     return 0;
   }
   strut_quantity ignored;
-  bool asks = operation && r->compiler && r->compiler->claims;
-  strut_piece word = {r->text + r->at, *length};
-  int claimed = asks ? r->compiler->claims(r->compiler->context, word) : 0;
+  bool asks = operation && reader->compiler && reader->compiler->claims;
+  strut_piece word = {reader->text + reader->at, *length};
+  int claimed = asks ? reader->compiler->claims(reader->compiler->context, word) : 0;
   if (claimed > 0) {
-    r->at = resume;
+    reader->at = resume;
     return 0;
   }
   if (claimed < 0) {
-    strut_expression_fail(r, r->at, r->at + *length,
+    strut_expression_fail(reader, reader->at, reader->at + *length,
                           "'%.*s' is a unit and a sensor; rename the sensor, or write '%c (%.*s)' "
                           "for it",
-                          (int)*length, r->text + r->at, c, (int)*length, r->text + r->at);
+                          (int)*length, reader->text + reader->at, c, (int)*length,
+                          reader->text + reader->at);
     return 2;
   }
-  if (operation && strut_expression_lookup(r, r->text + r->at, *length, &ignored) != 0) {
-    strut_expression_fail(r, r->at, r->at + *length,
+  if (operation &&
+      strut_expression_lookup(reader, reader->text + reader->at, *length, &ignored) != 0) {
+    strut_expression_fail(reader, reader->at, reader->at + *length,
                           "'%.*s' is a unit and a parameter; rename the parameter, or write "
                           "'%c (%.*s)' for it",
-                          (int)*length, r->text + r->at, c, (int)*length, r->text + r->at);
-    r->error->parameter = (strut_piece){r->text + r->at, *length};
+                          (int)*length, reader->text + reader->at, c, (int)*length,
+                          reader->text + reader->at);
+    reader->error->parameter = (strut_piece){reader->text + reader->at, *length};
     return 2;
   }
   return c == '/' ? -1 : 1;
 }
 
-static bool read_unit(strut_expression_reader *r, unit_product *product) {
+static bool read_unit(strut_expression_reader *reader, unit_product *product) {
   size_t length;
-  const strut_unit *unit = unit_here(r, &length);
-  if (!unit) return strut_expression_unknown_unit(r, r->at, length);
-  for (int sign = 1;; unit = strut_unit_find(r->text + r->at, length)) {
+  const strut_unit *unit = unit_here(reader, &length);
+  if (!unit) return strut_expression_unknown_unit(reader, reader->at, length);
+  for (int sign = 1;; unit = strut_unit_find(reader->text + reader->at, length)) {
     int power;
-    r->at += length;
-    if (!read_power(r, &power)) return false;
+    reader->at += length;
+    if (!read_power(reader, &power)) return false;
     multiply(product, unit, sign * power);
-    sign = read_joint(r, &length);
+    sign = read_joint(reader, &length);
     if (sign == 2) return false;
     if (sign == 0) return true;
   }
 }
 
 /* Reports characters right after a literal that make it look like another kind of number. */
-static bool check_end(strut_expression_reader *r, size_t begin) {
-  char c = r->at < r->length ? r->text[r->at] : '\0';
-  size_t word = strut_expression_word(r, r->at), end = r->at + (word ? word : 1);
+static bool check_end(strut_expression_reader *reader, size_t begin) {
+  char c = reader->at < reader->length ? reader->text[reader->at] : '\0';
+  size_t word = strut_expression_word(reader, reader->at), end = reader->at + (word ? word : 1);
   if (c == '.')
-    return strut_expression_fail(r, begin, end,
+    return strut_expression_fail(reader, begin, end,
                                  "a number has one decimal point and digits after it");
-  if (c == '_') return strut_expression_fail(r, begin, end, "digits cannot be grouped with '_'");
-  if ((c == 'x' || c == 'X') && r->at == begin + 1 && r->text[begin] == '0')
-    return strut_expression_fail(r, begin, end, "hexadecimal numbers are not allowed");
+  if (c == '_')
+    return strut_expression_fail(reader, begin, end, "digits cannot be grouped with '_'");
+  if ((c == 'x' || c == 'X') && reader->at == begin + 1 && reader->text[begin] == '0')
+    return strut_expression_fail(reader, begin, end, "hexadecimal numbers are not allowed");
   if ((c == 'e' || c == 'E') && word == 1)
-    return strut_expression_fail(r, begin, end, "the exponent of this number has no digits");
+    return strut_expression_fail(reader, begin, end, "the exponent of this number has no digits");
   return true;
 }
 
-bool strut_expression_literal(strut_expression_reader *r, strut_quantity *quantity) {
-  size_t begin = r->at, scanned = strut_number_scan(r->text + begin, r->length - begin);
-  if (!scanned) return strut_expression_unexpected(r, "a number");
-  r->at += scanned;
-  if (!check_end(r, begin)) return false;
-  size_t end = r->at;
+bool strut_expression_literal(strut_expression_reader *reader, strut_quantity *quantity) {
+  size_t begin = reader->at,
+         scanned = strut_number_scan(reader->text + begin, reader->length - begin);
+  if (!scanned) return strut_expression_unexpected(reader, "a number");
+  reader->at += scanned;
+  if (!check_end(reader, begin)) return false;
+  size_t end = reader->at;
   unit_product product = {0, 1, 1, STRUT_DIM_NONE, true};
-  char c = strut_expression_peek(r);
-  if ((c == '%' || strut_expression_word(r, r->at)) && !read_unit(r, &product)) return false;
-  if (!strut_number_read_scaled(r->text + begin, scanned, product.decimal, &quantity->value))
-    return strut_expression_fail(r, begin, end, "this number is beyond the range of numbers");
+  char c = strut_expression_peek(reader);
+  if ((c == '%' || strut_expression_word(reader, reader->at)) && !read_unit(reader, &product))
+    return false;
+  if (!strut_number_read_scaled(reader->text + begin, scanned, product.decimal, &quantity->value))
+    return strut_expression_fail(reader, begin, end, "this number is beyond the range of numbers");
   if (product.up != 1) quantity->value *= product.up;
   if (product.down != 1) quantity->value /= product.down;
   if (!isfinite(quantity->value))
-    return strut_expression_fail(r, begin, r->at, "this number is beyond the range of numbers");
+    return strut_expression_fail(reader, begin, reader->at,
+                                 "this number is beyond the range of numbers");
   quantity->dimension = product.dimension;
   quantity->bare = product.bare;
   quantity->varies = false;

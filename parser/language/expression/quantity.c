@@ -83,62 +83,64 @@ static bool in_range(strut_dimension d) {
 }
 
 /* Gives a and b one dimension, if they have the same or one is bare. */
-static bool unify_dimensions(strut_quantity *a, strut_quantity b, const char *what,
+static bool unify_dimensions(strut_quantity *quantity, strut_quantity b, const char *what,
                              strut_reason *reason) {
   if (b.bare) return true;
-  if (a->bare) {
-    a->dimension = b.dimension;
-    a->bare = false;
+  if (quantity->bare) {
+    quantity->dimension = b.dimension;
+    quantity->bare = false;
     return true;
   }
-  if (strut_dimension_equal(a->dimension, b.dimension)) return true;
+  if (strut_dimension_equal(quantity->dimension, b.dimension)) return true;
   char first[64], second[64];
   return fail_with_reason(reason, "%s joins %s and %s, expected equal dimensions", what,
-                          strut_dimension_name(a->dimension, first, sizeof first),
+                          strut_dimension_name(quantity->dimension, first, sizeof first),
                           strut_dimension_name(b.dimension, second, sizeof second));
 }
 
-static bool raise_to_power(strut_quantity *a, strut_quantity b, strut_reason *reason) {
+static bool raise_to_power(strut_quantity *quantity, strut_quantity b, strut_reason *reason) {
   char name[64];
   if (!dimensionless(b))
     return fail_with_reason(reason, "the exponent is %s, expected a number without unit",
                             strut_dimension_name(b.dimension, name, sizeof name));
-  if (b.varies && !dimensionless(*a))
+  if (b.varies && !dimensionless(*quantity))
     return fail_with_reason(reason, "the exponent varies in time, so %s cannot be raised to it",
-                            strut_dimension_name(a->dimension, name, sizeof name));
-  if (!a->bare && !b.varies) a->dimension = combine(STRUT_DIM_NONE, a->dimension, (float)b.value);
-  if (!in_range(a->dimension)) return fail_with_reason(reason, "the power of a unit is too high");
-  a->bare = a->bare && b.bare;
-  a->value = pow(a->value, b.value);
+                            strut_dimension_name(quantity->dimension, name, sizeof name));
+  if (!quantity->bare && !b.varies)
+    quantity->dimension = combine(STRUT_DIM_NONE, quantity->dimension, (float)b.value);
+  if (!in_range(quantity->dimension))
+    return fail_with_reason(reason, "the power of a unit is too high");
+  quantity->bare = quantity->bare && b.bare;
+  quantity->value = pow(quantity->value, b.value);
   return true;
 }
 
-bool strut_quantity_operate(char operation, strut_quantity *a, strut_quantity b,
+bool strut_quantity_operate(char operation, strut_quantity *quantity, strut_quantity b,
                             strut_reason *reason) {
-  bool varies = a->varies || b.varies;
+  bool varies = quantity->varies || b.varies;
   switch (operation) {
     case '+':
     case '-':
-      if (!unify_dimensions(a, b, operation == '+' ? "'+'" : "'-'", reason)) return false;
-      a->value = operation == '+' ? a->value + b.value : a->value - b.value;
+      if (!unify_dimensions(quantity, b, operation == '+' ? "'+'" : "'-'", reason)) return false;
+      quantity->value = operation == '+' ? quantity->value + b.value : quantity->value - b.value;
       break;
     case '*':
     case '/':
-      a->dimension = combine(a->dimension, b.dimension, operation == '*' ? 1 : -1);
-      a->bare = a->bare && b.bare;
-      if (!in_range(a->dimension))
+      quantity->dimension = combine(quantity->dimension, b.dimension, operation == '*' ? 1 : -1);
+      quantity->bare = quantity->bare && b.bare;
+      if (!in_range(quantity->dimension))
         return fail_with_reason(reason, "the power of a unit is too high");
       if (operation == '/' && b.value == 0) return fail_with_reason(reason, "division by zero");
-      a->value = operation == '*' ? a->value * b.value : a->value / b.value;
+      quantity->value = operation == '*' ? quantity->value * b.value : quantity->value / b.value;
       break;
     default:
-      if (!raise_to_power(a, b, reason)) return false;
+      if (!raise_to_power(quantity, b, reason)) return false;
   }
-  a->varies = varies;
-  if (varies) a->value = 1; /* not known */
-  if (isnan(a->value))
+  quantity->varies = varies;
+  if (varies) quantity->value = 1; /* not known */
+  if (isnan(quantity->value))
     return fail_with_reason(reason, "the result of '%c' is not a real number", operation);
-  if (isinf(a->value))
+  if (isinf(quantity->value))
     return fail_with_reason(reason, "the result of '%c' is not finite", operation);
   return true;
 }
@@ -152,56 +154,60 @@ const strut_function *strut_function_find(const char *name, size_t length) {
 
 const char *strut_function_name(size_t i) { return i < FUNCTION_COUNT ? functions[i].name : NULL; }
 
-strut_operation strut_function_operation(const strut_function *f) { return f->operation; }
+strut_operation strut_function_operation(const strut_function *function) {
+  return function->operation;
+}
 
-static bool check_argument(const strut_function *f, strut_quantity argument, strut_reason *reason) {
+static bool check_argument(const strut_function *function, strut_quantity argument,
+                           strut_reason *reason) {
   bool angle = strut_dimension_equal(argument.dimension, STRUT_DIM_ANGLE);
-  bool free_kind =
-      f->kind == OF_ROOT || f->kind == OF_ANY || f->kind == OF_LIKE || f->kind == LIKE_TO_ANGLE;
-  if (free_kind || dimensionless(argument) || (f->kind == OF_ANGLE && angle)) return true;
+  bool free_kind = function->kind == OF_ROOT || function->kind == OF_ANY ||
+                   function->kind == OF_LIKE || function->kind == LIKE_TO_ANGLE;
+  if (free_kind || dimensionless(argument) || (function->kind == OF_ANGLE && angle)) return true;
   char name[64];
-  return fail_with_reason(reason, "'%s' takes %s, got %s", f->name,
-                          f->kind == OF_ANGLE ? "an angle" : "a number without unit",
+  return fail_with_reason(reason, "'%s' takes %s, got %s", function->name,
+                          function->kind == OF_ANGLE ? "an angle" : "a number without unit",
                           strut_dimension_name(argument.dimension, name, sizeof name));
 }
 
-static bool check_count(const strut_function *f, size_t count, strut_reason *reason) {
-  if (count >= f->least && count <= f->most) return true;
-  if (f->least == f->most)
-    return fail_with_reason(reason, "'%s' takes %zu argument%s, got %zu", f->name, f->least,
-                            f->least == 1 ? "" : "s", count);
-  return fail_with_reason(reason, "'%s' takes %zu to %zu arguments, got %zu", f->name, f->least,
-                          f->most, count);
+static bool check_count(const strut_function *function, size_t count, strut_reason *reason) {
+  if (count >= function->least && count <= function->most) return true;
+  if (function->least == function->most)
+    return fail_with_reason(reason, "'%s' takes %zu argument%s, got %zu", function->name,
+                            function->least, function->least == 1 ? "" : "s", count);
+  return fail_with_reason(reason, "'%s' takes %zu to %zu arguments, got %zu", function->name,
+                          function->least, function->most, count);
 }
 
-bool strut_function_apply(const strut_function *f, const strut_quantity *arguments, size_t count,
-                          strut_quantity *result, strut_reason *reason) {
-  if (!check_count(f, count, reason)) return false;
+bool strut_function_apply(const strut_function *function, const strut_quantity *arguments,
+                          size_t count, strut_quantity *result, strut_reason *reason) {
+  if (!check_count(function, count, reason)) return false;
   strut_quantity q = arguments[0];
   char what[32];
-  snprintf(what, sizeof what, "'%s'", f->name);
-  if (!check_argument(f, q, reason)) return false;
+  snprintf(what, sizeof what, "'%s'", function->name);
+  if (!check_argument(function, q, reason)) return false;
   bool varies = q.varies;
-  if (f->one) q.value = f->one(q.value);
+  if (function->one) q.value = function->one(q.value);
   for (size_t i = 1; i < count; i++) {
     if (!unify_dimensions(&q, arguments[i], what, reason)) return false;
-    q.value = f->two(q.value, arguments[i].value);
+    q.value = function->two(q.value, arguments[i].value);
     varies = varies || arguments[i].varies;
   }
-  if (f->kind == OF_ROOT) q.dimension = combine(STRUT_DIM_NONE, q.dimension, 0.5f);
-  if (f->kind == OF_ANGLE) {
+  if (function->kind == OF_ROOT) q.dimension = combine(STRUT_DIM_NONE, q.dimension, 0.5f);
+  if (function->kind == OF_ANGLE) {
     /* A sine is a plain number whatever its angle was written in: 0.1*cos(30 deg) is a length. */
     q.dimension = STRUT_DIM_NONE;
     q.bare = true;
-  } else if (f->kind == TO_ANGLE || f->kind == LIKE_TO_ANGLE) {
+  } else if (function->kind == TO_ANGLE || function->kind == LIKE_TO_ANGLE) {
     q.dimension = STRUT_DIM_ANGLE;
     q.bare = false;
   }
   q.varies = varies;
   if (varies) q.value = 1; /* not known */
   if (isnan(q.value))
-    return fail_with_reason(reason, "the result of '%s' is not a real number", f->name);
-  if (isinf(q.value)) return fail_with_reason(reason, "the result of '%s' is not finite", f->name);
+    return fail_with_reason(reason, "the result of '%s' is not a real number", function->name);
+  if (isinf(q.value))
+    return fail_with_reason(reason, "the result of '%s' is not finite", function->name);
   *result = q;
   return true;
 }

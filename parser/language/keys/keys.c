@@ -104,9 +104,11 @@ static const strut_spelling spellings[] = {
 const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                           const char *text) {
   for (size_t i = 0; i < sizeof spellings / sizeof spellings[0]; i++) {
-    const strut_spelling *s = &spellings[i];
-    if (s->section != section || !s->key != !key || (key && strcmp(s->key, key) != 0)) continue;
-    if (strcmp(s->other, text) == 0) return s;
+    const strut_spelling *spelling = &spellings[i];
+    if (spelling->section != section || !spelling->key != !key ||
+        (key && strcmp(spelling->key, key) != 0))
+      continue;
+    if (strcmp(spelling->other, text) == 0) return spelling;
   }
   return NULL;
 }

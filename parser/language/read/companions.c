@@ -65,25 +65,26 @@ static const companion companions[] = {
 enum { COMPANIONS = sizeof companions / sizeof companions[0] };
 
 /* Are both keys of one file, and not one of them laid over by a study? */
-static bool same_layer(const strut_tree *a, const strut_tree *b) {
-  return a->place.file == b->place.file && (a->place.line ^ b->place.line) < STRUT_OVERLAY_LINE;
+static bool same_layer(const strut_tree *first, const strut_tree *second) {
+  return first->place.file == second->place.file &&
+         (first->place.line ^ second->place.line) < STRUT_OVERLAY_LINE;
 }
 
 /* Is the key beside, or the other's word one of the words? What could not be read is. */
-static bool is_met(strut_fields *fields, const companion *c, const strut_slot **other) {
+static bool is_met(strut_fields *fields, const companion *self, const strut_slot **other) {
   char word[40];
   bool beside = false;
-  for (int i = 0; c->other < 0 && strut_word_at(c->words, i, word, sizeof word); i++)
+  for (int i = 0; self->other < 0 && strut_word_at(self->words, i, word, sizeof word); i++)
     beside = beside || strut_slot_of(fields, strut_key_find(fields->section, word))->state;
-  if (c->other < 0) return beside;
-  const strut_key *key = strut_key_at(c->other);
+  if (self->other < 0) return beside;
+  const strut_key *key = strut_key_at(self->other);
   while (fields && fields->section != key->section) fields = fields->outer;
   if (!fields) return true;
-  *other = strut_slot_of(fields, c->other);
+  *other = strut_slot_of(fields, self->other);
   if ((*other)->state == STRUT_BROKEN) return true;
-  if ((*other)->state == STRUT_ABSENT) return strut_word_find(c->words, key->fallback) >= 0;
+  if ((*other)->state == STRUT_ABSENT) return strut_word_find(self->words, key->fallback) >= 0;
   return strut_word_at(key->words, (*other)->word, word, sizeof word) &&
-         strut_word_find(c->words, word) >= 0;
+         strut_word_find(self->words, word) >= 0;
 }
 
 bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner) {

@@ -21,42 +21,43 @@ typedef struct reader {
   bool failed; /* memory was out */
 } reader;
 
-static void step(reader *r) {
-  unsigned char c = (unsigned char)*r->at++;
+static void step(reader *self) {
+  unsigned char c = (unsigned char)*self->at++;
   if (!c) /* texts end there */
-    strut_diagnose(r->diagnostics, strut_place_at(r->line, r->column, 1),
+    strut_diagnose(self->diagnostics, strut_place_at(self->line, self->column, 1),
                    "a NUL byte is not allowed; the file is damaged, or no text");
   if (c == '\n') {
-    r->line++;
-    r->column = 1;
+    self->line++;
+    self->column = 1;
   } else if ((c & 0xC0) != 0x80) {
-    r->column++;
+    self->column++;
   }
 }
 
-static void keep(reader *r, const char *cell, strut_place place) {
-  size_t places = r->cell_capacity;
-  r->failed = r->failed || !cell ||
-              !strut_grow(&r->place, &places, r->cell_count, sizeof *r->place) ||
-              !strut_grow(&r->cell, &r->cell_capacity, r->cell_count, sizeof *r->cell);
-  if (r->failed) return;
-  r->place[r->cell_count] = place;
-  r->cell[r->cell_count++] = cell;
+static void keep(reader *self, const char *cell, strut_place place) {
+  size_t places = self->cell_capacity;
+  self->failed =
+      self->failed || !cell ||
+      !strut_grow(&self->place, &places, self->cell_count, sizeof *self->place) ||
+      !strut_grow(&self->cell, &self->cell_capacity, self->cell_count, sizeof *self->cell);
+  if (self->failed) return;
+  self->place[self->cell_count] = place;
+  self->cell[self->cell_count++] = cell;
 }
 
 /* A cell in quotes, which are doubled inside. */
-static void read_quoted(reader *r) {
-  strut_place begin = strut_place_at(r->line, r->column, 1);
-  step(r);
-  const char *from = r->at;
+static void read_quoted(reader *self) {
+  strut_place begin = strut_place_at(self->line, self->column, 1);
+  step(self);
+  const char *from = self->at;
   char *copy = NULL;
   size_t length = 0;
   for (int pass = 0; pass < 2; pass++) { /* measure, then copy */
     const char *c = from;
     size_t used = 0;
-    for (; c < r->end; c++) {
+    for (; c < self->end; c++) {
       if (*c == '"') {
-        if (c + 1 < r->end && c[1] == '"') {
+        if (c + 1 < self->end && c[1] == '"') {
           c++;
         } else {
           break;
@@ -66,85 +67,86 @@ static void read_quoted(reader *r) {
       used++;
     }
     length = used;
-    if (!pass) copy = strut_arena_allocate(&r->csv->arena, length + 1, 1);
+    if (!pass) copy = strut_arena_allocate(&self->csv->arena, length + 1, 1);
     if (!copy) break;
   }
-  keep(r, copy, begin);
+  keep(self, copy, begin);
   for (;;) {
-    if (r->at >= r->end) {
-      strut_diagnose(r->diagnostics, begin, "unterminated quoted cell");
+    if (self->at >= self->end) {
+      strut_diagnose(self->diagnostics, begin, "unterminated quoted cell");
       return;
     }
-    bool quote = *r->at == '"';
-    step(r);
+    bool quote = *self->at == '"';
+    step(self);
     if (!quote) continue;
-    if (r->at < r->end && *r->at == '"') {
-      step(r);
+    if (self->at < self->end && *self->at == '"') {
+      step(self);
       continue;
     }
     break;
   }
-  if (r->at < r->end && *r->at != ',' && *r->at != '\n' && *r->at != '\r')
-    strut_diagnose(r->diagnostics, strut_place_at(r->line, r->column, 1),
+  if (self->at < self->end && *self->at != ',' && *self->at != '\n' && *self->at != '\r')
+    strut_diagnose(self->diagnostics, strut_place_at(self->line, self->column, 1),
                    "expected a comma or the end of the line after a quoted cell");
-  while (r->at < r->end && *r->at != ',' && *r->at != '\n') step(r);
+  while (self->at < self->end && *self->at != ',' && *self->at != '\n') step(self);
 }
 
-static void read_plain(reader *r) {
-  const char *from = r->at;
-  strut_place place = strut_place_at(r->line, r->column, 0);
-  while (r->at < r->end && *r->at != ',' && *r->at != '\n') step(r);
-  size_t length = (size_t)(r->at - from);
+static void read_plain(reader *self) {
+  const char *from = self->at;
+  strut_place place = strut_place_at(self->line, self->column, 0);
+  while (self->at < self->end && *self->at != ',' && *self->at != '\n') step(self);
+  size_t length = (size_t)(self->at - from);
   if (length && from[length - 1] == '\r') length--;
   place.length = strut_place_at(0, 0, length ? (uint32_t)length : 1).length;
-  keep(r, strut_arena_text(&r->csv->arena, from, length), place);
+  keep(self, strut_arena_text(&self->csv->arena, from, length), place);
 }
 
 /* Reads one line; how many cells it has. */
-static size_t read_line(reader *r) {
-  size_t before = r->cell_count;
+static size_t read_line(reader *self) {
+  size_t before = self->cell_count;
   for (;;) {
-    if (r->at < r->end && *r->at == '"') {
-      read_quoted(r);
+    if (self->at < self->end && *self->at == '"') {
+      read_quoted(self);
     } else {
-      read_plain(r);
+      read_plain(self);
     }
-    if (r->failed || r->at >= r->end || *r->at == '\n') break;
-    step(r); /* the comma */
+    if (self->failed || self->at >= self->end || *self->at == '\n') break;
+    step(self); /* the comma */
   }
-  if (r->at < r->end) step(r);
-  return r->cell_count - before;
+  if (self->at < self->end) step(self);
+  return self->cell_count - before;
 }
 
-static void read_lines(reader *r) {
-  size_t columns = read_line(r);
+static void read_lines(reader *self) {
+  size_t columns = read_line(self);
   if (columns > MOST_COLUMNS)
-    strut_diagnose(r->diagnostics, strut_place_at(1, 1, 1), "more than %d columns", MOST_COLUMNS);
-  r->csv->column_count = columns;
-  while (r->at < r->end && !r->failed) {
-    uint32_t line = r->line;
-    size_t before = r->cell_count, count = read_line(r);
-    if (count == 1 && r->cell[before] && !*r->cell[before] && columns > 1) {
-      r->cell_count = before; /* skip an empty line */
+    strut_diagnose(self->diagnostics, strut_place_at(1, 1, 1), "more than %d columns",
+                   MOST_COLUMNS);
+  self->csv->column_count = columns;
+  while (self->at < self->end && !self->failed) {
+    uint32_t line = self->line;
+    size_t before = self->cell_count, count = read_line(self);
+    if (count == 1 && self->cell[before] && !*self->cell[before] && columns > 1) {
+      self->cell_count = before; /* skip an empty line */
       continue;
     }
-    if (count != columns && !r->failed)
-      strut_diagnose(r->diagnostics, strut_place_at(line, 1, 1),
+    if (count != columns && !self->failed)
+      strut_diagnose(self->diagnostics, strut_place_at(line, 1, 1),
                      "%zu cells, expected %zu as in the header", count, columns);
-    r->csv->row_count++;
+    self->csv->row_count++;
   }
 }
 
 /* "name [unit]" in two. */
-static bool split_title(reader *r, size_t i) {
-  strut_csv_title *column = &r->csv->titles[i];
-  const char *title = r->cell[i], *open = strrchr(title, '[');
+static bool split_title(reader *self, size_t i) {
+  strut_csv_title *column = &self->csv->titles[i];
+  const char *title = self->cell[i], *open = strrchr(title, '[');
   size_t length = strlen(title);
   bool has_unit = open && open > title && title[length - 1] == ']';
   size_t name = has_unit ? (size_t)(open - title) : length;
   while (name > 0 && title[name - 1] == ' ') name--;
-  column->name = strut_arena_text(&r->csv->arena, title, name);
-  column->unit = has_unit ? strut_arena_text(&r->csv->arena, open + 1,
+  column->name = strut_arena_text(&self->csv->arena, title, name);
+  column->unit = has_unit ? strut_arena_text(&self->csv->arena, open + 1,
                                              (size_t)(title + length - 1 - (open + 1)))
                           : "";
   return column->name && column->unit;
@@ -169,16 +171,16 @@ bool strut_csv_number(const char *text, double *value) {
 }
 
 /* Hands the cells over to the table. */
-static bool finish(reader *r) {
-  strut_csv *csv = r->csv;
+static bool finish(reader *self) {
+  strut_csv *csv = self->csv;
   csv->titles = strut_arena_allocate(&csv->arena, csv->column_count, sizeof *csv->titles);
-  csv->cell = strut_arena_allocate(&csv->arena, r->cell_count, sizeof *csv->cell);
-  csv->place = strut_arena_allocate(&csv->arena, r->cell_count, sizeof *csv->place);
+  csv->cell = strut_arena_allocate(&csv->arena, self->cell_count, sizeof *csv->cell);
+  csv->place = strut_arena_allocate(&csv->arena, self->cell_count, sizeof *csv->place);
   if (!csv->titles || !csv->cell || !csv->place) return false;
-  memcpy(csv->cell, r->cell, r->cell_count * sizeof *csv->cell);
-  memcpy(csv->place, r->place, r->cell_count * sizeof *csv->place);
+  memcpy(csv->cell, self->cell, self->cell_count * sizeof *csv->cell);
+  memcpy(csv->place, self->place, self->cell_count * sizeof *csv->place);
   for (size_t i = 0; i < csv->column_count; i++)
-    if (!split_title(r, i)) return false;
+    if (!split_title(self, i)) return false;
   return true;
 }
 

@@ -22,8 +22,8 @@ strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *na
 /* The place of the expression that is being evaluated, for errors that its text does not show. */
 static strut_place asking_place(strut_reader *reader) {
   if (reader->asking_set) {
-    const strut_parameter_state *p = strut_parameter_find(reader, reader->asking_set);
-    return p->set->place.line ? p->set->place : p->key->place;
+    const strut_parameter_state *parameters = strut_parameter_find(reader, reader->asking_set);
+    return parameters->set->place.line ? parameters->set->place : parameters->key->place;
   }
   return reader->asking->place;
 }
@@ -39,12 +39,12 @@ static const char *stacked_name(strut_reader *reader, size_t i) {
 }
 
 /* Reports the cycle that leads back to p, at the place of p's expression. */
-static void report_cycle(strut_reader *reader, const strut_parameter_state *p) {
+static void report_cycle(strut_reader *reader, const strut_parameter_state *parameters) {
   size_t first = 0;
-  bool given = p->set && !p->set->known && p->set->place.line;
-  while (reader->parameter_stack[first] != p) first++;
-  strut_report_error(reader, given ? p->set->place : p->key->place,
-                     "parameter '%s' depends on itself: %s", p->name,
+  bool given = parameters->set && !parameters->set->known && parameters->set->place.line;
+  while (reader->parameter_stack[first] != parameters) first++;
+  strut_report_error(reader, given ? parameters->set->place : parameters->key->place,
+                     "parameter '%s' depends on itself: %s", parameters->name,
                      strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
 }
 
@@ -60,25 +60,29 @@ static void report_setting(strut_reader *reader, const strut_setting *set, strut
 }
 
 /* The expression of a parameter in the file. */
-static bool evaluate(strut_reader *reader, strut_parameter_state *p, strut_quantity *quantity) {
-  return strut_read_quantity(reader, p->value, p->name, (strut_owner){"the parameters", NULL},
-                             quantity);
+static bool evaluate(strut_reader *reader, strut_parameter_state *parameters,
+                     strut_quantity *quantity) {
+  return strut_read_quantity(reader, parameters->value, parameters->name,
+                             (strut_owner){"the parameters", NULL}, quantity);
 }
 
 /* The value that is given from outside. */
-static bool evaluate_set(strut_reader *reader, strut_parameter_state *p) {
-  if (p->set->known) {
-    p->quantity = (strut_quantity){
-        .value = p->set->value, .dimension = p->set->dimension, .bare = p->set->bare};
+static bool evaluate_set(strut_reader *reader, strut_parameter_state *parameters) {
+  if (parameters->set->known) {
+    parameters->quantity = (strut_quantity){.value = parameters->set->value,
+                                            .dimension = parameters->set->dimension,
+                                            .bare = parameters->set->bare};
     return true;
   }
   strut_expression_error error = {0};
   strut_scope scope = strut_parameter_scope(reader);
   const char *before = reader->asking_set;
-  reader->asking_set = p->name;
-  bool fine = strut_expression_evaluate(p->set->text, &scope, &p->quantity, &error);
+  reader->asking_set = parameters->name;
+  bool fine =
+      strut_expression_evaluate(parameters->set->text, &scope, &parameters->quantity, &error);
   reader->asking_set = before;
-  if (!fine && error.message[0]) report_setting(reader, p->set, p->key->place, error.message);
+  if (!fine && error.message[0])
+    report_setting(reader, parameters->set, parameters->key->place, error.message);
   return fine;
 }
 
@@ -93,34 +97,36 @@ static const char *unit_of(const char *text) {
 
 /* Notes that a number without unit is in SI units, where it differs from the declared value by more
    than a factor of 100: then a unit was probably forgotten. */
-static void note_scale(strut_reader *reader, const strut_parameter_state *p,
+static void note_scale(strut_reader *reader, const strut_parameter_state *parameters,
                        const strut_quantity *declared) {
-  double times = fabs(p->quantity.value / declared->value);
-  const char *unit = unit_of(p->value->text), *given = p->set->text;
-  if (p->set->place.line || !(times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9))) return;
-  if (declared->value == 0.0 || p->quantity.value == 0.0) return;
-  strut_note(reader->diagnostics, p->value->place,
+  double times = fabs(parameters->quantity.value / declared->value);
+  const char *unit = unit_of(parameters->value->text), *given = parameters->set->text;
+  if (parameters->set->place.line || !(times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9)))
+    return;
+  if (declared->value == 0.0 || parameters->quantity.value == 0.0) return;
+  strut_note(reader->diagnostics, parameters->value->place,
              "--set %s=%s is taken as %s in SI units, %.6g times the %s here, since a plain number "
              "is in SI units; write --set %s=\"%s %s\" if that is meant",
-             p->name, strut_sanitised_text(reader, given), given, times, p->value->text, p->name,
-             strut_sanitised_text(reader, given), *unit ? unit : "UNIT");
+             parameters->name, strut_sanitised_text(reader, given), given, times,
+             parameters->value->text, parameters->name, strut_sanitised_text(reader, given),
+             *unit ? unit : "UNIT");
 }
 
 /* Does what is given fit what the file declares? A bare value takes the declared dimension. */
-static bool adopt_dimension(strut_reader *reader, strut_parameter_state *p,
+static bool adopt_dimension(strut_reader *reader, strut_parameter_state *parameters,
                             const strut_quantity *declared) {
   char expected[200], found[80], message[320];
   if (declared->bare) return true;
-  if (p->quantity.bare) {
-    p->quantity.bare = false;
-    p->quantity.dimension = declared->dimension;
-    note_scale(reader, p, declared);
+  if (parameters->quantity.bare) {
+    parameters->quantity.bare = false;
+    parameters->quantity.dimension = declared->dimension;
+    note_scale(reader, parameters, declared);
   }
-  if (strut_dimension_equal(p->quantity.dimension, declared->dimension)) return true;
+  if (strut_dimension_equal(parameters->quantity.dimension, declared->dimension)) return true;
   snprintf(message, sizeof message, "expected %s, found %s",
            strut_expected_number(declared->dimension, expected, sizeof expected),
-           strut_dimension_name(p->quantity.dimension, found, sizeof found));
-  report_setting(reader, p->set, p->key->place, message);
+           strut_dimension_name(parameters->quantity.dimension, found, sizeof found));
+  report_setting(reader, parameters->set, parameters->key->place, message);
   return false;
 }
 
@@ -153,56 +159,58 @@ static bool is_copy_number(const strut_reader *reader, const char *name) {
 }
 
 /* A value in `set` of a placement has the dimension that the part declares. */
-static bool read_given(strut_reader *reader, strut_parameter_state *p,
+static bool read_given(strut_reader *reader, strut_parameter_state *parameters,
                        const strut_quantity *declared) {
   char expected[200], found[80];
   strut_copy *before = reader->scope;
-  reader->scope = p->of_part->given_scope;
-  bool fine = strut_read_quantity(reader, p->of_part->given, p->name, (strut_owner){"'set'", NULL},
-                                  &p->quantity);
-  if (fine && !declared->bare && p->quantity.bare) {
-    p->quantity.bare = false;
-    p->quantity.dimension = declared->dimension;
+  reader->scope = parameters->of_part->given_scope;
+  bool fine = strut_read_quantity(reader, parameters->of_part->given, parameters->name,
+                                  (strut_owner){"'set'", NULL}, &parameters->quantity);
+  if (fine && !declared->bare && parameters->quantity.bare) {
+    parameters->quantity.bare = false;
+    parameters->quantity.dimension = declared->dimension;
   }
-  if (fine && !declared->bare && !strut_dimension_equal(p->quantity.dimension, declared->dimension))
+  if (fine && !declared->bare &&
+      !strut_dimension_equal(parameters->quantity.dimension, declared->dimension))
     fine = strut_report_error(
-        reader, p->of_part->given->place, "expected %s for '%s' in 'set', found %s",
-        strut_expected_number(declared->dimension, expected, sizeof expected), p->name,
-        strut_dimension_name(p->quantity.dimension, found, sizeof found));
+        reader, parameters->of_part->given->place, "expected %s for '%s' in 'set', found %s",
+        strut_expected_number(declared->dimension, expected, sizeof expected), parameters->name,
+        strut_dimension_name(parameters->quantity.dimension, found, sizeof found));
   reader->scope = before;
   return fine;
 }
 
-static void resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
-  if (p->state != STRUT_UNREAD) return;
+static void resolve_parameter(strut_reader *reader, strut_parameter_state *parameters) {
+  if (parameters->state != STRUT_UNREAD) return;
   if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
-    strut_report_error(reader, p->key->place, "parameters depend on each other more than %d deep",
+    strut_report_error(reader, parameters->key->place,
+                       "parameters depend on each other more than %d deep",
                        STRUT_DEEPEST_PARAMETER);
-    p->state = STRUT_FAILED;
+    parameters->state = STRUT_FAILED;
     return;
   }
-  reader->parameter_stack[reader->parameter_depth++] = p;
+  reader->parameter_stack[reader->parameter_depth++] = parameters;
   assert(reader->parameter_depth <= STRUT_DEEPEST_PARAMETER);
-  p->state = STRUT_READING;
+  parameters->state = STRUT_READING;
   strut_quantity declared;
   strut_copy *before = reader->scope;
-  reader->scope = p->of_part ? p->of_part->scope : NULL;
-  bool fine = evaluate(reader, p, &declared);
+  reader->scope = parameters->of_part ? parameters->of_part->scope : NULL;
+  bool fine = evaluate(reader, parameters, &declared);
   reader->scope = before;
-  if (p->of_part && p->of_part->given) {
-    fine = fine && read_given(reader, p, &declared);
-  } else if (p->set) {
-    fine = evaluate_set(reader, p) && fine;
-    fine = fine && adopt_dimension(reader, p, &declared);
+  if (parameters->of_part && parameters->of_part->given) {
+    fine = fine && read_given(reader, parameters, &declared);
+  } else if (parameters->set) {
+    fine = evaluate_set(reader, parameters) && fine;
+    fine = fine && adopt_dimension(reader, parameters, &declared);
   } else if (fine) {
-    p->quantity = declared;
+    parameters->quantity = declared;
   }
-  if (p->state == STRUT_READING) p->state = fine ? STRUT_READ : STRUT_FAILED;
+  if (parameters->state == STRUT_READING) parameters->state = fine ? STRUT_READ : STRUT_FAILED;
   reader->parameter_depth--;
 }
 
-void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *p) {
-  resolve_parameter(reader, p);
+void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parameters) {
+  resolve_parameter(reader, parameters);
 }
 
 static int look_up_parameter(void *context, const char *name, size_t length,
@@ -212,9 +220,9 @@ static int look_up_parameter(void *context, const char *name, size_t length,
   if (length >= sizeof text) return 0;
   memcpy(text, name, length);
   text[length] = '\0';
-  strut_parameter_state *p = strut_parameter_in_scope(reader, text);
-  if (!p && copy_number(reader, text, quantity)) return 1;
-  if (!p && is_copy_number(reader, text)) {
+  strut_parameter_state *parameters = strut_parameter_in_scope(reader, text);
+  if (!parameters && copy_number(reader, text, quantity)) return 1;
+  if (!parameters && is_copy_number(reader, text)) {
     strut_report_error(reader, asking_place(reader),
                        "'%s', the number of a copy, is known in the keys of a repeated placement "
                        "and in its 'next', but neither in its 'count' nor within the part; 'set' "
@@ -222,20 +230,20 @@ static int look_up_parameter(void *context, const char *name, size_t length,
                        text);
     return -1;
   }
-  if (!p) return 0;
-  p->used = true;
-  if (p->text) {
+  if (!parameters) return 0;
+  parameters->used = true;
+  if (parameters->text) {
     strut_report_error(reader, asking_place(reader),
-                       "parameter '%s' is a text, expected a number here", p->name);
+                       "parameter '%s' is a text, expected a number here", parameters->name);
     return -1;
   }
-  resolve_parameter(reader, p);
-  if (p->state == STRUT_READING) {
-    report_cycle(reader, p);
-    p->state = STRUT_FAILED;
+  resolve_parameter(reader, parameters);
+  if (parameters->state == STRUT_READING) {
+    report_cycle(reader, parameters);
+    parameters->state = STRUT_FAILED;
   }
-  if (p->state == STRUT_FAILED) return -1;
-  *quantity = p->quantity;
+  if (parameters->state == STRUT_FAILED) return -1;
+  *quantity = parameters->quantity;
   return 1;
 }
 
@@ -271,31 +279,32 @@ static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
 }
 
 void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
-                             strut_parameter_state *p) {
+                             strut_parameter_state *parameters) {
   const strut_tree *value = key->next;
-  *p = (strut_parameter_state){.name = key->text, .key = key, .value = value};
+  *parameters = (strut_parameter_state){.name = key->text, .key = key, .value = value};
   bool fine = check_parameter_name(reader, key);
   fine = strut_read_scalar(reader, value, key->text, (strut_owner){"the parameters", NULL},
                            "an expression or a quoted text") &&
          fine;
-  p->text = value->kind == STRUT_TREE_SCALAR && value->quoted;
-  p->state = fine ? (p->text ? STRUT_READ : STRUT_UNREAD) : STRUT_FAILED;
+  parameters->text = value->kind == STRUT_TREE_SCALAR && value->quoted;
+  parameters->state = fine ? (parameters->text ? STRUT_READ : STRUT_UNREAD) : STRUT_FAILED;
 }
 
 static void apply_setting(strut_reader *reader, const strut_setting *setting) {
-  strut_parameter_state *p = strut_parameter_find(reader, setting->name);
+  strut_parameter_state *parameters = strut_parameter_find(reader, setting->name);
   char message[300];
-  if (!p) {
+  if (!parameters) {
     snprintf(
         message, sizeof message, "the scene has no parameter '%s'%s",
         strut_sanitised_text(reader, setting->name),
         strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
     report_setting(reader, setting, section_place(reader), message);
-  } else if (p->set) {
-    strut_report_error(reader, setting->place.line ? setting->place : p->key->place,
-                       "%s%s is given twice", setting->place.line ? "" : "--set ", p->name);
+  } else if (parameters->set) {
+    strut_report_error(reader, setting->place.line ? setting->place : parameters->key->place,
+                       "%s%s is given twice", setting->place.line ? "" : "--set ",
+                       parameters->name);
   } else {
-    p->set = setting;
+    parameters->set = setting;
   }
 }
 
@@ -321,23 +330,23 @@ void strut_keep_parameters(strut_reader *reader) {
   scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
                                             sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
-    const strut_parameter_state *p = &reader->parameters[i];
-    if (p->value->kind != STRUT_TREE_SCALAR) return; /* reported */
-    const char *text = p->set ? p->set->text : p->value->text;
+    const strut_parameter_state *parameters = &reader->parameters[i];
+    if (parameters->value->kind != STRUT_TREE_SCALAR) return; /* reported */
+    const char *text = parameters->set ? parameters->set->text : parameters->value->text;
     strut_parameter *kept = &scene->parameters[scene->parameter_count++];
-    kept->name = strut_arena_text(&scene->arena, p->name, strlen(p->name));
+    kept->name = strut_arena_text(&scene->arena, parameters->name, strlen(parameters->name));
     kept->text = strut_arena_text(&scene->arena, text, strlen(text));
-    kept->value = p->text ? (double)NAN : p->quantity.value;
+    kept->value = parameters->text ? (double)NAN : parameters->quantity.value;
     if (!kept->name || !kept->text) reader->out_of_memory = true;
   }
 }
 
 void strut_report_idle_settings(strut_reader *reader) {
   for (size_t i = 0; i < reader->parameter_count; i++) {
-    const strut_parameter_state *p = &reader->parameters[i];
-    if (!p->set || p->used) continue;
+    const strut_parameter_state *parameters = &reader->parameters[i];
+    if (!parameters->set || parameters->used) continue;
     char message[120];
-    snprintf(message, sizeof message, "nothing in the scene uses parameter '%s'", p->name);
-    report_setting(reader, p->set, p->key->place, message);
+    snprintf(message, sizeof message, "nothing in the scene uses parameter '%s'", parameters->name);
+    report_setting(reader, parameters->set, parameters->key->place, message);
   }
 }

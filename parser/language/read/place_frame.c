@@ -26,71 +26,73 @@ static bool read_count(strut_reader *reader, const strut_tree *value, strut_owne
 
 /* A number, or [n, m]. */
 static bool read_counts(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                        strut_repetition *r) {
-  r->numbers = 1;
-  r->count[1] = 1;
-  if (value->kind == STRUT_TREE_SCALAR) return read_count(reader, value, owner, &r->count[0]);
+                        strut_repetition *repetition) {
+  repetition->numbers = 1;
+  repetition->count[1] = 1;
+  if (value->kind == STRUT_TREE_SCALAR)
+    return read_count(reader, value, owner, &repetition->count[0]);
   if (value->kind != STRUT_TREE_LIST || value->count != 2)
     return strut_refuse_form(reader, STRUT_KEY_REPEAT_COUNT, value, owner);
-  r->numbers = 2;
-  bool fine = read_count(reader, value->first, owner, &r->count[0]);
-  return read_count(reader, value->first->next, owner, &r->count[1]) && fine;
+  repetition->numbers = 2;
+  bool fine = read_count(reader, value->first, owner, &repetition->count[0]);
+  return read_count(reader, value->first->next, owner, &repetition->count[1]) && fine;
 }
 
 static bool read_steps(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                       strut_repetition *r) {
+                       strut_repetition *repetition) {
   if (!value) return true;
   bool lists =
       value->kind == STRUT_TREE_LIST && value->count == 2 && value->first->kind == STRUT_TREE_LIST;
-  if (lists != (r->numbers == 2))
+  if (lists != (repetition->numbers == 2))
     return strut_report_error(reader, value->place,
-                              r->numbers == 2
+                              repetition->numbers == 2
                                   ? "a lattice has two steps, as in [[1 m, 0], [0, 1 m]], found %s"
                                   : "one count has one step, as in [1 m, 0], found %s",
                               strut_found(reader, value));
   const strut_tree *item = lists ? value->first : value;
   bool fine = true;
-  for (int k = 0; k < r->numbers; k++, item = item->next)
-    fine = strut_read_pair(reader, item, "step", owner, STRUT_DIM_LENGTH, r->step[k]) && fine;
+  for (int k = 0; k < repetition->numbers; k++, item = item->next)
+    fine =
+        strut_read_pair(reader, item, "step", owner, STRUT_DIM_LENGTH, repetition->step[k]) && fine;
   return fine;
 }
 
 static bool read_next(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                      strut_repetition *r) {
+                      strut_repetition *repetition) {
   if (!value) return true;
   bool list = value->kind == STRUT_TREE_LIST && value->count == 2;
-  if (list != (r->numbers == 2) || (!list && value->kind != STRUT_TREE_MAP))
+  if (list != (repetition->numbers == 2) || (!list && value->kind != STRUT_TREE_MAP))
     return strut_refuse_form(reader, STRUT_KEY_REPEAT_NEXT, value, owner);
-  r->next[0] = list ? value->first : value;
-  r->next[1] = list ? value->first->next : NULL;
+  repetition->next[0] = list ? value->first : value;
+  repetition->next[1] = list ? value->first->next : NULL;
   return true;
 }
 
 static bool read_closed(strut_reader *reader, const strut_tree *value, const strut_tree *key,
-                        strut_owner owner, strut_repetition *r) {
+                        strut_owner owner, strut_repetition *repetition) {
   if (!value) return true;
   int word = value->kind == STRUT_TREE_SCALAR ? strut_switch_find(value->text) : 1;
-  r->closed = word == 1;
-  r->twist = value->kind == STRUT_TREE_MAP ? value : NULL;
+  repetition->closed = word == 1;
+  repetition->twist = value->kind == STRUT_TREE_MAP ? value : NULL;
   if (word < 0 || value->kind == STRUT_TREE_LIST)
     return strut_refuse_form(reader, STRUT_KEY_REPEAT_CLOSED, value, owner);
-  if (!r->closed || (r->numbers == 1 && r->next[0])) return true;
+  if (!repetition->closed || (repetition->numbers == 1 && repetition->next[0])) return true;
   return strut_report_error(reader, key->place,
-                            r->numbers > 1
+                            repetition->numbers > 1
                                 ? "a lattice cannot be closed; close a ring and repeat the ring"
                                 : "'closed' needs 'next', which says what ties a copy to the "
                                   "next one");
 }
 
 bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
-                       strut_repetition *r) {
+                       strut_repetition *repetition) {
   char text[STRUT_LONGEST_NAME + 40];
-  *r = (strut_repetition){.scale = 1.0, .count = {1, 1}};
+  *repetition = (strut_repetition){.scale = 1.0, .count = {1, 1}};
   if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
   snprintf(text, sizeof text, "'repeat' of '%s'", name);
   strut_owner owner = {text, NULL};
   const strut_tree *value = slot->value;
-  if (value->kind != STRUT_TREE_MAP) return read_counts(reader, value, owner, r);
+  if (value->kind != STRUT_TREE_MAP) return read_counts(reader, value, owner, repetition);
   strut_fields fields;
   strut_read_fields(reader, STRUT_SECTION_REPEAT, value, owner, &fields);
   strut_require(reader, &fields, owner, slot->key->place);
@@ -99,28 +101,28 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
   const strut_slot *about = strut_slot_of(&fields, STRUT_KEY_REPEAT_ABOUT);
   strut_repeat_keys keys = {.scale = 1.0};
   if (fields.broken || !strut_store(reader, &fields, owner, &keys) ||
-      !read_counts(reader, keys.count, owner, r))
+      !read_counts(reader, keys.count, owner, repetition))
     return false;
-  bool fine = read_steps(reader, keys.step, owner, r);
-  fine = read_next(reader, keys.next, owner, r) && fine;
+  bool fine = read_steps(reader, keys.step, owner, repetition);
+  fine = read_next(reader, keys.next, owner, repetition) && fine;
   fine = read_closed(reader, keys.closed, strut_slot_of(&fields, STRUT_KEY_REPEAT_CLOSED)->key,
-                     owner, r) &&
+                     owner, repetition) &&
          fine;
-  r->turn = keys.turn, r->scale = keys.scale;
-  memcpy(r->about, keys.about, sizeof r->about);
+  repetition->turn = keys.turn, repetition->scale = keys.scale;
+  memcpy(repetition->about, keys.about, sizeof repetition->about);
   const strut_slot *odd = turn->key ? turn : scale->key ? scale : about;
-  if (r->numbers < 2 || !odd->key) return fine;
+  if (repetition->numbers < 2 || !odd->key) return fine;
   return strut_report_error(
       reader, odd->key->place,
       "a lattice has steps only, no '%s'; place a row that turns, and repeat the row",
       odd->key->text);
 }
 
-void strut_frame_turn(strut_frame *f, double angle) {
+void strut_frame_turn(strut_frame *frame, double angle) {
   double s, c;
   strut_sincos_turns(angle / STRUT_TAU, &s, &c);
-  f->axes[0][0] = c, f->axes[0][1] = -s;
-  f->axes[1][0] = s, f->axes[1][1] = c;
+  frame->axes[0][0] = c, frame->axes[0][1] = -s;
+  frame->axes[1][0] = s, frame->axes[1][1] = c;
 }
 
 static double power(double base, int64_t exponent) {
@@ -130,40 +132,44 @@ static double power(double base, int64_t exponent) {
   return result;
 }
 
-static void move_point(const strut_frame *f, double point[2]) {
-  point[0] *= f->scale, point[1] *= f->scale;
-  strut_frame_point(f, point);
+static void move_point(const strut_frame *frame, double point[2]) {
+  point[0] *= frame->scale, point[1] *= frame->scale;
+  strut_frame_point(frame, point);
 }
 
 /* S^k, or i times one step and j times the other. */
-strut_frame strut_repeated_frame(const strut_repetition *r, const int64_t number[2]) {
+strut_frame strut_repeated_frame(const strut_repetition *repetition, const int64_t number[2]) {
   strut_frame f = strut_frame_of_scene, once = strut_frame_of_scene;
   double k = (double)number[0];
-  if (r->numbers == 2 || (r->turn == 0.0 && r->scale == 1.0)) {
+  if (repetition->numbers == 2 || (repetition->turn == 0.0 && repetition->scale == 1.0)) {
     for (int c = 0; c < 2; c++)
-      f.at[c] = k * r->step[0][c] + (r->numbers == 2 ? (double)number[1] * r->step[1][c] : 0.0);
+      f.at[c] = k * repetition->step[0][c] +
+                (repetition->numbers == 2 ? (double)number[1] * repetition->step[1][c] : 0.0);
     return f;
   }
-  double s = power(r->scale, number[0]), origin[2] = {0.0, 0.0};
-  strut_frame_turn(&f, k * r->turn);
+  double s = power(repetition->scale, number[0]), origin[2] = {0.0, 0.0};
+  strut_frame_turn(&f, k * repetition->turn);
   f.scale = s;
-  if (r->step[0][0] == 0.0 && r->step[0][1] == 0.0) { /* `about` stays where it is */
-    double away[2] = {s * r->about[0], s * r->about[1]};
+  if (repetition->step[0][0] == 0.0 &&
+      repetition->step[0][1] == 0.0) { /* `about` stays where it is */
+    double away[2] = {s * repetition->about[0], s * repetition->about[1]};
     strut_frame_vector(&f, away);
-    for (int c = 0; c < 2; c++) f.at[c] = r->about[c] - away[c];
+    for (int c = 0; c < 2; c++) f.at[c] = repetition->about[c] - away[c];
     return f;
   }
   /* The images of the origin under S, S^2, S^4, ..., those of the bits of k. */
-  double once_away[2] = {r->scale * r->about[0], r->scale * r->about[1]};
-  strut_frame_turn(&once, r->turn);
-  once.scale = r->scale;
+  double once_away[2] = {repetition->scale * repetition->about[0],
+                         repetition->scale * repetition->about[1]};
+  strut_frame_turn(&once, repetition->turn);
+  once.scale = repetition->scale;
   strut_frame_vector(&once, once_away);
-  for (int c = 0; c < 2; c++) once.at[c] = r->about[c] + r->step[0][c] - once_away[c];
+  for (int c = 0; c < 2; c++)
+    once.at[c] = repetition->about[c] + repetition->step[0][c] - once_away[c];
   for (int64_t bits = number[0], n = 1; bits; bits >>= 1, n *= 2) {
     if (bits & 1) move_point(&once, origin);
     double squared[2] = {once.at[0], once.at[1]};
     move_point(&once, squared);
-    strut_frame_turn(&once, (double)(2 * n) * r->turn);
+    strut_frame_turn(&once, (double)(2 * n) * repetition->turn);
     once.scale *= once.scale;
     memcpy(once.at, squared, sizeof squared);
   }
@@ -182,61 +188,61 @@ static bool read_position(strut_reader *reader, const strut_tree *value, double 
 }
 
 /* Where a node of the placement's scope lies, in the coordinates of that scope. */
-static bool find_outside(strut_expansion *e, strut_copy *outer, const strut_tree *name,
+static bool find_outside(strut_expansion *expansion, strut_copy *outer, const strut_tree *name,
                          double position[2]) {
-  strut_reader *reader = e->reader;
+  strut_reader *reader = expansion->reader;
   strut_full_name full, resolved;
   snprintf(full.text, sizeof full.text, "%s%s", outer ? outer->prefix : "", name->text);
   int32_t i = strut_name_resolve_last(reader, full.text, &resolved)
-                  ? strut_name_map_find(&e->copies->node_entries, resolved.text)
+                  ? strut_name_map_find(&expansion->copies->node_entries, resolved.text)
                   : -1;
   if (i < 0 || strut_name_is_hidden(reader, outer, resolved.text))
     return strut_report_error(
         reader, name->place,
         "unknown node '%s' in 'onto'; it names a node of what is placed before",
         strut_sanitised_text(reader, name->text));
-  const strut_tree *key = e->copies->nodes[i];
+  const strut_tree *key = expansion->copies->nodes[i];
   strut_copy *before = strut_enter_scope(reader, key);
   bool fine = read_position(reader, key->next, position);
   strut_place_point(reader, key->next, position);
   reader->scope = before;
   if (!fine || !outer) return fine;
   /* back into the frame of the scope */
-  const strut_frame *f = &outer->frame;
-  double d[2] = {position[0] - f->at[0], position[1] - f->at[1]};
+  const strut_frame *frame = &outer->frame;
+  double d[2] = {position[0] - frame->at[0], position[1] - frame->at[1]};
   for (int c = 0; c < 2; c++)
-    position[c] = (f->axes[0][c] * d[0] + f->axes[1][c] * d[1]) / f->scale;
+    position[c] = (frame->axes[0][c] * d[0] + frame->axes[1][c] * d[1]) / frame->scale;
   return true;
 }
 
 /* The position of an entry of nodes in the part of a copy, moved by its frame. */
-static bool node_position(strut_expansion *e, strut_copy *copy, const strut_tree *value,
+static bool node_position(strut_expansion *expansion, strut_copy *copy, const strut_tree *value,
                           double position[2]) {
-  strut_copy *before = e->reader->scope;
-  e->reader->scope = copy;
-  bool fine = read_position(e->reader, value, position);
-  e->reader->scope = before;
+  strut_copy *before = expansion->reader->scope;
+  expansion->reader->scope = copy;
+  bool fine = read_position(expansion->reader, value, position);
+  expansion->reader->scope = before;
   strut_frame_point(&copy->frame, position);
   return fine;
 }
 
 /* The numbers behind a placement's name in "r.3.a" or "r.last.a", and what follows; NULL: none such. */
-static const char *read_copy_numbers(const strut_repetition *r, const char *text,
+static const char *read_copy_numbers(const strut_repetition *repetition, const char *text,
                                      int64_t number[2]) {
-  for (int n = 0; n < r->numbers; n++) {
+  for (int n = 0; n < repetition->numbers; n++) {
     size_t length = strspn(text, "0123456789");
     bool last = !length && strncmp(text, "last.", 5) == 0;
     if (last) length = 4;
     if (length < 1 || length > 9 || text[length] != '.') return NULL;
-    number[n] = last ? r->count[n] - 1 : 0;
+    number[n] = last ? repetition->count[n] - 1 : 0;
     for (size_t c = 0; !last && c < length; c++) number[n] = 10 * number[n] + (text[c] - '0');
-    if (number[n] >= r->count[n]) return NULL;
+    if (number[n] >= repetition->count[n]) return NULL;
     text += length + 1;
   }
   return text;
 }
 
-bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name,
+bool strut_find_in_copy(strut_expansion *expansion, strut_copy *copy, const char *name,
                         double position[2]) {
   strut_part *part = copy->placement->part;
   const strut_slot *nodes = strut_slot_of(&part->fields, STRUT_KEY_PART_NODES);
@@ -246,56 +252,60 @@ bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name,
   if (port && port->kind == STRUT_TREE_SCALAR) name = port->text;
   const strut_tree *value =
       nodes->state == STRUT_GIVEN ? strut_tree_find(nodes->value, name, NULL) : NULL;
-  if (value) return node_position(e, copy, value, position);
-  const strut_tree *k = place->state == STRUT_GIVEN ? place->value->first : NULL;
-  for (; k; k = k->next->next) {
-    size_t length = strlen(k->text);
+  if (value) return node_position(expansion, copy, value, position);
+  const strut_tree *tree = place->state == STRUT_GIVEN ? place->value->first : NULL;
+  for (; tree; tree = tree->next->next) {
+    size_t length = strlen(tree->text);
     int64_t number[2] = {0, 0}, first[2] = {0, 0};
     strut_placing p;
     strut_frame base = strut_frame_of_scene;
-    if (strncmp(k->text, name, length) != 0 || name[length] != '.') continue;
-    if (e->copies->depth >= STRUT_DEEPEST_PARTS || !strut_read_placement(e, k, copy, &p))
+    if (strncmp(tree->text, name, length) != 0 || name[length] != '.') continue;
+    if (expansion->copies->depth >= STRUT_DEEPEST_PARTS ||
+        !strut_read_placement(expansion, tree, copy, &p))
       return false;
     const char *rest = read_copy_numbers(&p.repeat, name + length + 1, number);
     if (!rest || p.keys.onto) return false;
-    strut_copy *scope, *inner = strut_make_copy(e, &p, first, &base, &scope);
-    if (inner && (number[0] || number[1])) inner = strut_make_copy(e, &p, number, &base, &scope);
+    strut_copy *scope, *inner = strut_make_copy(expansion, &p, first, &base, &scope);
+    if (inner && (number[0] || number[1]))
+      inner = strut_make_copy(expansion, &p, number, &base, &scope);
     if (!inner) return false;
-    e->copies->depth++;
-    bool found = strut_find_in_copy(e, inner, rest, position);
-    e->copies->depth--;
+    expansion->copies->depth++;
+    bool found = strut_find_in_copy(expansion, inner, rest, position);
+    expansion->copies->depth--;
     return found;
   }
   return false;
 }
 
 /* The position of a node of the copy itself; its frame is that of the scene as yet. */
-static bool find_inside(strut_expansion *e, strut_copy *copy, const strut_tree *name,
+static bool find_inside(strut_expansion *expansion, strut_copy *copy, const strut_tree *name,
                         double position[2]) {
-  strut_copy *before = e->reader->scope;
-  bool failed = e->reader->failed, found = strut_find_in_copy(e, copy, name->text, position);
-  e->reader->scope = before;
-  if (!found && e->reader->failed == failed)
-    strut_report_error(e->reader, name->place,
-                       "part '%s' has no node '%s' that can be laid onto others",
-                       copy->placement->part->name, strut_sanitised_text(e->reader, name->text));
+  strut_copy *before = expansion->reader->scope;
+  bool failed = expansion->reader->failed,
+       found = strut_find_in_copy(expansion, copy, name->text, position);
+  expansion->reader->scope = before;
+  if (!found && expansion->reader->failed == failed)
+    strut_report_error(
+        expansion->reader, name->place, "part '%s' has no node '%s' that can be laid onto others",
+        copy->placement->part->name, strut_sanitised_text(expansion->reader, name->text));
   return found;
 }
 
 /* Shifts, and with two pairs turns, the frame so that nodes of the copy lie on others. */
-static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_tree *map, bool fit,
+static bool lay_onto(strut_expansion *expansion, strut_copy *copy, const strut_tree *map, bool fit,
                      strut_frame *frame) {
-  strut_reader *reader = e->reader;
+  strut_reader *reader = expansion->reader;
   double own[2][2], there[2][2];
-  const strut_tree *k = map->first;
+  const strut_tree *tree = map->first;
   if (map->count < 1 || map->count > 2)
     return strut_report_error(reader, map->place,
                               "expected one or two pairs {own: there} for 'onto', found %u",
                               (unsigned)map->count);
-  for (unsigned n = 0; n < map->count; n++, k = k->next->next) {
-    if (!strut_read_scalar(reader, k->next, "onto", (strut_owner){"a placement", NULL},
+  for (unsigned n = 0; n < map->count; n++, tree = tree->next->next) {
+    if (!strut_read_scalar(reader, tree->next, "onto", (strut_owner){"a placement", NULL},
                            "the name of a node") ||
-        !find_inside(e, copy, k, own[n]) || !find_outside(e, copy->outer, k->next, there[n]))
+        !find_inside(expansion, copy, tree, own[n]) ||
+        !find_outside(expansion, copy->outer, tree->next, there[n]))
       return false;
     own[n][0] *= frame->scale, own[n][1] *= frame->scale;
     strut_frame_vector(frame, own[n]);
@@ -321,17 +331,18 @@ static bool lay_onto(strut_expansion *e, strut_copy *copy, const strut_tree *map
 }
 
 /* The frame of the first copy by the placement's own keys. */
-bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, strut_frame *frame) {
-  strut_reader *reader = e->reader;
-  strut_owner owner = {"place", p->placement->key->text};
-  const strut_slot *turn = strut_slot_of(&p->fields, STRUT_KEY_PLACE_TURN);
-  const strut_tree *scale = p->keys.scale, *onto = p->keys.onto;
+bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_copy *copy,
+                      strut_frame *frame) {
+  strut_reader *reader = expansion->reader;
+  strut_owner owner = {"place", placing->placement->key->text};
+  const strut_slot *turn = strut_slot_of(&placing->fields, STRUT_KEY_PLACE_TURN);
+  const strut_tree *scale = placing->keys.scale, *onto = placing->keys.onto;
   bool fit = scale && scale->kind == STRUT_TREE_SCALAR && strcmp(scale->text, "fit") == 0;
   *frame = strut_frame_of_scene;
-  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, p->keys.turn);
-  memcpy(frame->at, p->keys.at, sizeof frame->at);
+  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, placing->keys.turn);
+  memcpy(frame->at, placing->keys.at, sizeof frame->at);
   for (int c = 0; c < 2; c++)
-    for (int row = 0; row < 2 && p->keys.flip >> c & 1; row++) frame->axes[row][c] *= -1.0;
+    for (int row = 0; row < 2 && placing->keys.flip >> c & 1; row++) frame->axes[row][c] *= -1.0;
   if (scale && !fit &&
       !strut_read_number(reader, scale, "scale", owner, STRUT_DIM_NONE, STRUT_RANGE_ABOVE_ZERO,
                          &frame->scale))
@@ -341,5 +352,5 @@ bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, st
     return strut_report_error(reader, fit && !two ? scale->place : turn->key->place,
                               fit && !two ? "'scale: fit' needs two pairs in 'onto'"
                                           : "two pairs in 'onto' turn the copy; leave 'turn' out");
-  return e->weighing || !onto || lay_onto(e, copy, onto, fit, frame);
+  return expansion->weighing || !onto || lay_onto(expansion, copy, onto, fit, frame);
 }

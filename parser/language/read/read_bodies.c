@@ -46,8 +46,8 @@ static bool read_set(strut_reader *reader, const strut_tree *value, strut_owner 
       strut_sanitised_text(reader, value->text), strut_owner_text(reader, owner));
 }
 
-static double side_of(const double *a, const double *b, const double *p) {
-  return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+static double side_of(const double *first, const double *second, const double *p) {
+  return (second[0] - first[0]) * (p[1] - first[1]) - (second[1] - first[1]) * (p[0] - first[0]);
 }
 
 /* Are two members drawn apart from each other, so that they may come to touch? */
@@ -116,13 +116,14 @@ typedef struct body_pairs {
   size_t count;
 } body_pairs;
 
-static bool find_pairs(strut_reader *reader, const strut_source *source, const strut_collision *c,
-                       body_pairs *pairs) {
+static bool find_pairs(strut_reader *reader, const strut_source *source,
+                       const strut_collision *collision, body_pairs *pairs) {
   const strut_tree *value = source->value;
   const strut_tree *between =
       value && value->kind == STRUT_TREE_MAP ? strut_tree_find(value, "between", NULL) : NULL;
-  strut_owner owner = {"collision", c->name};
-  *pairs = (body_pairs){.like = *c, .key = source->key, .many = between != NULL, .count = 1};
+  strut_owner owner = {"collision", collision->name};
+  *pairs =
+      (body_pairs){.like = *collision, .key = source->key, .many = between != NULL, .count = 1};
   if (!between) return true;
   bool list = between->kind == STRUT_TREE_LIST && between->count == 2;
   if (source->broken || (between->kind == STRUT_TREE_LIST && !list))
@@ -135,7 +136,7 @@ static bool find_pairs(strut_reader *reader, const strut_source *source, const s
                         : between->first,
                   owner, &pairs->set[k]))
       return false;
-  pairs->count = add_pairs(reader, c, pairs->set, NULL);
+  pairs->count = add_pairs(reader, collision, pairs->set, NULL);
   if (pairs->count <= MOST_PAIRS) return true;
   return strut_report_error(reader, between->place, "%s stands for more than %d pairs of members",
                             strut_owner_text(reader, owner), (int)MOST_PAIRS);

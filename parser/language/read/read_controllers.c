@@ -31,9 +31,9 @@ static bool read_strength(strut_reader *reader, const strut_tree *key, strut_own
 }
 
 /* + K sin(other - own - bias) */
-static bool put_coupling(builder *b, const strut_tree *key, strut_owner owner, int32_t own,
+static bool put_coupling(builder *self, const strut_tree *key, strut_owner owner, int32_t own,
                          double bias, strut_dimension rate) {
-  strut_reader *reader = b->reader;
+  strut_reader *reader = self->reader;
   int32_t other = strut_find_thing(reader, STRUT_THING_STATE, NULL, key->text);
   double strength;
   bool phase = other >= 0 && strut_dimension_equal(reader->state_dimension[other], STRUT_DIM_ANGLE);
@@ -42,17 +42,17 @@ static bool put_coupling(builder *b, const strut_tree *key, strut_owner owner, i
                        strut_owner_text(reader, owner), strut_sanitised_text(reader, key->text),
                        phase ? "itself" : "no oscillator");
   if (!phase || other == own || !read_strength(reader, key, owner, &strength)) return false;
-  put_number(b, strength, rate);
-  put_column(b, STRUT_COLUMN_STATE, other);
-  put_column(b, STRUT_COLUMN_STATE, own);
-  put_operation(b, STRUT_OPERATION_SUBTRACT);
+  put_number(self, strength, rate);
+  put_column(self, STRUT_COLUMN_STATE, other);
+  put_column(self, STRUT_COLUMN_STATE, own);
+  put_operation(self, STRUT_OPERATION_SUBTRACT);
   if (bias != 0.0) {
-    put_number(b, bias, STRUT_DIM_ANGLE);
-    put_operation(b, STRUT_OPERATION_SUBTRACT);
+    put_number(self, bias, STRUT_DIM_ANGLE);
+    put_operation(self, STRUT_OPERATION_SUBTRACT);
   }
-  put_operation(b, STRUT_OPERATION_SIN);
-  put_operation(b, STRUT_OPERATION_MULTIPLY);
-  put_operation(b, STRUT_OPERATION_ADD);
+  put_operation(self, STRUT_OPERATION_SIN);
+  put_operation(self, STRUT_OPERATION_MULTIPLY);
+  put_operation(self, STRUT_OPERATION_ADD);
   return true;
 }
 
@@ -123,96 +123,97 @@ void strut_list_controllers(strut_reader *reader) {
 
 /* The gain decides what the signal measures. */
 static bool read_gain(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                      controller *c) {
+                      controller *self) {
   strut_quantity q;
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_CONTROLLER_GAIN);
   if (!strut_read_scalar(reader, slot->value, "gain", owner, "a number such as '0.5'") ||
       !strut_read_quantity(reader, slot->value, "gain", owner, &q))
     return false;
-  c->keys.gain = q.value;
-  if (q.bare) c->bare_gain = slot->value;
-  c->gained = q.bare ? STRUT_DIM_NONE : q.dimension;
-  c->signal = (strut_dimension){c->gained.kg + c->sensed.kg, c->gained.m + c->sensed.m,
-                                c->gained.s + c->sensed.s, c->gained.angle + c->sensed.angle};
+  self->keys.gain = q.value;
+  if (q.bare) self->bare_gain = slot->value;
+  self->gained = q.bare ? STRUT_DIM_NONE : q.dimension;
+  self->signal =
+      (strut_dimension){self->gained.kg + self->sensed.kg, self->gained.m + self->sensed.m,
+                        self->gained.s + self->sensed.s, self->gained.angle + self->sensed.angle};
   return true;
 }
 
 static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                         controller *c) {
-  if (!read_gain(reader, fields, owner, c)) return false;
-  strut_dimension per_second = c->gained, seconds = c->gained;
+                         controller *self) {
+  if (!read_gain(reader, fields, owner, self)) return false;
+  strut_dimension per_second = self->gained, seconds = self->gained;
   per_second.s -= 1.0f, seconds.s += 1.0f;
   const struct {
     int key;
     strut_dimension dimension;
-  } numbers[] = {{STRUT_KEY_CONTROLLER_TARGET, c->sensed},
+  } numbers[] = {{STRUT_KEY_CONTROLLER_TARGET, self->sensed},
                  {STRUT_KEY_CONTROLLER_INTEGRAL, per_second},
                  {STRUT_KEY_CONTROLLER_DERIVATIVE, seconds},
-                 {STRUT_KEY_CONTROLLER_LEAST, c->signal},
-                 {STRUT_KEY_CONTROLLER_MOST, c->signal}};
+                 {STRUT_KEY_CONTROLLER_LEAST, self->signal},
+                 {STRUT_KEY_CONTROLLER_MOST, self->signal}};
   bool fine = true;
   for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-    fine =
-        strut_store_number(reader, fields, numbers[i].key, owner, numbers[i].dimension, &c->keys) &&
-        fine;
+    fine = strut_store_number(reader, fields, numbers[i].key, owner, numbers[i].dimension,
+                              &self->keys) &&
+           fine;
   return fine;
 }
 
-static void put_error(builder *b, const controller *c) {
-  put_number(b, c->keys.target, c->sensed);
-  put_column(b, STRUT_COLUMN_SENSOR, c->keys.sensor);
-  put_operation(b, STRUT_OPERATION_SUBTRACT);
+static void put_error(builder *self, const controller *c) {
+  put_number(self, c->keys.target, c->sensed);
+  put_column(self, STRUT_COLUMN_SENSOR, c->keys.sensor);
+  put_operation(self, STRUT_OPERATION_SUBTRACT);
 }
 
 /* gain e + integral I - derivative ds/dt, within the limits if wanted. */
-static void put_control(builder *b, const controller *c, bool limited) {
+static void put_control(builder *self, const controller *c, bool limited) {
   strut_dimension per_second = c->gained, seconds = c->gained;
   per_second.s -= 1.0f, seconds.s += 1.0f;
-  put_number(b, c->keys.gain, c->gained);
-  put_error(b, c);
-  put_operation(b, STRUT_OPERATION_MULTIPLY);
+  put_number(self, c->keys.gain, c->gained);
+  put_error(self, c);
+  put_operation(self, STRUT_OPERATION_MULTIPLY);
   if (c->state >= 0) {
-    put_number(b, c->keys.integral, per_second);
-    put_column(b, STRUT_COLUMN_STATE, c->state);
-    put_operation(b, STRUT_OPERATION_MULTIPLY);
-    put_operation(b, STRUT_OPERATION_ADD);
+    put_number(self, c->keys.integral, per_second);
+    put_column(self, STRUT_COLUMN_STATE, c->state);
+    put_operation(self, STRUT_OPERATION_MULTIPLY);
+    put_operation(self, STRUT_OPERATION_ADD);
   }
   if (c->keys.derivative != 0.0) {
-    put_number(b, c->keys.derivative, seconds);
-    put_column(b, STRUT_COLUMN_SENSOR_RATE, c->keys.sensor);
-    put_operation(b, STRUT_OPERATION_MULTIPLY);
-    put_operation(b, STRUT_OPERATION_SUBTRACT);
+    put_number(self, c->keys.derivative, seconds);
+    put_column(self, STRUT_COLUMN_SENSOR_RATE, c->keys.sensor);
+    put_operation(self, STRUT_OPERATION_MULTIPLY);
+    put_operation(self, STRUT_OPERATION_SUBTRACT);
   }
   for (int k = 0; k < 2 && limited; k++) {
     if (!c->keys.limited[k]) continue;
-    put_number(b, c->keys.limit[k], c->signal);
-    put_operation(b, k ? STRUT_OPERATION_MIN : STRUT_OPERATION_MAX);
+    put_number(self, c->keys.limit[k], c->signal);
+    put_operation(self, k ? STRUT_OPERATION_MIN : STRUT_OPERATION_MAX);
   }
 }
 
 enum { MOST_INSTRUCTIONS = 64 };
 
 /* The rate of the integral: the error, less what the limits cut off over the gain (no windup). */
-static bool make_integral(strut_reader *reader, const controller *c) {
+static bool make_integral(strut_reader *reader, const controller *self) {
   builder b;
   if (!begin_program(reader, MOST_INSTRUCTIONS, &b)) return false;
-  put_error(&b, c);
-  if ((c->keys.limited[0] || c->keys.limited[1]) && c->keys.gain != 0.0) {
-    put_control(&b, c, true);
-    put_control(&b, c, false);
+  put_error(&b, self);
+  if ((self->keys.limited[0] || self->keys.limited[1]) && self->keys.gain != 0.0) {
+    put_control(&b, self, true);
+    put_control(&b, self, false);
     put_operation(&b, STRUT_OPERATION_SUBTRACT);
-    put_number(&b, c->keys.gain, c->gained);
+    put_number(&b, self->keys.gain, self->gained);
     put_operation(&b, STRUT_OPERATION_DIVIDE);
     put_operation(&b, STRUT_OPERATION_ADD);
   }
-  reader->scene->states[c->state].rate = end_program(&b);
+  reader->scene->states[self->state].rate = end_program(&b);
   return true;
 }
 
 /* The state of the integral, as NAME_integral. */
-static bool add_integral(strut_reader *reader, const strut_tree *key, controller *c) {
+static bool add_integral(strut_reader *reader, const strut_tree *key, controller *self) {
   const char *name = strut_arena_format(&reader->scratch, "%s_integral", key->text);
-  strut_dimension dimension = c->sensed;
+  strut_dimension dimension = self->sensed;
   dimension.s += 1.0f;
   if (!name) reader->out_of_memory = true;
   if (!name) return false;
@@ -224,8 +225,8 @@ static bool add_integral(strut_reader *reader, const strut_tree *key, controller
                        key->text, name);
     return false;
   }
-  c->state = strut_add_state(reader, key, name, dimension, 0.0);
-  return make_integral(reader, c);
+  self->state = strut_add_state(reader, key, name, dimension, 0.0);
+  return make_integral(reader, self);
 }
 
 static int32_t read_pid(strut_reader *reader, const strut_tree *key) {

@@ -136,7 +136,8 @@ bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void 
     return strut_report_error(reader, value->place,
                               "expected positions such as {n1: [10 mm, 0]} for %s, found %s",
                               strut_owner_text(reader, owner), strut_found(reader, value));
-  for (const strut_tree *k = value->first; k; k = k->next->next) keys |= is_key(reader, k);
+  for (const strut_tree *tree = value->first; tree; tree = tree->next->next)
+    keys |= is_key(reader, tree);
   if (keys) return read_keys(reader, value, owner, configuration);
   configuration->shaped = true; /* `{}` is the drawn shape */
   return strut_read_node_pairs(reader, value, owner, STRUT_DIM_LENGTH, take_position);
@@ -160,26 +161,26 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   strut_owner owner = {"the initial state", NULL};
   if (slot->state != STRUT_GIVEN) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
-  strut_parameter_state *p = strut_parameter_find(reader, slot->value->text);
+  strut_parameter_state *parameters = strut_parameter_find(reader, slot->value->text);
   int32_t direct = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, slot->value->text);
-  if (!p || !p->text)
+  if (!parameters || !parameters->text)
     return strut_read_reference(reader, slot->value, slot->key->text, owner,
                                 STRUT_THING_CONFIGURATION);
   if (direct >= 0) {
     strut_report_error(reader, slot->value->place,
                        "'%s' is both a configuration and a text parameter; rename one of them",
-                       p->name);
+                       parameters->name);
     return -1;
   }
-  p->used = true;
-  const char *text = p->set ? p->set->text : p->value->text;
+  parameters->used = true;
+  const char *text = parameters->set ? parameters->set->text : parameters->value->text;
   int32_t index = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, text);
-  strut_place place = !p->set              ? p->value->place
-                      : p->set->place.line ? p->set->place
-                                           : p->key->place;
+  strut_place place = !parameters->set              ? parameters->value->place
+                      : parameters->set->place.line ? parameters->set->place
+                                                    : parameters->key->place;
   if (index < 0)
     strut_report_error(reader, place, "unknown configuration '%s' in parameter '%s'%s",
-                       strut_sanitised_text(reader, text), p->name,
+                       strut_sanitised_text(reader, text), parameters->name,
                        strut_hint_of_things(reader, text, STRUT_THING_CONFIGURATION));
   return index;
 }
@@ -333,7 +334,7 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
 }
 
 static void read_of(strut_reader *reader) {
-  strut_experiment *e = reader->experiment;
+  strut_experiment *experiment = reader->experiment;
   const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
   const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
   strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
@@ -344,8 +345,8 @@ static void read_of(strut_reader *reader) {
         "the run lacks 'of', expected the actuator, load or signal whose periods count");
     reader->run.broken = true;
   } else if (of->state == STRUT_GIVEN && periods->state != STRUT_ABSENT) {
-    e->period_signal = find_signal_of(reader, of->value, &broken);
-    e->period_of = strut_keep_text(reader, of->value->text);
+    experiment->period_signal = find_signal_of(reader, of->value, &broken);
+    experiment->period_of = strut_keep_text(reader, of->value->text);
     if (broken) reader->run.broken = true;
   }
 }
@@ -372,13 +373,13 @@ static void read_last(strut_reader *reader, strut_fields *fields, int key, strut
 }
 
 static void read_run(strut_reader *reader) {
-  strut_experiment *e = reader->experiment;
+  strut_experiment *experiment = reader->experiment;
   strut_owner owner = {"the measurement", NULL}, run = {"the run", NULL};
   reader->measure = (strut_fields){.section = STRUT_SECTION_MEASURE};
   if (!strut_read_section(reader, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, run.kind, &reader->run))
     return;
   read_of(reader);
-  strut_store(reader, &reader->run, run, e);
+  strut_store(reader, &reader->run, run, experiment);
   const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
   if (measure->state == STRUT_GIVEN) {
     strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
@@ -386,12 +387,12 @@ static void read_run(strut_reader *reader) {
     read_switch(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY),
                 STRUT_KEY_MEASURE_STEADY, owner.kind, (strut_owner){"the steady state", NULL},
                 &reader->steady);
-    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &e->measure_last);
-    strut_store(reader, &reader->measure, owner, e);
+    read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &experiment->measure_last);
+    strut_store(reader, &reader->measure, owner, experiment);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
   }
   if (reader->measure.broken) reader->run.broken = true;
-  if (reader->run.broken) e->duration = e->periods = 0.0;
+  if (reader->run.broken) experiment->duration = experiment->periods = 0.0;
 }
 
 /*
@@ -408,16 +409,16 @@ static void choose_settling_step(strut_reader *reader) {
 }
 
 void strut_read_experiment(strut_reader *reader) {
-  strut_experiment *e = reader->experiment;
+  strut_experiment *experiment = reader->experiment;
   strut_owner solver = {"the solver", NULL}, output = {"the output", NULL};
   read_run(reader);
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, solver.kind,
                          &reader->solver))
-    strut_store(reader, &reader->solver, solver, e);
+    strut_store(reader, &reader->solver, solver, experiment);
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))
     return;
-  strut_store(reader, &reader->output, output, e);
-  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, output, &e->output_last);
+  strut_store(reader, &reader->output, output, experiment);
+  read_last(reader, &reader->output, STRUT_KEY_OUTPUT_LAST, output, &experiment->output_last);
 }

@@ -209,10 +209,11 @@ static int claims_word(void *context, strut_piece word) {
 }
 
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
-                               strut_owner owner, strut_program *program, strut_quantity *q) {
+                               strut_owner owner, strut_program *program,
+                               strut_quantity *quantity) {
   strut_compiler compiler = {.column = find_column, .pair = find_pair, .claims = claims_word};
   if (strut_ends_at_comma(reader, value, key, owner)) return false;
-  program->instruction = strut_compile(reader, value, key, owner, &compiler, q);
+  program->instruction = strut_compile(reader, value, key, owner, &compiler, quantity);
   if (!program->instruction) return false;
   program->length = compiler.length;
   program->depth = compiler.depth;
@@ -300,17 +301,17 @@ void strut_list_states(strut_reader *reader) {
 
 /* The rate of a state must have its unit per second; of an angle, an angle may be left out. */
 static bool check_rate(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                       const char *key, strut_dimension wanted, const strut_quantity *q) {
+                       const char *key, strut_dimension wanted, const strut_quantity *quantity) {
   char expected[80], found[80];
   wanted.s -= 1.0f;
   strut_dimension plain = wanted;
   plain.angle -= 1.0f;
-  bool angle = wanted.angle != 0.0f && strut_dimension_equal(q->dimension, plain);
-  if (q->bare || angle || strut_dimension_equal(q->dimension, wanted)) return true;
+  bool angle = wanted.angle != 0.0f && strut_dimension_equal(quantity->dimension, plain);
+  if (quantity->bare || angle || strut_dimension_equal(quantity->dimension, wanted)) return true;
   strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
                      strut_dimension_name(wanted, expected, sizeof expected), key,
                      strut_owner_text(reader, owner),
-                     strut_dimension_name(q->dimension, found, sizeof found));
+                     strut_dimension_name(quantity->dimension, found, sizeof found));
   return false;
 }
 

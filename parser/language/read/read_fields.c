@@ -306,8 +306,8 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
     strut_suppress_missing(fields);
     return;
   }
-  for (const strut_tree *k = map->first; k; k = k->next->next)
-    read_pair_of_map(reader, fields, k, owner);
+  for (const strut_tree *tree = map->first; tree; tree = tree->next->next)
+    read_pair_of_map(reader, fields, tree, owner);
   if (section == STRUT_SECTION_FRICTION) check_coefficients(reader, fields, owner);
 }
 

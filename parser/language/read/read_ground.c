@@ -33,7 +33,7 @@ enum { UNREAD, PLAIN, DRIVEN };
 
 /* `mu` of a layer, a number or a signal, read once although a group's holds for many contacts. */
 static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                    strut_friction *f, double *mu) {
+                    strut_friction *friction, double *mu) {
   strut_slot *slot = strut_slot_of(fields, STRUT_KEY_FRICTION_MU);
   if (slot->state != STRUT_GIVEN) return false;
   bool signal = slot->value->kind == STRUT_TREE_MAP ||
@@ -53,28 +53,28 @@ static bool read_mu(strut_reader *reader, strut_fields *fields, strut_owner owne
     fields->broken = true;
     return false;
   }
-  f->driven = slot->number[1] >= DRIVEN;
-  f->signal = f->driven ? (int32_t)slot->number[1] - DRIVEN : 0;
-  *mu = f->driven ? 1.0 : slot->number[0];
+  friction->driven = slot->number[1] >= DRIVEN;
+  friction->signal = friction->driven ? (int32_t)slot->number[1] - DRIVEN : 0;
+  *mu = friction->driven ? 1.0 : slot->number[0];
   return true;
 }
 
 /* A layer gives a coefficient over a signal of those below, which leaves none of its own for the other. */
-static void stop_driving(friction_layers *f, strut_fields *fields) {
+static void stop_driving(friction_layers *self, strut_fields *fields) {
   static const int keys[] = {STRUT_KEY_FRICTION_MU_STATIC, STRUT_KEY_FRICTION_MU_KINETIC};
-  for (size_t k = 0; k < sizeof keys / sizeof keys[0] && f->friction.driven; k++)
-    if (strut_slot_of(fields, keys[k])->state != STRUT_GIVEN) f->given &= ~key_bit(keys[k]);
-  f->friction.driven = false;
-  f->friction.signal = 0;
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0] && self->friction.driven; k++)
+    if (strut_slot_of(fields, keys[k])->state != STRUT_GIVEN) self->given &= ~key_bit(keys[k]);
+  self->friction.driven = false;
+  self->friction.signal = 0;
 }
 
 /*
  * Coefficients of a layer beside mu_static and mu_kinetic. Those without a direction replace both
  * directions of the layers below.
  */
-static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fields *fields,
+static void set_coefficients(strut_reader *reader, friction_layers *self, strut_fields *fields,
                              strut_owner owner) {
-  strut_friction *all = &f->friction;
+  strut_friction *all = &self->friction;
   const unsigned directions =
       key_bit(STRUT_KEY_FRICTION_MU_FORWARD) | key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
       key_bit(STRUT_KEY_FRICTION_MU_BACKWARD) | key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC);
@@ -82,17 +82,17 @@ static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fie
   bool both = read_mu(reader, fields, owner, all, &mu);
   if (both || is_given(fields, STRUT_KEY_FRICTION_MU_STATIC, &all->mu_static) ||
       is_given(fields, STRUT_KEY_FRICTION_MU_KINETIC, &all->mu_kinetic)) {
-    all->directional = false, f->given &= ~directions;
-    if (!both) stop_driving(f, fields);
+    all->directional = false, self->given &= ~directions;
+    if (!both) stop_driving(self, fields);
     all->mu_static_backward = all->mu_kinetic_backward = 0.0;
   }
   if (!both && is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD, &mu)) {
-    stop_driving(f, fields);
+    stop_driving(self, fields);
     both = true;
   }
   if (both) {
     all->mu_static = all->mu_kinetic = mu;
-    f->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+    self->given |= key_bit(STRUT_KEY_FRICTION_MU_STATIC) | key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
   }
   is_given(fields, STRUT_KEY_FRICTION_MU_FORWARD_STATIC, &all->mu_static);
   if (is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD, &mu)) {
@@ -102,42 +102,42 @@ static void set_coefficients(strut_reader *reader, friction_layers *f, strut_fie
   is_given(fields, STRUT_KEY_FRICTION_MU_BACKWARD_STATIC, &all->mu_static_backward);
 }
 
-static void add_layer(strut_reader *reader, friction_layers *f, strut_fields *fields,
+static void add_layer(strut_reader *reader, friction_layers *self, strut_fields *fields,
                       strut_owner owner) {
-  f->any = true;
-  f->last = fields->map;
-  f->owner = owner;
-  if (fields->broken) f->broken = true;
-  strut_store(reader, fields, owner, &f->friction);
+  self->any = true;
+  self->last = fields->map;
+  self->owner = owner;
+  if (fields->broken) self->broken = true;
+  strut_store(reader, fields, owner, &self->friction);
   for (int i = 0; i < strut_section_size(STRUT_SECTION_FRICTION); i++)
-    if (fields->slot[i].state == STRUT_GIVEN) f->given |= 1u << i;
-  set_coefficients(reader, f, fields, owner);
-  f->broken = f->broken || fields->broken;
+    if (fields->slot[i].state == STRUT_GIVEN) self->given |= 1u << i;
+  set_coefficients(reader, self, fields, owner);
+  self->broken = self->broken || fields->broken;
 }
 
 /* Reports a key that the law needs and no layer gives, at the top layer. */
-static void report_lack(strut_reader *reader, const friction_layers *f, int key) {
+static void report_lack(strut_reader *reader, const friction_layers *self, int key) {
   char expected[200];
   bool speed = strut_key_at(key)->measure == STRUT_MEASURE_VELOCITY;
-  strut_report_error(reader, f->last->place, "%s lacks '%s', expected %s",
-                     strut_owner_text(reader, f->owner), strut_key_at(key)->name,
+  strut_report_error(reader, self->last->place, "%s lacks '%s', expected %s",
+                     strut_owner_text(reader, self->owner), strut_key_at(key)->name,
                      speed ? strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected)
                            : "a number such as 0.5");
 }
 
 /* Reports static friction below kinetic friction, once for each top layer. False: there is some. */
-static bool check_static_friction(strut_reader *reader, const friction_layers *f,
+static bool check_static_friction(strut_reader *reader, const friction_layers *self,
                                   const strut_tree **reported) {
-  int way = strut_friction_holds_too_little(&f->friction);
+  int way = strut_friction_holds_too_little(&self->friction);
   if (way == 0) return true;
-  if (*reported != f->last)
+  if (*reported != self->last)
     strut_report_error(
-        reader, f->last->place,
+        reader, self->last->place,
         "%s has static friction %g below kinetic friction %g, expected at least as much: a "
         "contact that gives way would be held again at once",
-        strut_owner_text(reader, f->owner), strut_friction_static(&f->friction, way),
-        strut_friction_kinetic(&f->friction, way));
-  *reported = f->last;
+        strut_owner_text(reader, self->owner), strut_friction_static(&self->friction, way),
+        strut_friction_kinetic(&self->friction, way));
+  *reported = self->last;
   return false;
 }
 
@@ -145,32 +145,32 @@ static bool check_static_friction(strut_reader *reader, const friction_layers *f
  * Are all numbers given that the friction law needs? What is missing is reported once for each top layer;
  * where no coefficient is given, as one lacking key, mu.
  */
-static bool complete_friction(strut_reader *reader, friction_layers *f,
+static bool complete_friction(strut_reader *reader, friction_layers *self,
                               const strut_tree **reported) {
-  if (!f->any || f->broken) return !f->broken;
-  if (!(f->given & key_bit(STRUT_KEY_FRICTION_LAW))) f->friction.law = STRUT_FRICTION_KARNOPP;
-  bool statics = f->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
-  bool kinetics = f->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
+  if (!self->any || self->broken) return !self->broken;
+  if (!(self->given & key_bit(STRUT_KEY_FRICTION_LAW))) self->friction.law = STRUT_FRICTION_KARNOPP;
+  bool statics = self->given & key_bit(STRUT_KEY_FRICTION_MU_STATIC);
+  bool kinetics = self->given & key_bit(STRUT_KEY_FRICTION_MU_KINETIC);
   bool complete = true, reported_mu = false;
   for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
     int key = strut_key_find(STRUT_SECTION_FRICTION, strut_friction_key(p));
-    if (!strut_friction_needs(f->friction.law, p) || (f->given & key_bit(key))) continue;
+    if (!strut_friction_needs(self->friction.law, p) || (self->given & key_bit(key))) continue;
     complete = false;
     bool both = !statics && !kinetics &&
                 (key == STRUT_KEY_FRICTION_MU_STATIC || key == STRUT_KEY_FRICTION_MU_KINETIC);
-    if (*reported != f->last && !(both && reported_mu))
-      report_lack(reader, f, both ? STRUT_KEY_FRICTION_MU : key);
+    if (*reported != self->last && !(both && reported_mu))
+      report_lack(reader, self, both ? STRUT_KEY_FRICTION_MU : key);
     reported_mu = reported_mu || both;
   }
-  bool forward = f->given & (key_bit(STRUT_KEY_FRICTION_MU_FORWARD) |
-                             key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
-                             key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC));
-  if (forward && !f->friction.directional) {
-    if (*reported != f->last) report_lack(reader, f, STRUT_KEY_FRICTION_MU_BACKWARD);
+  bool forward = self->given & (key_bit(STRUT_KEY_FRICTION_MU_FORWARD) |
+                                key_bit(STRUT_KEY_FRICTION_MU_FORWARD_STATIC) |
+                                key_bit(STRUT_KEY_FRICTION_MU_BACKWARD_STATIC));
+  if (forward && !self->friction.directional) {
+    if (*reported != self->last) report_lack(reader, self, STRUT_KEY_FRICTION_MU_BACKWARD);
     complete = false;
   }
-  if (!complete) *reported = f->last;
-  return complete && check_static_friction(reader, f, reported);
+  if (!complete) *reported = self->last;
+  return complete && check_static_friction(reader, self, reported);
 }
 
 /* The defaults of all contacts: those of the ground. */
@@ -203,9 +203,9 @@ static void own_friction(strut_reader *reader, strut_fields *fields, strut_owner
 
 /* Forward is where the part's own x points, along the ground. */
 static bool turn_friction(strut_reader *reader, const strut_tree *key, const double along[2],
-                          strut_friction *f) {
+                          strut_friction *friction) {
   double ahead[2] = {1.0, 0.0};
-  if (!reader->scope || !f->directional) return true;
+  if (!reader->scope || !friction->directional) return true;
   strut_place_vector(reader, NULL, ahead);
   double forward = strut_dot(ahead, along, 2);
   if (fabs(forward) < 1e-9)
@@ -215,9 +215,10 @@ static bool turn_friction(strut_reader *reader, const strut_tree *key, const dou
         "on the ground; give its contact where it is placed",
         strut_local_name(reader, key->text));
   if (forward > 0.0) return true;
-  double statics = f->mu_static, kinetics = f->mu_kinetic;
-  f->mu_static = f->mu_static_backward, f->mu_kinetic = f->mu_kinetic_backward;
-  f->mu_static_backward = statics, f->mu_kinetic_backward = kinetics;
+  double statics = friction->mu_static, kinetics = friction->mu_kinetic;
+  friction->mu_static = friction->mu_static_backward,
+  friction->mu_kinetic = friction->mu_kinetic_backward;
+  friction->mu_static_backward = statics, friction->mu_kinetic_backward = kinetics;
   return true;
 }
 
@@ -478,14 +479,16 @@ static void name_contacts(strut_reader *reader) {
   for (size_t g = 0; g < scene->ground_count && pieces; g++)
     surfaces += pieces[g] = pieces_of(&scene->grounds[g]);
   for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
-    strut_contact *c = &scene->contacts[i];
-    const char *node = scene->nodes[c->node].name, *ground = scene->grounds[c->ground].name;
+    strut_contact *contact = &scene->contacts[i];
+    const char *node = scene->nodes[contact->node].name,
+               *ground = scene->grounds[contact->ground].name;
     size_t size = strlen(node) + strlen(ground) + 16, used;
     char *name = strut_reader_allocate(reader, &scene->arena, size, 1);
     if (!name) return;
     used = (size_t)snprintf(name, size, "%s%s%s", node, *ground ? "." : "", ground);
-    if (pieces[c->ground] > 1) snprintf(name + used, size - used, ".%d", (int)c->piece + 1);
-    c->name = name;
+    if (pieces[contact->ground] > 1)
+      snprintf(name + used, size - used, ".%d", (int)contact->piece + 1);
+    contact->name = name;
   }
 }
 
@@ -567,8 +570,8 @@ static void note_contacts_without_ground(strut_reader *reader) {
   if (!map || !map->first || strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->key ||
       strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->key)
     return;
-  for (const strut_copy *s = strut_scope_of(reader, map->first); s; s = s->outer)
-    if (s->closed) return;
+  for (const strut_copy *copy = strut_scope_of(reader, map->first); copy; copy = copy->outer)
+    if (copy->closed) return;
   strut_note(reader->diagnostics, map->first->place,
              "the scene has no ground that the contacts of the part could touch");
 }

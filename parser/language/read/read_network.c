@@ -24,37 +24,37 @@ typedef struct network {
   size_t line;
 } network;
 
-static bool fail_network(network *n, const char *what, const char *text) {
-  const strut_tree *value = strut_tree_find(n->key->next, "network", NULL);
-  return strut_report_error(n->reader, value->place, "network '%s', line %zu: %s%s",
-                            strut_sanitised_text(n->reader, value->text), n->line, what,
-                            text ? strut_sanitised_text(n->reader, text) : "");
+static bool fail_network(network *self, const char *what, const char *text) {
+  const strut_tree *value = strut_tree_find(self->key->next, "network", NULL);
+  return strut_report_error(self->reader, value->place, "network '%s', line %zu: %s%s",
+                            strut_sanitised_text(self->reader, value->text), self->line, what,
+                            text ? strut_sanitised_text(self->reader, text) : "");
 }
 
 /* A signal of the network with a name of its own. */
-static int32_t add_neuron(network *n, const char *name, const strut_signal *signal) {
-  strut_reader *reader = n->reader;
+static int32_t add_neuron(network *self, const char *name, const strut_signal *signal) {
+  strut_reader *reader = self->reader;
   strut_signal named = *signal;
   if (!name) reader->out_of_memory = true;
   if (!name) return -1;
   if (strut_name_map_find(&reader->signal_names, name) >= 0 || strut_parameter_find(reader, name)) {
-    strut_report_error(reader, n->key->place,
+    strut_report_error(reader, self->key->place,
                        "a neuron of controller '%s' is called '%s', a name that is taken",
-                       n->key->text, name);
+                       self->key->text, name);
     return -1;
   }
   named.name = strut_keep_text(reader, name);
-  return strut_add_controller_signal(reader, n->key, &named, STRUT_DIM_NONE, false, NULL);
+  return strut_add_controller_signal(reader, self->key, &named, STRUT_DIM_NONE, false, NULL);
 }
 
 /* bias + w1 x1 + w2 x2 + ..., and its tanh unless it is `linear`. */
-static bool make_neuron(network *n, const double *weight, bool linear, strut_signal *signal) {
+static bool make_neuron(network *self, const double *weight, bool linear, strut_signal *signal) {
   builder b;
-  if (!begin_program(n->reader, 4 * n->before + 2, &b)) return false;
-  put_number(&b, weight[n->before], STRUT_DIM_NONE);
-  for (size_t i = 0; i < n->before; i++) {
+  if (!begin_program(self->reader, 4 * self->before + 2, &b)) return false;
+  put_number(&b, weight[self->before], STRUT_DIM_NONE);
+  for (size_t i = 0; i < self->before; i++) {
     put_number(&b, weight[i], STRUT_DIM_NONE);
-    put_column(&b, STRUT_COLUMN_SIGNAL, n->first + (int32_t)i);
+    put_column(&b, STRUT_COLUMN_SIGNAL, self->first + (int32_t)i);
     put_operation(&b, STRUT_OPERATION_MULTIPLY);
     put_operation(&b, STRUT_OPERATION_ADD);
   }
@@ -65,7 +65,7 @@ static bool make_neuron(network *n, const double *weight, bool linear, strut_sig
 }
 
 /* The numbers of a line become a neuron's weights. */
-static bool read_weights(network *n, char *line) {
+static bool read_weights(network *self, char *line) {
   size_t count = 0;
   char *rest = line;
   for (char *cell; (cell = rest); count++) {
@@ -76,27 +76,27 @@ static bool read_weights(network *n, char *line) {
     while (length && strchr(" \t\r", cell[length - 1])) cell[--length] = '\0';
     double value;
     if (!strut_csv_number(cell, &value) || !isfinite(value))
-      return fail_network(n, "expected a number, found ", *cell ? cell : "nothing");
-    if (count <= n->before) n->weight[count] = value;
+      return fail_network(self, "expected a number, found ", *cell ? cell : "nothing");
+    if (count <= self->before) self->weight[count] = value;
   }
-  if (count == n->before + 1) return true;
+  if (count == self->before + 1) return true;
   char text[120];
   snprintf(text, sizeof text,
            "%zu numbers, expected %zu: a weight for each of %zu values, and a bias", count,
-           n->before + 1, n->before);
-  return fail_network(n, text, NULL);
+           self->before + 1, self->before);
+  return fail_network(self, text, NULL);
 }
 
 /* The neurons so far are the values before those to come. */
-static bool end_layer(network *n) {
-  if (!n->width) return true;
-  n->passes *= (double)n->width;
-  if (n->passes > MOST_PASSES)
-    return fail_network(n,
+static bool end_layer(network *self) {
+  if (!self->width) return true;
+  self->passes *= (double)self->width;
+  if (self->passes > MOST_PASSES)
+    return fail_network(self,
                         "the network is too large to be evaluated as signals; give it to strut's "
                         "run step by step from Python",
                         NULL);
-  n->first = n->layer, n->before = n->width, n->width = 0, n->layers++;
+  self->first = self->layer, self->before = self->width, self->width = 0, self->layers++;
   return true;
 }
 
@@ -121,43 +121,45 @@ static size_t count_layers(const char *text) {
 }
 
 /* A damaged file may have NUL bytes, at which a text would end. */
-static bool is_text(network *n, const strut_safe_text *text) {
+static bool is_text(network *self, const strut_safe_text *text) {
   const char *end = memchr(text->text, '\0', text->length);
-  for (const char *c = text->text; end && c < end; c++) n->line += *c == '\n';
-  return !end || fail_network(n, "a NUL byte is not allowed; the file is damaged", NULL);
+  for (const char *c = text->text; end && c < end; c++) self->line += *c == '\n';
+  return !end || fail_network(self, "a NUL byte is not allowed; the file is damaged", NULL);
 }
 
 /* All neurons of the text; those of the last layer are the last signals. */
-static bool read_layers(network *n, char *text) {
+static bool read_layers(network *self, char *text) {
   size_t layers = count_layers(text);
   char *next = text;
-  for (char *line; (line = next); n->line++) {
+  for (char *line; (line = next); self->line++) {
     next = strchr(line, '\n');
     if (next) *next++ = '\0';
     char first = first_of(line);
-    if (!first && !end_layer(n)) return false;
+    if (!first && !end_layer(self)) return false;
     if (!first || first == '#') continue;
     line[strcspn(line, "#")] = '\0';
     strut_signal signal;
-    bool linear = n->keys.last == 1 && n->layers + 1 == layers;
-    if (n->neurons++ == MOST_NEURONS) return fail_network(n, "more than 1000 neurons", NULL);
-    if (!read_weights(n, line) || !make_neuron(n, n->weight, linear, &signal)) return false;
-    int32_t index = add_neuron(n,
-                               strut_arena_format(&n->reader->scratch, "%s_%zu_%zu", n->key->text,
-                                                  n->layers + 1, n->width + 1),
-                               &signal);
+    bool linear = self->keys.last == 1 && self->layers + 1 == layers;
+    if (self->neurons++ == MOST_NEURONS) return fail_network(self, "more than 1000 neurons", NULL);
+    if (!read_weights(self, line) || !make_neuron(self, self->weight, linear, &signal))
+      return false;
+    int32_t index =
+        add_neuron(self,
+                   strut_arena_format(&self->reader->scratch, "%s_%zu_%zu", self->key->text,
+                                      self->layers + 1, self->width + 1),
+                   &signal);
     if (index < 0) return false;
-    if (n->width++ == 0) n->layer = index;
+    if (self->width++ == 0) self->layer = index;
   }
-  if (n->neurons == 0) n->line = 1;
-  if (n->neurons == 0) return fail_network(n, "there is no neuron in this file", NULL);
-  return end_layer(n);
+  if (self->neurons == 0) self->line = 1;
+  if (self->neurons == 0) return fail_network(self, "there is no neuron in this file", NULL);
+  return end_layer(self);
 }
 
 /* Each input is a signal, so that neurons share it. */
-static bool read_inputs(network *n, strut_owner owner) {
-  strut_reader *reader = n->reader;
-  const strut_tree *list = n->keys.inputs;
+static bool read_inputs(network *self, strut_owner owner) {
+  strut_reader *reader = self->reader;
+  const strut_tree *list = self->keys.inputs;
   if (list->kind != STRUT_TREE_LIST || list->count == 0)
     return strut_refuse_form(reader, STRUT_KEY_NETWORK_INPUTS, list, owner);
   for (const strut_tree *item = list->first; item; item = item->next) {
@@ -174,52 +176,53 @@ static bool read_inputs(network *n, strut_owner owner) {
           "what is usual",
           strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
     const char *name =
-        strut_arena_format(&reader->scratch, "%s_in_%zu", n->key->text, n->before + 1);
-    int32_t index = add_neuron(n, name, &signal);
+        strut_arena_format(&reader->scratch, "%s_in_%zu", self->key->text, self->before + 1);
+    int32_t index = add_neuron(self, name, &signal);
     if (index < 0) return false;
-    if (n->before++ == 0) n->first = index;
+    if (self->before++ == 0) self->first = index;
   }
   return true;
 }
 
 /* The output times the scale, whose unit is that of the signal. */
-static int32_t add_output(network *n, strut_owner owner) {
-  const strut_tree *value = n->keys.scale;
+static int32_t add_output(network *self, strut_owner owner) {
+  const strut_tree *value = self->keys.scale;
   strut_quantity scale = {.value = 1.0, .bare = true};
   builder b;
-  if (n->keys.output > (int64_t)n->before) {
-    strut_report_error(n->reader, n->key->place,
-                       "controller '%s' is output %d of a network that has %zu", n->key->text,
-                       (int)n->keys.output, n->before);
+  if (self->keys.output > (int64_t)self->before) {
+    strut_report_error(self->reader, self->key->place,
+                       "controller '%s' is output %d of a network that has %zu", self->key->text,
+                       (int)self->keys.output, self->before);
     return -1;
   }
-  if (value &&
-      !strut_read_any_quantity(n->reader, value, "scale", owner, "a number such as '5 mm'", &scale))
+  if (value && !strut_read_any_quantity(self->reader, value, "scale", owner,
+                                        "a number such as '5 mm'", &scale))
     return -1;
   strut_dimension dimension = scale.bare ? STRUT_DIM_NONE : scale.dimension;
-  if (!begin_program(n->reader, 3, &b)) return -1;
+  if (!begin_program(self->reader, 3, &b)) return -1;
   put_number(&b, scale.value, dimension);
-  put_column(&b, STRUT_COLUMN_SIGNAL, n->first + (int32_t)n->keys.output - 1);
+  put_column(&b, STRUT_COLUMN_SIGNAL, self->first + (int32_t)self->keys.output - 1);
   put_operation(&b, STRUT_OPERATION_MULTIPLY);
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
   signal.program = end_program(&b);
-  signal.every = n->keys.every;
-  return strut_add_controller_signal(n->reader, n->key, &signal, dimension, scale.bare,
+  signal.every = self->keys.every;
+  return strut_add_controller_signal(self->reader, self->key, &signal, dimension, scale.bare,
                                      scale.bare ? value : NULL);
 }
 
 /* The text of the file that `value` names, relative to the file that says so. */
-static bool open_network(network *n, const strut_tree *value, strut_safe_text *text) {
-  const strut_diagnostics *d = n->reader->diagnostics;
-  const char *from = value->place.file ? d->used[value->place.file - 1].file : d->file;
-  const char *folder = strut_folder_of(d->file, &n->reader->scratch);
+static bool open_network(network *self, const strut_tree *value, strut_safe_text *text) {
+  const strut_diagnostics *diagnostics = self->reader->diagnostics;
+  const char *from =
+      value->place.file ? diagnostics->used[value->place.file - 1].file : diagnostics->file;
+  const char *folder = strut_folder_of(diagnostics->file, &self->reader->scratch);
   strut_error error = {0};
-  if (!folder) n->reader->out_of_memory = true;
+  if (!folder) self->reader->out_of_memory = true;
   if (!folder) return false;
   strut_status status = strut_safe_read(folder, from, value->text, LARGEST_FILE, text, &error);
-  if (status == STRUT_NO_MEMORY) n->reader->out_of_memory = true;
+  if (status == STRUT_NO_MEMORY) self->reader->out_of_memory = true;
   if (status != STRUT_OK && status != STRUT_NO_MEMORY)
-    strut_report_error(n->reader, value->place, "%s", error.message);
+    strut_report_error(self->reader, value->place, "%s", error.message);
   return status == STRUT_OK;
 }
 

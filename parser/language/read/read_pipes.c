@@ -56,11 +56,12 @@ static bool add_signal(strut_reader *reader, const strut_tree *key, const char *
 
 void strut_add_pipe_drives(strut_reader *reader) {
   for (size_t k = 0; k < reader->pipe_drive_count && reader->scene->actuators; k++) {
-    const strut_pipe_drive *d = &reader->pipe_drives[k];
-    const char *name = name_of(reader, d->key, d->end, &reader->things[STRUT_THING_ACTUATOR].names);
+    const strut_pipe_drive *drive = &reader->pipe_drives[k];
+    const char *name =
+        name_of(reader, drive->key, drive->end, &reader->things[STRUT_THING_ACTUATOR].names);
     if (!name) continue;
-    strut_actuator *actuator = strut_add_thing(reader, STRUT_THING_ACTUATOR, d->key, name);
-    actuator->cell = d->cell, actuator->signal = d->signal;
+    strut_actuator *actuator = strut_add_thing(reader, STRUT_THING_ACTUATOR, drive->key, name);
+    actuator->cell = drive->cell, actuator->signal = drive->signal;
   }
 }
 

@@ -14,8 +14,9 @@ static const strut_observable *row_at(size_t k) {
 }
 
 strut_dimension strut_column_dimension(strut_column_kind kind) {
-  const strut_observable *o = strut_observable_at(kind);
-  return (strut_dimension){(float)o->kg, (float)o->m, (float)o->s, (float)o->angle};
+  const strut_observable *observable = strut_observable_at(kind);
+  return (strut_dimension){(float)observable->kg, (float)observable->m, (float)observable->s,
+                           (float)observable->angle};
 }
 
 /* What every scene has stands before the dot: the i-th of them, or NULL. */
@@ -283,13 +284,13 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
   return 1;
 }
 
-static strut_instruction *keep_program(strut_reader *reader, const strut_compiler *c) {
+static strut_instruction *keep_program(strut_reader *reader, const strut_compiler *compiler) {
   strut_scene *scene = reader->scene;
   char unit[STRUT_SUFFIX_TEXT];
   strut_instruction *program =
-      strut_reader_allocate(reader, &scene->arena, c->length, sizeof *program);
-  for (size_t i = 0; i < c->length && program; i++) {
-    const strut_compiled *from = &c->program[i];
+      strut_reader_allocate(reader, &scene->arena, compiler->length, sizeof *program);
+  for (size_t i = 0; i < compiler->length && program; i++) {
+    const strut_compiled *from = &compiler->program[i];
     program[i] = from->instruction;
     if (from->instruction.operation != STRUT_OPERATION_NUMBER) continue;
     strut_dimension_suffix(from->dimension, unit, sizeof unit);
@@ -299,12 +300,13 @@ static strut_instruction *keep_program(strut_reader *reader, const strut_compile
 }
 
 strut_instruction *strut_compile(strut_reader *reader, const strut_tree *value, const char *key,
-                                 strut_owner owner, strut_compiler *compiler, strut_quantity *q) {
+                                 strut_owner owner, strut_compiler *compiler,
+                                 strut_quantity *quantity) {
   compiler->context = reader;
   compiler->program = strut_reader_allocate(reader, &reader->scratch, strlen(value->text) + 1,
                                             sizeof *compiler->program);
   if (!compiler->program) return NULL;
-  if (strut_read_program(reader, value, key, owner, compiler, q))
+  if (strut_read_program(reader, value, key, owner, compiler, quantity))
     return keep_program(reader, compiler);
   reader->failed = true;
   return NULL;
@@ -327,11 +329,11 @@ strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *val
 
 /* The expression; *dimension is that of its values. */
 static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                            strut_quantity_definition *d, strut_dimension *dimension) {
+                            strut_quantity_definition *definition, strut_dimension *dimension) {
   strut_compiler compiler = {.column = find_column, .pair = find_pair};
   strut_quantity q;
-  d->program = strut_compile(reader, value, "of", owner, &compiler, &q);
-  if (!d->program) return false;
+  definition->program = strut_compile(reader, value, "of", owner, &compiler, &q);
+  if (!definition->program) return false;
   if (!q.varies) {
     strut_report_error(
         reader, value->place,
@@ -340,15 +342,16 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
         strut_owner_text(reader, owner));
     return false;
   }
-  d->length = compiler.length;
-  d->depth = compiler.depth;
+  definition->length = compiler.length;
+  definition->depth = compiler.depth;
   *dimension = q.bare ? STRUT_DIM_NONE : q.dimension;
   return true;
 }
 
 /* Without a unit the accuracy is relative, otherwise absolute. */
 static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_owner owner,
-                          strut_dimension dimension, bool known, strut_quantity_definition *d) {
+                          strut_dimension dimension, bool known,
+                          strut_quantity_definition *definition) {
   char expected[120], found[80];
   strut_quantity q;
   if (slot->state != STRUT_GIVEN) return;
@@ -368,23 +371,24 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
     strut_report_error(reader, slot->value->place, "'accuracy' of %s must be above zero, found %g",
                        strut_owner_text(reader, owner), q.value);
   else
-    d->accuracy = q.value, d->accuracy_unit = relative ? NULL : d->unit;
+    definition->accuracy = q.value, definition->accuracy_unit = relative ? NULL : definition->unit;
 }
 
 /* The value that an arrival waits for, of the expression's dimension; NULL: that is not known. */
 static void read_target(strut_reader *reader, strut_fields *fields, strut_owner owner,
-                        const strut_dimension *dimension, strut_quantity_definition *d) {
+                        const strut_dimension *dimension, strut_quantity_definition *definition) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_QUANTITY_TARGET);
-  bool wanted = d->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
+  bool wanted = definition->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
   char unit[STRUT_SUFFIX_TEXT];
   if (slot->state == STRUT_BROKEN) return;
   if (!given && wanted)
     strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
                        strut_owner_text(reader, owner));
   if (!given || !wanted || !dimension) return;
-  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_RANGE_ANY, &d->target);
+  strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_RANGE_ANY,
+                    &definition->target);
   strut_dimension_suffix(*dimension, unit, sizeof unit);
-  d->target_unit = *unit ? strut_keep_text(reader, unit) : "1";
+  definition->target_unit = *unit ? strut_keep_text(reader, unit) : "1";
 }
 
 bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
@@ -402,14 +406,14 @@ bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char 
 }
 
 /* A moment is no energy, though the dimension is that of one. */
-static bool is_moment(const strut_quantity_definition *d) {
-  return d->length == 1 && d->program[0].operation == STRUT_OPERATION_COLUMN &&
-         d->program[0].column.kind == STRUT_COLUMN_MOMENT && d->take != STRUT_TAKE_RATE &&
-         d->take != STRUT_TAKE_ARRIVAL;
+static bool is_moment(const strut_quantity_definition *definition) {
+  return definition->length == 1 && definition->program[0].operation == STRUT_OPERATION_COLUMN &&
+         definition->program[0].column.kind == STRUT_COLUMN_MOMENT &&
+         definition->take != STRUT_TAKE_RATE && definition->take != STRUT_TAKE_ARRIVAL;
 }
 
 static void read_quantity(strut_reader *reader, const strut_tree *key,
-                          strut_quantity_definition *d) {
+                          strut_quantity_definition *definition) {
   strut_owner owner = {"quantity", key->text};
   char unit[STRUT_SUFFIX_TEXT];
   strut_dimension dimension = STRUT_DIM_NONE;
@@ -427,15 +431,15 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
                                 "take: max}")) {
     return;
   }
-  bool known = of && read_expression(reader, of, owner, d, &dimension);
-  strut_store_fields(reader, &fields, owner, &reader->scene->arena, d, sizeof *d);
-  if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, d);
-  if (d->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
-  if (d->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
+  bool known = of && read_expression(reader, of, owner, definition, &dimension);
+  strut_store_fields(reader, &fields, owner, &reader->scene->arena, definition, sizeof *definition);
+  if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, definition);
+  if (definition->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
+  if (definition->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
   strut_dimension_suffix(dimension, unit, sizeof unit);
-  d->unit = is_moment(d) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
+  definition->unit = is_moment(definition) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
-                known, d);
+                known, definition);
 }
 
 /* The name becomes a column of a study's table and a word of `keep`. */
@@ -450,16 +454,16 @@ static bool may_be_called(strut_reader *reader, const strut_tree *key) {
 }
 
 void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
-  strut_experiment *e = reader->experiment;
+  strut_experiment *experiment = reader->experiment;
   if (slot->state != STRUT_GIVEN) return;
   const strut_tree *map = slot->value;
-  e->quantities =
-      strut_reader_allocate(reader, &reader->scene->arena, map->count, sizeof *e->quantities);
-  if (!e->quantities) return;
+  experiment->quantities = strut_reader_allocate(reader, &reader->scene->arena, map->count,
+                                                 sizeof *experiment->quantities);
+  if (!experiment->quantities) return;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    strut_quantity_definition *d = &e->quantities[e->quantity_count++];
-    d->name = strut_keep_text(reader, key->text);
-    d->unit = "1";
-    if (may_be_called(reader, key)) read_quantity(reader, key, d);
+    strut_quantity_definition *definition = &experiment->quantities[experiment->quantity_count++];
+    definition->name = strut_keep_text(reader, key->text);
+    definition->unit = "1";
+    if (may_be_called(reader, key)) read_quantity(reader, key, definition);
   }
 }

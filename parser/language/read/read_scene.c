@@ -283,11 +283,11 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
   source->declared = strut_arena_allocate(&source->arena, source->count, sizeof *source->declared);
   if (!source->declared) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < source->count; i++) {
-    const strut_parameter_state *p = &reader->parameters[i];
-    source->declared[i] = (strut_declared){.name = p->name, /* the tree's */
-                                           .text = p->text,
-                                           .bare = p->quantity.bare,
-                                           .dimension = p->quantity.dimension};
+    const strut_parameter_state *parameters = &reader->parameters[i];
+    source->declared[i] = (strut_declared){.name = parameters->name, /* the tree's */
+                                           .text = parameters->text,
+                                           .bare = parameters->quantity.bare,
+                                           .dimension = parameters->quantity.dimension};
   }
   return STRUT_OK;
 }

@@ -22,7 +22,7 @@ static const char *signal_name(const void *context, size_t i) {
 }
 
 /* Appends a signal; returns its index, or -1 where memory is out. */
-static int32_t add_signal(strut_reader *reader, const strut_signal *signal, const meaning *m,
+static int32_t add_signal(strut_reader *reader, const strut_signal *signal, const meaning *self,
                           const strut_tree *value) {
   size_t i = reader->signal_count, states = reader->signal_capacity;
   if (!strut_grow(&reader->signal_state, &states, i, sizeof *reader->signal_state) ||
@@ -32,29 +32,30 @@ static int32_t add_signal(strut_reader *reader, const strut_signal *signal, cons
   }
   reader->signal_count++;
   reader->signals[i] = *signal;
-  reader->signal_state[i] = (strut_signal_state){m->dimension, m->bare, value, NULL};
+  reader->signal_state[i] = (strut_signal_state){self->dimension, self->bare, value, NULL};
   return (int32_t)i;
 }
 
 /* A value of the signal: as expected, or of the same dimension as those before it. */
 static bool read_value(strut_reader *reader, const strut_tree *value, const char *key,
-                       strut_owner owner, meaning *m, double *number) {
+                       strut_owner owner, meaning *self, double *number) {
   strut_quantity quantity;
-  if (m->expected || !m->bare)
-    return strut_read_number(reader, value, key, owner, m->expected ? *m->expected : m->dimension,
-                             STRUT_RANGE_ANY, number);
+  if (self->expected || !self->bare)
+    return strut_read_number(reader, value, key, owner,
+                             self->expected ? *self->expected : self->dimension, STRUT_RANGE_ANY,
+                             number);
   if (!strut_read_any_quantity(reader, value, key, owner, "a number", &quantity)) return false;
   *number = quantity.value;
   if (strut_dimension_equal(quantity.dimension, STRUT_DIM_LENGTH) && !quantity.bare)
     *number *= strut_scope_scale(reader, value);
-  m->bare = quantity.bare;
-  m->dimension = quantity.dimension;
+  self->bare = quantity.bare;
+  self->dimension = quantity.dimension;
   return true;
 }
 
 /* A sine, half-sine, square or ramp: its amplitude measures what the user of the signal needs. */
 static bool read_wave(strut_reader *reader, strut_section section, const strut_tree *map,
-                      strut_owner owner, meaning *m, strut_signal *signal) {
+                      strut_owner owner, meaning *self, strut_signal *signal) {
   strut_fields fields;
   strut_read_fields(reader, section, map, owner, &fields);
   strut_require(reader, &fields, owner, map->place);
@@ -63,14 +64,14 @@ static bool read_wave(strut_reader *reader, strut_section section, const strut_t
     const strut_slot *slot = &fields.slot[i];
     const strut_key *key = strut_key_at(strut_section_first(section) + i);
     if (slot->state == STRUT_GIVEN && key->measure == STRUT_MEASURE_CONTEXT)
-      fine = read_value(reader, slot->value, key->name, owner, m, &signal->amplitude) && fine;
+      fine = read_value(reader, slot->value, key->name, owner, self, &signal->amplitude) && fine;
   }
   strut_store(reader, &fields, owner, signal);
   return fine;
 }
 
-static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
-                       strut_signal *signal) {
+static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner owner,
+                       meaning *self, strut_signal *signal) {
   double *time = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *time);
   double *value = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *value);
   bool fine = true;
@@ -86,7 +87,7 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
     fine = strut_read_number(reader, point->first, "table", owner, STRUT_DIM_TIME, STRUT_RANGE_ANY,
                              &time[i]) &&
            fine;
-    fine = read_value(reader, point->first->next, "table", owner, m, &value[i]) && fine;
+    fine = read_value(reader, point->first->next, "table", owner, self, &value[i]) && fine;
   }
   signal->time = time;
   signal->value = value;
@@ -96,21 +97,23 @@ static bool read_table(strut_reader *reader, const strut_tree *list, strut_owner
 static int32_t read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                            strut_owner owner, const strut_dimension *expected);
 
-static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *m,
+static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner owner, meaning *self,
                      strut_signal *signal) {
   int32_t *terms = strut_reader_allocate(reader, &reader->scene->arena, list->count, sizeof *terms);
   bool fine = terms != NULL;
   for (const strut_tree *item = terms ? list->first : NULL; item; item = item->next) {
-    const strut_dimension *expected = m->expected ? m->expected : m->bare ? NULL : &m->dimension;
+    const strut_dimension *expected = self->expected ? self->expected
+                                      : self->bare   ? NULL
+                                                     : &self->dimension;
     int32_t term = read_signal(reader, item, "sum", owner, expected);
     if (term < 0) {
       fine = false;
       continue;
     }
     terms[signal->term_count++] = term;
-    if (!m->expected && m->bare && !reader->signal_state[term].bare) {
-      m->bare = false;
-      m->dimension = reader->signal_state[term].dimension;
+    if (!self->expected && self->bare && !reader->signal_state[term].bare) {
+      self->bare = false;
+      self->dimension = reader->signal_state[term].dimension;
     }
   }
   signal->terms = terms;
@@ -118,21 +121,21 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
 }
 
 static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                            meaning *m, strut_signal *signal) {
+                            meaning *self, strut_signal *signal) {
   char wanted[200];
   strut_quantity q;
   if (!strut_read_signal_program(reader, value, "expression", owner, &signal->program, &q))
     return false;
-  m->bare = q.bare;
-  m->dimension = q.dimension;
+  self->bare = q.bare;
+  self->dimension = q.dimension;
   bool scaled = strut_scope_scale(reader, value) != 1.0;
   if (scaled)
     return strut_report_error(
         reader, value->place,
         "the lengths in an expression are not scaled, but this copy is; make the "
         "size a parameter of the part and 'set' it");
-  if (!m->expected || q.bare || strut_dimension_equal(q.dimension, *m->expected)) return true;
-  strut_expected_quantity(reader->signal_quantity, *m->expected, wanted, sizeof wanted);
+  if (!self->expected || q.bare || strut_dimension_equal(q.dimension, *self->expected)) return true;
+  strut_expected_quantity(reader->signal_quantity, *self->expected, wanted, sizeof wanted);
   return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
 }
 
@@ -457,7 +460,8 @@ static bool read_speed(strut_reader *reader, const strut_tree *value, strut_owne
 }
 
 /* The angle counts from the copy's own x, and in a mirrored one clockwise. */
-static void turn_unbalance(strut_reader *reader, const strut_slot *signal, strut_unbalance *u) {
+static void turn_unbalance(strut_reader *reader, const strut_slot *signal,
+                           strut_unbalance *unbalance) {
   double ahead[2] = {1.0, 0.0};
   if (!reader->scope) return;
   strut_place_vector(reader, NULL, ahead);
@@ -467,23 +471,24 @@ static void turn_unbalance(strut_reader *reader, const strut_slot *signal, strut
     strut_report_error(reader, signal->key->place,
                        "the angle of unbalance '%s' is a signal, which cannot turn the other way "
                        "round in a mirrored copy; give a 'speed'",
-                       strut_local_name(reader, u->name));
-  if (flips) u->speed = -u->speed;
-  u->phase = flips ? turn - u->phase : turn + u->phase;
+                       strut_local_name(reader, unbalance->name));
+  if (flips) unbalance->speed = -unbalance->speed;
+  unbalance->phase = flips ? turn - unbalance->phase : turn + unbalance->phase;
 }
 
 bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, strut_owner owner,
                           void *object) {
-  strut_unbalance *u = object;
+  strut_unbalance *unbalance = object;
   const strut_slot *speed = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SPEED);
   const strut_slot *signal = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SIGNAL);
-  bool fine = speed->state != STRUT_GIVEN || read_speed(reader, speed->value, owner, &u->speed);
+  bool fine =
+      speed->state != STRUT_GIVEN || read_speed(reader, speed->value, owner, &unbalance->speed);
   if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields->broken)
     fine = strut_report_error(
         reader, fields->key->place,
         "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
         strut_owner_text(reader, owner));
-  turn_unbalance(reader, signal, u);
+  turn_unbalance(reader, signal, unbalance);
   return fine;
 }
 
@@ -510,14 +515,14 @@ static double drawn_length(const strut_scene *scene, int32_t member) {
 
 /* A share of the member, or a length from its first node as drawn, which becomes a share. */
 static bool read_position(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                          strut_sliding_mass *s) {
+                          strut_sliding_mass *mass) {
   strut_quantity q;
   if (!strut_read_any_quantity(reader, value, "position", owner, "a number", &q)) return false;
-  s->share = q.value;
+  mass->share = q.value;
   if (q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) return true;
   if (strut_dimension_equal(q.dimension, STRUT_DIM_LENGTH)) {
-    double length = s->member >= 0 ? drawn_length(reader->scene, s->member) : 0.0;
-    if (length > 0.0) s->share *= strut_scope_scale(reader, value) / length;
+    double length = mass->member >= 0 ? drawn_length(reader->scene, mass->member) : 0.0;
+    if (length > 0.0) mass->share *= strut_scope_scale(reader, value) / length;
     return length > 0.0;
   }
   return strut_refuse_dimension(reader, value, "position", owner,
@@ -526,11 +531,11 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
 
 bool strut_read_slider(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        void *object) {
-  strut_sliding_mass *s = object;
+  strut_sliding_mass *mass = object;
   const strut_slot *member = strut_slot_of(fields, STRUT_KEY_SLIDER_MEMBER);
   const strut_slot *position = strut_slot_of(fields, STRUT_KEY_SLIDER_POSITION);
   if (member->state == STRUT_GIVEN && !is_beam(reader, member->value, owner))
-    s->member = strut_read_reference(reader, member->value, "member", owner, STRUT_THING_MEMBER);
-  bool fine = position->state != STRUT_GIVEN || read_position(reader, position->value, owner, s);
-  return fine && s->member >= 0;
+    mass->member = strut_read_reference(reader, member->value, "member", owner, STRUT_THING_MEMBER);
+  bool fine = position->state != STRUT_GIVEN || read_position(reader, position->value, owner, mass);
+  return fine && mass->member >= 0;
 }

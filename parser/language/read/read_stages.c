@@ -132,14 +132,14 @@ static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
 /* A release needs a coordinate that supports or earlier stages hold, and a stage before. */
 static bool check_releases(strut_reader *reader, const strut_tree *item) {
   const strut_scene *scene = reader->scene;
-  const strut_experiment *e = reader->experiment;
+  const strut_experiment *experiment = reader->experiment;
   bool fine = true;
   uint8_t *held =
       strut_reader_allocate(reader, &reader->scratch, 2 * scene->node_count, sizeof *held);
   if (!held) return false;
   for (size_t i = 0; i < 2 * scene->node_count; i++) held[i] = scene->nodes[i / 2].fixed[i % 2];
   for (size_t k = 0; item; item = item->next, k++) {
-    const strut_path_stage *stage = &e->stages[k];
+    const strut_path_stage *stage = &experiment->stages[k];
     for (size_t i = 0; i < stage->hold_count; i++) held[stage->hold[i]] = 1;
     int32_t over = stage->over ? strut_coordinate_find(scene, stage->over) : -1;
     if (over >= 0) held[over] = 1;
@@ -171,7 +171,7 @@ static bool check_ends(strut_reader *reader, const strut_tree *item) {
 }
 
 void strut_read_stages(strut_reader *reader) {
-  strut_experiment *e = reader->experiment;
+  strut_experiment *experiment = reader->experiment;
   strut_fields path;
   strut_owner owner = {"the path", NULL};
   bool fine = true;
@@ -184,7 +184,7 @@ void strut_read_stages(strut_reader *reader) {
   }
   strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, slot->value, owner, &path);
   if (path.broken) return;
-  strut_store(reader, &path, owner, e);
+  strut_store(reader, &path, owner, experiment);
   const strut_slot *stages = strut_slot_of(&path, STRUT_KEY_SCENE_PATH_STAGES);
   if (stages->state == STRUT_ABSENT &&
       strut_slot_of(&path, STRUT_KEY_SCENE_PATH_FRICTION)->state == STRUT_ABSENT)
@@ -198,14 +198,15 @@ void strut_read_stages(strut_reader *reader) {
                        strut_found(reader, stages->value));
     return;
   }
-  e->stages =
-      strut_reader_allocate(reader, &reader->scene->arena, stages->value->count, sizeof *e->stages);
+  experiment->stages = strut_reader_allocate(reader, &reader->scene->arena, stages->value->count,
+                                             sizeof *experiment->stages);
   int number = 0;
-  for (const strut_tree *item = stages->value->first; item && e->stages; item = item->next) {
-    fine = read_stage(reader, item, number + 1, &e->stages[number]) && fine;
+  for (const strut_tree *item = stages->value->first; item && experiment->stages;
+       item = item->next) {
+    fine = read_stage(reader, item, number + 1, &experiment->stages[number]) && fine;
     number++;
   }
-  fine = fine && e->stages && check_releases(reader, stages->value->first) &&
+  fine = fine && experiment->stages && check_releases(reader, stages->value->first) &&
          check_ends(reader, stages->value->first);
-  e->stage_count = fine ? (size_t)number : 0;
+  experiment->stage_count = fine ? (size_t)number : 0;
 }

@@ -131,19 +131,19 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
                            strut_dimension dimension, strut_pair_taker *take) {
   bool fine = true;
   bool known = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
-  for (const strut_tree *k = map->first; k; k = k->next->next) {
+  for (const strut_tree *tree = map->first; tree; tree = tree->next->next) {
     double pair[2];
-    int32_t node = strut_find_thing(reader, STRUT_THING_NODE, k, k->text);
+    int32_t node = strut_find_thing(reader, STRUT_THING_NODE, tree, tree->text);
     if (node < 0 && known)
-      strut_report_error(reader, k->place, "unknown node '%s' in %s%s",
-                         strut_sanitised_text(reader, k->text), strut_owner_text(reader, owner),
-                         strut_hint_of_things(reader, k->text, STRUT_THING_NODE));
-    if (!strut_read_pair(reader, k->next, k->text, owner, dimension, pair) || node < 0)
+      strut_report_error(reader, tree->place, "unknown node '%s' in %s%s",
+                         strut_sanitised_text(reader, tree->text), strut_owner_text(reader, owner),
+                         strut_hint_of_things(reader, tree->text, STRUT_THING_NODE));
+    if (!strut_read_pair(reader, tree->next, tree->text, owner, dimension, pair) || node < 0)
       fine = false;
     else if (take) {
       if (strut_dimension_equal(dimension, STRUT_DIM_LENGTH))
-        strut_place_point(reader, k->next, pair);
-      take(reader, node, pair, k->next);
+        strut_place_point(reader, tree->next, pair);
+      take(reader, node, pair, tree->next);
     }
   }
   return fine;
@@ -395,14 +395,14 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
 /* Is it one of the two forms? If not, that is reported. */
 bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner owner,
                          void *object) {
-  strut_distance_spring *d = object;
+  strut_distance_spring *spring = object;
   const strut_slot *along = strut_slot_of(fields, STRUT_KEY_DISTANCE_ALONG);
   bool pair = strut_slot_of(fields, STRUT_KEY_DISTANCE_NODES)->state != STRUT_ABSENT;
   bool node = strut_slot_of(fields, STRUT_KEY_DISTANCE_NODE)->state != STRUT_ABSENT;
   bool line = strut_slot_of(fields, STRUT_KEY_DISTANCE_LINE)->state != STRUT_ABSENT;
   if (strut_scope_flips(reader)) { /* left is the other side */
-    int32_t first = d->line[0];
-    d->line[0] = d->line[1], d->line[1] = first;
+    int32_t first = spring->line[0];
+    spring->line[0] = spring->line[1], spring->line[1] = first;
   }
   if (fields->broken) fields->unresolved = true;
   if (fields->broken) return true;

@@ -75,20 +75,20 @@ int32_t strut_read_reference(strut_reader *reader, const strut_tree *value, cons
 
 static bool read_thing(strut_reader *reader, strut_thing thing, const strut_tree *key,
                        const char *name, void *object) {
-  const kind *k = &kinds[thing];
+  const kind *self = &kinds[thing];
   const strut_thing_row *row = strut_thing_at(thing);
   strut_owner owner = {row->word, name};
   strut_fields fields;
-  bool fine = k->variable ? strut_check_variable_name(reader, key, row->word)
-                          : strut_read_name(reader, key, row->word);
-  if (k->read) return k->read(reader, key, object) && fine;
-  strut_read_fields_of(reader, k->section, key, owner, &fields);
-  if (k->group >= 0) strut_apply_groups(reader, &fields, k->group, owner);
+  bool fine = self->variable ? strut_check_variable_name(reader, key, row->word)
+                             : strut_read_name(reader, key, row->word);
+  if (self->read) return self->read(reader, key, object) && fine;
+  strut_read_fields_of(reader, self->section, key, owner, &fields);
+  if (self->group >= 0) strut_apply_groups(reader, &fields, self->group, owner);
   strut_require(reader, &fields, owner, key->place);
   fine = strut_store_fields(reader, &fields, owner, &reader->scene->arena, object, row->size) &&
          fine && !fields.broken;
-  if (fields.unresolved && k->joins) reader->ends_unknown = true;
-  if (!fine && k->heavy) reader->masses_unknown = true;
+  if (fields.unresolved && self->joins) reader->ends_unknown = true;
+  if (!fine && self->heavy) reader->masses_unknown = true;
   return fine && !fields.unresolved;
 }
 
@@ -124,12 +124,12 @@ void *strut_add_thing(strut_reader *reader, strut_thing thing, const strut_tree 
 }
 
 void strut_read_things(strut_reader *reader, strut_thing thing) {
-  const kind *k = &kinds[thing];
+  const kind *self = &kinds[thing];
   strut_things_read *things = &reader->things[thing];
-  const strut_tree *map = strut_entries(reader, k->key);
-  bool broken = strut_slot_of(&reader->top, k->key)->state == STRUT_BROKEN;
-  if (broken && k->joins) reader->ends_unknown = true;
-  if (broken && k->heavy) reader->masses_unknown = true;
+  const strut_tree *map = strut_entries(reader, self->key);
+  bool broken = strut_slot_of(&reader->top, self->key)->state == STRUT_BROKEN;
+  if (broken && self->joins) reader->ends_unknown = true;
+  if (broken && self->heavy) reader->masses_unknown = true;
   bool of_pipes = thing == STRUT_THING_SENSOR || thing == STRUT_THING_ACTUATOR;
   size_t most = (map ? map->count : 0) + (of_pipes ? strut_pipes_most(reader) : 0);
   if (!most || !strut_reserve_things(reader, thing, most) || !map) return;

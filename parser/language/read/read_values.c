@@ -281,8 +281,8 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
                      strut_owner owner, strut_dimension dimension, double number[2]) {
   if (value->kind == STRUT_TREE_LIST && value->count == 2) {
-    const strut_tree *x = value->first, *y = x->next;
-    bool fine = strut_read_number(reader, x, key, owner, dimension, STRUT_RANGE_ANY, &number[0]);
+    const strut_tree *tree = value->first, *y = tree->next;
+    bool fine = strut_read_number(reader, tree, key, owner, dimension, STRUT_RANGE_ANY, &number[0]);
     return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
   }
   const char *example = strut_dimension_example(dimension);
@@ -307,14 +307,15 @@ static const char *local_name(const void *context, size_t i) {
 }
 
 static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
-                                 const strut_namespace *n) {
-  const local_names within = {reader, n};
+                                 const strut_namespace *namespace) {
+  const local_names within = {reader, namespace};
   const char *word = value->text, *hint = strut_copy_hint(reader, value);
-  if (!*hint && reader->scope) hint = strut_hint(reader, word, local_name, &within, n->count);
+  if (!*hint && reader->scope)
+    hint = strut_hint(reader, word, local_name, &within, namespace->count);
   if (*hint) return hint;
-  if (!strut_within_part(reader, value, n->map))
-    return strut_hint(reader, word, n->name, n->context, n->count);
-  return strut_name_map_find(n->map, word) < 0 ? "" : "; a part knows its own only";
+  if (!strut_within_part(reader, value, namespace->map))
+    return strut_hint(reader, word, namespace->name, namespace->context, namespace->count);
+  return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
 int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const char *key,

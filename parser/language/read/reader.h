@@ -533,7 +533,7 @@ void strut_read_pipes(strut_reader *reader);
 void strut_add_pipe_drives(strut_reader *reader);
 /** An expression of the time, sensors and signals; in the scene's memory. */
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
-                               strut_owner owner, strut_program *program, strut_quantity *q);
+                               strut_owner owner, strut_program *program, strut_quantity *quantity);
 /**
  * Index of a named signal that an expression reads, and its dimension, NAN of one made of plain numbers;
  * -1: it was reported.
@@ -541,7 +541,8 @@ bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, co
 int32_t strut_use_signal(strut_reader *reader, const char *name, strut_dimension *dimension);
 /** The expression as a program that the scene keeps, by the compiler's names; NULL: that is reported. */
 strut_instruction *strut_compile(strut_reader *reader, const strut_tree *value, const char *key,
-                                 strut_owner owner, strut_compiler *compiler, strut_quantity *q);
+                                 strut_owner owner, strut_compiler *compiler,
+                                 strut_quantity *quantity);
 /**
  * Within {...} a comma ends an unquoted text: angle(a, b) becomes "angle(a". True where that has
  * happened, which is reported.

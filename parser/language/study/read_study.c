@@ -16,30 +16,30 @@ static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the p
                          check_owner = {"the check", NULL};
 
 const char *strut_study_declared_name(const void *context, size_t i) {
-  const strut_study_reader *r = context;
-  return i < r->declared_count ? r->declared[i].name : NULL;
+  const strut_study_reader *reader = context;
+  return i < reader->declared_count ? reader->declared[i].name : NULL;
 }
 
-const strut_declared *strut_study_declared(const strut_study_reader *r, const char *name) {
-  for (size_t i = 0; i < r->declared_count; i++)
-    if (strcmp(r->declared[i].name, name) == 0) return &r->declared[i];
+const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name) {
+  for (size_t i = 0; i < reader->declared_count; i++)
+    if (strcmp(reader->declared[i].name, name) == 0) return &reader->declared[i];
   return NULL;
 }
 
-const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key) {
-  const strut_declared *found = strut_study_declared(r, key->text);
+const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key) {
+  const strut_declared *found = strut_study_declared(reader, key->text);
   if (!found) {
-    strut_report_error(
-        r->reader, key->place, "the model has no parameter '%s'%s",
-        strut_sanitised_text(r->reader, key->text),
-        strut_hint(r->reader, key->text, strut_study_declared_name, r, r->declared_count));
+    strut_report_error(reader->reader, key->place, "the model has no parameter '%s'%s",
+                       strut_sanitised_text(reader->reader, key->text),
+                       strut_hint(reader->reader, key->text, strut_study_declared_name, reader,
+                                  reader->declared_count));
     return NULL;
   }
-  if (strut_name_map_find(&r->given, found->name) >= 0) {
-    strut_report_error(r->reader, key->place, "parameter '%s' is given twice", found->name);
+  if (strut_name_map_find(&reader->given, found->name) >= 0) {
+    strut_report_error(reader->reader, key->place, "parameter '%s' is given twice", found->name);
     return NULL;
   }
-  strut_add_name(r->reader, &r->given, found->name, (size_t)(found - r->declared));
+  strut_add_name(reader->reader, &reader->given, found->name, (size_t)(found - reader->declared));
   return found;
 }
 
@@ -50,16 +50,17 @@ static bool overridden(const strut_study_file *file, size_t overrides, const cha
   return false;
 }
 
-static void read_settings(strut_study_reader *r, const strut_slot *slot, size_t overrides,
+static void read_settings(strut_study_reader *reader, const strut_slot *slot, size_t overrides,
                           bool may_yield) {
-  strut_study_file *file = r->file;
+  strut_study_file *file = reader->file;
   if (slot->state != STRUT_GIVEN) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
     const strut_tree *value = key->next;
-    if (!strut_read_scalar(r->reader, value, key->text, study_owner, "an expression or a text"))
+    if (!strut_read_scalar(reader->reader, value, key->text, study_owner,
+                           "an expression or a text"))
       continue;
     bool yields = may_yield && overridden(file, overrides, key->text);
-    const strut_declared *parameter = strut_study_parameter(r, key);
+    const strut_declared *parameter = strut_study_parameter(reader, key);
     if (!parameter || yields) continue;
     file->settings[file->setting_count++] = (strut_setting){
         .name = parameter->name, .text = value->text, .place = strut_overlay_place(value->place)};
@@ -67,23 +68,24 @@ static void read_settings(strut_study_reader *r, const strut_slot *slot, size_t 
 }
 
 /* Reports --set of parameters that the study itself varies or derives. */
-static void check_overrides(strut_study_reader *r, size_t overrides) {
-  strut_study_file *file = r->file;
+static void check_overrides(strut_study_reader *reader, size_t overrides) {
+  strut_study_file *file = reader->file;
   for (size_t i = 0; i < overrides; i++) {
     const char *name = file->settings[i].name;
     for (size_t k = 0; k < file->column_count; k++)
       if (file->columns[k].name && strcmp(file->columns[k].name, name) == 0)
-        strut_report_error(r->reader, file->columns[k].place,
+        strut_report_error(reader->reader, file->columns[k].place,
                            "--set %s=%s: an axis gives '%s' its values", name,
-                           strut_sanitised_text(r->reader, file->settings[i].text), name);
+                           strut_sanitised_text(reader->reader, file->settings[i].text), name);
     if (file->followed.name && strcmp(file->followed.name, name) == 0)
-      strut_report_error(r->reader, file->followed.place,
+      strut_report_error(reader->reader, file->followed.place,
                          "--set %s=%s: the study follows motions over '%s'", name,
-                         strut_sanitised_text(r->reader, file->settings[i].text), name);
+                         strut_sanitised_text(reader->reader, file->settings[i].text), name);
     for (size_t k = overrides; k < file->setting_count; k++)
       if (strcmp(file->settings[k].name, name) == 0)
-        strut_report_error(r->reader, (strut_place){0}, "--set %s=%s: the study derives '%s'", name,
-                           strut_sanitised_text(r->reader, file->settings[i].text), name);
+        strut_report_error(reader->reader, (strut_place){0}, "--set %s=%s: the study derives '%s'",
+                           name, strut_sanitised_text(reader->reader, file->settings[i].text),
+                           name);
   }
 }
 
@@ -127,19 +129,20 @@ static const char *list_kept(const strut_study *study, kept_names *names, char *
   return text;
 }
 
-static void refuse_kept(strut_study_reader *r, const strut_tree *item,
+static void refuse_kept(strut_study_reader *reader, const strut_tree *item,
                         const strut_tree *quantities) {
   char expected[700];
-  const strut_study *study = &r->file->study;
+  const strut_study *study = &reader->file->study;
   bool run = study->compute == STRUT_COMPUTE_RUN;
   kept_names names = {.quantities = run ? quantities : NULL};
   list_kept(study, &names, expected, sizeof expected);
-  if (!strut_read_scalar(r->reader, item, "keep", study_owner, expected)) return;
+  if (!strut_read_scalar(reader->reader, item, "keep", study_owner, expected)) return;
   size_t count = names.word_count + (names.quantities ? names.quantities->count : 0);
-  strut_report_error(r->reader, item->place, "expected %s%s for 'keep' of the study, found '%s'%s",
-                     expected, run ? ", or a quantity that the model measures," : "",
-                     strut_sanitised_text(r->reader, item->text),
-                     strut_hint(r->reader, item->text, kept_name, &names, count));
+  strut_report_error(reader->reader, item->place,
+                     "expected %s%s for 'keep' of the study, found '%s'%s", expected,
+                     run ? ", or a quantity that the model measures," : "",
+                     strut_sanitised_text(reader->reader, item->text),
+                     strut_hint(reader->reader, item->text, kept_name, &names, count));
 }
 
 static bool is_twice(const strut_tree *list, const strut_tree *item) {
@@ -158,136 +161,142 @@ static bool is_column(const char *text) {
 }
 
 /* Words, names of what the model measures, and columns of the motion, which it then measures at its end. */
-static void read_keep(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+static void read_keep(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   if (slot->state != STRUT_GIVEN) return;
   bool run = study->compute == STRUT_COMPUTE_RUN;
   const strut_tree *quantities =
-      run && r->file->source_count ? quantities_of(r->file->sources[0]) : NULL;
-  study->quantities = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
-                                            sizeof *study->quantities);
+      run && reader->file->source_count ? quantities_of(reader->file->sources[0]) : NULL;
+  study->quantities = strut_reader_allocate(reader->reader, &reader->file->arena,
+                                            slot->value->count + 1, sizeof *study->quantities);
   if (!study->quantities) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     bool scalar = item->kind == STRUT_TREE_SCALAR;
     int word = scalar ? strut_keep_find(item->text, study->compute) : -1;
     if (scalar && is_twice(slot->value, item))
-      strut_report_error(r->reader, item->place, "'%s' appears twice in 'keep' of the study",
+      strut_report_error(reader->reader, item->place, "'%s' appears twice in 'keep' of the study",
                          item->text);
     else if (word >= 0)
       strut_keep_add(&study->keep, (unsigned)word);
     else if (scalar && quantities && strut_tree_find(quantities, item->text, NULL))
       study->quantities[study->quantity_count++] = item->text;
-    else if (scalar && run && is_column(item->text) && strut_study_measure(r->file, item))
+    else if (scalar && run && is_column(item->text) && strut_study_measure(reader->file, item))
       study->quantities[study->quantity_count++] = item->text;
     else
-      refuse_kept(r, item, quantities);
+      refuse_kept(reader, item, quantities);
   }
 }
 
-static void require_column(strut_study_reader *r, const strut_fields *fields, const strut_tree *key,
-                           const char *kind, const char *name, const char *text) {
+static void require_column(strut_study_reader *reader, const strut_fields *fields,
+                           const strut_tree *key, const char *kind, const char *name,
+                           const char *text) {
   if (text || fields->broken) return;
-  strut_report_error(r->reader, key->place, "%s '%s' lacks '%s', expected a column of the table",
-                     kind, key->text, name);
+  strut_report_error(reader->reader, key->place,
+                     "%s '%s' lacks '%s', expected a column of the table", kind, key->text, name);
 }
 
 /* Reports columns that the kind of figure needs. */
-static void require_columns(strut_study_reader *r, const strut_fields *fields,
-                            const strut_tree *key, const strut_study_figure *f) {
+static void require_columns(strut_study_reader *reader, const strut_fields *fields,
+                            const strut_tree *key, const strut_study_figure *figure) {
   static const char *const kinds[] = {"figure", "map", "figure", "", "", "", "figure", ""};
-  const char *kind = kinds[f->kind];
-  if (f->kind == STRUT_FIGURE_PERIOD || f->kind == STRUT_FIGURE_SNAPSHOTS ||
-      f->kind == STRUT_FIGURE_BEST || f->kind == STRUT_FIGURE_WINNER)
+  const char *kind = kinds[figure->kind];
+  if (figure->kind == STRUT_FIGURE_PERIOD || figure->kind == STRUT_FIGURE_SNAPSHOTS ||
+      figure->kind == STRUT_FIGURE_BEST || figure->kind == STRUT_FIGURE_WINNER)
     return;
-  require_column(r, fields, key, kind, "x", f->x);
-  require_column(r, fields, key, kind, "y", f->y);
-  if (f->kind == STRUT_FIGURE_MAP) require_column(r, fields, key, kind, "color", f->color);
+  require_column(reader, fields, key, kind, "x", figure->x);
+  require_column(reader, fields, key, kind, "y", figure->y);
+  if (figure->kind == STRUT_FIGURE_MAP)
+    require_column(reader, fields, key, kind, "color", figure->color);
 }
 
 /* Reports limits that do not ascend. */
-static void check_limits(strut_study_reader *r, const strut_slot *slot, const strut_tree *key,
+static void check_limits(strut_study_reader *reader, const strut_slot *slot, const strut_tree *key,
                          const double limits[2]) {
   if (slot->state == STRUT_GIVEN && !(limits[0] < limits[1]))
-    strut_report_error(r->reader, slot->value->place,
+    strut_report_error(reader->reader, slot->value->place,
                        "'%s' of figure '%s' must be two ascending numbers", slot->key->text,
                        key->text);
 }
 
-static void read_figure(strut_study_reader *r, const strut_tree *key, strut_study_figure *figure) {
+static void read_figure(strut_study_reader *reader, const strut_tree *key,
+                        strut_study_figure *figure) {
   strut_fields fields;
   strut_owner owner = {"figure", key->text};
-  strut_read_name(r->reader, key, "figure");
-  strut_read_fields(r->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
+  strut_read_name(reader->reader, key, "figure");
+  strut_read_fields(reader->reader, STRUT_SECTION_FIGURE, key->next, owner, &fields);
   *figure = (strut_study_figure){.name = key->text, .from = -HUGE_VAL, .to = HUGE_VAL};
-  strut_store(r->reader, &fields, owner, figure);
-  check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
-  check_limits(r, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
-  require_columns(r, &fields, key, figure);
+  strut_store(reader->reader, &fields, owner, figure);
+  check_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
+  check_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
+  require_columns(reader, &fields, key, figure);
 }
 
-static void read_figures(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+static void read_figures(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   if (slot->state != STRUT_GIVEN) return;
-  study->figures =
-      strut_reader_allocate(r->reader, &r->file->arena, slot->value->count, sizeof *study->figures);
+  study->figures = strut_reader_allocate(reader->reader, &reader->file->arena, slot->value->count,
+                                         sizeof *study->figures);
   for (const strut_tree *key = slot->value->first; key && study->figures; key = key->next->next)
-    read_figure(r, key, &study->figures[study->figure_count++]);
+    read_figure(reader, key, &study->figures[study->figure_count++]);
 }
 
 /* A number of any dimension, which the model decides; *unit: NULL without one. */
-static void read_path_value(strut_study_reader *r, strut_fields *fields, int key,
+static void read_path_value(strut_study_reader *reader, strut_fields *fields, int key,
                             const char **unit) {
   strut_quantity q;
   const strut_key *k = strut_key_at(key);
   const strut_slot *slot = strut_slot_of(fields, key);
-  strut_study *study = &r->file->study;
+  strut_study *study = &reader->file->study;
   if (slot->state != STRUT_GIVEN) return;
-  if (!strut_read_any_quantity(r->reader, slot->value, k->name, path_owner, "a number", &q)) return;
+  if (!strut_read_any_quantity(reader->reader, slot->value, k->name, path_owner, "a number", &q))
+    return;
   memcpy((char *)study + k->field.offset, &q.value, sizeof q.value);
   strut_store_choice(k, study);
   *unit = q.bare ? NULL : strut_dimension_unit(q.dimension);
 }
 
-static void read_path(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+static void read_path(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_object(r->reader, STRUT_SECTION_PATH, slot->value, path_owner, &fields, study);
-  read_path_value(r, &fields, STRUT_KEY_PATH_FROM, &study->path.from_unit);
-  read_path_value(r, &fields, STRUT_KEY_PATH_UNTIL, &study->path.until_unit);
+  strut_read_object(reader->reader, STRUT_SECTION_PATH, slot->value, path_owner, &fields, study);
+  read_path_value(reader, &fields, STRUT_KEY_PATH_FROM, &study->path.from_unit);
+  read_path_value(reader, &fields, STRUT_KEY_PATH_UNTIL, &study->path.until_unit);
   if (fields.broken) return;
   if (study->path.over && !study->path.until_given)
-    strut_report_error(r->reader, slot->value->place,
+    strut_report_error(reader->reader, slot->value->place,
                        "the path lacks 'until', the end value of '%s'",
-                       strut_sanitised_text(r->reader, study->path.over));
+                       strut_sanitised_text(reader->reader, study->path.over));
   if (study->path.from_given && study->path.until_given && study->path.from == study->path.until)
-    strut_report_error(r->reader, slot->value->place, "'from' and 'until' of the path are equal");
+    strut_report_error(reader->reader, slot->value->place,
+                       "'from' and 'until' of the path are equal");
 }
 
 /* Wall time ends only what can be interrupted. */
-static void read_limit(strut_study_reader *r, strut_fields *top, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+static void read_limit(strut_study_reader *reader, strut_fields *top, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(r->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
+  strut_read_fields(reader->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
   fields.outer = top;
-  strut_store(r->reader, &fields, limit_owner, study);
+  strut_store(reader->reader, &fields, limit_owner, study);
 }
 
-static void read_rest(strut_study_reader *r, strut_fields *top) {
-  strut_study *study = &r->file->study;
+static void read_rest(strut_study_reader *reader, strut_fields *top) {
+  strut_study *study = &reader->file->study;
   const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
   const strut_slot *form = strut_slot_of(top, STRUT_KEY_STUDY_FORM);
   strut_fields fields;
   study->name = study->description = "";
-  strut_store(r->reader, top, study_owner, study);
+  strut_store(reader->reader, top, study_owner, study);
   if (check->state == STRUT_GIVEN)
-    strut_read_object(r->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields, study);
-  read_path(r, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
+    strut_read_object(reader->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields,
+                      study);
+  read_path(reader, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
   if (form->state == STRUT_GIVEN)
-    strut_read_object(r->reader, STRUT_SECTION_FORM, form->value, form_owner, &fields, study);
-  read_limit(r, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
-  read_figures(r, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
+    strut_read_object(reader->reader, STRUT_SECTION_FORM, form->value, form_owner, &fields, study);
+  read_limit(reader, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
+  read_figures(reader, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
 static size_t size_of(const strut_slot *slot) {
@@ -295,40 +304,41 @@ static size_t size_of(const strut_slot *slot) {
 }
 
 /* Reads what refers to the model's parameters: set, derive and axes. */
-static void read_points(strut_study_reader *r, strut_fields *top, const strut_override *overrides,
-                        size_t count) {
-  strut_study_file *file = r->file;
+static void read_points(strut_study_reader *reader, strut_fields *top,
+                        const strut_override *overrides, size_t count) {
+  strut_study_file *file = reader->file;
   const strut_slot *set = strut_slot_of(top, STRUT_KEY_STUDY_SET);
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
   const strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
   file->settings = strut_reader_allocate(
-      r->reader, &file->arena, count + size_of(set) + size_of(derive), sizeof *file->settings);
+      reader->reader, &file->arena, count + size_of(set) + size_of(derive), sizeof *file->settings);
   if (!file->settings) return;
   for (size_t i = 0; i < count; i++)
     file->settings[file->setting_count++] =
         (strut_setting){.name = overrides[i].name, .text = overrides[i].value};
-  read_settings(r, set, count, true);
-  read_settings(r, derive, count, false);
+  read_settings(reader, set, count, true);
+  read_settings(reader, derive, count, false);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
-  r->following = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state == STRUT_GIVEN;
+  reader->following = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state == STRUT_GIVEN;
   if (axes->state == STRUT_GIVEN || search->state == STRUT_GIVEN)
-    strut_study_read_axes(r, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
-  strut_study_read_refine(r, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
-  strut_study_read_sensitivity(r, top);
-  strut_study_read_follow(r, top);
-  check_overrides(r, count);
+    strut_study_read_axes(reader, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
+  strut_study_read_refine(reader, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
+  strut_study_read_sensitivity(reader, top);
+  strut_study_read_follow(reader, top);
+  check_overrides(reader, count);
 }
 
 /* Without axes there must be something else that makes points. */
-static void require_points(strut_study_reader *r, strut_fields *top) {
+static void require_points(strut_study_reader *reader, strut_fields *top) {
   char expected[300];
   strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
-  if (axes->state != STRUT_ABSENT || r->reader->holes ||
+  if (axes->state != STRUT_ABSENT || reader->reader->holes ||
       strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT ||
       strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT ||
       strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state != STRUT_ABSENT)
     return;
-  strut_report_error(r->reader, strut_root_place(r->reader), "the study lacks 'axes', expected %s",
+  strut_report_error(reader->reader, strut_root_place(reader->reader),
+                     "the study lacks 'axes', expected %s",
                      strut_key_expected(STRUT_KEY_STUDY_AXES, expected, sizeof expected));
   axes->state = STRUT_BROKEN;
 }
@@ -339,10 +349,10 @@ static bool is_model(const strut_tree *root) {
          !strut_tree_find(root, "study", NULL) && !strut_tree_find(root, "model", NULL);
 }
 
-static strut_status read_all(strut_study_reader *r, const strut_override *overrides, size_t count,
-                             strut_error *error) {
-  strut_study_file *file = r->file;
-  strut_reader *reader = r->reader;
+static strut_status read_all(strut_study_reader *study_reader, const strut_override *overrides,
+                             size_t count, strut_error *error) {
+  strut_study_file *file = study_reader->file;
+  strut_reader *reader = study_reader->reader;
   strut_fields top;
   strut_status status = strut_document_read(&file->document, &file->diagnostics);
   if (status == STRUT_NO_MEMORY || !file->document.root) return status;
@@ -357,12 +367,12 @@ static strut_status read_all(strut_study_reader *r, const strut_override *overri
   strut_read_fields(reader, STRUT_SECTION_STUDY, file->document.root, study_owner, &top);
   if (file->document.root->kind != STRUT_TREE_MAP) return STRUT_BAD_SCENE;
   strut_require(reader, &top, study_owner, strut_root_place(reader));
-  require_points(r, &top);
-  read_rest(r, &top);
-  status = strut_study_open_sources(r, &top, error);
-  read_keep(r, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
-  strut_study_read_goals(r, &top);
-  if (status == STRUT_OK) read_points(r, &top, overrides, count);
+  require_points(study_reader, &top);
+  read_rest(study_reader, &top);
+  status = strut_study_open_sources(study_reader, &top, error);
+  read_keep(study_reader, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
+  strut_study_read_goals(study_reader, &top);
+  if (status == STRUT_OK) read_points(study_reader, &top, overrides, count);
   if (reader->out_of_memory) return STRUT_NO_MEMORY;
   return status == STRUT_OK && reader->failed ? STRUT_BAD_SCENE : status;
 }
@@ -429,12 +439,12 @@ static strut_purpose purpose_of(const strut_study *study) {
 static strut_status read_scene(const strut_study_file *file, const strut_study_value *values,
                                const strut_setting *settings, size_t count,
                                strut_diagnostics *diagnostics, strut_setup *setup) {
-  const strut_study_adjustment *a = &file->adjustment;
-  strut_purpose purpose = a->adjust ? a->purpose : purpose_of(&file->study);
+  const strut_study_adjustment *adjustment = &file->adjustment;
+  strut_purpose purpose = adjustment->adjust ? adjustment->purpose : purpose_of(&file->study);
   strut_status status = strut_scene_source_read(source_of(file, values), settings, count, purpose,
                                                 diagnostics, setup);
-  if (status != STRUT_OK || !a->adjust) return status;
-  status = a->adjust(a->context, setup);
+  if (status != STRUT_OK || !adjustment->adjust) return status;
+  status = adjustment->adjust(adjustment->context, setup);
   if (status != STRUT_OK) strut_setup_free(setup);
   return status;
 }
@@ -454,11 +464,11 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
   for (size_t i = 0; i < count; i++) settings[i] = file->settings[i];
   for (size_t i = first; i < file->column_count; i++) {
     if (!file->columns[i].name) continue; /* a number of the search's own */
-    strut_setting *s = &settings[count++];
-    *s = file->columns[i];
-    s->place = strut_overlay_place(s->place);
-    s->value = values[i].number;
-    s->text = values[i].word ? values[i].word : texts[i - first];
+    strut_setting *setting = &settings[count++];
+    *setting = file->columns[i];
+    setting->place = strut_overlay_place(setting->place);
+    setting->value = values[i].number;
+    setting->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
   if (followed) {

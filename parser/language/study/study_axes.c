@@ -7,121 +7,130 @@
 
 typedef strut_study_along along;
 
-static strut_owner owner_of(const along *a) { return (strut_owner){"axis", a->parameter->name}; }
+static strut_owner owner_of(const along *self) {
+  return (strut_owner){"axis", self->parameter->name};
+}
 
-bool strut_study_read_value(strut_study_reader *r, along *a, const strut_tree *value,
+bool strut_study_read_value(strut_study_reader *study_reader, along *self, const strut_tree *value,
                             const char *key, bool first, double *number) {
   strut_quantity q;
   char expected[200];
-  strut_reader *reader = r->reader;
-  strut_setting *s = a->setting;
-  if (!strut_read_any_quantity(reader, value, key, owner_of(a), "a number", &q)) return false;
+  strut_reader *reader = study_reader->reader;
+  strut_setting *setting = self->setting;
+  if (!strut_read_any_quantity(reader, value, key, owner_of(self), "a number", &q)) return false;
   *number = q.value;
-  if (first && s->bare && !q.bare) {
-    s->bare = false;
-    s->dimension = q.dimension;
+  if (first && setting->bare && !q.bare) {
+    setting->bare = false;
+    setting->dimension = q.dimension;
   }
-  if (q.bare || (!s->bare && strut_dimension_equal(q.dimension, s->dimension))) return true;
+  if (q.bare || (!setting->bare && strut_dimension_equal(q.dimension, setting->dimension)))
+    return true;
   return strut_refuse_dimension(
-      reader, value, key, owner_of(a),
-      s->bare ? "a number without unit, as before,"
-              : strut_expected_number(s->dimension, expected, sizeof expected),
+      reader, value, key, owner_of(self),
+      setting->bare ? "a number without unit, as before,"
+                    : strut_expected_number(setting->dimension, expected, sizeof expected),
       q.dimension);
 }
 
-bool strut_study_store_value(strut_study_reader *r, along *a, strut_fields *fields, int key,
+bool strut_study_store_value(strut_study_reader *reader, along *self, strut_fields *fields, int key,
                              bool first, void *object) {
   const strut_key *k = strut_key_at(key);
   const strut_slot *slot = strut_slot_of(fields, key);
   if (slot->state != STRUT_GIVEN) return slot->state == STRUT_ABSENT;
-  return strut_study_read_value(r, a, slot->value, k->name, first,
+  return strut_study_read_value(reader, self, slot->value, k->name, first,
                                 (double *)(void *)((char *)object + k->field.offset));
 }
 
-static bool read_list(strut_study_reader *r, along *a) {
-  strut_arena *arena = &r->file->arena;
-  size_t count = a->value->count, i = 0;
-  double *numbers = strut_reader_allocate(r->reader, arena, count, sizeof *numbers);
-  const char **words = strut_reader_allocate(r->reader, arena, count, sizeof *words);
+static bool read_list(strut_study_reader *reader, along *self) {
+  strut_arena *arena = &reader->file->arena;
+  size_t count = self->value->count, i = 0;
+  double *numbers = strut_reader_allocate(reader->reader, arena, count, sizeof *numbers);
+  const char **words = strut_reader_allocate(reader->reader, arena, count, sizeof *words);
   bool fine = numbers && words;
-  a->count = (int64_t)count;
+  self->count = (int64_t)count;
   if (!count)
-    return strut_report_error(r->reader, a->value->place, "axis '%s' has no values",
-                              a->parameter->name);
-  for (const strut_tree *item = a->value->first; item && fine; item = item->next, i++) {
-    if (!a->parameter->text) {
-      fine = strut_study_read_value(r, a, item, a->parameter->name, i == 0, &numbers[i]) && fine;
-    } else if (strut_read_scalar(r->reader, item, a->parameter->name, owner_of(a), "a text")) {
+    return strut_report_error(reader->reader, self->value->place, "axis '%s' has no values",
+                              self->parameter->name);
+  for (const strut_tree *item = self->value->first; item && fine; item = item->next, i++) {
+    if (!self->parameter->text) {
+      fine =
+          strut_study_read_value(reader, self, item, self->parameter->name, i == 0, &numbers[i]) &&
+          fine;
+    } else if (strut_read_scalar(reader->reader, item, self->parameter->name, owner_of(self),
+                                 "a text")) {
       words[i] = item->text;
       if (strlen(item->text) < 24) continue;
-      fine = strut_report_error(r->reader, item->place,
+      fine = strut_report_error(reader->reader, item->place,
                                 "texts of an axis may have at most 23 bytes, found %zu",
                                 strlen(item->text));
     } else {
       fine = false;
     }
   }
-  a->column->kind = STRUT_RANGE_LIST;
-  a->column->number = numbers;
-  a->column->words = words;
+  self->column->kind = STRUT_RANGE_LIST;
+  self->column->number = numbers;
+  self->column->words = words;
   return fine;
 }
 
-static bool refuse_range(strut_study_reader *r, const along *a, const char *why) {
-  return strut_report_error(r->reader, a->value->place, "the range of axis '%s' %s",
-                            a->parameter->name, why);
+static bool refuse_range(strut_study_reader *reader, const along *self, const char *why) {
+  return strut_report_error(reader->reader, self->value->place, "the range of axis '%s' %s",
+                            self->parameter->name, why);
 }
 
 /* from, to and step: how many values? The last is `to` itself where the steps meet it. */
-static bool count_steps(strut_study_reader *r, along *a, double step) {
-  strut_study_column *c = a->column;
-  double steps = (c->to - c->from) / step;
+static bool count_steps(strut_study_reader *reader, along *self, double step) {
+  strut_study_column *column = self->column;
+  double steps = (column->to - column->from) / step;
   if (step == 0.0 || !(steps >= 0.0) || !isfinite(steps))
-    return refuse_range(r, a, "never reaches 'to' with this 'step'");
+    return refuse_range(reader, self, "never reaches 'to' with this 'step'");
   double whole = floor(steps * (1.0 + 1e-12) + 1e-9);
   if (whole >= (double)STRUT_STUDY_MOST_POINTS)
-    return refuse_range(r, a, "has more than 1e9 values");
-  a->count = (int64_t)whole + 1;
+    return refuse_range(reader, self, "has more than 1e9 values");
+  self->count = (int64_t)whole + 1;
   bool meets = fabs(steps - whole) <= 1e-9 * fmax(1.0, whole);
-  c->kind = meets && a->count > 1 ? STRUT_RANGE_EVEN : STRUT_RANGE_STEP;
+  column->kind = meets && self->count > 1 ? STRUT_RANGE_EVEN : STRUT_RANGE_STEP;
   return true;
 }
 
-static bool count_even(strut_study_reader *r, along *a, double count, bool logarithmic) {
-  strut_study_column *c = a->column;
+static bool count_even(strut_study_reader *reader, along *self, double count, bool logarithmic) {
+  strut_study_column *column = self->column;
   if (count != floor(count) || count > (double)STRUT_STUDY_MOST_POINTS)
-    return refuse_range(r, a, "needs a whole 'count' from 1 to 1e9");
-  if (count == 1.0 && c->from != c->to)
-    return refuse_range(r, a, "of one value cannot have both 'from' and 'to'");
-  if (logarithmic && !(c->from * c->to > 0.0))
-    return refuse_range(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
-  a->count = (int64_t)count;
-  c->kind = logarithmic ? STRUT_RANGE_RATIO : STRUT_RANGE_EVEN;
+    return refuse_range(reader, self, "needs a whole 'count' from 1 to 1e9");
+  if (count == 1.0 && column->from != column->to)
+    return refuse_range(reader, self, "of one value cannot have both 'from' and 'to'");
+  if (logarithmic && !(column->from * column->to > 0.0))
+    return refuse_range(reader, self,
+                        "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
+  self->count = (int64_t)count;
+  column->kind = logarithmic ? STRUT_RANGE_RATIO : STRUT_RANGE_EVEN;
   return true;
 }
 
-static bool read_range(strut_study_reader *r, along *a) {
+static bool read_range(strut_study_reader *reader, along *self) {
   strut_fields fields;
-  if (a->parameter->text)
-    return refuse_range(r, a, "is for numbers; the parameter is a text: give a list of texts");
+  if (self->parameter->text)
+    return refuse_range(reader, self,
+                        "is for numbers; the parameter is a text: give a list of texts");
   strut_range_keys keys = {0};
-  if (!strut_read_object(r->reader, STRUT_SECTION_RANGE, a->value, owner_of(a), &fields, &keys))
+  if (!strut_read_object(reader->reader, STRUT_SECTION_RANGE, self->value, owner_of(self), &fields,
+                         &keys))
     return false;
-  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_FROM, true, &keys);
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_TO, false, &keys) && fine;
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_RANGE_STEP, false, &keys) && fine;
-  a->column->from = keys.from, a->column->to = keys.to, a->column->step = keys.step;
+  bool fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_FROM, true, &keys);
+  fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_TO, false, &keys) && fine;
+  fine = strut_study_store_value(reader, self, &fields, STRUT_KEY_RANGE_STEP, false, &keys) && fine;
+  self->column->from = keys.from, self->column->to = keys.to, self->column->step = keys.step;
   bool stepped = strut_slot_of(&fields, STRUT_KEY_RANGE_STEP)->state == STRUT_GIVEN;
-  if (!stepped && keys.count == 0.0) return refuse_range(r, a, "lacks 'step' or 'count'");
+  if (!stepped && keys.count == 0.0) return refuse_range(reader, self, "lacks 'step' or 'count'");
   if (!fine) return false;
-  if (keys.count > 0.0) return count_even(r, a, keys.count, keys.scale == 1);
+  if (keys.count > 0.0) return count_even(reader, self, keys.count, keys.scale == 1);
   if (keys.scale == 1)
-    return refuse_range(r, a, "needs 'count' instead of 'step' where it is logarithmic");
-  return count_steps(r, a, keys.step);
+    return refuse_range(reader, self, "needs 'count' instead of 'step' where it is logarithmic");
+  return count_steps(reader, self, keys.step);
 }
 
 /* Names of the table's own columns, which no axis may have. */
-static bool is_reserved(const strut_study_reader *r, const char *name) {
+static bool is_reserved(const strut_study_reader *reader, const char *name) {
   static const char *const names[] = {"point", "status", "message"};
   static const char *const searching[] = {"search", "evaluation", "objective", "objective_2",
                                           "violation"};
@@ -129,65 +138,66 @@ static bool is_reserved(const strut_study_reader *r, const char *name) {
       "branch",           "arclength",  "velocity",         "work", "amplitude", "period_multiple",
       "stable",           "multiplier", "multiplier_angle", "node", "detail",    "word",
       "changes_stability"};
-  bool found = r->variant_count > 0 && strcmp(name, "variant") == 0;
-  for (size_t i = 0; r->following && i < sizeof following / sizeof following[0]; i++)
+  bool found = reader->variant_count > 0 && strcmp(name, "variant") == 0;
+  for (size_t i = 0; reader->following && i < sizeof following / sizeof following[0]; i++)
     found = found || strcmp(name, following[i]) == 0;
-  for (size_t i = 0; r->searching && i < sizeof searching / sizeof searching[0]; i++)
+  for (size_t i = 0; reader->searching && i < sizeof searching / sizeof searching[0]; i++)
     found = found || strcmp(name, searching[i]) == 0;
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
     found = found || strcmp(name, names[i]) == 0;
   return found;
 }
 
-bool strut_study_begin_along(strut_study_reader *r, along *a, strut_place place) {
-  const strut_declared *parameter = a->parameter;
-  *a->column = (strut_study_column){.name = parameter->name, .word = parameter->text};
-  *a->setting = (strut_setting){.name = parameter->name,
-                                .text = "",
-                                .known = !parameter->text,
-                                .bare = parameter->bare,
-                                .dimension = parameter->dimension,
-                                .place = place};
-  if (!is_reserved(r, parameter->name)) return true;
+bool strut_study_begin_along(strut_study_reader *reader, along *self, strut_place place) {
+  const strut_declared *parameter = self->parameter;
+  *self->column = (strut_study_column){.name = parameter->name, .word = parameter->text};
+  *self->setting = (strut_setting){.name = parameter->name,
+                                   .text = "",
+                                   .known = !parameter->text,
+                                   .bare = parameter->bare,
+                                   .dimension = parameter->dimension,
+                                   .place = place};
+  if (!is_reserved(reader, parameter->name)) return true;
   return strut_report_error(
-      r->reader, place,
+      reader->reader, place,
       "the table has a column '%s' of its own: give the model's parameter another name",
       parameter->name);
 }
 
 /* A parameter with its values. */
-static bool read_along(strut_study_reader *r, along *a) {
-  a->parameter = strut_study_parameter(r, a->key);
-  if (!a->parameter) return false;
-  strut_study_begin_along(r, a, a->key->place);
+static bool read_along(strut_study_reader *reader, along *self) {
+  self->parameter = strut_study_parameter(reader, self->key);
+  if (!self->parameter) return false;
+  strut_study_begin_along(reader, self, self->key->place);
   bool fine = false;
-  if (a->value->kind == STRUT_TREE_LIST)
-    fine = read_list(r, a);
-  else if (a->value->kind == STRUT_TREE_MAP)
-    fine = read_range(r, a);
+  if (self->value->kind == STRUT_TREE_LIST)
+    fine = read_list(reader, self);
+  else if (self->value->kind == STRUT_TREE_MAP)
+    fine = read_range(reader, self);
   else
     strut_report_error(
-        r->reader, a->value->place,
+        reader->reader, self->value->place,
         "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
         "found %s",
-        a->parameter->name, strut_found(r->reader, a->value));
-  a->column->unit =
-      a->setting->bare || a->parameter->text ? "1" : strut_dimension_unit(a->setting->dimension);
+        self->parameter->name, strut_found(reader->reader, self->value));
+  self->column->unit = self->setting->bare || self->parameter->text
+                           ? "1"
+                           : strut_dimension_unit(self->setting->dimension);
   return fine;
 }
 
 /* The mapping whose keys are the axis' parameters: the item itself, or what is zipped in it. */
-static const strut_tree *parameters_of(strut_study_reader *r, const strut_tree *item) {
+static const strut_tree *parameters_of(strut_study_reader *reader, const strut_tree *item) {
   if (item->kind != STRUT_TREE_MAP || item->count == 0) {
-    strut_report_error(r->reader, item->place,
+    strut_report_error(reader->reader, item->place,
                        "expected an axis such as {friction: [0.1, 0.2]}, found %s",
-                       strut_found(r->reader, item));
+                       strut_found(reader->reader, item));
     return NULL;
   }
   bool zip = strcmp(item->first->text, "zip") == 0;
   if (item->count > 1) {
     strut_report_error(
-        r->reader, item->first->next->next->place,
+        reader->reader, item->first->next->next->place,
         "an axis gives one parameter; write parameters that vary together as {zip: {...}}, and "
         "further axes as further items of the list");
     return NULL;
@@ -195,35 +205,35 @@ static const strut_tree *parameters_of(strut_study_reader *r, const strut_tree *
   if (!zip) return item;
   const strut_tree *map = item->first->next;
   if (map->kind == STRUT_TREE_MAP && map->count > 0) return map;
-  strut_report_error(r->reader, map->place,
+  strut_report_error(reader->reader, map->place,
                      "expected {NAME: [...], NAME: [...]} for 'zip', found %s",
-                     strut_found(r->reader, map));
+                     strut_found(reader->reader, map));
   return NULL;
 }
 
-static void read_axis(strut_study_reader *r, const strut_tree *item, strut_study_axis *axis) {
-  if (strut_study_is_points(r, item)) {
-    strut_study_read_points(r, item->first->next, axis);
+static void read_axis(strut_study_reader *reader, const strut_tree *item, strut_study_axis *axis) {
+  if (strut_study_is_points(reader, item)) {
+    strut_study_read_points(reader, item->first->next, axis);
     return;
   }
-  if (strut_study_is_sample(r, item)) {
-    strut_study_read_sample(r, item->first->next, axis);
+  if (strut_study_is_sample(reader, item)) {
+    strut_study_read_sample(reader, item->first->next, axis);
     return;
   }
-  const strut_tree *map = parameters_of(r, item);
+  const strut_tree *map = parameters_of(reader, item);
   if (!map) return;
   strut_study_column *columns = axis->columns =
-      strut_reader_allocate(r->reader, &r->file->arena, map->count, sizeof *columns);
+      strut_reader_allocate(reader->reader, &reader->file->arena, map->count, sizeof *columns);
   if (!columns) return;
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     along a = {.key = key, .value = key->next, .column = &columns[axis->column_count]};
-    a.setting = &r->file->columns[r->file->column_count++];
-    fine = read_along(r, &a) && fine;
+    a.setting = &reader->file->columns[reader->file->column_count++];
+    fine = read_along(reader, &a) && fine;
     axis->column_count++;
     if (fine && axis->column_count > 1 && a.count != axis->count)
       fine = strut_report_error(
-          r->reader, key->next->place,
+          reader->reader, key->next->place,
           "zipped parameters need equally many values: '%s' has %lld values, '%s' %lld",
           columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
     if (axis->column_count == 1) axis->count = a.count;
@@ -241,42 +251,46 @@ static size_t count_columns(const strut_tree *list) {
 }
 
 /* The axis of the variants, before all others. */
-static void add_variants(strut_study_reader *r) {
-  strut_study_file *file = r->file;
-  strut_study_column *column = strut_reader_allocate(r->reader, &file->arena, 1, sizeof *column);
+static void add_variants(strut_study_reader *reader) {
+  strut_study_file *file = reader->file;
+  strut_study_column *column =
+      strut_reader_allocate(reader->reader, &file->arena, 1, sizeof *column);
   if (!column) return;
-  *column =
-      (strut_study_column){.name = "variant", .unit = "1", .word = true, .words = r->variant_names};
+  *column = (strut_study_column){
+      .name = "variant", .unit = "1", .word = true, .words = reader->variant_names};
   file->columns[file->column_count++] = (strut_setting){.name = column->name, .bare = true};
-  file->study.axes[file->study.axis_count++] =
-      (strut_study_axis){.count = (int64_t)r->variant_count, .column_count = 1, .columns = column};
+  file->study.axes[file->study.axis_count++] = (strut_study_axis){
+      .count = (int64_t)reader->variant_count, .column_count = 1, .columns = column};
   file->variants = true;
 }
 
-bool strut_study_read_along(strut_study_reader *r, strut_study_along *a) {
-  return read_along(r, a);
+bool strut_study_read_along(strut_study_reader *reader, strut_study_along *a) {
+  return read_along(reader, a);
 }
 
-void strut_study_read_axes(strut_study_reader *r, const strut_tree *list,
+void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
                            const strut_slot *search) {
-  strut_study *study = &r->file->study;
-  strut_arena *arena = &r->file->arena;
+  strut_study *study = &reader->file->study;
+  strut_arena *arena = &reader->file->arena;
   size_t listed = list ? list->count : 0, names = list ? count_columns(list) : 0;
   size_t more = strut_study_search_columns(search);
-  r->searching = more > 0;
-  study->axes = strut_reader_allocate(r->reader, arena, listed + more + 2, sizeof *study->axes);
-  r->file->columns = strut_reader_allocate(r->reader, arena, names + r->declared_count + more + 1,
-                                           sizeof *r->file->columns);
-  r->file->tables = strut_reader_allocate(r->reader, arena, listed + 1, sizeof *r->file->tables);
-  if (!study->axes || !r->file->columns || !r->file->tables) return;
-  if (r->variant_count > 0) add_variants(r);
+  reader->searching = more > 0;
+  study->axes =
+      strut_reader_allocate(reader->reader, arena, listed + more + 2, sizeof *study->axes);
+  reader->file->columns =
+      strut_reader_allocate(reader->reader, arena, names + reader->declared_count + more + 1,
+                            sizeof *reader->file->columns);
+  reader->file->tables =
+      strut_reader_allocate(reader->reader, arena, listed + 1, sizeof *reader->file->tables);
+  if (!study->axes || !reader->file->columns || !reader->file->tables) return;
+  if (reader->variant_count > 0) add_variants(reader);
   for (const strut_tree *item = list ? list->first : NULL; item; item = item->next)
-    read_axis(r, item, &study->axes[study->axis_count++]);
-  strut_study_read_search(r, search);
+    read_axis(reader, item, &study->axes[study->axis_count++]);
+  strut_study_read_search(reader, search);
   double points = 1.0;
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
   if (points > (double)STRUT_STUDY_MOST_POINTS)
-    strut_report_error(r->reader, list ? list->place : search->key->place,
+    strut_report_error(reader->reader, list ? list->place : search->key->place,
                        "the axes make %.3g points, a study may have 1e9", points);
 }
 
@@ -298,29 +312,30 @@ static bool has_parameter(const strut_study_axis *axis, const char *name) {
 }
 
 /* The axis of a named parameter, which must be a range; axis_count where that was reported. */
-static size_t find_axis(strut_study_reader *r, const strut_tree *item) {
-  const strut_study *study = &r->file->study;
+static size_t find_axis(strut_study_reader *reader, const strut_tree *item) {
+  const strut_study *study = &reader->file->study;
   size_t axis = 0;
-  if (!strut_read_scalar(r->reader, item, "axes", refine_owner, "a parameter of an axis"))
+  if (!strut_read_scalar(reader->reader, item, "axes", refine_owner, "a parameter of an axis"))
     return study->axis_count;
   while (axis < study->axis_count && !has_parameter(&study->axes[axis], item->text)) axis++;
   if (axis < study->axis_count && is_range(&study->axes[axis])) return axis;
-  strut_report_error(r->reader, item->place,
+  strut_report_error(reader->reader, item->place,
                      axis < study->axis_count
                          ? "axis '%s' has no range such as {from: 1, to: 2, count: 11}: it cannot "
                            "be refined"
                          : "the study has no axis of '%s'",
-                     strut_sanitised_text(r->reader, item->text));
+                     strut_sanitised_text(reader->reader, item->text));
   return study->axis_count;
 }
 
 /* The two axes that are named, or the only two that can be refined. */
-static bool choose_axes(strut_study_reader *r, const strut_slot *refine, const strut_slot *named) {
-  strut_study *study = &r->file->study;
+static bool choose_axes(strut_study_reader *reader, const strut_slot *refine,
+                        const strut_slot *named) {
+  strut_study *study = &reader->file->study;
   size_t count = 0;
   if (named->state == STRUT_GIVEN) {
     for (const strut_tree *item = named->value->first; item; item = item->next) {
-      size_t axis = find_axis(r, item);
+      size_t axis = find_axis(reader, item);
       if (axis == study->axis_count) return false;
       if (count < 2) study->refine.axes[count] = axis;
       count++;
@@ -341,7 +356,7 @@ static bool choose_axes(strut_study_reader *r, const strut_slot *refine, const s
     return true;
   }
   return strut_report_error(
-      r->reader, refine->key->place,
+      reader->reader, refine->key->place,
       "'refine' divides two axes with ranges of more than one value, found %zu; name "
       "them: axes: [NAME, NAME]",
       count == 2 ? (size_t)1 : count);
@@ -354,22 +369,22 @@ static void refine_axis(strut_study_axis *axis, int32_t depth) {
   for (size_t i = 0; i < axis->column_count; i++) axis->columns[i].step /= (double)parts;
 }
 
-void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+void strut_study_read_refine(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  bool fine =
-      strut_read_object(r->reader, STRUT_SECTION_REFINE, slot->value, refine_owner, &fields, study);
+  bool fine = strut_read_object(reader->reader, STRUT_SECTION_REFINE, slot->value, refine_owner,
+                                &fields, study);
   int32_t depth = study->refine.depth;
   study->refine.depth = 0;
-  if (!fine || r->reader->failed) return; /* the axes may be incomplete */
-  if (!choose_axes(r, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
+  if (!fine || reader->reader->failed) return; /* the axes may be incomplete */
+  if (!choose_axes(reader, slot, strut_slot_of(&fields, STRUT_KEY_REFINE_AXES))) return;
   double points = 1.0;
   for (int i = 0; i < 2; i++) refine_axis(&study->axes[study->refine.axes[i]], depth);
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
   study->refine.depth = depth;
   if (points > (double)STRUT_STUDY_MOST_REFINED)
-    strut_report_error(r->reader, slot->key->place,
+    strut_report_error(reader->reader, slot->key->place,
                        "the finest grid has %.3g points, a refined study may have %.0e", points,
                        (double)STRUT_STUDY_MOST_REFINED);
 }
@@ -377,47 +392,47 @@ void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot) {
 static const strut_owner shape_owner = {"the shape", NULL};
 static const strut_owner curve_owner = {"the curve", NULL};
 
-static void read_shape(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+static void read_shape(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   size_t count = slot->value->count, i = 0;
-  study->goal.shape_nodes =
-      strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->goal.shape_nodes);
-  study->goal.shape =
-      strut_reader_allocate(r->reader, &r->file->arena, count + 1, sizeof *study->goal.shape);
+  study->goal.shape_nodes = strut_reader_allocate(reader->reader, &reader->file->arena, count + 1,
+                                                  sizeof *study->goal.shape_nodes);
+  study->goal.shape = strut_reader_allocate(reader->reader, &reader->file->arena, count + 1,
+                                            sizeof *study->goal.shape);
   if (!study->goal.shape_nodes || !study->goal.shape) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next, i++) {
     study->goal.shape_nodes[i] = key->text;
-    strut_read_pair(r->reader, key->next, key->text, shape_owner, STRUT_DIM_LENGTH,
+    strut_read_pair(reader->reader, key->next, key->text, shape_owner, STRUT_DIM_LENGTH,
                     study->goal.shape[i]);
   }
   study->goal.shape_count = count;
 }
 
-static void read_curve(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
-  study->goal.curve = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
-                                            sizeof *study->goal.curve);
+static void read_curve(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
+  study->goal.curve = strut_reader_allocate(reader->reader, &reader->file->arena,
+                                            slot->value->count + 1, sizeof *study->goal.curve);
   if (!study->goal.curve) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     double *pair = study->goal.curve[study->goal.curve_count];
     if (item->kind != STRUT_TREE_LIST || item->count != 2) {
-      strut_report_error(r->reader, item->place,
+      strut_report_error(reader->reader, item->place,
                          "expected a displacement and a force such as [-1 mm, 2 N] for 'curve' of "
                          "the study, found %s",
-                         strut_found(r->reader, item));
+                         strut_found(reader->reader, item));
       continue;
     }
-    if (strut_read_number(r->reader, item->first, "curve", curve_owner, STRUT_DIM_LENGTH,
+    if (strut_read_number(reader->reader, item->first, "curve", curve_owner, STRUT_DIM_LENGTH,
                           STRUT_RANGE_ANY, &pair[0]) &&
-        strut_read_number(r->reader, item->first->next, "curve", curve_owner, STRUT_DIM_FORCE,
+        strut_read_number(reader->reader, item->first->next, "curve", curve_owner, STRUT_DIM_FORCE,
                           STRUT_RANGE_ANY, &pair[1]))
       study->goal.curve_count++;
   }
 }
 
 /* A column that is kept needs what it compares with, and what is given a column. */
-static void require_pairs(strut_study_reader *r, strut_fields *top) {
-  const strut_study *study = &r->file->study;
+static void require_pairs(strut_study_reader *reader, strut_fields *top) {
+  const strut_study *study = &reader->file->study;
   static const struct {
     strut_keep keep;
     int keys[2];
@@ -436,138 +451,141 @@ static void require_pairs(strut_study_reader *r, strut_fields *top) {
                               : second->state != STRUT_ABSENT ? second
                                                               : NULL;
     if (kept && !given)
-      strut_report_error(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_KEEP)->value->place,
+      strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_KEEP)->value->place,
                          "'%s' needs '%s' of the study%s", goals[i].word,
                          strut_key_at(goals[i].keys[0])->name,
                          first == second ? "" : ", or 'like'");
     if (!kept && given && given->key)
-      strut_report_error(r->reader, given->key->place,
+      strut_report_error(reader->reader, given->key->place,
                          "'%s' is for the column '%s': add it to 'keep'", given->key->text,
                          goals[i].word);
   }
 }
 
-void strut_study_read_goals(strut_study_reader *r, strut_fields *top) {
+void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *stiffness = strut_slot_of(top, STRUT_KEY_STUDY_STIFFNESS_AT);
   const strut_slot *shape = strut_slot_of(top, STRUT_KEY_STUDY_SHAPE);
   const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
   strut_fields fields;
   if (stiffness->state == STRUT_GIVEN)
-    strut_read_object(r->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value,
-                      ((strut_owner){"the stiffness", NULL}), &fields, &r->file->study);
+    strut_read_object(reader->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value,
+                      ((strut_owner){"the stiffness", NULL}), &fields, &reader->file->study);
   if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
-    strut_report_error(r->reader, like->key->place,
+    strut_report_error(reader->reader, like->key->place,
                        "'shape' and 'like' of the study exclude each other");
-  if (shape->state == STRUT_GIVEN) read_shape(r, shape);
-  if (curve->state == STRUT_GIVEN) read_curve(r, curve);
-  if (curve->state == STRUT_GIVEN && r->file->study.compute == STRUT_COMPUTE_PATH &&
-      (!r->file->study.path.over || !strchr(r->file->study.path.over, '.')))
-    strut_report_error(r->reader, curve->key->place,
+  if (shape->state == STRUT_GIVEN) read_shape(reader, shape);
+  if (curve->state == STRUT_GIVEN) read_curve(reader, curve);
+  if (curve->state == STRUT_GIVEN && reader->file->study.compute == STRUT_COMPUTE_PATH &&
+      (!reader->file->study.path.over || !strchr(reader->file->study.path.over, '.')))
+    strut_report_error(reader->reader, curve->key->place,
                        "'curve' is force over the displacement of a node: the path needs "
                        "'over: NODE.x' or 'over: NODE.y'");
-  require_pairs(r, top);
+  require_pairs(reader, top);
 }
 
 /* ---- motions that are followed ---- */
 
 static const strut_owner follow_owner = {"what is followed", NULL};
 
-void strut_study_exclude(strut_study_reader *r, strut_fields *top, const strut_slot *own,
+void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
                          const int *keys, size_t count) {
   for (size_t i = 0; i < count; i++) {
     const strut_slot *slot = strut_slot_of(top, keys[i]);
     if (slot->state == STRUT_GIVEN)
-      strut_report_error(r->reader, slot->key->place,
+      strut_report_error(reader->reader, slot->key->place,
                          "'%s' and '%s' exclude each other: use two studies", slot->key->text,
                          own->key->text);
   }
 }
 
 /* Keys that choose or judge points in another way. */
-static void refuse_others(strut_study_reader *r, strut_fields *top, const strut_slot *own) {
+static void refuse_others(strut_study_reader *reader, strut_fields *top, const strut_slot *own) {
   static const int others[] = {
       STRUT_KEY_STUDY_REFINE,      STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_SEARCH,
       STRUT_KEY_STUDY_SENSITIVITY, STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_CHECK,
       STRUT_KEY_STUDY_LIMIT,       STRUT_KEY_STUDY_SHAPE,        STRUT_KEY_STUDY_LIKE};
-  strut_study_exclude(r, top, own, others, sizeof others / sizeof others[0]);
+  strut_study_exclude(reader, top, own, others, sizeof others / sizeof others[0]);
   const strut_slot *compute = strut_slot_of(top, STRUT_KEY_STUDY_COMPUTE);
-  if (compute->state == STRUT_GIVEN && r->file->study.compute != STRUT_COMPUTE_RUN)
-    strut_report_error(r->reader, compute->value->place,
+  if (compute->state == STRUT_GIVEN && reader->file->study.compute != STRUT_COMPUTE_RUN)
+    strut_report_error(reader->reader, compute->value->place,
                        "a study that follows motions computes no '%s'", compute->value->text);
 }
 
 /* Both ends of the range, and values within it. */
-static void read_values(strut_study_reader *r, strut_fields *fields, strut_study_along *a,
-                        strut_study_follow *f) {
+static void read_values(strut_study_reader *reader, strut_fields *fields, strut_study_along *a,
+                        strut_study_follow *follow) {
   const strut_slot *from = strut_slot_of(fields, STRUT_KEY_FOLLOW_FROM);
   const strut_slot *to = strut_slot_of(fields, STRUT_KEY_FOLLOW_TO);
   const strut_slot *at = strut_slot_of(fields, STRUT_KEY_FOLLOW_AT);
   bool fine = from->state == STRUT_GIVEN && to->state == STRUT_GIVEN &&
-              strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_FROM, true, f) &&
-              strut_study_store_value(r, a, fields, STRUT_KEY_FOLLOW_TO, false, f);
-  if (fine && !(f->from < f->to))
-    fine = strut_report_error(r->reader, to->value->place,
+              strut_study_store_value(reader, a, fields, STRUT_KEY_FOLLOW_FROM, true, follow) &&
+              strut_study_store_value(reader, a, fields, STRUT_KEY_FOLLOW_TO, false, follow);
+  if (fine && !(follow->from < follow->to))
+    fine = strut_report_error(reader->reader, to->value->place,
                               "'to' of what is followed must be above 'from'");
   if (!fine || at->state != STRUT_GIVEN) return;
   if (!at->value->count || at->value->count > STRUT_STUDY_FOLLOW_MOST_AT) {
-    strut_report_error(r->reader, at->value->place, "'at' may have 1 to %d values, found %zu",
+    strut_report_error(reader->reader, at->value->place, "'at' may have 1 to %d values, found %zu",
                        STRUT_STUDY_FOLLOW_MOST_AT, (size_t)at->value->count);
     return;
   }
   double *values =
-      strut_reader_allocate(r->reader, &r->file->arena, at->value->count, sizeof *values);
-  f->at = values;
+      strut_reader_allocate(reader->reader, &reader->file->arena, at->value->count, sizeof *values);
+  follow->at = values;
   for (const strut_tree *item = at->value->first; item && values; item = item->next) {
-    double *value = &values[f->at_count++];
-    if (!strut_study_read_value(r, a, item, "at", false, value)) continue;
-    if (*value < f->from || *value > f->to)
-      strut_report_error(r->reader, item->place, "'%s' of 'at' is not within 'from' and 'to'",
-                         strut_sanitised_text(r->reader, item->text));
+    double *value = &values[follow->at_count++];
+    if (!strut_study_read_value(reader, a, item, "at", false, value)) continue;
+    if (*value < follow->from || *value > follow->to)
+      strut_report_error(reader->reader, item->place, "'%s' of 'at' is not within 'from' and 'to'",
+                         strut_sanitised_text(reader->reader, item->text));
   }
 }
 
 /* The parameter, its range and its unit. */
-static void read_over(strut_study_reader *r, strut_fields *fields, strut_study_follow *f) {
+static void read_over(strut_study_reader *reader, strut_fields *fields,
+                      strut_study_follow *follow) {
   const strut_slot *over = strut_slot_of(fields, STRUT_KEY_FOLLOW_OVER);
   strut_study_column unused = {0};
-  strut_study_along a = {.key = over->value, .column = &unused, .setting = &r->file->followed};
+  strut_study_along a = {.key = over->value, .column = &unused, .setting = &reader->file->followed};
   if (over->state != STRUT_GIVEN) return;
-  a.parameter = strut_study_parameter(r, over->value);
-  if (!a.parameter || !strut_study_begin_along(r, &a, over->value->place)) return;
+  a.parameter = strut_study_parameter(reader, over->value);
+  if (!a.parameter || !strut_study_begin_along(reader, &a, over->value->place)) return;
   if (a.parameter->text) {
-    strut_report_error(r->reader, over->value->place,
+    strut_report_error(reader->reader, over->value->place,
                        "parameter '%s' is a text, over which no motion is followed",
                        a.parameter->name);
     return;
   }
-  f->over = a.parameter->name;
-  read_values(r, fields, &a, f);
-  f->unit = a.setting->bare ? "" : strut_dimension_unit(a.setting->dimension);
-  if (strcmp(f->unit, "1") == 0 || strcmp(f->unit, "SI") == 0) f->unit = "";
+  follow->over = a.parameter->name;
+  read_values(reader, fields, &a, follow);
+  follow->unit = a.setting->bare ? "" : strut_dimension_unit(a.setting->dimension);
+  if (strcmp(follow->unit, "1") == 0 || strcmp(follow->unit, "SI") == 0) follow->unit = "";
 }
 
-void strut_study_read_follow(strut_study_reader *r, strut_fields *top) {
+void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
-  strut_study *study = &r->file->study;
+  strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  refuse_others(r, top, slot);
-  if (!study->axes) strut_study_read_axes(r, NULL, search); /* the study has none */
-  strut_study_follow *f = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *f);
-  if (!f) return;
-  strut_read_object(r->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields, f);
+  refuse_others(reader, top, slot);
+  if (!study->axes) strut_study_read_axes(reader, NULL, search); /* the study has none */
+  strut_study_follow *follow =
+      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *follow);
+  if (!follow) return;
+  strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,
+                    follow);
   const strut_slot *accuracy = strut_slot_of(&fields, STRUT_KEY_FOLLOW_ACCURACY);
-  if (accuracy->state == STRUT_GIVEN && f->accuracy > 0.1)
-    strut_report_error(r->reader, accuracy->value->place,
+  if (accuracy->state == STRUT_GIVEN && follow->accuracy > 0.1)
+    strut_report_error(reader->reader, accuracy->value->place,
                        "'accuracy' of what is followed may be up to 10 %%");
   const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_FOLLOW_START_FROM);
   if (starts->state == STRUT_GIVEN &&
       (!starts->value->count || starts->value->count > STRUT_STUDY_FOLLOW_MOST_FROM))
-    strut_report_error(r->reader, starts->value->place,
+    strut_report_error(reader->reader, starts->value->place,
                        "'start_from' may have 1 to %d configurations, found %zu",
                        STRUT_STUDY_FOLLOW_MOST_FROM, (size_t)starts->value->count);
-  read_over(r, &fields, f);
-  study->follow = f;
+  read_over(reader, &fields, follow);
+  study->follow = follow;
 }

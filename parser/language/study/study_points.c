@@ -35,87 +35,93 @@ static const strut_tree *only_value(const strut_tree *item, const char *name) {
   return strcmp(item->first->text, name) == 0 ? item->first->next : NULL;
 }
 
-bool strut_study_is_points(const strut_study_reader *r, const strut_tree *item) {
+bool strut_study_is_points(const strut_study_reader *reader, const strut_tree *item) {
   const strut_tree *value = only_value(item, "points");
   if (!value) return false;
   return value->kind == STRUT_TREE_SCALAR || has_key(value, "file") ||
-         !strut_study_declared(r, "points");
+         !strut_study_declared(reader, "points");
 }
 
-static strut_diagnostics *messages(table *t) { return &t->points->diagnostics; }
+static strut_diagnostics *messages(table *self) { return &self->points->diagnostics; }
 
 /* Is the column to be used? */
-static bool is_wanted(const table *t, const char *name) {
-  for (const strut_tree *item = t->columns ? t->columns->first : NULL; item; item = item->next)
+static bool is_wanted(const table *self, const char *name) {
+  for (const strut_tree *item = self->columns ? self->columns->first : NULL; item;
+       item = item->next)
     if (strcmp(item->text, name) == 0) return true;
-  if (t->columns) return false;
+  if (self->columns) return false;
   for (size_t i = 0; i < sizeof skipped / sizeof skipped[0]; i++)
     if (strcmp(skipped[i], name) == 0) return false;
   return true;
 }
 
 /* Reports wanted columns that the file does not have. */
-static void check_columns(table *t) {
-  for (const strut_tree *item = t->columns ? t->columns->first : NULL; item; item = item->next) {
+static void check_columns(table *self) {
+  for (const strut_tree *item = self->columns ? self->columns->first : NULL; item;
+       item = item->next) {
     bool found = false;
-    for (size_t i = 0; i < t->csv.column_count; i++)
-      found = found || strcmp(t->csv.titles[i].name, item->text) == 0;
+    for (size_t i = 0; i < self->csv.column_count; i++)
+      found = found || strcmp(self->csv.titles[i].name, item->text) == 0;
     if (!found)
-      strut_report_error(t->r->reader, item->place, "'%s' has no column '%s'",
-                         strut_sanitised_text(t->r->reader, t->points->node->text),
-                         strut_sanitised_text(t->r->reader, item->text));
+      strut_report_error(self->r->reader, item->place, "'%s' has no column '%s'",
+                         strut_sanitised_text(self->r->reader, self->points->node->text),
+                         strut_sanitised_text(self->r->reader, item->text));
   }
 }
 
 /* The parameter that a column gives; NULL where that was reported. */
-static const strut_declared *parameter_of(table *t, size_t i) {
-  strut_reader *reader = t->r->reader;
-  const char *name = t->csv.titles[i].name;
-  const strut_declared *found = strut_study_declared(t->r, name);
+static const strut_declared *parameter_of(table *self, size_t i) {
+  strut_reader *reader = self->r->reader;
+  const char *name = self->csv.titles[i].name;
+  const strut_declared *found = strut_study_declared(self->r, name);
   if (!found) {
-    strut_diagnose(messages(t), t->csv.place[i], "the model has no parameter '%s'%s%s",
-                   strut_sanitised_text(reader, name),
-                   strut_hint(reader, name, strut_study_declared_name, t->r, t->r->declared_count),
-                   t->columns ? "" : "; {points: {file: ..., columns: [...]}} chooses columns");
+    strut_diagnose(
+        messages(self), self->csv.place[i], "the model has no parameter '%s'%s%s",
+        strut_sanitised_text(reader, name),
+        strut_hint(reader, name, strut_study_declared_name, self->r, self->r->declared_count),
+        self->columns ? "" : "; {points: {file: ..., columns: [...]}} chooses columns");
     return NULL;
   }
-  if (strut_name_map_find(&t->r->given, found->name) >= 0) {
-    strut_diagnose(messages(t), t->csv.place[i], "parameter '%s' is given twice", found->name);
+  if (strut_name_map_find(&self->r->given, found->name) >= 0) {
+    strut_diagnose(messages(self), self->csv.place[i], "parameter '%s' is given twice",
+                   found->name);
     return NULL;
   }
-  strut_add_name(reader, &t->r->given, found->name, (size_t)(found - t->r->declared));
+  strut_add_name(reader, &self->r->given, found->name, (size_t)(found - self->r->declared));
   return found;
 }
 
 /* A plain number with the column's unit; the whole text is read as one, so that 0.1 mm has its bits. */
-static bool read_number(const char *text, const char *unit, strut_quantity *q) {
+static bool read_number(const char *text, const char *unit, strut_quantity *quantity) {
   char whole[200];
   double plain;
   strut_expression_error error;
   if (!strut_csv_number(text, &plain) || !isfinite(plain)) return false;
   int n = snprintf(whole, sizeof whole, "%s %s", *text == '+' ? text + 1 : text, unit);
-  return n > 0 && (size_t)n < sizeof whole && strut_expression_evaluate(whole, NULL, q, &error);
+  return n > 0 && (size_t)n < sizeof whole &&
+         strut_expression_evaluate(whole, NULL, quantity, &error);
 }
 
 /* The unit of a column: "" for none. False where that was reported. */
-static bool check_unit(table *t, size_t i, const strut_study_along *a, const char **unit) {
+static bool check_unit(table *self, size_t i, const strut_study_along *along, const char **unit) {
   char expected[200];
   strut_quantity q;
-  strut_setting *s = a->setting;
-  const char *title = t->csv.titles[i].unit;
+  strut_setting *setting = along->setting;
+  const char *title = self->csv.titles[i].unit;
   *unit = strcmp(title, "1") == 0 ? "" : title;
   if (!**unit) return true;
-  bool known = !a->parameter->text && read_number("1", *unit, &q);
-  if (known && s->bare && !q.bare) {
-    s->bare = false;
-    s->dimension = q.dimension;
+  bool known = !along->parameter->text && read_number("1", *unit, &q);
+  if (known && setting->bare && !q.bare) {
+    setting->bare = false;
+    setting->dimension = q.dimension;
   }
-  if (known && !q.bare && strut_dimension_equal(q.dimension, s->dimension)) return true;
-  strut_diagnose(messages(t), t->csv.place[i], "expected %s in column '%s', found the unit '%s'",
-                 a->parameter->text ? "texts"
-                 : s->bare          ? "a unit"
-                           : strut_expected_number(s->dimension, expected, sizeof expected),
-                 a->parameter->name, strut_sanitised_text(t->r->reader, title));
+  if (known && !q.bare && strut_dimension_equal(q.dimension, setting->dimension)) return true;
+  strut_diagnose(
+      messages(self), self->csv.place[i], "expected %s in column '%s', found the unit '%s'",
+      along->parameter->text ? "texts"
+      : setting->bare        ? "a unit"
+                             : strut_expected_number(setting->dimension, expected, sizeof expected),
+      along->parameter->name, strut_sanitised_text(self->r->reader, title));
   return false;
 }
 
@@ -131,119 +137,126 @@ static bool is_text(const char *text) {
   return true;
 }
 
-static void refuse_cell(table *t, size_t cell, const strut_study_along *a) {
-  const char *text = t->csv.cell[cell];
-  const char *expected = a->parameter->text ? "a text of 1 to 23 bytes" : "a number";
+static void refuse_cell(table *self, size_t cell, const strut_study_along *along) {
+  const char *text = self->csv.cell[cell];
+  const char *expected = along->parameter->text ? "a text of 1 to 23 bytes" : "a number";
   if (!*text)
-    strut_diagnose(messages(t), t->csv.place[cell], "expected %s for '%s', found an empty cell",
-                   expected, a->parameter->name);
+    strut_diagnose(messages(self), self->csv.place[cell],
+                   "expected %s for '%s', found an empty cell", expected, along->parameter->name);
   else
-    strut_diagnose(messages(t), t->csv.place[cell], "expected %s for '%s', found '%s'", expected,
-                   a->parameter->name, strut_sanitised_text(t->r->reader, text));
+    strut_diagnose(messages(self), self->csv.place[cell], "expected %s for '%s', found '%s'",
+                   expected, along->parameter->name, strut_sanitised_text(self->r->reader, text));
 }
 
 /* The cells of column i. */
-static void read_cells(table *t, size_t i, const strut_study_along *a, const char *unit) {
-  strut_arena *arena = &t->r->file->arena;
-  size_t rows = t->csv.row_count;
-  bool text = a->parameter->text;
-  double *numbers = text ? NULL : strut_reader_allocate(t->r->reader, arena, rows, sizeof *numbers);
+static void read_cells(table *self, size_t i, const strut_study_along *along, const char *unit) {
+  strut_arena *arena = &self->r->file->arena;
+  size_t rows = self->csv.row_count;
+  bool text = along->parameter->text;
+  double *numbers =
+      text ? NULL : strut_reader_allocate(self->r->reader, arena, rows, sizeof *numbers);
   const char **words =
-      text ? strut_reader_allocate(t->r->reader, arena, rows, sizeof *words) : NULL;
+      text ? strut_reader_allocate(self->r->reader, arena, rows, sizeof *words) : NULL;
   if (!numbers && !words) return;
-  for (size_t k = 0; k < rows && !strut_diagnostics_full(messages(t)); k++) {
-    size_t cell = (k + 1) * t->csv.column_count + i, length = strlen(t->csv.cell[cell]);
+  for (size_t k = 0; k < rows && !strut_diagnostics_full(messages(self)); k++) {
+    size_t cell = (k + 1) * self->csv.column_count + i, length = strlen(self->csv.cell[cell]);
     strut_quantity q = {.value = 0.0};
-    bool fine = text ? length > 0 && length < MOST_WORD && is_text(t->csv.cell[cell])
-                     : read_number(t->csv.cell[cell], unit, &q);
+    bool fine = text ? length > 0 && length < MOST_WORD && is_text(self->csv.cell[cell])
+                     : read_number(self->csv.cell[cell], unit, &q);
     if (!fine) {
-      refuse_cell(t, cell, a);
+      refuse_cell(self, cell, along);
     } else if (text) {
-      words[k] = strut_arena_text(arena, t->csv.cell[cell], length);
-      if (!words[k]) t->r->reader->out_of_memory = true;
+      words[k] = strut_arena_text(arena, self->csv.cell[cell], length);
+      if (!words[k]) self->r->reader->out_of_memory = true;
     } else {
       numbers[k] = q.value;
     }
   }
-  a->column->kind = STRUT_RANGE_LIST;
-  a->column->number = numbers;
-  a->column->words = words;
+  along->column->kind = STRUT_RANGE_LIST;
+  along->column->number = numbers;
+  along->column->words = words;
 }
 
-static void read_column(table *t, size_t i, strut_study_axis *axis) {
-  strut_study_along a = {.parameter = parameter_of(t, i)};
+static void read_column(table *self, size_t i, strut_study_axis *axis) {
+  strut_study_along a = {.parameter = parameter_of(self, i)};
   const char *unit = "";
   if (!a.parameter) return;
   a.column = &axis->columns[axis->column_count++];
-  a.setting = &t->r->file->columns[t->r->file->column_count++];
+  a.setting = &self->r->file->columns[self->r->file->column_count++];
   a.column->unit = "1";
-  if (!strut_study_begin_along(t->r, &a, t->place) || !check_unit(t, i, &a, &unit)) return;
-  read_cells(t, i, &a, unit);
+  if (!strut_study_begin_along(self->r, &a, self->place) || !check_unit(self, i, &a, &unit)) return;
+  read_cells(self, i, &a, unit);
   a.column->unit =
       a.setting->bare || a.parameter->text ? "1" : strut_dimension_unit(a.setting->dimension);
 }
 
-static void read_columns(table *t, strut_study_axis *axis) {
-  strut_study_reader *r = t->r;
-  check_columns(t);
-  if (t->csv.row_count > MOST_ROWS) {
-    strut_report_error(r->reader, t->place, "'%s' has %zu rows, a file of points may have 1e6",
-                       strut_sanitised_text(r->reader, t->points->node->text), t->csv.row_count);
+static void read_columns(table *self, strut_study_axis *axis) {
+  strut_study_reader *reader = self->r;
+  check_columns(self);
+  if (self->csv.row_count > MOST_ROWS) {
+    strut_report_error(
+        reader->reader, self->place, "'%s' has %zu rows, a file of points may have 1e6",
+        strut_sanitised_text(reader->reader, self->points->node->text), self->csv.row_count);
     return;
   }
-  axis->columns = strut_reader_allocate(r->reader, &r->file->arena, r->declared_count + 1,
-                                        sizeof *axis->columns);
+  axis->columns = strut_reader_allocate(reader->reader, &reader->file->arena,
+                                        reader->declared_count + 1, sizeof *axis->columns);
   if (!axis->columns) return;
-  axis->count = (int64_t)t->csv.row_count;
-  for (size_t i = 0; i < t->csv.column_count; i++)
-    if (is_wanted(t, t->csv.titles[i].name)) read_column(t, i, axis);
-  if (axis->column_count == 0 && !messages(t)->count)
-    strut_report_error(r->reader, t->place, "'%s' has no column of a parameter of the model",
-                       strut_sanitised_text(r->reader, t->points->node->text));
+  axis->count = (int64_t)self->csv.row_count;
+  for (size_t i = 0; i < self->csv.column_count; i++)
+    if (is_wanted(self, self->csv.titles[i].name)) read_column(self, i, axis);
+  if (axis->column_count == 0 && !messages(self)->count)
+    strut_report_error(reader->reader, self->place,
+                       "'%s' has no column of a parameter of the model",
+                       strut_sanitised_text(reader->reader, self->points->node->text));
 }
 
-static void read_file(table *t, const strut_tree *name, strut_study_axis *axis) {
-  strut_study_reader *r = t->r;
+static void read_file(table *self, const strut_tree *name, strut_study_axis *axis) {
+  strut_study_reader *reader = self->r;
   strut_error error = {0};
-  char *root = strut_folder_of(r->file->path, &r->file->arena);
-  t->points = &r->file->tables[r->file->table_count];
-  t->points->node = name;
-  t->points->copy = strut_arena_format(&r->file->arena, "points-%zu.csv", r->file->table_count + 1);
-  if (!root || !t->points->copy) {
-    r->reader->out_of_memory = true;
+  char *root = strut_folder_of(reader->file->path, &reader->file->arena);
+  self->points = &reader->file->tables[reader->file->table_count];
+  self->points->node = name;
+  self->points->copy =
+      strut_arena_format(&reader->file->arena, "points-%zu.csv", reader->file->table_count + 1);
+  if (!root || !self->points->copy) {
+    reader->reader->out_of_memory = true;
     return;
   }
-  strut_status status =
-      strut_safe_read(root, r->file->path, name->text, STRUT_TEXT_MOST, &t->points->file, &error);
+  strut_status status = strut_safe_read(root, reader->file->path, name->text, STRUT_TEXT_MOST,
+                                        &self->points->file, &error);
   if (status) {
-    if (status == STRUT_NO_MEMORY) r->reader->out_of_memory = true;
-    strut_report_error(r->reader, name->place, "%s", error.message);
+    if (status == STRUT_NO_MEMORY) reader->reader->out_of_memory = true;
+    strut_report_error(reader->reader, name->place, "%s", error.message);
     return;
   }
-  r->file->table_count++;
-  strut_diagnostics_source(messages(t), t->points->file.path, t->points->file.text,
-                           t->points->file.length);
-  status = strut_csv_read(t->points->file.text, t->points->file.length, messages(t), &t->csv);
-  if (status == STRUT_OK) read_columns(t, axis);
-  if (status == STRUT_NO_MEMORY || messages(t)->out_of_memory) r->reader->out_of_memory = true;
-  if (messages(t)->count) r->reader->failed = true;
-  strut_arena_free(&t->csv.arena);
+  reader->file->table_count++;
+  strut_diagnostics_source(messages(self), self->points->file.path, self->points->file.text,
+                           self->points->file.length);
+  status = strut_csv_read(self->points->file.text, self->points->file.length, messages(self),
+                          &self->csv);
+  if (status == STRUT_OK) read_columns(self, axis);
+  if (status == STRUT_NO_MEMORY || messages(self)->out_of_memory)
+    reader->reader->out_of_memory = true;
+  if (messages(self)->count) reader->reader->failed = true;
+  strut_arena_free(&self->csv.arena);
 }
 
-void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
+void strut_study_read_points(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis) {
   const strut_owner owner = {"the file of points", NULL};
   const strut_tree *name = value;
-  table t = {.r = r};
+  table t = {.r = reader};
   if (value->kind == STRUT_TREE_MAP) {
     strut_fields fields;
     strut_points_keys keys = {0};
-    if (!strut_read_object(r->reader, STRUT_SECTION_POINTS, value, owner, &fields, &keys)) return;
+    if (!strut_read_object(reader->reader, STRUT_SECTION_POINTS, value, owner, &fields, &keys))
+      return;
     name = keys.file, t.columns = keys.columns;
     for (const strut_tree *item = t.columns ? t.columns->first : NULL; item; item = item->next)
-      if (!strut_read_scalar(r->reader, item, "columns", owner, "a column's name")) return;
+      if (!strut_read_scalar(reader->reader, item, "columns", owner, "a column's name")) return;
   }
-  if (!strut_read_scalar(r->reader, name, "points", owner, "the path of a CSV file")) return;
+  if (!strut_read_scalar(reader->reader, name, "points", owner, "the path of a CSV file")) return;
   t.place = name->place;
   read_file(&t, name, axis);
 }
@@ -252,124 +265,127 @@ void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
 
 static const strut_owner sample_owner = {"the sample", NULL};
 
-bool strut_study_is_sample(const strut_study_reader *r, const strut_tree *item) {
+bool strut_study_is_sample(const strut_study_reader *reader, const strut_tree *item) {
   if (item->kind != STRUT_TREE_MAP || item->count != 1) return false;
   const strut_tree *value = item->first->next;
   if (strcmp(item->first->text, "sample") != 0) return false;
   return (value->kind == STRUT_TREE_MAP && strut_tree_find(value, "over", NULL)) ||
-         !strut_study_declared(r, "sample");
+         !strut_study_declared(reader, "sample");
 }
 
 /* Numbers of a distribution; the last one of a lognormal one has no unit. */
-static bool read_numbers(strut_study_reader *r, strut_study_along *a, const strut_slot *slot,
-                         strut_distribution *d) {
-  size_t wanted = d->kind == STRUT_DISTRIBUTION_TRIANGULAR ? 3 : 2, i = 0;
+static bool read_numbers(strut_study_reader *reader, strut_study_along *along,
+                         const strut_slot *slot, strut_distribution *distribution) {
+  size_t wanted = distribution->kind == STRUT_DISTRIBUTION_TRIANGULAR ? 3 : 2, i = 0;
   const char *name = slot->key->text;
-  const strut_owner owner = {"parameter", a->parameter->name};
+  const strut_owner owner = {"parameter", along->parameter->name};
   bool fine = true;
   if (slot->value->count != wanted)
     return strut_report_error(
-        r->reader, slot->value->place, "expected %zu numbers for '%s' of %s, found %s", wanted,
-        name, strut_owner_text(r->reader, owner), strut_found(r->reader, slot->value));
+        reader->reader, slot->value->place, "expected %zu numbers for '%s' of %s, found %s", wanted,
+        name, strut_owner_text(reader->reader, owner), strut_found(reader->reader, slot->value));
   for (const strut_tree *item = slot->value->first; item; item = item->next, i++) {
-    bool bare = d->kind == STRUT_DISTRIBUTION_LOGNORMAL && i == 1;
-    bool read = bare ? strut_read_number(r->reader, item, name, owner, STRUT_DIM_NONE,
-                                         STRUT_RANGE_ANY, &d->number[i])
-                     : strut_study_read_value(r, a, item, name, i == 0, &d->number[i]);
+    bool bare = distribution->kind == STRUT_DISTRIBUTION_LOGNORMAL && i == 1;
+    bool read =
+        bare ? strut_read_number(reader->reader, item, name, owner, STRUT_DIM_NONE, STRUT_RANGE_ANY,
+                                 &distribution->number[i])
+             : strut_study_read_value(reader, along, item, name, i == 0, &distribution->number[i]);
     fine = fine && read;
   }
-  const char *flaw = fine ? strut_distribution_flaw(d) : NULL;
+  const char *flaw = fine ? strut_distribution_flaw(distribution) : NULL;
   if (flaw)
-    strut_report_error(r->reader, slot->value->place, "'%s' of %s %s", name,
-                       strut_owner_text(r->reader, owner), flaw);
+    strut_report_error(reader->reader, slot->value->place, "'%s' of %s %s", name,
+                       strut_owner_text(reader->reader, owner), flaw);
   return fine && !flaw;
 }
 
 /* One parameter and its distribution. */
-static bool read_parameter(strut_study_reader *r, strut_study_along *a, strut_distribution *d) {
+static bool read_parameter(strut_study_reader *reader, strut_study_along *along,
+                           strut_distribution *distribution) {
   strut_fields fields;
   int kinds = 0;
-  a->parameter = strut_study_parameter(r, a->key);
-  if (!a->parameter) return false;
-  const strut_owner owner = {"parameter", a->parameter->name};
-  bool fine = strut_study_begin_along(r, a, a->key->place);
-  a->column->unit = "1";
-  if (a->parameter->text)
-    return strut_report_error(r->reader, a->key->place,
+  along->parameter = strut_study_parameter(reader, along->key);
+  if (!along->parameter) return false;
+  const strut_owner owner = {"parameter", along->parameter->name};
+  bool fine = strut_study_begin_along(reader, along, along->key->place);
+  along->column->unit = "1";
+  if (along->parameter->text)
+    return strut_report_error(reader->reader, along->key->place,
                               "parameter '%s' is a text, which has no distribution",
-                              a->parameter->name);
-  strut_read_fields(r->reader, STRUT_SECTION_DISTRIBUTION, a->value, owner, &fields);
+                              along->parameter->name);
+  strut_read_fields(reader->reader, STRUT_SECTION_DISTRIBUTION, along->value, owner, &fields);
   if (fields.broken) return false;
   for (int k = 0; k < STRUT_DISTRIBUTION_COUNT; k++) {
     const int key = STRUT_KEY_DISTRIBUTION_UNIFORM + k;
     const strut_slot *slot = strut_slot_of(&fields, key);
     if (slot->state != STRUT_GIVEN) continue;
     kinds++;
-    strut_store_choice(strut_key_at(key), d);
-    fine = read_numbers(r, a, slot, d) && fine;
+    strut_store_choice(strut_key_at(key), distribution);
+    fine = read_numbers(reader, along, slot, distribution) && fine;
   }
   if (kinds == 0)
-    strut_report_error(r->reader, a->value->place,
+    strut_report_error(reader->reader, along->value->place,
                        "expected a distribution such as {uniform: [1, 2]} for parameter '%s'",
-                       a->parameter->name);
-  a->column->kind = STRUT_RANGE_LIST;
-  a->column->unit = a->setting->bare ? "1" : strut_dimension_unit(a->setting->dimension);
+                       along->parameter->name);
+  along->column->kind = STRUT_RANGE_LIST;
+  along->column->unit =
+      along->setting->bare ? "1" : strut_dimension_unit(along->setting->dimension);
   return fine && kinds > 0;
 }
 
 /* Makes the values of all columns. */
-static void make_values(strut_study_reader *r, const strut_sample_keys *keys,
+static void make_values(strut_study_reader *reader, const strut_sample_keys *keys,
                         strut_study_axis *axis, const strut_distribution *distributions) {
   double *values[STRUT_SAMPLE_MOST_NUMBERS];
   for (size_t i = 0; i < axis->column_count; i++) {
-    values[i] =
-        strut_reader_allocate(r->reader, &r->file->arena, (size_t)axis->count, sizeof *values[i]);
+    values[i] = strut_reader_allocate(reader->reader, &reader->file->arena, (size_t)axis->count,
+                                      sizeof *values[i]);
     if (!values[i]) return;
     axis->columns[i].number = values[i];
   }
   if (!strut_sample_make((strut_sample_scheme)keys->scheme, (uint32_t)keys->seed, axis->count,
                          axis->column_count, distributions, values))
-    r->reader->out_of_memory = true;
+    reader->reader->out_of_memory = true;
 }
 
-bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *over,
+bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree *over,
                                     strut_owner owner, size_t most, strut_study_axis *axis,
                                     strut_distribution *distributions) {
   bool fine = true;
   if (over->count == 0 || over->count > most)
-    return strut_report_error(r->reader, over->place,
+    return strut_report_error(reader->reader, over->place,
                               "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
-                              strut_owner_text(r->reader, owner), (size_t)over->count);
-  axis->columns =
-      strut_reader_allocate(r->reader, &r->file->arena, over->count, sizeof *axis->columns);
+                              strut_owner_text(reader->reader, owner), (size_t)over->count);
+  axis->columns = strut_reader_allocate(reader->reader, &reader->file->arena, over->count,
+                                        sizeof *axis->columns);
   if (!axis->columns) return false;
   for (const strut_tree *key = over->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next};
-    if (!strut_study_declared(r, key->text) ||
-        strut_name_map_find(&r->given, key->text) >= 0) { /* no slot for it */
-      strut_study_parameter(r, key);
+    if (!strut_study_declared(reader, key->text) ||
+        strut_name_map_find(&reader->given, key->text) >= 0) { /* no slot for it */
+      strut_study_parameter(reader, key);
       fine = false;
       continue;
     }
     a.column = &axis->columns[axis->column_count];
-    a.setting = &r->file->columns[r->file->column_count++];
-    fine = read_parameter(r, &a, &distributions[axis->column_count++]) && fine;
+    a.setting = &reader->file->columns[reader->file->column_count++];
+    fine = read_parameter(reader, &a, &distributions[axis->column_count++]) && fine;
   }
   return fine;
 }
 
-void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
+void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis) {
   strut_fields fields;
   strut_sample_keys keys = {.count = 1, .scheme = STRUT_SAMPLE_SOBOL, .seed = 1};
   strut_distribution distributions[STRUT_SAMPLE_MOST_NUMBERS] = {0};
-  strut_read_object(r->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields, &keys);
+  strut_read_object(reader->reader, STRUT_SECTION_SAMPLE, value, sample_owner, &fields, &keys);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
   axis->count = keys.count;
-  bool fine = strut_study_read_distributions(r, over->value, sample_owner,
+  bool fine = strut_study_read_distributions(reader, over->value, sample_owner,
                                              STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
-  if (fine && !fields.broken) make_values(r, &keys, axis, distributions);
+  if (fine && !fields.broken) make_values(reader, &keys, axis, distributions);
 }
 
 /* ---- sensitivity analyses ---- */
@@ -377,15 +393,15 @@ void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
 static const strut_owner sensitivity_owner = {"the sensitivity analysis", NULL};
 
 /* The accuracy of the runs at the first point; 0 for that of rounding, or where no point can be read yet. */
-static double find_accuracy(strut_study_reader *r) {
-  const strut_study *study = &r->file->study;
+static double find_accuracy(strut_study_reader *reader) {
+  const strut_study *study = &reader->file->study;
   strut_setup setup;
   strut_error error = {0};
   size_t k = 0;
-  if (study->compute != STRUT_COMPUTE_RUN || r->reader->failed) return 0.0;
-  strut_study_value *values = strut_allocate(r->file->column_count + 1, sizeof *values);
+  if (study->compute != STRUT_COMPUTE_RUN || reader->reader->failed) return 0.0;
+  strut_study_value *values = strut_allocate(reader->file->column_count + 1, sizeof *values);
   if (!values) {
-    r->reader->out_of_memory = true;
+    reader->reader->out_of_memory = true;
     return 0.0;
   }
   for (size_t i = 0; i < study->axis_count; i++)
@@ -396,7 +412,7 @@ static double find_accuracy(strut_study_reader *r) {
       values[k].word = column->word ? column->words[0] : NULL;
     }
   double accuracy = 0.0;
-  if (strut_study_setup(r->file, values, &setup, &error) == STRUT_OK) {
+  if (strut_study_setup(reader->file, values, &setup, &error) == STRUT_OK) {
     accuracy = setup.experiment.accuracy;
     strut_setup_free(&setup);
   }
@@ -405,61 +421,62 @@ static double find_accuracy(strut_study_reader *r) {
 }
 
 /* Gives the axis its points; first the medians alone, at which the accuracy is found. */
-static void make_points(strut_study_reader *r, const strut_slot *slot, strut_study_axis *axis,
+static void make_points(strut_study_reader *reader, const strut_slot *slot, strut_study_axis *axis,
                         const strut_distribution *distributions) {
-  strut_study *study = &r->file->study;
-  strut_study_sensitivity *s = &study->sensitivity;
+  strut_study *study = &reader->file->study;
+  strut_study_sensitivity *sensitivity = &study->sensitivity;
   double *values[STRUT_SENSITIVITY_MOST], points = 1.0;
-  axis->count = strut_sensitivity_points(s, axis->column_count);
+  axis->count = strut_sensitivity_points(sensitivity, axis->column_count);
   for (size_t i = 0; i < study->axis_count; i++) points *= (double)study->axes[i].count;
   if (points > (double)STRUT_STUDY_MOST_POINTS) {
-    strut_report_error(r->reader, slot->key->place,
+    strut_report_error(reader->reader, slot->key->place,
                        "the axes and the sensitivity analysis make %.3g points, a study may have "
                        "1e9",
                        points);
     return;
   }
   for (size_t i = 0; i < axis->column_count; i++) {
-    values[i] =
-        strut_reader_allocate(r->reader, &r->file->arena, (size_t)axis->count, sizeof *values[i]);
+    values[i] = strut_reader_allocate(reader->reader, &reader->file->arena, (size_t)axis->count,
+                                      sizeof *values[i]);
     if (!values[i]) return;
     values[i][0] = strut_distribution_value(&distributions[i], 0.5);
     axis->columns[i].number = values[i];
   }
-  s->accuracy = find_accuracy(r);
-  if (!strut_sensitivity_fill(s, axis->column_count, distributions, values))
-    r->reader->out_of_memory = true;
+  sensitivity->accuracy = find_accuracy(reader);
+  if (!strut_sensitivity_fill(sensitivity, axis->column_count, distributions, values))
+    reader->reader->out_of_memory = true;
 }
 
-void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top) {
-  strut_study *study = &r->file->study;
-  strut_study_sensitivity *s = &study->sensitivity;
+void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top) {
+  strut_study *study = &reader->file->study;
+  strut_study_sensitivity *sensitivity = &study->sensitivity;
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY);
   strut_distribution distributions[STRUT_SENSITIVITY_MOST] = {0};
   strut_fields fields;
   static const int others[] = {STRUT_KEY_STUDY_REFINE, STRUT_KEY_STUDY_TRAJECTORIES,
                                STRUT_KEY_STUDY_SEARCH};
   if (slot->state != STRUT_GIVEN) return;
-  strut_study_exclude(r, top, slot, others, sizeof others / sizeof others[0]);
+  strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   if (!study->axes) /* the study has no others */
-    strut_study_read_axes(r, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
-  s->samples = 256, s->seed = 1, s->derivatives = true;
-  strut_read_object(r->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner, &fields,
-                    s);
+    strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
+  sensitivity->samples = 256, sensitivity->seed = 1, sensitivity->derivatives = true;
+  strut_read_object(reader->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner,
+                    &fields, sensitivity);
   const strut_slot *of = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OF);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SENSITIVITY_OVER);
   if (of->state == STRUT_GIVEN && !of->value->count)
-    strut_report_error(r->reader, of->value->place,
+    strut_report_error(reader->reader, of->value->place,
                        "expected columns of the table for 'of' of the sensitivity analysis");
-  if (over->state != STRUT_GIVEN || !study->axes || !r->file->columns) return;
-  if (s->samples == 0 && !s->derivatives)
-    strut_report_error(r->reader, slot->key->place,
+  if (over->state != STRUT_GIVEN || !study->axes || !reader->file->columns) return;
+  if (sensitivity->samples == 0 && !sensitivity->derivatives)
+    strut_report_error(reader->reader, slot->key->place,
                        "the sensitivity analysis has neither samples nor derivatives");
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  bool fine = strut_study_read_distributions(r, over->value, sensitivity_owner,
+  bool fine = strut_study_read_distributions(reader, over->value, sensitivity_owner,
                                              STRUT_SENSITIVITY_MOST, axis, distributions);
-  s->axis = study->axis_count++;
-  s->wanted = true;
-  if (fine && !fields.broken && !r->reader->failed) make_points(r, slot, axis, distributions);
+  sensitivity->axis = study->axis_count++;
+  sensitivity->wanted = true;
+  if (fine && !fields.broken && !reader->reader->failed)
+    make_points(reader, slot, axis, distributions);
 }

@@ -23,7 +23,7 @@ typedef struct strut_study_reader {
 } strut_study_reader;
 
 /** The parameter of the model that a key names; NULL where that was reported. */
-const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_tree *key);
+const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key);
 /**
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.
@@ -32,9 +32,11 @@ const strut_declared *strut_study_parameter(strut_study_reader *r, const strut_t
 bool strut_study_is_its_model(const strut_study_file *file);
 /** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
 bool strut_study_measure(strut_study_file *file, const strut_tree *column);
-strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top, strut_error *error);
+strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *top,
+                                      strut_error *error);
 /** Reads the axes into the study, and their columns; list NULL: none. Then what is searched. */
-void strut_study_read_axes(strut_study_reader *r, const strut_tree *list, const strut_slot *search);
+void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
+                           const strut_slot *search);
 
 /** One parameter along its axis, while it is read. */
 typedef struct strut_study_along {
@@ -46,69 +48,70 @@ typedef struct strut_study_along {
 } strut_study_along;
 
 /** The parameter of that name, or NULL; nothing is reported. */
-const strut_declared *strut_study_declared(const strut_study_reader *r, const char *name);
+const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name);
 /** The i-th name of a parameter, for suggestions; `context` is the reader. */
 const char *strut_study_declared_name(const void *context, size_t i);
 /**
  * Starts the column of a->parameter and its setting at `place`. False: the table has a column of that
  * name, and `reserved` says so.
  */
-bool strut_study_begin_along(strut_study_reader *r, strut_study_along *a, strut_place place);
+bool strut_study_begin_along(strut_study_reader *reader, strut_study_along *along,
+                             strut_place place);
 /** A number in the parameter's dimension; where that has none the first value decides. */
-bool strut_study_read_value(strut_study_reader *r, strut_study_along *a, const strut_tree *value,
-                            const char *key, bool first, double *number);
+bool strut_study_read_value(strut_study_reader *reader, strut_study_along *along,
+                            const strut_tree *value, const char *key, bool first, double *number);
 
 /** The same of a key that is given, into the field of its row. */
-bool strut_study_store_value(strut_study_reader *r, strut_study_along *a, strut_fields *fields,
-                             int key, bool first, void *object);
+bool strut_study_store_value(strut_study_reader *reader, strut_study_along *along,
+                             strut_fields *fields, int key, bool first, void *object);
 
 /** Reads a parameter along its axis: a list or a range. False where something was reported. */
-bool strut_study_read_along(strut_study_reader *r, strut_study_along *a);
+bool strut_study_read_along(strut_study_reader *reader, strut_study_along *along);
 
 /* study_search.c */
 
 /** Most axes and columns that a search adds. */
 size_t strut_study_search_columns(const strut_slot *slot);
 /** Reads what is searched, after the axes, and adds its axes. Nothing without one. */
-void strut_study_read_search(strut_study_reader *r, const strut_slot *slot);
+void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot);
 
 /* study_axes.c: what is refined */
 
 /** Reads what is refined, after the axes, and gives the two axes the values of the finest grid. */
-void strut_study_read_refine(strut_study_reader *r, const strut_slot *slot);
+void strut_study_read_refine(strut_study_reader *reader, const strut_slot *slot);
 
 /* study_points.c */
 
 /** Is the item of `axes` a file of points, or a sample, and no parameter of such a name? */
-bool strut_study_is_points(const strut_study_reader *r, const strut_tree *item);
-bool strut_study_is_sample(const strut_study_reader *r, const strut_tree *item);
-void strut_study_read_points(strut_study_reader *r, const strut_tree *value,
+bool strut_study_is_points(const strut_study_reader *reader, const strut_tree *item);
+bool strut_study_is_sample(const strut_study_reader *reader, const strut_tree *item);
+void strut_study_read_points(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis);
-void strut_study_read_sample(strut_study_reader *r, const strut_tree *value,
+void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis);
 
 /** Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
-bool strut_study_read_distributions(strut_study_reader *r, const strut_tree *over,
+bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree *over,
                                     strut_owner owner, size_t most, strut_study_axis *axis,
                                     strut_distribution *distributions);
 
 /* study_axes.c: goals */
 
 /** Reads what the study wants of its points, after `keep`. */
-void strut_study_read_goals(strut_study_reader *r, strut_fields *top);
+void strut_study_read_goals(strut_study_reader *reader, strut_fields *top);
 
 /* study_points.c: sensitivity analyses */
 
 /** Reads the analysis and adds its points as the last axis, after all others. */
-void strut_study_read_sensitivity(strut_study_reader *r, strut_fields *top);
+void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top);
 
 /* study_axes.c: what is followed */
 
 /** Reads what is followed, after the axes. Nothing without it. */
-void strut_study_read_follow(strut_study_reader *r, strut_fields *top);
+void strut_study_read_follow(strut_study_reader *reader, strut_fields *top);
 
 /** Reports those of the keys that are given: the study has `own`, which excludes them. */
-void strut_study_exclude(strut_study_reader *r, strut_fields *top, const strut_slot *own,
+void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
                          const int *keys, size_t count);
 
 /** The place, marked as one of the study's text. */

@@ -22,133 +22,151 @@ size_t strut_study_search_columns(const strut_slot *slot) {
   return count + 4; /* search, evaluation; an axis each for them and the variables */
 }
 
-static bool refuse(strut_study_reader *r, const strut_study_along *a, const char *why) {
-  return strut_report_error(r->reader, a->value->place, "variable '%s' of the search %s",
-                            a->parameter->name, why);
+static bool refuse(strut_study_reader *reader, const strut_study_along *along, const char *why) {
+  return strut_report_error(reader->reader, along->value->place, "variable '%s' of the search %s",
+                            along->parameter->name, why);
 }
 
-static bool read_choices(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
-  if (a->value->count < 2)
-    return refuse(r, a, "has no choice: list two values or more, or write its value under 'set'");
-  v->choice_count = (size_t)a->count;
-  v->numbers = a->column->number;
-  v->words = a->column->words;
+static bool read_choices(strut_study_reader *reader, strut_study_along *along,
+                         strut_search_variable *variable) {
+  if (along->value->count < 2)
+    return refuse(reader, along,
+                  "has no choice: list two values or more, or write its value under 'set'");
+  variable->choice_count = (size_t)along->count;
+  variable->numbers = along->column->number;
+  variable->words = along->column->words;
   return true;
 }
 
 /* An angle that wraps must go once around. */
-static bool wraps_around(const strut_study_along *a, const strut_search_variable *v) {
+static bool wraps_around(const strut_study_along *along, const strut_search_variable *variable) {
   const double turn = 6.283185307179586;
-  bool angle = !a->setting->bare && strut_dimension_equal(a->setting->dimension, STRUT_DIM_ANGLE);
-  return !angle || fabs((v->to - v->from) / turn - 1.0) < 1e-9;
+  bool angle =
+      !along->setting->bare && strut_dimension_equal(along->setting->dimension, STRUT_DIM_ANGLE);
+  return !angle || fabs((variable->to - variable->from) / turn - 1.0) < 1e-9;
 }
 
-static bool check_range(strut_study_reader *r, const strut_study_along *a,
-                        const strut_search_variable *v) {
-  if (v->from == v->to)
-    return refuse(r, a, "has a range of one value: write it under 'set' of the study");
-  if (v->from > v->to) return refuse(r, a, "has a reversed range: 'from' must be below 'to'");
-  if (!isfinite(v->to - v->from)) return refuse(r, a, "has too wide a range for a number");
-  if (v->logarithmic && v->from * v->to <= 0.0)
-    return refuse(r, a, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
-  if (v->wraps && (v->logarithmic || v->integer))
-    return refuse(r, a, "cannot wrap: only even ranges of any number do");
-  if (v->wraps && !wraps_around(a, v))
-    return refuse(r, a, "cannot wrap: its range is no full turn, such as 0 deg to 360 deg");
-  if (v->integer && floor(v->to) < ceil(v->from) + 1.0)
-    return refuse(r, a, "has no two whole numbers in its range");
-  if (!(v->start >= v->from && v->start <= v->to))
-    return refuse(r, a, "has a 'start' outside of its range");
+static bool check_range(strut_study_reader *reader, const strut_study_along *along,
+                        const strut_search_variable *variable) {
+  if (variable->from == variable->to)
+    return refuse(reader, along, "has a range of one value: write it under 'set' of the study");
+  if (variable->from > variable->to)
+    return refuse(reader, along, "has a reversed range: 'from' must be below 'to'");
+  if (!isfinite(variable->to - variable->from))
+    return refuse(reader, along, "has too wide a range for a number");
+  if (variable->logarithmic && variable->from * variable->to <= 0.0)
+    return refuse(reader, along, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
+  if (variable->wraps && (variable->logarithmic || variable->integer))
+    return refuse(reader, along, "cannot wrap: only even ranges of any number do");
+  if (variable->wraps && !wraps_around(along, variable))
+    return refuse(reader, along,
+                  "cannot wrap: its range is no full turn, such as 0 deg to 360 deg");
+  if (variable->integer && floor(variable->to) < ceil(variable->from) + 1.0)
+    return refuse(reader, along, "has no two whole numbers in its range");
+  if (!(variable->start >= variable->from && variable->start <= variable->to))
+    return refuse(reader, along, "has a 'start' outside of its range");
   return true;
 }
 
-static bool read_range(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
+static bool read_range(strut_study_reader *reader, strut_study_along *along,
+                       strut_search_variable *variable) {
   strut_fields fields;
-  const strut_owner owner = {"variable", a->parameter->name};
-  if (a->parameter->text) return refuse(r, a, "is a text: give a list of the texts to choose from");
-  if (!strut_read_object(r->reader, STRUT_SECTION_VARIABLE, a->value, owner, &fields, v))
+  const strut_owner owner = {"variable", along->parameter->name};
+  if (along->parameter->text)
+    return refuse(reader, along, "is a text: give a list of the texts to choose from");
+  if (!strut_read_object(reader->reader, STRUT_SECTION_VARIABLE, along->value, owner, &fields,
+                         variable))
     return false;
   const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_VARIABLE_START);
-  bool fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_FROM, true, v);
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_TO, false, v) && fine;
-  v->start = v->from + 0.5 * (v->to - v->from);
-  if (fine && v->logarithmic && v->from * v->to > 0.0)
-    v->start = copysign(sqrt(v->from) * sqrt(v->to), v->from);
-  fine = strut_study_store_value(r, a, &fields, STRUT_KEY_VARIABLE_START, false, v) && fine;
-  if (fine && v->logarithmic && v->from < 0.0)
-    return refuse(r, a, "cannot be logarithmic below 0: search over its negative");
-  if (fine && v->integer && start->state != STRUT_GIVEN) v->start = round(v->start);
-  return fine && check_range(r, a, v);
+  bool fine =
+      strut_study_store_value(reader, along, &fields, STRUT_KEY_VARIABLE_FROM, true, variable);
+  fine = strut_study_store_value(reader, along, &fields, STRUT_KEY_VARIABLE_TO, false, variable) &&
+         fine;
+  variable->start = variable->from + 0.5 * (variable->to - variable->from);
+  if (fine && variable->logarithmic && variable->from * variable->to > 0.0)
+    variable->start = copysign(sqrt(variable->from) * sqrt(variable->to), variable->from);
+  fine =
+      strut_study_store_value(reader, along, &fields, STRUT_KEY_VARIABLE_START, false, variable) &&
+      fine;
+  if (fine && variable->logarithmic && variable->from < 0.0)
+    return refuse(reader, along, "cannot be logarithmic below 0: search over its negative");
+  if (fine && variable->integer && start->state != STRUT_GIVEN)
+    variable->start = round(variable->start);
+  return fine && check_range(reader, along, variable);
 }
 
 /* A variable: its column has the value at which the search begins. */
-static bool read_variable(strut_study_reader *r, strut_study_along *a, strut_search_variable *v) {
-  bool list = a->value->kind == STRUT_TREE_LIST, fine;
-  double *start = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *start);
+static bool read_variable(strut_study_reader *reader, strut_study_along *along,
+                          strut_search_variable *variable) {
+  bool list = along->value->kind == STRUT_TREE_LIST, fine;
+  double *start = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *start);
   if (!start) return false;
   if (list) {
-    fine = strut_study_read_along(r, a) && read_choices(r, a, v);
+    fine = strut_study_read_along(reader, along) && read_choices(reader, along, variable);
   } else {
-    a->parameter = strut_study_parameter(r, a->key);
-    fine = a->parameter && strut_study_begin_along(r, a, a->key->place);
-    if (fine && a->value->kind != STRUT_TREE_MAP)
-      fine = refuse(r, a, "needs a range such as {from: 1, to: 2}, or a list of choices");
-    fine = fine && read_range(r, a, v);
-    *start = v->start;
-    a->column->kind = STRUT_RANGE_LIST;
-    a->column->number = start;
-    a->column->unit = fine && !a->setting->bare ? strut_dimension_unit(a->setting->dimension) : "1";
+    along->parameter = strut_study_parameter(reader, along->key);
+    fine = along->parameter && strut_study_begin_along(reader, along, along->key->place);
+    if (fine && along->value->kind != STRUT_TREE_MAP)
+      fine = refuse(reader, along, "needs a range such as {from: 1, to: 2}, or a list of choices");
+    fine = fine && read_range(reader, along, variable);
+    *start = variable->start;
+    along->column->kind = STRUT_RANGE_LIST;
+    along->column->number = start;
+    along->column->unit =
+        fine && !along->setting->bare ? strut_dimension_unit(along->setting->dimension) : "1";
   }
   if (!fine) return false;
-  v->name = a->parameter->name;
-  v->unit = a->column->unit;
-  v->word = a->parameter->text;
+  variable->name = along->parameter->name;
+  variable->unit = along->column->unit;
+  variable->word = along->parameter->text;
   return true;
 }
 
-static void read_variables(strut_study_reader *r, const strut_slot *over,
+static void read_variables(strut_study_reader *reader, const strut_slot *over,
                            strut_study_search *search) {
-  strut_study *study = &r->file->study;
-  strut_arena *arena = &r->file->arena;
+  strut_study *study = &reader->file->study;
+  strut_arena *arena = &reader->file->arena;
   size_t count = over->value->count;
   if (count == 0 || count > STRUT_SEARCH_MOST_VARIABLES) {
-    strut_report_error(r->reader, over->value->place,
+    strut_report_error(reader->reader, over->value->place,
                        "a search is 'over' 1 to %d parameters, found %zu",
                        STRUT_SEARCH_MOST_VARIABLES, count);
     return;
   }
   strut_study_axis *axis = &study->axes[study->axis_count++];
   *axis = (strut_study_axis){.count = 1};
-  axis->columns = strut_reader_allocate(r->reader, arena, count, sizeof *axis->columns);
-  search->variables = strut_reader_allocate(r->reader, arena, count, sizeof *search->variables);
-  search->column = r->file->column_count;
+  axis->columns = strut_reader_allocate(reader->reader, arena, count, sizeof *axis->columns);
+  search->variables =
+      strut_reader_allocate(reader->reader, arena, count, sizeof *search->variables);
+  search->column = reader->file->column_count;
   if (!axis->columns || !search->variables) return;
   for (const strut_tree *key = over->value->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next};
     a.column = &axis->columns[axis->column_count++];
-    a.setting = &r->file->columns[r->file->column_count++];
-    read_variable(r, &a, &search->variables[search->variable_count++]);
+    a.setting = &reader->file->columns[reader->file->column_count++];
+    read_variable(reader, &a, &search->variables[search->variable_count++]);
   }
 }
 
 /* The axes of the scenarios. */
-static void read_scenarios(strut_study_reader *r, const strut_slot *slot,
+static void read_scenarios(strut_study_reader *reader, const strut_slot *slot,
                            strut_study_search *search) {
-  strut_study *study = &r->file->study;
+  strut_study *study = &reader->file->study;
   double scenarios = 1.0;
   if (slot->state != STRUT_GIVEN) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
     strut_study_axis *axis = &study->axes[study->axis_count++];
     *axis = (strut_study_axis){.count = 1, .column_count = 1};
-    axis->columns = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *axis->columns);
+    axis->columns =
+        strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *axis->columns);
     strut_study_along a = {.key = key, .value = key->next, .column = axis->columns};
-    a.setting = &r->file->columns[r->file->column_count++];
-    if (axis->columns && strut_study_read_along(r, &a)) axis->count = a.count;
+    a.setting = &reader->file->columns[reader->file->column_count++];
+    if (axis->columns && strut_study_read_along(reader, &a)) axis->count = a.count;
     scenarios *= (double)axis->count;
     search->scenario_axes++;
   }
   if (scenarios > MOST_SCENARIOS)
-    strut_report_error(r->reader, slot->value->place,
+    strut_report_error(reader->reader, slot->value->place,
                        "'worst_over' makes %.4g scenarios, an evaluation may have %d", scenarios,
                        MOST_SCENARIOS);
 }
@@ -157,15 +175,15 @@ static void read_scenarios(strut_study_reader *r, const strut_slot *slot,
  * The axis that numbers evaluations: those of each search, then as `search` 0 the best point computed more
  * exactly, and its neighbours.
  */
-static void add_evaluations(strut_study_reader *r, const strut_study_search *search,
+static void add_evaluations(strut_study_reader *reader, const strut_study_search *search,
                             strut_study_axis *axis, size_t variables) {
   int64_t checks = 1 + 2 * (int64_t)variables;
   axis->count = search->starts * search->evaluations + checks;
   axis->column_count = 2;
   size_t count = (size_t)axis->count;
-  strut_arena *arena = &r->file->arena;
-  double *numbers = strut_reader_allocate(r->reader, arena, 2 * count, sizeof *numbers);
-  axis->columns = strut_reader_allocate(r->reader, arena, 2, sizeof *axis->columns);
+  strut_arena *arena = &reader->file->arena;
+  double *numbers = strut_reader_allocate(reader->reader, arena, 2 * count, sizeof *numbers);
+  axis->columns = strut_reader_allocate(reader->reader, arena, 2, sizeof *axis->columns);
   if (!numbers || !axis->columns) {
     axis->count = 1;
     return;
@@ -179,7 +197,7 @@ static void add_evaluations(strut_study_reader *r, const strut_study_search *sea
   axis->columns[0] = (strut_study_column){.name = "search", .unit = "1", .number = numbers};
   axis->columns[1] =
       (strut_study_column){.name = "evaluation", .unit = "1", .number = numbers + axis->count};
-  r->file->column_count += 2; /* settings without a name: no parameters */
+  reader->file->column_count += 2; /* settings without a name: no parameters */
 }
 
 static void keep_text(const strut_tree *value, strut_search_formula *formula) {
@@ -189,23 +207,25 @@ static void keep_text(const strut_tree *value, strut_search_formula *formula) {
 }
 
 /* One expression, or a list of two. */
-static void read_goals(strut_study_reader *r, const strut_tree *value, strut_study_search *search) {
+static void read_goals(strut_study_reader *reader, const strut_tree *value,
+                       strut_study_search *search) {
   bool two = value->kind == STRUT_TREE_LIST && value->count == 2;
   const strut_tree *first = two ? value->first : value;
   bool fine = first->kind == STRUT_TREE_SCALAR &&
               (!two || first->next->kind == STRUT_TREE_SCALAR) && !strut_is_null(first);
   if (!fine) {
-    strut_report_error(r->reader, value->place,
+    strut_report_error(reader->reader, value->place,
                        "expected a column, an expression of columns, or a list of two of them for "
                        "'%s' of the search, found %s",
-                       search->maximise ? "maximise" : "minimise", strut_found(r->reader, value));
+                       search->maximise ? "maximise" : "minimise",
+                       strut_found(reader->reader, value));
     return;
   }
   keep_text(first, &search->goal);
   if (two) keep_text(first->next, &search->second);
 }
 
-static void read_goal(strut_study_reader *r, strut_fields *fields, const strut_slot *slot,
+static void read_goal(strut_study_reader *reader, strut_fields *fields, const strut_slot *slot,
                       strut_study_search *search) {
   const strut_slot *most = strut_slot_of(fields, STRUT_KEY_SEARCH_MAXIMISE);
   const strut_slot *least = strut_slot_of(fields, STRUT_KEY_SEARCH_MINIMISE);
@@ -213,76 +233,78 @@ static void read_goal(strut_study_reader *r, strut_fields *fields, const strut_s
   search->maximise = most->state == STRUT_GIVEN;
   const strut_slot *goal = search->maximise ? most : least;
   if (goal->state == STRUT_GIVEN)
-    read_goals(r, goal->value, search);
+    read_goals(reader, goal->value, search);
   else if (!fields->broken)
-    strut_report_error(r->reader, slot->value->place,
+    strut_report_error(reader->reader, slot->value->place,
                        "the search lacks 'maximise' or 'minimise', a column of the table or an "
                        "expression of columns");
   bool two = search->second.text != NULL, given = method->state == STRUT_GIVEN;
   if (given && goal->state == STRUT_GIVEN && two != (search->method == STRUT_SEARCH_NSGA2))
-    strut_report_error(r->reader, method->value->place,
+    strut_report_error(reader->reader, method->value->place,
                        two ? "two goals need the method 'nsga2'"
                            : "the method 'nsga2' is for two goals: [velocity, -cost_of_transport]");
   if (two) search->method = STRUT_SEARCH_NSGA2;
 }
 
-static void read_conditions(strut_study_reader *r, const strut_slot *slot,
+static void read_conditions(strut_study_reader *reader, const strut_slot *slot,
                             strut_study_search *search) {
   if (slot->state != STRUT_GIVEN) return;
   if (slot->value->count > STRUT_SEARCH_MOST_CONDITIONS)
-    strut_report_error(r->reader, slot->value->place,
+    strut_report_error(reader->reader, slot->value->place,
                        "'subject_to' may have %d conditions, found %zu",
                        STRUT_SEARCH_MOST_CONDITIONS, (size_t)slot->value->count);
-  search->conditions = strut_reader_allocate(r->reader, &r->file->arena, slot->value->count + 1,
-                                             sizeof *search->conditions);
+  search->conditions = strut_reader_allocate(reader->reader, &reader->file->arena,
+                                             slot->value->count + 1, sizeof *search->conditions);
   for (const strut_tree *item = slot->value->first; item && search->conditions; item = item->next) {
-    strut_search_condition *c = &search->conditions[search->condition_count];
-    if (!strut_read_scalar(r->reader, item, "subject_to", search_owner,
+    strut_search_condition *condition = &search->conditions[search->condition_count];
+    if (!strut_read_scalar(reader->reader, item, "subject_to", search_owner,
                            "a text such as \"work < 2 mJ\""))
       continue;
     search->condition_count++;
-    keep_text(item, &c->left);
-    c->text = c->left.text;
-    c->place = c->left.place;
+    keep_text(item, &condition->left);
+    condition->text = condition->left.text;
+    condition->place = condition->left.place;
   }
 }
 
 /* Keys of a study that a search has no use for. */
-static void refuse_others(strut_study_reader *r, const strut_slot *slot) {
-  const strut_study *study = &r->file->study;
-  const strut_tree *root = r->file->document.root;
+static void refuse_others(strut_study_reader *reader, const strut_slot *slot) {
+  const strut_study *study = &reader->file->study;
+  const strut_tree *root = reader->file->document.root;
   strut_tree *key = NULL;
   if (study->trajectories && strut_tree_find(root, "trajectories", &key))
-    strut_report_error(r->reader, key ? key->place : slot->key->place,
+    strut_report_error(reader->reader, key ? key->place : slot->key->place,
                        "a study that searches records no trajectories: run its best.yaml for that");
   if (strut_tree_find(root, "refine", &key))
-    strut_report_error(r->reader, key ? key->place : slot->key->place,
+    strut_report_error(reader->reader, key ? key->place : slot->key->place,
                        "a study that searches has no grid to refine");
 }
 
-void strut_study_read_search(strut_study_reader *r, const strut_slot *slot) {
-  strut_study *study = &r->file->study;
+void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot) {
+  strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_study_search *search = strut_reader_allocate(r->reader, &r->file->arena, 1, sizeof *search);
+  strut_study_search *search =
+      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *search);
   if (!search) return;
   *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
-  strut_read_object(r->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields, search);
-  read_goal(r, &fields, slot, search);
-  read_conditions(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
-  refuse_others(r, slot);
+  strut_read_object(reader->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields,
+                    search);
+  read_goal(reader, &fields, slot, search);
+  read_conditions(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_SUBJECT_TO), search);
+  refuse_others(reader, slot);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SEARCH_OVER);
   const strut_slot *starts = strut_slot_of(&fields, STRUT_KEY_SEARCH_STARTS);
   if (search->method == STRUT_SEARCH_DIRECT && search->starts > 1)
-    strut_report_error(r->reader, starts->value->place,
+    strut_report_error(reader->reader, starts->value->place,
                        "'direct' has no seed, all its searches would be the same: give another "
                        "method, or no 'starts'");
   if (over->state != STRUT_GIVEN) return;
   search->axis = study->axis_count;
   strut_study_axis *evaluations = &study->axes[study->axis_count++];
-  add_evaluations(r, search, evaluations, over->value->count);
-  read_scenarios(r, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
-  read_variables(r, over, search);
+  add_evaluations(reader, search, evaluations, over->value->count);
+  read_scenarios(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
+  read_variables(reader, over, search);
   study->search = search;
 }
 
@@ -296,14 +318,14 @@ typedef struct binder {
 } binder;
 
 static const char *column_name(const void *context, size_t i) {
-  const binder *b = context;
-  return i < b->count ? b->columns[i].name : NULL;
+  const binder *self = context;
+  return i < self->count ? self->columns[i].name : NULL;
 }
 
-static size_t find_column(const binder *b, const char *name, size_t length) {
+static size_t find_column(const binder *self, const char *name, size_t length) {
   size_t i = 0;
-  while (i < b->count &&
-         (strlen(b->columns[i].name) != length || memcmp(b->columns[i].name, name, length) != 0))
+  while (i < self->count && (strlen(self->columns[i].name) != length ||
+                             memcmp(self->columns[i].name, name, length) != 0))
     i++;
   return i;
 }
@@ -323,19 +345,19 @@ static strut_dimension dimension_of(const char *unit) {
 /* As strut_find_column: columns of the table are words alone; names may have dots. */
 static int find(void *context, const char *kind, strut_piece owner, strut_piece field,
                 strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
-  binder *b = context;
+  binder *self = context;
   if (kind) return 0;
   const char *name = owner.length ? owner.text : field.text;
   size_t length = owner.length ? owner.length + 1 + field.length : field.length;
-  size_t i = find_column(b, name, length);
-  if (i < b->count && !b->columns[i].word) {
+  size_t i = find_column(self, name, length);
+  if (i < self->count && !self->columns[i].word) {
     *column = (strut_column){.item = (int32_t)i, .other = -1};
-    *dimension = dimension_of(b->columns[i].unit);
+    *dimension = dimension_of(self->columns[i].unit);
     return 1;
   }
-  if (i == b->count) return 0;
+  if (i == self->count) return 0;
   snprintf(refusal->text, sizeof refusal->text, "column '%.60s' holds texts, no numbers",
-           b->columns[i].name);
+           self->columns[i].name);
   return -1;
 }
 
@@ -357,107 +379,113 @@ static strut_place place_of(strut_search_place place, size_t offset, size_t leng
 }
 
 /* Compiles text[0..), which lies `offset` bytes behind the place. False where something was reported. */
-static bool compile(binder *b, const char *text, size_t offset, strut_search_formula *f,
-                    strut_quantity *q) {
-  strut_arena *arena = &b->file->arena;
-  const strut_scope scope = {.lookup = look_up, .names = column_name, .context = b};
+static bool compile(binder *self, const char *text, size_t offset, strut_search_formula *formula,
+                    strut_quantity *quantity) {
+  strut_arena *arena = &self->file->arena;
+  const strut_scope scope = {.lookup = look_up, .names = column_name, .context = self};
   strut_expression_error error = {0};
   strut_compiled *program = strut_arena_allocate(arena, strlen(text) + 1, sizeof *program);
   strut_instruction *kept = strut_arena_allocate(arena, strlen(text) + 1, sizeof *kept);
   if (!program || !kept) {
-    b->no_memory = true;
+    self->no_memory = true;
     return false;
   }
-  strut_compiler compiler = {.column = find, .pair = find_pair, .context = b, .program = program};
-  if (!strut_expression_compile(text, &scope, &compiler, q, &error)) {
-    strut_diagnose(&b->file->diagnostics, place_of(f->place, offset + error.offset, error.length),
-                   "in '%s' of the search: %s; 'keep' chooses the columns of the table", f->text,
-                   error.message);
+  strut_compiler compiler = {
+      .column = find, .pair = find_pair, .context = self, .program = program};
+  if (!strut_expression_compile(text, &scope, &compiler, quantity, &error)) {
+    strut_diagnose(&self->file->diagnostics,
+                   place_of(formula->place, offset + error.offset, error.length),
+                   "in '%s' of the search: %s; 'keep' chooses the columns of the table",
+                   formula->text, error.message);
     return false;
   }
   for (size_t i = 0; i < compiler.length; i++) kept[i] = program[i].instruction;
-  f->program =
-      (strut_quantity_definition){.name = f->text,
-                                  .unit = q->bare ? "1" : strut_dimension_unit(q->dimension),
-                                  .length = compiler.length,
-                                  .depth = compiler.depth,
-                                  .program = kept};
+  formula->program = (strut_quantity_definition){
+      .name = formula->text,
+      .unit = quantity->bare ? "1" : strut_dimension_unit(quantity->dimension),
+      .length = compiler.length,
+      .depth = compiler.depth,
+      .program = kept};
   return true;
 }
 
-static void bind_goal(binder *b, strut_search_formula *goal) {
+static void bind_goal(binder *self, strut_search_formula *goal) {
   strut_quantity q;
-  if (!compile(b, goal->text, 0, goal, &q) || q.varies) return;
-  strut_diagnose(&b->file->diagnostics, place_of(goal->place, 0, strlen(goal->text)),
+  if (!compile(self, goal->text, 0, goal, &q) || q.varies) return;
+  strut_diagnose(&self->file->diagnostics, place_of(goal->place, 0, strlen(goal->text)),
                  "'%s' of the search is the same everywhere: it names no column", goal->text);
 }
 
 /* The text [from..to) without blanks about it; *from moves to its beginning. */
-static char *part_of(binder *b, const char *text, size_t *from, size_t to) {
+static char *part_of(binder *self, const char *text, size_t *from, size_t to) {
   while (*from < to && text[*from] == ' ') ++*from;
   while (to > *from && text[to - 1] == ' ') to--;
-  char *part = strut_arena_text(&b->file->arena, text + *from, to - *from);
-  b->no_memory = b->no_memory || !part;
+  char *part = strut_arena_text(&self->file->arena, text + *from, to - *from);
+  self->no_memory = self->no_memory || !part;
   return part;
 }
 
-static void refuse_condition(binder *b, const strut_search_condition *c, const char *why) {
-  strut_diagnose(&b->file->diagnostics, place_of(c->place, 0, strlen(c->text)),
-                 "'%s' of 'subject_to': %s", c->text, why);
+static void refuse_condition(binder *self, const strut_search_condition *condition,
+                             const char *why) {
+  strut_diagnose(&self->file->diagnostics, place_of(condition->place, 0, strlen(condition->text)),
+                 "'%s' of 'subject_to': %s", condition->text, why);
 }
 
 /* COLUMN = WORD */
-static void bind_word(binder *b, strut_search_condition *c, const char *left, const char *right) {
-  c->column = find_column(b, left, strlen(left));
-  c->word = right;
-  if (c->column == b->count)
-    refuse_condition(b, c, "the table has no such column; 'keep' chooses the columns");
-  else if (!b->columns[c->column].word)
-    refuse_condition(b, c, "numbers are compared by <, <=, > or >=");
+static void bind_word(binder *self, strut_search_condition *condition, const char *left,
+                      const char *right) {
+  condition->column = find_column(self, left, strlen(left));
+  condition->word = right;
+  if (condition->column == self->count)
+    refuse_condition(self, condition, "the table has no such column; 'keep' chooses the columns");
+  else if (!self->columns[condition->column].word)
+    refuse_condition(self, condition, "numbers are compared by <, <=, > or >=");
   else if (!*right)
-    refuse_condition(b, c, "the word is missing");
+    refuse_condition(self, condition, "the word is missing");
 }
 
-static void bind_numbers(binder *b, strut_search_condition *c, const char *left, const char *right,
-                         size_t offset) {
+static void bind_numbers(binder *self, strut_search_condition *condition, const char *left,
+                         const char *right, size_t offset) {
   strut_quantity l, r;
-  c->right = c->left;
-  bool fine = compile(b, left, 0, &c->left, &l);
-  fine = compile(b, right, offset, &c->right, &r) && fine;
+  condition->right = condition->left;
+  bool fine = compile(self, left, 0, &condition->left, &l);
+  fine = compile(self, right, offset, &condition->right, &r) && fine;
   if (!fine) return;
-  if (!l.varies && !r.varies) refuse_condition(b, c, "neither side names a column");
+  if (!l.varies && !r.varies) refuse_condition(self, condition, "neither side names a column");
   if (!l.bare && !r.bare && !strut_dimension_equal(l.dimension, r.dimension)) {
     char first[80], second[80], why[200];
     snprintf(why, sizeof why, "%s cannot be compared with %s",
              strut_dimension_name(l.dimension, first, sizeof first),
              strut_dimension_name(r.dimension, second, sizeof second));
-    refuse_condition(b, c, why);
+    refuse_condition(self, condition, why);
   }
 }
 
-static void bind_condition(binder *b, strut_search_condition *c) {
-  size_t at = strcspn(c->text, "<>=!"), behind = at + strspn(c->text + at, "<>=!"), from = 0;
+static void bind_condition(binder *self, strut_search_condition *condition) {
+  size_t at = strcspn(condition->text, "<>=!"), behind = at + strspn(condition->text + at, "<>=!"),
+         from = 0;
   size_t sign = behind - at;
-  const char *text = c->text;
+  const char *text = condition->text;
   bool below = sign && text[at] == '<', above = sign && text[at] == '>';
   bool is = sign == 1 && text[at] == '=', is_not = sign == 2 && memcmp(text + at, "!=", 2) == 0;
   bool known =
       is || is_not || ((below || above) && (sign == 1 || (sign == 2 && text[at + 1] == '=')));
-  char *left = part_of(b, text, &from, at);
-  char *right = part_of(b, text, &behind, strlen(text));
+  char *left = part_of(self, text, &from, at);
+  char *right = part_of(self, text, &behind, strlen(text));
   if (!left || !right) return;
   if (!known || strcspn(right, "<>=!") < strlen(right)) {
-    refuse_condition(b, c, "expected one comparison, such as work < 2 mJ or outcome = I");
+    refuse_condition(self, condition,
+                     "expected one comparison, such as work < 2 mJ or outcome = I");
     return;
   }
-  c->relation = below    ? STRUT_SEARCH_BELOW
-                : above  ? STRUT_SEARCH_ABOVE
-                : is_not ? STRUT_SEARCH_IS_NOT
-                         : STRUT_SEARCH_IS;
+  condition->relation = below    ? STRUT_SEARCH_BELOW
+                        : above  ? STRUT_SEARCH_ABOVE
+                        : is_not ? STRUT_SEARCH_IS_NOT
+                                 : STRUT_SEARCH_IS;
   if (is || is_not)
-    bind_word(b, c, left, right);
+    bind_word(self, condition, left, right);
   else
-    bind_numbers(b, c, left, right, behind);
+    bind_numbers(self, condition, left, right, behind);
 }
 
 strut_status strut_study_search_bind(strut_study_file *file, const strut_table_name *columns,

@@ -103,15 +103,16 @@ static const struct {
                 {"output", STRUT_KEY_STUDY_OUTPUT, STRUT_KEY_VARIANT_OUTPUT}};
 
 /* Reads the model's file: below the folder of the study, as all files that a file names. */
-static strut_status read_model(strut_study_reader *r, const strut_tree *name, strut_error *error) {
-  strut_study_file *file = r->file;
+static strut_status read_model(strut_study_reader *reader, const strut_tree *name,
+                               strut_error *error) {
+  strut_study_file *file = reader->file;
   strut_safe_text text;
   const char *folder = strut_folder_of(file->path, &file->arena);
   if (!folder) return STRUT_NO_MEMORY;
   strut_status status =
       strut_safe_read(folder, file->path, name->text, STRUT_TEXT_MOST, &text, error);
   if (status == STRUT_BAD_SCENE) {
-    strut_report_error(r->reader, name->place, "%s", error->message);
+    strut_report_error(reader->reader, name->place, "%s", error->message);
     *error = (strut_error){0}; /* said where it is */
   }
   if (status) return status;
@@ -143,16 +144,17 @@ static bool keep_copy(strut_study_file *file, strut_scene_source *source) {
 }
 
 /* The text of the model as a tree, with the study's keys over it and those of a variant, or NULL. */
-static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_fields *variant) {
-  strut_study_file *file = r->file;
+static strut_status open_source(strut_study_reader *reader, strut_fields *top,
+                                strut_fields *variant) {
+  strut_study_file *file = reader->file;
   strut_scene_source **source = &file->sources[file->source_count];
   strut_status status = strut_scene_source_open(
       file->model_path, file->model_text, file->model_length, &file->model_diagnostics, source);
   if (status == STRUT_BAD_SCENE && strut_study_is_its_model(file)) {
     strut_diagnostics_free(&file->model_diagnostics);
-    strut_report_error(r->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
+    strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
                        "'%s' is a study, expected a model",
-                       strut_sanitised_text(r->reader, file->study.model));
+                       strut_sanitised_text(reader->reader, file->study.model));
   }
   if (status != STRUT_OK) return status;
   file->source_count++;
@@ -168,45 +170,47 @@ static strut_status open_source(strut_study_reader *r, strut_fields *top, strut_
 }
 
 /* Names stand in the table, as texts of axes do. */
-static void check_name(strut_study_reader *r, const strut_tree *key) {
-  strut_read_name(r->reader, key, "variant");
+static void check_name(strut_study_reader *reader, const strut_tree *key) {
+  strut_read_name(reader->reader, key, "variant");
   if (strlen(key->text) >= 24)
-    strut_report_error(r->reader, key->place,
+    strut_report_error(reader->reader, key->place,
                        "names of variants may have at most 23 bytes, found %zu", strlen(key->text));
 }
 
-static strut_status open_variants(strut_study_reader *r, strut_fields *top,
+static strut_status open_variants(strut_study_reader *reader, strut_fields *top,
                                   const strut_tree *variants) {
   strut_status status = STRUT_OK;
   for (const strut_tree *key = variants->first; key && status == STRUT_OK; key = key->next->next) {
     strut_fields fields;
     strut_owner owner = {"variant", key->text};
-    check_name(r, key);
-    strut_read_fields(r->reader, STRUT_SECTION_VARIANT, key->next, owner, &fields);
-    r->variant_names[r->variant_count++] = key->text;
-    status = open_source(r, top, &fields);
+    check_name(reader, key);
+    strut_read_fields(reader->reader, STRUT_SECTION_VARIANT, key->next, owner, &fields);
+    reader->variant_names[reader->variant_count++] = key->text;
+    status = open_source(reader, top, &fields);
   }
   return status;
 }
 
-strut_status strut_study_open_sources(strut_study_reader *r, strut_fields *top,
+strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *top,
                                       strut_error *error) {
-  strut_study_file *file = r->file;
+  strut_study_file *file = reader->file;
   const strut_slot *model = strut_slot_of(top, STRUT_KEY_STUDY_MODEL);
   const strut_slot *variants = strut_slot_of(top, STRUT_KEY_STUDY_VARIANTS);
   size_t count = variants->state == STRUT_GIVEN ? variants->value->count : 0;
   if (variants->state == STRUT_GIVEN && !count)
-    strut_report_error(r->reader, variants->value->place, "there are no variants in 'variants'");
+    strut_report_error(reader->reader, variants->value->place,
+                       "there are no variants in 'variants'");
   if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
-  strut_status status = read_model(r, model->value, error);
+  strut_status status = read_model(reader, model->value, error);
   if (status != STRUT_OK) return status;
-  file->sources = strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *file->sources);
-  r->variant_names =
-      strut_reader_allocate(r->reader, &file->arena, count + 1, sizeof *r->variant_names);
-  if (!file->sources || !r->variant_names) return STRUT_NO_MEMORY;
-  status = count ? open_variants(r, top, variants->value) : open_source(r, top, NULL);
+  file->sources =
+      strut_reader_allocate(reader->reader, &file->arena, count + 1, sizeof *file->sources);
+  reader->variant_names =
+      strut_reader_allocate(reader->reader, &file->arena, count + 1, sizeof *reader->variant_names);
+  if (!file->sources || !reader->variant_names) return STRUT_NO_MEMORY;
+  status = count ? open_variants(reader, top, variants->value) : open_source(reader, top, NULL);
   if (status == STRUT_OK)
-    r->declared = strut_scene_source_parameters(file->sources[0], &r->declared_count);
+    reader->declared = strut_scene_source_parameters(file->sources[0], &reader->declared_count);
   return status;
 }
 
@@ -226,20 +230,20 @@ static void find_span(const strut_study_file *file, strut_place place, size_t *f
 }
 
 /* One line of comment; what would end it becomes a blank. */
-static void put_note(strut_writer *w, const char *what, const char *text, const char *value) {
+static void put_note(strut_writer *writer, const char *what, const char *text, const char *value) {
   const char *const parts[] = {text, value ? "=" : "", value ? value : ""};
-  strut_put(w, "# ");
-  strut_put(w, what);
+  strut_put(writer, "# ");
+  strut_put(writer, what);
   for (int i = 0; i < 3; i++)
     for (const char *at = parts[i]; *at;) {
       size_t length = 0, left = strlen(at), end = 0;
       while (at[length] && !end)
         if ((end = strut_text_break(at + length, left - length)) == 0) length++;
-      strut_put_part(w, at, length);
-      if (end) strut_put(w, " ");
+      strut_put_part(writer, at, length);
+      if (end) strut_put(writer, " ");
       at += length + end;
     }
-  strut_put(w, "\n");
+  strut_put(writer, "\n");
 }
 
 /* A part of the study's text that its copy replaces. */
@@ -289,109 +293,109 @@ char *strut_study_copy(const strut_study_file *file, const char *model, const ch
   return strut_buffer_take(&w.out);
 }
 
-static void put_number(strut_writer *w, double value) {
+static void put_number(strut_writer *writer, double value) {
   char text[STRUT_NUMBER_TEXT];
   strut_number_text(value, text);
-  strut_put(w, text);
-  strut_put(w, " ");
+  strut_put(writer, text);
+  strut_put(writer, " ");
 }
 
 /* Texts are preceded by their length, so that different trees give different texts. */
-static void put_word(strut_writer *w, const char *text) {
-  put_number(w, (double)strlen(text));
-  strut_put(w, text);
-  strut_put(w, "\n");
+static void put_word(strut_writer *writer, const char *text) {
+  put_number(writer, (double)strlen(text));
+  strut_put(writer, text);
+  strut_put(writer, "\n");
 }
 
-static void put_tree(strut_writer *w, const strut_tree *node) {
+static void put_tree(strut_writer *writer, const strut_tree *node) {
   static const char *const kinds[] = {"scalar", "list", "map"};
-  strut_put(w, kinds[node->kind]);
-  strut_put(w, node->quoted ? " quoted " : " ");
+  strut_put(writer, kinds[node->kind]);
+  strut_put(writer, node->quoted ? " quoted " : " ");
   if (node->kind == STRUT_TREE_SCALAR) {
-    put_word(w, node->text);
+    put_word(writer, node->text);
     return;
   }
-  put_number(w, (double)node->count);
-  for (const strut_tree *child = node->first; child; child = child->next) put_tree(w, child);
+  put_number(writer, (double)node->count);
+  for (const strut_tree *child = node->first; child; child = child->next) put_tree(writer, child);
 }
 
-static void put_axis(strut_writer *w, const strut_study_axis *axis) {
-  put_number(w, (double)axis->count);
+static void put_axis(strut_writer *writer, const strut_study_axis *axis) {
+  put_number(writer, (double)axis->count);
   for (size_t i = 0; i < axis->column_count; i++) {
-    const strut_study_column *c = &axis->columns[i];
-    put_word(w, c->name);
-    put_word(w, c->unit);
-    put_number(w, (double)c->kind);
-    put_number(w, c->from);
-    put_number(w, c->to);
-    put_number(w, c->step);
-    for (int64_t k = 0; c->kind == STRUT_RANGE_LIST && k < axis->count; k++) {
-      if (c->word)
-        put_word(w, c->words[k]);
+    const strut_study_column *column = &axis->columns[i];
+    put_word(writer, column->name);
+    put_word(writer, column->unit);
+    put_number(writer, (double)column->kind);
+    put_number(writer, column->from);
+    put_number(writer, column->to);
+    put_number(writer, column->step);
+    for (int64_t k = 0; column->kind == STRUT_RANGE_LIST && k < axis->count; k++) {
+      if (column->word)
+        put_word(writer, column->words[k]);
       else
-        put_number(w, c->number[k]);
+        put_number(writer, column->number[k]);
     }
   }
 }
 
 /* What is computed where it is no run. */
-static void put_computed(strut_writer *w, const strut_study *study) {
+static void put_computed(strut_writer *writer, const strut_study *study) {
   if (study->compute == STRUT_COMPUTE_RUN) return;
-  put_number(w, (double)study->compute);
-  put_number(w, (double)study->lowest);
-  put_word(w, study->at ? study->at : "");
-  put_word(w, study->path.load ? study->path.load : "");
-  put_word(w, study->path.over ? study->path.over : "");
-  put_number(w, study->path.from);
-  put_number(w, study->path.until);
-  put_word(w, study->path.from_unit ? study->path.from_unit : "");
-  put_word(w, study->path.until_unit ? study->path.until_unit : "");
-  put_number(w, study->path.from_given + 2 * study->path.until_given);
-  put_number(w, (double)study->path.steps);
-  put_number(w, (double)study->form.from);
-  put_number(w, (double)study->form.objective);
-  put_number(w, study->form.least_tension);
-  put_number(w, study->form.least_density);
+  put_number(writer, (double)study->compute);
+  put_number(writer, (double)study->lowest);
+  put_word(writer, study->at ? study->at : "");
+  put_word(writer, study->path.load ? study->path.load : "");
+  put_word(writer, study->path.over ? study->path.over : "");
+  put_number(writer, study->path.from);
+  put_number(writer, study->path.until);
+  put_word(writer, study->path.from_unit ? study->path.from_unit : "");
+  put_word(writer, study->path.until_unit ? study->path.until_unit : "");
+  put_number(writer, study->path.from_given + 2 * study->path.until_given);
+  put_number(writer, (double)study->path.steps);
+  put_number(writer, (double)study->form.from);
+  put_number(writer, (double)study->form.objective);
+  put_number(writer, study->form.least_tension);
+  put_number(writer, study->form.least_density);
 }
 
 /* What is searched; the goal decides the column `objective`. */
-static void put_search(strut_writer *w, const strut_study_search *search) {
-  put_number(w, search->maximise);
-  put_word(w, search->goal.text);
-  if (search->second.text) put_word(w, search->second.text);
-  for (size_t i = 0; i < search->condition_count; i++) put_word(w, search->conditions[i].text);
+static void put_search(strut_writer *writer, const strut_study_search *search) {
+  put_number(writer, search->maximise);
+  put_word(writer, search->goal.text);
+  if (search->second.text) put_word(writer, search->second.text);
+  for (size_t i = 0; i < search->condition_count; i++) put_word(writer, search->conditions[i].text);
   for (size_t i = 0; i < search->variable_count; i++) {
-    const strut_search_variable *v = &search->variables[i];
-    put_word(w, v->name);
-    put_number(w, v->from);
-    put_number(w, v->to);
-    put_number(w, v->start);
-    put_number(w, v->logarithmic + 2 * v->wraps + 4 * v->integer);
-    for (size_t k = 0; k < v->choice_count; k++) {
-      if (v->word)
-        put_word(w, v->words[k]);
+    const strut_search_variable *variable = &search->variables[i];
+    put_word(writer, variable->name);
+    put_number(writer, variable->from);
+    put_number(writer, variable->to);
+    put_number(writer, variable->start);
+    put_number(writer, variable->logarithmic + 2 * variable->wraps + 4 * variable->integer);
+    for (size_t k = 0; k < variable->choice_count; k++) {
+      if (variable->word)
+        put_word(writer, variable->words[k]);
       else
-        put_number(w, v->numbers[k]);
+        put_number(writer, variable->numbers[k]);
     }
   }
-  put_number(w, (double)search->method);
-  put_number(w, (double)search->starts);
-  put_number(w, (double)search->evaluations);
-  put_number(w, (double)search->seed);
+  put_number(writer, (double)search->method);
+  put_number(writer, (double)search->starts);
+  put_number(writer, (double)search->evaluations);
+  put_number(writer, (double)search->seed);
 }
 
 /* What is followed at each point. */
-static void put_follow(strut_writer *w, const strut_study_follow *f) {
-  put_word(w, f->over);
-  put_number(w, f->from);
-  put_number(w, f->to);
-  put_number(w, (double)f->at_count);
-  for (size_t i = 0; i < f->at_count; i++) put_number(w, f->at[i]);
-  for (size_t i = 0; i < f->start_count; i++) put_word(w, f->start_from[i]);
-  put_number(w, f->accuracy);
-  put_word(w, f->integrator ? f->integrator : "");
-  put_number(w, (double)f->steps);
-  put_number(w, f->basins);
+static void put_follow(strut_writer *writer, const strut_study_follow *follow) {
+  put_word(writer, follow->over);
+  put_number(writer, follow->from);
+  put_number(writer, follow->to);
+  put_number(writer, (double)follow->at_count);
+  for (size_t i = 0; i < follow->at_count; i++) put_number(writer, follow->at[i]);
+  for (size_t i = 0; i < follow->start_count; i++) put_word(writer, follow->start_from[i]);
+  put_number(writer, follow->accuracy);
+  put_word(writer, follow->integrator ? follow->integrator : "");
+  put_number(writer, (double)follow->steps);
+  put_number(writer, follow->basins);
 }
 
 char *strut_study_identity(const strut_study_file *file) {

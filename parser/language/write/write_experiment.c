@@ -32,10 +32,11 @@ static const char *leading_name(const strut_scene *scene, const char *name) {
   const char *leading = name;
   bool taken = false;
   for (size_t i = 0; i < scene->parameter_count; i++) {
-    const strut_parameter *p = &scene->parameters[i];
-    if (!isnan(p->value)) continue; /* no text */
-    if (strcmp(p->name, name) == 0) taken = true;
-    if (strcmp(p->text, name) == 0 && !is_configuration(scene, p->name)) leading = p->name;
+    const strut_parameter *parameter = &scene->parameters[i];
+    if (!isnan(parameter->value)) continue; /* no text */
+    if (strcmp(parameter->name, name) == 0) taken = true;
+    if (strcmp(parameter->text, name) == 0 && !is_configuration(scene, parameter->name))
+      leading = parameter->name;
   }
   return taken ? leading : name;
 }
@@ -120,12 +121,12 @@ static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int 
 
 static void put_path(strut_writer *writer) {
   strut_path_stage none = {.load = "", .over = "", .release = ""};
-  const strut_experiment *e = writer->experiment;
-  if (e->stage_count || e->path_friction) strut_put(writer, "path:\n");
-  if (e->path_friction) strut_put(writer, "  friction: kept\n");
-  if (e->stage_count) strut_put(writer, "  stages:\n");
-  for (size_t i = 0; i < e->stage_count; i++) {
-    strut_path_stage stage = e->stages[i];
+  const strut_experiment *experiment = writer->experiment;
+  if (experiment->stage_count || experiment->path_friction) strut_put(writer, "path:\n");
+  if (experiment->path_friction) strut_put(writer, "  friction: kept\n");
+  if (experiment->stage_count) strut_put(writer, "  stages:\n");
+  for (size_t i = 0; i < experiment->stage_count; i++) {
+    strut_path_stage stage = experiment->stages[i];
     if (!stage.load) stage.load = none.load;
     if (!stage.over) stage.over = none.over;
     if (!stage.release) stage.release = none.release;
@@ -170,14 +171,15 @@ static bool refers_to(const strut_scene *scene, const char *name, int32_t signal
 }
 
 /* A name that `of` may use for the signal whose periods count; NULL: the signal needs a name first. */
-static const char *period_name(const strut_scene *scene, const strut_experiment *e) {
-  const char *own = scene->signals[e->period_signal].name;
-  if (e->period_of && refers_to(scene, e->period_of, e->period_signal)) return e->period_of;
-  if (own && refers_to(scene, own, e->period_signal)) return own;
+static const char *period_name(const strut_scene *scene, const strut_experiment *experiment) {
+  const char *own = scene->signals[experiment->period_signal].name;
+  if (experiment->period_of && refers_to(scene, experiment->period_of, experiment->period_signal))
+    return experiment->period_of;
+  if (own && refers_to(scene, own, experiment->period_signal)) return own;
   for (size_t k = 0; k < DRIVERS; k++)
     for (size_t i = 0; i < strut_thing_count(scene, drivers[k]); i++) {
       const char *name = strut_thing_name(scene, drivers[k], i);
-      if (name && refers_to(scene, name, e->period_signal)) return name;
+      if (name && refers_to(scene, name, experiment->period_signal)) return name;
     }
   return NULL;
 }
@@ -190,16 +192,16 @@ static void put_measure_by_hand(strut_writer *writer, strut_mapping *mapping, in
 
 static void put_run_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                             const void *object) {
-  const strut_experiment *e = object;
-  bool measures =
-      e->measure_last > 0.0 || e->measure_node >= 0 || e->steady.wanted || e->quantity_count;
-  if (key == STRUT_KEY_RUN_OF && e->periods > 0.0) {
-    const char *name = period_name(writer->scene, e);
+  const strut_experiment *experiment = object;
+  bool measures = experiment->measure_last > 0.0 || experiment->measure_node >= 0 ||
+                  experiment->steady.wanted || experiment->quantity_count;
+  if (key == STRUT_KEY_RUN_OF && experiment->periods > 0.0) {
+    const char *name = period_name(writer->scene, experiment);
     strut_put_key_name(writer, mapping, key);
-    strut_put_name(writer, name ? name : strut_signal_name(writer, e->period_signal));
+    strut_put_name(writer, name ? name : strut_signal_name(writer, experiment->period_signal));
   } else if (key == STRUT_KEY_RUN_MEASURE && measures) {
     strut_put_key_name(writer, mapping, key);
-    strut_put_mapping(writer, STRUT_SECTION_MEASURE, e, &writer->usual.experiment,
+    strut_put_mapping(writer, STRUT_SECTION_MEASURE, experiment, &writer->usual.experiment,
                       put_measure_by_hand);
   }
 }
@@ -214,9 +216,9 @@ static void put_section(strut_writer *writer, int key, strut_section section,
 }
 
 void strut_put_experiment(strut_writer *writer) {
-  const strut_experiment *e = writer->experiment;
+  const strut_experiment *experiment = writer->experiment;
   put_section(writer, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, NULL);
-  if (e->duration != 0.0 || e->periods != 0.0)
+  if (experiment->duration != 0.0 || experiment->periods != 0.0)
     put_section(writer, STRUT_KEY_SCENE_RUN, STRUT_SECTION_RUN, put_run_by_hand);
   put_section(writer, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, NULL);
 }
@@ -235,13 +237,15 @@ static const struct operation_row {
 /* How tightly operators bind; numbers, columns and functions need no parentheses. */
 enum { OF_SUM = 1, OF_PRODUCT, OF_SIGN, OF_POWER, OF_PRIMARY };
 
-static int binding(const strut_instruction *p) {
+static int binding(const strut_instruction *instruction) {
   static const int operators[STRUT_OPERATION_COUNT] = {
       [STRUT_OPERATION_ADD] = OF_SUM,          [STRUT_OPERATION_SUBTRACT] = OF_SUM,
       [STRUT_OPERATION_MULTIPLY] = OF_PRODUCT, [STRUT_OPERATION_DIVIDE] = OF_PRODUCT,
       [STRUT_OPERATION_NEGATE] = OF_SIGN,      [STRUT_OPERATION_POWER] = OF_POWER};
-  if (p->operation == STRUT_OPERATION_NUMBER && (p->unit || signbit(p->number))) return 0;
-  return operators[p->operation] ? operators[p->operation] : OF_PRIMARY;
+  if (instruction->operation == STRUT_OPERATION_NUMBER &&
+      (instruction->unit || signbit(instruction->number)))
+    return 0;
+  return operators[instruction->operation] ? operators[instruction->operation] : OF_PRIMARY;
 }
 
 /* Index of the first instruction of the operand whose last one is program[end - 1]. */
@@ -297,9 +301,9 @@ static void put_column(strut_writer *writer, strut_column column) {
   strut_put(writer, word);
 }
 
-static void put_number(strut_writer *writer, const strut_instruction *p) {
-  strut_put_number(writer, p->number);
-  if (p->unit) strut_put(writer, " "), strut_put(writer, p->unit);
+static void put_number(strut_writer *writer, const strut_instruction *instruction) {
+  strut_put_number(writer, instruction->number);
+  if (instruction->unit) strut_put(writer, " "), strut_put(writer, instruction->unit);
 }
 
 static void put_operand(strut_writer *writer, const strut_instruction *program, size_t end,
@@ -361,16 +365,16 @@ void strut_put_program(strut_writer *writer, const strut_instruction *program, s
 }
 
 void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {
-  const strut_experiment *e = writer->experiment;
+  const strut_experiment *experiment = writer->experiment;
   const strut_quantity_definition usual = {0};
-  if (!e->quantity_count) return;
+  if (!experiment->quantity_count) return;
   strut_put_key_name(writer, mapping, STRUT_KEY_MEASURE_QUANTITIES);
   strut_put(writer, "{");
-  for (size_t i = 0; i < e->quantity_count; i++) {
+  for (size_t i = 0; i < experiment->quantity_count; i++) {
     strut_put(writer, i ? ", " : "");
-    strut_put_name(writer, e->quantities[i].name);
+    strut_put_name(writer, experiment->quantities[i].name);
     strut_put(writer, ": ");
-    strut_put_mapping(writer, STRUT_SECTION_QUANTITY, &e->quantities[i], &usual, NULL);
+    strut_put_mapping(writer, STRUT_SECTION_QUANTITY, &experiment->quantities[i], &usual, NULL);
   }
   strut_put(writer, "}");
 }

@@ -256,10 +256,10 @@ static void put_list(strut_writer *writer, const strut_key *key, const char *obj
 /* ---- does an object have a value for a key? ---- */
 
 /* By bits, so that 0 and -0 differ; texts by their characters. */
-static bool values_equal(const strut_key *key, const void *a, const void *b) {
+static bool values_equal(const strut_key *key, const void *first, const void *second) {
   if (key->field.type == STRUT_FIELD_TEXT)
-    return strcmp(*(const char *const *)a, *(const char *const *)b) == 0;
-  return memcmp(a, b, key->field.size) == 0;
+    return strcmp(*(const char *const *)first, *(const char *const *)second) == 0;
+  return memcmp(first, second, key->field.size) == 0;
 }
 
 static bool has_items(const strut_field *field, const char *object) {

@@ -30,9 +30,9 @@ void strut_put_signal_reference(strut_writer *writer, int32_t index) {
 }
 
 static void put_signal(strut_writer *writer, int32_t index) {
-  const strut_signal *s = &writer->scene->signals[index];
-  const strut_signal usual = strut_signal_default(s->kind);
-  strut_put_mapping(writer, STRUT_SECTION_SIGNAL, s, &usual, NULL);
+  const strut_signal *signal = &writer->scene->signals[index];
+  const strut_signal usual = strut_signal_default(signal->kind);
+  strut_put_mapping(writer, STRUT_SECTION_SIGNAL, signal, &usual, NULL);
 }
 
 static void put_named_signals(strut_writer *writer) {
@@ -53,15 +53,15 @@ static void put_named_signals(strut_writer *writer) {
 static void put_relays(strut_writer *writer) {
   bool any = false;
   for (size_t i = 0; i < writer->scene->signal_count; i++) {
-    const strut_signal *s = &writer->scene->signals[i];
+    const strut_signal *signal = &writer->scene->signals[i];
     strut_signal usual = strut_signal_default(STRUT_RELAY);
     usual.relay.off = (double)NAN; /* it is always written */
-    if (s->kind != STRUT_RELAY) continue;
+    if (signal->kind != STRUT_RELAY) continue;
     strut_put(writer, any ? "  " : "controllers:\n  ");
     any = true;
-    strut_put_name(writer, s->name);
+    strut_put_name(writer, signal->name);
     strut_put(writer, ": ");
-    strut_put_mapping(writer, STRUT_SECTION_RELAY, s, &usual, NULL);
+    strut_put_mapping(writer, STRUT_SECTION_RELAY, signal, &usual, NULL);
     strut_put(writer, "\n");
   }
 }
@@ -94,14 +94,14 @@ static void put_expression(strut_writer *writer, const char *text) {
 static void put_parameters(strut_writer *writer) {
   strut_put(writer, "# as they were; their values stand in the numbers below");
   for (size_t i = 0; i < writer->scene->parameter_count; i++) {
-    const strut_parameter *p = &writer->scene->parameters[i];
+    const strut_parameter *parameter = &writer->scene->parameters[i];
     strut_put(writer, "\n  ");
-    strut_put(writer, p->name);
+    strut_put(writer, parameter->name);
     strut_put(writer, ": ");
-    if (isnan(p->value))
-      strut_put_quoted(writer, p->text);
+    if (isnan(parameter->value))
+      strut_put_quoted(writer, parameter->text);
     else
-      put_expression(writer, p->text);
+      put_expression(writer, parameter->text);
   }
 }
 
@@ -137,12 +137,12 @@ static void put_node_by_hand(strut_writer *writer, strut_mapping *mapping, int k
   bool any = false;
   if (key != STRUT_KEY_NODE_MOVES) return;
   for (size_t i = 0; i < scene->support_motion_count; i++) {
-    const strut_support_motion *m = &scene->support_motions[i];
-    if (scene->nodes[m->node].name != name) continue;
+    const strut_support_motion *motion = &scene->support_motions[i];
+    if (scene->nodes[motion->node].name != name) continue;
     if (!any) strut_put_key_name(writer, mapping, key);
     strut_put(writer, any ? ", " : "{");
-    strut_put(writer, m->axis ? "y: " : "x: ");
-    strut_put_signal_reference(writer, m->signal);
+    strut_put(writer, motion->axis ? "y: " : "x: ");
+    strut_put_signal_reference(writer, motion->signal);
     any = true;
   }
   if (any) strut_put(writer, "}");
@@ -152,9 +152,9 @@ static void put_node_by_hand(strut_writer *writer, strut_mapping *mapping, int k
 static bool leave_out_moves(const strut_scene *scene, size_t i, strut_node *node) {
   bool moves = false;
   for (size_t k = 0; k < scene->support_motion_count; k++) {
-    const strut_support_motion *m = &scene->support_motions[k];
-    if ((size_t)m->node != i) continue;
-    node->fixed[m->axis] = false;
+    const strut_support_motion *motion = &scene->support_motions[k];
+    if ((size_t)motion->node != i) continue;
+    node->fixed[motion->axis] = false;
     moves = true;
   }
   return moves;
@@ -196,31 +196,32 @@ static void put_rayleigh(strut_writer *writer) {
 }
 
 /* With these a friction is written: all its coefficients, of one with a signal none. */
-static strut_friction usual_friction(const strut_friction *f) {
+static strut_friction usual_friction(const strut_friction *friction) {
   strut_friction usual = {STRUT_FRICTION_NONE};
-  usual.mu_static = usual.mu_kinetic = f->driven ? f->mu_static : (double)NAN;
-  if (f->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
+  usual.mu_static = usual.mu_kinetic = friction->driven ? friction->mu_static : (double)NAN;
+  if (friction->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
   return usual;
 }
 
-static bool frictions_differ(const strut_friction *a, const strut_friction *b) {
-  return strut_fields_differ(STRUT_SECTION_FRICTION, a, b) || a->directional != b->directional ||
-         a->driven != b->driven || a->signal != b->signal;
+static bool frictions_differ(const strut_friction *first, const strut_friction *second) {
+  return strut_fields_differ(STRUT_SECTION_FRICTION, first, second) ||
+         first->directional != second->directional || first->driven != second->driven ||
+         first->signal != second->signal;
 }
 
-static bool has_friction(const strut_friction *f) {
+static bool has_friction(const strut_friction *friction) {
   const strut_friction none = {STRUT_FRICTION_NONE};
-  return frictions_differ(f, &none);
+  return frictions_differ(friction, &none);
 }
 
-static void put_friction(strut_writer *writer, const strut_friction *f) {
-  const strut_friction usual = usual_friction(f);
-  strut_put_mapping(writer, STRUT_SECTION_FRICTION, f, &usual, NULL);
+static void put_friction(strut_writer *writer, const strut_friction *friction) {
+  const strut_friction usual = usual_friction(friction);
+  strut_put_mapping(writer, STRUT_SECTION_FRICTION, friction, &usual, NULL);
 }
 
 /* Contacts of the ground that is being written; those of further pieces are like that of the first. */
-static bool is_written(const strut_writer *writer, const strut_contact *c) {
-  return c->ground == writer->ground && c->piece == 0;
+static bool is_written(const strut_writer *writer, const strut_contact *contact) {
+  return contact->ground == writer->ground && contact->piece == 0;
 }
 
 /* The first contact of the ground that is being written, or NULL. */
@@ -333,22 +334,24 @@ static void put_ground(strut_writer *writer) {
 }
 
 /* The signal whose periods count, if it has no name and nothing named uses it; else -1. */
-static int32_t nameless_period(const strut_scene *scene, const strut_experiment *e) {
-  if (e->periods == 0.0 || scene->signals[e->period_signal].name) return -1;
+static int32_t nameless_period(const strut_scene *scene, const strut_experiment *experiment) {
+  if (experiment->periods == 0.0 || scene->signals[experiment->period_signal].name) return -1;
   for (size_t i = 0; i < scene->actuator_count; i++)
-    if (scene->actuators[i].signal == e->period_signal) return -1;
+    if (scene->actuators[i].signal == experiment->period_signal) return -1;
   for (size_t i = 0; i < scene->load_count; i++)
-    if (scene->loads[i].signal == e->period_signal) return -1;
+    if (scene->loads[i].signal == experiment->period_signal) return -1;
   for (size_t i = 0; i < scene->ground_count; i++)
     for (int c = 0; c < 2; c++)
-      if (scene->grounds[i].moves[c] && scene->grounds[i].motion[c] == e->period_signal) return -1;
-  return e->period_signal;
+      if (scene->grounds[i].moves[c] && scene->grounds[i].motion[c] == experiment->period_signal)
+        return -1;
+  return experiment->period_signal;
 }
 
 char *strut_setup_write(const strut_setup *setup) {
-  const strut_experiment *e = &setup->experiment;
-  strut_writer writer = {
-      .scene = &setup->scene, .experiment = e, .period_signal = nameless_period(&setup->scene, e)};
+  const strut_experiment *experiment = &setup->experiment;
+  strut_writer writer = {.scene = &setup->scene,
+                         .experiment = experiment,
+                         .period_signal = nameless_period(&setup->scene, experiment)};
   strut_setup_init(&writer.usual);
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);

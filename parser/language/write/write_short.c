@@ -38,41 +38,41 @@ static size_t inline_width(const strut_tree *value) {
   return width;
 }
 
-static void put_scalar(strut_writer *w, const strut_tree *value) {
+static void put_scalar(strut_writer *writer, const strut_tree *value) {
   if (is_plain(value))
-    strut_put(w, value->text);
+    strut_put(writer, value->text);
   else
-    strut_put_quoted(w, value->text);
+    strut_put_quoted(writer, value->text);
 }
 
-static void put_inline(strut_writer *w, const strut_tree *value) {
+static void put_inline(strut_writer *writer, const strut_tree *value) {
   if (value->kind == STRUT_TREE_SCALAR) {
-    put_scalar(w, value);
+    put_scalar(writer, value);
     return;
   }
   bool map = value->kind == STRUT_TREE_MAP;
-  strut_put(w, map ? "{" : "[");
+  strut_put(writer, map ? "{" : "[");
   for (const strut_tree *child = value->first; child; child = child->next) {
-    if (child != value->first) strut_put(w, ", ");
-    put_inline(w, child);
+    if (child != value->first) strut_put(writer, ", ");
+    put_inline(writer, child);
     if (!map) continue;
-    strut_put(w, ": ");
+    strut_put(writer, ": ");
     child = child->next;
-    put_inline(w, child);
+    put_inline(writer, child);
   }
-  strut_put(w, map ? "}" : "]");
+  strut_put(writer, map ? "}" : "]");
 }
 
 /* ---- on several lines ---- */
 
-static void put_indent(strut_writer *w, size_t indent) {
-  strut_put(w, "\n");
-  for (size_t i = 0; i < indent; i++) strut_put(w, " ");
+static void put_indent(strut_writer *writer, size_t indent) {
+  strut_put(writer, "\n");
+  for (size_t i = 0; i < indent; i++) strut_put(writer, " ");
 }
 
 static bool holds_mappings(const strut_tree *map) {
-  for (const strut_tree *k = map->first; k; k = k->next->next)
-    if (k->next->kind == STRUT_TREE_MAP) return true;
+  for (const strut_tree *tree = map->first; tree; tree = tree->next->next)
+    if (tree->next->kind == STRUT_TREE_MAP) return true;
   return false;
 }
 
@@ -83,33 +83,33 @@ static bool fits(const strut_tree *value, size_t column, bool top) {
   return column + inline_width(value) <= WIDTH;
 }
 
-static void put_lines(strut_writer *w, const strut_tree *value, size_t indent, bool top);
+static void put_lines(strut_writer *writer, const strut_tree *value, size_t indent, bool top);
 
 /* What stands behind "key:" or "-". */
-static void put_value(strut_writer *w, const strut_tree *value, size_t indent, size_t column,
+static void put_value(strut_writer *writer, const strut_tree *value, size_t indent, size_t column,
                       bool top) {
   if (value->kind == STRUT_TREE_SCALAR && is_plain(value) && !*value->text) return;
   if (!fits(value, column + 1, top)) {
-    put_lines(w, value, indent + 2, false);
+    put_lines(writer, value, indent + 2, false);
     return;
   }
-  strut_put(w, " ");
-  put_inline(w, value);
+  strut_put(writer, " ");
+  put_inline(writer, value);
 }
 
-static void put_lines(strut_writer *w, const strut_tree *value, size_t indent, bool top) {
+static void put_lines(strut_writer *writer, const strut_tree *value, size_t indent, bool top) {
   for (const strut_tree *child = value->first; child; child = child->next) {
     size_t column = indent + 2;
-    put_indent(w, indent);
+    put_indent(writer, indent);
     if (value->kind == STRUT_TREE_LIST) {
-      strut_put(w, "-");
+      strut_put(writer, "-");
     } else {
-      put_scalar(w, child);
-      strut_put(w, ":");
+      put_scalar(writer, child);
+      strut_put(writer, ":");
       column += strnlen(child->text, WIDTH);
       child = child->next;
     }
-    put_value(w, child, indent, column, top);
+    put_value(writer, child, indent, column, top);
   }
 }
 
@@ -153,32 +153,33 @@ static double value_of(const strut_scene *scene, const char *name) {
 }
 
 /* What --set gave, in the words of the file: a plain number has the unit that was declared. */
-static strut_tree *set_value(short_writer *w, const strut_tree *like, const strut_override *set) {
-  const strut_declared *declared = find_declared(w->source, set->name);
+static strut_tree *set_value(short_writer *self, const strut_tree *like,
+                             const strut_override *set) {
+  const strut_declared *declared = find_declared(self->source, set->name);
   char number[STRUT_NUMBER_TEXT];
   if (!declared || declared->text || declared->bare) {
-    strut_tree *text = strut_tree_scalar(&w->document.arena, like, set->value);
+    strut_tree *text = strut_tree_scalar(&self->document.arena, like, set->value);
     if (text) text->quoted = declared && declared->text;
     return text;
   }
-  strut_number_text(value_of(&w->setup->scene, set->name), number);
+  strut_number_text(value_of(&self->setup->scene, set->name), number);
   const char *unit = strut_dimension_unit(declared->dimension);
   if (strcmp(unit, "SI") == 0)
-    return strut_tree_scalar(&w->document.arena, like, set->value); /* it has none */
+    return strut_tree_scalar(&self->document.arena, like, set->value); /* it has none */
   bool plain = strcmp(unit, "1") == 0;
-  return strut_tree_scalar(&w->document.arena, like,
-                           strut_arena_format(&w->document.arena, "%s%s%s", number,
+  return strut_tree_scalar(&self->document.arena, like,
+                           strut_arena_format(&self->document.arena, "%s%s%s", number,
                                               plain ? "" : " ", plain ? "" : unit));
 }
 
 /* {parameters: {NAME: VALUE, ...}} */
-static strut_tree *settings_tree(short_writer *w, const strut_tree *root,
+static strut_tree *settings_tree(short_writer *self, const strut_tree *root,
                                  const strut_override *overrides, size_t count) {
-  strut_arena *arena = &w->document.arena;
+  strut_arena *arena = &self->document.arena;
   strut_tree_builder map = strut_tree_begin(arena, root), inner = strut_tree_begin(arena, root);
   for (size_t i = 0; i < count; i++)
     if (!strut_tree_append(&inner, strut_tree_scalar(arena, root, overrides[i].name),
-                           set_value(w, root, &overrides[i])))
+                           set_value(self, root, &overrides[i])))
       return NULL;
   strut_tree *name = strut_tree_scalar(arena, root, "parameters");
   return strut_tree_append(&map, name, inner.map) ? map.map : NULL;
@@ -188,28 +189,28 @@ static strut_tree *settings_tree(short_writer *w, const strut_tree *root,
 
 /* Both texts have their keys in one order, so that a key is looked for where the last one was found. */
 static const strut_tree *find_from(const strut_tree *map, const strut_tree **at, const char *name) {
-  for (const strut_tree *k = *at; k; k = k->next->next)
-    if (strcmp(k->text, name) == 0) return *at = k->next->next, k;
+  for (const strut_tree *tree = *at; tree; tree = tree->next->next)
+    if (strcmp(tree->text, name) == 0) return *at = tree->next->next, tree;
   for (const strut_tree *k = map->first; k && k != *at; k = k->next->next)
     if (strcmp(k->text, name) == 0) return *at = k->next->next, k;
   return NULL;
 }
 
 /* The keys of `after` that `before` has not, or with another value, and removals of those that are gone. */
-static strut_tree *difference(short_writer *w, strut_mapping_kind kind, const strut_tree *before,
+static strut_tree *difference(short_writer *self, strut_mapping_kind kind, const strut_tree *before,
                               const strut_tree *after) {
-  strut_arena *arena = &w->document.arena;
+  strut_arena *arena = &self->document.arena;
   strut_tree_builder map = strut_tree_begin(arena, after);
   const strut_tree *at = before->first;
   if (!map.map) return NULL;
-  for (const strut_tree *k = after->first; k; k = k->next->next) {
-    const strut_tree *was = find_from(before, &at, k->text);
-    if (was && strut_tree_equal(was->next, k->next)) continue;
-    bool maps = was && was->next->kind == STRUT_TREE_MAP && k->next->kind == STRUT_TREE_MAP;
-    strut_mapping_kind below = strut_kind_below(kind, k->text);
+  for (const strut_tree *tree = after->first; tree; tree = tree->next->next) {
+    const strut_tree *was = find_from(before, &at, tree->text);
+    if (was && strut_tree_equal(was->next, tree->next)) continue;
+    bool maps = was && was->next->kind == STRUT_TREE_MAP && tree->next->kind == STRUT_TREE_MAP;
+    strut_mapping_kind below = strut_kind_below(kind, tree->text);
     strut_tree *value =
-        maps ? difference(w, below, was->next, k->next) : strut_tree_copy(arena, k->next);
-    if (!strut_tree_append(&map, strut_tree_copy(arena, k), value)) return NULL;
+        maps ? difference(self, below, was->next, tree->next) : strut_tree_copy(arena, tree->next);
+    if (!strut_tree_append(&map, strut_tree_copy(arena, tree), value)) return NULL;
   }
   at = after->first;
   for (const strut_tree *k = before->first; k; k = k->next->next) {
@@ -236,12 +237,12 @@ static char *write_flat(const strut_setup *setup) {
 }
 
 /* Reads a text of strut_setup_write. */
-static strut_tree *read_flat(short_writer *w, const char *text) {
+static strut_tree *read_flat(short_writer *self, const char *text) {
   strut_diagnostics diagnostics = {0};
   strut_diagnostics_source(&diagnostics, "scene", text, strlen(text));
-  strut_document_read(&w->document, &diagnostics);
+  strut_document_read(&self->document, &diagnostics);
   strut_diagnostics_free(&diagnostics);
-  return w->document.root;
+  return self->document.root;
 }
 
 /* ---- groups of a base that nothing uses any more ---- */
@@ -263,15 +264,15 @@ static bool collect_groups(const strut_tree *tree, strut_name_map *names) {
 }
 
 /* In a file of its own an unused group would be an error. Changes the root, whose entries are not shared. */
-static bool drop_unused_groups(short_writer *w, strut_tree *root) {
+static bool drop_unused_groups(short_writer *self, strut_tree *root) {
   strut_tree *key = NULL, *groups = strut_tree_find(root, "groups", &key);
   strut_name_map names = {0};
   if (!groups || groups->kind != STRUT_TREE_MAP) return true;
-  strut_tree_builder kept = strut_tree_begin(&w->document.arena, groups);
+  strut_tree_builder kept = strut_tree_begin(&self->document.arena, groups);
   bool fine = kept.map && collect_groups(root, &names);
-  for (const strut_tree *k = groups->first; k && fine; k = k->next->next)
-    if (!k->place.file || strut_name_map_find(&names, k->text) >= 0)
-      fine = strut_tree_share(&kept, &w->document.arena, k, k->next);
+  for (const strut_tree *tree = groups->first; tree && fine; tree = tree->next->next)
+    if (!tree->place.file || strut_name_map_find(&names, tree->text) >= 0)
+      fine = strut_tree_share(&kept, &self->document.arena, tree, tree->next);
   strut_name_map_free(&names);
   if (!fine) return false;
   kept.map->next = groups->next;
@@ -283,25 +284,25 @@ static bool drop_unused_groups(short_writer *w, strut_tree *root) {
 /* ---- the whole ---- */
 
 /* The root with the mapping laid over it; what it removes may be there in another way. */
-static strut_tree *lay_over(short_writer *w, const strut_tree *root, const strut_tree *over) {
+static strut_tree *lay_over(short_writer *self, const strut_tree *root, const strut_tree *over) {
   strut_diagnostics unsaid = {0};
-  const strut_overlay overlay = {.arena = &w->document.arena, .diagnostics = &unsaid};
+  const strut_overlay overlay = {.arena = &self->document.arena, .diagnostics = &unsaid};
   strut_tree *result = strut_lay_over(&overlay, scene_kind, root, over);
   strut_diagnostics_free(&unsaid);
   return result;
 }
 
-static strut_tree *whole_tree(short_writer *w, const strut_override *overrides, size_t count,
+static strut_tree *whole_tree(short_writer *self, const strut_override *overrides, size_t count,
                               const char *before, const char *after) {
-  const strut_tree *root = strut_scene_source_document((strut_scene_source *)w->source)->root;
-  const strut_tree *old = read_flat(w, before), *now = old ? read_flat(w, after) : NULL;
-  const strut_tree *over = now ? difference(w, scene_kind, old, now) : NULL;
+  const strut_tree *root = strut_scene_source_document((strut_scene_source *)self->source)->root;
+  const strut_tree *old = read_flat(self, before), *now = old ? read_flat(self, after) : NULL;
+  const strut_tree *over = now ? difference(self, scene_kind, old, now) : NULL;
   if (count) {
-    const strut_tree *set = settings_tree(w, root, overrides, count);
-    root = set ? lay_over(w, root, set) : NULL;
+    const strut_tree *set = settings_tree(self, root, overrides, count);
+    root = set ? lay_over(self, root, set) : NULL;
   }
-  strut_tree *whole = root && over ? lay_over(w, root, over) : NULL;
-  return whole && drop_unused_groups(w, whole) ? whole : NULL;
+  strut_tree *whole = root && over ? lay_over(self, root, over) : NULL;
+  return whole && drop_unused_groups(self, whole) ? whole : NULL;
 }
 
 /* Does the text read as this flat one? */

@@ -206,12 +206,15 @@ static void append_source_line(strut_buffer *out, strut_cursor *cursor, strut_pl
   strut_buffer_add(out, "\n");
 }
 
-static int compare(const void *a, const void *b) {
-  const strut_diagnostic *x = a, *y = b;
-  if (x->place.file != y->place.file) return x->place.file < y->place.file ? -1 : 1;
-  if (x->place.line != y->place.line) return x->place.line < y->place.line ? -1 : 1;
-  if (x->place.column != y->place.column) return x->place.column < y->place.column ? -1 : 1;
-  return x->order < y->order ? -1 : x->order > y->order;
+static int compare(const void *first, const void *second) {
+  const strut_diagnostic *diagnostic = first, *y = second;
+  if (diagnostic->place.file != y->place.file)
+    return diagnostic->place.file < y->place.file ? -1 : 1;
+  if (diagnostic->place.line != y->place.line)
+    return diagnostic->place.line < y->place.line ? -1 : 1;
+  if (diagnostic->place.column != y->place.column)
+    return diagnostic->place.column < y->place.column ? -1 : 1;
+  return diagnostic->order < y->order ? -1 : diagnostic->order > y->order;
 }
 
 /* The text that a place is in. */
@@ -325,18 +328,20 @@ static size_t least(size_t a, size_t b) { return a < b ? a : b; }
  * Insertions, deletions, substitutions and swaps of neighbours from a to b; most + 1 where there are
  * more than `most`. Only the band of the table that so few steps can reach is computed.
  */
-static size_t distance(const word *a, const word *b, size_t most) {
+static size_t distance(const word *a, const word *second, size_t most) {
   size_t rows[3][WORD_MOST + 2];
   size_t *before = rows[0], *above = rows[1], *row = rows[2], beyond = most + 1, last_nearest = 0;
-  for (size_t j = 0; j <= b->length; j++) above[j] = least(j, beyond);
+  for (size_t j = 0; j <= second->length; j++) above[j] = least(j, beyond);
   for (size_t i = 1; i <= a->length; i++) {
-    size_t first = i > most ? i - most : 1, last = least(b->length, i + most), nearest = beyond;
+    size_t first = i > most ? i - most : 1, last = least(second->length, i + most),
+           nearest = beyond;
     row[first - 1] = first == 1 ? least(i, beyond) : beyond;
     for (size_t j = first; j <= last; j++) {
       size_t inserted = j < i + most ? above[j] + 1 : beyond;
-      size_t substituted = above[j - 1] + (a->code[i - 1] != b->code[j - 1]);
+      size_t substituted = above[j - 1] + (a->code[i - 1] != second->code[j - 1]);
       row[j] = least(least(inserted, row[j - 1] + 1), least(substituted, beyond));
-      if (i > 1 && j > 1 && a->code[i - 1] == b->code[j - 2] && a->code[i - 2] == b->code[j - 1])
+      if (i > 1 && j > 1 && a->code[i - 1] == second->code[j - 2] &&
+          a->code[i - 2] == second->code[j - 1])
         row[j] = least(row[j], before[j - 2] + 1);
       nearest = least(nearest, row[j]);
     }
@@ -348,7 +353,7 @@ static size_t distance(const word *a, const word *b, size_t most) {
     above = row;
     row = oldest;
   }
-  return above[b->length];
+  return above[second->length];
 }
 
 const char *strut_did_you_mean(const char *text, const char *(*next)(const void *context, size_t i),

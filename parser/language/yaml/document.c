@@ -98,14 +98,14 @@ static strut_place place_of(const yaml_event_t *event) {
 }
 
 /* Functions below return false if reading must stop. */
-static bool out_of_memory(reader *r) {
-  r->no_memory = true;
+static bool out_of_memory(reader *self) {
+  self->no_memory = true;
   return false;
 }
 
 /* libyaml gives the anchor as the place of an anchored node: this moves it to the node itself. */
-static void skip_anchor(reader *r, const yaml_event_t *event, strut_place *place) {
-  strut_cursor *at = &r->cursor;
+static void skip_anchor(reader *self, const yaml_event_t *event, strut_place *place) {
+  strut_cursor *at = &self->cursor;
   strut_cursor_to_index(at, event->start_mark.index);
   bool in_word = true, in_comment = false;
   for (; at->offset < at->length; strut_cursor_step(at)) {
@@ -126,37 +126,37 @@ static void skip_anchor(reader *r, const yaml_event_t *event, strut_place *place
   place->length = strut_place_at(0, 0, end > at->index ? (uint32_t)(end - at->index) : 0).length;
 }
 
-static bool over_limit(reader *r, strut_place place, const char *what, uint64_t most) {
-  strut_diagnose(r->diagnostics, place, "more than %llu %s", (unsigned long long)most, what);
+static bool over_limit(reader *self, strut_place place, const char *what, uint64_t most) {
+  strut_diagnose(self->diagnostics, place, "more than %llu %s", (unsigned long long)most, what);
   return false;
 }
 
-static bool new_slab(reader *r) {
-  r->spare = strut_arena_allocate(&r->document->arena, SLAB, sizeof *r->spare);
-  r->spare_count = r->spare ? SLAB : 0;
-  return r->spare || out_of_memory(r);
+static bool new_slab(reader *self) {
+  self->spare = strut_arena_allocate(&self->document->arena, SLAB, sizeof *self->spare);
+  self->spare_count = self->spare ? SLAB : 0;
+  return self->spare || out_of_memory(self);
 }
 
-static strut_tree *new_node(reader *r, strut_tree_kind kind, strut_place place) {
-  if (r->nodes >= NODES_MOST) {
-    over_limit(r, place, "values", NODES_MOST);
+static strut_tree *new_node(reader *self, strut_tree_kind kind, strut_place place) {
+  if (self->nodes >= NODES_MOST) {
+    over_limit(self, place, "values", NODES_MOST);
     return NULL;
   }
-  if (!r->spare_count && !new_slab(r)) return NULL;
-  r->nodes++;
-  r->spare_count--;
-  strut_tree *node = r->spare++;
+  if (!self->spare_count && !new_slab(self)) return NULL;
+  self->nodes++;
+  self->spare_count--;
+  strut_tree *node = self->spare++;
   *node = (strut_tree){.kind = (uint32_t)kind & 3u, .place = place, .text = ""};
   return node;
 }
 
 /* Links a node to the open list or map, or makes it the root. */
-static void attach(reader *r, strut_tree *node, uint64_t weight, size_t height) {
-  if (!r->depth) {
-    r->document->root = node;
+static void attach(reader *self, strut_tree *node, uint64_t weight, size_t height) {
+  if (!self->depth) {
+    self->document->root = node;
     return;
   }
-  frame *open = &r->stack[r->depth - 1];
+  frame *open = &self->stack[self->depth - 1];
   if (open->last)
     open->last->next = node;
   else
@@ -168,37 +168,38 @@ static void attach(reader *r, strut_tree *node, uint64_t weight, size_t height) 
   if (open->node->kind == STRUT_TREE_MAP) open->value_next = !open->value_next;
 }
 
-static bool key_expected(const reader *r) {
-  const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
+static bool key_expected(const reader *self) {
+  const frame *open = self->depth ? &self->stack[self->depth - 1] : NULL;
   return open && open->node->kind == STRUT_TREE_MAP && !open->value_next;
 }
 
 /* Names the node; *index is 1 + the anchor's, or 0 without one. */
-static bool read_anchor(reader *r, const yaml_char_t *name, strut_tree *node, size_t *index) {
+static bool read_anchor(reader *self, const yaml_char_t *name, strut_tree *node, size_t *index) {
   *index = 0;
   if (!name) return true;
-  if (r->anchors.count >= ANCHOR_MOST) return over_limit(r, node->place, "anchors", ANCHOR_MOST);
+  if (self->anchors.count >= ANCHOR_MOST)
+    return over_limit(self, node->place, "anchors", ANCHOR_MOST);
   const char *text = (const char *)name;
-  text = strut_arena_text(&r->document->arena, text, strlen(text));
-  if (!text || !add_anchor(&r->anchors, text, node)) return out_of_memory(r);
-  *index = r->anchors.count;
+  text = strut_arena_text(&self->document->arena, text, strlen(text));
+  if (!text || !add_anchor(&self->anchors, text, node)) return out_of_memory(self);
+  *index = self->anchors.count;
   return true;
 }
 
-static void check_tag(reader *r, const yaml_char_t *tag, const yaml_event_t *event) {
+static void check_tag(reader *self, const yaml_char_t *tag, const yaml_event_t *event) {
   if (!tag) return;
   strut_place place = place_of(event);
   place.length = 1;
-  strut_diagnose(r->diagnostics, place, "tags (words that begin with '!') are not allowed");
+  strut_diagnose(self->diagnostics, place, "tags (words that begin with '!') are not allowed");
 }
 
 /* Escapes could produce characters that are forbidden in the text. */
-static bool check_escapes(reader *r, const char *text, size_t length, strut_place place) {
+static bool check_escapes(reader *self, const char *text, size_t length, strut_place place) {
   for (size_t at = 0; at < length;) {
     uint32_t code;
     at += strut_text_decode(text + at, length - at, &code);
     if (!strut_text_forbidden(code)) continue;
-    strut_diagnose(r->diagnostics, place, "an escape makes the control character U+%04X",
+    strut_diagnose(self->diagnostics, place, "an escape makes the control character U+%04X",
                    (unsigned)code);
     return false;
   }
@@ -206,110 +207,111 @@ static bool check_escapes(reader *r, const char *text, size_t length, strut_plac
 }
 
 /* A copy of the scalar's text in the arena; recent short texts are shared. */
-static const char *keep_text(reader *r, const char *text, size_t length) {
+static const char *keep_text(reader *self, const char *text, size_t length) {
   if (!length) return "";
-  if (length > RECENT_LENGTH) return strut_arena_text(&r->document->arena, text, length);
+  if (length > RECENT_LENGTH) return strut_arena_text(&self->document->arena, text, length);
   size_t slot = (size_t)strut_document_hash(text, length, 0) % RECENT_SLOTS;
-  const char *known = r->recent[slot];
+  const char *known = self->recent[slot];
   if (known && strncmp(known, text, length) == 0 && known[length] == '\0') return known;
-  return r->recent[slot] = strut_arena_text(&r->document->arena, text, length);
+  return self->recent[slot] = strut_arena_text(&self->document->arena, text, length);
 }
 
-static bool read_scalar(reader *r, const yaml_event_t *event) {
+static bool read_scalar(reader *self, const yaml_event_t *event) {
   const char *text = (const char *)event->data.scalar.value;
   size_t length = event->data.scalar.length, anchor;
   strut_place place = place_of(event);
   bool quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
-  check_tag(r, event->data.scalar.tag, event);
-  if (event->data.scalar.anchor) skip_anchor(r, event, &place);
-  strut_tree *node = new_node(r, STRUT_TREE_SCALAR, place);
-  if (!node || !read_anchor(r, event->data.scalar.anchor, node, &anchor)) return false;
+  check_tag(self, event->data.scalar.tag, event);
+  if (event->data.scalar.anchor) skip_anchor(self, event, &place);
+  strut_tree *node = new_node(self, STRUT_TREE_SCALAR, place);
+  if (!node || !read_anchor(self, event->data.scalar.anchor, node, &anchor)) return false;
   if (event->data.scalar.style == YAML_DOUBLE_QUOTED_SCALAR_STYLE &&
-      !check_escapes(r, text, length, place))
+      !check_escapes(self, text, length, place))
     length = 0;
   node->quoted = quoted;
-  node->text = keep_text(r, text, length);
-  if (!node->text) return out_of_memory(r);
-  if (anchor) r->anchors.items[anchor - 1].weight = 1;
-  attach(r, node, 1, 0);
+  node->text = keep_text(self, text, length);
+  if (!node->text) return out_of_memory(self);
+  if (anchor) self->anchors.items[anchor - 1].weight = 1;
+  attach(self, node, 1, 0);
   return true;
 }
 
-static bool read_alias(reader *r, const yaml_event_t *event) {
+static bool read_alias(reader *self, const yaml_event_t *event) {
   const char *name = (const char *)event->data.alias.anchor;
   strut_place place = place_of(event);
-  const anchored_node *anchor = find_anchor(&r->anchors, name);
-  if (key_expected(r)) {
-    strut_diagnose(r->diagnostics, place, "a key must be a plain text, not an alias");
+  const anchored_node *anchor = find_anchor(&self->anchors, name);
+  if (key_expected(self)) {
+    strut_diagnose(self->diagnostics, place, "a key must be a plain text, not an alias");
     return false;
   }
   if (!anchor || !anchor->weight) {
     strut_diagnose(
-        r->diagnostics, place,
+        self->diagnostics, place,
         anchor ? "alias '*%.64s' refers to a value that contains it" : "unknown alias '*%.64s'",
         name);
     return false;
   }
-  r->expanded += anchor->weight;
-  if (r->expanded > EXPANDED_MOST)
-    return over_limit(r, place, "values repeated by aliases", EXPANDED_MOST);
-  if (r->depth + anchor->height > DEPTH_MOST)
-    return over_limit(r, place, "levels of nesting", DEPTH_MOST);
-  strut_tree *node = new_node(r, STRUT_TREE_SCALAR, place);
+  self->expanded += anchor->weight;
+  if (self->expanded > EXPANDED_MOST)
+    return over_limit(self, place, "values repeated by aliases", EXPANDED_MOST);
+  if (self->depth + anchor->height > DEPTH_MOST)
+    return over_limit(self, place, "levels of nesting", DEPTH_MOST);
+  strut_tree *node = new_node(self, STRUT_TREE_SCALAR, place);
   if (!node) return false;
   *node = *anchor->node;
   node->place = place;
   node->next = NULL;
-  attach(r, node, anchor->weight, anchor->height);
+  attach(self, node, anchor->weight, anchor->height);
   return true;
 }
 
-static bool open_collection(reader *r, const yaml_event_t *event) {
+static bool open_collection(reader *self, const yaml_event_t *event) {
   bool map = event->type == YAML_MAPPING_START_EVENT;
   const yaml_char_t *anchor =
       map ? event->data.mapping_start.anchor : event->data.sequence_start.anchor;
   strut_place place = place_of(event);
-  check_tag(r, map ? event->data.mapping_start.tag : event->data.sequence_start.tag, event);
-  if (anchor) skip_anchor(r, event, &place);
+  check_tag(self, map ? event->data.mapping_start.tag : event->data.sequence_start.tag, event);
+  if (anchor) skip_anchor(self, event, &place);
   place.length = 1;
-  if (key_expected(r)) {
-    strut_diagnose(r->diagnostics, place, "a key must be a plain text, not a %s",
+  if (key_expected(self)) {
+    strut_diagnose(self->diagnostics, place, "a key must be a plain text, not a %s",
                    map ? "mapping" : "list");
     return false;
   }
-  if (r->depth == DEPTH_MOST) return over_limit(r, place, "levels of nesting", DEPTH_MOST);
-  strut_tree *node = new_node(r, map ? STRUT_TREE_MAP : STRUT_TREE_LIST, place);
+  if (self->depth == DEPTH_MOST) return over_limit(self, place, "levels of nesting", DEPTH_MOST);
+  strut_tree *node = new_node(self, map ? STRUT_TREE_MAP : STRUT_TREE_LIST, place);
   bool bracketed = map ? event->data.mapping_start.style == YAML_FLOW_MAPPING_STYLE
                        : event->data.sequence_start.style == YAML_FLOW_SEQUENCE_STYLE;
   frame open = {.node = node, .weight = 1, .bracketed = bracketed};
-  if (!node || !read_anchor(r, anchor, node, &open.anchor)) return false;
-  r->stack[r->depth++] = open;
+  if (!node || !read_anchor(self, anchor, node, &open.anchor)) return false;
+  self->stack[self->depth++] = open;
   return true;
 }
 
-static bool close_collection(reader *r, const yaml_event_t *event) {
-  assert(r->depth > 0 && r->depth <= DEPTH_MOST);
-  frame closed = r->stack[--r->depth];
+static bool close_collection(reader *self, const yaml_event_t *event) {
+  assert(self->depth > 0 && self->depth <= DEPTH_MOST);
+  frame closed = self->stack[--self->depth];
   strut_tree *node = closed.node;
   /* Only a bracketed collection on one line has a length; a block is marked by its first character. */
   size_t line = event->end_mark.line + 1, column = event->end_mark.column + 1;
   if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
       column > node->place.column)
     node->place.length = strut_place_at(0, 0, (uint32_t)column - node->place.column).length;
-  if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, &r->keys, r->diagnostics))
-    return out_of_memory(r);
+  if (node->kind == STRUT_TREE_MAP &&
+      !strut_document_check_keys(node, &self->keys, self->diagnostics))
+    return out_of_memory(self);
   if (closed.anchor) {
-    anchored_node *anchor = &r->anchors.items[closed.anchor - 1];
+    anchored_node *anchor = &self->anchors.items[closed.anchor - 1];
     anchor->weight = closed.weight;
     anchor->height = closed.height + 1;
   }
-  attach(r, node, closed.weight, closed.height + 1);
+  attach(self, node, closed.weight, closed.height + 1);
   return true;
 }
 
 /* After the document only comments and its end mark are allowed. */
-static bool check_rest(reader *r, const yaml_event_t *event) {
-  strut_cursor *at = &r->cursor;
+static bool check_rest(reader *self, const yaml_event_t *event) {
+  strut_cursor *at = &self->cursor;
   strut_cursor_to_index(at, event->end_mark.index);
   bool comment = false;
   while (at->offset < at->length) {
@@ -331,58 +333,59 @@ static bool check_rest(reader *r, const yaml_event_t *event) {
   bool next = at->length - at->offset >= 3 && memcmp(at->text + at->offset, "---", 3) == 0;
   strut_place place = strut_place_at(at->line, at->column, next ? 3 : 1);
   strut_diagnose(
-      r->diagnostics, place,
+      self->diagnostics, place,
       next ? "a second document; a file holds one" : "text after the end of the document");
   return false;
 }
 
-static bool read_end(reader *r, const yaml_event_t *event) {
-  const strut_tree *root = r->document->root;
-  r->ended = true;
+static bool read_end(reader *self, const yaml_event_t *event) {
+  const strut_tree *root = self->document->root;
+  self->ended = true;
   if (root && (root->kind != STRUT_TREE_SCALAR || root->quoted || root->text[0] != '\0'))
-    return event->type != YAML_DOCUMENT_END_EVENT || check_rest(r, event);
-  const char *text = r->diagnostics->text;
-  bool comments = text && memchr(text, '#', r->diagnostics->length);
-  strut_diagnose(r->diagnostics, (strut_place){0},
+    return event->type != YAML_DOCUMENT_END_EVENT || check_rest(self, event);
+  const char *text = self->diagnostics->text;
+  bool comments = text && memchr(text, '#', self->diagnostics->length);
+  strut_diagnose(self->diagnostics, (strut_place){0},
                  comments ? "the file has comments only" : "the file is empty");
   return false;
 }
 
-static bool handle_event(reader *r, const yaml_event_t *event) {
+static bool handle_event(reader *self, const yaml_event_t *event) {
   switch ((int)event->type) { /* as an int: of libyaml's kinds not all matter */
-    case YAML_SCALAR_EVENT: return read_scalar(r, event);
-    case YAML_ALIAS_EVENT: return read_alias(r, event);
+    case YAML_SCALAR_EVENT: return read_scalar(self, event);
+    case YAML_ALIAS_EVENT: return read_alias(self, event);
     case YAML_MAPPING_START_EVENT:
-    case YAML_SEQUENCE_START_EVENT: return open_collection(r, event);
+    case YAML_SEQUENCE_START_EVENT: return open_collection(self, event);
     case YAML_MAPPING_END_EVENT:
-    case YAML_SEQUENCE_END_EVENT: return close_collection(r, event);
+    case YAML_SEQUENCE_END_EVENT: return close_collection(self, event);
     case YAML_DOCUMENT_END_EVENT:
-    case YAML_STREAM_END_EVENT: return read_end(r, event);
+    case YAML_STREAM_END_EVENT: return read_end(self, event);
     default: return true;
   }
 }
 
-static bool read_events(reader *r) {
-  if (!yaml_parser_initialize(&r->yaml)) return out_of_memory(r);
-  yaml_parser_set_encoding(&r->yaml, YAML_UTF8_ENCODING);
-  const char *text = r->diagnostics->text;
-  size_t mark = strut_text_mark(text, r->diagnostics->length);
-  yaml_parser_set_input_string(&r->yaml, (const unsigned char *)text + mark,
-                               r->diagnostics->length - mark);
+static bool read_events(reader *self) {
+  if (!yaml_parser_initialize(&self->yaml)) return out_of_memory(self);
+  yaml_parser_set_encoding(&self->yaml, YAML_UTF8_ENCODING);
+  const char *text = self->diagnostics->text;
+  size_t mark = strut_text_mark(text, self->diagnostics->length);
+  yaml_parser_set_input_string(&self->yaml, (const unsigned char *)text + mark,
+                               self->diagnostics->length - mark);
   bool fine = true;
-  while (fine && !r->ended) {
+  while (fine && !self->ended) {
     yaml_event_t event;
-    if (yaml_parser_parse(&r->yaml, &event)) {
-      fine = handle_event(r, &event) && r->diagnostics->count < PROBLEMS_MOST;
+    if (yaml_parser_parse(&self->yaml, &event)) {
+      fine = handle_event(self, &event) && self->diagnostics->count < PROBLEMS_MOST;
       yaml_event_delete(&event);
     } else {
-      const frame *open = r->depth ? &r->stack[r->depth - 1] : NULL;
+      const frame *open = self->depth ? &self->stack[self->depth - 1] : NULL;
       const strut_tree *bracket = open && open->bracketed ? open->node : NULL;
       fine = false;
-      if (!strut_document_syntax_error(&r->yaml, bracket, r->diagnostics)) out_of_memory(r);
+      if (!strut_document_syntax_error(&self->yaml, bracket, self->diagnostics))
+        out_of_memory(self);
     }
   }
-  yaml_parser_delete(&r->yaml);
+  yaml_parser_delete(&self->yaml);
   return fine;
 }
 
@@ -391,17 +394,17 @@ strut_status strut_document_read(strut_document *document, strut_diagnostics *di
   document->root = NULL;
   if (!strut_document_scan(diagnostics))
     return diagnostics->out_of_memory ? STRUT_NO_MEMORY : STRUT_BAD_SCENE;
-  reader *r = strut_allocate(1, sizeof *r);
-  if (!r) return STRUT_NO_MEMORY;
-  r->document = document;
-  r->diagnostics = diagnostics;
-  r->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
-  r->keys.seed = r->anchors.seed = (uint64_t)(uintptr_t)r ^ (uint64_t)time(NULL) << 20;
-  bool fine = read_events(r), no_memory = r->no_memory || diagnostics->out_of_memory;
+  reader *self = strut_allocate(1, sizeof *self);
+  if (!self) return STRUT_NO_MEMORY;
+  self->document = document;
+  self->diagnostics = diagnostics;
+  self->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
+  self->keys.seed = self->anchors.seed = (uint64_t)(uintptr_t)self ^ (uint64_t)time(NULL) << 20;
+  bool fine = read_events(self), no_memory = self->no_memory || diagnostics->out_of_memory;
   if (!fine || no_memory) document->root = NULL;
-  free_anchors(&r->anchors);
-  strut_release(r->keys.slots);
-  strut_release(r);
+  free_anchors(&self->anchors);
+  strut_release(self->keys.slots);
+  strut_release(self);
   if (no_memory) return STRUT_NO_MEMORY;
   return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;
 }
@@ -412,10 +415,11 @@ void strut_document_free(strut_document *document) {
 }
 
 strut_tree *strut_tree_find(const strut_tree *map, const char *key, strut_tree **key_node) {
-  for (strut_tree *k = map->kind == STRUT_TREE_MAP ? map->first : NULL; k; k = k->next->next) {
-    if (strcmp(k->text, key) != 0) continue;
-    if (key_node) *key_node = k;
-    return k->next;
+  for (strut_tree *tree = map->kind == STRUT_TREE_MAP ? map->first : NULL; tree;
+       tree = tree->next->next) {
+    if (strcmp(tree->text, key) != 0) continue;
+    if (key_node) *key_node = tree;
+    return tree->next;
   }
   return NULL;
 }
@@ -460,13 +464,13 @@ void strut_tree_drop(strut_tree *map, const char *key) {
   map->count--;
 }
 
-bool strut_tree_equal(const strut_tree *a, const strut_tree *b) {
-  if (a->kind != b->kind || a->count != b->count) return false;
-  if (a->kind == STRUT_TREE_SCALAR) return strcmp(a->text, b->text) == 0;
-  const strut_tree *x = a->first, *y = b->first;
-  for (; x && y; x = x->next, y = y->next)
-    if (!strut_tree_equal(x, y)) return false;
-  return !x && !y;
+bool strut_tree_equal(const strut_tree *first, const strut_tree *second) {
+  if (first->kind != second->kind || first->count != second->count) return false;
+  if (first->kind == STRUT_TREE_SCALAR) return strcmp(first->text, second->text) == 0;
+  const strut_tree *tree = first->first, *y = second->first;
+  for (; tree && y; tree = tree->next, y = y->next)
+    if (!strut_tree_equal(tree, y)) return false;
+  return !tree && !y;
 }
 
 bool strut_is_null(const strut_tree *value) {

@@ -88,6 +88,6 @@ STRUT_API bool strut_tree_share(strut_tree_builder *builder, strut_arena *arena,
 /** Takes a key out of a mapping whose entries are not shared. */
 STRUT_API void strut_tree_drop(strut_tree *map, const char *key);
 /** Do two values say the same, wherever they stand? */
-STRUT_API bool strut_tree_equal(const strut_tree *a, const strut_tree *b);
+STRUT_API bool strut_tree_equal(const strut_tree *first, const strut_tree *second);
 
 #endif

@@ -49,11 +49,11 @@ static strut_message *add(strut_messages *to, const char *file, strut_place plac
 
 static void add_diagnostic(strut_messages *to, const strut_diagnostics *all, const char *severity,
                            const strut_diagnostic *item) {
-  strut_message *m =
+  strut_message *message =
       add(to, strut_diagnostics_file(all, item->place), item->place, severity, item->message);
-  for (size_t k = 0; m && k < STRUT_MESSAGE_NOTES && item->note[k]; k++)
-    m->note[m->note_count++] = (strut_located){strut_diagnostics_file(all, item->note_place[k]),
-                                               item->note[k], item->note_place[k]};
+  for (size_t k = 0; message && k < STRUT_MESSAGE_NOTES && item->note[k]; k++)
+    message->note[message->note_count++] = (strut_located){
+        strut_diagnostics_file(all, item->note_place[k]), item->note[k], item->note_place[k]};
 }
 
 void strut_messages_add_diagnostics(strut_messages *to, strut_diagnostics *diagnostics) {
@@ -140,15 +140,16 @@ void strut_check_bands(const strut_model *model, const strut_experiment *experim
     more++;
   }
   if (first < 0) return;
-  const strut_contact_entry *e = &model->contacts.entry[first];
+  const strut_contact_entry *contact = &model->contacts.entry[first];
   char others[40] = "";
   if (more > 0) snprintf(others, sizeof others, " and %d more", (int)more);
   fprintf(stderr,
           "strut: warning: stick_velocity %s of node '%s'%s is narrower than the change of slip in "
           "one step of %s, so that sticking is a matter of chance; use stick_velocity >= %s, a "
           "smaller step, or a method with events\n",
-          strut_quantity_of(e->friction.stick_velocity, 5, "m/s").text, scene->nodes[e->node].name,
-          others, strut_quantity_of(experiment->step, 5, "s").text,
+          strut_quantity_of(contact->friction.stick_velocity, 5, "m/s").text,
+          scene->nodes[contact->node].name, others,
+          strut_quantity_of(experiment->step, 5, "s").text,
           strut_quantity_of(needed, 5, "m/s").text);
 }
 

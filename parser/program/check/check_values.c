@@ -21,9 +21,10 @@ enum { MOST_THINGS = 40, DIGITS = 5 };
 #define COLUMN .label = {""}
 
 static strut_element_pose pose_of(const strut_result_object *of, int32_t element) {
-  const strut_check_result *c = strut_result_whole(of);
+  const strut_check_result *result = strut_result_whole(of);
   strut_element_pose pose;
-  strut_element_evaluate(c->model, element, c->model->members.rest, c->drawn, (double)NAN, &pose);
+  strut_element_evaluate(result->model, element, result->model->members.rest, result->drawn,
+                         (double)NAN, &pose);
   return pose;
 }
 
@@ -32,25 +33,25 @@ static strut_rest rest_of(const strut_result_object *of) {
   const strut_model *model = ((const strut_check_result *)strut_result_whole(of))->model;
   strut_rest rest = {0};
   strut_member_rest(of->scene, of->index, &rest);
-  const strut_element *e = strut_element_of_member(&model->elements, (int32_t)of->index);
-  if (!e || e->role != STRUT_ELEMENT_MEMBER) return rest;
-  rest.pretension = pose_of(of, (int32_t)(e - model->elements.element)).force;
+  const strut_element *element = strut_element_of_member(&model->elements, (int32_t)of->index);
+  if (!element || element->role != STRUT_ELEMENT_MEMBER) return rest;
+  rest.pretension = pose_of(of, (int32_t)(element - model->elements.element)).force;
   rest.force_density = rest.drawn_length > 0.0 ? rest.pretension / rest.drawn_length : 0.0;
-  rest.stiffness = e->numbers.stiffness;
+  rest.stiffness = element->numbers.stiffness;
   return rest;
 }
 
-static const char *carries_name(const strut_member *m) {
+static const char *carries_name(const strut_member *member) {
   static const char *const names[] = {"both", "tension", "compression"};
-  return names[m->kind == STRUT_CABLE ? STRUT_CARRIES_TENSION : m->law.carries];
+  return names[member->kind == STRUT_CABLE ? STRUT_CARRIES_TENSION : member->law.carries];
 }
 
 /* The stiffness of a member's stops [N/m]. */
 static double stop_stiffness(const strut_model *model, size_t j) {
-  const strut_element *e = strut_element_of_member(&model->elements, (int32_t)j);
-  while (e && e->role == STRUT_ELEMENT_MEMBER)
-    e = e->sibling >= 0 ? &model->elements.element[e->sibling] : NULL;
-  return e ? e->numbers.stiffness : 0.0;
+  const strut_element *element = strut_element_of_member(&model->elements, (int32_t)j);
+  while (element && element->role == STRUT_ELEMENT_MEMBER)
+    element = element->sibling >= 0 ? &model->elements.element[element->sibling] : NULL;
+  return element ? element->numbers.stiffness : 0.0;
 }
 
 static strut_value way_of(const strut_result_object *of, size_t k) {
@@ -161,8 +162,8 @@ static const char *method_name(const strut_result_object *of, size_t i) {
 }
 
 static strut_value method_limit(const strut_result_object *of, size_t i) {
-  const strut_check_result *c = of->at;
-  double limit = strut_step_limit_of_method(&c->estimate->limits, strut_integrator_at(i));
+  const strut_check_result *result = of->at;
+  double limit = strut_step_limit_of_method(&result->estimate->limits, strut_integrator_at(i));
   return STRUT_VALUE_AS_NUMBER(limit);
 }
 

@@ -55,12 +55,12 @@ static void print_limits(const strut_cost_estimate *estimate) {
   if (*between == ',') printf("\n");
 }
 
-static void print_run(const strut_cost_estimate *estimate, const strut_experiment *e) {
+static void print_run(const strut_cost_estimate *estimate, const strut_experiment *experiment) {
   if (!estimate->runnable) {
     printf("  no run             a free node has no mass: statics only\n");
     return;
   }
-  double step = e->step, hertz = estimate->largest_frequency / STRUT_TAU;
+  double step = experiment->step, hertz = estimate->largest_frequency / STRUT_TAU;
   printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
          estimate->matrix.mass_nonzeros, estimate->matrix.factor_nonzeros,
          estimate->matrix.dense_entries);
@@ -75,7 +75,7 @@ static void print_run(const strut_cost_estimate *estimate, const strut_experimen
   print_limits(estimate);
   if (estimate->feedback)
     printf("  feedback           not counted in this frequency and these steps\n");
-  const strut_integrator *method = strut_integrator_find(e->integrator);
+  const strut_integrator *method = strut_integrator_find(experiment->integrator);
   double limit =
       method ? strut_step_limit_of_method(&estimate->limits, method) : estimate->step_limit;
   if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
@@ -86,38 +86,40 @@ static void print_run(const strut_cost_estimate *estimate, const strut_experimen
   }
 }
 
-static strut_status print_estimate(const strut_check_result *c) {
-  const strut_scene *scene = c->model->scene;
+static strut_status print_estimate(const strut_check_result *result) {
+  const strut_scene *scene = result->model->scene;
   printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
-  print_counts(c->estimate);
-  print_run(c->estimate, &c->setup->experiment);
-  strut_check_print_things(c);
+  print_counts(result->estimate);
+  print_run(result->estimate, &result->setup->experiment);
+  strut_check_print_things(result);
   return STRUT_OK;
 }
 
-static strut_status print_json(strut_check_result *c, strut_open_report *report) {
-  strut_status status = strut_setup_warn(c->setup, &c->found);
-  strut_messages_add_diagnostics(&c->messages, &report->diagnostics);
-  strut_messages_add_warnings(&c->messages, &c->found, &c->setup->scene, &report->diagnostics);
-  c->messages.failed = c->messages.failed || status != STRUT_OK;
-  return strut_check_print(c);
+static strut_status print_json(strut_check_result *result, strut_open_report *report) {
+  strut_status status = strut_setup_warn(result->setup, &result->found);
+  strut_messages_add_diagnostics(&result->messages, &report->diagnostics);
+  strut_messages_add_warnings(&result->messages, &result->found, &result->setup->scene,
+                              &report->diagnostics);
+  result->messages.failed = result->messages.failed || status != STRUT_OK;
+  return strut_check_print(result);
 }
 
-static strut_status print_valid(const strut_arguments *arguments, strut_check_result *c,
+static strut_status print_valid(const strut_arguments *arguments, strut_check_result *result,
                                 strut_open_report *report) {
-  c->drawn = strut_allocate((size_t)c->model->length, sizeof *c->drawn);
-  if (!c->drawn) return strut_print_out_of_memory();
-  for (size_t i = 0; i < 2 * c->model->scene->node_count; i++)
-    c->drawn[i] = c->model->scene->nodes[i / 2].position[i % 2];
-  strut_status status = arguments->json ? print_json(c, report) : print_estimate(c);
-  strut_release(c->drawn);
+  result->drawn = strut_allocate((size_t)result->model->length, sizeof *result->drawn);
+  if (!result->drawn) return strut_print_out_of_memory();
+  for (size_t i = 0; i < 2 * result->model->scene->node_count; i++)
+    result->drawn[i] = result->model->scene->nodes[i / 2].position[i % 2];
+  strut_status status = arguments->json ? print_json(result, report) : print_estimate(result);
+  strut_release(result->drawn);
   return status;
 }
 
 /* Does the scene fix the method of a run? If not, it is for statics, or --accuracy chooses. */
-static bool has_fixed_method(const strut_experiment *e) {
-  bool by_hand = !(e->accuracy > 0.0);
-  return by_hand && (e->step != 0.0 || e->duration != 0.0 || e->periods != 0.0);
+static bool has_fixed_method(const strut_experiment *experiment) {
+  bool by_hand = !(experiment->accuracy > 0.0);
+  return by_hand &&
+         (experiment->step != 0.0 || experiment->duration != 0.0 || experiment->periods != 0.0);
 }
 
 /* What is wrong, as JSON; returns `status`. */

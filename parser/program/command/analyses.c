@@ -14,16 +14,16 @@
 #include "engine/scene/things.h"
 #include "parser/language/yaml/diagnostics.h"
 
-strut_status strut_analysis_compute(strut_analysis *a, strut_error *error) {
-  strut_status status = a->kind->compute(a, error);
-  a->arguments = NULL;
+strut_status strut_analysis_compute(strut_analysis *analysis, strut_error *error) {
+  strut_status status = analysis->kind->compute(analysis, error);
+  analysis->arguments = NULL;
   return status;
 }
 
-void strut_analysis_free(strut_analysis *a) {
-  if (a->kind && a->kind->release) a->kind->release(a);
-  strut_varied_scenes_free(&a->scenes);
-  strut_arena_free(&a->arena);
+void strut_analysis_free(strut_analysis *analysis) {
+  if (analysis->kind && analysis->kind->release) analysis->kind->release(analysis);
+  strut_varied_scenes_free(&analysis->scenes);
+  strut_arena_free(&analysis->arena);
 }
 
 /* ---- options ---- */
@@ -89,14 +89,14 @@ typedef struct candidates {
 } candidates;
 
 static const char *candidate_at(const void *context, size_t i) {
-  const candidates *c = context;
-  const strut_scene *scene = c->scene;
+  const candidates *self = context;
+  const strut_scene *scene = self->scene;
   if (i < scene->parameter_count) return scene->parameters[i].name;
   i -= scene->parameter_count;
   if (i < scene->actuator_count) return scene->actuators[i].name;
   i -= scene->actuator_count;
   if (i >= 2 * scene->node_count) return NULL;
-  return strut_arena_format(c->arena, "%s.%c", scene->nodes[i / 2].name, i % 2 ? 'y' : 'x');
+  return strut_arena_format(self->arena, "%s.%c", scene->nodes[i / 2].name, i % 2 ? 'y' : 'x');
 }
 
 static strut_status reject_name(const strut_arguments *arguments, const strut_scene *scene,
@@ -137,8 +137,9 @@ static strut_status choose_followed(const strut_arguments *arguments, const stru
   wanted->over = STRUT_PATH_OVER_ACTUATOR;
   wanted->index = strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
   if (wanted->index >= 0) {
-    const strut_actuator *a = &scene->actuators[wanted->index];
-    if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
+    const strut_actuator *actuator = &scene->actuators[wanted->index];
+    if (actuator->member < 0)
+      *dimension = actuator->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
     return STRUT_OK;
   }
   wanted->over = STRUT_PATH_OVER_COORDINATE;
@@ -203,44 +204,47 @@ static strut_status read_followed(const strut_arguments *arguments, const strut_
 
 /* ---- equilibria ---- */
 
-static strut_status compute_equilibria(strut_analysis *a, strut_error *error) {
-  const strut_arguments *arguments = a->arguments;
-  const uint64_t seed =
-      arguments->seed.text ? (uint64_t)arguments->seed.value : a->setup->experiment.search.seed;
+static strut_status compute_equilibria(strut_analysis *analysis, strut_error *error) {
+  const strut_arguments *arguments = analysis->arguments;
+  const uint64_t seed = arguments->seed.text ? (uint64_t)arguments->seed.value
+                                             : analysis->setup->experiment.search.seed;
   strut_node_set *set = NULL;
-  strut_status status = read_supports(arguments, &a->setup->scene, &set);
+  strut_status status = read_supports(arguments, &analysis->setup->scene, &set);
   if (status != STRUT_OK) return status;
   const strut_equilibria_options wanted = {.starts = arguments->starts.value,
                                            .seed = &seed,
                                            .supports = set,
-                                           .interrupt = a->setup->experiment.interrupt};
-  status =
-      strut_equilibria_find(a->model, &a->setup->experiment, &wanted, &a->result.equilibria, error);
-  a->result.equilibria.shows_all = arguments->all;
+                                           .interrupt = analysis->setup->experiment.interrupt};
+  status = strut_equilibria_find(analysis->model, &analysis->setup->experiment, &wanted,
+                                 &analysis->result.equilibria, error);
+  analysis->result.equilibria.shows_all = arguments->all;
   return status;
 }
 
-static strut_status judge_equilibria(const strut_analysis *a, strut_error *error) {
-  const strut_equilibria *all = &a->result.equilibria;
+static strut_status judge_equilibria(const strut_analysis *analysis, strut_error *error) {
+  const strut_equilibria *all = &analysis->result.equilibria;
   return all->count > 0 ? STRUT_OK : strut_fail(error, STRUT_NOT_SETTLED, "%s", all->remark);
 }
 
-static const strut_value_rows *equilibria_values(const strut_analysis *a, const void **result) {
-  *result = &a->result.equilibria;
+static const strut_value_rows *equilibria_values(const strut_analysis *analysis,
+                                                 const void **result) {
+  *result = &analysis->result.equilibria;
   return &strut_equilibria_values;
 }
 
-static void warn_of_equilibria(const strut_analysis *a, const strut_listener *listener) {
-  strut_warn_of_equilibria(listener, a->model, &a->result.equilibria);
+static void warn_of_equilibria(const strut_analysis *analysis, const strut_listener *listener) {
+  strut_warn_of_equilibria(listener, analysis->model, &analysis->result.equilibria);
 }
 
-static strut_status draw_equilibria(const strut_analysis *a, const strut_plot *plot,
+static strut_status draw_equilibria(const strut_analysis *analysis, const strut_plot *plot,
                                     strut_error *error) {
-  if (a->result.equilibria.count == 0) return STRUT_OK;
-  return strut_equilibria_figure(plot, a->model, &a->result.equilibria, error);
+  if (analysis->result.equilibria.count == 0) return STRUT_OK;
+  return strut_equilibria_figure(plot, analysis->model, &analysis->result.equilibria, error);
 }
 
-static void free_equilibria(strut_analysis *a) { strut_equilibria_free(&a->result.equilibria); }
+static void free_equilibria(strut_analysis *analysis) {
+  strut_equilibria_free(&analysis->result.equilibria);
+}
 
 /* JSON readers represent integers exactly up to here. */
 #define MOST_SEED INT64_C(9007199254740992)
@@ -266,50 +270,54 @@ const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.jso
 
 /* ---- modes ---- */
 
-static strut_status compute_modes(strut_analysis *a, strut_error *error) {
-  const strut_arguments *arguments = a->arguments;
+static strut_status compute_modes(strut_analysis *analysis, strut_error *error) {
+  const strut_arguments *arguments = analysis->arguments;
   const int32_t count = (int32_t)arguments->count.value;
   if (arguments->wave && arguments->stuck)
     return strut_usage_error(arguments,
                              "--stuck holds contacts with the ground; --wave knows no ground");
-  a->result.modes.count = (size_t)count;
-  a->result.modes.wave = arguments->wave;
+  analysis->result.modes.count = (size_t)count;
+  analysis->result.modes.wave = arguments->wave;
   const strut_waves_options waves = {.at = arguments->at, .count = count};
   const strut_modes_options modes = {
       .at = arguments->at, .count = count, .stuck = arguments->stuck};
   if (arguments->wave)
-    return strut_waves_find(a->model, &a->setup->experiment, &waves, &a->result.modes.waves, error);
-  return strut_modes_find(a->model, &a->setup->experiment, &modes, &a->result.modes.found, error);
+    return strut_waves_find(analysis->model, &analysis->setup->experiment, &waves,
+                            &analysis->result.modes.waves, error);
+  return strut_modes_find(analysis->model, &analysis->setup->experiment, &modes,
+                          &analysis->result.modes.found, error);
 }
 
-static const strut_value_rows *modes_values(const strut_analysis *a, const void **result) {
-  bool wave = a->result.modes.wave;
-  *result = wave ? (const void *)&a->result.modes.waves : &a->result.modes.found;
+static const strut_value_rows *modes_values(const strut_analysis *analysis, const void **result) {
+  bool wave = analysis->result.modes.wave;
+  *result = wave ? (const void *)&analysis->result.modes.waves : &analysis->result.modes.found;
   return wave ? &strut_waves_values : &strut_modes_values;
 }
 
-static char *modes_csv(const strut_analysis *a) {
+static char *modes_csv(const strut_analysis *analysis) {
   const void *result;
-  const strut_value_rows *rows = modes_values(a, &result);
-  bool wave = a->result.modes.wave;
-  return strut_values_csv(rows, wave ? "waves" : "modes", NULL, result, &a->setup->scene);
+  const strut_value_rows *rows = modes_values(analysis, &result);
+  bool wave = analysis->result.modes.wave;
+  return strut_values_csv(rows, wave ? "waves" : "modes", NULL, result, &analysis->setup->scene);
 }
 
-static void warn_of_modes(const strut_analysis *a, const strut_listener *listener) {
-  const double *q = a->result.modes.wave ? a->result.modes.waves.q : a->result.modes.found.q;
-  strut_warn_of_overload(listener, a->model, q, "in this shape");
+static void warn_of_modes(const strut_analysis *analysis, const strut_listener *listener) {
+  const double *q =
+      analysis->result.modes.wave ? analysis->result.modes.waves.q : analysis->result.modes.found.q;
+  strut_warn_of_overload(listener, analysis->model, q, "in this shape");
 }
 
-static strut_status draw_modes(const strut_analysis *a, const strut_plot *plot,
+static strut_status draw_modes(const strut_analysis *analysis, const strut_plot *plot,
                                strut_error *error) {
-  if (a->result.modes.wave)
-    return strut_waves_figure(plot, a->model, &a->result.modes.waves, error);
-  return strut_modes_figure(plot, a->model, &a->result.modes.found, a->result.modes.count, error);
+  if (analysis->result.modes.wave)
+    return strut_waves_figure(plot, analysis->model, &analysis->result.modes.waves, error);
+  return strut_modes_figure(plot, analysis->model, &analysis->result.modes.found,
+                            analysis->result.modes.count, error);
 }
 
-static void free_modes(strut_analysis *a) {
-  strut_modes_free(&a->result.modes.found);
-  strut_waves_free(&a->result.modes.waves);
+static void free_modes(strut_analysis *analysis) {
+  strut_modes_free(&analysis->result.modes.found);
+  strut_waves_free(&analysis->result.modes.waves);
 }
 
 const strut_option strut_modes_analysis_options[] = {
@@ -332,29 +340,34 @@ const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes
 
 /* ---- rigidity ---- */
 
-static strut_status compute_rigidity(strut_analysis *a, strut_error *error) {
-  const strut_named_shape *shape = &a->result.rigidity.shape;
-  strut_status status = strut_named_shape_find(a->arguments, a->model, &a->setup->experiment,
-                                               &a->arena, &a->result.rigidity.shape, error);
+static strut_status compute_rigidity(strut_analysis *analysis, strut_error *error) {
+  const strut_named_shape *shape = &analysis->result.rigidity.shape;
+  strut_status status =
+      strut_named_shape_find(analysis->arguments, analysis->model, &analysis->setup->experiment,
+                             &analysis->arena, &analysis->result.rigidity.shape, error);
   if (status != STRUT_OK) return status;
-  strut_status found = strut_rigidity_find(a->model, shape->q, &a->result.rigidity.found, error);
-  a->result.rigidity.found.at = shape->name;
+  strut_status found =
+      strut_rigidity_find(analysis->model, shape->q, &analysis->result.rigidity.found, error);
+  analysis->result.rigidity.found.at = shape->name;
   return found;
 }
 
-static const strut_value_rows *rigidity_values(const strut_analysis *a, const void **result) {
-  *result = &a->result.rigidity.found;
+static const strut_value_rows *rigidity_values(const strut_analysis *analysis,
+                                               const void **result) {
+  *result = &analysis->result.rigidity.found;
   return &strut_rigidity_values;
 }
 
-static strut_status draw_rigidity(const strut_analysis *a, const strut_plot *plot,
+static strut_status draw_rigidity(const strut_analysis *analysis, const strut_plot *plot,
                                   strut_error *error) {
-  const strut_named_shape *shape = &a->result.rigidity.shape;
-  return strut_rigidity_figure(plot, a->model, shape->q, shape->name, &a->result.rigidity.found,
-                               error);
+  const strut_named_shape *shape = &analysis->result.rigidity.shape;
+  return strut_rigidity_figure(plot, analysis->model, shape->q, shape->name,
+                               &analysis->result.rigidity.found, error);
 }
 
-static void free_rigidity(strut_analysis *a) { strut_rigidity_free(&a->result.rigidity.found); }
+static void free_rigidity(strut_analysis *analysis) {
+  strut_rigidity_free(&analysis->result.rigidity.found);
+}
 
 const strut_option strut_rigidity_analysis_options[] = {
     {STRUT_FILLS(at), "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
@@ -368,9 +381,9 @@ const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
 
 /* ---- form: the setup becomes that of the form ---- */
 
-static strut_status compute_form(strut_analysis *a, strut_error *error) {
-  const strut_scene *scene = &a->setup->scene;
-  const strut_arguments *arguments = a->arguments;
+static strut_status compute_form(strut_analysis *analysis, strut_error *error) {
+  const strut_scene *scene = &analysis->setup->scene;
+  const strut_arguments *arguments = analysis->arguments;
   const double least = arguments->least_tension.value;
   /* 0 asks for none, while without the option a part of the forces is taken */
   const strut_form_options wanted = {
@@ -381,24 +394,25 @@ static strut_status compute_form(strut_analysis *a, strut_error *error) {
   if (wanted.least_tension < 0 || wanted.least_density < 0)
     return strut_usage_error(
         arguments, "--least-tension and --least-density must not be negative: cables only pull");
-  double(*drawn)[2] = strut_arena_allocate(&a->arena, scene->node_count, sizeof *drawn);
+  double(*drawn)[2] = strut_arena_allocate(&analysis->arena, scene->node_count, sizeof *drawn);
   if (!drawn) return strut_no_memory(error, "");
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(drawn[i], scene->nodes[i].position, sizeof *drawn);
-  a->result.form.drawn = drawn;
-  return strut_form_find(a->setup, &wanted, &a->result.form.found, error);
+  analysis->result.form.drawn = drawn;
+  return strut_form_find(analysis->setup, &wanted, &analysis->result.form.found, error);
 }
 
-static const strut_value_rows *form_values(const strut_analysis *a, const void **result) {
-  *result = &a->result.form.found;
+static const strut_value_rows *form_values(const strut_analysis *analysis, const void **result) {
+  *result = &analysis->result.form.found;
   return &strut_form_values;
 }
 
-static strut_status draw_form(const strut_analysis *a, const strut_plot *plot, strut_error *error) {
+static strut_status draw_form(const strut_analysis *analysis, const strut_plot *plot,
+                              strut_error *error) {
   strut_model *model = NULL;
-  strut_status status = strut_model_compile(&a->setup->scene, &model, error);
+  strut_status status = strut_model_compile(&analysis->setup->scene, &model, error);
   if (status == STRUT_OK)
-    status = strut_form_figure(plot, model, (const double(*)[2])a->result.form.drawn, error);
+    status = strut_form_figure(plot, model, (const double(*)[2])analysis->result.form.drawn, error);
   strut_model_free(model);
   return status;
 }
@@ -421,46 +435,50 @@ const strut_analysis_kind strut_form_analysis = {
 /* ---- path ---- */
 
 /* The file's stages are followed unless the command says what to follow. */
-static bool has_stages(const strut_analysis *a) {
-  const strut_arguments *w = a->arguments;
-  return a->setup->experiment.stage_count > 0 &&
-         !(w->load || w->over.text || w->from || w->until || w->stop);
+static bool has_stages(const strut_analysis *analysis) {
+  const strut_arguments *arguments = analysis->arguments;
+  return analysis->setup->experiment.stage_count > 0 &&
+         !(arguments->load || arguments->over.text || arguments->from || arguments->until ||
+           arguments->stop);
 }
 
-static strut_status compute_path(strut_analysis *a, strut_error *error) {
-  const strut_arguments *arguments = a->arguments;
+static strut_status compute_path(strut_analysis *analysis, strut_error *error) {
+  const strut_arguments *arguments = analysis->arguments;
   strut_path_options wanted = {.at = arguments->at,
                                .steps = (int32_t)arguments->steps.value,
                                .branches = (int32_t)arguments->branches.value,
                                .friction = arguments->friction.text
                                                ? arguments->friction.index == 1
-                                               : a->setup->experiment.path_friction};
-  if (has_stages(a))
-    return strut_path_follow_stages(a->model, &a->setup->experiment, &wanted, &a->result.path,
-                                    error);
-  strut_status status = read_followed(arguments, &a->setup->scene, &a->scenes, &wanted);
+                                               : analysis->setup->experiment.path_friction};
+  if (has_stages(analysis))
+    return strut_path_follow_stages(analysis->model, &analysis->setup->experiment, &wanted,
+                                    &analysis->result.path, error);
+  strut_status status =
+      read_followed(arguments, &analysis->setup->scene, &analysis->scenes, &wanted);
   if (status != STRUT_OK) return status;
-  return strut_path_follow(a->model, &a->setup->experiment, &wanted, &a->result.path, error);
+  return strut_path_follow(analysis->model, &analysis->setup->experiment, &wanted,
+                           &analysis->result.path, error);
 }
 
-static const strut_value_rows *path_values(const strut_analysis *a, const void **result) {
-  *result = &a->result.path;
+static const strut_value_rows *path_values(const strut_analysis *analysis, const void **result) {
+  *result = &analysis->result.path;
   return &strut_path_values;
 }
 
-static char *path_csv(const strut_analysis *a) {
-  return strut_path_csv(&a->result.path, &a->setup->scene);
+static char *path_csv(const strut_analysis *analysis) {
+  return strut_path_csv(&analysis->result.path, &analysis->setup->scene);
 }
 
-static void warn_of_path(const strut_analysis *a, const strut_listener *listener) {
-  strut_warn_of_path(listener, &a->setup->scene, &a->result.path);
+static void warn_of_path(const strut_analysis *analysis, const strut_listener *listener) {
+  strut_warn_of_path(listener, &analysis->setup->scene, &analysis->result.path);
 }
 
-static strut_status draw_path(const strut_analysis *a, const strut_plot *plot, strut_error *error) {
-  return strut_path_figure(plot, a->model, &a->result.path, error);
+static strut_status draw_path(const strut_analysis *analysis, const strut_plot *plot,
+                              strut_error *error) {
+  return strut_path_figure(plot, analysis->model, &analysis->result.path, error);
 }
 
-static void free_path(strut_analysis *a) { strut_path_free(&a->result.path); }
+static void free_path(strut_analysis *analysis) { strut_path_free(&analysis->result.path); }
 
 const strut_option strut_path_analysis_options[] = {
     {STRUT_FILLS(load), "load", "NAME",
@@ -492,16 +510,16 @@ const strut_analysis_kind strut_path_analysis = {.files = {"path.json", "path.cs
                                                  .draw = draw_path,
                                                  .release = free_path};
 
-char *strut_analysis_json(const strut_analysis *a) {
+char *strut_analysis_json(const strut_analysis *analysis) {
   const void *result;
-  const strut_value_rows *rows = a->kind->values(a, &result);
-  return strut_values_json(rows, result, &a->setup->scene);
+  const strut_value_rows *rows = analysis->kind->values(analysis, &result);
+  return strut_values_json(rows, result, &analysis->setup->scene);
 }
 
-char *strut_analysis_text(const strut_analysis *a, int width) {
+char *strut_analysis_text(const strut_analysis *analysis, int width) {
   const void *result;
-  const strut_value_rows *rows = a->kind->values(a, &result);
-  bool all = a->kind == &strut_equilibria_analysis && a->result.equilibria.shows_all;
-  return strut_values_text(rows, result, &a->setup->scene, width,
+  const strut_value_rows *rows = analysis->kind->values(analysis, &result);
+  bool all = analysis->kind == &strut_equilibria_analysis && analysis->result.equilibria.shows_all;
+  return strut_values_text(rows, result, &analysis->setup->scene, width,
                            all ? SIZE_MAX : STRUT_REPORT_ROWS);
 }

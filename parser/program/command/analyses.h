@@ -41,16 +41,16 @@ struct strut_analysis_kind {
   bool uncompiled;      /* compute needs no model */
   bool asks;            /* compute soon notices an interrupt */
   /** Reads the options, whose faults the listener hears, and computes. */
-  strut_status (*compute)(strut_analysis *a, strut_error *error);
+  strut_status (*compute)(strut_analysis *analysis, strut_error *error);
   /** Fails where nothing was found, which is a result, too. May be NULL. */
-  strut_status (*verdict)(const strut_analysis *a, strut_error *error);
+  strut_status (*verdict)(const strut_analysis *analysis, strut_error *error);
   /** Rows of the result and, into *result, what they are of; strut_analysis_json writes it. */
-  const strut_value_rows *(*values)(const strut_analysis *a, const void **result);
-  char *(*csv)(const strut_analysis *a); /* NULL: no such file */
+  const strut_value_rows *(*values)(const strut_analysis *analysis, const void **result);
+  char *(*csv)(const strut_analysis *analysis); /* NULL: no such file */
   /** Tells the listener what is doubtful in the result. May be NULL. */
-  void (*warn)(const strut_analysis *a, const strut_listener *listener);
-  strut_status (*draw)(const strut_analysis *a, const strut_plot *plot, strut_error *error);
-  void (*release)(strut_analysis *a); /* may be NULL */
+  void (*warn)(const strut_analysis *analysis, const strut_listener *listener);
+  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, strut_error *error);
+  void (*release)(strut_analysis *analysis); /* may be NULL */
 };
 
 /** Each kind, and the options of its computation. */
@@ -89,12 +89,12 @@ struct strut_analysis {
 };
 
 /** The result as JSON, in a block of strut_allocate; NULL where memory is out. */
-char *strut_analysis_json(const strut_analysis *a);
+char *strut_analysis_json(const strut_analysis *analysis);
 /** What people read of it. */
-char *strut_analysis_text(const strut_analysis *a, int width);
+char *strut_analysis_text(const strut_analysis *analysis, int width);
 
 /** Computes; a->result is zero before. Call strut_analysis_free in any case. */
-strut_status strut_analysis_compute(strut_analysis *a, strut_error *error);
-void strut_analysis_free(strut_analysis *a);
+strut_status strut_analysis_compute(strut_analysis *analysis, strut_error *error);
+void strut_analysis_free(strut_analysis *analysis);
 
 #endif

@@ -34,8 +34,8 @@ strut_status strut_usage_error(const strut_arguments *arguments, const char *for
 /* ---- rows ---- */
 
 static const strut_option *row_at(const strut_option *table, size_t *i) {
-  for (const strut_option *o = table; o->name || o->table; o++) {
-    const strut_option *row = o->table ? row_at(o->table, i) : (*i)-- ? NULL : o;
+  for (const strut_option *option = table; option->name || option->table; option++) {
+    const strut_option *row = option->table ? row_at(option->table, i) : (*i)-- ? NULL : option;
     if (row) return row;
   }
   return NULL;

@@ -28,35 +28,35 @@ typedef struct followed {
 
 /* The name must be that of a number of the scene. */
 static strut_status check_range(const strut_arguments *arguments, const strut_scene *scene,
-                                const followed *r) {
-  const bool apart = r->given == &arguments->over && (arguments->from || arguments->until);
-  const char *name = r->given->name;
-  if (!r->given->text || !r->low || !r->high || (apart && r->given->high))
+                                const followed *self) {
+  const bool apart = self->given == &arguments->over && (arguments->from || arguments->until);
+  const char *name = self->given->name;
+  if (!self->given->text || !self->low || !self->high || (apart && self->given->high))
     return strut_usage_error(
-        arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", r->option,
-        r->option, apart ? ", or --over NAME, --from and --until" : "");
+        arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", self->option,
+        self->option, apart ? ", or --over NAME, --from and --until" : "");
   const strut_parameter *parameter = strut_find_parameter(scene, name);
   const char *near = parameter ? NULL : strut_did_you_mean(name, parameter_at, scene);
   if (!parameter)
-    return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", r->option,
+    return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", self->option,
                              name, near ? "; did you mean '" : "", near ? near : "",
                              near ? "'?" : "");
   if (!isfinite(parameter->value))
     return strut_usage_error(arguments, "%s: parameter '%s' is a text, expected a number",
-                             r->option, name);
+                             self->option, name);
   return STRUT_OK;
 }
 
-static strut_status read_ends(const strut_arguments *arguments, const followed *r,
+static strut_status read_ends(const strut_arguments *arguments, const followed *self,
                               strut_dimension dimension, double *low, double *high) {
-  if (strut_quantities_read(r->low, dimension, low, 1) == 1 &&
-      strut_quantities_read(r->high, dimension, high, 1) == 1 && *low < *high && isfinite(*low) &&
-      isfinite(*high))
+  if (strut_quantities_read(self->low, dimension, low, 1) == 1 &&
+      strut_quantities_read(self->high, dimension, high, 1) == 1 && *low < *high &&
+      isfinite(*low) && isfinite(*high))
     return STRUT_OK;
   const char *example = strut_dimension_example(dimension);
   return strut_usage_error(
-      arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s", r->option,
-      r->given->name, example ? ", each such as " : "", example ? example : "");
+      arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s", self->option,
+      self->given->name, example ? ", each such as " : "", example ? example : "");
 }
 
 /* The scene of a value of the first parameter, the second one being where the branches are. */

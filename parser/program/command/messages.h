@@ -33,7 +33,7 @@ void strut_tell(const strut_listener *listener, strut_message_kind kind, const c
 
 /** Of the shape q (length), at `where`. */
 void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
-                            const double *q, const char *where);
+                            const double *positions, const char *where);
 /** Of all stable equilibria. */
 void strut_warn_of_equilibria(const strut_listener *listener, const strut_model *model,
                               const strut_equilibria *all);

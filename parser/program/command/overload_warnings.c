@@ -7,9 +7,9 @@
 #include "engine/forces/history.h"
 
 void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
-                            const double *q, const char *where) {
+                            const double *positions, const char *where) {
   strut_overload worst;
-  if (!strut_history_overload(model, q, &worst)) return;
+  if (!strut_history_overload(model, positions, &worst)) return;
   const char *unit = worst.hinge ? "N m" : "N";
   strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
              "%s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take it as %s",
@@ -20,13 +20,13 @@ void strut_warn_of_overload(const strut_listener *listener, const strut_model *m
 /* Says what a search has left out: on a curve that folds one branch is taken at each elongation. */
 static void warn_of_folds(const strut_listener *listener, const strut_model *model) {
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->law != STRUT_LAW_FOLDING) continue;
+    const strut_element *element = &model->elements.element[i];
+    if (element->law != STRUT_LAW_FOLDING) continue;
     strut_tell(
         listener, STRUT_MESSAGE_WARNING, NULL,
         "the law of '%s' may fold back: a search takes it as it is when it comes from the rest "
         "length, and finds no state on another branch; strut path follows them",
-        strut_element_name(model->scene, e));
+        strut_element_name(model->scene, element));
     return;
   }
 }
@@ -35,26 +35,28 @@ void strut_warn_of_equilibria(const strut_listener *listener, const strut_model 
                               const strut_equilibria *all) {
   warn_of_folds(listener, model);
   for (size_t i = 0; i < all->count; i++) {
-    const strut_equilibrium *e = &all->list[i];
+    const strut_equilibrium *equilibrium = &all->list[i];
     char where[200];
-    if (e->point.label != STRUT_STABLE) continue;
-    snprintf(where, sizeof where, "in %.180s", e->name);
-    strut_warn_of_overload(listener, model, e->point.q, where);
+    if (equilibrium->point.label != STRUT_STABLE) continue;
+    snprintf(where, sizeof where, "in %.180s", equilibrium->name);
+    strut_warn_of_overload(listener, model, equilibrium->point.q, where);
   }
 }
 
 /* Does something carry more than it can? What that is. */
 static const char *overloaded_at(const strut_scene *scene, const strut_path_point *at) {
   for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *m = &scene->members[j];
-    bool yields = m->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->at.force[j]) > m->law.yield;
-    if (yields || (m->breaks_at > 0.0 && at->at.force[j] > m->breaks_at)) return m->name;
+    const strut_member *member = &scene->members[j];
+    bool yields =
+        member->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->at.force[j]) > member->law.yield;
+    if (yields || (member->breaks_at > 0.0 && at->at.force[j] > member->breaks_at))
+      return member->name;
   }
   for (size_t i = 0; i < scene->hinge_count; i++) {
-    const strut_hinge *h = &scene->hinges[i];
+    const strut_hinge *hinge = &scene->hinges[i];
     double moment = fabs(at->at.moment[i]);
-    bool yields = h->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > h->law.yield;
-    if (yields || (h->breaks_at > 0.0 && moment > h->breaks_at)) return h->name;
+    bool yields = hinge->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > hinge->law.yield;
+    if (yields || (hinge->breaks_at > 0.0 && moment > hinge->breaks_at)) return hinge->name;
   }
   return NULL;
 }

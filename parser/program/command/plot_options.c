@@ -69,11 +69,11 @@ static strut_status read_limits(const strut_arguments *arguments, char letter, b
 }
 
 strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool log_y,
-                             strut_axis_choice *x, strut_axis_choice *y) {
-  *x = (strut_axis_choice){.label = arguments->x_label};
-  *y = (strut_axis_choice){.label = arguments->y_label};
-  strut_status status = read_limits(arguments, 'x', log_x, x);
-  return status ? status : read_limits(arguments, 'y', log_y, y);
+                             strut_axis_choice *choice, strut_axis_choice *other_choice) {
+  *choice = (strut_axis_choice){.label = arguments->x_label};
+  *other_choice = (strut_axis_choice){.label = arguments->y_label};
+  strut_status status = read_limits(arguments, 'x', log_x, choice);
+  return status ? status : read_limits(arguments, 'y', log_y, other_choice);
 }
 
 /* ---- of runs ---- */

@@ -42,27 +42,32 @@ const strut_option strut_fidelity_options[] = {
 const strut_option strut_experiment_options[] = {
     {.table = strut_run_setting_options}, {.table = strut_fidelity_options}, {.name = NULL}};
 
-static strut_status apply_settings(const strut_arguments *a, strut_experiment *e) {
-  bool by_hand = a->integrator.text || a->step.text;
-  if (a->integrator.text) e->integrator = strut_integrator_find(a->integrator.text)->name;
-  if (a->accuracy.text) e->accuracy = a->accuracy.value;
-  if (a->step.text) e->step = a->step.value;
-  if (a->tolerance.text) e->tolerance = a->tolerance.value;
-  if (a->budget.text) e->budget = a->budget.value;
-  if (a->steady.text && !(e->periods > 0.0))
-    return strut_usage_error(a, "--steady compares periods: the run must be given in periods");
-  if (a->steady.text) e->steady.wanted = true, e->steady.tolerance = a->steady.value;
-  if (by_hand && a->accuracy.text)
+static strut_status apply_settings(const strut_arguments *arguments, strut_experiment *experiment) {
+  bool by_hand = arguments->integrator.text || arguments->step.text;
+  if (arguments->integrator.text)
+    experiment->integrator = strut_integrator_find(arguments->integrator.text)->name;
+  if (arguments->accuracy.text) experiment->accuracy = arguments->accuracy.value;
+  if (arguments->step.text) experiment->step = arguments->step.value;
+  if (arguments->tolerance.text) experiment->tolerance = arguments->tolerance.value;
+  if (arguments->budget.text) experiment->budget = arguments->budget.value;
+  if (arguments->steady.text && !(experiment->periods > 0.0))
+    return strut_usage_error(arguments,
+                             "--steady compares periods: the run must be given in periods");
+  if (arguments->steady.text)
+    experiment->steady.wanted = true, experiment->steady.tolerance = arguments->steady.value;
+  if (by_hand && arguments->accuracy.text)
     return strut_usage_error(
-        a,
+        arguments,
         "--accuracy chooses method and step: give either --accuracy, or --integrator and --step");
-  if (by_hand) e->accuracy = 0.0;
-  bool stepless = e->step_chosen || (by_hand && e->step == 0.0);
-  if (stepless && !strut_experiment_is_adaptive(e->integrator) && !(e->accuracy > 0.0) &&
-      !a->step.text)
+  if (by_hand) experiment->accuracy = 0.0;
+  bool stepless = experiment->step_chosen || (by_hand && experiment->step == 0.0);
+  if (stepless && !strut_experiment_is_adaptive(experiment->integrator) &&
+      !(experiment->accuracy > 0.0) && !arguments->step.text)
     return strut_usage_error(
-        a, "the solver has no step, which only adaptive and adaptive8 do without: give --step");
-  if (e->accuracy > 1.0) return strut_usage_error(a, "--accuracy must be at most 1, that is 100%%");
+        arguments,
+        "the solver has no step, which only adaptive and adaptive8 do without: give --step");
+  if (experiment->accuracy > 1.0)
+    return strut_usage_error(arguments, "--accuracy must be at most 1, that is 100%%");
   return STRUT_OK;
 }
 
@@ -70,16 +75,16 @@ static strut_status set_friction(const strut_arguments *arguments, strut_scene *
                                  strut_friction_law law) {
   bool any = false;
   for (size_t i = 0; i < scene->contact_count; i++) {
-    strut_friction *f = &scene->contacts[i].friction;
-    if (f->law == STRUT_FRICTION_NONE) continue;
+    strut_friction *friction = &scene->contacts[i].friction;
+    if (friction->law == STRUT_FRICTION_NONE) continue;
     any = true;
     for (int p = 0; p < STRUT_FRICTION_PARAMETER_COUNT; p++) {
       if (!strut_friction_needs(law, p) || !strut_friction_above_zero(p)) continue;
-      if (strut_friction_value(f, p) > 0.0) continue;
+      if (strut_friction_value(friction, p) > 0.0) continue;
       return strut_usage_error(arguments, "--friction-law %s needs ground.friction.%s in the model",
                                strut_friction_law_at(law)->word, strut_friction_key(p));
     }
-    f->law = law;
+    friction->law = law;
   }
   if (any) return STRUT_OK;
   return strut_usage_error(arguments, "--friction-law needs a ground with friction in the model");
@@ -112,22 +117,23 @@ const strut_option *strut_run_option_given(const strut_arguments *arguments, siz
   return row;
 }
 
-strut_purpose strut_run_options_purpose(const strut_arguments *a) {
-  const char *method = a->integrator.text;
-  bool later = a->accuracy.text || a->step.text || (method && strut_experiment_is_adaptive(method));
+strut_purpose strut_run_options_purpose(const strut_arguments *arguments) {
+  const char *method = arguments->integrator.text;
+  bool later = arguments->accuracy.text || arguments->step.text ||
+               (method && strut_experiment_is_adaptive(method));
   return later ? STRUT_FOR_RUN_STEP_LATER : STRUT_FOR_RUN;
 }
 
-strut_status strut_run_options_apply(const strut_arguments *a, strut_setup *setup) {
+strut_status strut_run_options_apply(const strut_arguments *arguments, strut_setup *setup) {
   strut_scene *scene = &setup->scene;
-  strut_status status = apply_settings(a, &setup->experiment);
+  strut_status status = apply_settings(arguments, &setup->experiment);
   if (status) return status;
-  if (a->bars.text) scene->bar_model = (strut_bar_model)a->bars.index;
-  if (a->mass_model.text) scene->mass_model = (strut_mass_model)a->mass_model.index;
-  if (a->friction_law.text)
-    status = set_friction(a, scene, (strut_friction_law)a->friction_law.index);
-  if (!status && a->damping_law.text)
-    status = set_damping(a, scene, (strut_ground_damping)a->damping_law.index);
+  if (arguments->bars.text) scene->bar_model = (strut_bar_model)arguments->bars.index;
+  if (arguments->mass_model.text) scene->mass_model = (strut_mass_model)arguments->mass_model.index;
+  if (arguments->friction_law.text)
+    status = set_friction(arguments, scene, (strut_friction_law)arguments->friction_law.index);
+  if (!status && arguments->damping_law.text)
+    status = set_damping(arguments, scene, (strut_ground_damping)arguments->damping_law.index);
   if (!status) strut_experiment_choose_step(&setup->experiment, scene);
   return status;
 }

@@ -26,58 +26,58 @@ typedef struct schema {
 
 /* ---- fragments: members of an object that is open ---- */
 
-static void put_member(schema *s, const char *key, const char *raw) {
-  strut_json_raw(&s->json, s->open[s->depth], key, raw);
+static void put_member(schema *self, const char *key, const char *raw) {
+  strut_json_raw(&self->json, self->open[self->depth], key, raw);
 }
 
-static void put_text_member(schema *s, const char *key, const char *text) {
-  strut_json_text(&s->json, s->open[s->depth], key, text);
+static void put_text_member(schema *self, const char *key, const char *text) {
+  strut_json_text(&self->json, self->open[self->depth], key, text);
 }
 
 /* Without a key in a list. */
-static void open_object(schema *s, const char *key) {
-  assert(s->depth + 1 < DEEPEST);
-  s->open[s->depth + 1] = strut_json_object(&s->json, s->open[s->depth], key);
-  s->depth++;
+static void open_object(schema *self, const char *key) {
+  assert(self->depth + 1 < DEEPEST);
+  self->open[self->depth + 1] = strut_json_object(&self->json, self->open[self->depth], key);
+  self->depth++;
 }
 
-static void open_list(schema *s, const char *key) {
-  assert(s->depth + 1 < DEEPEST);
-  s->open[s->depth + 1] = strut_json_array(&s->json, s->open[s->depth], key);
-  s->depth++;
+static void open_list(schema *self, const char *key) {
+  assert(self->depth + 1 < DEEPEST);
+  self->open[self->depth + 1] = strut_json_array(&self->json, self->open[self->depth], key);
+  self->depth++;
 }
 
 /* Object or list. */
-static void close_object(schema *s) { s->depth--; }
+static void close_object(schema *self) { self->depth--; }
 
-static void refer_to(schema *s, const char *definition) {
+static void refer_to(schema *self, const char *definition) {
   char text[80] = "#/definitions/";
   strncat(text, definition, sizeof text - strlen(text) - 1);
-  put_text_member(s, "$ref", text);
+  put_text_member(self, "$ref", text);
 }
 
 /* The words of a key with its synonyms and former words. */
-static void put_words(schema *s, const strut_key *key) {
+static void put_words(schema *self, const strut_key *key) {
   char word[40];
   const strut_spelling *spelling;
-  open_list(s, "enum");
+  open_list(self, "enum");
   for (int i = 0; strut_word_at(key->words, i, word, sizeof word); i++)
-    put_text_member(s, NULL, word);
+    put_text_member(self, NULL, word);
   for (size_t i = 0; (spelling = strut_spelling_at(i)); i++)
     if (spelling->section == key->section && spelling->key &&
         strcmp(spelling->key, key->name) == 0 && spelling->kind != STRUT_SPELLING_MISTAKE)
-      put_text_member(s, NULL, spelling->other);
+      put_text_member(self, NULL, spelling->other);
   if (strcmp(key->words, "no|yes") == 0) {
-    put_member(s, NULL, "false");
-    put_member(s, NULL, "true");
+    put_member(self, NULL, "false");
+    put_member(self, NULL, "true");
   }
-  close_object(s);
+  close_object(self);
 }
 
 /* With a base `remove` takes away a thing, or a whole mapping. */
-static void open_unless_removed(schema *s) {
-  put_member(s, "if", "{\"const\": \"remove\"}");
-  open_object(s, "else");
+static void open_unless_removed(schema *self) {
+  put_member(self, "if", "{\"const\": \"remove\"}");
+  open_object(self, "else");
 }
 
 /* ---- what a value may be, as a text ---- */
@@ -100,131 +100,133 @@ static void open_unless_removed(schema *s) {
 #define SIGNAL "O(<signal>|s)"
 #define ALONG "A([00s]|<range>)"
 
-static const char *put_shape(schema *s, const strut_key *key, const char *shape);
-static void put_thing(schema *s, const strut_key *key);
+static const char *put_shape(schema *self, const strut_key *key, const char *shape);
+static void put_thing(schema *self, const strut_key *key);
 
-static void put_law_word(schema *s) {
+static void put_law_word(schema *self) {
   char word[40];
   const char *words = strut_key_at(STRUT_KEY_LAW_KIND)->words;
-  open_list(s, "enum");
-  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++) put_text_member(s, NULL, word);
-  put_text_member(s, NULL, "tension_only");
-  put_text_member(s, NULL, "compression_only");
-  close_object(s);
+  open_list(self, "enum");
+  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++)
+    put_text_member(self, NULL, word);
+  put_text_member(self, NULL, "tension_only");
+  put_text_member(self, NULL, "compression_only");
+  close_object(self);
 }
 
 /* An axis of a study: one parameter, or one of the forms for several. */
-static void put_axis(schema *s) {
-  put_member(s, "type", "\"object\"");
-  put_member(s, "minProperties", "1");
-  open_object(s, "properties");
-  open_object(s, "zip");
-  put_text_member(s, "description", "Parameters that vary together.");
-  put_member(s, "type", "[\"object\", \"array\"]");
-  open_object(s, "additionalProperties");
-  put_shape(s, NULL, ALONG);
-  close_object(s);
-  close_object(s);
-  open_object(s, "points");
-  put_text_member(s, "description", "A CSV file with a row for each value, or the keys of points.");
-  put_shape(s, NULL, "O(<points>|A([00s]|s))");
-  close_object(s);
-  open_object(s, "sample");
-  put_text_member(s, "description", "Parameters from distributions.");
-  put_shape(s, NULL, "<sample>");
-  close_object(s);
-  close_object(s);
-  open_object(s, "additionalProperties");
-  put_shape(s, NULL, ALONG);
-  close_object(s);
+static void put_axis(schema *self) {
+  put_member(self, "type", "\"object\"");
+  put_member(self, "minProperties", "1");
+  open_object(self, "properties");
+  open_object(self, "zip");
+  put_text_member(self, "description", "Parameters that vary together.");
+  put_member(self, "type", "[\"object\", \"array\"]");
+  open_object(self, "additionalProperties");
+  put_shape(self, NULL, ALONG);
+  close_object(self);
+  close_object(self);
+  open_object(self, "points");
+  put_text_member(self, "description",
+                  "A CSV file with a row for each value, or the keys of points.");
+  put_shape(self, NULL, "O(<points>|A([00s]|s))");
+  close_object(self);
+  open_object(self, "sample");
+  put_text_member(self, "description", "Parameters from distributions.");
+  put_shape(self, NULL, "<sample>");
+  close_object(self);
+  close_object(self);
+  open_object(self, "additionalProperties");
+  put_shape(self, NULL, ALONG);
+  close_object(self);
 }
 
 /* [LMx] */
-static const char *put_list(schema *s, const strut_key *key, const char *shape) {
+static const char *put_list(schema *self, const strut_key *key, const char *shape) {
   const char least[] = {shape[0], '\0'}, most[] = {shape[1], '\0'};
-  put_member(s, "type", "\"array\"");
-  open_object(s, "items");
-  shape = put_shape(s, key, shape + 2);
-  close_object(s);
-  if (*least > '0') put_member(s, "minItems", least);
-  if (*most > '0') put_member(s, "maxItems", most);
+  put_member(self, "type", "\"array\"");
+  open_object(self, "items");
+  shape = put_shape(self, key, shape + 2);
+  close_object(self);
+  if (*least > '0') put_member(self, "minItems", least);
+  if (*most > '0') put_member(self, "maxItems", most);
   return shape + 1;
 }
 
 /* {x}, {!x} or {1} */
-static const char *put_members(schema *s, const strut_key *key, const char *shape) {
-  bool one = *shape == '1', things = *shape == '!', removable = things && !s->study;
-  if (removable) open_unless_removed(s);
-  put_member(s, "type", "\"object\"");
-  if (one) put_member(s, "maxProperties", "1");
+static const char *put_members(schema *self, const strut_key *key, const char *shape) {
+  bool one = *shape == '1', things = *shape == '!', removable = things && !self->study;
+  if (removable) open_unless_removed(self);
+  put_member(self, "type", "\"object\"");
+  if (one) put_member(self, "maxProperties", "1");
   if (things)
-    put_member(s, "propertyNames",
+    put_member(self, "propertyNames",
                "{\"pattern\": \"^[-A-Za-z0-9_.*\\\\u0080-\\\\uffff]{1,255}$\"}");
   if (!one) {
-    open_object(s, "additionalProperties");
-    shape = put_shape(s, key, shape + things) - 1;
-    close_object(s);
+    open_object(self, "additionalProperties");
+    shape = put_shape(self, key, shape + things) - 1;
+    close_object(self);
   }
-  if (removable) close_object(s);
+  if (removable) close_object(self);
   return shape + 2;
 }
 
 /* One form for values of one kind, another for all others: A(x|y) and its like. */
-static const char *put_either(schema *s, const strut_key *key, char kind, const char *shape) {
-  open_object(s, "if");
-  put_member(s, "type", kind == 'A' ? "\"array\"" : "\"object\"");
-  if (kind == 'K') put_member(s, "required", "[\"network\"]");
-  if (kind == 'R') put_member(s, "required", "[\"kind\"]");
-  if (kind == 'R') put_member(s, "properties", "{\"kind\": {\"const\": \"relay\"}}");
-  close_object(s);
-  open_object(s, "then");
-  shape = put_shape(s, key, shape + 1);
-  close_object(s);
-  open_object(s, "else");
-  shape = put_shape(s, key, shape + 1);
-  close_object(s);
+static const char *put_either(schema *self, const strut_key *key, char kind, const char *shape) {
+  open_object(self, "if");
+  put_member(self, "type", kind == 'A' ? "\"array\"" : "\"object\"");
+  if (kind == 'K') put_member(self, "required", "[\"network\"]");
+  if (kind == 'R') put_member(self, "required", "[\"kind\"]");
+  if (kind == 'R') put_member(self, "properties", "{\"kind\": {\"const\": \"relay\"}}");
+  close_object(self);
+  open_object(self, "then");
+  shape = put_shape(self, key, shape + 1);
+  close_object(self);
+  open_object(self, "else");
+  shape = put_shape(self, key, shape + 1);
+  close_object(self);
   return shape + 1;
 }
 
-static const char *put_section(schema *s, const char *shape) {
+static const char *put_section(schema *self, const char *shape) {
   char name[40];
   size_t length = strcspn(shape, ">");
   snprintf(name, sizeof name, "%.*s", (int)length, shape);
   for (int i = 0; i < STRUT_SECTION_COUNT; i++)
-    if (strcmp(strut_section_name((strut_section)i), name) == 0) s->wanted[i] = true;
-  refer_to(s, name);
+    if (strcmp(strut_section_name((strut_section)i), name) == 0) self->wanted[i] = true;
+  refer_to(self, name);
   return shape + length + 1;
 }
 
 /* Adds what the text says to the open object; returns what follows. */
-static const char *put_shape(schema *s, const strut_key *key, const char *shape) {
+static const char *put_shape(schema *self, const strut_key *key, const char *shape) {
   char values[120];
   size_t length = strcspn(shape + 1, "=");
   switch (*shape++) {
-    case 'n': put_member(s, "type", "[\"number\", \"string\"]"); return shape;
-    case 's': put_member(s, "type", "[\"string\", \"number\", \"boolean\"]"); return shape;
-    case 'w': put_words(s, key); return shape;
-    case 'l': put_law_word(s); return shape;
-    case 'x': put_axis(s); return shape;
-    case 't': put_thing(s, key); return shape;
+    case 'n': put_member(self, "type", "[\"number\", \"string\"]"); return shape;
+    case 's': put_member(self, "type", "[\"string\", \"number\", \"boolean\"]"); return shape;
+    case 'w': put_words(self, key); return shape;
+    case 'l': put_law_word(self); return shape;
+    case 'x': put_axis(self); return shape;
+    case 't': put_thing(self, key); return shape;
     case 'k':
-      open_list(s, "anyOf");
-      open_object(s, NULL);
-      put_words(s, key);
-      close_object(s);
-      open_object(s, NULL);
-      put_shape(s, key, "s");
-      close_object(s);
-      close_object(s);
+      open_list(self, "anyOf");
+      open_object(self, NULL);
+      put_words(self, key);
+      close_object(self);
+      open_object(self, NULL);
+      put_shape(self, key, "s");
+      close_object(self);
+      close_object(self);
       return shape;
     case '=':
       snprintf(values, sizeof values, "%.*s", (int)length, shape);
-      put_member(s, "enum", values);
+      put_member(self, "enum", values);
       return shape + length + 1;
-    case '<': return put_section(s, shape);
-    case '[': return put_list(s, key, shape);
-    case '{': return put_members(s, key, shape);
-    default: return put_either(s, key, shape[-1], shape);
+    case '<': return put_section(self, shape);
+    case '[': return put_list(self, key, shape);
+    case '{': return put_members(self, key, shape);
+    default: return put_either(self, key, shape[-1], shape);
   }
 }
 
@@ -306,7 +308,7 @@ static const char *const type_shapes[] = {
 /* ---- keys ---- */
 
 /* Things of any section but these are objects with its keys. */
-static void put_thing(schema *s, const strut_key *key) {
+static void put_thing(schema *self, const strut_key *key) {
   const char *shape = find_shape(thing_shapes, key->name);
   if (!shape && key == strut_key_at(STRUT_KEY_SEARCH_OVER)) shape = "A([00s]|<variable>)";
   if (!shape && key == strut_key_at(STRUT_KEY_SEARCH_WORST_OVER)) shape = ALONG;
@@ -314,49 +316,49 @@ static void put_thing(schema *s, const strut_key *key) {
   if (section != STRUT_SECTION_COUNT)
     shape = find_shape(section_shapes, strut_section_name(section));
   if (shape)
-    put_shape(s, key, shape);
+    put_shape(self, key, shape);
   else if (section != STRUT_SECTION_COUNT)
-    put_section(s, strut_section_name(section));
+    put_section(self, strut_section_name(section));
 }
 
-static void put_value(schema *s, const strut_key *key) {
+static void put_value(schema *self, const strut_key *key) {
   if (key->type == STRUT_TYPE_MAP) {
-    put_section(s, strut_section_name(strut_section_below(key)));
+    put_section(self, strut_section_name(strut_section_below(key)));
   } else if (key->type == STRUT_TYPE_WORDS) {
-    put_member(s, "type", "\"array\"");
-    put_member(s, "uniqueItems", "true");
-    open_object(s, "items");
-    put_words(s, key);
-    close_object(s);
+    put_member(self, "type", "\"array\"");
+    put_member(self, "uniqueItems", "true");
+    open_object(self, "items");
+    put_words(self, key);
+    close_object(self);
   } else if (key == strut_key_at(STRUT_KEY_SCENE_COLLISIONS)) {
-    put_shape(s, key, "O({!t}|=[\"all\"]=)");
+    put_shape(self, key, "O({!t}|=[\"all\"]=)");
   } else if (key ==
              strut_key_at(STRUT_KEY_CONFIGURATION_SHAPE)) { /* it may be a node of that name */
-    put_shape(s, key, "A([22n]|{!t})");
+    put_shape(self, key, "A([22n]|{!t})");
   } else if (key->type != STRUT_TYPE_FREE) {
-    put_shape(s, key, type_shapes[key->type]);
+    put_shape(self, key, type_shapes[key->type]);
   } else {
     bool search = key->section == STRUT_SECTION_SEARCH;
-    put_shape(s, key, search ? "A([22s]|s)" : find_shape(free_shapes, key->name));
+    put_shape(self, key, search ? "A([22s]|s)" : find_shape(free_shapes, key->name));
   }
 }
 
 /* The range of numbers; that of expressions is not known here. */
-static void put_limits(schema *s, const strut_key *key) {
+static void put_limits(schema *self, const strut_key *key) {
   if (key->type != STRUT_TYPE_NUMBER) return;
   switch (key->limits.range) {
     case STRUT_RANGE_ANY: break;
-    case STRUT_RANGE_NOT_NEGATIVE: put_member(s, "minimum", "0"); break;
-    case STRUT_RANGE_ABOVE_ZERO: put_member(s, "exclusiveMinimum", "0"); break;
+    case STRUT_RANGE_NOT_NEGATIVE: put_member(self, "minimum", "0"); break;
+    case STRUT_RANGE_ABOVE_ZERO: put_member(self, "exclusiveMinimum", "0"); break;
     case STRUT_RANGE_WHOLE:
-      strut_json_number(&s->json, s->open[s->depth], "minimum", key->limits.least);
-      strut_json_number(&s->json, s->open[s->depth], "maximum", key->limits.most);
+      strut_json_number(&self->json, self->open[self->depth], "minimum", key->limits.least);
+      strut_json_number(&self->json, self->open[self->depth], "maximum", key->limits.most);
       break;
   }
 }
 
 /* A default that is a value; the others are in the description. */
-static void put_default(schema *s, const strut_key *key) {
+static void put_default(schema *self, const strut_key *key) {
   char *end = NULL;
   const char *value = key->fallback;
   bool number = *value && (strtod(value, &end), *end == '\0');
@@ -365,13 +367,13 @@ static void put_default(schema *s, const strut_key *key) {
              (*value == '[' && key->type == STRUT_TYPE_PAIR) || key->type == STRUT_TYPE_SETTLE ||
              key->type == STRUT_TYPE_STEADY;
   if (word || (key->type == STRUT_TYPE_FIXED && *value))
-    put_text_member(s, "default", value);
+    put_text_member(self, "default", value);
   else if (raw && *value)
-    put_member(s, "default", value);
+    put_member(self, "default", value);
 }
 
 /* What it means, what it is, and its default. */
-static void put_description(schema *s, const strut_key *key, bool ticks) {
+static void put_description(schema *self, const strut_key *key, bool ticks) {
   strut_writer text = {.scene = NULL}, all = {.scene = NULL};
   strut_put(&text, key->description);
   strut_put(&text, "\n\n");
@@ -385,100 +387,100 @@ static void put_description(schema *s, const strut_key *key, bool ticks) {
   }
   if (!text.out.failed) strut_put_without_links(&all, text.out.text, ticks);
   if (text.out.failed || all.out.failed)
-    s->json.failed = true;
+    self->json.failed = true;
   else if (!ticks || strchr(all.out.text, '`'))
-    put_text_member(s, ticks ? "markdownDescription" : "description", all.out.text);
+    put_text_member(self, ticks ? "markdownDescription" : "description", all.out.text);
   strut_release(text.out.text);
   strut_release(all.out.text);
 }
 
-static void put_property(schema *s, const strut_key *key) {
-  open_object(s, key->name);
-  put_description(s, key, false);
-  put_description(s, key, true);
-  put_default(s, key);
-  put_value(s, key);
-  put_limits(s, key);
-  close_object(s);
+static void put_property(schema *self, const strut_key *key) {
+  open_object(self, key->name);
+  put_description(self, key, false);
+  put_description(self, key, true);
+  put_default(self, key);
+  put_value(self, key);
+  put_limits(self, key);
+  close_object(self);
 }
 
 /* Former names of keys are accepted, and not offered. */
-static void put_former_names(schema *s, strut_section section) {
+static void put_former_names(schema *self, strut_section section) {
   const strut_spelling *spelling;
   for (size_t i = 0; (spelling = strut_spelling_at(i)); i++) {
     if (spelling->section != section || spelling->key || spelling->kind == STRUT_SPELLING_MISTAKE)
       continue;
-    open_object(s, spelling->other);
-    put_text_member(s, "deprecationMessage", "former name");
-    put_value(s, strut_key_at(strut_key_find(section, spelling->current)));
-    close_object(s);
+    open_object(self, spelling->other);
+    put_text_member(self, "deprecationMessage", "former name");
+    put_value(self, strut_key_at(strut_key_find(section, spelling->current)));
+    close_object(self);
   }
 }
 
 /* ---- sections ---- */
 
-static void put_keys(schema *s, strut_section section) {
-  put_text_member(s, "title", strut_section_name(section)); /* messages and hovers show it */
-  put_member(s, "type", "\"object\"");
-  open_object(s, "properties");
+static void put_keys(schema *self, strut_section section) {
+  put_text_member(self, "title", strut_section_name(section)); /* messages and hovers show it */
+  put_member(self, "type", "\"object\"");
+  open_object(self, "properties");
   for (int i = 0; i < strut_section_size(section); i++)
-    put_property(s, strut_key_at(strut_section_first(section) + i));
-  put_former_names(s, section);
-  close_object(s);
+    put_property(self, strut_key_at(strut_section_first(section) + i));
+  put_former_names(self, section);
+  close_object(self);
   if (section == STRUT_SECTION_CONFIGURATION) { /* else a node and its position */
-    open_object(s, "additionalProperties");
-    open_unless_removed(s);
-    put_shape(s, NULL, "[22n]");
-    close_object(s);
-    close_object(s);
+    open_object(self, "additionalProperties");
+    open_unless_removed(self);
+    put_shape(self, NULL, "[22n]");
+    close_object(self);
+    close_object(self);
   } else {
-    put_member(s, "additionalProperties", "false");
+    put_member(self, "additionalProperties", "false");
   }
 }
 
-static void put_definition(schema *s, strut_section section) {
-  open_object(s, strut_section_name(section));
-  open_unless_removed(s);
-  put_keys(s, section);
-  close_object(s);
-  close_object(s);
+static void put_definition(schema *self, strut_section section) {
+  open_object(self, strut_section_name(section));
+  open_unless_removed(self);
+  put_keys(self, section);
+  close_object(self);
+  close_object(self);
 }
 
 /* A group may have the keys of all things that may name one. */
-static void put_group_definition(schema *s) {
+static void put_group_definition(schema *self) {
   const strut_section *sections = strut_group_sections;
-  open_object(s, "group");
-  open_unless_removed(s);
-  put_text_member(s, "title", "group");
-  put_member(s, "type", "\"object\"");
-  open_object(s, "properties");
+  open_object(self, "group");
+  open_unless_removed(self);
+  put_text_member(self, "title", "group");
+  put_member(self, "type", "\"object\"");
+  open_object(self, "properties");
   for (size_t a = 0; a < STRUT_GROUP_SECTIONS; a++)
     for (int i = 0; i < strut_section_size(sections[a]); i++) {
       const strut_key *key = strut_key_at(strut_section_first(sections[a]) + i);
       bool before = strcmp(key->name, "group") == 0;
       for (size_t b = 0; b < a; b++) before = before || strut_key_find(sections[b], key->name) >= 0;
-      if (!before) put_property(s, key);
+      if (!before) put_property(self, key);
     }
-  close_object(s);
-  put_member(s, "additionalProperties", "false");
-  close_object(s);
-  close_object(s);
+  close_object(self);
+  put_member(self, "additionalProperties", "false");
+  close_object(self);
+  close_object(self);
 }
 
 /* Those that something refers to; a definition may refer to further ones. */
-static void put_definitions(schema *s) {
+static void put_definitions(schema *self) {
   bool done[STRUT_SECTION_COUNT] = {false}, more = true;
-  open_object(s, "definitions");
-  if (!s->study) put_group_definition(s);
+  open_object(self, "definitions");
+  if (!self->study) put_group_definition(self);
   while (more) {
     more = false;
     for (int i = 0; i < STRUT_SECTION_COUNT; i++) {
-      if (!s->wanted[i] || done[i]) continue;
+      if (!self->wanted[i] || done[i]) continue;
       done[i] = more = true;
-      put_definition(s, (strut_section)i);
+      put_definition(self, (strut_section)i);
     }
   }
-  close_object(s);
+  close_object(self);
 }
 
 char *strut_schema_write(bool study) {

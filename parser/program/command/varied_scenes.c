@@ -72,11 +72,11 @@ static strut_status report_first(const strut_varied_scenes *scenes, const strut_
   const char *message = first->message;
   size_t used = 0;
   for (size_t i = scenes->setting_count - scenes->varied; i < scenes->setting_count; i++) {
-    const strut_setting *s = &settings[i];
-    snprintf(set, sizeof set, "--set %.100s=%.100s: ", s->name, s->text);
+    const strut_setting *setting = &settings[i];
+    snprintf(set, sizeof set, "--set %.100s=%.100s: ", setting->name, setting->text);
     if (strncmp(message, set, strlen(set)) == 0) message += strlen(set);
-    int n = snprintf(at + used, sizeof at - used, "%s%.80s = %.40s", used ? ", " : "", s->name,
-                     s->text);
+    int n = snprintf(at + used, sizeof at - used, "%s%.80s = %.40s", used ? ", " : "",
+                     setting->name, setting->text);
     used += n > 0 ? (size_t)n : 0;
     if (used > sizeof at - 1) used = sizeof at - 1;
   }

@@ -116,15 +116,15 @@ static strut_status run_points(strut_study_job *job, const strut_sweep_options *
 /* Adds the warnings of a round to those before. */
 static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round) {
   for (size_t i = 0; i < round->warning_count; i++) {
-    const strut_sweep_warning *w = &round->warnings[i];
+    const strut_sweep_warning *warning = &round->warnings[i];
     size_t at = 0;
-    while (at < all->warning_count && strcmp(all->warnings[at].code, w->code) != 0) at++;
+    while (at < all->warning_count && strcmp(all->warnings[at].code, warning->code) != 0) at++;
     if (at == STRUT_SWEEP_MOST_WARNINGS) continue;
     int64_t runs = at < all->warning_count ? all->warnings[at].runs : 0;
-    bool first = at == all->warning_count || w->point < all->warnings[at].point;
+    bool first = at == all->warning_count || warning->point < all->warnings[at].point;
     if (at == all->warning_count) all->warning_count++;
-    if (first) all->warnings[at] = *w;
-    all->warnings[at].runs = runs + w->runs;
+    if (first) all->warnings[at] = *warning;
+    all->warnings[at].runs = runs + warning->runs;
   }
 }
 

@@ -14,11 +14,13 @@
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
-static bool of_runs(const strut_study_figure *f) {
-  return f->kind >= STRUT_FIGURE_MOTION && f->kind <= STRUT_FIGURE_SNAPSHOTS;
+static bool of_runs(const strut_study_figure *figure) {
+  return figure->kind >= STRUT_FIGURE_MOTION && figure->kind <= STRUT_FIGURE_SNAPSHOTS;
 }
 
-static bool of_search(const strut_study_figure *f) { return f->kind >= STRUT_FIGURE_BEST; }
+static bool of_search(const strut_study_figure *figure) {
+  return figure->kind >= STRUT_FIGURE_BEST;
+}
 
 /* The source of a figure: the table, or the recorded runs. */
 typedef struct source {
@@ -27,29 +29,29 @@ typedef struct source {
 } source;
 
 static const char *column_name(const void *context, size_t i) {
-  const source *s = context;
-  size_t count = s->runs ? s->plan->axis_columns : s->plan->column_count;
-  if (i < count) return s->plan->columns[i].name;
-  return s->runs ? strut_study_motion_column(i - count) : NULL;
+  const source *self = context;
+  size_t count = self->runs ? self->plan->axis_columns : self->plan->column_count;
+  if (i < count) return self->plan->columns[i].name;
+  return self->runs ? strut_study_motion_column(i - count) : NULL;
 }
 
-static bool holds_texts(const source *s, size_t i) {
-  size_t axes = s->plan->axis_columns;
-  return s->runs && i >= axes ? i == axes : s->plan->columns[i].word;
+static bool holds_texts(const source *self, size_t i) {
+  size_t axes = self->plan->axis_columns;
+  return self->runs && i >= axes ? i == axes : self->plan->columns[i].word;
 }
 
 /* Columns that may split rows into series; recorded numbers may not. */
-static bool tells_apart(const source *s, size_t i) {
-  return !s->runs || i <= s->plan->axis_columns;
+static bool tells_apart(const source *self, size_t i) {
+  return !self->runs || i <= self->plan->axis_columns;
 }
 
 /* Checks that the figure may use this column; NULL: not given. */
-static strut_status check_column(const source *s, const strut_study_figure *figure,
+static strut_status check_column(const source *self, const strut_study_figure *figure,
                                  const char *name, bool number, strut_error *error) {
   const char *other = NULL;
-  for (size_t i = 0; name && (other = column_name(s, i)); i++) {
+  for (size_t i = 0; name && (other = column_name(self, i)); i++) {
     if (strcmp(other, name) != 0) continue;
-    if (number ? !holds_texts(s, i) : tells_apart(s, i)) return STRUT_OK;
+    if (number ? !holds_texts(self, i) : tells_apart(self, i)) return STRUT_OK;
     return strut_fail(error, STRUT_BAD_SCENE,
                       number
                           ? "figure '%.60s' of the study: column '%.60s' holds texts, not numbers"
@@ -58,16 +60,16 @@ static strut_status check_column(const source *s, const strut_study_figure *figu
                       figure->name, name);
   }
   if (!name) return STRUT_OK;
-  const char *near = strut_did_you_mean(name, column_name, s);
+  const char *near = strut_did_you_mean(name, column_name, self);
   return strut_fail(error, STRUT_BAD_SCENE,
                     "figure '%.60s' of the study: %s no column '%.60s'%s%s%s", figure->name,
-                    s->runs ? "the motion has" : "the table has", name,
+                    self->runs ? "the motion has" : "the table has", name,
                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 /* COLUMN=TEXT, where the column has to be there. */
-static strut_status check_match(const source *s, const strut_study_figure *figure, const char *text,
-                                const char *key, strut_error *error) {
+static strut_status check_match(const source *self, const strut_study_figure *figure,
+                                const char *text, const char *key, strut_error *error) {
   char name[60];
   if (!text) return STRUT_OK;
   if (!strchr(text, '='))
@@ -75,27 +77,28 @@ static strut_status check_match(const source *s, const strut_study_figure *figur
                       "figure '%.60s' of the study: '%s' expects COLUMN=TEXT, not '%.60s'",
                       figure->name, key, text);
   snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-  return check_column(s, figure, name, false, error);
+  return check_column(self, figure, name, false, error);
 }
 
-static strut_status check_figure(const source *s, const strut_study_figure *f, strut_error *error) {
-  if (s->runs && !s->plan->study->trajectories)
+static strut_status check_figure(const source *self, const strut_study_figure *figure,
+                                 strut_error *error) {
+  if (self->runs && !self->plan->study->trajectories)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "figure '%.60s' of the study needs recorded runs: add "
                       "'trajectories: yes' to the study",
-                      f->name);
-  if (of_search(f) && !s->plan->study->search)
+                      figure->name);
+  if (of_search(figure) && !self->plan->study->search)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "figure '%.60s' of the study is of a search, which the study has not",
-                      f->name);
-  strut_status status = check_column(s, f, f->x, true, error);
-  if (!status) status = check_column(s, f, f->y, true, error);
-  if (!status) status = check_column(s, f, f->series, false, error);
-  if (!status) status = check_column(s, f, f->color, false, error);
-  if (!status) status = check_column(s, f, f->panels, false, error);
-  if (!status) status = check_column(s, f, f->difference, false, error);
-  if (!status) status = check_match(s, f, f->band, "band", error);
-  return status ? status : check_match(s, f, f->only, "only", error);
+                      figure->name);
+  strut_status status = check_column(self, figure, figure->x, true, error);
+  if (!status) status = check_column(self, figure, figure->y, true, error);
+  if (!status) status = check_column(self, figure, figure->series, false, error);
+  if (!status) status = check_column(self, figure, figure->color, false, error);
+  if (!status) status = check_column(self, figure, figure->panels, false, error);
+  if (!status) status = check_column(self, figure, figure->difference, false, error);
+  if (!status) status = check_match(self, figure, figure->band, "band", error);
+  return status ? status : check_match(self, figure, figure->only, "only", error);
 }
 
 strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error) {
@@ -138,11 +141,11 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
 
 /* A figure of a winner is not of the table: sweep_search.c draws it. */
 static strut_status draw_figure(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *f, const strut_table *table,
+                                const strut_study_figure *figure, const strut_table *table,
                                 const strut_refinement *refinement) {
   strut_error error = {0};
-  if (f->kind == STRUT_FIGURE_WINNER) return STRUT_OK;
-  strut_status status = strut_sweep_figure(plan, directory, f, table, refinement, &error);
+  if (figure->kind == STRUT_FIGURE_WINNER) return STRUT_OK;
+  strut_status status = strut_sweep_figure(plan, directory, figure, table, refinement, &error);
   if (error.message[0]) strut_print_error(&error);
   return status;
 }

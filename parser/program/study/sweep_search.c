@@ -75,12 +75,12 @@ static const strut_search_point *compromise_of(const strut_search_front *front, 
   const strut_search_point *found = NULL;
   double x = last->objective - first->objective, y = fabs(last->second - first->second);
   double least = 0.0;
-  for (const strut_search_point *p = first; p <= last; p++) {
-    double a = x > 0.0 ? (p->objective - best->objective) / x : 0.0;
-    double b = y > 0.0 ? (p->second - other->second) / y : 0.0;
+  for (const strut_search_point *point = first; point <= last; point++) {
+    double a = x > 0.0 ? (point->objective - best->objective) / x : 0.0;
+    double b = y > 0.0 ? (point->second - other->second) / y : 0.0;
     if (found && a * a + b * b >= least) continue;
     least = a * a + b * b;
-    found = p;
+    found = point;
   }
   return found;
 }
@@ -92,9 +92,9 @@ static const strut_search_point *pick(const strut_search_result *result, bool ma
     *outer = (int64_t)i;
     return result->fronts[i].count ? compromise_of(&result->fronts[i], maximise) : NULL;
   }
-  const strut_search_outcome *o = &result->outcomes[result->worths[i].best];
-  *outer = o->outer;
-  return &o->best;
+  const strut_search_outcome *outcome = &result->outcomes[result->worths[i].best];
+  *outer = outcome->outer;
+  return &outcome->best;
 }
 
 /*
@@ -130,11 +130,13 @@ static strut_status draw_winner(const strut_arguments *arguments, strut_sweep_pl
   strut_error error = {0};
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < plan->study->figure_count && best && !status; i++) {
-    const strut_study_figure *f = &plan->study->figures[i];
-    if (f->kind != STRUT_FIGURE_WINNER) continue;
-    const char *path = strut_arena_format(&plan->arena, "%s/%s.svg", arguments->output, f->name);
+    const strut_study_figure *figure = &plan->study->figures[i];
+    if (figure->kind != STRUT_FIGURE_WINNER) continue;
+    const char *path =
+        strut_arena_format(&plan->arena, "%s/%s.svg", arguments->output, figure->name);
     if (!path) return strut_print_out_of_memory();
-    status = strut_search_winner_figure(plan, f, path, best, PAGE, strut_interrupt_watch(), &error);
+    status =
+        strut_search_winner_figure(plan, figure, path, best, PAGE, strut_interrupt_watch(), &error);
     if (status) strut_print_failure(status, &error);
   }
   return status;
@@ -214,9 +216,9 @@ strut_status strut_sweep_search(strut_study_job *job) {
 /* Refined studies: what the files of all shards hold, and their table. */
 
 /* Are the files of the same study? */
-static bool alike(const strut_slots_description *a, const strut_slots_description *b) {
-  return a->points == b->points && a->column_count == b->column_count &&
-         memcmp(a->hash, b->hash, sizeof a->hash) == 0;
+static bool alike(const strut_slots_description *first, const strut_slots_description *second) {
+  return first->points == second->points && first->column_count == second->column_count &&
+         memcmp(first->hash, second->hash, sizeof first->hash) == 0;
 }
 
 void strut_sweep_refine_learn(strut_refinement *refinement, const char *directory,
@@ -240,14 +242,14 @@ void strut_sweep_refine_learn(strut_refinement *refinement, const char *director
 strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char *directory,
                                        strut_slots *slots, strut_slots_progress *progress,
                                        strut_error *error) {
-  strut_refinement *r = NULL;
-  strut_status status = strut_refinement_create(plan, &r, error);
+  strut_refinement *refinement = NULL;
+  strut_status status = strut_refinement_create(plan, &refinement, error);
   if (status) return status;
-  strut_sweep_refine_learn(r, directory, (strut_shard){0}, slots);
-  strut_refinement_choose(r);
-  strut_refinement_count(r, slots, &progress->points, &progress->done);
+  strut_sweep_refine_learn(refinement, directory, (strut_shard){0}, slots);
+  strut_refinement_choose(refinement);
+  strut_refinement_count(refinement, slots, &progress->points, &progress->done);
   progress->most_points = plan->points;
-  strut_refinement_free(r);
+  strut_refinement_free(refinement);
   return STRUT_OK;
 }
 
@@ -257,22 +259,22 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
 static strut_status check_refined(void *context, strut_slots *const *sources, size_t count,
                                   strut_error *error) {
   const strut_sweep_study *study = context;
-  strut_refinement *r = NULL;
-  strut_status status = strut_refinement_create(&study->plan, &r, error);
+  strut_refinement *refinement = NULL;
+  strut_status status = strut_refinement_create(&study->plan, &refinement, error);
   for (size_t k = 0; k < count && !status; k++) {
     if (!sources[k])
       status = strut_fail(error, STRUT_FILE_TROUBLE, "shard %zu of %zu is missing", k, count);
     else if (strut_slots_description_of(sources[k])->points != study->plan.points)
       status = strut_fail(error, STRUT_USAGE, "shard %zu of %zu is of another study", k, count);
     else
-      strut_refinement_learn(r, sources[k]);
+      strut_refinement_learn(refinement, sources[k]);
   }
-  int64_t unknown = status ? 0 : strut_refinement_choose(r);
+  int64_t unknown = status ? 0 : strut_refinement_choose(refinement);
   if (unknown)
     status = strut_fail(error, STRUT_FILE_TROUBLE,
                         "%lld points of the refinement are missing: run all shards again",
                         (long long)unknown);
-  strut_refinement_free(r);
+  strut_refinement_free(refinement);
   return status;
 }
 

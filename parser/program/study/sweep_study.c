@@ -42,10 +42,10 @@ strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status sta
 
 /* Tries a point; of motions that are followed, at both ends of the parameter. */
 static strut_status try_point(strut_study_file *file, const strut_study_value *values) {
-  const strut_study_follow *f = file->study.follow;
-  if (!f) return strut_study_try(file, values);
-  strut_status status = strut_study_try_at(file, values, f->from);
-  return status ? status : strut_study_try_at(file, values, f->to);
+  const strut_study_follow *follow = file->study.follow;
+  if (!follow) return strut_study_try(file, values);
+  strut_status status = strut_study_try_at(file, values, follow->from);
+  return status ? status : strut_study_try_at(file, values, follow->to);
 }
 
 /* Tries the first point, then both ends of each axis with the others at their first values. */
@@ -102,9 +102,9 @@ static const char *const *list_words(const strut_arguments *arguments, strut_are
     if (!words[n - 1]) return NULL;
   }
   for (size_t i = 0; words && i < options; i++) {
-    const strut_option *o = strut_run_option_given(arguments, i);
-    words[n++] = strut_arena_format(arena, "--%s", o->name);
-    words[n++] = strut_given_text(o, arguments);
+    const strut_option *option = strut_run_option_given(arguments, i);
+    words[n++] = strut_arena_format(arena, "--%s", option->name);
+    words[n++] = strut_given_text(option, arguments);
     if (!words[n - 2]) return NULL;
   }
   *count = n;
@@ -121,9 +121,9 @@ static bool identify(const strut_arguments *arguments, const strut_study_file *f
     uint64_t seed = strut_checksum(STRUT_VERSION, strlen(STRUT_VERSION), i);
     uint64_t sum = strut_checksum(text, length, seed);
     for (size_t k = 0; strut_run_option_given(arguments, k); k++) {
-      const strut_option *o = strut_run_option_given(arguments, k);
-      const char *value = strut_given_text(o, arguments);
-      sum = strut_checksum(o->name, strlen(o->name), sum);
+      const strut_option *option = strut_run_option_given(arguments, k);
+      const char *value = strut_given_text(option, arguments);
+      sum = strut_checksum(option->name, strlen(option->name), sum);
       sum = strut_checksum(value, strlen(value), sum);
     }
     for (size_t k = 0; k < 8; k++) hash[8 * i + k] = (uint8_t)(sum >> 8 * k);
@@ -218,28 +218,29 @@ static bool lies_in(const char *directory, const char *path, strut_arena *arena)
 }
 
 /* Fails where a copy would overwrite a file that strut did not write. */
-static strut_status check_copy(const char *directory, const copy *c, strut_arena *arena,
+static strut_status check_copy(const char *directory, const copy *self, strut_arena *arena,
                                strut_error *error) {
   struct stat found;
-  char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
+  char *path = strut_arena_format(arena, "%s/%s", directory, self->name);
   if (!path) return strut_no_memory(error, "");
-  if (stat(path, &found) != 0 || same_file(path, c->source) || holds_text(path, c->text))
+  if (stat(path, &found) != 0 || same_file(path, self->source) || holds_text(path, self->text))
     return STRUT_OK;
-  if (!lies_in(directory, c->study, arena) && !lies_in(directory, c->model, arena))
+  if (!lies_in(directory, self->study, arena) && !lies_in(directory, self->model, arena))
     return strut_ownership_check_path(path, error);
   return strut_fail(
       error, STRUT_USAGE,
       "'%s' is the folder of the study or its model, and the copy of '%s' that is kept "
       "with the results would overwrite '%s': give another directory",
-      directory, c->source, path);
+      directory, self->source, path);
 }
 
-static strut_status write_copy(const char *directory, const copy *c, strut_arena *arena,
+static strut_status write_copy(const char *directory, const copy *self, strut_arena *arena,
                                strut_error *error) {
-  char *path = strut_arena_format(arena, "%s/%s", directory, c->name);
+  char *path = strut_arena_format(arena, "%s/%s", directory, self->name);
   if (!path) return strut_no_memory(error, "");
-  if (same_file(path, c->source) || holds_text(path, c->text)) return STRUT_OK; /* already there */
-  return strut_file_write_text(directory, c->name, c->text, error);
+  if (same_file(path, self->source) || holds_text(path, self->text))
+    return STRUT_OK; /* already there */
+  return strut_file_write_text(directory, self->name, self->text, error);
 }
 
 static strut_status for_each(const strut_arguments *arguments, const strut_sweep_study *study,
@@ -348,12 +349,12 @@ static void format_row(const strut_sweep_plan *plan, const strut_result_slot *ro
   size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
   *text = '\0';
   for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
-    const strut_slot_column *c = &plan->columns[i];
-    const char *unit = strcmp(c->unit, "1") == 0 ? "" : c->unit;
-    int n = c->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "", c->name,
-                               row->words[word++])
-                    : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "", c->name,
-                               row->numbers[number++], *unit ? " " : "", unit);
+    const strut_slot_column *column = &plan->columns[i];
+    const char *unit = strcmp(column->unit, "1") == 0 ? "" : column->unit;
+    int n = column->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "",
+                                    column->name, row->words[word++])
+                         : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "",
+                                    column->name, row->numbers[number++], *unit ? " " : "", unit);
     used += n > 0 ? (size_t)n : 0;
   }
   if (row->status != STRUT_OK && used < size)
@@ -470,9 +471,10 @@ strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *comp
 
 void strut_sweep_print_warnings(const strut_sweep_state *state) {
   for (size_t i = 0; i < state->warning_count; i++) {
-    const strut_sweep_warning *w = &state->warnings[i];
-    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n", (long long)w->runs,
-            (long long)state->computed, (long long)w->point, w->text);
+    const strut_sweep_warning *warning = &state->warnings[i];
+    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n",
+            (long long)warning->runs, (long long)state->computed, (long long)warning->point,
+            warning->text);
   }
 }
 

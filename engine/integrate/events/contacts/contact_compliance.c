@@ -37,62 +37,64 @@ static bool has_moving_axes(const strut_model *model) {
 }
 
 /* The compliances of the node itself, from the column of M^-1. */
-static void find_own(const strut_contact_table *c, double x, double y,
-                     strut_contact_compliance *r) {
-  r->own[0] = x, r->own[1] = y;
-  r->normal = x * c->normal[0] * c->normal[0] + y * c->normal[1] * c->normal[1];
-  r->tangent = x * c->tangent[0] * c->tangent[0] + y * c->tangent[1] * c->tangent[1];
-  if (c->surface) r->normal = r->tangent = fmax(x, y);
+static void find_own(const strut_contact_table *contacts, double x, double y,
+                     strut_contact_compliance *compliance) {
+  compliance->own[0] = x, compliance->own[1] = y;
+  compliance->normal =
+      x * contacts->normal[0] * contacts->normal[0] + y * contacts->normal[1] * contacts->normal[1];
+  compliance->tangent = x * contacts->tangent[0] * contacts->tangent[0] +
+                        y * contacts->tangent[1] * contacts->tangent[1];
+  if (contacts->surface) compliance->normal = compliance->tangent = fmax(x, y);
 }
 
 /* Marks the nodes that answer to a force, directly or through masses that slide. */
-static void mark_nodes(const strut_model *model, const double *x, const double *y, double least,
-                       uint8_t *answers) {
-  const strut_sliding_table *t = &model->sliding;
+static void mark_nodes(const strut_model *model, const double *vector, const double *y,
+                       double least, uint8_t *answers) {
+  const strut_sliding_table *table = &model->sliding;
   for (int32_t i = 0; i < model->node_count; i++)
-    answers[i] = fabs(x[2 * i]) > least || fabs(y[2 * i + 1]) > least;
-  for (bool more = t->moving_count > 0; more;) {
+    answers[i] = fabs(vector[2 * i]) > least || fabs(y[2 * i + 1]) > least;
+  for (bool more = table->moving_count > 0; more;) {
     more = false;
-    for (int32_t k = 0; k < t->moving_count; k++) {
-      const strut_sliding_item *s = &t->item[t->moving[k]];
-      const strut_sliding_answer *r = &t->answer[k];
-      if (!answers[s->at[0] / 2] && !answers[s->at[1] / 2]) continue;
-      for (int32_t i = 0; i < r->count; i++) {
-        more = more || !answers[r->at[i] / 2];
-        answers[r->at[i] / 2] = 1;
+    for (int32_t k = 0; k < table->moving_count; k++) {
+      const strut_sliding_item *item = &table->item[table->moving[k]];
+      const strut_sliding_answer *answer = &table->answer[k];
+      if (!answers[item->at[0] / 2] && !answers[item->at[1] / 2]) continue;
+      for (int32_t i = 0; i < answer->count; i++) {
+        more = more || !answers[answer->at[i] / 2];
+        answers[answer->at[i] / 2] = 1;
       }
     }
   }
 }
 
 static strut_status make_compliance(const strut_model *model, strut_state *state, int32_t i,
-                                    double *x, double *y, uint8_t *answers,
-                                    strut_contact_compliance *r) {
+                                    double *vector, double *y, uint8_t *answers,
+                                    strut_contact_compliance *compliance) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
-  uint32_t at = c->at[i];
-  solve_column(model, state, at, x);
+  const strut_contact_table *contacts = &model->contacts;
+  uint32_t at = contacts->at[i];
+  solve_column(model, state, at, vector);
   solve_column(model, state, at + 1, y);
-  double least = NEGLIGIBLE * fmax(fabs(x[at]), fabs(y[at + 1]));
+  double least = NEGLIGIBLE * fmax(fabs(vector[at]), fabs(y[at + 1]));
   size_t count = 0;
-  mark_nodes(model, x, y, least, answers);
+  mark_nodes(model, vector, y, least, answers);
   for (int32_t k = 0; k < model->node_count; k++) count += answers[k];
   uint32_t *place = strut_arena_allocate(&state->arena, count, sizeof *place);
   double *xy = strut_arena_allocate(&state->arena, 2 * count, sizeof *xy);
   if (!place || !xy) return STRUT_NO_MEMORY;
   for (int32_t k = 0; k < 2 * model->node_count; k += 2) {
     if (!answers[k / 2]) continue;
-    place[r->count] = (uint32_t)k;
-    xy[2 * r->count] = x[k];
-    xy[2 * r->count++ + 1] = y[k + 1];
+    place[compliance->count] = (uint32_t)k;
+    xy[2 * compliance->count] = vector[k];
+    xy[2 * compliance->count++ + 1] = y[k + 1];
   }
-  r->at = place, r->xy = xy;
-  find_own(c, x[at], y[at + 1], r);
+  compliance->at = place, compliance->xy = xy;
+  find_own(contacts, vector[at], y[at + 1], compliance);
   if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return STRUT_OK;
   double *constant = strut_arena_allocate(&state->arena, 2 * count, sizeof *constant);
   if (!constant) return STRUT_NO_MEMORY;
   memcpy(constant, xy, 2 * count * sizeof *constant);
-  r->constant = constant;
+  compliance->constant = constant;
   return STRUT_OK;
 }
 
@@ -100,17 +102,18 @@ static strut_status make_compliance(const strut_model *model, strut_state *state
 static void refresh_compliance(const strut_model *model, const strut_state *state,
                                strut_event_stepper *stepper, int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  strut_contact_compliance *r = &stepper->contacts.compliance[i];
-  double *xy = (double *)r->xy, *column = stepper->contacts.scatter;
+  strut_contact_compliance *compliance = &stepper->contacts.compliance[i];
+  double *xy = (double *)compliance->xy, *column = stepper->contacts.scatter;
   uint32_t at = model->contacts.at[i];
-  for (int32_t k = 0; k < r->count; k++)
-    for (uint32_t c = 0; c < 2; c++) column[r->at[k] + c] = r->constant[2 * (uint32_t)k + c];
+  for (int32_t k = 0; k < compliance->count; k++)
+    for (uint32_t c = 0; c < 2; c++)
+      column[compliance->at[k] + c] = compliance->constant[2 * (uint32_t)k + c];
   strut_sliding_masses_correct(model, state, column);
-  find_own(&model->contacts, column[at], column[at + 1], r);
-  for (int32_t k = 0; k < r->count; k++)
+  find_own(&model->contacts, column[at], column[at + 1], compliance);
+  for (int32_t k = 0; k < compliance->count; k++)
     for (uint32_t c = 0; c < 2; c++) {
-      xy[2 * (uint32_t)k + c] = column[r->at[k] + c];
-      column[r->at[k] + c] = 0.0;
+      xy[2 * (uint32_t)k + c] = column[compliance->at[k] + c];
+      column[compliance->at[k] + c] = 0.0;
     }
   for (int32_t m = 0; m < model->sliding.moving_count; m++) { /* what is cut from compliances */
     const strut_sliding_answer *answer = &model->sliding.answer[m];
@@ -129,8 +132,8 @@ void strut_refresh_compliances(const strut_model *model, const strut_state *stat
  * How long a closed contact remembers a touchdown: the slower root of m s^2 + k s + c, or, where
  * nothing damps it, three of its periods.
  */
-static double settling_time(const strut_contact_entry *e, double inverse_mass) {
-  double rate = 0.5 * e->damping * inverse_mass, square = e->stiffness * inverse_mass;
+static double settling_time(const strut_contact_entry *contact, double inverse_mass) {
+  double rate = 0.5 * contact->damping * inverse_mass, square = contact->stiffness * inverse_mass;
   if (!(square > 0.0)) return 0.0;
   double longest = 18.0 / sqrt(square);
   if (rate * rate > square) rate -= sqrt(rate * rate - square);
@@ -149,10 +152,10 @@ static strut_status find_bodies(const strut_model *model, strut_event_stepper *s
   int32_t *seen = strut_allocate(nodes, sizeof *seen), count = model->contacts.count;
   if (!seen) return STRUT_NO_MEMORY;
   for (int32_t i = 0; i < count; i++) {
-    const strut_contact_compliance *r = &contacts->compliance[i];
+    const strut_contact_compliance *compliance = &contacts->compliance[i];
     contacts->body[i] = i;
-    for (int32_t k = 0; k < r->count; k++) {
-      int32_t *first = &seen[r->at[k] / 2]; /* one more than the index; 0: none yet */
+    for (int32_t k = 0; k < compliance->count; k++) {
+      int32_t *first = &seen[compliance->at[k] / 2]; /* one more than the index; 0: none yet */
       if (*first)
         contacts->body[root_of(contacts->body, *first - 1)] = root_of(contacts->body, i);
       else
@@ -165,7 +168,7 @@ static strut_status find_bodies(const strut_model *model, strut_event_stepper *s
 }
 
 strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *state,
-                                         const strut_integrator_settings *e,
+                                         const strut_integrator_settings *settings,
                                          strut_event_stepper *stepper) {
   strut_contact_bodies *contacts = &stepper->contacts;
   strut_active_set *active = &stepper->active;
@@ -186,11 +189,12 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
     fastest = fmax(fastest, c->entry[i].damping * contacts->compliance[i].normal);
     fastest = fmax(fastest, sqrt(c->entry[i].stiffness * contacts->compliance[i].normal));
   }
-  double wanted = ceil(fastest * e->step / e->refine_rate);
-  stepper->control.wanted_step = e->step;
-  stepper->control.refine = e->refine > 0.0 ? e->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
-  stepper->control.refine_time = e->refine_time;
-  stepper->control.refine_memory = e->refine_memory;
+  double wanted = ceil(fastest * settings->step / settings->refine_rate);
+  stepper->control.wanted_step = settings->step;
+  stepper->control.refine =
+      settings->refine > 0.0 ? settings->refine : fmin(fmax(1.0, wanted), MOST_REFINED);
+  stepper->control.refine_time = settings->refine_time;
+  stepper->control.refine_memory = settings->refine_memory;
   contacts->passes = c->surface || (c->normal[0] != 0.0 && !model->mass->shared) ? 8 : 1;
   active->stuck_room = c->count < LARGEST_FACTOR ? c->count : LARGEST_FACTOR;
   size_t room = (size_t)active->stuck_room;
@@ -205,29 +209,31 @@ strut_status strut_event_stepper_prepare(const strut_model *model, strut_state *
   return status ? status : find_bodies(model, stepper);
 }
 
-STRUT_INLINE void push(const strut_contact_compliance *r, const strut_contact_axes *axes,
-                       double normal, double tangential, double *restrict a) {
+STRUT_INLINE void push(const strut_contact_compliance *compliance, const strut_contact_axes *axes,
+                       double normal, double tangential, double *restrict acceleration) {
   const strut_pair force = {tangential * axes->tangent[0] + normal * axes->normal[0],
                             tangential * axes->tangent[1] + normal * axes->normal[1]};
-  for (int32_t k = 0, count = r->count; k < count; k++) {
-    double *node = a + r->at[k];
-    strut_pair_store(node, strut_pair_load(node) + strut_pair_load(r->xy + 2 * k) * force);
+  for (int32_t k = 0, count = compliance->count; k < count; k++) {
+    double *node = acceleration + compliance->at[k];
+    strut_pair_store(node, strut_pair_load(node) + strut_pair_load(compliance->xy + 2 * k) * force);
   }
 }
 
-void strut_apply_contact_impulse(const strut_contact_compliance *r, const strut_contact_axes *axes,
-                                 double normal, double tangential, double *a) {
-  push(r, axes, normal, tangential, a);
+void strut_apply_contact_impulse(const strut_contact_compliance *compliance,
+                                 const strut_contact_axes *axes, double normal, double tangential,
+                                 double *acceleration) {
+  push(compliance, axes, normal, tangential, acceleration);
 }
 
 /* In place, lower triangle; false if it is not positive definite. */
-static bool factor(int32_t n, double *a) {
+static bool factor(int32_t n, double *acceleration) {
   for (int32_t j = 0; j < n; j++) {
     for (int32_t k = 0; k < j; k++)
-      for (int32_t i = j; i < n; i++) a[i * n + j] -= a[i * n + k] * a[j * n + k];
-    if (!(a[j * n + j] > 0.0)) return false;
-    double root = sqrt(a[j * n + j]);
-    for (int32_t i = j; i < n; i++) a[i * n + j] /= root;
+      for (int32_t i = j; i < n; i++)
+        acceleration[i * n + j] -= acceleration[i * n + k] * acceleration[j * n + k];
+    if (!(acceleration[j * n + j] > 0.0)) return false;
+    double root = sqrt(acceleration[j * n + j]);
+    for (int32_t i = j; i < n; i++) acceleration[i * n + j] /= root;
   }
   return true;
 }
@@ -240,29 +246,29 @@ static void factor_stuck(const strut_model *model, strut_event_stepper *stepper,
   const strut_contact_table *c = &model->contacts;
   int32_t n = active->stuck_count;
   for (int32_t j = 0; j < n; j++) {
-    const strut_contact_compliance *r = &contacts->compliance[active->stuck[j]];
+    const strut_contact_compliance *compliance = &contacts->compliance[active->stuck[j]];
     const double *t = strut_axes_of_contact(c, frame, active->stuck[j])->tangent;
-    for (int32_t k = 0; k < r->count; k++) {
-      contacts->scatter[r->at[k]] = r->xy[2 * k] * t[0];
-      contacts->scatter[r->at[k] + 1] = r->xy[2 * k + 1] * t[1];
+    for (int32_t k = 0; k < compliance->count; k++) {
+      contacts->scatter[compliance->at[k]] = compliance->xy[2 * k] * t[0];
+      contacts->scatter[compliance->at[k] + 1] = compliance->xy[2 * k + 1] * t[1];
     }
     for (int32_t i = j; i < n; i++) {
       uint32_t at = c->at[active->stuck[i]];
       const double *s = strut_axes_of_contact(c, frame, active->stuck[i])->tangent;
       active->factor[i * n + j] = contacts->scatter[at] * s[0] + contacts->scatter[at + 1] * s[1];
     }
-    for (int32_t k = 0; k < r->count; k++)
-      contacts->scatter[r->at[k]] = contacts->scatter[r->at[k] + 1] = 0.0;
+    for (int32_t k = 0; k < compliance->count; k++)
+      contacts->scatter[compliance->at[k]] = contacts->scatter[compliance->at[k] + 1] = 0.0;
   }
   if (!factor(n, active->factor)) active->stuck_count = -n; /* singular: by sweeps */
 }
 
-static bool is_sliding(const strut_event_stepper *stepper, const strut_contact_entry *e,
+static bool is_sliding(const strut_event_stepper *stepper, const strut_contact_entry *contact,
                        int32_t i) {
-  if (e->dissipation > 0.0) return false;
+  if (contact->dissipation > 0.0) return false;
   return stepper->modes.of[i] == STRUT_MODE_SLIP ||
          (stepper->modes.of[i] == STRUT_MODE_SLIDE &&
-          !strut_friction_is_continuous(e->friction.law));
+          !strut_friction_is_continuous(contact->friction.law));
 }
 
 static void list_sliding_contacts(const strut_model *model, strut_event_stepper *stepper) {
@@ -270,23 +276,24 @@ static void list_sliding_contacts(const strut_model *model, strut_event_stepper 
   stepper->active.all_sliding = stepper->active.decoupled;
   for (int32_t k = 0; k < stepper->active.closed_count && stepper->active.all_sliding; k++) {
     int32_t i = stepper->active.closed[k];
-    const strut_contact_entry *e = &stepper->contacts.entry[i];
-    const strut_contact_compliance *r = &stepper->contacts.compliance[i];
+    const strut_contact_entry *contact = &stepper->contacts.entry[i];
+    const strut_contact_compliance *compliance = &stepper->contacts.compliance[i];
     bool slips = modes->of[i] == STRUT_MODE_SLIP;
-    stepper->active.all_sliding = is_sliding(stepper, e, i);
+    stepper->active.all_sliding = is_sliding(stepper, contact, i);
     stepper->active.sliding[k] = (strut_sliding_contact){
         .at = model->contacts.at[i],
         .index = i,
-        .nodes = r->count,
-        .stiffness = e->stiffness,
-        .damping = e->damping,
-        .answer = r->normal,
+        .nodes = compliance->count,
+        .stiffness = contact->stiffness,
+        .damping = contact->damping,
+        .answer = compliance->normal,
         .friction =
-            slips ? -modes->side[i] * strut_friction_kinetic(&e->friction, modes->side[i]) : 0.0,
+            slips ? -modes->side[i] * strut_friction_kinetic(&contact->friction, modes->side[i])
+                  : 0.0,
         .side = slips ? modes->side[i] : 0.0,
-        .edge = slips ? stick_band_edge(e) : 0.0,
-        .place = r->at,
-        .xy = r->xy};
+        .edge = slips ? stick_band_edge(contact) : 0.0,
+        .place = compliance->at,
+        .xy = compliance->xy};
   }
 }
 
@@ -321,20 +328,20 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *step
 }
 
 /* Rate of the sliding speed of a contact under the accelerations x. */
-STRUT_INLINE double along(const strut_contact_table *c, int32_t i, const double *x,
+STRUT_INLINE double along(const strut_contact_table *contacts, int32_t i, const double *vector,
                           const strut_contact_frame *frame) {
-  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
-  double rate = x[c->at[i]] * t[0] + x[c->at[i] + 1] * t[1];
+  const double *t = strut_axes_of_contact(contacts, frame, i)->tangent;
+  double rate = vector[contacts->at[i]] * t[0] + vector[contacts->at[i] + 1] * t[1];
   return frame ? rate + frame[i].slip_drift : rate;
 }
 
 /* What rounding leaves of the accelerations of held nodes: nothing, so that they do not creep. */
-STRUT_INLINE void still(const strut_contact_table *c, int32_t i, double *a,
+STRUT_INLINE void still(const strut_contact_table *contacts, int32_t i, double *acceleration,
                         const strut_contact_frame *frame) {
-  const double *t = strut_axes_of_contact(c, frame, i)->tangent;
-  double rest = along(c, i, a, frame);
-  a[c->at[i]] -= rest * t[0];
-  a[c->at[i] + 1] -= rest * t[1];
+  const double *t = strut_axes_of_contact(contacts, frame, i)->tangent;
+  double rest = along(contacts, i, acceleration, frame);
+  acceleration[contacts->at[i]] -= rest * t[0];
+  acceleration[contacts->at[i] + 1] -= rest * t[1];
 }
 
 STRUT_INLINE double tangent_compliance(const strut_event_stepper *stepper, int32_t i,
@@ -344,18 +351,20 @@ STRUT_INLINE double tangent_compliance(const strut_event_stepper *stepper, int32
 }
 
 /* One after the other until none needs more: for sets too large for a matrix. */
-static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *stepper, double *a,
-                           strut_step_end *end) {
+static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *stepper,
+                           double *acceleration, strut_step_end *end) {
   const strut_active_set *active = &stepper->active;
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   int32_t n = active->stuck_count < 0 ? -active->stuck_count : active->stuck_count;
   for (int sweep = 0; sweep < 200; sweep++) {
     double largest = 0.0, changed = 0.0;
     for (int32_t k = 0; k < n; k++) {
       int32_t i = active->stuck[k];
-      double more = -along(c, i, a, end->frame) / tangent_compliance(stepper, i, end->frame);
+      double more = -along(contacts, i, acceleration, end->frame) /
+                    tangent_compliance(stepper, i, end->frame);
       strut_apply_contact_impulse(&stepper->contacts.compliance[i],
-                                  strut_axes_of_contact(c, end->frame, i), 0.0, more, a);
+                                  strut_axes_of_contact(contacts, end->frame, i), 0.0, more,
+                                  acceleration);
       end->touch[i].friction += more;
       changed = fmax(changed, fabs(more));
       largest = fmax(largest, fabs(end->touch[i].friction));
@@ -364,10 +373,10 @@ static void hold_by_sweeps(const strut_model *model, const strut_event_stepper *
   }
 }
 
-STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *stepper, double *a,
-                             strut_step_end *end, unsigned terms) {
+STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *stepper,
+                             double *acceleration, strut_step_end *end, unsigned terms) {
   const strut_contact_frame *frame = frames_of(end, terms);
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   int32_t n = stepper->active.stuck_count;
   double *x = stepper->active.work;
   if ((frame || has_moving_masses(model)) &&
@@ -376,15 +385,16 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *step
     bool singular = stepper->active.stuck_count < 0;
     stepper->active.stuck_count = n;
     if (singular) {
-      hold_by_sweeps(model, stepper, a, end);
+      hold_by_sweeps(model, stepper, acceleration, end);
       return;
     }
   }
   if (n < 0) {
-    hold_by_sweeps(model, stepper, a, end);
+    hold_by_sweeps(model, stepper, acceleration, end);
     return;
   }
-  for (int32_t k = 0; k < n; k++) x[k] = -along(c, stepper->active.stuck[k], a, frame);
+  for (int32_t k = 0; k < n; k++)
+    x[k] = -along(contacts, stepper->active.stuck[k], acceleration, frame);
   if (n == 1) {
     x[0] /= tangent_compliance(stepper, stepper->active.stuck[0], frame);
   } else if (stepper->contacts.coupling) {
@@ -393,21 +403,22 @@ STRUT_INLINE void hold_stuck(const strut_model *model, strut_event_stepper *step
     strut_cholesky_solve(n, stepper->active.factor, x);
   }
   bool together = stepper->contacts.coupling && !model->mass->diagonal && n > FEW_COLUMNS;
-  if (together) strut_contact_coupling_push(model, stepper, x, a);
+  if (together) strut_contact_coupling_push(model, stepper, x, acceleration);
   for (int32_t k = 0; k < n; k++) {
     int32_t i = stepper->active.stuck[k];
     if (!together)
-      push(&stepper->contacts.compliance[i], strut_axes_of_contact(c, frame, i), 0.0, x[k], a);
+      push(&stepper->contacts.compliance[i], strut_axes_of_contact(contacts, frame, i), 0.0, x[k],
+           acceleration);
     end->touch[i].friction += x[k];
-    still(c, i, a, frame);
+    still(contacts, i, acceleration, frame);
   }
-  for (int32_t k = 0; k < n; k++) still(c, stepper->active.stuck[k], a, frame);
+  for (int32_t k = 0; k < n; k++) still(contacts, stepper->active.stuck[k], acceleration, frame);
 }
 
 void strut_solve_stick_constraints(const strut_model *model, strut_event_stepper *stepper,
-                                   double *a, strut_step_end *end) {
+                                   double *acceleration, strut_step_end *end) {
   if (model->contacts.surface)
-    hold_stuck(model, stepper, a, end, STRUT_TERMS_ALL);
+    hold_stuck(model, stepper, acceleration, end, STRUT_TERMS_ALL);
   else
-    hold_stuck(model, stepper, a, end, STRUT_TERMS_COMMON);
+    hold_stuck(model, stepper, acceleration, end, STRUT_TERMS_COMMON);
 }

@@ -33,10 +33,10 @@ strut_status strut_contact_coupling_create(const strut_model *model, strut_state
 /** Factors T' M^-1 T of the stuck contacts, unless it is that of the latest ones. */
 void strut_contact_coupling_factor(const strut_model *model, strut_event_stepper *stepper);
 /** x becomes (T' M^-1 T)^-1 x. */
-void strut_contact_coupling_solve(const strut_event_stepper *stepper, double *x);
+void strut_contact_coupling_solve(const strut_event_stepper *stepper, double *vector);
 /** a += M^-1 of forces x (stuck_count) along the ground on the stuck contacts. */
 void strut_contact_coupling_push(const strut_model *model, const strut_event_stepper *stepper,
-                                 const double *x, double *a);
+                                 const double *vector, double *acceleration);
 /** As implicit_ground_together; a1 contains the springs, and friction without the dampers' part. */
 void strut_contact_coupling_ground(const strut_model *model, strut_event_stepper *stepper, double h,
                                    double *a1);

@@ -39,26 +39,26 @@ void strut_evaluate_acceleration(const strut_model *model, const strut_state *st
 }
 
 /* Along and out of the ground where the node of closed contact i is. */
-static strut_contact_axes axes_now(const strut_contact_table *c, const strut_event_stepper *stepper,
-                                   int32_t i) {
-  assert(i >= 0 && i < c->count);
-  int32_t facet = c->surface ? stepper->modes.facet[i] : -1;
-  return strut_contact_pose_at(c, i, stepper->now->q, stepper->now->motion, facet).axes;
+static strut_contact_axes axes_now(const strut_contact_table *contacts,
+                                   const strut_event_stepper *stepper, int32_t i) {
+  assert(i >= 0 && i < contacts->count);
+  int32_t facet = contacts->surface ? stepper->modes.facet[i] : -1;
+  return strut_contact_pose_at(contacts, i, stepper->now->q, stepper->now->motion, facet).axes;
 }
 
 void strut_contact_snap(const strut_model *model, strut_event_stepper *stepper, int32_t i,
                         double slip) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
-  double *v = stepper->now->v + c->at[i];
-  if (c->normal[0] == 0.0 && !c->surface) {
-    v[0] = slip + c->belt_speed;
+  const strut_contact_table *contacts = &model->contacts;
+  double *v = stepper->now->v + contacts->at[i];
+  if (contacts->normal[0] == 0.0 && !contacts->surface) {
+    v[0] = slip + contacts->belt_speed;
     return;
   }
   strut_touch place;
-  measure_at_end(c, &stepper->modes, stepper->now, i, STRUT_TERMS_ALL, &place);
+  measure_at_end(contacts, &stepper->modes, stepper->now, i, STRUT_TERMS_ALL, &place);
   double more = slip - place.slip;
-  strut_contact_axes axes = axes_now(c, stepper, i);
+  strut_contact_axes axes = axes_now(contacts, stepper, i);
   v[0] += more * axes.tangent[0];
   v[1] += more * axes.tangent[1];
 }
@@ -80,16 +80,16 @@ void strut_cable_set_acting(strut_state *state, strut_event_stepper *stepper, in
 /* May the node of a contact move along it? Otherwise a support holds it. */
 static bool is_free_along(const strut_model *model, const strut_event_stepper *stepper, int32_t i) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_compliance *r = &stepper->contacts.compliance[i];
-  if (!model->contacts.surface) return r->tangent > 0.0;
+  const strut_contact_compliance *compliance = &stepper->contacts.compliance[i];
+  if (!model->contacts.surface) return compliance->tangent > 0.0;
   strut_contact_axes axes = axes_now(&model->contacts, stepper, i);
-  return strut_compliance_along(r, axes.tangent) > 1e-12 * r->tangent;
+  return strut_compliance_along(compliance, axes.tangent) > 1e-12 * compliance->tangent;
 }
 
 void strut_contact_close(const strut_model *model, strut_event_stepper *stepper, int32_t i,
                          int32_t facet) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_entry *e = &stepper->contacts.entry[i];
+  const strut_contact_entry *contact = &stepper->contacts.entry[i];
   strut_touch o;
   stepper->modes.of[i] = STRUT_MODE_SLIDE;
   if (model->contacts.surface && facet < 0)
@@ -98,22 +98,23 @@ void strut_contact_close(const strut_model *model, strut_event_stepper *stepper,
   if (model->contacts.surface) stepper->modes.facet[i] = facet;
   measure_at_end(&model->contacts, &stepper->modes, stepper->now, i, STRUT_TERMS_ALL, &o);
   stepper->modes.damper[i] = 0;
-  if (stepper->formula->exact && e->damping > 0.0) stepper->modes.damper[i] = o.into < 0.0 ? 1 : -1;
+  if (stepper->formula->exact && contact->damping > 0.0)
+    stepper->modes.damper[i] = o.into < 0.0 ? 1 : -1;
   stepper->modes.side[i] = o.slip < 0.0 ? -1 : 1;
   if (!is_free_along(model, stepper, i)) return;
-  switch (strut_friction_states(e->friction.law)) {
+  switch (strut_friction_states(contact->friction.law)) {
     case STRUT_FRICTION_ABSENT:
     case STRUT_FRICTION_CONTINUOUS:
     case STRUT_FRICTION_BRISTLES: break;
     case STRUT_FRICTION_STICK_BAND: { /* inside, or at the edge by rounding */
-      bool inside = fabs(o.slip) < e->friction.stick_velocity * (1.0 + STRUT_TIED);
+      bool inside = fabs(o.slip) < contact->friction.stick_velocity * (1.0 + STRUT_TIED);
       stepper->modes.of[i] = inside ? STRUT_MODE_BAND : STRUT_MODE_SLIP;
       break;
     }
     case STRUT_FRICTION_EXACT_STICK:
       stepper->modes.of[i] = STRUT_MODE_SLIP;
       if (fabs(o.slip) >
-          TIE * model->size * sqrt(e->stiffness * stepper->contacts.compliance[i].normal))
+          TIE * model->size * sqrt(contact->stiffness * stepper->contacts.compliance[i].normal))
         break;
       stepper->modes.of[i] = STRUT_MODE_STICK;
       strut_contact_snap(model, stepper, i, 0.0);
@@ -148,14 +149,14 @@ static int32_t overloaded(const strut_model *model, const strut_event_stepper *s
   for (int32_t k = 0; k < stepper->active.closed_count; k++) {
     int32_t i = stepper->active.closed[k];
     if (stepper->modes.of[i] != STRUT_MODE_STICK) continue;
-    const strut_touch *o = &stepper->now->touch[i];
-    double most =
-        strut_friction_static(&stepper->contacts.entry[i].friction, -o->friction) * o->normal;
-    double over = fabs(o->friction) - most;
-    if (!(over > worst * fabs(o->friction))) continue;
+    const strut_touch *touch = &stepper->now->touch[i];
+    double most = strut_friction_static(&stepper->contacts.entry[i].friction, -touch->friction) *
+                  touch->normal;
+    double over = fabs(touch->friction) - most;
+    if (!(over > worst * fabs(touch->friction))) continue;
     /* without a normal force yet, no friction is too little: rounding must not set the node in motion */
-    if (!(o->normal > 0.0) && is_held_by_rounding(model, stepper, i)) continue;
-    worst = over / fabs(o->friction);
+    if (!(touch->normal > 0.0) && is_held_by_rounding(model, stepper, i)) continue;
+    worst = over / fabs(touch->friction);
     found = i;
   }
   return found;
@@ -184,24 +185,24 @@ static void find_piece(const strut_model *model, strut_state *state, strut_event
                        int32_t k, double t) {
   assert(k >= 0 && k < stepper->laws.count);
   int32_t i = stepper->laws.item[k].element;
-  const strut_element *e = &model->elements.element[i];
-  bool folds = e->law == STRUT_LAW_FOLDING;
+  const strut_element *element = &model->elements.element[i];
+  bool folds = element->law == STRUT_LAW_FOLDING;
   if (folds) strut_curve_renew(model, state, i, stepper->now->q, t);
   set_piece(state, stepper, k,
-            folds ? (int)state->latest->rest[e->slot + STRUT_CURVE_PIECE]
-                  : strut_law_piece(e->law, &e->numbers, stepper->now->stretch[k]));
+            folds ? (int)state->latest->rest[element->slot + STRUT_CURVE_PIECE]
+                  : strut_law_piece(element->law, &element->numbers, stepper->now->stretch[k]));
 }
 
 void strut_law_pass_kink(const strut_model *model, strut_state *state, strut_event_stepper *stepper,
                          int32_t k, double t) {
   assert(k >= 0 && k < stepper->laws.count);
   int32_t i = stepper->laws.item[k].element;
-  const strut_element *e = &model->elements.element[i];
+  const strut_element *element = &model->elements.element[i];
   int piece = state->modes.element_piece[i];
   double low, high, x = stepper->now->stretch[k];
-  strut_law_margins(e->law, &e->numbers, piece, x, &low, &high);
+  strut_law_margins(element->law, &element->numbers, piece, x, &low, &high);
   int way = low < high ? -1 : 1;
-  bool folds = e->law == STRUT_LAW_FOLDING;
+  bool folds = element->law == STRUT_LAW_FOLDING;
   set_piece(state, stepper, k,
             folds ? strut_curve_pass(model, state, i, (strut_crossing){way, x, t}) : piece + way);
 }

@@ -16,33 +16,33 @@ static const double SOON = 1e-6;
 
 void strut_history_list(const strut_model *model, const strut_state *state,
                         strut_law_switches *laws) {
-  const strut_element_table *t = &model->elements;
-  for (int32_t m = 0; m < t->history_count && !state->forgetful; m++) {
-    const strut_element *e = &t->element[t->memory[m]];
-    for (int32_t k = 0; strut_has_capstan(e) && k + 2 < e->nodes; k++) {
+  const strut_element_table *elements = &model->elements;
+  for (int32_t m = 0; m < elements->history_count && !state->forgetful; m++) {
+    const strut_element *element = &elements->element[elements->memory[m]];
+    for (int32_t k = 0; strut_has_capstan(element) && k + 2 < element->nodes; k++) {
       strut_law_switch slips = {.event = STRUT_EVENT_SLIDER,
                                 .member = -1,
-                                .element = t->memory[m],
+                                .element = elements->memory[m],
                                 .guide = k + 1,
                                 .breakable = -1};
       laws->item[laws->count++] = slips;
       slips.straight = true;
       laws->item[laws->count++] = slips;
     }
-    if (strut_has_capstan(e))
+    if (strut_has_capstan(element))
       laws->item[laws->count++] = (strut_law_switch){.event = STRUT_EVENT_ACTS,
                                                      .member = -1,
-                                                     .element = t->memory[m],
+                                                     .element = elements->memory[m],
                                                      .abrupt = true,
-                                                     .stiffness = e->numbers.stiffness,
+                                                     .stiffness = element->numbers.stiffness,
                                                      .whole = true,
                                                      .breakable = -1};
-    if (e->law != STRUT_LAW_ELASTIC_PLASTIC) continue;
+    if (element->law != STRUT_LAW_ELASTIC_PLASTIC) continue;
     laws->item[laws->count++] = (strut_law_switch){
-        .event = STRUT_EVENT_SLIDER, .member = -1, .element = t->memory[m], .breakable = -1};
+        .event = STRUT_EVENT_SLIDER, .member = -1, .element = elements->memory[m], .breakable = -1};
   }
-  for (int32_t b = 0; b < t->breakable_count && !state->forgetful; b++)
-    if (t->breakable[b].force < HUGE_VAL)
+  for (int32_t b = 0; b < elements->breakable_count && !state->forgetful; b++)
+    if (elements->breakable[b].force < HUGE_VAL)
       laws->item[laws->count++] = (strut_law_switch){
           .event = STRUT_EVENT_BREAK, .member = -1, .element = -1, .breakable = b};
 }

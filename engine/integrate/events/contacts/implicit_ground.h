@@ -12,19 +12,19 @@
 #include "engine/integrate/events/event_kernel.h"
 
 /* The damper's force where the node would go into the ground at speed `free` without it. */
-STRUT_INLINE double implicit_damper(const strut_contact_entry *e, double spring, double free,
+STRUT_INLINE double implicit_damper(const strut_contact_entry *contact, double spring, double free,
                                     double half) {
-  const strut_law_ground_numbers numbers = strut_contact_numbers(e);
-  return strut_law_ground_implicit_damper(&numbers, spring, free, half, e->dissipation > 0.0);
+  const strut_law_ground_numbers numbers = strut_contact_numbers(contact);
+  return strut_law_ground_implicit_damper(&numbers, spring, free, half, contact->dissipation > 0.0);
 }
 
 /* Speed into the ground at the end of the step, given the accelerations so far. */
-STRUT_INLINE double final_speed(const strut_contact_table *c, const strut_event_stepper *stepper,
-                                int32_t i, double h, const double *a1,
-                                const strut_contact_frame *frame) {
-  uint32_t at = c->at[i];
+STRUT_INLINE double final_speed(const strut_contact_table *contacts,
+                                const strut_event_stepper *stepper, int32_t i, double h,
+                                const double *a1, const strut_contact_frame *frame) {
+  uint32_t at = contacts->at[i];
   const double *v = stepper->now->v + at, *a0 = stepper->now->a + at, *a = a1 + at;
-  const double *normal = strut_axes_of_contact(c, frame, i)->normal;
+  const double *normal = strut_axes_of_contact(contacts, frame, i)->normal;
   double into =
       (v[0] + 0.5 * h * (a0[0] + a[0])) * normal[0] + (v[1] + 0.5 * h * (a0[1] + a[1])) * normal[1];
   return frame ? into - frame[i].ground_into : into;
@@ -36,12 +36,12 @@ STRUT_INLINE double solve_damper(const strut_model *model, strut_event_stepper *
                                  const strut_contact_frame *frame) {
   strut_contact_bodies *contacts = &stepper->contacts;
   const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &contacts->entry[i];
+  const strut_contact_entry *contact = &contacts->entry[i];
   double answer = frame ? strut_compliance_along(&contacts->compliance[i], frame[i].axes.normal)
                         : contacts->compliance[i].normal;
   double half = 0.5 * h * answer, now = contacts->damped[i];
   double free = final_speed(c, stepper, i, h, a1, frame) - half * now;
-  contacts->damped[i] = implicit_damper(e, -e->stiffness * gap, free, half);
+  contacts->damped[i] = implicit_damper(contact, -contact->stiffness * gap, free, half);
   return contacts->damped[i] - now;
 }
 
@@ -101,35 +101,35 @@ STRUT_INLINE void implicit_ground_together(const strut_model *model, strut_event
 STRUT_INLINE void implicit_ground_finish(const strut_model *model, const strut_state *state,
                                          strut_event_stepper *stepper, unsigned terms,
                                          bool balance) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   strut_step_end *next = stepper->next;
   strut_contact_frame *frame = frames_of(next, terms);
   for (int32_t k = 0; k < stepper->active.closed_count; k++) {
     int32_t i = stepper->active.closed[k];
     if (frame)
-      strut_surface_measure(c, &stepper->modes, next->motion, i, next->q, next->v, &next->touch[i],
-                            &frame[i]);
+      strut_surface_measure(contacts, &stepper->modes, next->motion, i, next->q, next->v,
+                            &next->touch[i], &frame[i]);
     else
-      measure_on_line(c, i, next->q, next->v, &next->touch[i]);
+      measure_on_line(contacts, i, next->q, next->v, &next->touch[i]);
   }
   measure_contact_rates(model, &stepper->active, next, terms);
   if (balance) add_contact_powers(model, state, &stepper->active, next, terms);
 }
 
 /* The force of one level contact, bodies apart; x, y: its node's acceleration without the ground. */
-STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e,
-                                        const strut_contact_compliance *r,
-                                        const strut_touch *before, strut_touch *o,
+STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *contact,
+                                        const strut_contact_compliance *compliance,
+                                        const strut_touch *before, strut_touch *touch,
                                         const strut_contact_modes *modes, int32_t i, double h,
                                         double x, double y) {
   uint8_t mode = modes->of[i];
-  double spring = -e->stiffness * o->gap, half = 0.5 * h * r->normal;
+  double spring = -contact->stiffness * touch->gap, half = 0.5 * h * compliance->normal;
   double free = before->into + 0.5 * h * (before->into_rate + y) + half * spring;
-  o->normal = spring + implicit_damper(e, spring, free, half);
+  touch->normal = spring + implicit_damper(contact, spring, free, half);
   if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP)
-    o->friction = -x / r->tangent;
+    touch->friction = -x / compliance->tangent;
   else
-    o->friction = friction_in_mode(e, modes, i, o);
+    touch->friction = friction_in_mode(contact, modes, i, touch);
 }
 
 /*
@@ -138,55 +138,61 @@ STRUT_INLINE void implicit_ground_touch(const strut_contact_entry *e,
  */
 STRUT_INLINE void implicit_ground_decoupled(const strut_model *model,
                                             const strut_event_stepper *stepper, double h,
-                                            const double *restrict v, const double *restrict force,
-                                            double *restrict a) {
-  const strut_contact_table *c = &model->contacts;
+                                            const double *restrict velocity,
+                                            const double *restrict force,
+                                            double *restrict acceleration) {
+  const strut_contact_table *contacts = &model->contacts;
   const strut_touch *restrict before = stepper->now->touch;
   const double *restrict q = stepper->next->q;
   strut_touch *restrict touch = stepper->next->touch;
   for (int32_t k = 0, count = stepper->active.closed_count; k < count; k++) {
     int32_t i = stepper->active.closed[k];
-    uint32_t at = c->at[i];
+    uint32_t at = contacts->at[i];
     uint8_t mode = stepper->modes.of[i];
-    const strut_contact_compliance *r = &stepper->contacts.compliance[i];
+    const strut_contact_compliance *compliance = &stepper->contacts.compliance[i];
     strut_touch *o = &touch[i];
-    o->gap = q[at + 1] - c->height;
-    o->slip = v[at] - c->belt_speed;
+    o->gap = q[at + 1] - contacts->height;
+    o->slip = velocity[at] - contacts->belt_speed;
     o->applied = force[at];
-    implicit_ground_touch(&stepper->contacts.entry[i], r, &before[i], o, &stepper->modes, i, h,
-                          a[at], a[at + 1]);
+    implicit_ground_touch(&stepper->contacts.entry[i], compliance, &before[i], o, &stepper->modes,
+                          i, h, acceleration[at], acceleration[at + 1]);
     const strut_pair reaction = {o->friction, o->normal};
-    const double *restrict xy = r->xy;
-    for (int32_t j = 0, nodes = r->count; j < nodes; j++) {
-      double *node = a + r->at[j];
+    const double *restrict xy = compliance->xy;
+    for (int32_t j = 0, nodes = compliance->count; j < nodes; j++) {
+      double *node = acceleration + compliance->at[j];
       strut_pair_store(node, strut_pair_load(node) + strut_pair_load(xy + 2 * j) * reaction);
     }
-    if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP) a[at] = 0.0; /* but for rounding */
+    if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP)
+      acceleration[at] = 0.0; /* but for rounding */
   }
 }
 
 /* The same where all of them slip, or have no friction. */
 STRUT_INLINE void implicit_ground_slides(const strut_model *model,
                                          const strut_event_stepper *stepper, double h,
-                                         double *restrict a) {
+                                         double *restrict acceleration) {
   const strut_touch *restrict before = stepper->now->touch;
   const double *restrict q = stepper->next->q, height = model->contacts.height;
   strut_touch *restrict touch = stepper->next->touch;
-  const strut_sliding_contact *s = stepper->active.sliding;
-  for (const strut_sliding_contact *end = s + stepper->active.closed_count; s < end; s++) {
-    const strut_touch *b = &before[s->index];
-    strut_touch *o = &touch[s->index];
-    double gap = q[s->at + 1] - height, spring = -s->stiffness * gap, half = 0.5 * h * s->answer;
-    double free = b->into + 0.5 * h * (b->into_rate + a[s->at + 1]) + half * spring;
-    double into = free / (1.0 + half * s->damping);
-    double normal = spring + (into > 0.0 ? 0.0 : -s->damping * into);
-    const strut_pair reaction = {s->friction * normal, normal};
+  const strut_sliding_contact *contact = stepper->active.sliding;
+  for (const strut_sliding_contact *end = contact + stepper->active.closed_count; contact < end;
+       contact++) {
+    const strut_touch *b = &before[contact->index];
+    strut_touch *o = &touch[contact->index];
+    double gap = q[contact->at + 1] - height, spring = -contact->stiffness * gap,
+           half = 0.5 * h * contact->answer;
+    double free =
+        b->into + 0.5 * h * (b->into_rate + acceleration[contact->at + 1]) + half * spring;
+    double into = free / (1.0 + half * contact->damping);
+    double normal = spring + (into > 0.0 ? 0.0 : -contact->damping * into);
+    const strut_pair reaction = {contact->friction * normal, normal};
     o->gap = gap;
     o->normal = normal;
     o->friction = reaction[0];
-    for (int32_t j = 0; j < s->nodes; j++) {
-      double *node = a + s->place[j];
-      strut_pair_store(node, strut_pair_load(node) + strut_pair_load(s->xy + 2 * j) * reaction);
+    for (int32_t j = 0; j < contact->nodes; j++) {
+      double *node = acceleration + contact->place[j];
+      strut_pair_store(node,
+                       strut_pair_load(node) + strut_pair_load(contact->xy + 2 * j) * reaction);
     }
   }
 }
@@ -194,20 +200,22 @@ STRUT_INLINE void implicit_ground_slides(const strut_model *model,
 /* As implicit_ground_finish, on level ground. */
 STRUT_INLINE void implicit_ground_leave(const strut_model *model, const strut_state *state,
                                         const strut_event_stepper *stepper, bool balance) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const double *restrict v = stepper->next->v, *restrict a = stepper->next->a;
   double contact = 0.0, friction = 0.0, belt = 0.0, exchanged = 0.0;
   for (int32_t k = 0, count = stepper->active.closed_count; k < count; k++) {
     int32_t i = stepper->active.closed[k];
-    uint32_t at = c->at[i];
-    strut_touch *o = &stepper->next->touch[i];
-    o->into = v[at + 1];
-    o->slip = v[at] - c->belt_speed;
-    o->into_rate = a[at + 1];
-    o->slip_rate = a[at];
+    uint32_t at = contacts->at[i];
+    strut_touch *touch = &stepper->next->touch[i];
+    touch->into = v[at + 1];
+    touch->slip = v[at] - contacts->belt_speed;
+    touch->into_rate = a[at + 1];
+    touch->slip_rate = a[at];
     if (!balance) continue;
-    double damped = -(o->normal + stepper->contacts.entry[i].stiffness * o->gap) * o->into;
-    double rubbed = -o->friction * o->slip, carried = o->friction * c->belt_speed;
+    double damped =
+        -(touch->normal + stepper->contacts.entry[i].stiffness * touch->gap) * touch->into;
+    double rubbed = -touch->friction * touch->slip,
+           carried = touch->friction * contacts->belt_speed;
     contact += damped, friction += rubbed, belt += carried;
     exchanged += fabs(damped) + fabs(rubbed) + fabs(carried);
   }

@@ -35,9 +35,10 @@ static cubic cubic_of(double q0, double v0, double q1, double v1, double h) {
   return (cubic){{q0, q0 + h * v0 / 3.0, q1 - h * v1 / 3.0, q1}};
 }
 
-static double cubic_at(const cubic *p, double x) {
+static double cubic_at(const cubic *self, double x) {
   double r = 1.0 - x;
-  return r * r * (r * p->c[0] + 3.0 * x * p->c[1]) + x * x * (3.0 * r * p->c[2] + x * p->c[3]);
+  return r * r * (r * self->c[0] + 3.0 * x * self->c[1]) +
+         x * x * (3.0 * r * self->c[2] + x * self->c[3]);
 }
 
 /* The largest first and second derivatives of a vector over a step, by the differences of its coefficients. */
@@ -45,15 +46,15 @@ typedef struct swiftness {
   double rate, bend;
 } swiftness;
 
-static swiftness swiftness_of(const cubic *x, const cubic *y) {
+static swiftness swiftness_of(const cubic *self, const cubic *other_self) {
   swiftness most = {0};
   for (int k = 0; k < 3; k++) {
-    double dx = x->c[k + 1] - x->c[k], dy = y->c[k + 1] - y->c[k];
+    double dx = self->c[k + 1] - self->c[k], dy = other_self->c[k + 1] - other_self->c[k];
     most.rate = fmax(most.rate, 9.0 * (dx * dx + dy * dy));
   }
   for (int k = 0; k < 2; k++) {
-    double dx = x->c[k + 2] - 2.0 * x->c[k + 1] + x->c[k];
-    double dy = y->c[k + 2] - 2.0 * y->c[k + 1] + y->c[k];
+    double dx = self->c[k + 2] - 2.0 * self->c[k + 1] + self->c[k];
+    double dy = other_self->c[k + 2] - 2.0 * other_self->c[k + 1] + other_self->c[k];
     most.bend = fmax(most.bend, 36.0 * (dx * dx + dy * dy));
   }
   return (swiftness){sqrt(most.rate), sqrt(most.bend)};
@@ -77,70 +78,72 @@ typedef struct course {
   double *q; /* (length) scratch */
 } course;
 
-static void place_nodes(const course *c, double x) {
-  for (int32_t k = 0; k < 2 * c->nodes; k++)
-    c->q[c->at[k / 2] + (uint32_t)(k % 2)] = cubic_at(&c->place[k], x);
+static void place_nodes(const course *self, double x) {
+  for (int32_t k = 0; k < 2 * self->nodes; k++)
+    self->q[self->at[k / 2] + (uint32_t)(k % 2)] = cubic_at(&self->place[k], x);
 }
 
-static double strain_at(const course *c, double x, double *b) {
-  place_nodes(c, x);
-  if (c->element >= 0) return strut_element_strain(c->model, c->element, c->q, c->turn, b);
-  return strut_strain_length(c->at, 2, c->q, 0.0, b);
+static double strain_at(const course *self, double x, double *b) {
+  place_nodes(self, x);
+  if (self->element >= 0)
+    return strut_element_strain(self->model, self->element, self->q, self->turn, b);
+  return strut_strain_length(self->at, 2, self->q, 0.0, b);
 }
 
-static double distance_of(const course *c, int32_t i, int32_t k) {
-  const double *a = c->q + c->at[i], *b = c->q + c->at[k];
+static double distance_of(const course *self, int32_t i, int32_t k) {
+  const double *a = self->q + self->at[i], *b = self->q + self->at[k];
   return hypot(b[0] - a[0], b[1] - a[1]);
 }
 
 /* The largest speed of node k beside the first node. */
-static double rate_beside_first(const course *c, int32_t k) {
+static double rate_beside_first(const course *self, int32_t k) {
   double sum = 0.0;
-  for (int32_t n = 1; n <= k; n++) sum += c->apart[n].rate;
+  for (int32_t n = 1; n <= k; n++) sum += self->apart[n].rate;
   return sum;
 }
 
 /* Bounds of a strain's derivatives less than `half` of the step before and after the nodes stand as in c->q. */
-static swiftness bounds_of(const course *c, double half) {
-  const strut_element *e = c->element >= 0 ? &c->model->elements.element[c->element] : NULL;
-  const swiftness *apart = c->apart;
+static swiftness bounds_of(const course *self, double half) {
+  const strut_element *element =
+      self->element >= 0 ? &self->model->elements.element[self->element] : NULL;
+  const swiftness *apart = self->apart;
   swiftness most = {0.0, HUGE_VAL};
-  switch (c->strain) {
+  switch (self->strain) {
     case STRUT_STRAIN_LENGTH:
     case STRUT_STRAIN_PATH:
       most.bend = 0.0;
-      for (int32_t k = 1; k < c->nodes; k++) {
-        double least = distance_of(c, k - 1, k) - apart[k].rate * half;
+      for (int32_t k = 1; k < self->nodes; k++) {
+        double least = distance_of(self, k - 1, k) - apart[k].rate * half;
         most.rate += apart[k].rate;
         most.bend += least > 0.0 ? apart[k].rate * apart[k].rate / least + apart[k].bend : HUGE_VAL;
       }
       break;
     case STRUT_STRAIN_WRAP:
-      for (int32_t k = 1; k < c->nodes; k++) most.rate += apart[k].rate;
+      for (int32_t k = 1; k < self->nodes; k++) most.rate += apart[k].rate;
       break;
     case STRUT_STRAIN_ALONG: most = apart[1]; break;
     case STRUT_STRAIN_REACH: most.rate = apart[1].rate + apart[2].rate; break;
     case STRUT_STRAIN_ANGLE:
       for (int32_t k = 1; k <= 2; k++)
-        most.rate += apart[k].rate / fmax(0.0, distance_of(c, k - 1, k) - apart[k].rate * half);
+        most.rate += apart[k].rate / fmax(0.0, distance_of(self, k - 1, k) - apart[k].rate * half);
       break;
     case STRUT_STRAIN_OFFSET: {
-      double length = distance_of(c, 1, 2) - apart[2].rate * half;
-      double arm = distance_of(c, 0, 1) + apart[1].rate * half;
+      double length = distance_of(self, 1, 2) - apart[2].rate * half;
+      double arm = distance_of(self, 0, 1) + apart[1].rate * half;
       most.rate = apart[1].rate + apart[2].rate * (1.0 + arm / fmax(0.0, length));
       break;
     }
     case STRUT_STRAIN_FOOT:
-      most.rate = c->own.rate;
-      if (c->nodes > 1)
-        most.rate +=
-            e->radius * apart[1].rate / fmax(0.0, distance_of(c, 0, 1) - apart[1].rate * half);
+      most.rate = self->own.rate;
+      if (self->nodes > 1)
+        most.rate += element->radius * apart[1].rate /
+                     fmax(0.0, distance_of(self, 0, 1) - apart[1].rate * half);
       break;
     case STRUT_STRAIN_AREA: /* triangles at the first node */
-      for (int32_t k = 1; k + 1 < c->nodes; k++) {
-        double turns = rate_beside_first(c, k), grows = apart[k + 1].rate;
-        double arm = distance_of(c, 0, k) + turns * half;
-        double side = distance_of(c, k, k + 1) + grows * half;
+      for (int32_t k = 1; k + 1 < self->nodes; k++) {
+        double turns = rate_beside_first(self, k), grows = apart[k + 1].rate;
+        double arm = distance_of(self, 0, k) + turns * half;
+        double side = distance_of(self, k, k + 1) + grows * half;
         most.rate += 0.5 * (turns * side + arm * grows);
       }
       break;
@@ -158,17 +161,17 @@ typedef struct margin {
 } margin;
 
 /* Where in the step, if before `until`, the margin is below -faint; 0: nowhere. */
-static double first_below(const margin *m, double faint, double until) {
+static double first_below(const margin *self, double faint, double until) {
   struct {
     double x, value;
   } end[MOST_DEPTH + 1];
-  double from = 0.0, before = m->value(m, 0.0);
+  double from = 0.0, before = self->value(self, 0.0);
   int depth = 0;
-  end[0].x = until, end[0].value = m->value(m, until);
+  end[0].x = until, end[0].value = self->value(self, until);
   if (until < 1.0 && end[0].value < -faint) return until;
   for (int parts = 0; depth >= 0; parts++) {
     double to = end[depth].x, after = end[depth].value, width = to - from;
-    swiftness most = m->bounds(m, 0.5 * (from + to), 0.5 * width);
+    swiftness most = self->bounds(self, 0.5 * (from + to), 0.5 * width);
     bool above = 0.5 * (before + after - most.rate * width) >= -faint ||
                  fmin(before, after) - 0.125 * most.bend * width * width >= -faint;
     if (above || depth == MOST_DEPTH || parts >= MOST_PARTS) {
@@ -176,100 +179,101 @@ static double first_below(const margin *m, double faint, double until) {
       continue;
     }
     end[++depth].x = 0.5 * (from + to);
-    end[depth].value = m->value(m, end[depth].x);
+    end[depth].value = self->value(self, end[depth].x);
     if (end[depth].value < -faint) return end[depth].x;
   }
   return 0.0;
 }
 
-static double strain_margin(const margin *m, double x) {
-  const course *c = m->course;
+static double strain_margin(const margin *self, double x) {
+  const course *c = self->course;
   double b[STRUT_MOST_GRADIENT];
-  return m->sign * (strain_at(c, x, b) - cubic_at(&c->natural, x) - m->kink);
+  return self->sign * (strain_at(c, x, b) - cubic_at(&c->natural, x) - self->kink);
 }
 
 /*
  * A distance from a segment is the least of the distances from its points, of which only those are of interest that are
  * at least the kink plus the natural strain.
  */
-static swiftness strain_bounds(const margin *m, double x, double half) {
-  const course *c = m->course;
+static swiftness strain_bounds(const margin *self, double x, double half) {
+  const course *c = self->course;
   place_nodes(c, x);
   swiftness most = bounds_of(c, half);
-  if (c->strain == STRUT_STRAIN_REACH && m->sign > 0.0) {
-    double least = m->kink + fmin(c->natural.c[0], c->natural.c[3]);
+  if (c->strain == STRUT_STRAIN_REACH && self->sign > 0.0) {
+    double least = self->kink + fmin(c->natural.c[0], c->natural.c[3]);
     double bend = c->apart[1].bend + c->apart[2].bend;
     most.bend = least > 0.0 ? most.rate * most.rate / least + bend : HUGE_VAL;
   }
   return (swiftness){most.rate + c->natural_most.rate, most.bend + c->natural_most.bend};
 }
 
-static margin margin_of(const course *c, double sign, double kink) {
-  return (margin){strain_margin, strain_bounds, c, sign, kink};
+static margin margin_of(const course *self, double sign, double kink) {
+  return (margin){strain_margin, strain_bounds, self, sign, kink};
 }
 
 /* The nodes of an element or a member between the ends of the stepper's step. */
-static void begin_course(const strut_event_stepper *stepper, double h, course *c) {
+static void begin_course(const strut_event_stepper *stepper, double h, course *self) {
   const strut_step_end *now = stepper->now, *next = stepper->next;
-  for (int32_t k = 0; k < 2 * c->nodes; k++) {
-    uint32_t i = c->at[k / 2] + (uint32_t)(k % 2);
-    c->place[k] = cubic_of(now->q[i], now->v[i], next->q[i], next->v[i], h);
+  for (int32_t k = 0; k < 2 * self->nodes; k++) {
+    uint32_t i = self->at[k / 2] + (uint32_t)(k % 2);
+    self->place[k] = cubic_of(now->q[i], now->v[i], next->q[i], next->v[i], h);
   }
-  c->own = swiftness_of(&c->place[0], &c->place[1]);
-  for (int32_t k = 1; k < c->nodes; k++) {
+  self->own = swiftness_of(&self->place[0], &self->place[1]);
+  for (int32_t k = 1; k < self->nodes; k++) {
     cubic way[2];
     for (int32_t n = 0; n < 2; n++)
       for (int p = 0; p < 4; p++)
-        way[n].c[p] = c->place[2 * k + n].c[p] - c->place[2 * k - 2 + n].c[p];
-    c->apart[k] = swiftness_of(&way[0], &way[1]);
+        way[n].c[p] = self->place[2 * k + n].c[p] - self->place[2 * k - 2 + n].c[p];
+    self->apart[k] = swiftness_of(&way[0], &way[1]);
   }
 }
 
 /* The natural strain over the step, from stretch and rate of it at both ends. */
 static void begin_natural(const strut_event_stepper *stepper, double h, const double stretch[2],
-                          const double rate[2], course *c) {
+                          const double rate[2], course *self) {
   const strut_step_end *ends[2] = {stepper->now, stepper->next};
   double natural[2], natural_rate[2], b[STRUT_MOST_GRADIENT];
   for (int n = 0; n < 2; n++) {
-    natural[n] = strain_at(c, n, b) - stretch[n];
+    natural[n] = strain_at(self, n, b) - stretch[n];
     natural_rate[n] = -rate[n];
-    for (int32_t k = 0; k < 2 * c->nodes; k++)
-      natural_rate[n] += b[k] * ends[n]->v[c->at[k / 2] + (uint32_t)(k % 2)];
+    for (int32_t k = 0; k < 2 * self->nodes; k++)
+      natural_rate[n] += b[k] * ends[n]->v[self->at[k / 2] + (uint32_t)(k % 2)];
   }
-  c->natural = cubic_of(natural[0], natural_rate[0], natural[1], natural_rate[1], h);
-  c->natural_most = swiftness_of(&c->natural, &(cubic){{0}});
+  self->natural = cubic_of(natural[0], natural_rate[0], natural[1], natural_rate[1], h);
+  self->natural_most = swiftness_of(&self->natural, &(cubic){{0}});
 }
 
 static void begin_element(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *stepper, int32_t element, double h,
-                          course *c) {
+                          course *self) {
   const strut_element *e = &model->elements.element[element];
-  c->model = model, c->q = stepper->middle;
-  c->element = element;
-  c->strain = e->strain, c->nodes = e->nodes, c->at = model->elements.at + e->first;
-  c->turn = state->history.turn[element];
-  begin_course(stepper, h, c);
+  self->model = model, self->q = stepper->middle;
+  self->element = element;
+  self->strain = e->strain, self->nodes = e->nodes, self->at = model->elements.at + e->first;
+  self->turn = state->history.turn[element];
+  begin_course(stepper, h, self);
 }
 
 /* That of law k, which has been measured at both ends. */
 static void begin_law(const strut_model *model, const strut_state *state,
-                      const strut_event_stepper *stepper, int32_t k, double h, course *c) {
+                      const strut_event_stepper *stepper, int32_t k, double h, course *self) {
   const strut_law_switch *law = &stepper->laws.item[k];
   double sign = 1.0;
   if (law->element >= 0) {
-    begin_element(model, state, stepper, law->element, h, c);
+    begin_element(model, state, stepper, law->element, h, self);
     if (law->event == STRUT_EVENT_ACTS) sign = model->elements.element[law->element].carries;
   } else {
-    c->model = model, c->q = stepper->middle;
-    c->element = -1;
-    c->strain = STRUT_STRAIN_LENGTH, c->nodes = 2, c->at = c->ends;
-    c->ends[0] = model->members.from[law->member], c->ends[1] = model->members.to[law->member];
-    begin_course(stepper, h, c);
+    self->model = model, self->q = stepper->middle;
+    self->element = -1;
+    self->strain = STRUT_STRAIN_LENGTH, self->nodes = 2, self->at = self->ends;
+    self->ends[0] = model->members.from[law->member],
+    self->ends[1] = model->members.to[law->member];
+    begin_course(stepper, h, self);
   }
   const double stretch[2] = {sign * stepper->now->stretch[k], sign * stepper->next->stretch[k]};
   const double rate[2] = {sign * stepper->now->stretch_rate[k],
                           sign * stepper->next->stretch_rate[k]};
-  begin_natural(stepper, h, stretch, rate, c);
+  begin_natural(stepper, h, stretch, rate, self);
 }
 
 /*
@@ -319,7 +323,7 @@ static double law_leaves(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *stepper, int32_t k, double h, double length,
                          double until) {
   const strut_law_switch *law = &stepper->laws.item[k];
-  const strut_element *e = law->element >= 0 ? &model->elements.element[law->element] : NULL;
+  const strut_element *element = law->element >= 0 ? &model->elements.element[law->element] : NULL;
   double from = stepper->now->stretch[k], to = stepper->next->stretch[k], at = 0.0;
   course c;
   if (!isfinite(from) || !isfinite(to)) return 0.0;
@@ -328,19 +332,19 @@ static double law_leaves(const strut_model *model, const strut_state *state,
   if (law->event == STRUT_EVENT_ACTS) {
     double side = stepper->laws.acting[k] ? 1.0 : -1.0;
     if (!(side * from > 0.0 && side * to > 0.0)) return short_pull(stepper, k, h, faint);
-    const margin m = margin_of(&c, side * (e && !law->whole ? e->carries : 1.0), 0.0);
+    const margin m = margin_of(&c, side * (element && !law->whole ? element->carries : 1.0), 0.0);
     return first_below(&m, faint, until);
   }
   int piece = state->modes.element_piece[law->element];
-  double way = strut_law_way(e->law, &e->numbers, piece), low[2], high[2];
-  strut_law_margins(e->law, &e->numbers, piece, from, &low[0], &high[0]);
-  strut_law_margins(e->law, &e->numbers, piece, to, &low[1], &high[1]);
+  double way = strut_law_way(element->law, &element->numbers, piece), low[2], high[2];
+  strut_law_margins(element->law, &element->numbers, piece, from, &low[0], &high[0]);
+  strut_law_margins(element->law, &element->numbers, piece, to, &low[1], &high[1]);
   if (low[0] > 0.0 && low[1] > 0.0 && low[0] < HUGE_VAL) {
-    const margin m = margin_of(&c, way, strut_law_kink(e->law, &e->numbers, piece - 1));
+    const margin m = margin_of(&c, way, strut_law_kink(element->law, &element->numbers, piece - 1));
     at = first_below(&m, faint, until);
   }
   if (high[0] > 0.0 && high[1] > 0.0 && high[0] < HUGE_VAL) {
-    const margin m = margin_of(&c, -way, strut_law_kink(e->law, &e->numbers, piece));
+    const margin m = margin_of(&c, -way, strut_law_kink(element->law, &element->numbers, piece));
     at = earlier(at, first_below(&m, faint, until));
   }
   return at;
@@ -351,11 +355,11 @@ static double strangers_meet(const strut_model *model, const strut_state *state,
                              const strut_event_stepper *stepper, double h, double faint) {
   double first = 0.0;
   for (int32_t i = 0; i < model->elements.count; i++) {
-    const strut_element *e = &model->elements.element[i];
-    if (e->role != STRUT_ELEMENT_COLLISION) continue;
+    const strut_element *element = &model->elements.element[i];
+    if (element->role != STRUT_ELEMENT_COLLISION) continue;
     course c;
     begin_element(model, state, stepper, i, h, &c);
-    c.natural = cubic_of(e->natural, 0.0, e->natural, 0.0, h);
+    c.natural = cubic_of(element->natural, 0.0, element->natural, 0.0, h);
     c.natural_most = (swiftness){0};
     const margin m = margin_of(&c, 1.0, 0.0);
     if (strain_margin(&m, 0.0) > 0.0 && strain_margin(&m, 1.0) > 0.0)
@@ -443,8 +447,8 @@ typedef struct approach {
   cubic way[2];
 } approach;
 
-static double gap_within(const margin *m, double x) {
-  const approach *a = m->course;
+static double gap_within(const margin *self, double x) {
+  const approach *a = self->course;
   double *place = a->stepper->middle + a->contacts->at[a->contact];
   for (int n = 0; n < 2; n++) place[n] = cubic_at(&a->way[n], x);
   return strut_contact_pose_at(a->contacts, a->contact, a->stepper->middle,
@@ -453,24 +457,24 @@ static double gap_within(const margin *m, double x) {
 }
 
 /* A gap changes no faster than its node moves beside the ground. */
-static swiftness gap_bounds(const margin *m, double x, double half) {
-  const approach *a = m->course;
+static swiftness gap_bounds(const margin *self, double x, double half) {
+  const approach *a = self->course;
   (void)x, (void)half;
   return (swiftness){swiftness_of(&a->way[0], &a->way[1]).rate, HUGE_VAL};
 }
 
 /* Where within the step open contact i, of surfaces, is closed; 0: nowhere. */
-static double surface_dip(const strut_contact_table *c, const strut_event_stepper *stepper,
+static double surface_dip(const strut_contact_table *contacts, const strut_event_stepper *stepper,
                           int32_t i, double h, double faint) {
   const strut_step_end *now = stepper->now, *next = stepper->next;
-  if (!(gap_at_end(c, &stepper->modes, i, now, STRUT_TERMS_ALL) > 0.0 &&
-        gap_at_end(c, &stepper->modes, i, next, STRUT_TERMS_ALL) > 0.0))
+  if (!(gap_at_end(contacts, &stepper->modes, i, now, STRUT_TERMS_ALL) > 0.0 &&
+        gap_at_end(contacts, &stepper->modes, i, next, STRUT_TERMS_ALL) > 0.0))
     return 0.0;
-  const strut_ground_motion *from = strut_contact_motion(c, i, now->motion);
-  const strut_ground_motion *to = strut_contact_motion(c, i, next->motion);
-  approach a = {.contacts = c, .stepper = stepper, .contact = i};
+  const strut_ground_motion *from = strut_contact_motion(contacts, i, now->motion);
+  const strut_ground_motion *to = strut_contact_motion(contacts, i, next->motion);
+  approach a = {.contacts = contacts, .stepper = stepper, .contact = i};
   for (uint32_t n = 0; n < 2; n++) {
-    uint32_t k = c->at[i] + n;
+    uint32_t k = contacts->at[i] + n;
     double q0 = now->q[k], v0 = now->v[k], v1 = next->v[k];
     if (from) q0 += to->place[n] - from->place[n], v0 -= from->rate[n], v1 -= to->rate[n];
     a.way[n] = cubic_of(q0, v0, next->q[k], v1, h);
@@ -479,14 +483,14 @@ static double surface_dip(const strut_contact_table *c, const strut_event_steppe
 }
 
 /* The same of contact i with one straight ground, and where a closed one leaves it. */
-static double gap_dip(const strut_contact_table *c, const strut_event_stepper *stepper, int32_t i,
-                      double h, double faint) {
+static double gap_dip(const strut_contact_table *contacts, const strut_event_stepper *stepper,
+                      int32_t i, double h, double faint) {
   const strut_step_end *now = stepper->now, *next = stepper->next;
   double side = stepper->modes.outward[i], turn = side * h;
-  double from = side * strut_ground_gap(c, now->q + c->at[i]);
-  double to = side * strut_ground_gap(c, next->q + c->at[i]);
-  double falls = turn * strut_contact_along_normal(c, i, now->v);
-  double rises = turn * strut_contact_along_normal(c, i, next->v);
+  double from = side * strut_ground_gap(contacts, now->q + contacts->at[i]);
+  double to = side * strut_ground_gap(contacts, next->q + contacts->at[i]);
+  double falls = turn * strut_contact_along_normal(contacts, i, now->v);
+  double rises = turn * strut_contact_along_normal(contacts, i, next->v);
   return from > 0.0 && to > 0.0 ? strut_event_dip(from, falls, to, rises, faint) : 0.0;
 }
 
@@ -501,23 +505,23 @@ typedef struct faintness {
  */
 static double earliest_dip(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *stepper, double h, faintness faint) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const strut_step_end *next = stepper->next;
   double first = 0.0;
   bool surfaces = frames_of(next, STRUT_TERMS_ALL), adaptive = stepper->formula->adaptive;
-  int32_t count =
-      surfaces ? strut_surface_candidates(model, stepper, h, state->buffers->near) : c->count;
+  int32_t count = surfaces ? strut_surface_candidates(model, stepper, h, state->buffers->near)
+                           : contacts->count;
   for (int32_t k = 0; k < count; k++) {
     int32_t i = surfaces ? state->buffers->near[k] : k;
     bool open = stepper->modes.of[i] == STRUT_MODE_OPEN;
     double at = 0.0;
     if (!surfaces)
-      at = gap_dip(c, stepper, i, h, faint.length);
+      at = gap_dip(contacts, stepper, i, h, faint.length);
     else if (open)
-      at = surface_dip(c, stepper, i, h, faint.length);
+      at = surface_dip(contacts, stepper, i, h, faint.length);
     if (!open && adaptive) {
       strut_touch to; /* what is noted has been settled at the edges of bands */
-      measure_at_end(c, &stepper->modes, next, i, STRUT_TERMS_ALL, &to);
+      measure_at_end(contacts, &stepper->modes, next, i, STRUT_TERMS_ALL, &to);
       at = earlier(at, speed_dip(stepper, i, h, to.slip, to.into, faint.speed));
     }
     first = earlier(first, at);

@@ -30,18 +30,18 @@ RATE(slip_rate) { return stepper->modes.side[i] * end->touch[i].slip_rate; }
  * by which it came in, where the step begins. Methods that are not exact take each end's own: a band
  * narrower than a step they pass in a step of its own, which smooths their period map.
  */
-static double way_out(const strut_event_stepper *stepper, const strut_touch *o, int32_t i) {
-  double slip = stepper->formula->exact ? stepper->next->touch[i].slip : o->slip;
+static double way_out(const strut_event_stepper *stepper, const strut_touch *touch, int32_t i) {
+  double slip = stepper->formula->exact ? stepper->next->touch[i].slip : touch->slip;
   return slip < 0.0 ? -1.0 : 1.0;
 }
 
 VALUE(band_left) {
-  const strut_touch *o = &end->touch[i];
-  return margin_of_band(&stepper->contacts.entry[i], way_out(stepper, o, i) * o->slip);
+  const strut_touch *touch = &end->touch[i];
+  return margin_of_band(&stepper->contacts.entry[i], way_out(stepper, touch, i) * touch->slip);
 }
 RATE(band_rate) {
-  const strut_touch *o = &end->touch[i];
-  return -way_out(stepper, o, i) * o->slip_rate;
+  const strut_touch *touch = &end->touch[i];
+  return -way_out(stepper, touch, i) * touch->slip_rate;
 }
 VALUE(stick_left) { return margin_of_stick(&stepper->contacts.entry[i], &end->touch[i]); }
 VALUE(creep_out_left) {
@@ -53,10 +53,10 @@ VALUE(creep_out_left) {
  * far they are from there bounds it on both sides, so that a search for its root is led to the jump.
  */
 VALUE(creep_in_left) {
-  const strut_touch *o = &end->touch[i];
-  double margin = margin_of_creep_in(&stepper->contacts.entry[i], o, stepper->modes.side[i]);
+  const strut_touch *touch = &end->touch[i];
+  double margin = margin_of_creep_in(&stepper->contacts.entry[i], touch, stepper->modes.side[i]);
   if (!strut_friction_drops(&stepper->contacts.entry[i].friction)) return margin;
-  double room = margin_of_push(&stepper->contacts.entry[i], o, STRUT_MODE_BAND, 0.0);
+  double room = margin_of_push(&stepper->contacts.entry[i], touch, STRUT_MODE_BAND, 0.0);
   return room > 0.0 ? fmin(room, margin) : fmax(room, margin);
 }
 VALUE(push_left) {
@@ -90,18 +90,19 @@ RATE(turn_rate) { return end->stretch_rate[i]; }
 static void decide_at_edge(const strut_model *model, const strut_state *state,
                            strut_event_stepper *stepper, int32_t i, bool from_inside, double t) {
   strut_contact_modes *modes = &stepper->modes;
-  const strut_contact_entry *e = &stepper->contacts.entry[i];
+  const strut_contact_entry *contact = &stepper->contacts.entry[i];
   double s = modes->side[i];
-  strut_contact_snap(model, stepper, i, s * e->friction.stick_velocity);
+  strut_contact_snap(model, stepper, i, s * contact->friction.stick_velocity);
   modes->of[i] = STRUT_MODE_SLIP;
   strut_update_active_set(model, stepper);
   strut_evaluate_acceleration(model, state, stepper, t);
-  const strut_touch *o = &stepper->now->touch[i];
-  double outside = s * o->slip_rate;
-  double most = strut_friction_static(&e->friction, o->applied) * o->normal;
-  bool pushed = fabs(o->applied) >= most;
-  modes->of[i] = pushed && strut_friction_drops(&e->friction) ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
-  modes->side[i] = (int8_t)(modes->of[i] == STRUT_MODE_PUSH ? strut_sign(o->applied) : s);
+  const strut_touch *touch = &stepper->now->touch[i];
+  double outside = s * touch->slip_rate;
+  double most = strut_friction_static(&contact->friction, touch->applied) * touch->normal;
+  bool pushed = fabs(touch->applied) >= most;
+  modes->of[i] =
+      pushed && strut_friction_drops(&contact->friction) ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
+  modes->side[i] = (int8_t)(modes->of[i] == STRUT_MODE_PUSH ? strut_sign(touch->applied) : s);
   strut_update_active_set(model, stepper);
   strut_evaluate_acceleration(model, state, stepper, t);
   double inside = s * stepper->now->touch[i].slip_rate;
@@ -148,12 +149,12 @@ EFFECT(break_stick) {
 }
 EFFECT(creep_out) { stepper->modes.of[i] = STRUT_MODE_SLIP; }
 EFFECT(creep_in) {
-  const strut_contact_entry *e = &stepper->contacts.entry[i];
-  const strut_touch *o = &stepper->now->touch[i];
+  const strut_contact_entry *contact = &stepper->contacts.entry[i];
+  const strut_touch *touch = &stepper->now->touch[i];
   /* which of the two has ended it: the forces inside the band still push out of it where that is the jump */
-  bool pushed = strut_friction_drops(&e->friction) &&
-                margin_of_push(e, o, STRUT_MODE_BAND, 0.0) <
-                    fmax(0.0, stepper->modes.side[i] * (-o->applied - o->friction));
+  bool pushed = strut_friction_drops(&contact->friction) &&
+                margin_of_push(contact, touch, STRUT_MODE_BAND, 0.0) <
+                    fmax(0.0, stepper->modes.side[i] * (-touch->applied - touch->friction));
   stepper->modes.of[i] = pushed ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   if (pushed) stepper->modes.side[i] = side_of_push(stepper, i);
 }
@@ -168,9 +169,10 @@ EFFECT(push) {
   stepper->modes.side[i] = side_of_push(stepper, i);
 }
 EFFECT(end_yield) {
-  const strut_touch *o = &stepper->now->touch[i];
-  const strut_friction *f = &stepper->contacts.entry[i].friction;
-  bool over = fabs(o->applied) > strut_friction_static(f, o->applied) * o->normal;
+  const strut_touch *touch = &stepper->now->touch[i];
+  const strut_friction *friction = &stepper->contacts.entry[i].friction;
+  bool over =
+      fabs(touch->applied) > strut_friction_static(friction, touch->applied) * touch->normal;
   stepper->modes.of[i] = over ? STRUT_MODE_PUSH : STRUT_MODE_BAND;
   stepper->modes.side[i] = side_of_push(stepper, i);
 }

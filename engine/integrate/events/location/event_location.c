@@ -32,9 +32,9 @@ double strut_event_cubic_root(double g0, double d0, double g1, double d1) {
  * is left when they cease to, not before.
  */
 static double room_to_leave(const strut_event_stepper *stepper, int32_t i, double room) {
-  const strut_contact_entry *e = &stepper->contacts.entry[i];
-  if (!stepper->formula->exact && !strut_friction_drops(&e->friction)) return room;
-  double faint = 1e-9 * stick_band_edge(e), rate = 0.0;
+  const strut_contact_entry *contact = &stepper->contacts.entry[i];
+  if (!stepper->formula->exact && !strut_friction_drops(&contact->friction)) return room;
+  double faint = 1e-9 * stick_band_edge(contact), rate = 0.0;
   double balanced =
       STRUT_TIED * stepper->now->touch[i].normal * stepper->contacts.compliance[i].tangent;
   strut_event_rate(stepper, stepper->now, STRUT_EVENT_LEAVES_STICK_BAND, i, &rate);
@@ -96,14 +96,14 @@ static void keep_first(const strut_model *model, const strut_event_stepper *step
 STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_state *state,
                                        const strut_event_stepper *stepper,
                                        const strut_step_end *end, const int32_t *k) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   uint32_t from[STRUT_LANES], to[STRUT_LANES];
   strut_lanes rest, rest_rate, stiffness, damping;
   for (int n = 0; n < STRUT_LANES; n++) {
     int32_t j = stepper->laws.item[k[n]].member;
-    from[n] = t->from[j], to[n] = t->to[j];
+    from[n] = members->from[j], to[n] = members->to[j];
     rest[n] = state->latest->rest[j], rest_rate[n] = state->latest->rest_rate[j];
-    stiffness[n] = t->stiffness[j], damping[n] = t->damping[j];
+    stiffness[n] = members->stiffness[j], damping[n] = members->damping[j];
   }
   member_vectors d = members_gather(end->q, from, to), w = members_gather(end->v, from, to);
   strut_lanes length = four_root(d.x * d.x + d.y * d.y);
@@ -137,17 +137,17 @@ static void measure_cables(const strut_model *model, const strut_state *state,
 static void measure_element(const strut_model *model, const strut_state *state,
                             const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   assert(k >= 0);
-  const strut_element *e = &model->elements.element[law->element];
+  const strut_element *element = &model->elements.element[law->element];
   strut_element_motion m = strut_element_move(model, state, law->element, end->q, end->v);
   if (law->event == STRUT_EVENT_ACTS) {
-    end->stretch[k] = e->carries * m.stretch;
-    end->stretch_rate[k] = e->carries * m.rate;
-    end->tension[k] = e->carries * m.force;
+    end->stretch[k] = element->carries * m.stretch;
+    end->stretch_rate[k] = element->carries * m.rate;
+    end->tension[k] = element->carries * m.force;
     return;
   }
   int piece = state->modes.element_piece[law->element];
   double low, high;
-  strut_law_margins(e->law, &e->numbers, piece, m.stretch, &low, &high);
+  strut_law_margins(element->law, &element->numbers, piece, m.stretch, &low, &high);
   end->stretch[k] = m.stretch;
   end->stretch_rate[k] = m.rate;
   end->tension[k] = fmin(low, high);
@@ -244,50 +244,53 @@ static bool touch_grazes(const strut_event_stepper *stepper, int32_t i, const st
 
 /* Whether an open contact whose gap is below 0 at the step's end has come down to it. One that has just
    opened may stand below 0 by rounding, on its way up. */
-static bool closes(const strut_contact_table *c, int32_t i, const strut_event_stepper *stepper,
-                   double h) {
+static bool closes(const strut_contact_table *contacts, int32_t i,
+                   const strut_event_stepper *stepper, double h) {
   strut_touch to;
-  measure_at_end(c, &stepper->modes, stepper->next, i, STRUT_TERMS_ALL, &to);
+  measure_at_end(contacts, &stepper->modes, stepper->next, i, STRUT_TERMS_ALL, &to);
   if (touch_grazes(stepper, i, &to, h)) return false;
-  return to.into < 0.0 || gap_at_end(c, &stepper->modes, i, stepper->now, STRUT_TERMS_ALL) > 0.0;
+  return to.into < 0.0 ||
+         gap_at_end(contacts, &stepper->modes, i, stepper->now, STRUT_TERMS_ALL) > 0.0;
 }
 
 /* Has closed contact i left the ground by the end of the step, where it is at `o`, even if it is on its way down again?
    One that has just touched may be above the ground by rounding while it still moves down. */
-static bool opens(const strut_event_stepper *stepper, int32_t i, const strut_touch *o, double h) {
-  return o->gap > 0.0 && (o->into > 0.0 || stepper->now->touch[i].gap < 0.0) &&
-         !touch_grazes(stepper, i, o, h);
+static bool opens(const strut_event_stepper *stepper, int32_t i, const strut_touch *touch,
+                  double h) {
+  return touch->gap > 0.0 && (touch->into > 0.0 || stepper->now->touch[i].gap < 0.0) &&
+         !touch_grazes(stepper, i, touch, h);
 }
 
 /* What ends a mode of contact i, if it comes before `first`. */
 STRUT_INLINE void keep_first_of(const strut_model *model, const strut_event_stepper *stepper,
                                 int32_t i, double h, unsigned terms, strut_event *first) {
   const strut_contact_modes *modes = &stepper->modes;
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   if (modes->of[i] == STRUT_MODE_OPEN) {
-    if (gap_at_end(c, modes, i, stepper->next, terms) < 0.0 && closes(c, i, stepper, h))
+    if (gap_at_end(contacts, modes, i, stepper->next, terms) < 0.0 &&
+        closes(contacts, i, stepper, h))
       keep_first(model, stepper, STRUT_EVENT_TOUCH, i, h, first);
     return;
   }
-  const strut_touch *o = &stepper->next->touch[i];
+  const strut_touch *touch = &stepper->next->touch[i];
   const strut_contact_entry *entry =
-      terms & STRUT_TERM_SURFACES ? stepper->contacts.entry : c->entry;
-  strut_event_kind kind = contradicting_event(&entry[i], modes, i, o);
+      terms & STRUT_TERM_SURFACES ? stepper->contacts.entry : contacts->entry;
+  strut_event_kind kind = contradicting_event(&entry[i], modes, i, touch);
   if (kind) keep_first(model, stepper, kind, i, h, first);
   if (kind == STRUT_EVENT_LEAVES_STICK_BAND &&
       stepper->formula->exact) { /* it may be held before that */
-    kind = event_within_band(&entry[i], modes, i, o);
+    kind = event_within_band(&entry[i], modes, i, touch);
     if (kind) keep_first(model, stepper, kind, i, h, first);
   }
   int32_t nearest;
   if (frames_of(stepper->next, terms) &&
-      strut_surface_facet_margin(c, modes, stepper->next, i, &nearest) < 0.0)
+      strut_surface_facet_margin(contacts, modes, stepper->next, i, &nearest) < 0.0)
     keep_first(model, stepper, STRUT_EVENT_FACET, i, h, first);
   if (!stepper->formula->exact) return;
-  if (opens(stepper, i, o, h)) keep_first(model, stepper, STRUT_EVENT_OPEN, i, h, first);
-  if (modes->damper[i] && (modes->damper[i] > 0 ? o->into > 0.0 : o->into < 0.0) &&
-      c->entry[i].damping * fabs(o->into) > FAINT * fabs(o->normal) &&
-      !is_at_rest(stepper, o->into, h))
+  if (opens(stepper, i, touch, h)) keep_first(model, stepper, STRUT_EVENT_OPEN, i, h, first);
+  if (modes->damper[i] && (modes->damper[i] > 0 ? touch->into > 0.0 : touch->into < 0.0) &&
+      contacts->entry[i].damping * fabs(touch->into) > FAINT * fabs(touch->normal) &&
+      !is_at_rest(stepper, touch->into, h))
     keep_first(model, stepper, STRUT_EVENT_DAMPER, i, h, first);
 }
 
@@ -312,10 +315,10 @@ static double kink_comes_back(const strut_model *model, const strut_state *state
                               double after) {
   const strut_law_switch *law = &stepper->laws.item[k];
   if (law->event != STRUT_EVENT_KINK || stepper->now->tension[k] > 0.0) return 0.0;
-  const strut_element *e = &model->elements.element[law->element];
+  const strut_element *element = &model->elements.element[law->element];
   int piece = state->modes.element_piece[law->element];
-  double low, high, way = strut_law_way(e->law, &e->numbers, piece);
-  strut_law_margins(e->law, &e->numbers, piece, stepper->now->stretch[k], &low, &high);
+  double low, high, way = strut_law_way(element->law, &element->numbers, piece);
+  strut_law_margins(element->law, &element->numbers, piece, stepper->now->stretch[k], &low, &high);
   double sign = low < high ? way : -way, rate = h * sign * stepper->now->stretch_rate[k];
   double b[STRUT_MOST_GRADIENT], turn = state->history.turn[law->element];
   double noise = fabs(strut_element_strain(model, law->element, stepper->now->q, turn, b));
@@ -383,32 +386,32 @@ static double parabola_root(double gap, double speed, double bend) {
 /* Where within the step contact i passes the ground, by the parabola that positions follow. */
 static double crossing(const strut_model *model, const strut_state *state,
                        const strut_event_stepper *stepper, int32_t i, double sign, double h) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   const strut_step_end *now = stepper->now;
-  if (c->surface) {
+  if (contacts->surface) {
     strut_touch o;
     strut_contact_frame frame;
-    strut_surface_measure(c, &stepper->modes, now->motion, i, now->q, now->v, &o, &frame);
-    strut_surface_measure_rates(c, i, now->a, &o, &frame);
+    strut_surface_measure(contacts, &stepper->modes, now->motion, i, now->q, now->v, &o, &frame);
+    strut_surface_measure_rates(contacts, i, now->a, &o, &frame);
     return parabola_root(sign * o.gap, sign * h * o.into, sign * 0.5 * h * h * o.into_rate);
   }
-  double gap = strut_contact_gap(c, i, state->q),
-         speed = h * strut_contact_along_normal(c, i, state->v);
-  double bend = 0.5 * h * h * strut_contact_along_normal(c, i, stepper->now->a);
+  double gap = strut_contact_gap(contacts, i, state->q),
+         speed = h * strut_contact_along_normal(contacts, i, state->v);
+  double bend = 0.5 * h * h * strut_contact_along_normal(contacts, i, stepper->now->a);
   return parabola_root(sign * gap, sign * speed, sign * bend);
 }
 
 strut_event strut_event_predict(const strut_model *model, const strut_state *state,
                                 const strut_event_stepper *stepper, double h) {
-  const strut_contact_table *c = &model->contacts;
+  const strut_contact_table *contacts = &model->contacts;
   strut_event first = {STRUT_EVENT_NONE, 0, 1.0};
-  bool surfaces = c->surface;
-  int32_t count =
-      surfaces ? strut_surface_candidates(model, stepper, 0.0, state->buffers->near) : c->count;
+  bool surfaces = contacts->surface;
+  int32_t count = surfaces ? strut_surface_candidates(model, stepper, 0.0, state->buffers->near)
+                           : contacts->count;
   for (int32_t k = 0; k < count; k++) {
     int32_t i = surfaces ? state->buffers->near[k] : k;
     bool closed = stepper->modes.of[i] != STRUT_MODE_OPEN;
-    double gap = gap_at_end(c, &stepper->modes, i, stepper->next, STRUT_TERMS_ALL);
+    double gap = gap_at_end(contacts, &stepper->modes, i, stepper->next, STRUT_TERMS_ALL);
     if (closed ? gap <= 0.0 : gap >= 0.0) continue;
     double fraction = crossing(model, state, stepper, i, closed ? -1.0 : 1.0, h);
     if (fraction <= 1.0 && (!first.kind || fraction < first.fraction))

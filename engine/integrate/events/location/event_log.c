@@ -48,14 +48,15 @@ void strut_event_log_note(const strut_model *model, const strut_state *state,
   int32_t laws = strut_laws_of(&stepper->laws);
   for (int32_t n = 0; n < laws; n++) {
     int32_t k = strut_law_of(&stepper->laws, n);
-    const strut_law_switch *s = &stepper->laws.item[k];
-    if (s->event == STRUT_EVENT_ACTS && s->member >= 0)
-      set_mode(log, log->contacts + s->member, (int8_t)stepper->laws.acting[k], t);
-    else if (s->event == STRUT_EVENT_ACTS)
-      set_mode(log, log->contacts + log->members + s->element, (int8_t)stepper->laws.acting[k], t);
-    else if (s->event == STRUT_EVENT_KINK && s->element >= 0)
-      set_mode(log, log->contacts + log->members + log->elements + s->element,
-               (int8_t)state->modes.element_piece[s->element], t);
+    const strut_law_switch *law_switch = &stepper->laws.item[k];
+    if (law_switch->event == STRUT_EVENT_ACTS && law_switch->member >= 0)
+      set_mode(log, log->contacts + law_switch->member, (int8_t)stepper->laws.acting[k], t);
+    else if (law_switch->event == STRUT_EVENT_ACTS)
+      set_mode(log, log->contacts + log->members + law_switch->element,
+               (int8_t)stepper->laws.acting[k], t);
+    else if (law_switch->event == STRUT_EVENT_KINK && law_switch->element >= 0)
+      set_mode(log, log->contacts + log->members + log->elements + law_switch->element,
+               (int8_t)state->modes.element_piece[law_switch->element], t);
   }
 }
 

@@ -38,17 +38,17 @@ static search begin_search(const strut_model *model, const strut_event_stepper *
  * Narrows the bracket at x and returns `next`, or the middle of the bracket where that is outside, and where two
  * steps have not made the value half as large: at a kink secants creep on from both sides.
  */
-static double narrow(search *s, double next) {
-  bool slow = fabs(s->value) > 0.5 * s->size_before;
-  *(s->value < 0.0 ? &s->high : &s->low) = s->x;
-  s->size_before = fabs(s->last_value);
-  s->last_x = s->x, s->last_value = s->value;
-  return next > s->low && next < s->high && !slow ? next : 0.5 * (s->low + s->high);
+static double narrow(search *self, double next) {
+  bool slow = fabs(self->value) > 0.5 * self->size_before;
+  *(self->value < 0.0 ? &self->high : &self->low) = self->x;
+  self->size_before = fabs(self->last_value);
+  self->last_x = self->x, self->last_value = self->value;
+  return next > self->low && next < self->high && !slow ? next : 0.5 * (self->low + self->high);
 }
 
 /* The latest correction was small and did not make the value smaller: the rest is rounding. */
-static bool is_stagnant(const search *s) {
-  return fabs(s->x - s->last_x) <= 1e-6 && fabs(s->value) > 0.1 * fabs(s->last_value);
+static bool is_stagnant(const search *self) {
+  return fabs(self->x - self->last_x) <= 1e-6 && fabs(self->value) > 0.1 * fabs(self->last_value);
 }
 
 /* Does a creeping contact balance the other forces, within STRUT_TIED? friction_in_creep lets it come no nearer. */
@@ -68,28 +68,29 @@ static bool is_at_edge(const strut_model *model, const strut_event *event, doubl
 /* Moves x on, after a trial up to there; false where it is near enough to the root. */
 static bool move_on(const strut_model *model, const strut_state *state,
                     const strut_event_stepper *stepper, const strut_event *event, double h,
-                    bool first, search *s) {
+                    bool first, search *self) {
   double rate = 0.0;
-  s->value = value_at(model, stepper, stepper->next, event);
+  self->value = value_at(model, stepper, stepper->next, event);
   if (strut_event_rate(stepper, stepper->next, event->kind, event->index, &rate)) rate *= h;
-  double slope = rate != 0.0 ? rate : (s->value - s->last_value) / (s->x - s->last_x);
-  if (fabs(s->value) <= 1e-13 * fabs(slope)) return false;
-  bool edge = is_at_edge(model, event, s->value);
+  double slope = rate != 0.0 ? rate : (self->value - self->last_value) / (self->x - self->last_x);
+  if (fabs(self->value) <= 1e-13 * fabs(slope)) return false;
+  bool edge = is_at_edge(model, event, self->value);
   /* forces that balance keep the speed there for a while: the value stays small, but has no root nearby */
   bool tied = edge && band_forces_balance(&stepper->contacts.compliance[event->index],
                                           &stepper->next->touch[event->index]);
   if (edge && !tied) return false;
   /* variations need a point from which the value changes */
-  if (!state->watched.variation && is_balanced(stepper, event, s->value)) return false;
+  if (!state->watched.variation && is_balanced(stepper, event, self->value)) return false;
   /* a value that is not small beside those of the step's ends jumps, or has its root farther on, however little the
      search has moved */
-  bool still = !first && !tied && is_stagnant(s), far = fabs(s->value) > 0.1 * s->size_at_ends;
-  if (s->value == 0.0 || (still && !far)) return false;
-  if (tied && s->high - s->x <= BALANCED) return false;
-  double x = narrow(s, s->x - s->value / slope);
-  if (tied || still) x = 0.5 * (s->low + s->high);
-  if (s->high - s->low <= 1e-13) return false;
-  s->x = x;
+  bool still = !first && !tied && is_stagnant(self),
+       far = fabs(self->value) > 0.1 * self->size_at_ends;
+  if (self->value == 0.0 || (still && !far)) return false;
+  if (tied && self->high - self->x <= BALANCED) return false;
+  double x = narrow(self, self->x - self->value / slope);
+  if (tied || still) x = 0.5 * (self->low + self->high);
+  if (self->high - self->low <= 1e-13) return false;
+  self->x = x;
   return true;
 }
 

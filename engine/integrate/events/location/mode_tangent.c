@@ -29,67 +29,70 @@ bool strut_mode_tangent_possible(const strut_model *model) {
   return !(model->terms & ~(unsigned)KNOWN) && model->mass && !model->contacts.surface;
 }
 
-static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_tangent *t) {
-  size_t n = (size_t)t->n, wide = n * (size_t)t->width, length = (size_t)model->length;
+static bool allocate(const strut_model *model, strut_arena *arena, strut_mode_tangent *tangent) {
+  size_t n = (size_t)tangent->n, wide = n * (size_t)tangent->width, length = (size_t)model->length;
   size_t contacts = (size_t)model->contacts.count;
-  return (t->inverse = strut_arena_allocate(arena, n * n, sizeof(double))) &&
-         (t->force = strut_arena_allocate(arena, wide, sizeof(double))) &&
-         (t->rate = strut_arena_allocate(arena, wide, sizeof(double))) &&
-         (t->functional = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
-         (t->response = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
-         (t->place = strut_arena_allocate(arena, length, sizeof(double))) &&
-         (t->speed = strut_arena_allocate(arena, length, sizeof(double))) &&
-         (t->pull = strut_arena_allocate(arena, (size_t)t->width, sizeof(double)));
+  return (tangent->inverse = strut_arena_allocate(arena, n * n, sizeof(double))) &&
+         (tangent->force = strut_arena_allocate(arena, wide, sizeof(double))) &&
+         (tangent->rate = strut_arena_allocate(arena, wide, sizeof(double))) &&
+         (tangent->functional = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
+         (tangent->response = strut_arena_allocate(arena, contacts * n, sizeof(double))) &&
+         (tangent->place = strut_arena_allocate(arena, length, sizeof(double))) &&
+         (tangent->speed = strut_arena_allocate(arena, length, sizeof(double))) &&
+         (tangent->pull = strut_arena_allocate(arena, (size_t)tangent->width, sizeof(double)));
 }
 
 /* M^-1, a column a free coordinate. */
-static void invert_mass(const strut_model *model, const strut_state *state, strut_mode_tangent *t) {
-  memset(t->place, 0, (size_t)model->length * sizeof(double));
-  for (int32_t j = 0; j < t->n; j++) {
+static void invert_mass(const strut_model *model, const strut_state *state,
+                        strut_mode_tangent *tangent) {
+  memset(tangent->place, 0, (size_t)model->length * sizeof(double));
+  for (int32_t j = 0; j < tangent->n; j++) {
     memset(state->latest->force, 0, (size_t)model->length * sizeof(double));
-    state->latest->force[t->coordinate[j]] = 1.0;
-    strut_mass_solve(model, state->latest->force, t->place, state->buffers->mass_solve);
-    for (int32_t i = 0; i < t->n; i++) t->inverse[i * t->n + j] = t->place[t->coordinate[i]];
+    state->latest->force[tangent->coordinate[j]] = 1.0;
+    strut_mass_solve(model, state->latest->force, tangent->place, state->buffers->mass_solve);
+    for (int32_t i = 0; i < tangent->n; i++)
+      tangent->inverse[i * tangent->n + j] = tangent->place[tangent->coordinate[i]];
   }
 }
 
 strut_mode_tangent *strut_mode_tangent_create(const strut_model *model, strut_state *state) {
   strut_arena *arena = &state->arena;
   size_t length = (size_t)model->length;
-  strut_mode_tangent *t = strut_arena_allocate(arena, 1, sizeof *t);
-  if (!t || !(t->coordinate = strut_arena_allocate(arena, length, sizeof *t->coordinate)) ||
-      !(t->row_of = strut_arena_allocate(arena, length, sizeof *t->row_of)))
+  strut_mode_tangent *tangent = strut_arena_allocate(arena, 1, sizeof *tangent);
+  if (!tangent ||
+      !(tangent->coordinate = strut_arena_allocate(arena, length, sizeof *tangent->coordinate)) ||
+      !(tangent->row_of = strut_arena_allocate(arena, length, sizeof *tangent->row_of)))
     return NULL;
-  t->n = strut_number_free(model, NULL, t->row_of, t->coordinate);
-  t->width = (2 * t->n + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
-  t->plain = !(model->terms & DIFFERENCED);
-  if (!allocate(model, arena, t)) return NULL;
-  invert_mass(model, state, t);
-  return t;
+  tangent->n = strut_number_free(model, NULL, tangent->row_of, tangent->coordinate);
+  tangent->width = (2 * tangent->n + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
+  tangent->plain = !(model->terms & DIFFERENCED);
+  if (!allocate(model, arena, tangent)) return NULL;
+  invert_mass(model, state, tangent);
+  return tangent;
 }
 
 /* ---- contacts that stick ---- */
 
-static double product(int32_t n, const double *a, const double *b) {
+static double product(int32_t n, const double *first, const double *second) {
   double sum = 0.0;
-  for (int32_t i = 0; i < n; i++) sum += a[i] * b[i];
+  for (int32_t i = 0; i < n; i++) sum += first[i] * second[i];
   return sum;
 }
 
 /* Adds a contact: its tangent, made orthogonal with respect to M^-1 to those before. */
-static void hold_contact(const strut_model *model, int32_t contact, strut_mode_tangent *t) {
+static void hold_contact(const strut_model *model, int32_t contact, strut_mode_tangent *tangent) {
   assert(contact >= 0 && contact < model->contacts.count);
-  int32_t n = t->n;
-  double *f = t->functional + t->held * n, *r = t->response + t->held * n;
+  int32_t n = tangent->n;
+  double *f = tangent->functional + tangent->held * n, *r = tangent->response + tangent->held * n;
   memset(f, 0, (size_t)n * sizeof(double));
   for (uint32_t c = 0; c < 2; c++) {
-    int32_t row = t->row_of[model->contacts.at[contact] + c];
+    int32_t row = tangent->row_of[model->contacts.at[contact] + c];
     if (row >= 0) f[row] = model->contacts.tangent[c];
   }
-  for (int32_t i = 0; i < n; i++) r[i] = product(n, t->inverse + i * n, f);
+  for (int32_t i = 0; i < n; i++) r[i] = product(n, tangent->inverse + i * n, f);
   double whole = product(n, f, r);
-  for (int32_t k = 0; k < t->held; k++) {
-    const double *g = t->functional + k * n, *s = t->response + k * n;
+  for (int32_t k = 0; k < tangent->held; k++) {
+    const double *g = tangent->functional + k * n, *s = tangent->response + k * n;
     double part = product(n, g, r);
     for (int32_t i = 0; i < n; i++) f[i] -= part * g[i], r[i] -= part * s[i];
   }
@@ -97,67 +100,69 @@ static void hold_contact(const strut_model *model, int32_t contact, strut_mode_t
   if (!(left > DEPENDENT * whole)) return;
   double root = sqrt(left);
   for (int32_t i = 0; i < n; i++) f[i] /= root, r[i] /= root;
-  t->held++;
+  tangent->held++;
 }
 
 void strut_mode_tangent_hold(const strut_model *model, const strut_event_stepper *stepper,
-                             strut_mode_tangent *t) {
-  t->held = 0;
+                             strut_mode_tangent *tangent) {
+  tangent->held = 0;
   for (int32_t k = 0; k < stepper->active.closed_count; k++) {
     uint8_t mode = stepper->modes.of[stepper->active.closed[k]];
     if (mode == STRUT_MODE_STICK || mode == STRUT_MODE_CREEP)
-      hold_contact(model, stepper->active.closed[k], t);
+      hold_contact(model, stepper->active.closed[k], tangent);
   }
 }
 
 STRUT_CLONES
 static void remove_motion(int32_t n, int32_t width, const double *restrict functional,
-                          const double *restrict response, double *restrict x,
+                          const double *restrict response, double *restrict vector,
                           double *restrict amount) {
   for (int32_t c = 0; c < width; c++) amount[c] = 0.0;
   for (int32_t i = 0; i < n; i++)
     for (int32_t c = 0; c < width && functional[i] != 0.0; c++)
-      amount[c] += functional[i] * x[i * width + c];
+      amount[c] += functional[i] * vector[i * width + c];
   for (int32_t i = 0; i < n; i++)
-    for (int32_t c = 0; c < width; c++) x[i * width + c] -= response[i] * amount[c];
+    for (int32_t c = 0; c < width; c++) vector[i * width + c] -= response[i] * amount[c];
 }
 
-void strut_mode_tangent_project(const strut_mode_tangent *t, double *x, int32_t width) {
-  for (int32_t k = 0; k < t->held; k++)
-    remove_motion(t->n, width, t->functional + k * t->n, t->response + k * t->n, x, t->pull);
+void strut_mode_tangent_project(const strut_mode_tangent *tangent, double *vector, int32_t width) {
+  for (int32_t k = 0; k < tangent->held; k++)
+    remove_motion(tangent->n, width, tangent->functional + k * tangent->n,
+                  tangent->response + k * tangent->n, vector, tangent->pull);
 }
 
 /* ---- forces ---- */
 
 /* Adds `block` (2, 2), of the force on node a to what b has more than a, at columns `first` on. */
-STRUT_INLINE void add_block(strut_mode_tangent *t, const int32_t a[2], const int32_t b[2],
+STRUT_INLINE void add_block(strut_mode_tangent *tangent, const int32_t a[2], const int32_t b[2],
                             double block[2][2], int32_t first) {
   for (int r = 0; r < 2; r++)
     for (int c = 0; c < 2; c++) {
       double x = block[r][c];
       int32_t ca = first + a[c], cb = first + b[c];
-      if (a[r] >= 0 && a[c] >= 0) t->force[a[r] * t->width + ca] -= x;
-      if (a[r] >= 0 && b[c] >= 0) t->force[a[r] * t->width + cb] += x;
-      if (b[r] >= 0 && a[c] >= 0) t->force[b[r] * t->width + ca] += x;
-      if (b[r] >= 0 && b[c] >= 0) t->force[b[r] * t->width + cb] -= x;
+      if (a[r] >= 0 && a[c] >= 0) tangent->force[a[r] * tangent->width + ca] -= x;
+      if (a[r] >= 0 && b[c] >= 0) tangent->force[a[r] * tangent->width + cb] += x;
+      if (b[r] >= 0 && a[c] >= 0) tangent->force[b[r] * tangent->width + ca] += x;
+      if (b[r] >= 0 && b[c] >= 0) tangent->force[b[r] * tangent->width + cb] -= x;
     }
 }
 
 /* Member j: with d from end to end and w its rate, tension c (L - rest) + k (L' - rest'), L' = u . w. */
 STRUT_INLINE void add_member(const strut_model *model, const strut_state *state, int32_t j,
-                             const double *q, const double *v, strut_mode_tangent *t) {
-  const strut_member_table *m = &model->members;
-  uint32_t from = m->from[j], to = m->to[j];
+                             const double *q, const double *velocity, strut_mode_tangent *tangent) {
+  const strut_member_table *members = &model->members;
+  uint32_t from = members->from[j], to = members->to[j];
   double x = q[to] - q[from], y = q[to + 1] - q[from + 1], length = sqrt(x * x + y * y);
   if (!(length > 0.0)) return;
-  double u[2] = {x / length, y / length}, w[2] = {v[to] - v[from], v[to + 1] - v[from + 1]};
-  double rate = u[0] * w[0] + u[1] * w[1], c = m->stiffness[j], k = m->damping[j];
+  double u[2] = {x / length, y / length},
+         w[2] = {velocity[to] - velocity[from], velocity[to + 1] - velocity[from + 1]};
+  double rate = u[0] * w[0] + u[1] * w[1], c = members->stiffness[j], k = members->damping[j];
   double stretch = length - state->latest->rest[j];
   double tension = c * stretch + k * (rate - state->latest->rest_rate[j]);
   if (!(stretch > state->modes.slack_length_threshold[j] &&
         tension > state->modes.slack_force_threshold[j]))
     return;
-  const int32_t *a = t->row_of + from, *b = t->row_of + to;
+  const int32_t *a = tangent->row_of + from, *b = tangent->row_of + to;
   double stiffness[2][2], damping[2][2], across = tension / length;
   for (int r = 0; r < 2; r++)
     for (int s = 0; s < 2; s++) {
@@ -165,28 +170,30 @@ STRUT_INLINE void add_member(const strut_model *model, const strut_state *state,
       stiffness[r][s] = u[r] * (c * u[s] + turn) + across * ((r == s) - u[r] * u[s]);
       damping[r][s] = k * u[r] * u[s];
     }
-  add_block(t, a, b, stiffness, 0);
-  if (k != 0.0) add_block(t, a, b, damping, t->n);
+  add_block(tangent, a, b, stiffness, 0);
+  if (k != 0.0) add_block(tangent, a, b, damping, tangent->n);
 }
 
 /* The same of all forces but the ground's, by differences. */
 static void difference_forces(const strut_model *model, strut_state *state,
                               const strut_event_stepper *stepper, double time, const double *q,
-                              const double *v, strut_mode_tangent *t) {
+                              const double *velocity, strut_mode_tangent *tangent) {
   bool balance = state->balance;
   const double unit[2] = {DIFFERENCE * model->size,
                           DIFFERENCE * model->size / stepper->control.wanted_step};
   state->balance = false;
-  memcpy(t->place, q, (size_t)model->length * sizeof(double));
-  memcpy(t->speed, v, (size_t)model->length * sizeof(double));
-  for (int32_t j = 0; j < 2 * t->n; j++) {
-    int32_t of = j / t->n, at = t->coordinate[j % t->n];
-    double *x = of ? &t->speed[at] : &t->place[at], keep = *x, two = 2.0 * unit[of];
+  memcpy(tangent->place, q, (size_t)model->length * sizeof(double));
+  memcpy(tangent->speed, velocity, (size_t)model->length * sizeof(double));
+  for (int32_t j = 0; j < 2 * tangent->n; j++) {
+    int32_t of = j / tangent->n, at = tangent->coordinate[j % tangent->n];
+    double *x = of ? &tangent->speed[at] : &tangent->place[at], keep = *x, two = 2.0 * unit[of];
     for (int side = -1; side <= 1; side += 2) {
       *x = keep + side * unit[of];
-      forces_of_structure(model, state, time, t->place, t->speed, STRUT_TERMS_ALL, false);
-      for (int32_t i = 0; i < t->n; i++)
-        t->force[i * t->width + j] += side * state->latest->force[t->coordinate[i]] / two;
+      forces_of_structure(model, state, time, tangent->place, tangent->speed, STRUT_TERMS_ALL,
+                          false);
+      for (int32_t i = 0; i < tangent->n; i++)
+        tangent->force[i * tangent->width + j] +=
+            side * state->latest->force[tangent->coordinate[i]] / two;
     }
     *x = keep;
   }
@@ -201,38 +208,39 @@ typedef struct friction_slopes {
 } friction_slopes;
 
 /* By a number of the touch, which is put back. */
-static double slope_of(const strut_contact_entry *e, const strut_contact_modes *modes, int32_t i,
-                       const strut_touch *o, double *number, double step) {
+static double slope_of(const strut_contact_entry *contact, const strut_contact_modes *modes,
+                       int32_t i, const strut_touch *touch, double *number, double step) {
   assert(step > 0.0);
   double value = *number;
   *number = value + step;
-  double more = friction_in_mode(e, modes, i, o);
+  double more = friction_in_mode(contact, modes, i, touch);
   *number = value - step;
-  double less = friction_in_mode(e, modes, i, o);
+  double less = friction_in_mode(contact, modes, i, touch);
   *number = value;
   return (more - less) / (2.0 * step);
 }
 
-static friction_slopes slopes_of(const strut_contact_entry *e, const strut_contact_modes *modes,
-                                 int32_t i, strut_touch *o) {
+static friction_slopes slopes_of(const strut_contact_entry *contact,
+                                 const strut_contact_modes *modes, int32_t i, strut_touch *touch) {
   int8_t side = modes->side[i];
   switch ((strut_contact_mode)modes->of[i]) {
     case STRUT_MODE_SLIP:
     case STRUT_MODE_PUSH:
-      return (friction_slopes){.normal = -side * strut_friction_kinetic(&e->friction, side)};
+      return (friction_slopes){.normal = -side * strut_friction_kinetic(&contact->friction, side)};
     case STRUT_MODE_BAND: {
-      double most = strut_friction_static(&e->friction, o->applied);
-      if (o->applied > most * o->normal) return (friction_slopes){.normal = -most};
-      if (o->applied < -most * o->normal) return (friction_slopes){.normal = most};
+      double most = strut_friction_static(&contact->friction, touch->applied);
+      if (touch->applied > most * touch->normal) return (friction_slopes){.normal = -most};
+      if (touch->applied < -most * touch->normal) return (friction_slopes){.normal = most};
       return (friction_slopes){.applied = -1.0};
     }
     case STRUT_MODE_SLIDE:
     case STRUT_MODE_YIELD: {
-      double force = DIFFERENCE * (fabs(o->normal) + fabs(o->applied)) + 1e-300;
-      double speed = DIFFERENCE * (fabs(o->slip) + e->friction.stick_velocity) + 1e-12;
-      return (friction_slopes){.normal = slope_of(e, modes, i, o, &o->normal, force),
-                               .slip = slope_of(e, modes, i, o, &o->slip, speed),
-                               .applied = slope_of(e, modes, i, o, &o->applied, force)};
+      double force = DIFFERENCE * (fabs(touch->normal) + fabs(touch->applied)) + 1e-300;
+      double speed = DIFFERENCE * (fabs(touch->slip) + contact->friction.stick_velocity) + 1e-12;
+      return (friction_slopes){
+          .normal = slope_of(contact, modes, i, touch, &touch->normal, force),
+          .slip = slope_of(contact, modes, i, touch, &touch->slip, speed),
+          .applied = slope_of(contact, modes, i, touch, &touch->applied, force)};
     }
     case STRUT_MODE_OPEN:
     case STRUT_MODE_STICK:
@@ -252,59 +260,62 @@ static bool asks_applied(const strut_event_stepper *stepper) {
 }
 
 /* Does contact i stay where it is through the step, but for rounding? */
-static bool is_resting(const strut_contact_entry *e, const strut_event_stepper *stepper,
+static bool is_resting(const strut_contact_entry *contact, const strut_event_stepper *stepper,
                        int32_t i) {
   const strut_touch *from = &stepper->now->touch[i], *to = &stepper->next->touch[i];
   double most = RESTING * fabs(to->normal);
-  return e->damping * fabs(from->into) <= most && e->damping * fabs(to->into) <= most;
+  return contact->damping * fabs(from->into) <= most && contact->damping * fabs(to->into) <= most;
 }
 
 /* Derivatives of the normal force to gap and speed out of the ground. */
-static void differentiate_normal(const strut_contact_entry *e, int8_t damper, bool resting,
-                                 const strut_touch *o, double *gap, double *into) {
-  if (e->dissipation > 0.0) {
-    bool acts = o->normal > 0.0 || o->gap >= 0.0;
-    *gap = acts ? -e->stiffness * (1.0 - e->dissipation * o->into) : 0.0;
-    *into = acts ? e->stiffness * o->gap * e->dissipation : 0.0;
+static void differentiate_normal(const strut_contact_entry *contact, int8_t damper, bool resting,
+                                 const strut_touch *touch, double *gap, double *into) {
+  if (contact->dissipation > 0.0) {
+    bool acts = touch->normal > 0.0 || touch->gap >= 0.0;
+    *gap = acts ? -contact->stiffness * (1.0 - contact->dissipation * touch->into) : 0.0;
+    *into = acts ? contact->stiffness * touch->gap * contact->dissipation : 0.0;
     return;
   }
-  bool acts = damper ? damper > 0 : o->into < 0.0;
-  *gap = -e->stiffness;
-  *into = resting ? -0.5 * e->damping : acts ? -e->damping : 0.0;
+  bool acts = damper ? damper > 0 : touch->into < 0.0;
+  *gap = -contact->stiffness;
+  *into = resting ? -0.5 * contact->damping : acts ? -contact->damping : 0.0;
 }
 
 static void add_contact(const strut_model *model, const strut_state *state,
                         const strut_event_stepper *stepper, int32_t i, const double *q,
-                        const double *v, strut_mode_tangent *t) {
+                        const double *velocity, strut_mode_tangent *tangent) {
   assert(i >= 0 && i < model->contacts.count);
-  const strut_contact_table *c = &model->contacts;
-  const strut_contact_entry *e = &stepper->contacts.entry[i];
-  const int32_t *row = t->row_of + c->at[i];
-  double gap, into, *pull = t->pull, *x[2] = {NULL, NULL};
+  const strut_contact_table *contacts = &model->contacts;
+  const strut_contact_entry *contact = &stepper->contacts.entry[i];
+  const int32_t *row = tangent->row_of + contacts->at[i];
+  double gap, into, *pull = tangent->pull, *x[2] = {NULL, NULL};
   strut_touch o;
   for (int k = 0; k < 2; k++)
-    if (row[k] >= 0) x[k] = t->force + row[k] * t->width;
-  measure_on_line(c, i, q, v, &o);
-  o.applied = strut_contact_along_ground(c, i, state->latest->force);
-  o.normal = contact_normal_force(e, stepper->modes.damper[i], o.gap, o.into, true);
-  friction_slopes f = slopes_of(e, &stepper->modes, i, &o);
-  differentiate_normal(e, stepper->modes.damper[i], is_resting(e, stepper, i), &o, &gap, &into);
-  for (int32_t k = 0; k < t->width; k++) {
-    double along = (x[0] ? c->tangent[0] * x[0][k] : 0.0) + (x[1] ? c->tangent[1] * x[1][k] : 0.0);
+    if (row[k] >= 0) x[k] = tangent->force + row[k] * tangent->width;
+  measure_on_line(contacts, i, q, velocity, &o);
+  o.applied = strut_contact_along_ground(contacts, i, state->latest->force);
+  o.normal = contact_normal_force(contact, stepper->modes.damper[i], o.gap, o.into, true);
+  friction_slopes f = slopes_of(contact, &stepper->modes, i, &o);
+  differentiate_normal(contact, stepper->modes.damper[i], is_resting(contact, stepper, i), &o, &gap,
+                       &into);
+  for (int32_t k = 0; k < tangent->width; k++) {
+    double along = (x[0] ? contacts->tangent[0] * x[0][k] : 0.0) +
+                   (x[1] ? contacts->tangent[1] * x[1][k] : 0.0);
     pull[k] = f.applied * along;
   }
   for (int k = 0; k < 2; k++) {
     if (row[k] < 0) continue;
-    pull[row[k]] += f.normal * gap * c->normal[k];
-    pull[t->n + row[k]] += f.normal * into * c->normal[k] + f.slip * c->tangent[k];
+    pull[row[k]] += f.normal * gap * contacts->normal[k];
+    pull[tangent->n + row[k]] +=
+        f.normal * into * contacts->normal[k] + f.slip * contacts->tangent[k];
   }
   for (int k = 0; k < 2; k++) {
     if (!x[k]) continue;
-    for (int32_t j = 0; j < t->width; j++) x[k][j] += pull[j] * c->tangent[k];
+    for (int32_t j = 0; j < tangent->width; j++) x[k][j] += pull[j] * contacts->tangent[k];
     for (int j = 0; j < 2; j++) {
       if (row[j] < 0) continue;
-      x[k][row[j]] += gap * c->normal[j] * c->normal[k];
-      x[k][t->n + row[j]] += into * c->normal[j] * c->normal[k];
+      x[k][row[j]] += gap * contacts->normal[j] * contacts->normal[k];
+      x[k][tangent->n + row[j]] += into * contacts->normal[j] * contacts->normal[k];
     }
   }
 }
@@ -326,17 +337,17 @@ static void divide_rows(int32_t n, int32_t width, const double *restrict inverse
 
 void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
                                  const strut_event_stepper *stepper, double time, const double *q,
-                                 const double *v, strut_mode_tangent *t) {
-  memset(t->force, 0, (size_t)(t->n * t->width) * sizeof(double));
-  if (!t->plain) difference_forces(model, state, stepper, time, q, v, t);
-  if (!t->plain || asks_applied(stepper))
-    forces_of_structure(model, state, time, q, v, STRUT_TERMS_ALL, false);
+                                 const double *velocity, strut_mode_tangent *tangent) {
+  memset(tangent->force, 0, (size_t)(tangent->n * tangent->width) * sizeof(double));
+  if (!tangent->plain) difference_forces(model, state, stepper, time, q, velocity, tangent);
+  if (!tangent->plain || asks_applied(stepper))
+    forces_of_structure(model, state, time, q, velocity, STRUT_TERMS_ALL, false);
   else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest->drive_time)
     strut_drive_apply(model, state, time);
-  for (int32_t j = 0; j < model->members.count && t->plain; j++)
-    add_member(model, state, j, q, v, t);
+  for (int32_t j = 0; j < model->members.count && tangent->plain; j++)
+    add_member(model, state, j, q, velocity, tangent);
   for (int32_t k = 0; k < stepper->active.closed_count; k++)
-    add_contact(model, state, stepper, stepper->active.closed[k], q, v, t);
-  divide_rows(t->n, t->width, t->inverse, t->force, t->rate);
-  strut_mode_tangent_project(t, t->rate, t->width);
+    add_contact(model, state, stepper, stepper->active.closed[k], q, velocity, tangent);
+  divide_rows(tangent->n, tangent->width, tangent->inverse, tangent->force, tangent->rate);
+  strut_mode_tangent_project(tangent, tangent->rate, tangent->width);
 }

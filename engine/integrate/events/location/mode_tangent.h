@@ -34,10 +34,10 @@ strut_mode_tangent *strut_mode_tangent_create(const strut_model *model, strut_st
 void strut_mode_tangent_hold(const strut_model *model, const strut_event_stepper *stepper,
                              strut_mode_tangent *tangent);
 /** Removes from the rows x (n, width) what sticking contacts do not allow. */
-void strut_mode_tangent_project(const strut_mode_tangent *tangent, double *x, int32_t width);
+void strut_mode_tangent_project(const strut_mode_tangent *tangent, double *vector, int32_t width);
 /** Fills `rate` at time t, q and v (length). */
 void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
                                  const strut_event_stepper *stepper, double t, const double *q,
-                                 const double *v, strut_mode_tangent *tangent);
+                                 const double *velocity, strut_mode_tangent *tangent);
 
 #endif

@@ -37,17 +37,18 @@ static double *ahead_of(const strut_event_stepper *stepper, int32_t k) {
   return stepper->turns.ahead + 2 * (k - stepper->turns.first);
 }
 
-static span span_of(const strut_event_stepper *stepper, int32_t k, const double *q, const double *v,
-                    double h) {
+static span span_of(const strut_event_stepper *stepper, int32_t k, const double *q,
+                    const double *velocity, double h) {
   const uint32_t *at = ends_of(stepper, k);
   double x = q[at[1]] - q[at[0]], y = q[at[1] + 1] - q[at[0] + 1];
-  return (span){x, y, h * (v[at[1]] - v[at[0]]), h * (v[at[1] + 1] - v[at[0] + 1]), hypot(x, y)};
+  return (span){x, y, h * (velocity[at[1]] - velocity[at[0]]),
+                h * (velocity[at[1] + 1] - velocity[at[0] + 1]), hypot(x, y)};
 }
 
 /* Has the second node passed the first, and not just swung round it? */
-static bool is_behind(const double *r, const span *s) {
-  double across = r[0] * s->y - r[1] * s->x;
-  return along(r, s->x, s->y) < 0.0 && across * across < SWINGS * s->length * s->length;
+static bool is_behind(const double *r, const span *self) {
+  double across = r[0] * self->y - r[1] * self->x;
+  return along(r, self->x, self->y) < 0.0 && across * across < SWINGS * self->length * self->length;
 }
 
 /* Lengths below this have no direction [m]. */
@@ -58,28 +59,28 @@ static double nothing(const strut_model *model, const strut_event_stepper *stepp
 
 /* Segments of member j that may turn round: of a cable at point guides all, else one if it carries something there. */
 static int32_t segments_of(const strut_model *model, int32_t j) {
-  const strut_element *e = strut_element_of_member(&model->elements, j);
-  if (e && e->strain != STRUT_STRAIN_LENGTH)
-    return e->strain == STRUT_STRAIN_PATH ? e->nodes - 1 : 0;
+  const strut_element *element = strut_element_of_member(&model->elements, j);
+  if (element && element->strain != STRUT_STRAIN_LENGTH)
+    return element->strain == STRUT_STRAIN_PATH ? element->nodes - 1 : 0;
   bool driven = model->members.rest[j] != 0.0 || model->terms & STRUT_TERM_DRIVE;
-  bool pushes = model->scene->members[j].kind != STRUT_CABLE || (e && e->sibling >= 0);
+  bool pushes = model->scene->members[j].kind != STRUT_CABLE || (element && element->sibling >= 0);
   return model->terms & STRUT_TERM_ACTUATOR_FORCES ||
-         (pushes && (e || (driven && model->members.stiffness[j] > 0.0)));
+         (pushes && (element || (driven && model->members.stiffness[j] > 0.0)));
 }
 
 int32_t strut_turns_list(const strut_model *model, strut_law_switch *item, uint32_t *ends) {
-  const strut_member_table *t = &model->members;
+  const strut_member_table *members = &model->members;
   int32_t count = 0;
-  for (int32_t j = 0; j < t->count; j++) {
-    const strut_element *e = strut_element_of_member(&model->elements, j);
-    bool guided = e && e->strain == STRUT_STRAIN_PATH;
+  for (int32_t j = 0; j < members->count; j++) {
+    const strut_element *element = strut_element_of_member(&model->elements, j);
+    bool guided = element && element->strain == STRUT_STRAIN_PATH;
     for (int32_t k = 0; k < segments_of(model, j); k++, count++) {
       if (!item) continue;
       item[count] = (strut_law_switch){
           .event = STRUT_EVENT_TURN, .member = j, .element = -1, .guide = guided ? k + 1 : 0};
-      const uint32_t *at = model->elements.at + (guided ? e->first + k : 0);
-      ends[2 * count] = guided ? at[0] : t->from[j];
-      ends[2 * count + 1] = guided ? at[1] : t->to[j];
+      const uint32_t *at = model->elements.at + (guided ? element->first + k : 0);
+      ends[2 * count] = guided ? at[0] : members->from[j];
+      ends[2 * count + 1] = guided ? at[1] : members->to[j];
     }
   }
   return count;
@@ -128,8 +129,8 @@ void strut_turns_look(const strut_model *model, const strut_state *state,
 }
 
 /* The direction of the span, or if it is short, that of its change. */
-static void point(const span *s, bool is_short, double *r) {
-  double x = is_short ? s->dx : s->x, y = is_short ? s->dy : s->y, length = hypot(x, y);
+static void point(const span *self, bool is_short, double *r) {
+  double x = is_short ? self->dx : self->x, y = is_short ? self->dy : self->y, length = hypot(x, y);
   if (length > 0.0) r[0] = x / length, r[1] = y / length;
 }
 
@@ -165,20 +166,20 @@ static double force_at_nothing(const strut_model *model, const strut_state *stat
 }
 
 void strut_turns_hold(const strut_model *model, const strut_state *state,
-                      const strut_event_stepper *stepper, const double *q, const double *v) {
+                      const strut_event_stepper *stepper, const double *q, const double *velocity) {
   double *force = state->latest->force;
   for (int32_t k = stepper->turns.first; k < stepper->laws.count; k++) {
     const strut_law_switch *law = &stepper->laws.item[k];
     const uint32_t *at = ends_of(stepper, k);
     const double *r = ahead_of(stepper, k);
-    span s = span_of(stepper, k, q, v, 1.0);
+    span s = span_of(stepper, k, q, velocity, 1.0);
     bool is_short = s.length <= nothing(model, stepper, k);
     if (law->guide || !(is_short || is_behind(r, &s))) continue;
     double pull = force_at_nothing(model, state, stepper, k, q);
     double push[2] = {2.0 * pull * r[0], 2.0 * pull * r[1]}, u[2] = {0.0, 0.0};
     if (is_short) { /* without a length the damper has no direction either */
-      const strut_element *e = strut_element_of_member(&model->elements, law->member);
-      double damping = model->members.damping[law->member] + (e ? e->damping : 0.0);
+      const strut_element *element = strut_element_of_member(&model->elements, law->member);
+      double damping = model->members.damping[law->member] + (element ? element->damping : 0.0);
       if (s.length > 0.0) u[0] = s.x / s.length, u[1] = s.y / s.length;
       double ahead = pull + damping * along(r, s.dx, s.dy);
       double own = pull + damping * along(u, s.dx, s.dy);
@@ -218,8 +219,8 @@ static bool may_cut(const strut_event_stepper *stepper) {
 
 /* Do the nodes miss each other by too little for a shorter step? */
 static bool is_narrow(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
-                      const course *c) {
-  return c->length <= nothing(model, stepper, k) || !may_cut(stepper);
+                      const course *self) {
+  return self->length <= nothing(model, stepper, k) || !may_cut(stepper);
 }
 
 bool strut_turn_passes(const strut_model *model, const strut_event_stepper *stepper, int32_t k,

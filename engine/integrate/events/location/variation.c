@@ -18,38 +18,44 @@ bool strut_variation_possible(const strut_model *model, const strut_integrator *
 
 strut_variation *strut_variation_create(const strut_model *model, strut_state *state) {
   strut_arena *arena = &state->arena;
-  strut_variation *x = strut_arena_allocate(arena, 1, sizeof *x);
-  if (!x || !(x->tangent = strut_mode_tangent_create(model, state))) return NULL;
-  x->n = x->tangent->n, x->stride = x->tangent->width;
-  x->place = x->tangent->coordinate;
-  size_t rows = 2 * (size_t)x->n, all = rows * (size_t)x->stride, length = (size_t)model->length;
-  bool good = (x->columns = strut_arena_allocate(arena, all, sizeof(double))) &&
-              (x->middle = strut_arena_allocate(arena, all, sizeof(double))) &&
-              (x->delay = strut_arena_allocate(arena, (size_t)x->stride, sizeof(double))) &&
-              (x->gradient = strut_arena_allocate(arena, (size_t)x->stride, sizeof(double))) &&
-              (x->before = strut_arena_allocate(arena, (size_t)x->n, sizeof(double))) &&
-              (x->stage_q = strut_arena_allocate(arena, length, sizeof(double))) &&
-              (x->drift = strut_arena_allocate(arena, length, sizeof(double))) &&
-              (x->slope = strut_arena_allocate(arena, MOST_STAGES, sizeof *x->slope));
+  strut_variation *variation = strut_arena_allocate(arena, 1, sizeof *variation);
+  if (!variation || !(variation->tangent = strut_mode_tangent_create(model, state))) return NULL;
+  variation->n = variation->tangent->n, variation->stride = variation->tangent->width;
+  variation->place = variation->tangent->coordinate;
+  size_t rows = 2 * (size_t)variation->n, all = rows * (size_t)variation->stride,
+         length = (size_t)model->length;
+  bool good =
+      (variation->columns = strut_arena_allocate(arena, all, sizeof(double))) &&
+      (variation->middle = strut_arena_allocate(arena, all, sizeof(double))) &&
+      (variation->delay = strut_arena_allocate(arena, (size_t)variation->stride, sizeof(double))) &&
+      (variation->gradient =
+           strut_arena_allocate(arena, (size_t)variation->stride, sizeof(double))) &&
+      (variation->before = strut_arena_allocate(arena, (size_t)variation->n, sizeof(double))) &&
+      (variation->stage_q = strut_arena_allocate(arena, length, sizeof(double))) &&
+      (variation->drift = strut_arena_allocate(arena, length, sizeof(double))) &&
+      (variation->slope = strut_arena_allocate(arena, MOST_STAGES, sizeof *variation->slope));
   for (int k = 0; k < MOST_STAGES && good; k++)
-    good = (x->slope[k] = strut_arena_allocate(arena, all, sizeof(double)));
-  return good ? x : NULL;
+    good = (variation->slope[k] = strut_arena_allocate(arena, all, sizeof(double)));
+  return good ? variation : NULL;
 }
 
-void strut_variation_reset(strut_variation *x) {
-  size_t all = 2 * (size_t)x->n * (size_t)x->stride;
-  memset(x->columns, 0, all * sizeof(double));
-  for (int32_t i = 0; i < 2 * x->n; i++) x->columns[i * x->stride + i] = 1.0;
+void strut_variation_reset(strut_variation *variation) {
+  size_t all = 2 * (size_t)variation->n * (size_t)variation->stride;
+  memset(variation->columns, 0, all * sizeof(double));
+  for (int32_t i = 0; i < 2 * variation->n; i++)
+    variation->columns[i * variation->stride + i] = 1.0;
 }
 
-static double *velocities(const strut_variation *x) { return x->columns + x->n * x->stride; }
+static double *velocities(const strut_variation *variation) {
+  return variation->columns + variation->n * variation->stride;
+}
 
 void strut_variation_begin(const strut_model *model, const strut_state *state,
                            const strut_event_stepper *stepper) {
-  strut_variation *x = state->watched.variation;
-  memset(x->delay, 0, (size_t)x->stride * sizeof(double));
-  strut_mode_tangent_hold(model, stepper, x->tangent);
-  strut_mode_tangent_project(x->tangent, velocities(x), x->stride);
+  strut_variation *variation = state->watched.variation;
+  memset(variation->delay, 0, (size_t)variation->stride * sizeof(double));
+  strut_mode_tangent_hold(model, stepper, variation->tangent);
+  strut_mode_tangent_project(variation->tangent, velocities(variation), variation->stride);
 }
 
 /* ---- steps ---- */
@@ -111,9 +117,9 @@ static void combine(int32_t all, double h, const double *weight, int count, doub
 /* Positions and velocities of the motion itself at stage k. */
 static const double *place_stage(const strut_model *model, const strut_event_stepper *stepper,
                                  int k, double h, double *q) {
-  const strut_tableau *t = stepper->formula->tableau;
+  const strut_tableau *tableau = stepper->formula->tableau;
   if (k == 0) return stepper->now->v;
-  const double *weight = t->weight[k];
+  const double *weight = tableau->weight[k];
   for (int32_t i = 0; i < model->length; i++) {
     double sum = weight[0] * stepper->now->v[i];
     for (int j = 1; j < k; j++) sum += weight[j] * stepper->stage[j][i];
@@ -124,24 +130,27 @@ static const double *place_stage(const strut_model *model, const strut_event_ste
 
 void strut_variation_step(const strut_model *model, strut_state *state,
                           const strut_event_stepper *stepper, double t, double h) {
-  strut_variation *x = state->watched.variation;
+  strut_variation *variation = state->watched.variation;
   const strut_tableau *tableau = stepper->formula->tableau;
-  int32_t half = x->n * x->stride;
+  int32_t half = variation->n * variation->stride;
   size_t bytes = (size_t)half * sizeof(double);
   for (int k = 0; k < tableau->stages; k++) {
-    const double *z = k ? x->middle : x->columns;
-    const double *v = place_stage(model, stepper, k, h, x->stage_q);
-    if (k) combine(2 * half, h, tableau->weight[k], k, x->slope, x->columns, x->middle);
+    const double *z = k ? variation->middle : variation->columns;
+    const double *v = place_stage(model, stepper, k, h, variation->stage_q);
+    if (k)
+      combine(2 * half, h, tableau->weight[k], k, variation->slope, variation->columns,
+              variation->middle);
     strut_mode_tangent_evaluate(model, state, stepper, t + tableau->ahead[k] * h,
-                                k ? x->stage_q : stepper->now->q, v, x->tangent);
-    memcpy(x->slope[k], z + half, bytes);
-    multiply(x->n, x->stride, x->tangent->rate, z, x->slope[k] + half);
+                                k ? variation->stage_q : stepper->now->q, v, variation->tangent);
+    memcpy(variation->slope[k], z + half, bytes);
+    multiply(variation->n, variation->stride, variation->tangent->rate, z,
+             variation->slope[k] + half);
   }
-  combine(2 * half, h, tableau->weight[tableau->stages], tableau->stages, x->slope, x->columns,
-          x->middle);
-  double *swap = x->columns;
-  x->columns = x->middle, x->middle = swap;
-  memset(x->delay, 0, (size_t)x->stride * sizeof(double));
+  combine(2 * half, h, tableau->weight[tableau->stages], tableau->stages, variation->slope,
+          variation->columns, variation->middle);
+  double *swap = variation->columns;
+  variation->columns = variation->middle, variation->middle = swap;
+  memset(variation->delay, 0, (size_t)variation->stride * sizeof(double));
   if ((model->terms & STRUT_TERM_DRIVE) && state->latest->drive_time != t + h)
     strut_drive_apply(model, state, t + h);
 }
@@ -152,18 +161,18 @@ void strut_variation_step(const strut_model *model, strut_state *state,
  * Of events that positions and speeds of a contact decide: the value's slopes along normal and tangent,
  * which act on speeds, or with TOUCH and OPEN on positions. False of others.
  */
-static bool contact_slopes(const strut_event_stepper *stepper, const strut_event *e, double *normal,
-                           double *tangent, bool *positions) {
+static bool contact_slopes(const strut_event_stepper *stepper, const strut_event *event,
+                           double *normal, double *tangent, bool *positions) {
   *normal = *tangent = 0.0, *positions = false;
-  switch (e->kind) {
+  switch (event->kind) {
     case STRUT_EVENT_TOUCH: *normal = 1.0, *positions = true; return true;
     case STRUT_EVENT_OPEN: *normal = -1.0, *positions = true; return true;
-    case STRUT_EVENT_SLIP_ENDS: *tangent = stepper->modes.side[e->index]; return true;
+    case STRUT_EVENT_SLIP_ENDS: *tangent = stepper->modes.side[event->index]; return true;
     case STRUT_EVENT_LEAVES_STICK_BAND:
-      *tangent = stepper->now->touch[e->index].slip < 0.0 ? 1.0 : -1.0;
+      *tangent = stepper->now->touch[event->index].slip < 0.0 ? 1.0 : -1.0;
       return true;
     case STRUT_EVENT_DAMPER:
-      *normal = stepper->modes.damper[e->index] > 0 ? -1.0 : 1.0;
+      *normal = stepper->modes.damper[event->index] > 0 ? -1.0 : 1.0;
       return true;
     case STRUT_EVENT_STICK_BREAKS:
     case STRUT_EVENT_CREEP_OUT:
@@ -183,35 +192,35 @@ static bool contact_slopes(const strut_event_stepper *stepper, const strut_event
 }
 
 static double contact_gradient(const strut_model *model, const strut_event_stepper *stepper,
-                               const strut_event *e, double normal, double tangent, bool positions,
-                               strut_variation *x) {
-  const strut_contact_table *c = &model->contacts;
-  uint32_t at = c->at[e->index];
-  const double *rows = positions ? x->columns : velocities(x);
+                               const strut_event *event, double normal, double tangent,
+                               bool positions, strut_variation *variation) {
+  const strut_contact_table *contacts = &model->contacts;
+  uint32_t at = contacts->at[event->index];
+  const double *rows = positions ? variation->columns : velocities(variation);
   const double *rate = positions ? stepper->now->v : stepper->now->a;
   double sum = 0.0;
   for (uint32_t k = 0; k < 2; k++) {
-    int32_t row = x->tangent->row_of[at + k];
-    double slope = normal * c->normal[k] + tangent * c->tangent[k];
+    int32_t row = variation->tangent->row_of[at + k];
+    double slope = normal * contacts->normal[k] + tangent * contacts->tangent[k];
     sum += slope * rate[at + k];
-    for (int32_t j = 0; j < x->stride && row >= 0; j++)
-      x->gradient[j] += slope * rows[row * x->stride + j];
+    for (int32_t j = 0; j < variation->stride && row >= 0; j++)
+      variation->gradient[j] += slope * rows[row * variation->stride + j];
   }
   return sum;
 }
 
 /* The event's value at stepper->next, after it has been moved, in the present modes. */
 static double value_beside(const strut_model *model, const strut_state *state,
-                           strut_event_stepper *stepper, const strut_event *e, double t) {
+                           strut_event_stepper *stepper, const strut_event *event, double t) {
   evaluate_step_end(model, state, stepper, t, stepper->next, STRUT_TERMS_ALL, false);
   strut_event_measure(model, state, stepper, stepper->next);
-  return strut_event_value(model, stepper, stepper->next, e->kind, e->index);
+  return strut_event_value(model, stepper, stepper->next, event->kind, event->index);
 }
 
 /* By central differences along the motion, which gives the rate, and along each column. */
 static double differenced_gradient(const strut_model *model, const strut_state *state,
-                                   strut_event_stepper *stepper, const strut_event *e, double t,
-                                   double dt, strut_variation *x) {
+                                   strut_event_stepper *stepper, const strut_event *event, double t,
+                                   double dt, strut_variation *variation) {
   const strut_step_end *now = stepper->now;
   double value[2], step = TIME_DIFFERENCE * dt;
   double length = model->size, speed = model->size / dt;
@@ -221,26 +230,29 @@ static double differenced_gradient(const strut_model *model, const strut_state *
       stepper->next->q[i] = now->q[i] + h * (now->v[i] + 0.5 * h * now->a[i]);
       stepper->next->v[i] = now->v[i] + h * now->a[i];
     }
-    value[side] = value_beside(model, state, stepper, e, t + h);
+    value[side] = value_beside(model, state, stepper, event, t + h);
   }
   double rate = (value[1] - value[0]) / (2.0 * step);
-  for (int32_t j = 0; j < 2 * x->n; j++) {
+  for (int32_t j = 0; j < 2 * variation->n; j++) {
     double most = 0.0;
-    for (int32_t i = 0; i < 2 * x->n; i++)
-      most = fmax(most, fabs(x->columns[i * x->stride + j]) / (i < x->n ? length : speed));
+    for (int32_t i = 0; i < 2 * variation->n; i++)
+      most = fmax(most, fabs(variation->columns[i * variation->stride + j]) /
+                            (i < variation->n ? length : speed));
     if (!(most > 0.0)) continue;
     double part = DIFFERENCE / most;
     for (int side = 0; side < 2; side++) {
       double factor = side ? part : -part;
       memcpy(stepper->next->q, now->q, (size_t)model->length * sizeof(double));
       memcpy(stepper->next->v, now->v, (size_t)model->length * sizeof(double));
-      for (int32_t i = 0; i < x->n; i++) {
-        stepper->next->q[x->place[i]] += factor * x->columns[i * x->stride + j];
-        stepper->next->v[x->place[i]] += factor * x->columns[(x->n + i) * x->stride + j];
+      for (int32_t i = 0; i < variation->n; i++) {
+        stepper->next->q[variation->place[i]] +=
+            factor * variation->columns[i * variation->stride + j];
+        stepper->next->v[variation->place[i]] +=
+            factor * variation->columns[(variation->n + i) * variation->stride + j];
       }
-      value[side] = value_beside(model, state, stepper, e, t);
+      value[side] = value_beside(model, state, stepper, event, t);
     }
-    x->gradient[j] = (value[1] - value[0]) / (2.0 * part);
+    variation->gradient[j] = (value[1] - value[0]) / (2.0 * part);
   }
   if ((model->terms & STRUT_TERM_DRIVE) && state->latest->drive_time != t)
     strut_drive_apply(model, state, t);
@@ -248,33 +260,34 @@ static double differenced_gradient(const strut_model *model, const strut_state *
 }
 
 void strut_variation_meet(const strut_model *model, const strut_state *state,
-                          strut_event_stepper *stepper, const strut_event *e, double t, double dt,
-                          bool stepped) {
-  strut_variation *x = state->watched.variation;
+                          strut_event_stepper *stepper, const strut_event *event, double t,
+                          double dt, bool stepped) {
+  strut_variation *variation = state->watched.variation;
   double normal, tangent;
   bool positions;
-  for (int32_t i = 0; i < x->n; i++) x->before[i] = stepper->now->a[x->place[i]];
+  for (int32_t i = 0; i < variation->n; i++)
+    variation->before[i] = stepper->now->a[variation->place[i]];
   if (!stepped) return;
-  memset(x->gradient, 0, (size_t)x->stride * sizeof(double));
-  double rate = contact_slopes(stepper, e, &normal, &tangent, &positions)
-                    ? contact_gradient(model, stepper, e, normal, tangent, positions, x)
-                    : differenced_gradient(model, state, stepper, e, t, dt, x);
-  for (int32_t j = 0; j < x->stride; j++) {
-    double delay = -x->gradient[j] / rate;
-    x->delay[j] = isfinite(delay) ? delay : 0.0;
+  memset(variation->gradient, 0, (size_t)variation->stride * sizeof(double));
+  double rate = contact_slopes(stepper, event, &normal, &tangent, &positions)
+                    ? contact_gradient(model, stepper, event, normal, tangent, positions, variation)
+                    : differenced_gradient(model, state, stepper, event, t, dt, variation);
+  for (int32_t j = 0; j < variation->stride; j++) {
+    double delay = -variation->gradient[j] / rate;
+    variation->delay[j] = isfinite(delay) ? delay : 0.0;
   }
 }
 
 void strut_variation_pass(const strut_model *model, const strut_state *state,
                           const strut_event_stepper *stepper, bool event) {
-  strut_variation *x = state->watched.variation;
-  double *v = velocities(x);
-  if (!event) memset(x->delay, 0, (size_t)x->stride * sizeof(double));
-  for (int32_t i = 0; i < x->n && event; i++) {
-    double jump = x->before[i] - stepper->now->a[x->place[i]];
-    for (int32_t j = 0; j < x->stride && jump != 0.0; j++)
-      v[i * x->stride + j] += jump * x->delay[j];
+  strut_variation *variation = state->watched.variation;
+  double *v = velocities(variation);
+  if (!event) memset(variation->delay, 0, (size_t)variation->stride * sizeof(double));
+  for (int32_t i = 0; i < variation->n && event; i++) {
+    double jump = variation->before[i] - stepper->now->a[variation->place[i]];
+    for (int32_t j = 0; j < variation->stride && jump != 0.0; j++)
+      v[i * variation->stride + j] += jump * variation->delay[j];
   }
-  strut_mode_tangent_hold(model, stepper, x->tangent);
-  strut_mode_tangent_project(x->tangent, v, x->stride);
+  strut_mode_tangent_hold(model, stepper, variation->tangent);
+  strut_mode_tangent_project(variation->tangent, v, variation->stride);
 }

@@ -10,18 +10,18 @@
 
 const strut_frame strut_frame_of_scene = {.axes = {{1.0, 0.0}, {0.0, 1.0}}, .scale = 1.0};
 
-void strut_frame_vector(const strut_frame *f, double vector[2]) {
+void strut_frame_vector(const strut_frame *frame, double vector[2]) {
   double x = vector[0], y = vector[1];
-  bool plain = f->axes[0][0] == 1.0 && f->axes[1][1] == 1.0 && f->axes[1][0] == 0.0;
+  bool plain = frame->axes[0][0] == 1.0 && frame->axes[1][1] == 1.0 && frame->axes[1][0] == 0.0;
   if (plain) return;
-  vector[0] = f->axes[0][0] * x + f->axes[0][1] * y;
-  vector[1] = f->axes[1][0] * x + f->axes[1][1] * y;
+  vector[0] = frame->axes[0][0] * x + frame->axes[0][1] * y;
+  vector[1] = frame->axes[1][0] * x + frame->axes[1][1] * y;
 }
 
-void strut_frame_point(const strut_frame *f, double point[2]) {
-  strut_frame_vector(f, point);
-  point[0] += f->at[0];
-  point[1] += f->at[1];
+void strut_frame_point(const strut_frame *frame, double point[2]) {
+  strut_frame_vector(frame, point);
+  point[0] += frame->at[0];
+  point[1] += frame->at[1];
 }
 
 strut_frame strut_frame_within(const strut_frame *outer, const strut_frame *inner) {
@@ -36,8 +36,8 @@ strut_frame strut_frame_within(const strut_frame *outer, const strut_frame *inne
   return f;
 }
 
-bool strut_frame_flips(const strut_frame *f) {
-  return f->axes[0][0] * f->axes[1][1] - f->axes[0][1] * f->axes[1][0] < 0.0;
+bool strut_frame_flips(const strut_frame *frame) {
+  return frame->axes[0][0] * frame->axes[1][1] - frame->axes[0][1] * frame->axes[1][0] < 0.0;
 }
 
 /* ---- scopes ---- */
@@ -265,18 +265,18 @@ const char *strut_hiding_part(const strut_reader *reader, const strut_tree *valu
 }
 
 /* "; 'cell' has the copies 0 to 2" for `number` beyond them. */
-static const char *count_hint(strut_reader *reader, const strut_placement *p, const char *name,
-                              size_t length, int which) {
-  if (p->numbers == 0) return "; what is placed once has no numbers";
+static const char *count_hint(strut_reader *reader, const strut_placement *placement,
+                              const char *name, size_t length, int which) {
+  if (placement->numbers == 0) return "; what is placed once has no numbers";
   char *end;
   long long number = strtoll(name, &end, 10);
-  bool counted = length && end == name + length && number >= p->count[which];
+  bool counted = length && end == name + length && number >= placement->count[which];
   if (!counted) return "";
-  return strut_arena_format(&reader->scratch, "; '%s' has the copies 0 to %lld%s", p->name,
-                            (long long)p->count[which] - 1,
-                            p->numbers == 1 ? ""
-                            : which         ? " along its second count"
-                                            : " along its first count");
+  return strut_arena_format(&reader->scratch, "; '%s' has the copies 0 to %lld%s", placement->name,
+                            (long long)placement->count[which] - 1,
+                            placement->numbers == 1 ? ""
+                            : which                 ? " along its second count"
+                                                    : " along its first count");
 }
 
 const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
@@ -286,14 +286,14 @@ const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
   if (strut_name_map_find(&reader->copies->removed, full.text) >= 0) return "; it is removed";
   for (char *dot = strchr(full.text, '.'); dot && !*hint; dot = strchr(dot + 1, '.')) {
     *dot = '\0';
-    const strut_placement *p = strut_placement_find(reader, full.text);
+    const strut_placement *placement = strut_placement_find(reader, full.text);
     *dot = '.';
     const char *piece = dot + 1;
-    for (int k = 0; p && (k < p->numbers || k == 0) && !hint[0]; k++) {
+    for (int k = 0; placement && (k < placement->numbers || k == 0) && !hint[0]; k++) {
       size_t length = strcspn(piece, ".");
       bool number = length && strspn(piece, "0123456789") == length;
-      if (p->numbers || number || strncmp(piece, "last.", 5) == 0)
-        hint = count_hint(reader, p, piece, length, k);
+      if (placement->numbers || number || strncmp(piece, "last.", 5) == 0)
+        hint = count_hint(reader, placement, piece, length, k);
       if (!hint) return "";
       piece += length + (piece[length] == '.');
     }
@@ -375,8 +375,9 @@ void strut_error_remember(strut_reader *reader, strut_place place, const char *f
 static int64_t copies_of(const strut_reader *reader, const strut_tree *key) {
   int64_t sum = 0;
   for (size_t i = 0; i < reader->copies->placement_count; i++) {
-    const strut_placement *p = reader->copies->placements[i];
-    if (p->key == key) sum += p->count[0] * (p->numbers > 1 ? p->count[1] : 1);
+    const strut_placement *placement = reader->copies->placements[i];
+    if (placement->key == key)
+      sum += placement->count[0] * (placement->numbers > 1 ? placement->count[1] : 1);
   }
   return sum;
 }
@@ -389,9 +390,9 @@ static const char *without_dot(const strut_copy *copy, char *buffer, size_t size
 
 void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, int64_t copies) {
   char which[220] = "", first[120];
-  const strut_placement *p = copy->placement;
-  int64_t all = copies_of(reader, p->key);
-  strut_place place = p->key->place;
+  const strut_placement *placement = copy->placement;
+  int64_t all = copies_of(reader, placement->key);
+  strut_place place = placement->key->place;
   without_dot(copy, first, sizeof first);
   bool link = copy->kind == STRUT_SCOPE_LINK;
   if (all > 1 && copies == all && !link)
@@ -404,11 +405,11 @@ void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, 
   if (copy->kind == STRUT_SCOPE_PLACE && !*which) return; /* the message is there already */
   if (copy->kind == STRUT_SCOPE_COPY)
     strut_diagnose_note(reader->diagnostics, item, place,
-                        "in part '%.100s', placed here as '%.100s'%s", p->part->name, p->key->text,
-                        which);
+                        "in part '%.100s', placed here as '%.100s'%s", placement->part->name,
+                        placement->key->text, which);
   else
-    strut_diagnose_note(reader->diagnostics, item, place, "placed here as '%.100s'%s", p->key->text,
-                        which);
+    strut_diagnose_note(reader->diagnostics, item, place, "placed here as '%.100s'%s",
+                        placement->key->text, which);
 }
 
 void strut_note_copies(strut_reader *reader) {

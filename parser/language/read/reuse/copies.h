@@ -210,14 +210,14 @@ typedef struct strut_placing {
 /* read_parts.c */
 
 /** The keys of a placement. False: it cannot be copied, which was reported. */
-bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy *outer,
-                          strut_placing *p);
+bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, strut_copy *outer,
+                          strut_placing *placing);
 /**
  * The scopes of one copy, and what it holds. *base is the frame of the first copy, which is made before
  * others; *place_scope that of the placement's keys. NULL: it could not be made.
  */
-strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
-                            strut_frame *base, strut_copy **place_scope);
+strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
+                            const int64_t number[2], strut_frame *base, strut_copy **place_scope);
 
 /* place_frame.c */
 
@@ -232,17 +232,18 @@ strut_frame strut_repeated_frame(const strut_repetition *repeat, const int64_t n
 /* copy_entries.c */
 
 /** Enters the node under its full name, so that `onto` finds it. */
-void strut_remember_node(strut_expansion *e, const strut_tree *key);
+void strut_remember_node(strut_expansion *expansion, const strut_tree *key);
 /** Copies all entries of the fields of a part, or of `next`, into a scope. */
-void strut_copy_things(strut_expansion *e, strut_fields *fields, strut_copy *scope);
+void strut_copy_things(strut_expansion *expansion, strut_fields *fields, strut_copy *scope);
 size_t strut_count_things(strut_fields *fields);
 /** Adds nodes to be merged: two names in a scope, or, with NULL, all that touch within it. */
-void strut_add_merger(strut_expansion *e, strut_copy *scope, const strut_tree *a,
-                      const strut_tree *b, const strut_tree *place);
+void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *first,
+                      const strut_tree *second, const strut_tree *place);
 /** Reads `merge`: `touching`, or a mapping of names. */
-void strut_read_merge(strut_expansion *e, const strut_tree *value, strut_copy *scope, int key);
+void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut_copy *scope,
+                      int key);
 /** Lays the scene's own entries of a key over those of the copies, and joins both. */
-void strut_join_entries(strut_expansion *e, int key);
+void strut_join_entries(strut_expansion *expansion, int key);
 
 /* place_frame.c */
 
@@ -250,8 +251,10 @@ void strut_join_entries(strut_expansion *e, int key);
  * Where the node of a copy lies that `name` means, one of a part placed within it too, in the coordinates
  * that the copy's frame leads to. False: it has no such node, or a part on the way is laid onto others.
  */
-bool strut_find_in_copy(strut_expansion *e, strut_copy *copy, const char *name, double position[2]);
+bool strut_find_in_copy(strut_expansion *expansion, strut_copy *copy, const char *name,
+                        double position[2]);
 /** The frame of the first copy by the placement's own keys; false: it was reported. */
-bool strut_read_frame(strut_expansion *e, strut_placing *p, strut_copy *copy, strut_frame *frame);
+bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_copy *copy,
+                      strut_frame *frame);
 
 #endif

@@ -24,55 +24,58 @@ static void append(strut_entry_list *list, strut_tree *key) {
   list->count++;
 }
 
-void strut_remember_node(strut_expansion *e, const strut_tree *key) {
-  struct strut_copies *c = e->copies;
-  strut_reader *reader = e->reader;
-  if (!strut_grow(&c->nodes, &c->node_capacity, c->node_count, sizeof *c->nodes)) {
-    reader->out_of_memory = e->stopped = true;
+void strut_remember_node(strut_expansion *expansion, const strut_tree *key) {
+  struct strut_copies *copies = expansion->copies;
+  strut_reader *reader = expansion->reader;
+  if (!strut_grow(&copies->nodes, &copies->node_capacity, copies->node_count,
+                  sizeof *copies->nodes)) {
+    reader->out_of_memory = expansion->stopped = true;
     return;
   }
-  c->nodes[c->node_count] = key;
-  strut_add_name(reader, &c->node_entries, key->text, c->node_count++);
+  copies->nodes[copies->node_count] = key;
+  strut_add_name(reader, &copies->node_entries, key->text, copies->node_count++);
 }
 
 /* Copies the entries of a mapping: a name and a head of its own for each. */
-static void copy_entries(strut_expansion *e, const strut_tree *map, strut_copy *scope, int key) {
-  strut_reader *reader = e->reader;
+static void copy_entries(strut_expansion *expansion, const strut_tree *map, strut_copy *scope,
+                         int key) {
+  strut_reader *reader = expansion->reader;
   bool contacts = key < 0, nodes = key == STRUT_KEY_SCENE_NODES;
-  strut_entry_list *list =
-      contacts ? &e->contacts : &e->list[key - strut_section_first(STRUT_SECTION_SCENE)];
+  strut_entry_list *list = contacts
+                               ? &expansion->contacts
+                               : &expansion->list[key - strut_section_first(STRUT_SECTION_SCENE)];
   struct pair {
     strut_placed_tree key;
     strut_tree value;
   } *pairs = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *pairs);
-  if (!pairs) e->stopped = true;
-  for (const strut_tree *from = map->first; from && !e->stopped; from = from->next->next) {
+  if (!pairs) expansion->stopped = true;
+  for (const strut_tree *from = map->first; from && !expansion->stopped; from = from->next->next) {
     struct pair *pair = pairs++;
     const char *name = strut_arena_format(&reader->scratch, "%s%s", scope->prefix, from->text);
-    if (!name) reader->out_of_memory = e->stopped = true;
+    if (!name) reader->out_of_memory = expansion->stopped = true;
     pair->key = (strut_placed_tree){*from, scope};
     pair->key.tree.placed = true;
     pair->key.tree.text = name;
     pair->value = *from->next;
     pair->key.tree.next = &pair->value;
     pair->value.next = NULL;
-    if (e->stopped) return;
+    if (expansion->stopped) return;
     append(list, &pair->key.tree);
-    if (nodes) strut_remember_node(e, &pair->key.tree);
+    if (nodes) strut_remember_node(expansion, &pair->key.tree);
   }
-  e->copies->things += map->count;
+  expansion->copies->things += map->count;
 }
 
 /* All that a part, or `next`, holds. */
-void strut_copy_things(strut_expansion *e, strut_fields *fields, strut_copy *scope) {
+void strut_copy_things(strut_expansion *expansion, strut_fields *fields, strut_copy *scope) {
   int first = strut_section_first(fields->section);
-  for (int k = 0; k < strut_section_size(fields->section) && !e->stopped; k++) {
+  for (int k = 0; k < strut_section_size(fields->section) && !expansion->stopped; k++) {
     const strut_slot *slot = &fields->slot[k];
     if (slot->state != STRUT_GIVEN)
       continue;  // before the look by name: a part may have 1e6 copies
     int key = scene_key(first + k);
     bool contacts = first + k == STRUT_KEY_PART_CONTACTS;
-    if (key >= 0 || contacts) copy_entries(e, slot->value, scope, contacts ? -1 : key);
+    if (key >= 0 || contacts) copy_entries(expansion, slot->value, scope, contacts ? -1 : key);
   }
 }
 
@@ -85,39 +88,41 @@ size_t strut_count_things(strut_fields *fields) {
   return count;
 }
 
-void strut_add_merger(strut_expansion *e, strut_copy *scope, const strut_tree *a,
-                      const strut_tree *b, const strut_tree *place) {
-  strut_merger *m = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *m);
-  if (!m) return;
-  *m = (strut_merger){.scope = scope, .a = a, .b = b, .place = place};
-  if (!e->copies->mergers_end) e->copies->mergers_end = &e->copies->mergers;
-  *e->copies->mergers_end = m;
-  e->copies->mergers_end = &m->next;
+void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut_tree *first,
+                      const strut_tree *second, const strut_tree *place) {
+  strut_merger *merger =
+      strut_reader_allocate(expansion->reader, &expansion->reader->scratch, 1, sizeof *merger);
+  if (!merger) return;
+  *merger = (strut_merger){.scope = scope, .a = first, .b = second, .place = place};
+  if (!expansion->copies->mergers_end) expansion->copies->mergers_end = &expansion->copies->mergers;
+  *expansion->copies->mergers_end = merger;
+  expansion->copies->mergers_end = &merger->next;
 }
 
 /* `touching`, or a mapping of names. */
-void strut_read_merge(strut_expansion *e, const strut_tree *value, strut_copy *scope, int key) {
-  if (!value || e->weighing) return;
-  e->reader->scope = scope; /* one message for all copies */
+void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut_copy *scope,
+                      int key) {
+  if (!value || expansion->weighing) return;
+  expansion->reader->scope = scope; /* one message for all copies */
   if (value->kind == STRUT_TREE_SCALAR && strcmp(value->text, "touching") == 0)
-    strut_add_merger(e, scope, NULL, NULL, value);
+    strut_add_merger(expansion, scope, NULL, NULL, value);
   else if (value->kind != STRUT_TREE_MAP)
     strut_refuse_form(
-        e->reader, key, value,
+        expansion->reader, key, value,
         (strut_owner){scope ? "part" : "the scene", scope ? scope->placement->part->name : NULL});
-  for (const strut_tree *k = value->kind == STRUT_TREE_MAP ? value->first : NULL; k;
-       k = k->next->next)
-    if (strut_read_scalar(e->reader, k->next, k->text, (strut_owner){"'merge'", NULL},
+  for (const strut_tree *tree = value->kind == STRUT_TREE_MAP ? value->first : NULL; tree;
+       tree = tree->next->next)
+    if (strut_read_scalar(expansion->reader, tree->next, tree->text, (strut_owner){"'merge'", NULL},
                           "the name of a node"))
-      strut_add_merger(e, scope, k, k->next, value);
-  e->reader->scope = NULL;
+      strut_add_merger(expansion, scope, tree, tree->next, value);
+  expansion->reader->scope = NULL;
 }
 
 /* The scene's own entries of a key, then those of the copies. */
-void strut_join_entries(strut_expansion *e, int key) {
-  strut_reader *reader = e->reader;
+void strut_join_entries(strut_expansion *expansion, int key) {
+  strut_reader *reader = expansion->reader;
   strut_slot *slot = strut_slot_of(&reader->top, key);
-  strut_entry_list *list = &e->list[key - strut_section_first(STRUT_SECTION_SCENE)];
+  strut_entry_list *list = &expansion->list[key - strut_section_first(STRUT_SECTION_SCENE)];
   if (!list->count || slot->state == STRUT_BROKEN) return;
   strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
   const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
@@ -185,9 +190,9 @@ typedef struct placed_index {
 static bool index_placed(strut_reader *reader, strut_tree *first, size_t count, placed_index *all) {
   all->key = strut_reader_allocate(reader, &reader->scratch, count, sizeof *all->key);
   all->removed = strut_reader_allocate(reader, &reader->scratch, count, sizeof *all->removed);
-  for (strut_tree *k = first; k && all->key && all->removed; k = k->next->next) {
-    strut_add_name(reader, &all->names, k->text, all->count);
-    all->key[all->count++] = k;
+  for (strut_tree *tree = first; tree && all->key && all->removed; tree = tree->next->next) {
+    strut_add_name(reader, &all->names, tree->text, all->count);
+    all->key[all->count++] = tree;
   }
   return all->key && all->removed;
 }
@@ -270,12 +275,12 @@ strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, s
   strut_tree_builder rest = strut_tree_begin(&reader->scratch, own);
   placed_index all = {0};
   bool indexed = false;
-  for (const strut_tree *k = own->first; k; k = k->next->next) {
-    bool may = strpbrk(k->text, ".*") != NULL;
+  for (const strut_tree *tree = own->first; tree; tree = tree->next->next) {
+    bool may = strpbrk(tree->text, ".*") != NULL;
     if (may && !indexed && !index_placed(reader, *placed, *placed_count, &all)) break;
     indexed = indexed || may;
-    if (may && apply(reader, k, &all, key)) continue;
-    if (!strut_tree_share(&rest, &reader->scratch, k, k->next)) reader->out_of_memory = true;
+    if (may && apply(reader, tree, &all, key)) continue;
+    if (!strut_tree_share(&rest, &reader->scratch, tree, tree->next)) reader->out_of_memory = true;
   }
   *count = rest.map ? rest.map->count : 0;
   if (indexed) unlink_removed(&all, placed, placed_count);

@@ -95,8 +95,8 @@ static void read_group(strut_reader *reader, const strut_tree *key, strut_group 
     return;
   }
   group->items = strut_reader_allocate(reader, &reader->scratch, map->count, sizeof *group->items);
-  for (const strut_tree *k = map->first; k && group->items; k = k->next->next)
-    read_item(reader, group, k, owner);
+  for (const strut_tree *tree = map->first; tree && group->items; tree = tree->next->next)
+    read_item(reader, group, tree, owner);
 }
 
 size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_group **groups) {

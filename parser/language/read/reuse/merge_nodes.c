@@ -33,10 +33,10 @@ typedef struct merging {
   struct named_node *by_name; /* (count) sorted, once a part merges what touches */
 } merging;
 
-static int32_t find_root(merging *m, int32_t i) {
-  while (m->root[i] != i) {
-    m->root[i] = m->root[m->root[i]];
-    i = m->root[i];
+static int32_t find_root(merging *self, int32_t i) {
+  while (self->root[i] != i) {
+    self->root[i] = self->root[self->root[i]];
+    i = self->root[i];
   }
   return i;
 }
@@ -51,14 +51,14 @@ static double structure_size(const strut_scene *scene) {
   return hypot(high[0] - low[0], high[1] - low[1]);
 }
 
-static strut_place drawn_place(const merging *m, int32_t node) {
-  return m->reader->things[STRUT_THING_NODE].source[node].key->place;
+static strut_place drawn_place(const merging *self, int32_t node) {
+  return self->reader->things[STRUT_THING_NODE].source[node].key->place;
 }
 
 /* Reports two nodes that are apart, and where each is drawn. */
-static void report_apart(merging *m, const strut_merger *merger, int32_t a, int32_t b,
+static void report_apart(merging *self, const strut_merger *merger, int32_t a, int32_t b,
                          double apart) {
-  strut_reader *reader = m->reader;
+  strut_reader *reader = self->reader;
   const strut_node *nodes = reader->scene->nodes;
   const strut_tree *at = merger->a ? merger->a : merger->place;
   size_t before = reader->diagnostics->count;
@@ -66,7 +66,7 @@ static void report_apart(merging *m, const strut_merger *merger, int32_t a, int3
   if (merger->a)
     strut_report_error(reader, at->place, "'%s' and '%s' cannot be one node: they are %.3g m apart",
                        nodes[a].name, nodes[b].name, apart);
-  else if (m->near_count == 1)
+  else if (self->near_count == 1)
     strut_report_error(reader, at->place,
                        "'%s' and '%s' are %.3g m apart: merge them by name, or move them",
                        nodes[a].name, nodes[b].name, apart);
@@ -74,23 +74,23 @@ static void report_apart(merging *m, const strut_merger *merger, int32_t a, int3
     strut_report_error(reader, at->place,
                        "'%s' and '%s' are %.3g m apart, and %zu more pairs nearly touch: merge "
                        "them by name, or move them",
-                       nodes[a].name, nodes[b].name, apart, m->near_count - 1);
+                       nodes[a].name, nodes[b].name, apart, self->near_count - 1);
   if (reader->diagnostics->count == before) return;
-  strut_diagnose_note(reader->diagnostics, before, drawn_place(m, a), "'%s' is drawn here",
+  strut_diagnose_note(reader->diagnostics, before, drawn_place(self, a), "'%s' is drawn here",
                       nodes[a].name);
-  strut_diagnose_note(reader->diagnostics, before, drawn_place(m, b), "'%s' is drawn here",
+  strut_diagnose_note(reader->diagnostics, before, drawn_place(self, b), "'%s' is drawn here",
                       nodes[b].name);
 }
 
-static double distance(const merging *m, int32_t a, int32_t b) {
-  const strut_node *nodes = m->reader->scene->nodes;
+static double distance(const merging *self, int32_t a, int32_t b) {
+  const strut_node *nodes = self->reader->scene->nodes;
   return strut_distance(nodes[a].position, nodes[b].position);
 }
 
 /* The earlier node stays. */
-static void unite(merging *m, const strut_merger *merger, int32_t a, int32_t b) {
-  strut_reader *reader = m->reader;
-  a = find_root(m, a), b = find_root(m, b);
+static void unite(merging *self, const strut_merger *merger, int32_t a, int32_t b) {
+  strut_reader *reader = self->reader;
+  a = find_root(self, a), b = find_root(self, b);
   if (a == b) return;
   int32_t stays = a < b ? a : b, goes = a < b ? b : a;
   strut_node *kept = &reader->scene->nodes[stays], *node = &reader->scene->nodes[goes];
@@ -100,7 +100,7 @@ static void unite(merging *m, const strut_merger *merger, int32_t a, int32_t b) 
                        node->name);
     return;
   }
-  m->root[goes] = stays;
+  self->root[goes] = stays;
   kept->mass += node->mass;
   for (int c = 0; c < 2; c++) kept->fixed[c] = kept->fixed[c] || node->fixed[c];
   if (reader->node_moves[goes]) {
@@ -112,8 +112,8 @@ static void unite(merging *m, const strut_merger *merger, int32_t a, int32_t b) 
     reader->things[STRUT_THING_NODE].source[stays].broken = true;
 }
 
-static void merge_named(merging *m, const strut_merger *merger) {
-  strut_reader *reader = m->reader;
+static void merge_named(merging *self, const strut_merger *merger) {
+  strut_reader *reader = self->reader;
   strut_copy *own = merger->scope;
   strut_owner owner = {!own                            ? "the scene"
                        : own->kind == STRUT_SCOPE_LINK ? "'next'"
@@ -141,11 +141,11 @@ static void merge_named(merging *m, const strut_merger *merger) {
     b = strut_read_reference(reader, b_name, "merge", owner, STRUT_THING_NODE);
   }
   if (a >= 0 && b >= 0) {
-    double apart = distance(m, a, b);
-    if (apart > SAME * m->size)
-      report_apart(m, merger, a, b, apart);
+    double apart = distance(self, a, b);
+    if (apart > SAME * self->size)
+      report_apart(self, merger, a, b, apart);
     else
-      unite(m, merger, a, b);
+      unite(self, merger, a, b);
   } else {
     reader->ends_unknown = true;
   }
@@ -160,11 +160,11 @@ typedef struct grid_node {
   int32_t node;
 } grid_node;
 
-static int compare(const void *a, const void *b) {
-  const grid_node *p = a, *q = b;
-  if (p->x != q->x) return p->x < q->x ? -1 : 1;
-  if (p->y != q->y) return p->y < q->y ? -1 : 1;
-  return p->node < q->node ? -1 : p->node > q->node;
+static int compare(const void *first, const void *second) {
+  const grid_node *self = first, *q = second;
+  if (self->x != q->x) return self->x < q->x ? -1 : 1;
+  if (self->y != q->y) return self->y < q->y ? -1 : 1;
+  return self->node < q->node ? -1 : self->node > q->node;
 }
 
 /* The first of the sorted nodes in the square (x, y) or behind it. */
@@ -181,73 +181,74 @@ static size_t lower_bound(const grid_node *grid, size_t count, int64_t x, int64_
   return low;
 }
 
-static int compare_names(const void *a, const void *b) {
-  return strcmp(((const named_node *)a)->name, ((const named_node *)b)->name);
+static int compare_names(const void *first, const void *second) {
+  return strcmp(((const named_node *)first)->name, ((const named_node *)second)->name);
 }
 
-static bool sort_names(merging *m) {
-  if (m->by_name) return true;
-  m->by_name = strut_reader_allocate(m->reader, &m->reader->scratch, m->count, sizeof *m->by_name);
-  for (size_t i = 0; m->by_name && i < m->count; i++)
-    m->by_name[i] = (named_node){m->reader->scene->nodes[i].name, (int32_t)i};
-  if (m->by_name) qsort(m->by_name, m->count, sizeof *m->by_name, compare_names);
-  return m->by_name != NULL;
+static bool sort_names(merging *self) {
+  if (self->by_name) return true;
+  self->by_name = strut_reader_allocate(self->reader, &self->reader->scratch, self->count,
+                                        sizeof *self->by_name);
+  for (size_t i = 0; self->by_name && i < self->count; i++)
+    self->by_name[i] = (named_node){self->reader->scene->nodes[i].name, (int32_t)i};
+  if (self->by_name) qsort(self->by_name, self->count, sizeof *self->by_name, compare_names);
+  return self->by_name != NULL;
 }
 
 /* The nodes of a copy among the sorted names; of the scene, all. */
-static size_t find_own_nodes(const merging *m, const strut_copy *scope, size_t *first) {
-  size_t low = 0, high = m->count, size = scope->prefix_length;
+static size_t find_own_nodes(const merging *self, const strut_copy *scope, size_t *first) {
+  size_t low = 0, high = self->count, size = scope->prefix_length;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
-    if (strncmp(m->by_name[middle].name, scope->prefix, size) < 0)
+    if (strncmp(self->by_name[middle].name, scope->prefix, size) < 0)
       low = middle + 1;
     else
       high = middle;
   }
   *first = low;
-  while (high < m->count && strncmp(m->by_name[high].name, scope->prefix, size) == 0) high++;
+  while (high < self->count && strncmp(self->by_name[high].name, scope->prefix, size) == 0) high++;
   return high - low;
 }
 
-static double near_distance(const merging *m) {
-  double near = fmin(NEAR, PART_OF_SPACING / (double)m->count);
-  return fmax(near, SAME) * m->size;
+static double near_distance(const merging *self) {
+  double near = fmin(NEAR, PART_OF_SPACING / (double)self->count);
+  return fmax(near, SAME) * self->size;
 }
 
 /* Compares a node with those of one square; true where it has become another one. */
-static bool meet_square(merging *m, const strut_merger *merger, const grid_node *grid, size_t count,
-                        const grid_node *own, int64_t x, int64_t y) {
+static bool meet_square(merging *self, const strut_merger *merger, const grid_node *grid,
+                        size_t count, const grid_node *own, int64_t x, int64_t y) {
   for (size_t k = lower_bound(grid, count, x, y); k < count && grid[k].x == x && grid[k].y == y;
        k++) {
     int32_t other = grid[k].node;
     if (other >= own->node) return false; /* sorted: later nodes come later */
-    if (find_root(m, other) != other || find_root(m, own->node) == other) continue;
-    double apart = distance(m, other, own->node);
-    if (apart <= SAME * m->size) {
-      unite(m, merger, other, own->node);
+    if (find_root(self, other) != other || find_root(self, own->node) == other) continue;
+    double apart = distance(self, other, own->node);
+    if (apart <= SAME * self->size) {
+      unite(self, merger, other, own->node);
       return true;
     }
-    if (apart > near_distance(m) || m->near_count++) continue;
-    m->near[0] = other, m->near[1] = own->node;
+    if (apart > near_distance(self) || self->near_count++) continue;
+    self->near[0] = other, self->near[1] = own->node;
   }
   return false;
 }
 
-static void merge_touching(merging *m, const strut_merger *merger) {
-  strut_reader *reader = m->reader;
-  double width = near_distance(m);
-  m->near_count = 0;
+static void merge_touching(merging *self, const strut_merger *merger) {
+  strut_reader *reader = self->reader;
+  double width = near_distance(self);
+  self->near_count = 0;
   size_t count = 0;
-  size_t first = 0, all = m->count;
-  if (merger->scope && !sort_names(m)) return;
-  if (merger->scope) all = find_own_nodes(m, merger->scope, &first);
+  size_t first = 0, all = self->count;
+  if (merger->scope && !sort_names(self)) return;
+  if (merger->scope) all = find_own_nodes(self, merger->scope, &first);
   grid_node *grid = strut_allocate(all, sizeof *grid);
   if (!grid) {
     reader->out_of_memory = true;
     return;
   }
   for (size_t k = 0; k < all && width > 0.0; k++) {
-    int32_t i = merger->scope ? m->by_name[first + k].node : (int32_t)k;
+    int32_t i = merger->scope ? self->by_name[first + k].node : (int32_t)k;
     const double *at = reader->scene->nodes[i].position;
     if (!isfinite(at[0] + at[1])) continue;
     grid[count++] = (grid_node){(int64_t)floor(at[0] / width), (int64_t)floor(at[1] / width), i};
@@ -256,12 +257,13 @@ static void merge_touching(merging *m, const strut_merger *merger) {
   for (size_t k = 0; k < count; k++) {
     bool met = false;
     for (int square = 0; square < 9 && !met; square++)
-      met = meet_square(m, merger, grid, count, &grid[k], grid[k].x + square / 3 - 1,
+      met = meet_square(self, merger, grid, count, &grid[k], grid[k].x + square / 3 - 1,
                         grid[k].y + square % 3 - 1);
   }
   strut_release(grid);
-  if (m->near_count)
-    report_apart(m, merger, m->near[0], m->near[1], distance(m, m->near[0], m->near[1]));
+  if (self->near_count)
+    report_apart(self, merger, self->near[0], self->near[1],
+                 distance(self, self->near[0], self->near[1]));
 }
 
 /* ---- the nodes that stay ---- */
@@ -299,15 +301,15 @@ static void find_ports(strut_reader *reader) {
 }
 
 /* Moves the nodes that stay together, and lets all names mean them. */
-static void compact(merging *m) {
-  strut_reader *reader = m->reader;
+static void compact(merging *self) {
+  strut_reader *reader = self->reader;
   strut_scene *scene = reader->scene;
-  int32_t *index = strut_reader_allocate(reader, &reader->scratch, m->count, sizeof *index);
-  const char **name = strut_reader_allocate(reader, &reader->scratch, m->count, sizeof *name);
+  int32_t *index = strut_reader_allocate(reader, &reader->scratch, self->count, sizeof *index);
+  const char **name = strut_reader_allocate(reader, &reader->scratch, self->count, sizeof *name);
   if (!index || !name) return;
   int32_t stays = 0;
-  for (size_t i = 0; i < m->count; i++) {
-    int32_t root = find_root(m, (int32_t)i);
+  for (size_t i = 0; i < self->count; i++) {
+    int32_t root = find_root(self, (int32_t)i);
     name[i] = scene->nodes[i].name;
     if (root != (int32_t)i) {
       index[i] = index[root];
@@ -321,7 +323,7 @@ static void compact(merging *m) {
   }
   scene->node_count = (size_t)stays;
   strut_name_map_free(&reader->things[STRUT_THING_NODE].names);
-  for (size_t i = 0; i < m->count; i++)
+  for (size_t i = 0; i < self->count; i++)
     strut_add_name(reader, &reader->things[STRUT_THING_NODE].names, name[i], (size_t)index[i]);
   for (strut_port *port = reader->copies->ports; port; port = port->next) {
     if (port->node >= 0) port->node = index[port->node];

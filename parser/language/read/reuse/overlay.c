@@ -57,9 +57,9 @@ static bool index_keys(key_index *index, strut_mapping_kind kind, const strut_tr
       (key_index){.kind = kind, .key = strut_allocate((size_t)map->count + 1, sizeof *index->key)};
   if (!index->key) return false;
   size_t count = 0;
-  for (const strut_tree *k = map->first; k; k = k->next->next, count++) {
-    const char *name = current(kind, k);
-    index->key[count] = k;
+  for (const strut_tree *tree = map->first; tree; tree = tree->next->next, count++) {
+    const char *name = current(kind, tree);
+    index->key[count] = tree;
     if (strut_name_map_add(&index->names, name, (int32_t)count) == -2) return false;
     int key = find_key(kind, name);
     if (key >= 0 && strut_key_at(key)->set) index->sets |= UINT64_C(1) << strut_key_at(key)->set;
@@ -101,21 +101,21 @@ bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map, const 
 
 /* ---- trees ---- */
 
-static strut_tree *marked_node(const strut_overlay *o, const strut_tree *node) {
-  strut_tree *copy = strut_tree_copy(o->arena, node);
-  if (copy) copy->place.line |= o->mark;
+static strut_tree *marked_node(const strut_overlay *overlay, const strut_tree *node) {
+  strut_tree *copy = strut_tree_copy(overlay->arena, node);
+  if (copy) copy->place.line |= overlay->mark;
   return copy;
 }
 
 /* A copy of what is laid over, all the way down where its nodes are not as they were. */
-static strut_tree *marked_tree(const strut_overlay *o, const strut_tree *node) {
+static strut_tree *marked_tree(const strut_overlay *overlay, const strut_tree *node) {
   strut_placed_tree placed = {*node, NULL};
-  if (o->of_scene) placed.tree.placed = true;
-  strut_tree *copy = marked_node(o, o->of_scene ? &placed.tree : node);
-  if (!copy || !(o->mark || o->of_scene)) return copy;
+  if (overlay->of_scene) placed.tree.placed = true;
+  strut_tree *copy = marked_node(overlay, overlay->of_scene ? &placed.tree : node);
+  if (!copy || !(overlay->mark || overlay->of_scene)) return copy;
   strut_tree **end = &copy->first;
   for (const strut_tree *child = node->first; child; child = child->next) {
-    *end = marked_tree(o, child);
+    *end = marked_tree(overlay, child);
     if (!*end) return NULL;
     end = &(*end)->next;
   }
@@ -138,63 +138,67 @@ static bool is_node(strut_mapping_kind kind) {
 }
 
 /* The value of a key that both mappings have. */
-static strut_tree *joined(const strut_overlay *o, strut_mapping_kind kind, const strut_tree *below,
-                          const strut_tree *over) {
+static strut_tree *joined(const strut_overlay *overlay, strut_mapping_kind kind,
+                          const strut_tree *below, const strut_tree *over) {
   bool part = kind.section == STRUT_SECTION_PART && !kind.things;
   bool maps = below->kind == STRUT_TREE_MAP && over->kind == STRUT_TREE_MAP;
   bool place = is_node(kind) && below->kind + over->kind == STRUT_TREE_MAP + STRUT_TREE_LIST;
-  if (o->whole || !(maps || place) || (part && strut_tree_find(over, "use", NULL)))
-    return marked_tree(o, over);
-  return strut_lay_over(o, kind, below, over);
+  if (overlay->whole || !(maps || place) || (part && strut_tree_find(over, "use", NULL)))
+    return marked_tree(overlay, over);
+  return strut_lay_over(overlay, kind, below, over);
 }
 
 static const char *name_at(const void *context, size_t i) {
-  const strut_tree *k = ((const strut_tree *)context)->first;
-  while (k && i-- > 0) k = k->next->next;
-  return k ? k->text : NULL;
+  const strut_tree *tree = ((const strut_tree *)context)->first;
+  while (tree && i-- > 0) tree = tree->next->next;
+  return tree ? tree->text : NULL;
 }
 
 /* Takes away what is not there? Things of copies are looked for when these are made. */
-static bool removes_nothing(const strut_overlay *o, const strut_tree *base, const strut_tree *key) {
-  if (!o->diagnostics || !strut_is_removal(key->next) || strpbrk(key->text, ".*")) return false;
+static bool removes_nothing(const strut_overlay *overlay, const strut_tree *base,
+                            const strut_tree *key) {
+  if (!overlay->diagnostics || !strut_is_removal(key->next) || strpbrk(key->text, ".*"))
+    return false;
   const char *meant = base->count <= 1000 ? strut_did_you_mean(key->text, name_at, base) : NULL;
   int shown = (int)strcspn(key->text, "\n");
-  strut_diagnose(o->diagnostics, key->place, "there is no '%.*s' to remove%s%.64s%s",
+  strut_diagnose(overlay->diagnostics, key->place, "there is no '%.*s' to remove%s%.64s%s",
                  shown > 64 ? 64 : shown, key->text, meant ? "; did you mean '" : "",
                  meant ? meant : "", meant ? "'?" : "");
   return true;
 }
 
 /* The keys of the base, changed or not, then those that it has not. */
-static bool join(const strut_overlay *o, const key_index *below, const strut_tree *base,
-                 const key_index *above, const strut_tree *over, strut_tree_builder *b) {
-  for (const strut_tree *k = base->first; k; k = k->next->next) {
-    const strut_tree *by = same_key(above, k);
-    if (by ? strut_is_removal(by->next) : is_replaced(above, k)) continue;
-    strut_mapping_kind value = strut_kind_below(below->kind, k->text);
-    bool fine = by ? strut_tree_append(b, marked_node(o, by), joined(o, value, k->next, by->next))
-                   : strut_tree_share(b, o->arena, k, k->next);
+static bool join(const strut_overlay *overlay, const key_index *below, const strut_tree *base,
+                 const key_index *above, const strut_tree *over, strut_tree_builder *builder) {
+  for (const strut_tree *tree = base->first; tree; tree = tree->next->next) {
+    const strut_tree *by = same_key(above, tree);
+    if (by ? strut_is_removal(by->next) : is_replaced(above, tree)) continue;
+    strut_mapping_kind value = strut_kind_below(below->kind, tree->text);
+    bool fine = by ? strut_tree_append(builder, marked_node(overlay, by),
+                                       joined(overlay, value, tree->next, by->next))
+                   : strut_tree_share(builder, overlay->arena, tree, tree->next);
     if (!fine) return false;
   }
   for (const strut_tree *k = over->first; k; k = k->next->next) {
-    if (same_key(below, k) || removes_nothing(o, base, k)) continue;
-    if (!strut_tree_append(b, marked_node(o, k), marked_tree(o, k->next))) return false;
+    if (same_key(below, k) || removes_nothing(overlay, base, k)) continue;
+    if (!strut_tree_append(builder, marked_node(overlay, k), marked_tree(overlay, k->next)))
+      return false;
   }
   return true;
 }
 
-strut_tree *strut_lay_over(const strut_overlay *o, strut_mapping_kind kind, const strut_tree *base,
-                           const strut_tree *over) {
-  if (is_node(kind) && base->kind == STRUT_TREE_LIST) base = written_out(o->arena, base);
-  if (is_node(kind) && over->kind == STRUT_TREE_LIST) over = written_out(o->arena, over);
-  strut_tree *map = base && over ? strut_tree_copy(o->arena, base) : NULL;
+strut_tree *strut_lay_over(const strut_overlay *overlay, strut_mapping_kind kind,
+                           const strut_tree *base, const strut_tree *over) {
+  if (is_node(kind) && base->kind == STRUT_TREE_LIST) base = written_out(overlay->arena, base);
+  if (is_node(kind) && over->kind == STRUT_TREE_LIST) over = written_out(overlay->arena, over);
+  strut_tree *map = base && over ? strut_tree_copy(overlay->arena, base) : NULL;
   if (!map) return NULL;
   strut_tree_builder b = {map, &map->first};
   key_index below = {0}, above = {0};
   map->count = 0;
   map->first = NULL;
   bool fine = index_keys(&below, kind, base) && index_keys(&above, kind, over) &&
-              join(o, &below, base, &above, over, &b);
+              join(overlay, &below, base, &above, over, &b);
   free_index(&below);
   free_index(&above);
   return fine ? map : NULL;
@@ -211,42 +215,44 @@ typedef struct comparison {
 } comparison;
 
 /* Joins three texts in the arena; values are short. */
-static const char *join_texts(comparison *c, const char *a, const char *b, const char *d) {
-  const char *text = a && b && d ? strut_arena_format(c->arena, "%s%s%s", a, b, d) : NULL;
-  if (!text) c->failed = true;
+static const char *join_texts(comparison *self, const char *first, const char *second,
+                              const char *d) {
+  const char *text =
+      first && second && d ? strut_arena_format(self->arena, "%s%s%s", first, second, d) : NULL;
+  if (!text) self->failed = true;
   return text;
 }
 
 /* A value as it would stand on one line. */
-static const char *flat(comparison *c, const strut_tree *tree) {
-  if (tree->kind == STRUT_TREE_SCALAR) return join_texts(c, tree->text, "", "");
+static const char *flat(comparison *self, const strut_tree *tree) {
+  if (tree->kind == STRUT_TREE_SCALAR) return join_texts(self, tree->text, "", "");
   bool map = tree->kind == STRUT_TREE_MAP;
   const char *text = map ? "{" : "[";
-  for (const strut_tree *t = tree->first; t && !c->failed; t = t->next) {
-    if (t != tree->first) text = join_texts(c, text, ", ", "");
+  for (const strut_tree *t = tree->first; t && !self->failed; t = t->next) {
+    if (t != tree->first) text = join_texts(self, text, ", ", "");
     if (map) {
-      text = join_texts(c, text, t->text, ": ");
+      text = join_texts(self, text, t->text, ": ");
       t = t->next;
     }
-    text = join_texts(c, text, flat(c, t), "");
+    text = join_texts(self, text, flat(self, t), "");
   }
-  return join_texts(c, text, map ? "}" : "]", "");
+  return join_texts(self, text, map ? "}" : "]", "");
 }
 
-static void add(comparison *c, const char *where, const strut_tree *was, const strut_tree *is) {
-  if (c->count == c->room) {
-    size_t room = 2 * c->room + 64;
-    strut_difference *list = strut_arena_allocate(c->arena, room, sizeof *list);
+static void add(comparison *self, const char *where, const strut_tree *was, const strut_tree *is) {
+  if (self->count == self->room) {
+    size_t room = 2 * self->room + 64;
+    strut_difference *list = strut_arena_allocate(self->arena, room, sizeof *list);
     if (!list) {
-      c->failed = true;
+      self->failed = true;
       return;
     }
-    for (size_t i = 0; i < c->count; i++) list[i] = c->list[i];
-    c->list = list;
-    c->room = room;
+    for (size_t i = 0; i < self->count; i++) list[i] = self->list[i];
+    self->list = list;
+    self->room = room;
   }
-  c->list[c->count++] = (strut_difference){
-      .where = where, .was = was ? flat(c, was) : NULL, .is = is ? flat(c, is) : NULL};
+  self->list[self->count++] = (strut_difference){
+      .where = where, .was = was ? flat(self, was) : NULL, .is = is ? flat(self, is) : NULL};
 }
 
 /* Names and descriptions do not count as differences. */
@@ -255,32 +261,34 @@ static bool is_label(const char *where) {
          strcmp(where, "source") == 0;
 }
 
-static void compare(comparison *c, const char *where, const strut_tree *a, const strut_tree *b);
+static void compare(comparison *self, const char *where, const strut_tree *first,
+                    const strut_tree *second);
 
-static void compare_maps(comparison *c, const char *where, const strut_tree *a,
-                         const strut_tree *b) {
+static void compare_maps(comparison *self, const char *where, const strut_tree *first,
+                         const strut_tree *second) {
   const char *dot = *where ? "." : "";
-  for (const strut_tree *key = a->first; key && !c->failed; key = key->next->next) {
-    const char *here = join_texts(c, where, dot, key->text);
-    const strut_tree *other = strut_tree_find(b, key->text, NULL);
+  for (const strut_tree *key = first->first; key && !self->failed; key = key->next->next) {
+    const char *here = join_texts(self, where, dot, key->text);
+    const strut_tree *other = strut_tree_find(second, key->text, NULL);
     if (!here || is_label(here)) continue;
     if (other)
-      compare(c, here, key->next, other);
+      compare(self, here, key->next, other);
     else
-      add(c, here, key->next, NULL);
+      add(self, here, key->next, NULL);
   }
-  for (const strut_tree *key = b->first; key && !c->failed; key = key->next->next) {
-    const char *here = join_texts(c, where, dot, key->text);
-    if (here && !is_label(here) && !strut_tree_find(a, key->text, NULL))
-      add(c, here, NULL, key->next);
+  for (const strut_tree *key = second->first; key && !self->failed; key = key->next->next) {
+    const char *here = join_texts(self, where, dot, key->text);
+    if (here && !is_label(here) && !strut_tree_find(first, key->text, NULL))
+      add(self, here, NULL, key->next);
   }
 }
 
-static void compare(comparison *c, const char *where, const strut_tree *a, const strut_tree *b) {
-  if (a->kind == STRUT_TREE_MAP && b->kind == STRUT_TREE_MAP)
-    compare_maps(c, where, a, b);
-  else if (!strut_tree_equal(a, b))
-    add(c, where, a, b);
+static void compare(comparison *self, const char *where, const strut_tree *first,
+                    const strut_tree *second) {
+  if (first->kind == STRUT_TREE_MAP && second->kind == STRUT_TREE_MAP)
+    compare_maps(self, where, first, second);
+  else if (!strut_tree_equal(first, second))
+    add(self, where, first, second);
 }
 
 static strut_status read(const char *text, strut_document *document,
@@ -343,14 +351,14 @@ static size_t copy_length(const char *name) {
   return end ? (size_t)(end - name) : 0;
 }
 
-static thing read_thing(const strut_difference *d) {
+static thing read_thing(const strut_difference *difference) {
   static const char contacts[] = "ground.contacts.";
-  thing t = {.section = d->where};
-  bool whole = !d->was != !d->is;
-  const char *dot = strchr(d->where, '.');
-  if (strncmp(d->where, contacts, strlen(contacts)) == 0) {
+  thing t = {.section = difference->where};
+  bool whole = !difference->was != !difference->is;
+  const char *dot = strchr(difference->where, '.');
+  if (strncmp(difference->where, contacts, strlen(contacts)) == 0) {
     t.section += strlen("ground.");
-    dot = d->where + strlen(contacts) - 1;
+    dot = difference->where + strlen(contacts) - 1;
   }
   if (!whole || !dot) return t;
   t.name = dot + 1;
@@ -375,17 +383,17 @@ static const char *count_things(strut_arena *arena, const strut_difference *list
   const thing *sections[MOST_SECTIONS], *one = &things[first];
   size_t counts[MOST_SECTIONS], used = 0;
   for (size_t i = first; i < count; i++) {
-    const thing *t = &things[i];
-    bool same = !taken[i] && t->copy_length == one->copy_length &&
+    const thing *self = &things[i];
+    bool same = !taken[i] && self->copy_length == one->copy_length &&
                 !list[i].was == !list[first].was &&
-                strncmp(t->name, one->name, one->copy_length) == 0;
+                strncmp(self->name, one->name, one->copy_length) == 0;
     if (!same) continue;
     size_t k = 0;
-    while (k < used && (sections[k]->section_length != t->section_length ||
-                        strncmp(sections[k]->section, t->section, t->section_length) != 0))
+    while (k < used && (sections[k]->section_length != self->section_length ||
+                        strncmp(sections[k]->section, self->section, self->section_length) != 0))
       k++;
     if (k == MOST_SECTIONS) continue;
-    if (k == used) sections[used] = t, counts[used++] = 0;
+    if (k == used) sections[used] = self, counts[used++] = 0;
     counts[k]++;
     taken[i] = true;
   }
@@ -406,13 +414,14 @@ static long last_number(const char *copy, size_t *before) {
 }
 
 /* Is `d` the copy behind the last one of the run of equal copies that `run` is? */
-static bool continues(const strut_difference *run, const char *last, const strut_difference *d,
-                      const char *text) {
+static bool continues(const strut_difference *run, const char *last,
+                      const strut_difference *difference, const char *text) {
   size_t before, other;
-  const char *was = run->was ? run->was : run->is, *is = d->was ? d->was : d->is;
-  if (!run->was != !d->was || strcmp(text, is) != 0 || !was) return false;
-  long a = last_number(last, &before), b = last_number(d->where, &other);
-  return before == other && b == a + 1 && strncmp(last, d->where, before) == 0;
+  const char *was = run->was ? run->was : run->is,
+             *is = difference->was ? difference->was : difference->is;
+  if (!run->was != !difference->was || strcmp(text, is) != 0 || !was) return false;
+  long a = last_number(last, &before), b = last_number(difference->where, &other);
+  return before == other && b == a + 1 && strncmp(last, difference->where, before) == 0;
 }
 
 /* Equal copies with numbers in a row become one difference. */
@@ -456,11 +465,12 @@ strut_status strut_differences_join_copies(const strut_tree *first, const strut_
   for (size_t i = 0; i < all && status == STRUT_OK; i++) {
     if (taken[i]) continue;
     strut_difference d = list[i];
-    const thing *t = &things[i];
-    bool whole = t->copy_length && !has_copy(d.was ? second : first, t->name, t->copy_length, 0);
+    const thing *self = &things[i];
+    bool whole =
+        self->copy_length && !has_copy(d.was ? second : first, self->name, self->copy_length, 0);
     if (whole) {
       const char *text = count_things(&scratch, list, things, i, all, taken);
-      const char *where = strut_arena_text(arena, t->name, t->copy_length);
+      const char *where = strut_arena_text(arena, self->name, self->copy_length);
       text = text ? strut_arena_text(arena, text, strlen(text)) : NULL;
       if (!text || !where) status = STRUT_NO_MEMORY;
       d = (strut_difference){where, d.was ? text : NULL, d.was ? NULL : text};

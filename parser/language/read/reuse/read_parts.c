@@ -64,15 +64,16 @@ static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
 
 /* ---- scopes of copies ---- */
 
-static strut_copy *new_scope(strut_expansion *e, strut_scope_kind kind, const strut_placement *p,
-                             strut_copy *outer) {
-  strut_copy *copy = strut_reader_allocate(e->reader, &e->reader->scratch, 1, sizeof *copy);
+static strut_copy *new_scope(strut_expansion *expansion, strut_scope_kind kind,
+                             const strut_placement *placement, strut_copy *outer) {
+  strut_copy *copy =
+      strut_reader_allocate(expansion->reader, &expansion->reader->scratch, 1, sizeof *copy);
   if (!copy) {
-    e->stopped = true;
+    expansion->stopped = true;
     return NULL;
   }
   *copy = (strut_copy){.kind = kind,
-                       .placement = p,
+                       .placement = placement,
                        .outer = outer,
                        .home = outer,
                        .prefix = "",
@@ -81,16 +82,17 @@ static strut_copy *new_scope(strut_expansion *e, strut_scope_kind kind, const st
 }
 
 /* "cell.3." */
-static const char *make_prefix(strut_expansion *e, const strut_placement *p,
+static const char *make_prefix(strut_expansion *expansion, const strut_placement *placement,
                                const int64_t number[2]) {
-  strut_arena *arena = &e->reader->scratch;
+  strut_arena *arena = &expansion->reader->scratch;
   const char *text =
-      p->numbers == 2   ? strut_arena_format(arena, "%s.%lld.%lld.", p->name, (long long)number[0],
-                                             (long long)number[1])
-      : p->numbers == 1 ? strut_arena_format(arena, "%s.%lld.", p->name, (long long)number[0])
-                        : strut_arena_format(arena, "%s.", p->name);
+      placement->numbers == 2 ? strut_arena_format(arena, "%s.%lld.%lld.", placement->name,
+                                                   (long long)number[0], (long long)number[1])
+      : placement->numbers == 1
+          ? strut_arena_format(arena, "%s.%lld.", placement->name, (long long)number[0])
+          : strut_arena_format(arena, "%s.", placement->name);
   if (text) return text;
-  e->reader->out_of_memory = e->stopped = true;
+  expansion->reader->out_of_memory = expansion->stopped = true;
   return "";
 }
 
@@ -111,10 +113,10 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
       strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0, sizeof *values);
   if (!copy->parameters || !values) return false;
   for (const strut_tree *key = map ? map->first : NULL; key; key = key->next->next) {
-    strut_parameter_state *p = &copy->parameters[copy->parameter_count++];
-    strut_declare_parameter(reader, key, p);
-    p->of_part = values++;
-    p->of_part->scope = copy;
+    strut_parameter_state *parameters = &copy->parameters[copy->parameter_count++];
+    strut_declare_parameter(reader, key, parameters);
+    parameters->of_part = values++;
+    parameters->of_part->scope = copy;
     if (!copy->closed && strut_parameter_find(reader, key->text))
       fine = strut_report_error(
           reader, key->place,
@@ -166,190 +168,202 @@ static bool mentions_number(const strut_tree *tree) {
   return false;
 }
 
-static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer);
+static void expand_places(strut_expansion *expansion, const strut_slot *place, strut_copy *outer);
 
-strut_copy *strut_make_copy(strut_expansion *e, strut_placing *p, const int64_t number[2],
-                            strut_frame *base, strut_copy **place_scope) {
-  strut_reader *reader = e->reader;
-  strut_part *part = p->placement->part;
-  strut_copy *place = new_scope(e, STRUT_SCOPE_PLACE, p->placement, p->outer);
-  strut_copy *copy = place ? new_scope(e, STRUT_SCOPE_COPY, p->placement, p->outer) : NULL;
+strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
+                            const int64_t number[2], strut_frame *base, strut_copy **place_scope) {
+  strut_reader *reader = expansion->reader;
+  strut_part *part = placing->placement->part;
+  strut_copy *place = new_scope(expansion, STRUT_SCOPE_PLACE, placing->placement, placing->outer);
+  strut_copy *copy =
+      place ? new_scope(expansion, STRUT_SCOPE_COPY, placing->placement, placing->outer) : NULL;
   if (!copy) return NULL;
   *place_scope = place;
   memcpy(place->number, number, sizeof place->number);
   memcpy(copy->number, number, sizeof copy->number);
-  place->numbers = p->placement->numbers;
-  place->prefix = copy->prefix = make_prefix(e, p->placement, number);
+  place->numbers = placing->placement->numbers;
+  place->prefix = copy->prefix = make_prefix(expansion, placing->placement, number);
   place->prefix_length = copy->prefix_length = strlen(copy->prefix);
   copy->home = part->home;
   copy->closed = part->keys.isolated;
   read_part_list(reader, strut_slot_of(&part->fields, STRUT_KEY_PART_PARTS), copy, &copy->parts);
   bool first = number[0] == 0 && number[1] == 0;
   reader->scope = place;
-  if (!first && p->varies) {
-    strut_owner owner = {"place", p->placement->key->text};
-    strut_read_fields(reader, STRUT_SECTION_PLACE, p->placement->key->next, owner, &p->fields);
-    strut_store(reader, &p->fields, owner, &p->keys);
+  if (!first && placing->varies) {
+    strut_owner owner = {"place", placing->placement->key->text};
+    strut_read_fields(reader, STRUT_SECTION_PLACE, placing->placement->key->next, owner,
+                      &placing->fields);
+    strut_store(reader, &placing->fields, owner, &placing->keys);
   }
-  bool fine = read_copy_parameters(reader, copy, place, p->keys.set) && !p->fields.broken;
-  if (fine && (first || p->varies)) fine = strut_read_frame(e, p, copy, base);
+  bool fine =
+      read_copy_parameters(reader, copy, place, placing->keys.set) && !placing->fields.broken;
+  if (fine && (first || placing->varies)) fine = strut_read_frame(expansion, placing, copy, base);
   if (!fine) return NULL;
-  strut_frame repeated = strut_repeated_frame(&p->repeat, number);
+  strut_frame repeated = strut_repeated_frame(&placing->repeat, number);
   copy->frame = strut_frame_within(base, &repeated);
-  if (p->outer) copy->frame = strut_frame_within(&p->outer->frame, &copy->frame);
+  if (placing->outer) copy->frame = strut_frame_within(&placing->outer->frame, &copy->frame);
   reader->scope = NULL;
   return copy;
 }
 
 /* Lets `onto` find the node of a port. */
-static void enter_port(strut_expansion *e, const strut_port *port) {
-  strut_reader *reader = e->reader;
+static void enter_port(strut_expansion *expansion, const strut_port *port) {
+  strut_reader *reader = expansion->reader;
   const strut_tree *inner = port->key->next;
   if (inner->kind != STRUT_TREE_SCALAR) return;
   const char *own = strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, inner->text);
   const char *seen =
       strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
   if (!own || !seen) reader->out_of_memory = true;
-  int32_t node = own && seen ? strut_name_map_find(&e->copies->node_entries, own) : -1;
-  if (node >= 0) strut_add_name(reader, &e->copies->node_entries, seen, (size_t)node);
+  int32_t node = own && seen ? strut_name_map_find(&expansion->copies->node_entries, own) : -1;
+  if (node >= 0) strut_add_name(reader, &expansion->copies->node_entries, seen, (size_t)node);
 }
 
 /* The names by which the copy is seen from outside. */
-static void add_ports(strut_expansion *e, strut_copy *copy) {
-  struct strut_copies *c = e->copies;
-  strut_reader *reader = e->reader;
+static void add_ports(strut_expansion *expansion, strut_copy *copy) {
+  struct strut_copies *copies = expansion->copies;
+  strut_reader *reader = expansion->reader;
   const strut_tree *ports = copy->placement->part->keys.ports;
   if (!ports) return;
-  if (!strut_grow(&c->ported_copies, &c->ported_capacity, c->ported_count,
-                  sizeof *c->ported_copies)) {
-    reader->out_of_memory = e->stopped = true;
+  if (!strut_grow(&copies->ported_copies, &copies->ported_capacity, copies->ported_count,
+                  sizeof *copies->ported_copies)) {
+    reader->out_of_memory = expansion->stopped = true;
     return;
   }
   const char *name = strut_arena_text(&reader->scratch, copy->prefix, copy->prefix_length - 1);
   if (!name) return;
-  c->ported_copies[c->ported_count] = copy;
-  strut_add_name(reader, &c->ported, name, c->ported_count++);
+  copies->ported_copies[copies->ported_count] = copy;
+  strut_add_name(reader, &copies->ported, name, copies->ported_count++);
   for (const strut_tree *key = ports->first; key; key = key->next->next) {
     strut_port *port = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *port);
     if (!port) return;
     *port = (strut_port){.scope = copy, .key = key, .node = -1};
-    if (!c->ports_end) c->ports_end = &c->ports;
-    *c->ports_end = port;
-    c->ports_end = &port->next;
-    enter_port(e, port);
+    if (!copies->ports_end) copies->ports_end = &copies->ports;
+    *copies->ports_end = port;
+    copies->ports_end = &port->next;
+    enter_port(expansion, port);
   }
 }
 
 /* The entries of a copy, and of the parts that it places. */
-static void fill_copy(strut_expansion *e, strut_copy *copy) {
+static void fill_copy(strut_expansion *expansion, strut_copy *copy) {
   strut_part *part = copy->placement->part;
-  e->reader->scope = NULL;
-  if (!e->weighing) strut_copy_things(e, &part->fields, copy);
-  strut_read_merge(e, part->keys.merge, copy, STRUT_KEY_PART_MERGE);
-  expand_places(e, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
-  if (!e->weighing) add_ports(e, copy);
+  expansion->reader->scope = NULL;
+  if (!expansion->weighing) strut_copy_things(expansion, &part->fields, copy);
+  strut_read_merge(expansion, part->keys.merge, copy, STRUT_KEY_PART_MERGE);
+  expand_places(expansion, strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE), copy);
+  if (!expansion->weighing) add_ports(expansion, copy);
 }
 
 /* What ties a copy to the next one. */
-static void link_copies(strut_expansion *e, strut_fields *next, strut_copy *place, strut_copy *copy,
-                        const strut_copy *other, const strut_tree *twist) {
-  strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, copy->placement, copy->outer);
+static void link_copies(strut_expansion *expansion, strut_fields *next, strut_copy *place,
+                        strut_copy *copy, const strut_copy *other, const strut_tree *twist) {
+  strut_copy *link = new_scope(expansion, STRUT_SCOPE_LINK, copy->placement, copy->outer);
   if (!link) return;
   link->home = place;
   link->prefix = copy->prefix, link->prefix_length = copy->prefix_length;
   memcpy(link->number, copy->number, sizeof link->number);
   link->frame = copy->frame;
   link->next = other, link->twist = twist;
-  strut_copy_things(e, next, link);
+  strut_copy_things(expansion, next, link);
   strut_next_keys keys = {0};
-  strut_store(e->reader, next, ((strut_owner){"'next'", NULL}), &keys);
-  strut_read_merge(e, keys.merge, link, STRUT_KEY_NEXT_MERGE);
+  strut_store(expansion->reader, next, ((strut_owner){"'next'", NULL}), &keys);
+  strut_read_merge(expansion, keys.merge, link, STRUT_KEY_NEXT_MERGE);
 }
 
 /* The keys of `next` in each direction, read once for all copies. False: one is broken. */
-static bool read_links(strut_expansion *e, strut_placing *p) {
+static bool read_links(strut_expansion *expansion, strut_placing *placing) {
   bool fine = true;
-  e->reader->scope = p->outer;
+  expansion->reader->scope = placing->outer;
   for (int d = 0; d < 2; d++) {
-    if (!p->repeat.next[d]) continue;
-    strut_read_fields(e->reader, STRUT_SECTION_NEXT, p->repeat.next[d],
-                      (strut_owner){"'next'", NULL}, &p->next[d]);
-    fine = fine && !p->next[d].broken;
+    if (!placing->repeat.next[d]) continue;
+    strut_read_fields(expansion->reader, STRUT_SECTION_NEXT, placing->repeat.next[d],
+                      (strut_owner){"'next'", NULL}, &placing->next[d]);
+    fine = fine && !placing->next[d].broken;
   }
-  e->reader->scope = NULL;
-  if (!fine) e->copies->incomplete = true;
+  expansion->reader->scope = NULL;
+  if (!fine) expansion->copies->incomplete = true;
   return fine;
 }
 
 /* The names of a twist must be those of nodes. */
-static void check_twist(strut_expansion *e, const strut_tree *twist, const strut_copy *copy) {
-  strut_reader *reader = e->reader;
-  const strut_placement *p = copy->placement;
-  for (const strut_tree *k = twist ? twist->first : NULL; k; k = k->next->next) {
-    const strut_tree *const names[] = {k, k->next};
+static void check_twist(strut_expansion *expansion, const strut_tree *twist,
+                        const strut_copy *copy) {
+  strut_reader *reader = expansion->reader;
+  const strut_placement *placement = copy->placement;
+  for (const strut_tree *tree = twist ? twist->first : NULL; tree; tree = tree->next->next) {
+    const strut_tree *const names[] = {tree, tree->next};
     for (int n = 0; n < 2; n++) {
       strut_full_name full;
-      if (!strut_read_scalar(reader, names[n], "closed", (strut_owner){"place", p->key->text},
-                             "the name of a node"))
+      if (!strut_read_scalar(reader, names[n], "closed",
+                             (strut_owner){"place", placement->key->text}, "the name of a node"))
         continue;
       int length = snprintf(full.text, sizeof full.text, "%s%s", copy->prefix, names[n]->text);
       if (length > 0 && (size_t)length < sizeof full.text &&
-          strut_name_map_find(&e->copies->node_entries, full.text) >= 0)
+          strut_name_map_find(&expansion->copies->node_entries, full.text) >= 0)
         continue;
       strut_report_error(reader, names[n]->place, "unknown node '%s' of '%s' in 'closed'",
-                         strut_sanitised_text(reader, names[n]->text), p->key->text);
+                         strut_sanitised_text(reader, names[n]->text), placement->key->text);
     }
   }
 }
 
-static void link_all(strut_expansion *e, strut_placing *p, strut_copy **copies,
+static void link_all(strut_expansion *expansion, strut_placing *placing, strut_copy **copies,
                      strut_copy **places) {
-  const strut_repetition *r = &p->repeat;
-  int64_t all = r->count[0] * r->count[1];
-  if (copies[0]) check_twist(e, r->twist, copies[0]);
-  for (int64_t n = 0; n < all && !e->stopped; n++) {
-    int64_t i = n / r->count[1], j = n % r->count[1];
+  const strut_repetition *repetition = &placing->repeat;
+  int64_t all = repetition->count[0] * repetition->count[1];
+  if (copies[0]) check_twist(expansion, repetition->twist, copies[0]);
+  for (int64_t n = 0; n < all && !expansion->stopped; n++) {
+    int64_t i = n / repetition->count[1], j = n % repetition->count[1];
     if (!copies[n]) continue;
-    bool wraps = r->closed && i == r->count[0] - 1;
-    if (r->next[0] && (i + 1 < r->count[0] || wraps)) {
-      strut_copy *other = copies[wraps ? 0 : n + r->count[1]];
-      if (other) link_copies(e, &p->next[0], places[n], copies[n], other, wraps ? r->twist : NULL);
+    bool wraps = repetition->closed && i == repetition->count[0] - 1;
+    if (repetition->next[0] && (i + 1 < repetition->count[0] || wraps)) {
+      strut_copy *other = copies[wraps ? 0 : n + repetition->count[1]];
+      if (other)
+        link_copies(expansion, &placing->next[0], places[n], copies[n], other,
+                    wraps ? repetition->twist : NULL);
     }
-    if (r->next[1] && j + 1 < r->count[1] && copies[n + 1])
-      link_copies(e, &p->next[1], places[n], copies[n], copies[n + 1], NULL);
+    if (repetition->next[1] && j + 1 < repetition->count[1] && copies[n + 1])
+      link_copies(expansion, &placing->next[1], places[n], copies[n], copies[n + 1], NULL);
   }
 }
 
 /* Refuses what would become too large, before it is copied. */
-static bool check_size(strut_expansion *e, const strut_placing *p, double copies, double each) {
-  double all = (double)e->copies->things + copies * each, most = e->reader->limit_things;
+static bool check_size(strut_expansion *expansion, const strut_placing *placing, double copies,
+                       double each) {
+  double all = (double)expansion->copies->things + copies * each,
+         most = expansion->reader->limit_things;
   if (all <= most) return true;
-  strut_report_error(e->reader, p->keys.repeat ? p->keys.repeat->place : p->placement->key->place,
-                     "the copies would have %.3g nodes, members and other things, at most %.0f are "
-                     "possible%s",
-                     all, most, strut_limit_hint(e->reader));
-  e->stopped = true;
+  strut_report_error(
+      expansion->reader,
+      placing->keys.repeat ? placing->keys.repeat->place : placing->placement->key->place,
+      "the copies would have %.3g nodes, members and other things, at most %.0f are "
+      "possible%s",
+      all, most, strut_limit_hint(expansion->reader));
+  expansion->stopped = true;
   return false;
 }
 
 /* All copies; while weighing, the first one only, counted as many times. */
-static void make_copies(strut_expansion *e, strut_placing *p) {
-  strut_reader *reader = e->reader;
-  const strut_repetition *r = &p->repeat;
-  int64_t all = r->count[0] * r->count[1];
+static void make_copies(strut_expansion *expansion, strut_placing *placing) {
+  strut_reader *reader = expansion->reader;
+  const strut_repetition *repetition = &placing->repeat;
+  int64_t all = repetition->count[0] * repetition->count[1];
   strut_frame base = strut_frame_of_scene;
-  if (!read_links(e, p)) return;
-  if (e->weighing) {
+  if (!read_links(expansion, placing)) return;
+  if (expansion->weighing) {
     const int64_t number[2] = {0, 0};
-    strut_copy *place, *copy = strut_make_copy(e, p, number, &base, &place);
-    size_t before = e->copies->things, own = strut_count_things(&p->placement->part->fields) + 1;
-    if (copy) fill_copy(e, copy);
-    if (e->stopped) return;
-    double each = (double)(e->copies->things - before + own);
-    for (int d = 0; d < r->numbers; d++)
-      if (r->next[d]) each += (double)strut_count_things(&p->next[d]);
-    e->copies->things = before;
-    if (check_size(e, p, (double)all, each)) e->copies->things += (size_t)all * (size_t)each;
+    strut_copy *place, *copy = strut_make_copy(expansion, placing, number, &base, &place);
+    size_t before = expansion->copies->things,
+           own = strut_count_things(&placing->placement->part->fields) + 1;
+    if (copy) fill_copy(expansion, copy);
+    if (expansion->stopped) return;
+    double each = (double)(expansion->copies->things - before + own);
+    for (int d = 0; d < repetition->numbers; d++)
+      if (repetition->next[d]) each += (double)strut_count_things(&placing->next[d]);
+    expansion->copies->things = before;
+    if (check_size(expansion, placing, (double)all, each))
+      expansion->copies->things += (size_t)all * (size_t)each;
     return;
   }
   strut_copy **copies =
@@ -357,53 +371,53 @@ static void make_copies(strut_expansion *e, strut_placing *p) {
   strut_copy **places =
       strut_reader_allocate(reader, &reader->scratch, (size_t)all, sizeof *places);
   if (!copies || !places) return;
-  for (int64_t n = 0; n < all && !e->stopped; n++) {
-    const int64_t number[2] = {n / r->count[1], n % r->count[1]};
-    copies[n] = strut_make_copy(e, p, number, &base, &places[n]);
+  for (int64_t n = 0; n < all && !expansion->stopped; n++) {
+    const int64_t number[2] = {n / repetition->count[1], n % repetition->count[1]};
+    copies[n] = strut_make_copy(expansion, placing, number, &base, &places[n]);
     if (copies[n])
-      fill_copy(e, copies[n]);
+      fill_copy(expansion, copies[n]);
     else
-      e->copies->incomplete = true;
-    if (n == 0 && !check_size(e, p, 1.0, 0.0)) return;
-    if (strut_diagnostics_full(reader->diagnostics)) e->stopped = true;
+      expansion->copies->incomplete = true;
+    if (n == 0 && !check_size(expansion, placing, 1.0, 0.0)) return;
+    if (strut_diagnostics_full(reader->diagnostics)) expansion->stopped = true;
   }
-  link_all(e, p, copies, places);
-  const strut_tree *k = p->keys.onto ? p->keys.onto->first : NULL;
-  for (; k && copies[0]; k = k->next->next) {
+  link_all(expansion, placing, copies, places);
+  const strut_tree *tree = placing->keys.onto ? placing->keys.onto->first : NULL;
+  for (; tree && copies[0]; tree = tree->next->next) {
     /* own names are the copy's, the others those of the scope around it */
-    strut_copy *link = new_scope(e, STRUT_SCOPE_LINK, p->placement, p->outer);
-    strut_copy *around = new_scope(e, STRUT_SCOPE_COPY, p->placement, p->outer);
+    strut_copy *link = new_scope(expansion, STRUT_SCOPE_LINK, placing->placement, placing->outer);
+    strut_copy *around = new_scope(expansion, STRUT_SCOPE_COPY, placing->placement, placing->outer);
     if (!link || !around) return;
-    around->prefix = p->outer ? p->outer->prefix : "";
+    around->prefix = placing->outer ? placing->outer->prefix : "";
     link->prefix = copies[0]->prefix, link->prefix_length = copies[0]->prefix_length;
     link->next = around;
     strut_placed_tree *other = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *other);
     if (!other) return;
-    *other = (strut_placed_tree){*k->next, link};
+    *other = (strut_placed_tree){*tree->next, link};
     other->tree.placed = true;
-    other->tree.text = strut_arena_format(&reader->scratch, "next.%s", k->next->text);
+    other->tree.text = strut_arena_format(&reader->scratch, "next.%s", tree->next->text);
     if (!other->tree.text) return;
-    strut_add_merger(e, link, k, &other->tree,
-                     strut_slot_of(&p->fields, STRUT_KEY_PLACE_ONTO)->key);
+    strut_add_merger(expansion, link, tree, &other->tree,
+                     strut_slot_of(&placing->fields, STRUT_KEY_PLACE_ONTO)->key);
   }
 }
 
 /* Reports a part that contains itself. */
-static bool enter_part(strut_expansion *e, const strut_part *part, const strut_tree *name) {
-  struct strut_copies *c = e->copies;
+static bool enter_part(strut_expansion *expansion, const strut_part *part, const strut_tree *name) {
+  struct strut_copies *copies = expansion->copies;
   char chain[600] = "";
   size_t used = 0;
-  if (!part->open && c->depth < STRUT_DEEPEST_PARTS) {
-    c->chain[c->depth++] = part->name;
+  if (!part->open && copies->depth < STRUT_DEEPEST_PARTS) {
+    copies->chain[copies->depth++] = part->name;
     return true;
   }
-  for (int i = 0; i < c->depth && used < sizeof chain - 80; i++)
-    used += (size_t)snprintf(chain + used, sizeof chain - used, "%.60s -> ", c->chain[i]);
-  strut_report_error(e->reader, name->place,
+  for (int i = 0; i < copies->depth && used < sizeof chain - 80; i++)
+    used += (size_t)snprintf(chain + used, sizeof chain - used, "%.60s -> ", copies->chain[i]);
+  strut_report_error(expansion->reader, name->place,
                      part->open ? "part '%s' contains itself: %s%s"
                                 : "parts are placed within parts more than 16 deep: '%s' in %s%s",
                      part->name, chain, part->name);
-  e->stopped = true;
+  expansion->stopped = true;
   return false;
 }
 
@@ -416,14 +430,14 @@ static int count_numbers(const strut_tree *place) {
   return count->kind == STRUT_TREE_LIST ? 2 : 1;
 }
 
-bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy *outer,
-                          strut_placing *p) {
-  strut_reader *reader = e->reader;
+bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, strut_copy *outer,
+                          strut_placing *placing) {
+  strut_reader *reader = expansion->reader;
   strut_owner owner = {"place", key->text};
   strut_placement *placement =
       strut_reader_allocate(reader, &reader->scratch, 1, sizeof *placement);
-  strut_copy *scope = new_scope(e, STRUT_SCOPE_PLACE, placement, outer);
-  *p = (strut_placing){.placement = placement, .outer = outer};
+  strut_copy *scope = new_scope(expansion, STRUT_SCOPE_PLACE, placement, outer);
+  *placing = (strut_placing){.placement = placement, .outer = outer};
   if (!placement || !scope) return false;
   *placement = (strut_placement){.key = key, .count = {1, 1}};
   placement->name =
@@ -432,53 +446,54 @@ bool strut_read_placement(strut_expansion *e, const strut_tree *key, strut_copy 
   scope->numbers = count_numbers(key->next); /* as in the first copy */
   reader->scope = scope;
   bool fine = strut_read_name(reader, key, "placement");
-  strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &p->fields);
-  strut_require(reader, &p->fields, owner, key->place);
-  strut_store(reader, &p->fields, owner, &p->keys);
+  strut_read_fields(reader, STRUT_SECTION_PLACE, key->next, owner, &placing->fields);
+  strut_require(reader, &placing->fields, owner, key->place);
+  strut_store(reader, &placing->fields, owner, &placing->keys);
   scope->numbers = 0;
-  placement->part = read_part_name(reader, outer, p->keys.part, owner);
-  fine = strut_read_repeat(reader, strut_slot_of(&p->fields, STRUT_KEY_PLACE_REPEAT), key->text,
-                           &p->repeat) &&
+  placement->part = read_part_name(reader, outer, placing->keys.part, owner);
+  fine = strut_read_repeat(reader, strut_slot_of(&placing->fields, STRUT_KEY_PLACE_REPEAT),
+                           key->text, &placing->repeat) &&
          fine;
   reader->scope = NULL;
-  if (!placement->part || !fine || p->fields.broken || placement->part->broken) {
+  if (!placement->part || !fine || placing->fields.broken || placement->part->broken) {
     reader->failed = true;
     reader->copies->incomplete = true;
     return false;
   }
-  memcpy(placement->count, p->repeat.count, sizeof placement->count);
-  placement->numbers = p->repeat.numbers;
-  p->varies = p->repeat.numbers && mentions_number(key->next);
+  memcpy(placement->count, placing->repeat.count, sizeof placement->count);
+  placement->numbers = placing->repeat.numbers;
+  placing->varies = placing->repeat.numbers && mentions_number(key->next);
   return true;
 }
 
-static void expand_place(strut_expansion *e, const strut_tree *key, strut_copy *outer) {
-  strut_reader *reader = e->reader;
-  struct strut_copies *c = e->copies;
+static void expand_place(strut_expansion *expansion, const strut_tree *key, strut_copy *outer) {
+  strut_reader *reader = expansion->reader;
+  struct strut_copies *copies = expansion->copies;
   strut_placing p;
-  if (!strut_read_placement(e, key, outer, &p)) return;
+  if (!strut_read_placement(expansion, key, outer, &p)) return;
   strut_placement *placement = p.placement;
   strut_part *part = placement->part;
-  if (!enter_part(e, part, p.keys.part)) return;
-  if (!e->weighing) {
-    if (!strut_grow(&c->placements, &c->placement_capacity, c->placement_count,
-                    sizeof *c->placements)) {
-      reader->out_of_memory = e->stopped = true;
+  if (!enter_part(expansion, part, p.keys.part)) return;
+  if (!expansion->weighing) {
+    if (!strut_grow(&copies->placements, &copies->placement_capacity, copies->placement_count,
+                    sizeof *copies->placements)) {
+      reader->out_of_memory = expansion->stopped = true;
       return;
     }
-    c->placements[c->placement_count] = placement;
-    strut_add_name(reader, &c->placement_names, placement->name, c->placement_count++);
+    copies->placements[copies->placement_count] = placement;
+    strut_add_name(reader, &copies->placement_names, placement->name, copies->placement_count++);
   }
   part->open = part->placed = true;
-  make_copies(e, &p);
+  make_copies(expansion, &p);
   part->open = false;
-  c->depth--;
+  copies->depth--;
 }
 
-static void expand_places(strut_expansion *e, const strut_slot *place, strut_copy *outer) {
+static void expand_places(strut_expansion *expansion, const strut_slot *place, strut_copy *outer) {
   const strut_tree *map = place->state == STRUT_GIVEN ? place->value : NULL;
-  for (const strut_tree *key = map ? map->first : NULL; key && !e->stopped; key = key->next->next)
-    expand_place(e, key, outer);
+  for (const strut_tree *key = map ? map->first : NULL; key && !expansion->stopped;
+       key = key->next->next)
+    expand_place(expansion, key, outer);
 }
 
 /* ---- the scene ---- */
@@ -512,24 +527,24 @@ const char *strut_limit_hint(strut_reader *reader) {
 }
 
 /* Counts first, then copies. */
-static void expand_scene(strut_expansion *e) {
-  strut_reader *reader = e->reader;
+static void expand_scene(strut_expansion *expansion) {
+  strut_reader *reader = expansion->reader;
   const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
   const strut_slot *nodes = strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES);
-  e->weighing = true;
-  expand_places(e, place, NULL);
-  if (e->stopped || reader->failed) {
-    e->copies->incomplete = true;
+  expansion->weighing = true;
+  expand_places(expansion, place, NULL);
+  if (expansion->stopped || reader->failed) {
+    expansion->copies->incomplete = true;
     return;
   }
-  e->weighing = false;
-  e->copies->things = 0;
+  expansion->weighing = false;
+  expansion->copies->things = 0;
   const strut_tree *own = nodes->state == STRUT_GIVEN ? nodes->value->first : NULL;
   for (; own; own = own->next->next)
     if (own->next->kind == STRUT_TREE_LIST || strut_tree_find(own->next, "position", NULL))
-      strut_remember_node(e, own); /* others are laid over copies */
-  expand_places(e, place, NULL);
-  if (e->stopped) e->copies->incomplete = true;
+      strut_remember_node(expansion, own); /* others are laid over copies */
+  expand_places(expansion, place, NULL);
+  if (expansion->stopped) expansion->copies->incomplete = true;
 }
 
 void strut_read_parts(strut_reader *reader) {

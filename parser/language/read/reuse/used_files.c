@@ -46,12 +46,12 @@ typedef struct loader {
 /* ---- one file ---- */
 
 /* "a.yaml -> b.yaml -> " of the files that are open, from `first` on. */
-static void format_chain(const loader *l, const text_file *first, char *text, size_t size) {
+static void format_chain(const loader *self, const text_file *first, char *text, size_t size) {
   size_t used = 0, i = 0;
-  while (l->stack[i] != first) i++;
+  while (self->stack[i] != first) i++;
   *text = '\0';
-  for (; i < l->depth && used + 90 < size; i++)
-    used += (size_t)snprintf(text + used, size - used, "%.80s -> ", l->stack[i]->path);
+  for (; i < self->depth && used + 90 < size; i++)
+    used += (size_t)snprintf(text + used, size - used, "%.80s -> ", self->stack[i]->path);
 }
 
 /* Marks the places; returns the number of values. */
@@ -65,30 +65,30 @@ static size_t set_file(strut_tree *tree, unsigned number) {
 }
 
 /* Adds the messages about a file to those of the scene; the first says where the file is used. */
-static void take_messages(loader *l, const strut_diagnostics *own, const text_file *f,
+static void take_messages(loader *self, const strut_diagnostics *own, const text_file *f,
                           const strut_tree *name) {
   for (size_t i = 0; i < own->count; i++) {
     strut_place place = own->items[i].place;
     place.file = f->number & 0xFFu;
-    size_t before = l->diagnostics->count;
-    strut_diagnose(l->diagnostics, place, "%s", own->items[i].message);
-    if (!i && l->diagnostics->count > before)
-      strut_diagnose_note(l->diagnostics, before, name->place, "the file is used here");
+    size_t before = self->diagnostics->count;
+    strut_diagnose(self->diagnostics, place, "%s", own->items[i].message);
+    if (!i && self->diagnostics->count > before)
+      strut_diagnose_note(self->diagnostics, before, name->place, "the file is used here");
   }
-  l->diagnostics->unstored += own->unstored;
+  self->diagnostics->unstored += own->unstored;
 }
 
 /* The tree of the file's text, in the document's memory. NULL: it was reported. */
-static strut_tree *read_tree(loader *l, text_file *f, const strut_tree *name) {
-  const strut_used_file *used = &l->diagnostics->used[f->number - 1];
+static strut_tree *read_tree(loader *self, text_file *f, const strut_tree *name) {
+  const strut_used_file *used = &self->diagnostics->used[f->number - 1];
   strut_diagnostics own = {0};
   strut_diagnostics_source(&own, used->file, used->text, used->length);
-  strut_tree *before = l->document->root;
-  strut_status status = strut_document_read(l->document, &own);
-  strut_tree *root = l->document->root;
-  l->document->root = before;
-  if (status == STRUT_NO_MEMORY) l->out_of_memory = true;
-  take_messages(l, &own, f, name);
+  strut_tree *before = self->document->root;
+  strut_status status = strut_document_read(self->document, &own);
+  strut_tree *root = self->document->root;
+  self->document->root = before;
+  if (status == STRUT_NO_MEMORY) self->out_of_memory = true;
+  take_messages(self, &own, f, name);
   strut_diagnostics_free(&own);
   if (status != STRUT_OK) return NULL;
   f->values = set_file(root, f->number);
@@ -96,110 +96,112 @@ static strut_tree *read_tree(loader *l, text_file *f, const strut_tree *name) {
 }
 
 /* The file of that name, whose text has been read. NULL: it was reported. */
-static text_file *find_file(loader *l, const strut_tree *name) {
-  const text_file *from = &l->files[name->place.file];
+static text_file *find_file(loader *self, const strut_tree *name) {
+  const text_file *from = &self->files[name->place.file];
   strut_safe_text text = {0};
   strut_error error = {0};
-  strut_status status =
-      strut_safe_read(l->folder, from->path, name->text,
-                      l->bytes < STRUT_TEXT_MOST ? STRUT_TEXT_MOST - l->bytes : 0, &text, &error);
-  if (status == STRUT_NO_MEMORY) l->out_of_memory = true;
+  strut_status status = strut_safe_read(
+      self->folder, from->path, name->text,
+      self->bytes < STRUT_TEXT_MOST ? STRUT_TEXT_MOST - self->bytes : 0, &text, &error);
+  if (status == STRUT_NO_MEMORY) self->out_of_memory = true;
   if (status != STRUT_OK) {
-    strut_diagnose(l->diagnostics, name->place, "%s", error.message);
+    strut_diagnose(self->diagnostics, name->place, "%s", error.message);
     return NULL;
   }
-  for (size_t i = 0; i < l->count; i++)
-    if (l->files[i].known && l->files[i].device == text.device && l->files[i].inode == text.inode) {
+  for (size_t i = 0; i < self->count; i++)
+    if (self->files[i].known && self->files[i].device == text.device &&
+        self->files[i].inode == text.inode) {
       strut_safe_text_free(&text);
-      return &l->files[i];
+      return &self->files[i];
     }
-  unsigned number = strut_diagnostics_use(l->diagnostics, text.path, text.text, text.length);
+  unsigned number = strut_diagnostics_use(self->diagnostics, text.path, text.text, text.length);
   if (!number) {
-    strut_diagnose(l->diagnostics, name->place, "more than %d files are used",
+    strut_diagnose(self->diagnostics, name->place, "more than %d files are used",
                    STRUT_USED_FILES_MOST);
     strut_safe_text_free(&text);
     return NULL;
   }
-  text_file *f = &l->files[l->count++];
-  l->bytes += text.length;
-  strut_diagnostics_own(l->diagnostics, number, text.text);
-  *f = (text_file){.path = l->diagnostics->used[number - 1].file,
+  text_file *f = &self->files[self->count++];
+  self->bytes += text.length;
+  strut_diagnostics_own(self->diagnostics, number, text.text);
+  *f = (text_file){.path = self->diagnostics->used[number - 1].file,
                    .device = text.device,
                    .inode = text.inode,
                    .known = true,
                    .number = number};
   text.text = NULL;
   strut_safe_text_free(&text);
-  f->text = read_tree(l, f, name);
+  f->text = read_tree(self, f, name);
   f->failed = !f->text;
   return f;
 }
 
 /* May the file be opened from those that are open? If not, that is reported. */
-static bool enter(loader *l, text_file *f, const strut_tree *name) {
+static bool enter(loader *self, text_file *f, const strut_tree *name) {
   char chain[1200];
   if (f->open) {
-    format_chain(l, f, chain, sizeof chain);
-    strut_diagnose(l->diagnostics, name->place, "files use each other in a circle: %s%s", chain,
+    format_chain(self, f, chain, sizeof chain);
+    strut_diagnose(self->diagnostics, name->place, "files use each other in a circle: %s%s", chain,
                    f->path);
     return false;
   }
-  if (l->depth + f->height > STRUT_DEEPEST_FILE) {
-    strut_diagnose(l->diagnostics, name->place, "files use each other more than %d deep",
+  if (self->depth + f->height > STRUT_DEEPEST_FILE) {
+    strut_diagnose(self->diagnostics, name->place, "files use each other more than %d deep",
                    STRUT_DEEPEST_FILE);
     return false;
   }
-  l->stack[l->depth++] = f;
+  self->stack[self->depth++] = f;
   f->open = true;
   return true;
 }
 
-static void leave(loader *l, text_file *f) {
-  l->depth--;
+static void leave(loader *self, text_file *f) {
+  self->depth--;
   f->open = false;
-  text_file *outer = l->stack[l->depth - 1];
+  text_file *outer = self->stack[self->depth - 1];
   if (outer->height < f->height + 1) outer->height = f->height + 1;
 }
 
 /* Is it a scene of this version of the language? */
-static bool is_scene(loader *l, const text_file *f, const strut_tree *name) {
+static bool is_scene(loader *self, const text_file *f, const strut_tree *name) {
   const char *expected = "expected a scene";
   strut_place place = name->place;
   if (f->text->kind != STRUT_TREE_MAP) {
-    strut_diagnose(l->diagnostics, place, "'%s' is not a mapping, %s", f->path, expected);
+    strut_diagnose(self->diagnostics, place, "'%s' is not a mapping, %s", f->path, expected);
     return false;
   }
   bool study = strut_tree_find(f->text, "study", NULL) && !strut_tree_find(f->text, "nodes", NULL);
   if (study) {
-    strut_diagnose(l->diagnostics, place, "'%s' is a study, %s", f->path, expected);
+    strut_diagnose(self->diagnostics, place, "'%s' is a study, %s", f->path, expected);
     return false;
   }
   const strut_tree *version = strut_tree_find(f->text, "strut", NULL);
   if (version && version->kind == STRUT_TREE_SCALAR && strcmp(version->text, "1") == 0) return true;
-  strut_diagnose(l->diagnostics, place, "'%s' is not a scene of this version: it lacks 'strut: 1'",
-                 f->path);
+  strut_diagnose(self->diagnostics, place,
+                 "'%s' is not a scene of this version: it lacks 'strut: 1'", f->path);
   return false;
 }
 
-static bool lay_over_base(loader *l, text_file *f);
-static strut_tree *with_files(loader *l, strut_tree *map);
+static bool lay_over_base(loader *self, text_file *f);
+static strut_tree *with_files(loader *self, strut_tree *map);
 
 /* The file that `name` names, laid over its base; `whole`: with all files of its parts, too. */
-static text_file *load(loader *l, const strut_tree *name, const char *key, bool whole) {
+static text_file *load(loader *self, const strut_tree *name, const char *key, bool whole) {
   if (name->kind != STRUT_TREE_SCALAR) {
-    strut_diagnose(l->diagnostics, name->place, "expected the path of a file for '%s', found a %s",
-                   key, name->kind == STRUT_TREE_LIST ? "list" : "mapping");
+    strut_diagnose(self->diagnostics, name->place,
+                   "expected the path of a file for '%s', found a %s", key,
+                   name->kind == STRUT_TREE_LIST ? "list" : "mapping");
     return NULL;
   }
-  text_file *f = find_file(l, name);
-  if (!f || f->failed || !enter(l, f, name)) return NULL;
-  bool fine = f->scene || (is_scene(l, f, name) && lay_over_base(l, f));
+  text_file *f = find_file(self, name);
+  if (!f || f->failed || !enter(self, f, name)) return NULL;
+  bool fine = f->scene || (is_scene(self, f, name) && lay_over_base(self, f));
   if (fine && whole && !f->whole) {
-    f->whole = with_files(l, f->scene);
+    f->whole = with_files(self, f->scene);
     fine = f->whole != NULL;
-    if (!fine) l->out_of_memory = true;
+    if (!fine) self->out_of_memory = true;
   }
-  leave(l, f);
+  leave(self, f);
   f->failed = !fine;
   return fine ? f : NULL;
 }
@@ -207,9 +209,9 @@ static text_file *load(loader *l, const strut_tree *name, const char *key, bool 
 /* ---- what a part takes of a file ---- */
 
 /* Adds the entry, with an empty mapping where `value` is NULL, unless there is one of that name. */
-static bool add_once(loader *l, strut_tree_builder *map, strut_name_map *names,
+static bool add_once(loader *self, strut_tree_builder *map, strut_name_map *names,
                      const strut_tree *key, const strut_tree *value) {
-  strut_arena *arena = &l->document->arena;
+  strut_arena *arena = &self->document->arena;
   int32_t known = strut_name_map_add(names, key->text, 0);
   if (known != -1) return known >= 0;
   return strut_tree_append(
@@ -218,18 +220,18 @@ static bool add_once(loader *l, strut_tree_builder *map, strut_name_map *names,
 }
 
 /* The contacts of a ground whose nodes are listed: of the ground's keys these belong to the structure. */
-static strut_tree *contacts_of(loader *l, const strut_tree *ground) {
+static strut_tree *contacts_of(loader *self, const strut_tree *ground) {
   const strut_tree *nodes = strut_tree_find(ground, "nodes", NULL);
   const strut_tree *own = strut_tree_find(ground, "contacts", NULL);
   if (own && own->kind != STRUT_TREE_MAP) own = NULL;
-  strut_tree_builder map = strut_tree_begin(&l->document->arena, ground);
+  strut_tree_builder map = strut_tree_begin(&self->document->arena, ground);
   strut_name_map names = {0};
   bool fine = map.map != NULL;
-  for (const strut_tree *k = own ? own->first : NULL; k && fine; k = k->next->next)
-    fine = add_once(l, &map, &names, k, k->next);
+  for (const strut_tree *tree = own ? own->first : NULL; tree && fine; tree = tree->next->next)
+    fine = add_once(self, &map, &names, tree, tree->next);
   const strut_tree *item = nodes && nodes->kind == STRUT_TREE_LIST ? nodes->first : NULL;
   for (; item && fine; item = item->next)
-    if (item->kind == STRUT_TREE_SCALAR) fine = add_once(l, &map, &names, item, NULL);
+    if (item->kind == STRUT_TREE_SCALAR) fine = add_once(self, &map, &names, item, NULL);
   strut_name_map_free(&names);
   return fine ? map.map : NULL;
 }
@@ -241,14 +243,15 @@ static bool is_taken(const char *key) {
 }
 
 /* The scene as a part. NULL: memory is out. */
-static strut_tree *make_part(loader *l, const strut_tree *root) {
-  strut_arena *arena = &l->document->arena;
+static strut_tree *make_part(loader *self, const strut_tree *root) {
+  strut_arena *arena = &self->document->arena;
   strut_tree_builder part = strut_tree_begin(arena, root);
-  for (const strut_tree *k = root->first; k; k = k->next->next)
-    if (is_taken(k->text) && !strut_tree_share(&part, arena, k, k->next)) return NULL;
+  for (const strut_tree *tree = root->first; tree; tree = tree->next->next)
+    if (is_taken(tree->text) && !strut_tree_share(&part, arena, tree, tree->next)) return NULL;
   strut_tree *key = NULL, *ground = strut_tree_find(root, "ground", &key);
   if (!ground || ground->kind != STRUT_TREE_MAP) return part.map;
-  strut_tree *contacts = contacts_of(l, ground), *name = strut_tree_scalar(arena, key, "contacts");
+  strut_tree *contacts = contacts_of(self, ground),
+             *name = strut_tree_scalar(arena, key, "contacts");
   if (!contacts || !name) return NULL;
   if (contacts->count && !strut_tree_append(&part, name, contacts)) return NULL;
   return part.map;
@@ -257,8 +260,8 @@ static strut_tree *make_part(loader *l, const strut_tree *root) {
 /* ---- the files of a tree ---- */
 
 /* `isolated: yes` in place of `use`, which has been done. False: memory is out. */
-static bool isolate(loader *l, strut_tree *part, const strut_tree *name) {
-  strut_arena *arena = &l->document->arena;
+static bool isolate(loader *self, strut_tree *part, const strut_tree *name) {
+  strut_arena *arena = &self->document->arena;
   strut_tree_builder b = {part, &part->first};
   strut_tree_drop(part, "use");
   strut_tree_drop(part, "isolated");
@@ -268,50 +271,50 @@ static bool isolate(loader *l, strut_tree *part, const strut_tree *name) {
 }
 
 /* Files that each use another twice would make a tree that is too large to be written or compared. */
-static bool may_repeat(loader *l, text_file *used, const strut_tree *name) {
-  l->stack[l->depth - 1]->values += used->values;
-  bool before = l->repeated <= MOST_REPEATED;
-  if (used->uses++) l->repeated += used->values;
-  if (l->repeated <= MOST_REPEATED) return true;
+static bool may_repeat(loader *self, text_file *used, const strut_tree *name) {
+  self->stack[self->depth - 1]->values += used->values;
+  bool before = self->repeated <= MOST_REPEATED;
+  if (used->uses++) self->repeated += used->values;
+  if (self->repeated <= MOST_REPEATED) return true;
   if (before)
-    strut_diagnose(l->diagnostics, name->place, "more than %d values are repeated by used files",
+    strut_diagnose(self->diagnostics, name->place, "more than %d values are repeated by used files",
                    MOST_REPEATED);
   return false;
 }
 
 /* The part's keys laid over what it takes of its file; the part itself where that was reported. */
-static strut_tree *use_file(loader *l, strut_tree *part) {
+static strut_tree *use_file(loader *self, strut_tree *part) {
   strut_tree *name = strut_tree_find(part, "use", NULL);
   if (!name || name->count) return part;
-  text_file *used = load(l, name, "use", true);
-  if (used && !used->part) used->part = make_part(l, used->whole);
-  if (used && !used->part) l->out_of_memory = true;
-  if (!used || !used->part || !may_repeat(l, used, name)) {
-    l->failed = true;
+  text_file *used = load(self, name, "use", true);
+  if (used && !used->part) used->part = make_part(self, used->whole);
+  if (used && !used->part) self->out_of_memory = true;
+  if (!used || !used->part || !may_repeat(self, used, name)) {
+    self->failed = true;
     name->count = 1; /* it has been reported */
     return part;
   }
-  const strut_overlay overlay = {.arena = &l->document->arena, .diagnostics = l->diagnostics};
-  size_t before = l->diagnostics->count;
+  const strut_overlay overlay = {.arena = &self->document->arena, .diagnostics = self->diagnostics};
+  size_t before = self->diagnostics->count;
   strut_tree *whole =
       strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_PART, false}, used->part, part);
-  if (!whole || !isolate(l, whole, name)) l->out_of_memory = true;
-  if (l->diagnostics->count > before) l->failed = true;
+  if (!whole || !isolate(self, whole, name)) self->out_of_memory = true;
+  if (self->diagnostics->count > before) self->failed = true;
   return whole ? whole : part;
 }
 
 /* The mapping with the files of its parts, and of those within them. NULL: memory is out. */
-static strut_tree *with_files(loader *l, strut_tree *map) {
+static strut_tree *with_files(loader *self, strut_tree *map) {
   const strut_tree *parts = strut_tree_find(map, "parts", NULL);
   if (!parts || parts->kind != STRUT_TREE_MAP) return map;
-  strut_arena *arena = &l->document->arena;
+  strut_arena *arena = &self->document->arena;
   strut_tree_builder inner = strut_tree_begin(arena, parts), result = strut_tree_begin(arena, map);
-  for (const strut_tree *k = parts->first; k; k = k->next->next) {
-    strut_tree *part = strut_tree_copy(arena, k->next);
+  for (const strut_tree *tree = parts->first; tree; tree = tree->next->next) {
+    strut_tree *part = strut_tree_copy(arena, tree->next);
     bool keys = part && part->kind == STRUT_TREE_MAP;
-    if (keys) part = with_files(l, part); /* before those of its file come in */
-    if (keys && part) part = use_file(l, part);
-    if (l->out_of_memory || !strut_tree_append(&inner, strut_tree_copy(arena, k), part))
+    if (keys) part = with_files(self, part); /* before those of its file come in */
+    if (keys && part) part = use_file(self, part);
+    if (self->out_of_memory || !strut_tree_append(&inner, strut_tree_copy(arena, tree), part))
       return NULL;
   }
   for (const strut_tree *k = map->first; k; k = k->next->next)
@@ -320,43 +323,43 @@ static strut_tree *with_files(loader *l, strut_tree *map) {
 }
 
 /* Sets the file's scene; a base that cannot be read was reported. */
-static bool lay_over_base(loader *l, text_file *f) {
+static bool lay_over_base(loader *self, text_file *f) {
   const strut_mapping_kind kind = {STRUT_SECTION_SCENE, false};
   const strut_tree *name = strut_tree_find(f->text, "base", NULL);
   f->scene = f->text;
   if (!name) return true;
   f->scene = NULL;
-  text_file *base = load(l, name, "base", false);
+  text_file *base = load(self, name, "base", false);
   if (!base) return false;
-  const strut_overlay overlay = {.arena = &l->document->arena, .diagnostics = l->diagnostics};
-  size_t before = l->diagnostics->count;
+  const strut_overlay overlay = {.arena = &self->document->arena, .diagnostics = self->diagnostics};
+  size_t before = self->diagnostics->count;
   f->scene = strut_lay_over(&overlay, kind, base->scene, f->text);
-  if (!f->scene) l->out_of_memory = true;
+  if (!f->scene) self->out_of_memory = true;
   if (!f->scene) return false;
   f->scene->place = f->text->place;
   strut_tree_drop(f->scene, "base");
   if (!strut_tree_find(f->text, "strut", NULL))
     strut_tree_drop(f->scene, "strut"); /* every file says it itself */
-  return l->diagnostics->count == before;
+  return self->diagnostics->count == before;
 }
 
-static strut_status load_all(loader *l, strut_tree *root) {
+static strut_status load_all(loader *self, strut_tree *root) {
   struct stat found;
-  text_file *top = &l->files[l->count++];
+  text_file *top = &self->files[self->count++];
   *top = (text_file){
-      .path = l->diagnostics->file ? l->diagnostics->file : "", .text = root, .open = true};
-  l->stack[l->depth++] = top;
+      .path = self->diagnostics->file ? self->diagnostics->file : "", .text = root, .open = true};
+  self->stack[self->depth++] = top;
   if (stat(top->path, &found) == 0) {
     top->known = true;
     top->device = (uint64_t)found.st_dev;
     top->inode = (uint64_t)found.st_ino;
   }
-  bool fine = lay_over_base(l, top);
-  if (fine) top->whole = with_files(l, top->scene);
-  if (fine && !top->whole) l->out_of_memory = true;
-  l->document->root = top->whole;
-  if (l->out_of_memory) return STRUT_NO_MEMORY;
-  return fine && !l->failed ? STRUT_OK : STRUT_BAD_SCENE;
+  bool fine = lay_over_base(self, top);
+  if (fine) top->whole = with_files(self, top->scene);
+  if (fine && !top->whole) self->out_of_memory = true;
+  self->document->root = top->whole;
+  if (self->out_of_memory) return STRUT_NO_MEMORY;
+  return fine && !self->failed ? STRUT_OK : STRUT_BAD_SCENE;
 }
 
 strut_status strut_read_used_files(strut_document *document, strut_diagnostics *diagnostics) {
