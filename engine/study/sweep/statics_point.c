@@ -135,11 +135,11 @@ typedef enum column_shape {
   X(STABLE, "stable_count", "1", NUMBER, (double)result->stable_count)                             \
   X(FOUND, "equilibrium_count", "1", NUMBER, (double)result->equilibria.count)                     \
   X(STATES, "state", "1", WORDS, (double)NAN)                                                      \
-  X(ENERGIES, "energy", "J", NUMBERS, state_energy(result, i))                                          \
-  X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(result, i))                                        \
+  X(ENERGIES, "energy", "J", NUMBERS, state_energy(result, i))                                     \
+  X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(result, i))                                   \
   X(STARTS, "starts", "1", NUMBER, (double)result->equilibria.starts)                              \
   X(MISSED, "missed_probability", "1", NUMBER, result->equilibria.missed.probability)              \
-  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(result))                              \
+  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(result))                         \
   X(SHAPE, "shape_distance", "m", NUMBER, nearest_shape(result))
 #define MODES_COLUMNS(X)                                                                           \
   X(AT, "at", "1", WORD, (double)NAN)                                                              \
