@@ -32,12 +32,12 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
 }
 
 void strut_discrete_gradient_begin(const strut_model *model, const strut_state *state,
-                                   const double *q, double begin, double h,
+                                   const double *positions, double begin, double h,
                                    strut_discrete_gradient *step) {
   const strut_member_table *members = &model->members;
   step->begin = begin, step->h = h;
   if (model->terms & STRUT_TERM_FEEDBACK) {
-    strut_feedback_apply(model, state, begin, q, state->v);
+    strut_feedback_apply(model, state, begin, positions, state->v);
     memcpy(step->rest0, state->latest->rest, (size_t)members->slots * sizeof(double));
   } else if (model->terms & STRUT_TERM_DRIVE) {
     if (begin != state->latest->drive_time) strut_drive_apply(model, state, begin);
@@ -47,10 +47,10 @@ void strut_discrete_gradient_begin(const strut_model *model, const strut_state *
     strut_drive_apply(model, state, begin + h);
   }
   for (int32_t j = 0; j < members->count; j++)
-    step->length0[j] = strut_member_length(members, j, q);
+    step->length0[j] = strut_member_length(members, j, positions);
   for (int32_t i = 0; i < model->elements.count; i++) {
     strut_element_pose pose;
-    strut_element_evaluate(model, i, step->rest0, q, state->history.turn[i], &pose);
+    strut_element_evaluate(model, i, step->rest0, positions, state->history.turn[i], &pose);
     step->strain0[i] = pose.strain;
     step->energy0[i] = pose.energy;
   }

@@ -37,7 +37,7 @@ bool strut_discrete_gradient_create(const strut_model *model, strut_state *state
                                     strut_discrete_gradient *step);
 /** Sets the step off at positions q (length), and rest lengths to those at its end. */
 void strut_discrete_gradient_begin(const strut_model *model, const strut_state *state,
-                                   const double *q, double begin, double h,
+                                   const double *positions, double begin, double h,
                                    strut_discrete_gradient *step);
 /**
  * Net forces on the nodes over the step that ends at q1 with velocity u on average, (length) both,

@@ -119,15 +119,15 @@ static void add_member(const strut_model *model, const strut_discrete_gradient *
 
 /* What the average force changes by with the end; it turns with half of the force there. */
 static void add_element(const strut_model *model, const strut_discrete_gradient *step, int32_t i,
-                        const double *rest, const double *q, bool clip,
+                        const double *rest, const double *positions, bool clip,
                         strut_midpoint_matrix *matrix) {
   double k[STRUT_MOST_GRADIENT * STRUT_MOST_GRADIENT];
   strut_force force;
   strut_force_begin(model, model->members.count + i, &force);
-  strut_element_evaluate(model, i, rest, q, step->strain0[i], &force.pose);
+  strut_element_evaluate(model, i, rest, positions, step->strain0[i], &force.pose);
   double half = 0.5 * step->h * step->h;
   strut_force_square(&force, half * step->element_slope[i], k);
-  if (!clip) strut_force_bend(model, &force, q, 0.5 * half, k);
+  if (!clip) strut_force_bend(model, &force, positions, 0.5 * half, k);
   strut_force_scatter(&force, k, matrix->place, matrix->matrix->value);
 }
 
@@ -139,7 +139,7 @@ static void add_element(const strut_model *model, const strut_discrete_gradient 
  */
 static bool strut_midpoint_matrix_update(const strut_model *model,
                                          const strut_discrete_gradient *step, const double *rest,
-                                         const double *q, const double *tension, bool stiff,
+                                         const double *positions, const double *tension, bool stiff,
                                          strut_midpoint_matrix *matrix) {
   for (bool clip = stiff;; clip = true) {
     double whole = 1.0 + 0.5 * step->h * model->mass_damping;
@@ -148,7 +148,7 @@ static bool strut_midpoint_matrix_update(const strut_model *model,
     for (int32_t j = 0; j < model->members.count; j++)
       add_member(model, step, j, clip ? fmax(tension[j], 0.0) : tension[j], matrix);
     for (int32_t i = 0; i < model->elements.count; i++)
-      add_element(model, step, i, rest, q, clip, matrix);
+      add_element(model, step, i, rest, positions, clip, matrix);
     if (strut_refactor_apply(matrix->factor, matrix->matrix) < 0) return true;
     if (clip) return false;
   }

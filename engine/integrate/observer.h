@@ -23,7 +23,7 @@ typedef struct strut_motion_piece {
   /** Fills the state's held contact forces for an instant within the piece; NULL: they follow from
       q, v and t by the contacts' laws. */
   void (*hold)(const struct strut_motion_piece *piece, const strut_model *model,
-               const strut_state *state, double t, const double *q, const double *velocity);
+               const strut_state *state, double t, const double *positions, const double *velocity);
   void *workspace; /* of the method */
 } strut_motion_piece;
 

@@ -32,10 +32,10 @@ STRUT_INLINE strut_lanes weighted(double *const *k, const double *weight, int co
 /* Stage k, or the end: q = q0 + h sum v, v[k] = v0 + h sum a, over the stages before it. */
 STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now,
                            double *const *velocities, double *const *accelerations,
-                           const double *weight, int k, double *restrict q) {
+                           const double *weight, int k, double *restrict positions) {
   double *restrict speed = velocities[k];
   for (int32_t i = 0; i < n; i += STRUT_LANES) {
-    strut_lanes_store(q + i,
+    strut_lanes_store(positions + i,
                       strut_lanes_load(now->q + i) + h * weighted(velocities, weight, k, false, i));
     strut_lanes_store(
         speed + i, strut_lanes_load(now->v + i) + h * weighted(accelerations, weight, k, true, i));
@@ -45,10 +45,10 @@ STRUT_INLINE void stage_of(int32_t n, double h, const strut_step_end *now,
 /* The same; the stages of the usual pair with the weights as constants. */
 STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *const *velocities,
                         double *const *accelerations, const strut_tableau *tableau, int k,
-                        double *restrict q) {
+                        double *restrict positions) {
 #define STRUT_CASE(k)                                                                              \
   case k:                                                                                          \
-    stage_of(n, h, now, velocities, accelerations, strut_dormand_prince.weight[k], k, q);          \
+    stage_of(n, h, now, velocities, accelerations, strut_dormand_prince.weight[k], k, positions);  \
     break
   switch (tableau == &strut_dormand_prince ? k : 0) {
     STRUT_CASE(1);
@@ -57,7 +57,7 @@ STRUT_INLINE void stage(int32_t n, double h, const strut_step_end *now, double *
     STRUT_CASE(4);
     STRUT_CASE(5);
     STRUT_CASE(6);
-    default: stage_of(n, h, now, velocities, accelerations, tableau->weight[k], k, q);
+    default: stage_of(n, h, now, velocities, accelerations, tableau->weight[k], k, positions);
   }
 #undef STRUT_CASE
 }

@@ -58,12 +58,13 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
 /* Contact forces in the present modes at an instant within a step. */
 STRUT_CLONES
 static void hold_contacts(const strut_motion_piece *piece, const strut_model *model,
-                          const strut_state *state, double t, const double *q,
+                          const strut_state *state, double t, const double *positions,
                           const double *velocity) {
   strut_event_stepper *stepper = piece->workspace;
   strut_step_end *at = &stepper->view->instant;
   int64_t evaluations = state->latest->evaluations;
-  accelerate_in_modes(model, state, stepper, t, q, velocity, at->a, at, STRUT_TERMS_ALL, false);
+  accelerate_in_modes(model, state, stepper, t, positions, velocity, at->a, at, STRUT_TERMS_ALL,
+                      false);
   state->latest->evaluations = evaluations; /* observing is not part of the run's cost */
   show_contacts(model, state, stepper, at);
 }

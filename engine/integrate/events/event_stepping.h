@@ -424,7 +424,8 @@ void strut_turns_keep(const strut_model *model, const strut_state *state,
                       strut_event_stepper *stepper);
 /** To the forces of the structure: those that have turned since the step began go on as before. */
 void strut_turns_hold(const strut_model *model, const strut_state *state,
-                      const strut_event_stepper *stepper, const double *q, const double *velocity);
+                      const strut_event_stepper *stepper, const double *positions,
+                      const double *velocity);
 /** Does law k, whose second node is no longer ahead, pass through nothing, not beside it? */
 bool strut_turn_passes(const strut_model *model, const strut_event_stepper *stepper, int32_t k,
                        double h);

@@ -136,13 +136,13 @@ static bool factorise(const trial *self, double rate, gsl_matrix_view *view,
 }
 
 /* start + the weighted results of `count` stages. */
-static void combine(const trial *self, const double *weight, int count, double *q,
+static void combine(const trial *self, const double *weight, int count, double *positions,
                     double *velocity) {
   double **w = self->stepper->stage;
-  copy_now(self, (double *[]){q, velocity});
+  copy_now(self, (double *[]){positions, velocity});
   for (int j = 0; j < count; j++)
     for (int32_t i = 0; i < self->model->length && weight[j] != 0.0; i++)
-      q[i] += weight[j] * w[RESULT_Q + j][i], velocity[i] += weight[j] * w[RESULT_V + j][i];
+      positions[i] += weight[j] * w[RESULT_Q + j][i], velocity[i] += weight[j] * w[RESULT_V + j][i];
 }
 
 static void solve_stage(const trial *self, int i, double rate, const gsl_matrix_view *view,

@@ -297,7 +297,7 @@ static void keep_to_relaxation(const strut_model *model, strut_step_limit *limit
 }
 
 /* Without ground's dampers: for methods in which they are implicit, none of which is RK4's kind. */
-static strut_status limits(const strut_model *model, const double *q, const double *rest,
+static strut_status limits(const strut_model *model, const double *positions, const double *rest,
                            strut_closed closed, bool rk4, strut_arena *arena,
                            strut_step_limit *limit) {
   strut_tangent tangent;
@@ -305,10 +305,11 @@ static strut_status limits(const strut_model *model, const double *q, const doub
   *limit = (strut_step_limit){.limit = HUGE_VAL, .exact = true};
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of[region] = limit->of_implicit[region] = HUGE_VAL;
-  strut_status status = strut_tangent_assemble(model, q, rest, closed, arena, &tangent);
+  strut_status status = strut_tangent_assemble(model, positions, rest, closed, arena, &tangent);
   if (!status && tangent.n == 0) keep_to_relaxation(model, limit);
   if (status || tangent.n == 0) return status;
-  if ((model->terms & STRUT_TERM_RIGID) && !(tangent.rigid = strut_rigid_standing(model, q, arena)))
+  if ((model->terms & STRUT_TERM_RIGID) &&
+      !(tangent.rigid = strut_rigid_standing(model, positions, arena)))
     return STRUT_NO_MEMORY;
   bool all = tangent.n <= STRUT_EXACT_LIMIT, room = true;
   if (tangent.rigid || tangent.n <= TOO_LARGE) {
@@ -372,11 +373,11 @@ strut_status strut_step_limit_estimate(const strut_model *model, strut_step_limi
   return status ? strut_no_memory(error, "for the model") : STRUT_OK;
 }
 
-strut_status strut_step_limit_at_shape(const strut_model *model, const double *q,
+strut_status strut_step_limit_at_shape(const strut_model *model, const double *positions,
                                        const double *rest, strut_closed closed,
                                        strut_step_limit *limit, strut_error *error) {
   strut_arena arena = {0};
-  strut_status status = limits(model, q, rest, closed, true, &arena, limit);
+  strut_status status = limits(model, positions, rest, closed, true, &arena, limit);
   for (int region = 0; region < STRUT_REGIONS; region++)
     limit->of_implicit[region] = limit->of[region];
   strut_arena_free(&arena);

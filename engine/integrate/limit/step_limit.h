@@ -61,7 +61,7 @@ STRUT_API strut_status strut_step_limit_estimate(const strut_model *model, strut
                                                  strut_error *error);
 
 /** The same at positions q and rest lengths `rest`, with those contacts; of_implicit is as `of`. */
-STRUT_API strut_status strut_step_limit_at_shape(const strut_model *model, const double *q,
+STRUT_API strut_status strut_step_limit_at_shape(const strut_model *model, const double *positions,
                                                  const double *rest, strut_closed closed,
                                                  strut_step_limit *limit, strut_error *error);
 

@@ -253,24 +253,24 @@ static double mean_along_ground(const strut_track *track, size_t k) {
   return sum / model->node_count;
 }
 
-double strut_track_distance(const strut_track *a, const strut_track *second, double period) {
-  const strut_model *model = a->model;
-  size_t both = 2 * (size_t)model->node_count, count = a->count;
+double strut_track_distance(const strut_track *track, const strut_track *second, double period) {
+  const strut_model *model = track->model;
+  size_t both = 2 * (size_t)model->node_count, count = track->count;
   double away = 0.0, motion = LEAST_MOTION * model->size;
   if (count != second->count || count < 2) return HUGE_VAL;
-  double apart = (a->time[count - 1] - a->time[0]) / (double)(count - 1);
-  double first = mean_along_ground(a, 0);
+  double apart = (track->time[count - 1] - track->time[0]) / (double)(count - 1);
+  double first = mean_along_ground(track, 0);
   for (size_t k = 0; k < count; k++) {
-    double here = mean_along_ground(a, k), there = mean_along_ground(second, k);
-    double later = a->time[k] - second->time[k];
+    double here = mean_along_ground(track, k), there = mean_along_ground(second, k);
+    double later = track->time[k] - second->time[k];
     if (period > 0.0) later = remainder(later, period);
     if (fabs(later) > SAME_MOMENT * apart) return HUGE_VAL;
     for (size_t i = 0; i < both; i++) {
       double t =
           strut_contacts_allow_travel(&model->contacts) ? model->contacts.tangent[i % 2] : 0.0;
-      double x = a->position[k * both + i] - here * t,
+      double x = track->position[k * both + i] - here * t,
              y = second->position[k * both + i] - there * t;
-      double x0 = a->position[i] - first * t;
+      double x0 = track->position[i] - first * t;
       away = fmax(away, fabs(x - y));
       motion = fmax(motion, fabs(x - x0));
     }

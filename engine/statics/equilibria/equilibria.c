@@ -221,15 +221,15 @@ static void link_saddles(strut_equilibrium_search *search) {
 }
 
 /* The landscape's minimum into which the drawn shape descends, or -1; q (length) is scratch. */
-static strut_status find_start_state(const strut_equilibrium_search *search, double *q,
+static strut_status find_start_state(const strut_equilibrium_search *search, double *positions,
                                      int32_t *state) {
   strut_minimiser *minimiser;
   strut_status status = strut_minimiser_create(search->potential, &minimiser, search->error);
   if (status) return status;
   strut_minimiser_watch(minimiser, search->options->interrupt);
-  memcpy(q, search->model->start, (size_t)search->model->length * sizeof *q);
-  bool rests = strut_descend_gently(minimiser, q) == STRUT_DESCENT_REACHED;
-  *state = rests ? strut_landscape_find(&search->landscape, q) : -1;
+  memcpy(positions, search->model->start, (size_t)search->model->length * sizeof *positions);
+  bool rests = strut_descend_gently(minimiser, positions) == STRUT_DESCENT_REACHED;
+  *state = rests ? strut_landscape_find(&search->landscape, positions) : -1;
   strut_minimiser_free(minimiser);
   return STRUT_OK;
 }
@@ -362,10 +362,10 @@ static bool is_listed(const int32_t *nodes, int32_t count, int32_t node) {
 
 /* Is the shape q held by the ground where that equilibrium is? */
 static bool touches_alike(const strut_model *model, const strut_equilibrium *equilibrium,
-                          const double *q) {
+                          const double *positions) {
   const strut_contact_table *contacts = &model->contacts;
   for (int32_t i = 0; i < contacts->count; i++)
-    if ((strut_contact_gap(contacts, i, q) < 0.0) !=
+    if ((strut_contact_gap(contacts, i, positions) < 0.0) !=
         is_listed(equilibrium->contacts, equilibrium->contact_count, contacts->entry[i].node))
       return false;
   return true;
@@ -376,16 +376,16 @@ static bool touches_alike(const strut_model *model, const strut_equilibrium *equ
  * around it, on the same contacts.
  */
 static int32_t find_nearest(const strut_model *model, const strut_equilibria *all, bool friction,
-                            const double *q) {
+                            const double *positions) {
   double least = (friction ? STRUT_NAMED_WITHIN : 1e-4) * model->size;
   int32_t nearest = -1;
   for (size_t i = 0; i < all->count; i++) {
     const strut_equilibrium *equilibrium = &all->list[i];
     bool unstable = !equilibrium->supports && equilibrium->outcome == STRUT_OUTCOME_UNSTABLE;
     if (equilibrium->outcome != STRUT_OUTCOME_STANDS && !unstable) continue;
-    if (friction && (unstable || !touches_alike(model, equilibrium, q))) continue;
+    if (friction && (unstable || !touches_alike(model, equilibrium, positions))) continue;
     const double *shape = unstable ? equilibrium->point.q : equilibrium->rest;
-    double away = strut_shape_distance(model, q, shape, false, NULL);
+    double away = strut_shape_distance(model, positions, shape, false, NULL);
     if (away < least) least = away, nearest = (int32_t)i;
   }
   return nearest;

@@ -34,10 +34,10 @@ strut_status strut_landscape_create(const strut_potential *potential,
 void strut_landscape_free(strut_landscape *landscape);
 
 /** The minimum that the shape q (length) is, or -1. */
-int32_t strut_landscape_find(const strut_landscape *landscape, const double *q);
+int32_t strut_landscape_find(const strut_landscape *landscape, const double *positions);
 
 /** A strut_pass_of for a landscape as the context. */
-double strut_landscape_pass(const void *landscape, const double *q);
+double strut_landscape_pass(const void *landscape, const double *positions);
 
 /**
  * Index of the highest saddle on the lowest path from minimum a to minimum b; -1 if the known
@@ -54,7 +54,7 @@ int32_t strut_landscape_path(const strut_landscape *landscape, int32_t a, int32_
 
 /** The first collision whose axes cross in the shape q (length), or come closer than half of the thickness;
     -1: none. */
-int32_t strut_overlap_find(const strut_model *model, const double *q);
+int32_t strut_overlap_find(const strut_model *model, const double *positions);
 
 /** The first collision whose bodies pass through each other while all nodes move straight from a to b (length);
     -1: none. */
@@ -164,16 +164,16 @@ void strut_relaxer_free(strut_relaxer *relaxer);
 bool strut_relaxer_simulates(const strut_relaxer *relaxer);
 
 /** Minimises from q (length) as strut_minimise does. */
-strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *q);
+strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *positions);
 
 /** Minimises without simulation, for a q with one possible end; reports as strut_relax does. */
-void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed);
+void strut_relax_down(strut_relaxer *relaxer, double *positions, strut_relaxed *relaxed);
 
 /**
  * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass
  * where the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
  */
-strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes,
+strut_status strut_relax(strut_relaxer *relaxer, double *positions, strut_pass_of passes,
                          const void *context, const strut_flag *interrupt, strut_relaxed *relaxed,
                          strut_error *error);
 
@@ -235,10 +235,11 @@ typedef struct strut_node_pushes {
   double *normal;
 } strut_node_pushes;
 /** By more than `least` at q. False: out of memory. */
-bool strut_closed_contacts(const strut_model *model, const double *q, double least,
+bool strut_closed_contacts(const strut_model *model, const double *positions, double least,
                            strut_arena *arena, strut_node_pushes *pushes);
 /** Nodes that touch the ground at q and with what force: contacts, contact_count, normal of e. */
-strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search, const double *q,
+strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search,
+                                               const double *positions,
                                                strut_equilibrium *equilibrium);
 
 /**
@@ -288,7 +289,7 @@ strut_status strut_barriers_find(strut_equilibrium_search *search);
  * the drawn shape; softest (may be NULL) goes with it. held: (length) coordinates held besides the
  * scene's. STRUT_OK or STRUT_NO_MEMORY.
  */
-strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *q,
+strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *positions,
                                 double *softest);
 
 /**

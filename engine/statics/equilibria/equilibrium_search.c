@@ -47,10 +47,10 @@ static bool copy_point(strut_equilibrium_search *search, const strut_critical_po
   return to->q && to->softest && to->eigenvalues;
 }
 
-static void measure_members(const strut_model *model, const double *q, double *force) {
+static void measure_members(const strut_model *model, const double *positions, double *force) {
   const strut_member_table *members = &model->members;
   for (int32_t j = 0; j < members->count; j++)
-    force[j] = strut_member_elastic_tension(model, members->rest, j, q);
+    force[j] = strut_member_elastic_tension(model, members->rest, j, positions);
 }
 
 /* Reactions on held coordinates: minus the net force there. */
@@ -116,7 +116,7 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *search,
   return STRUT_OK;
 }
 
-bool strut_closed_contacts(const strut_model *model, const double *q, double least,
+bool strut_closed_contacts(const strut_model *model, const double *positions, double least,
                            strut_arena *arena, strut_node_pushes *pushes) {
   const strut_contact_table *contacts = &model->contacts;
   pushes->count = 0;
@@ -124,7 +124,7 @@ bool strut_closed_contacts(const strut_model *model, const double *q, double lea
   pushes->normal = strut_arena_allocate(arena, (size_t)contacts->count, sizeof *pushes->normal);
   if (!pushes->node || !pushes->normal) return false;
   for (int32_t i = 0; i < contacts->count; i++) {
-    double normal = -contacts->entry[i].stiffness * strut_contact_gap(contacts, i, q);
+    double normal = -contacts->entry[i].stiffness * strut_contact_gap(contacts, i, positions);
     if (!(normal > least)) continue;
     bool again = pushes->count && pushes->node[pushes->count - 1] == contacts->entry[i].node;
     if (!again) pushes->node[pushes->count++] = contacts->entry[i].node;
@@ -133,11 +133,12 @@ bool strut_closed_contacts(const strut_model *model, const double *q, double lea
   return true;
 }
 
-strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search, const double *q,
+strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search,
+                                               const double *positions,
                                                strut_equilibrium *equilibrium) {
   strut_node_pushes pushes = {0};
   double least = search->on_ground ? PULL * search->potential->force_scale : HUGE_VAL;
-  if (!strut_closed_contacts(search->model, q, least, &search->out->arena, &pushes))
+  if (!strut_closed_contacts(search->model, positions, least, &search->out->arena, &pushes))
     return strut_no_memory(search->error, "");
   equilibrium->contacts = pushes.node, equilibrium->normal = pushes.normal,
   equilibrium->contact_count = pushes.count;
@@ -384,8 +385,8 @@ void strut_relaxer_free(strut_relaxer *relaxer) {
 
 bool strut_relaxer_simulates(const strut_relaxer *relaxer) { return relaxer->state != NULL; }
 
-strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *q) {
-  return strut_minimise(relaxer->minimiser, q, 0.0);
+strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *positions) {
+  return strut_minimise(relaxer->minimiser, positions, 0.0);
 }
 
 static bool free_along_x(const strut_model *model) {
@@ -395,20 +396,20 @@ static bool free_along_x(const strut_model *model) {
   return true;
 }
 
-static double centre_x(const strut_model *model, const double *q) {
+static double centre_x(const strut_model *model, const double *positions) {
   double sum = 0.0, all = 0.0;
   for (int32_t i = 0; i < model->node_count; i++) {
-    sum += model->weight[i] * q[2 * i];
+    sum += model->weight[i] * positions[2 * i];
     all += model->weight[i];
   }
   return all > 0 ? sum / all : 0.0;
 }
 
 /* No force acts along the ground, so the centre of mass stays; Newton's method knows no masses. */
-static void restore_centre(const strut_model *model, double x, double *q) {
+static void restore_centre(const strut_model *model, double x, double *positions) {
   if (!free_along_x(model)) return;
-  double back = x - centre_x(model, q);
-  for (int32_t i = 0; i < model->node_count; i++) q[2 * i] += back;
+  double back = x - centre_x(model, positions);
+  for (int32_t i = 0; i < model->node_count; i++) positions[2 * i] += back;
 }
 
 static double total_energy(const strut_relaxer *relaxer) {
@@ -416,10 +417,10 @@ static double total_energy(const strut_relaxer *relaxer) {
          strut_energy_kinetic(relaxer->model, relaxer->state->v);
 }
 
-static bool has_escaped(const strut_model *model, const double *start, const double *q) {
+static bool has_escaped(const strut_model *model, const double *start, const double *positions) {
   double bound = GONE * (model->size > 0 ? model->size : 1.0);
   for (int32_t i = 0; i < 2 * model->node_count; i++)
-    if (!(fabs(q[i] - start[i]) <= bound)) return true;
+    if (!(fabs(positions[i] - start[i]) <= bound)) return true;
   return false;
 }
 
@@ -429,17 +430,18 @@ typedef struct verdict {
   int agreed;
 } verdict;
 
-static bool is_decided(strut_relaxer *relaxer, double energy, const double *q, strut_pass_of passes,
-                       const void *context, verdict *self) {
+static bool is_decided(strut_relaxer *relaxer, double energy, const double *positions,
+                       strut_pass_of passes, const void *context, verdict *self) {
   size_t bytes = (size_t)relaxer->model->length * sizeof(double);
-  memcpy(relaxer->quenched, q, bytes);
+  memcpy(relaxer->quenched, positions, bytes);
   strut_descent descent = strut_relaxer_quench(relaxer, relaxer->quenched);
   if (descent.end != STRUT_DESCENT_REACHED) {
     self->agreed = 0;
     return false;
   }
   if (passes && energy < passes(context, relaxer->quenched)) return true;
-  double excess = energy - strut_potential_value_near(relaxer->potential, relaxer->quenched, q);
+  double excess =
+      energy - strut_potential_value_near(relaxer->potential, relaxer->quenched, positions);
   if (self->excess < 0) self->excess = excess;
   bool same = self->agreed && strut_shape_distance(relaxer->model, relaxer->last, relaxer->quenched,
                                                    false, NULL) < SAME * relaxer->model->size;
@@ -475,39 +477,41 @@ static outcome simulate(strut_relaxer *relaxer, double step, strut_pass_of passe
 }
 
 /* Largest acceleration at rest: the paper's break-off criterion with all speeds 0. */
-static void judge_rest(strut_relaxer *relaxer, const double *q, strut_relaxed *relaxed) {
+static void judge_rest(strut_relaxer *relaxer, const double *positions, strut_relaxed *relaxed) {
   const strut_model *model = relaxer->model;
   if (!relaxer->state) return;
   size_t bytes = (size_t)model->length * sizeof(double);
   memset(relaxer->state->v, 0, bytes);
   memset(relaxer->last, 0, bytes);
-  strut_forces_acceleration(model, relaxer->state, 0.0, q, relaxer->state->v, relaxer->last);
+  strut_forces_acceleration(model, relaxer->state, 0.0, positions, relaxer->state->v,
+                            relaxer->last);
   relaxed->acceleration = strut_largest_magnitude(relaxer->last, 2 * model->node_count);
 }
 
 /* Minimises from q, with the centre of mass moved to x. */
-static void quench_to_rest(strut_relaxer *relaxer, double x, double *q, strut_relaxed *relaxed) {
-  strut_descent descent = strut_relaxer_quench(relaxer, q);
+static void quench_to_rest(strut_relaxer *relaxer, double x, double *positions,
+                           strut_relaxed *relaxed) {
+  strut_descent descent = strut_relaxer_quench(relaxer, positions);
   relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS
                  : descent.end == STRUT_DESCENT_RUNAWAY ? STRUT_RELAXED_LEAVES
                                                         : STRUT_RELAXED_MOVES;
-  restore_centre(relaxer->model, x, q);
+  restore_centre(relaxer->model, x, positions);
   relaxed->residual = descent.residual;
-  if (relaxed->end == STRUT_RELAXED_RESTS) judge_rest(relaxer, q, relaxed);
+  if (relaxed->end == STRUT_RELAXED_RESTS) judge_rest(relaxer, positions, relaxed);
 }
 
-void strut_relax_down(strut_relaxer *relaxer, double *q, strut_relaxed *relaxed) {
+void strut_relax_down(strut_relaxer *relaxer, double *positions, strut_relaxed *relaxed) {
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
-  quench_to_rest(relaxer, centre_x(relaxer->model, q), q, relaxed);
+  quench_to_rest(relaxer, centre_x(relaxer->model, positions), positions, relaxed);
 }
 
-strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes,
+strut_status strut_relax(strut_relaxer *relaxer, double *positions, strut_pass_of passes,
                          const void *context, const strut_flag *interrupt, strut_relaxed *relaxed,
                          strut_error *error) {
   size_t bytes = (size_t)relaxer->model->length * sizeof(double);
   outcome end = DECIDED;
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
-  memcpy(relaxer->start, q, bytes);
+  memcpy(relaxer->start, positions, bytes);
   strut_minimiser_watch(relaxer->minimiser, interrupt);
   if (relaxer->state) {
     double step = relaxer->step;
@@ -516,12 +520,12 @@ strut_status strut_relax(strut_relaxer *relaxer, double *q, strut_pass_of passes
       end = simulate(relaxer, step *= 0.5, passes, context, interrupt);
     relaxed->time = (double)relaxer->state->step * step;
     relaxed->simulated = relaxer->state->step > 0;
-    memcpy(q, end == DECIDED ? relaxer->quenched : relaxer->state->q, bytes);
+    memcpy(positions, end == DECIDED ? relaxer->quenched : relaxer->state->q, bytes);
   }
   if (end == STOPPED)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted while coming to rest");
   if (end == DECIDED)
-    quench_to_rest(relaxer, centre_x(relaxer->model, relaxer->start), q, relaxed);
+    quench_to_rest(relaxer, centre_x(relaxer->model, relaxer->start), positions, relaxed);
   else
     relaxed->end = end == LEFT ? STRUT_RELAXED_LEAVES : STRUT_RELAXED_MOVES;
   return STRUT_OK;

@@ -56,9 +56,9 @@ typedef struct grip_search {
   double used;      /* part of what all contacts could hold */
 } grip_search;
 
-static double push_at(const strut_equilibrium_search *search, int32_t i, const double *q) {
+static double push_at(const strut_equilibrium_search *search, int32_t i, const double *positions) {
   const strut_contact_table *contacts = &search->model->contacts;
-  return fmax(0.0, -contacts->entry[i].stiffness * strut_contact_gap(contacts, i, q));
+  return fmax(0.0, -contacts->entry[i].stiffness * strut_contact_gap(contacts, i, positions));
 }
 
 /* Shares the pull along the ground among the contacts; returns the largest change of a force [N]. */

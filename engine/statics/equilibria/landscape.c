@@ -26,36 +26,38 @@ static bool is_collision(const strut_model *model, int32_t i) {
   return model->elements.element[i].role == STRUT_ELEMENT_COLLISION;
 }
 
-static double distance_of(const strut_model *model, int32_t i, const double *q) {
+static double distance_of(const strut_model *model, int32_t i, const double *positions) {
   const uint32_t *at = nodes_of(model, i);
   bool rod = model->elements.element[i].strain == STRUT_STRAIN_REACH;
-  return rod ? strut_reach_of(at, q).distance : strut_distance(q + at[0], q + at[1]);
+  return rod ? strut_reach_of(at, positions).distance
+             : strut_distance(positions + at[0], positions + at[1]);
 }
 
 /* Twice the area between a rod and a node: its sign is the side of the rod's axis on which the node is. */
-static double side_of(const uint32_t *at, const double *q) {
-  strut_vec2 rod = strut_vec2_between(q + at[1], q + at[2]);
-  strut_vec2 node = strut_vec2_between(q + at[1], q + at[0]);
+static double side_of(const uint32_t *at, const double *positions) {
+  strut_vec2 rod = strut_vec2_between(positions + at[1], positions + at[2]);
+  strut_vec2 node = strut_vec2_between(positions + at[1], positions + at[0]);
   return rod.x * node.y - rod.y * node.x;
 }
 
 static bool are_opposite(double a, double b) { return (a > 0.0) != (b > 0.0); }
 
 /* Of the first of the four elements of two rods: do these cross? Of any other element: no. */
-static bool rods_cross(const strut_model *model, int32_t i, const double *q) {
+static bool rods_cross(const strut_model *model, int32_t i, const double *positions) {
   const strut_element *element = &model->elements.element[i];
   double side[RODS];
   if (i && is_collision(model, i - 1) && element[-1].item == element->item) return false;
   if (strut_element_end(&model->elements, i) - i != RODS) return false;
-  for (int k = 0; k < RODS; k++) side[k] = side_of(nodes_of(model, i + k), q);
+  for (int k = 0; k < RODS; k++) side[k] = side_of(nodes_of(model, i + k), positions);
   return are_opposite(side[0], side[1]) && are_opposite(side[2], side[3]);
 }
 
-int32_t strut_overlap_find(const strut_model *model, const double *q) {
+int32_t strut_overlap_find(const strut_model *model, const double *positions) {
   for (int32_t i = 0; i < model->elements.count; i++) {
     const strut_element *element = &model->elements.element[i];
     if (!is_collision(model, i)) continue;
-    if (distance_of(model, i, q) < DEEP * element->natural || rods_cross(model, i, q))
+    if (distance_of(model, i, positions) < DEEP * element->natural ||
+        rods_cross(model, i, positions))
       return element->item;
   }
   return -1;
@@ -70,11 +72,11 @@ int32_t strut_crossing_find(const strut_model *model, const double *first, const
 
 /* The nodes of an element, and these alone, at the share t of the way from a to b. */
 static void place_between(const uint32_t *at, int32_t nodes, const double *first,
-                          const double *second, double t, double *q, uint32_t *own) {
+                          const double *second, double t, double *positions, uint32_t *own) {
   for (int32_t k = 0; k < nodes; k++) {
     own[k] = 2 * (uint32_t)k;
     for (uint32_t c = 0; c < 2; c++)
-      q[own[k] + c] = first[at[k] + c] + t * (second[at[k] + c] - first[at[k] + c]);
+      positions[own[k] + c] = first[at[k] + c] + t * (second[at[k] + c] - first[at[k] + c]);
   }
 }
 
@@ -125,10 +127,10 @@ typedef struct way_down {
   int32_t through; /* the first collision met, or -1 */
 } way_down;
 
-static void follow(void *context, const double *q) {
+static void follow(void *context, const double *positions) {
   way_down *way = context;
-  if (way->through < 0) way->through = strut_passage_find(way->model, way->last, q);
-  memcpy(way->last, q, (size_t)way->model->length * sizeof *q);
+  if (way->through < 0) way->through = strut_passage_find(way->model, way->last, positions);
+  memcpy(way->last, positions, (size_t)way->model->length * sizeof *positions);
 }
 
 /*
@@ -237,8 +239,8 @@ static double point_distance(const strut_landscape *landscape, const double *fir
   return most;
 }
 
-int32_t strut_landscape_find(const strut_landscape *landscape, const double *q) {
-  double potential = strut_potential_value(landscape->potential, q), scale = 0.0;
+int32_t strut_landscape_find(const strut_landscape *landscape, const double *positions) {
+  double potential = strut_potential_value(landscape->potential, positions), scale = 0.0;
   double size = landscape->potential->model->size;
   for (int32_t i = 0; i < landscape->minima; i++)
     scale = fmax(scale, fabs(landscape->set.points[i].potential));
@@ -246,15 +248,16 @@ int32_t strut_landscape_find(const strut_landscape *landscape, const double *q) 
     const strut_critical_point *point = &landscape->set.points[i];
     if (fabs(point->potential - potential) > SAME_POTENTIAL * scale) continue;
     /* a floppy shape is a whole family of one energy */
-    if (point->label == STRUT_FLOPPY || point_distance(landscape, point->q, q) <= SAME_SHAPE * size)
+    if (point->label == STRUT_FLOPPY ||
+        point_distance(landscape, point->q, positions) <= SAME_SHAPE * size)
       return i;
   }
   return -1;
 }
 
-double strut_landscape_pass(const void *landscape, const double *q) {
+double strut_landscape_pass(const void *landscape, const double *positions) {
   const strut_landscape *l = landscape;
-  int32_t at = strut_landscape_find(l, q);
+  int32_t at = strut_landscape_find(l, positions);
   return at >= 0 && isfinite(l->lowest[at]) ? l->lowest[at] : -HUGE_VAL;
 }
 

@@ -42,7 +42,7 @@ void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size
 }
 
 /* The x about which the whole may be mirrored; false: its mirror image is another problem. */
-static bool mirror_axis(const strut_model *model, const uint8_t *held, const double *q,
+static bool mirror_axis(const strut_model *model, const uint8_t *held, const double *positions,
                         double *vector) {
   bool any = false;
   double sum = 0.0;
@@ -51,10 +51,10 @@ static bool mirror_axis(const strut_model *model, const uint8_t *held, const dou
   if (model->strains & sided) return false; /* they change their sign */
   for (int32_t i = 0; i < model->node_count; i++) {
     if (model->constant_force && model->constant_force[2 * i] != 0.0) return false;
-    sum += q[2 * i];
+    sum += positions[2 * i];
     if (!model->fixed[2 * i] && !(held && held[2 * i])) continue;
-    if (any && q[2 * i] != *vector) return false;
-    *vector = q[2 * i];
+    if (any && positions[2 * i] != *vector) return false;
+    *vector = positions[2 * i];
     any = true;
   }
   if (!any) *vector = sum / model->node_count;
@@ -62,23 +62,24 @@ static bool mirror_axis(const strut_model *model, const uint8_t *held, const dou
 }
 
 /* Distance to the nearest configuration if that is near enough to lend its name, else HUGE_VAL. */
-static double distance_to_configurations(const strut_model *model, const double *q,
+static double distance_to_configurations(const strut_model *model, const double *positions,
                                          double *scratch) {
   const strut_scene *scene = model->scene;
   double nearest = HUGE_VAL;
   for (size_t c = 0; c < scene->configuration_count; c++) {
     if (!scene->configurations[c].shaped) continue;
     memcpy(scratch, scene->configurations[c].position[0], 2 * scene->node_count * sizeof *scratch);
-    nearest = fmin(nearest, strut_shape_distance(model, scratch, q, false, NULL));
+    nearest = fmin(nearest, strut_shape_distance(model, scratch, positions, false, NULL));
   }
   return nearest < STRUT_NAMED_WITHIN * model->size ? nearest : HUGE_VAL;
 }
 
-static double distance_to_drawn(const strut_model *model, const double *q, double *scratch) {
+static double distance_to_drawn(const strut_model *model, const double *positions,
+                                double *scratch) {
   const strut_scene *scene = model->scene;
   for (size_t i = 0; i < scene->node_count; i++)
     memcpy(scratch + 2 * i, scene->nodes[i].position, sizeof scene->nodes[i].position);
-  return strut_shape_distance(model, scratch, q, false, NULL);
+  return strut_shape_distance(model, scratch, positions, false, NULL);
 }
 
 /*
@@ -102,24 +103,24 @@ static bool do_hinges_allow_mirrors(const strut_model *model) {
   return true;
 }
 
-strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *q,
+strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, double *positions,
                                 double *softest) {
   double x = 0.0;
-  if (!mirror_axis(model, held, q, &x) || !do_hinges_allow_mirrors(model)) return STRUT_OK;
+  if (!mirror_axis(model, held, positions, &x) || !do_hinges_allow_mirrors(model)) return STRUT_OK;
   size_t length = (size_t)model->length;
   double *mirrored = strut_allocate(2 * length, sizeof *mirrored);
   if (!mirrored) return STRUT_NO_MEMORY;
   double *scratch = mirrored + length;
-  memcpy(mirrored, q, length * sizeof *q);
-  for (int32_t i = 0; i < model->node_count; i++) mirrored[2 * i] = x + (x - q[2 * i]);
-  double as_is = distance_to_configurations(model, q, scratch);
+  memcpy(mirrored, positions, length * sizeof *positions);
+  for (int32_t i = 0; i < model->node_count; i++) mirrored[2 * i] = x + (x - positions[2 * i]);
+  double as_is = distance_to_configurations(model, positions, scratch);
   double as_mirrored = distance_to_configurations(model, mirrored, scratch);
   if (as_is == as_mirrored) { /* most often both HUGE_VAL */
-    as_is = distance_to_drawn(model, q, scratch);
+    as_is = distance_to_drawn(model, positions, scratch);
     as_mirrored = distance_to_drawn(model, mirrored, scratch);
   }
   if (as_mirrored < as_is) {
-    memcpy(q, mirrored, length * sizeof *q);
+    memcpy(positions, mirrored, length * sizeof *positions);
     for (int32_t i = 0; i < model->node_count && softest; i++) softest[2 * i] = -softest[2 * i];
   }
   strut_release(mirrored);
@@ -255,11 +256,11 @@ static const char *make_stem(const strut_scene *scene, const strut_equilibrium *
 }
 
 /* The i-th invariant of the shape under rigid motions; mirroring changes it. */
-static double shape_invariant(const strut_model *model, const double *q, int32_t i) {
+static double shape_invariant(const strut_model *model, const double *positions, int32_t i) {
   int32_t node = i / 2, second = model->node_count > 1 ? 1 : 0;
-  double x = q[2 * node] - q[0], y = q[2 * node + 1] - q[1];
+  double x = positions[2 * node] - positions[0], y = positions[2 * node + 1] - positions[1];
   if (i % 2 == 0) return hypot(x, y) / model->size;
-  double dx = q[2 * second] - q[0], dy = q[2 * second + 1] - q[1];
+  double dx = positions[2 * second] - positions[0], dy = positions[2 * second + 1] - positions[1];
   return (x * dy - y * dx) / (model->size * model->size);
 }
 

@@ -19,8 +19,10 @@ typedef struct whole {
   double shift[2], turn;
 } whole;
 
-static double node_speed(const double *q, const double *mode, const whole *self, int32_t i) {
-  double dx = q[2 * i] - q[2 * self->about], dy = q[2 * i + 1] - q[2 * self->about + 1];
+static double node_speed(const double *positions, const double *mode, const whole *self,
+                         int32_t i) {
+  double dx = positions[2 * i] - positions[2 * self->about],
+         dy = positions[2 * i + 1] - positions[2 * self->about + 1];
   return hypot(mode[2 * i] - self->shift[0] + self->turn * dy,
                mode[2 * i + 1] - self->shift[1] - self->turn * dx);
 }
@@ -67,11 +69,11 @@ static void flag_floppy_nodes(const strut_model *model, const strut_critical_poi
 
 /* Largest distance moved, up to rigid motions if the structure is free. */
 static double distance_moved(const strut_model *model, const strut_critical_point *point,
-                             const double *q) {
+                             const double *positions) {
   double most = 0.0;
-  if (point->rigid > 0) return strut_shape_distance(model, point->q, q, false, NULL);
+  if (point->rigid > 0) return strut_shape_distance(model, point->q, positions, false, NULL);
   for (int32_t at = 0; at < 2 * model->node_count; at++)
-    most = fmax(most, fabs(q[at] - point->q[at]));
+    most = fmax(most, fabs(positions[at] - point->q[at]));
   return most;
 }
 

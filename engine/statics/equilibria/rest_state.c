@@ -16,12 +16,13 @@ static const double NEAR = 0.01;
 static const double AT_REST = 1e-8;
 
 /* A hinge pushes on its nodes with its moment over the arms, a cell with its pressure times lengths. */
-static double sum_member_forces(const strut_model *model, const double *q) {
+static double sum_member_forces(const strut_model *model, const double *positions) {
   const strut_member_table *members = &model->members;
-  strut_force_visit visit = {.model = model, .q = q, .rest = members->rest, .least = -HUGE_VAL};
+  strut_force_visit visit = {
+      .model = model, .q = positions, .rest = members->rest, .least = -HUGE_VAL};
   double sum = 0.0, others = 0.0;
   for (int32_t j = 0; j < members->count; j++)
-    sum += fabs(strut_member_elastic_tension(model, members->rest, j, q));
+    sum += fabs(strut_member_elastic_tension(model, members->rest, j, positions));
   for (const strut_force *force; (force = strut_force_next(&visit));)
     if (force->kind == STRUT_FORCE_ELEMENT &&
         !strut_element_is_of_member(&model->elements.element[force->index]))
@@ -96,25 +97,26 @@ static const char *farthest_node(const strut_equilibrium_search *search, const d
 }
 
 /* Moves q (level coordinates) to where the structure comes to rest from it. */
-static strut_status relax_to_rest(strut_equilibrium_search *search, const char *what, double *q) {
-  size_t bytes = (size_t)search->model->length * sizeof *q;
+static strut_status relax_to_rest(strut_equilibrium_search *search, const char *what,
+                                  double *positions) {
+  size_t bytes = (size_t)search->model->length * sizeof *positions;
   strut_relaxed relaxed;
   strut_status status = STRUT_OK;
   if (search->potential->n == 0) return STRUT_OK;
   double *near = strut_arena_allocate(&search->out->arena, 1, bytes);
   double *from = strut_arena_allocate(&search->out->arena, 1, bytes);
   if (!near || !from) return strut_no_memory(search->error, "");
-  memcpy(near, q, bytes);
-  memcpy(from, q, bytes);
+  memcpy(near, positions, bytes);
+  memcpy(from, positions, bytes);
   strut_relax_down(search->relaxer, near, &relaxed);
-  bool close =
-      relaxed.end == STRUT_RELAXED_RESTS &&
-      strut_shape_distance(search->model, q, near, false, NULL) < NEAR * search->model->size;
+  bool close = relaxed.end == STRUT_RELAXED_RESTS &&
+               strut_shape_distance(search->model, positions, near, false, NULL) <
+                   NEAR * search->model->size;
   if (close || !strut_relaxer_simulates(search->relaxer))
-    memcpy(q, near, bytes);
+    memcpy(positions, near, bytes);
   else
-    status = strut_relax(search->relaxer, q, NULL, NULL, search->experiment->interrupt, &relaxed,
-                         search->error);
+    status = strut_relax(search->relaxer, positions, NULL, NULL, search->experiment->interrupt,
+                         &relaxed, search->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
   return strut_fail(
       search->error, STRUT_NOT_SETTLED,
@@ -123,25 +125,25 @@ static strut_status relax_to_rest(strut_equilibrium_search *search, const char *
           : "from %s the structure does not come to rest within "
             "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
             "larger limit, or more damping",
-      what, farthest_node(search, from, q));
+      what, farthest_node(search, from, positions));
 }
 
-static strut_status relax_from_start(strut_equilibrium_search *search, double *q) {
-  memcpy(q, search->model->start, (size_t)search->model->length * sizeof *q);
-  return relax_to_rest(search, "the scene's start", q);
+static strut_status relax_from_start(strut_equilibrium_search *search, double *positions) {
+  memcpy(positions, search->model->start, (size_t)search->model->length * sizeof *positions);
+  return relax_to_rest(search, "the scene's start", positions);
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
 static bool fits_configuration(strut_equilibrium_search *search,
                                const strut_configuration *configuration, const double *shape,
-                               const double *q, strut_node_set *rests_on) {
+                               const double *positions, strut_node_set *rests_on) {
   strut_equilibrium e = {0};
-  if (strut_equilibrium_search_contacts(search, q, &e)) return false;
+  if (strut_equilibrium_search_contacts(search, positions, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
   bool on_set = configuration->set_count == 0;
   for (size_t k = 0; k < configuration->set_count; k++)
     on_set = on_set || strut_same_nodes(&configuration->sets[k], e.contacts, e.contact_count);
-  return on_set && strut_shape_distance(search->model, shape, q, false, NULL) <
+  return on_set && strut_shape_distance(search->model, shape, positions, false, NULL) <
                        STRUT_NAMED_WITHIN * search->model->size;
 }
 
@@ -149,7 +151,7 @@ static bool fits_configuration(strut_equilibrium_search *search,
  * Relaxes from the configuration's shape; *found: it stands there; else *rests_on has its contacts.
  */
 static strut_status relax_from_shape(strut_equilibrium_search *search,
-                                     const strut_configuration *configuration, double *q,
+                                     const strut_configuration *configuration, double *positions,
                                      bool *found, strut_node_set *rests_on) {
   size_t nodes = search->level.scene.node_count;
   double *shape =
@@ -160,17 +162,17 @@ static strut_status relax_from_shape(strut_equilibrium_search *search,
     for (size_t k = 0; k < 2; k++)
       if (search->level.scene.nodes[i].fixed[k])
         shape[2 * i + k] = search->level.scene.nodes[i].start[k];
-  memcpy(q, shape, (size_t)search->model->length * sizeof *q);
-  strut_status status = relax_to_rest(search, "the configuration's shape", q);
+  memcpy(positions, shape, (size_t)search->model->length * sizeof *positions);
+  strut_status status = relax_to_rest(search, "the configuration's shape", positions);
   if (status == STRUT_NOT_SETTLED) return STRUT_OK;
-  *found = !status && fits_configuration(search, configuration, shape, q, rests_on);
+  *found = !status && fits_configuration(search, configuration, shape, positions, rests_on);
   return status;
 }
 
 /* The equilibrium of that name in the list that a search makes, into q. Where only standing ones are wanted: at rest. */
 static strut_status find_named(const strut_model *model, const strut_experiment *experiment,
                                const strut_node_set *set, bool standing, const char *name,
-                               double *q, bool *found, strut_error *error) {
+                               double *positions, bool *found, strut_error *error) {
   strut_equilibria_options options = {
       .standing_only = standing, .supports = set, .interrupt = experiment->interrupt};
   strut_equilibria all;
@@ -179,7 +181,8 @@ static strut_status find_named(const strut_model *model, const strut_experiment 
     const strut_equilibrium *equilibrium = &all.list[i];
     bool stands = equilibrium->outcome == STRUT_OUTCOME_STANDS && equilibrium->rest;
     if ((standing && !stands) || strcmp(equilibrium->name, name) != 0) continue;
-    memcpy(q, stands ? equilibrium->rest : equilibrium->point.q, (size_t)model->length * sizeof *q);
+    memcpy(positions, stands ? equilibrium->rest : equilibrium->point.q,
+           (size_t)model->length * sizeof *positions);
     *found = true;
   }
   strut_equilibria_free(&all);
@@ -192,16 +195,18 @@ static strut_status find_named(const strut_model *model, const strut_experiment 
  */
 static strut_status search_configuration(const strut_model *model,
                                          const strut_experiment *experiment,
-                                         const strut_configuration *configuration, double *q,
-                                         const strut_node_set *rests_on, strut_error *error) {
+                                         const strut_configuration *configuration,
+                                         double *positions, const strut_node_set *rests_on,
+                                         strut_error *error) {
   bool found = false;
   strut_status status = STRUT_OK;
   for (size_t k = 0; k < configuration->set_count && !status && !found; k++)
     status = find_named(model, experiment,
                         configuration->sets[k].count == 2 ? &configuration->sets[k] : NULL, true,
-                        configuration->name, q, &found, error);
+                        configuration->name, positions, &found, error);
   if (!status && !found && configuration->set_count == 0)
-    status = find_named(model, experiment, NULL, true, configuration->name, q, &found, error);
+    status =
+        find_named(model, experiment, NULL, true, configuration->name, positions, &found, error);
   if (status || found) return status;
   char instead[200] = "";
   size_t used = 0;
@@ -246,8 +251,8 @@ static strut_status find_in_list(const strut_model *model, const strut_experimen
 
 /* *held: by friction alone. */
 static strut_status find_rest(const strut_model *model, const strut_experiment *experiment,
-                              const strut_configuration *configuration, double *q, bool *held,
-                              strut_error *error) {
+                              const strut_configuration *configuration, double *positions,
+                              bool *held, strut_error *error) {
   strut_equilibria scratch = {0};
   strut_equilibrium_search h = {.experiment = experiment, .out = &scratch, .error = error};
   strut_node_set rests_on = {0};
@@ -258,18 +263,18 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
   bool found = !configuration, turned = !h.held_by_friction;
   *held = h.held_by_friction;
   if (!status && !configuration && !turned)
-    status = strut_settle_experiment(model, &kept, experiment->interrupt, q, &how, error);
+    status = strut_settle_experiment(model, &kept, experiment->interrupt, positions, &how, error);
   else if (!status && !configuration)
-    status = relax_from_start(&h, q);
+    status = relax_from_start(&h, positions);
   if (!status && configuration && configuration->shaped && turned)
     status = relax_from_shape(
-        &h, &h.level.scene.configurations[configuration - model->scene->configurations], q, &found,
-        &rests_on);
+        &h, &h.level.scene.configurations[configuration - model->scene->configurations], positions,
+        &found, &rests_on);
   if (!status && !found) {
     turned = false;
-    status = search_configuration(model, experiment, configuration, q, &rests_on, error);
+    status = search_configuration(model, experiment, configuration, positions, &rests_on, error);
   }
-  if (!status && turned) strut_level_frame_place(&h.level, (size_t)model->node_count, q);
+  if (!status && turned) strut_level_frame_place(&h.level, (size_t)model->node_count, positions);
   free_search(&h);
   return status;
 }

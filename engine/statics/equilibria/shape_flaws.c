@@ -15,13 +15,13 @@ static double turn(const double *first, const double *second, const double *c) {
   return (second[0] - first[0]) * (c[1] - first[1]) - (second[1] - first[1]) * (c[0] - first[0]);
 }
 
-static bool members_cross(const strut_model *model, const double *q, int32_t i, int32_t j) {
+static bool members_cross(const strut_model *model, const double *positions, int32_t i, int32_t j) {
   const strut_member_table *members = &model->members;
   if (members->from[i] == members->from[j] || members->from[i] == members->to[j] ||
       members->to[i] == members->from[j] || members->to[i] == members->to[j])
     return false;
-  const double *a = q + members->from[i], *b = q + members->to[i], *c = q + members->from[j],
-               *d = q + members->to[j];
+  const double *a = positions + members->from[i], *b = positions + members->to[i],
+               *c = positions + members->from[j], *d = positions + members->to[j];
   double least = 1e-8 * model->size * model->size;
   double c_side = turn(a, b, c), d_side = turn(a, b, d);
   double a_side = turn(c, d, a), b_side = turn(c, d, b);

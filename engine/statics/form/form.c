@@ -319,34 +319,36 @@ static void find_freedom(const strut_former *former, bool *shift, bool *turn) {
 }
 
 /* Undoes the drift of a structure that nothing holds from where it started. */
-static bool undo_drift(const strut_former *former, const double *start, double *q) {
-  strut_rigid_fit fit = strut_rigid_fit_find((int32_t)former->scene->node_count, start, q, 1.0);
+static bool undo_drift(const strut_former *former, const double *start, double *positions) {
+  strut_rigid_fit fit =
+      strut_rigid_fit_find((int32_t)former->scene->node_count, start, positions, 1.0);
   bool shift, turn;
   find_freedom(former, &shift, &turn);
   if (!shift) return false;
   if (!turn) fit.cosine = 1.0, fit.sine = 0.0, fit.to[1] = fit.from[1];
   for (size_t i = 0; i < former->scene->node_count; i++)
-    strut_rigid_fit_apply(&fit, q + 2 * i, q + 2 * i);
+    strut_rigid_fit_apply(&fit, positions + 2 * i, positions + 2 * i);
   return true;
 }
 
 /* The node that moved most between the start and q, and its distance. */
-static double farthest(const strut_scene *scene, const double *q, size_t *node) {
+static double farthest(const strut_scene *scene, const double *positions, size_t *node) {
   double most = -1;
   for (size_t i = 0; i < scene->node_count; i++) {
-    double moved = strut_distance(scene->nodes[i].start, q + 2 * i);
+    double moved = strut_distance(scene->nodes[i].start, positions + 2 * i);
     if (moved > most) most = moved, *node = i;
   }
   return most;
 }
 
-static strut_status judge(const strut_former *former, const strut_descent *descent, const double *q,
-                          strut_error *error) {
+static strut_status judge(const strut_former *former, const strut_descent *descent,
+                          const double *positions, strut_error *error) {
   size_t node = 0;
   bool finite = isfinite(descent->residual);
-  for (size_t i = 0; i < 2 * former->scene->node_count; i++) finite = finite && isfinite(q[i]);
+  for (size_t i = 0; i < 2 * former->scene->node_count; i++)
+    finite = finite && isfinite(positions[i]);
   if (!finite) return form_out_of_range(error);
-  double moved = farthest(former->scene, q, &node);
+  double moved = farthest(former->scene, positions, &node);
   const char *name = former->scene->nodes[node].name;
   if (descent->end == STRUT_DESCENT_RUNAWAY)
     return strut_fail(error, STRUT_NOT_SETTLED,

@@ -51,7 +51,7 @@ typedef struct eigen_room {
 } eigen_room;
 
 /* x onto the span of the three null-most eigenvectors of D(q). How far it went. */
-static double project_shape(const strut_scene *scene, const double *drawn, const double *q,
+static double project_shape(const strut_scene *scene, const double *drawn, const double *positions,
                             const eigen_room *room, double *vector) {
   gsl_matrix *matrix = room->matrix, *vectors = room->vectors;
   gsl_vector *values = room->values;
@@ -60,10 +60,10 @@ static double project_shape(const strut_scene *scene, const double *drawn, const
   gsl_matrix_set_zero(matrix);
   for (size_t j = 0; j < scene->member_count; j++) {
     size_t a = (size_t)scene->members[j].node[0], b = (size_t)scene->members[j].node[1];
-    *gsl_matrix_ptr(matrix, a, a) += q[j];
-    *gsl_matrix_ptr(matrix, b, b) += q[j];
-    *gsl_matrix_ptr(matrix, a, b) -= q[j];
-    *gsl_matrix_ptr(matrix, b, a) -= q[j];
+    *gsl_matrix_ptr(matrix, a, a) += positions[j];
+    *gsl_matrix_ptr(matrix, b, b) += positions[j];
+    *gsl_matrix_ptr(matrix, a, b) -= positions[j];
+    *gsl_matrix_ptr(matrix, b, a) -= positions[j];
   }
   gsl_eigen_symmv(matrix, values, vectors, room->work);
   gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_ABS_ASC);
@@ -102,21 +102,22 @@ static bool decompose(const strut_scene *scene, const double *vector, gsl_matrix
  * members for a state of self-stress in every shape, the part that leaves least is kept.
  */
 static double project_densities(const strut_scene *scene, const gsl_matrix *matrix,
-                                const gsl_vector *vector, double *q) {
+                                const gsl_vector *vector, double *positions) {
   size_t b = scene->member_count, most = 2 * scene->node_count - NULLITY;
   double change = 0;
   for (size_t k = 0; k < b && k < most; k++) {
     double share = 0;
     if (k + 1 == b || !(gsl_vector_get(vector, k) > CUT * gsl_vector_get(vector, 0))) break;
-    for (size_t j = 0; j < b; j++) share += gsl_matrix_get(matrix, j, k) * q[j];
-    for (size_t j = 0; j < b; j++) q[j] -= share * gsl_matrix_get(matrix, j, k);
+    for (size_t j = 0; j < b; j++) share += gsl_matrix_get(matrix, j, k) * positions[j];
+    for (size_t j = 0; j < b; j++) positions[j] -= share * gsl_matrix_get(matrix, j, k);
     change = fmax(change, fabs(share));
   }
   return change;
 }
 
 /* Shape and densities in turn; rows of `balance` beyond the members are zero. */
-static bool take_turns(strut_former *former, const double *drawn, double *vector, double *q) {
+static bool take_turns(strut_former *former, const double *drawn, double *vector,
+                       double *positions) {
   const strut_scene *scene = former->scene;
   size_t n = scene->node_count, b = scene->member_count, tall = b > 2 * n ? b : 2 * n;
   strut_arena arena = {0};
@@ -128,11 +129,11 @@ static bool take_turns(strut_former *former, const double *drawn, double *vector
   bool good =
       eigen.matrix && eigen.vectors && eigen.values && eigen.work && balance && matrix && s && room;
   double largest = 0;
-  for (size_t j = 0; j < b; j++) largest = fmax(largest, fabs(q[j]));
+  for (size_t j = 0; j < b; j++) largest = fmax(largest, fabs(positions[j]));
   for (int k = 0; k < TURNS && good; k++) {
-    double moved = project_shape(scene, drawn, q, &eigen, vector), changed = 0;
+    double moved = project_shape(scene, drawn, positions, &eigen, vector), changed = 0;
     good = decompose(scene, vector, balance, matrix, s, room);
-    if (good) changed = project_densities(scene, balance, s, q);
+    if (good) changed = project_densities(scene, balance, s, positions);
     if (moved <= SETTLED * former->size && changed <= SETTLED * largest) break;
   }
   gsl_eigen_symmv_free(eigen.work);
@@ -248,13 +249,17 @@ static strut_status solve(joint *self, strut_error *error) {
 }
 
 strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool standing,
-                                double *vector, double *q, strut_error *error) {
+                                double *vector, double *positions, strut_error *error) {
   size_t coordinates = 2 * former->scene->node_count, members = former->scene->member_count;
   double *x_given = strut_arena_allocate(&former->arena, coordinates, sizeof *x_given);
   double *q_given = strut_arena_allocate(&former->arena, members, sizeof *q_given);
   int32_t *row_of = strut_arena_allocate(&former->arena, coordinates, sizeof *row_of);
-  joint p = {
-      .f = former, .row_of = row_of, .x = vector, .q = q, .x_given = x_given, .q_given = q_given};
+  joint p = {.f = former,
+             .row_of = row_of,
+             .x = vector,
+             .q = positions,
+             .x_given = x_given,
+             .q_given = q_given};
   if (!x_given || !q_given || !row_of) return strut_no_memory(error, "");
   if (coordinates > MOST_COORDINATES)
     return strut_fail(error, STRUT_SINGULAR,
@@ -265,14 +270,15 @@ strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool 
       former->scene->nodes[0].position; /* from the scene's, digits would be lost */
   for (size_t i = 0; i < coordinates; i++) vector[i] -= origin[i % 2];
   memcpy(x_given, vector, coordinates * sizeof *vector);
-  if (standing && !take_turns(former, x_given, vector, q)) return strut_no_memory(error, "");
+  if (standing && !take_turns(former, x_given, vector, positions))
+    return strut_no_memory(error, "");
   if (standing) lay_down(former->scene, held, x_given, vector);
   for (size_t i = 0; i < coordinates; i++) row_of[i] = held[i] ? -1 : p.n++;
   for (size_t i = 0; i < coordinates; i++)
     if (held[i]) vector[i] = former->scene->nodes[i / 2].position[i % 2] - origin[i % 2];
   memcpy(x_given, vector, coordinates * sizeof *vector);
-  memcpy(q_given, q, members * sizeof *q);
-  for (size_t j = 0; j < members; j++) p.unit = fmax(p.unit, fabs(q[j]));
+  memcpy(q_given, positions, members * sizeof *positions);
+  for (size_t j = 0; j < members; j++) p.unit = fmax(p.unit, fabs(positions[j]));
   p.slope = strut_arena_matrix(&former->arena, (size_t)p.n + members, (size_t)p.n);
   p.force = strut_arena_vector(&former->arena, (size_t)p.n);
   p.step = strut_arena_vector(&former->arena, (size_t)p.n + members);

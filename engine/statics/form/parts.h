@@ -41,7 +41,7 @@ strut_status strut_form_prestress(strut_former *former, strut_error *error);
  * coordinates only prevent rigid motions.
  */
 strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool standing,
-                                double *vector, double *q, strut_error *error);
+                                double *vector, double *positions, strut_error *error);
 
 /**
  * Minimises the sum of (weight x)^2 subject to A x = b, with b from the initial `x` (count), and x

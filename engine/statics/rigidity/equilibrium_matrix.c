@@ -48,7 +48,7 @@ static void add_gradient(const strut_force *force, double scale, strut_equilibri
 }
 
 /* The column of an element, and what its forces lend to motions across it, where that bends; false: out of memory. */
-static bool add_element(const strut_model *model, const strut_element *e, const double *q,
+static bool add_element(const strut_model *model, const strut_element *e, const double *positions,
                         strut_arena *arena, strut_equilibrium_matrix *matrix) {
   strut_force force;
   double scale = e->role == STRUT_ELEMENT_CELL    ? 1.0 / matrix->size
@@ -56,28 +56,29 @@ static bool add_element(const strut_model *model, const strut_element *e, const 
                                                   : 1.0;
   int32_t element = (int32_t)(e - model->elements.element), j = matrix->columns;
   strut_force_begin(model, model->members.count + element, &force);
-  strut_element_evaluate(model, element, model->members.rest, q, (double)NAN, &force.pose);
+  strut_element_evaluate(model, element, model->members.rest, positions, (double)NAN, &force.pose);
   add_gradient(&force, scale, matrix);
   if (strut_element_is_of_member(e) && e->strain == STRUT_STRAIN_LENGTH) return true;
   size_t n = 2 * (size_t)e->nodes;
   double *bend = matrix->bend[j] = strut_arena_allocate(arena, n * n, sizeof *bend);
   if (!bend) return false;
   matrix->curved[j] = element;
-  strut_element_bend(model, element, q, scale, bend);
+  strut_element_bend(model, element, positions, scale, bend);
   double largest = matrix->curvature[j] = strut_largest_magnitude(bend, (ptrdiff_t)(n * n));
   for (size_t k = 0; k < n * n && largest > 0; k++) bend[k] /= largest;
   return true;
 }
 
-static bool add_member(const strut_model *model, const double *q, strut_arena *arena,
+static bool add_member(const strut_model *model, const double *positions, strut_arena *arena,
                        strut_equilibrium_matrix *matrix) {
   const strut_member_table *members = &model->members;
   int32_t j = matrix->columns;
-  strut_member_pose pose = strut_member_pose_at(members, members->rest, j, q);
+  strut_member_pose pose = strut_member_pose_at(members, members->rest, j, positions);
   strut_force force;
   matrix->direction[j][0] = pose.unit.x, matrix->direction[j][1] = pose.unit.y;
   if (strut_member_is_element(&model->elements, j))
-    return add_element(model, strut_element_of_member(&model->elements, j), q, arena, matrix);
+    return add_element(model, strut_element_of_member(&model->elements, j), positions, arena,
+                       matrix);
   strut_force_begin(model, j, &force);
   strut_force_set_member(members->stiffness[j], 0.0, pose.unit, pose.length, pose.stretch, &force);
   add_gradient(&force, 1.0, matrix);
@@ -85,7 +86,7 @@ static bool add_member(const strut_model *model, const double *q, strut_arena *a
 }
 
 /* Hinges in the scene's order, then cells, then distances. */
-static bool add_elements(const strut_model *model, const double *q, strut_arena *arena,
+static bool add_elements(const strut_model *model, const double *positions, strut_arena *arena,
                          strut_equilibrium_matrix *matrix) {
   const strut_element_table *elements = &model->elements;
   size_t hinges = model->scene->hinge_count, cells = hinges + model->scene->cell_count,
@@ -99,11 +100,11 @@ static bool add_elements(const strut_model *model, const double *q, strut_arena 
     if (e->role == STRUT_ELEMENT_DISTANCE) element[cells + (size_t)e->item] = e;
   }
   for (size_t i = 0; i < all; i++)
-    if (!add_element(model, element[i], q, arena, matrix)) return false;
+    if (!add_element(model, element[i], positions, arena, matrix)) return false;
   return true;
 }
 
-strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *q,
+strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *positions,
                                             strut_arena *arena, strut_equilibrium_matrix *matrix) {
   size_t members = (size_t)model->members.count, length = (size_t)model->length;
   size_t columns = (size_t)strut_equilibrium_columns(model);
@@ -129,8 +130,8 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
     return STRUT_NO_MEMORY;
   matrix->rows = strut_number_free(model, NULL, matrix->row_of, matrix->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
-    if (!add_member(model, q, arena, matrix)) return STRUT_NO_MEMORY;
-  return add_elements(model, q, arena, matrix) ? STRUT_OK : STRUT_NO_MEMORY;
+    if (!add_member(model, positions, arena, matrix)) return STRUT_NO_MEMORY;
+  return add_elements(model, positions, arena, matrix) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 void strut_equilibrium_multiply(const strut_equilibrium_matrix *matrix, const double *t,
@@ -219,10 +220,10 @@ static bool reserve(const strut_model *model, sums *self, strut_arena *scratch) 
          strut_triplets_reserve(&self->contact, 3 * contacts + 1, scratch);
 }
 
-strut_status strut_linear_matrices_build(const strut_model *model, const double *q,
+strut_status strut_linear_matrices_build(const strut_model *model, const double *positions,
                                          strut_arena *arena, strut_linear_matrices *matrices) {
   strut_arena scratch = {0};
-  sums s = {.model = model, .q = q};
+  sums s = {.model = model, .q = positions};
   strut_tangent tangent = {0};
   *matrices = (strut_linear_matrices){0};
   s.row_of = strut_arena_allocate(&scratch, (size_t)model->length, sizeof *s.row_of);
@@ -232,7 +233,7 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
     int32_t n = matrices->n = strut_number_free(model, NULL, s.row_of, coordinate);
     add_masses(model, &s);
     strut_force_visit visit = {.model = model,
-                               .q = q,
+                               .q = positions,
                                .rest = model->members.rest,
                                .least = -HUGE_VAL,
                                .closed = STRUT_CLOSED_TOUCHING};
@@ -241,8 +242,8 @@ strut_status strut_linear_matrices_build(const strut_model *model, const double 
     matrices->elastic = strut_sparse_build(n, &s.elastic, arena);
     matrices->geometric = strut_sparse_build(n, &s.geometric, arena);
     if (s.touching) matrices->contact = strut_sparse_build(n, &s.contact, arena);
-    status = strut_tangent_assemble(model, q, model->members.rest, STRUT_CLOSED_TOUCHING, arena,
-                                    &tangent);
+    status = strut_tangent_assemble(model, positions, model->members.rest, STRUT_CLOSED_TOUCHING,
+                                    arena, &tangent);
     matrices->damping = tangent.damping;
     bool built = matrices->mass && matrices->elastic && matrices->geometric &&
                  (matrices->contact || !s.touching);

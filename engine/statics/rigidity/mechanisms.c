@@ -35,10 +35,10 @@ typedef struct walker {
   strut_arena matrix;
 } walker;
 
-static bool allocate_walk(walker *self, const double *q, strut_arena *arena, int32_t rows) {
+static bool allocate_walk(walker *self, const double *positions, strut_arena *arena, int32_t rows) {
   size_t length = (size_t)self->model->length;
   size_t members = (size_t)strut_equilibrium_columns(self->model);
-  self->start = q;
+  self->start = positions;
   self->q = strut_arena_allocate(arena, length, sizeof(double));
   self->before = strut_arena_allocate(arena, length, sizeof(double));
   self->motion = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
@@ -49,7 +49,7 @@ static bool allocate_walk(walker *self, const double *q, strut_arena *arena, int
   if (!self->q || !self->before || !self->motion || !self->step || !self->length || !self->strain ||
       !self->gram)
     return false;
-  memcpy(self->q, q, length * sizeof *q);
+  memcpy(self->q, positions, length * sizeof *positions);
   return true;
 }
 
@@ -149,7 +149,7 @@ static double change_of_shape(const walker *self) {
  * Walks from q (length) along the motion (rows of A at q) in steps of a hundredth of the model's
  * size, returning to the lengths by Newton's method after each. STRUT_OK or STRUT_NO_MEMORY.
  */
-static strut_status walk_finite_motion(const strut_model *model, const double *q,
+static strut_status walk_finite_motion(const strut_model *model, const double *positions,
                                        const double *motion, finite_walk *walk) {
   *walk = (finite_walk){.moved = (double)NAN, .strain = (double)NAN};
   if (strut_equilibrium_columns(model) > WALK_MEMBERS) return STRUT_OK;
@@ -157,8 +157,8 @@ static strut_status walk_finite_motion(const strut_model *model, const double *q
   walker w = {.model = model};
   strut_status status = STRUT_NO_MEMORY;
   strut_equilibrium_matrix first;
-  if (strut_equilibrium_matrix_build(model, q, &scratch, &first) == STRUT_OK &&
-      allocate_walk(&w, q, &scratch, first.rows) && build_matrix(&w)) {
+  if (strut_equilibrium_matrix_build(model, positions, &scratch, &first) == STRUT_OK &&
+      allocate_walk(&w, positions, &scratch, first.rows) && build_matrix(&w)) {
     status = STRUT_OK;
     memcpy(w.length, first.length, (size_t)first.columns * sizeof *w.length);
     memcpy(w.motion, motion, (size_t)first.rows * sizeof *motion);
@@ -468,13 +468,13 @@ static strut_status sort(sorter *self, const strut_null_spaces *spaces, const do
   return status;
 }
 
-strut_status strut_mechanisms_find(const strut_model *model, const double *q, const double *force,
-                                   strut_rigidity *rigidity) {
+strut_status strut_mechanisms_find(const strut_model *model, const double *positions,
+                                   const double *force, strut_rigidity *rigidity) {
   rigidity->mechanisms = (strut_mechanisms){.count = rigidity->spaces.motions};
   if (rigidity->spaces.motions == 0) return STRUT_OK;
   sorter s = {.model = model,
               .a = &rigidity->matrix,
-              .q = q,
+              .q = positions,
               .states = &rigidity->states,
               .arena = &rigidity->arena};
   s.rows = (size_t)rigidity->matrix.rows, s.members = (size_t)rigidity->matrix.columns;

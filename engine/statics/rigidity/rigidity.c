@@ -23,12 +23,13 @@ static int32_t root(int32_t *parent, int32_t i) {
 }
 
 /* Is the line through a and b one that all nodes lie on one side of? */
-static bool on_outline(const strut_model *model, const double *q, uint32_t a, uint32_t b) {
-  strut_vec2 d = strut_vec2_between(q + a, q + b);
+static bool on_outline(const strut_model *model, const double *positions, uint32_t a, uint32_t b) {
+  strut_vec2 d = strut_vec2_between(positions + a, positions + b);
   double length = strut_vec2_length(d);
   bool left = false, right = false;
   for (int32_t i = 0; i < model->node_count; i++) {
-    double off = d.x * (q[2 * i + 1] - q[a + 1]) - d.y * (q[2 * i] - q[a]);
+    double off =
+        d.x * (positions[2 * i + 1] - positions[a + 1]) - d.y * (positions[2 * i] - positions[a]);
     left |= off > ON_LINE * model->size * length;
     right |= off < -ON_LINE * model->size * length;
   }
@@ -36,8 +37,8 @@ static bool on_outline(const strut_model *model, const double *q, uint32_t a, ui
 }
 
 /* Net: what is pulled is connected, struts end on it, and none lies on the outline. */
-static bool inside(const strut_model *model, const double *q, const strut_rigidity *rigidity,
-                   double largest, int32_t *parent) {
+static bool inside(const strut_model *model, const double *positions,
+                   const strut_rigidity *rigidity, double largest, int32_t *parent) {
   const strut_member_table *members = &model->members;
   int32_t net = -1;
   for (int32_t i = 0; i < model->node_count; i++) parent[i] = i;
@@ -54,7 +55,7 @@ static bool inside(const strut_model *model, const double *q, const strut_rigidi
     int sign = sign_of(rigidity, j, largest);
     for (int k = 0; k < 2 && sign != 0; k++)
       if (root(parent, end[k]) != root(parent, net)) return false;
-    if (sign < 0 && on_outline(model, q, members->from[j], members->to[j])) return false;
+    if (sign < 0 && on_outline(model, positions, members->from[j], members->to[j])) return false;
   }
   return true;
 }
@@ -112,7 +113,7 @@ static const char *label_of(const strut_tensegrity *tensegrity) {
  * I struts within one net of what is pulled. Ideal tensegrity: all of them, with every state; pure:
  * all but I; features of class 1: S, C, M with some state; of class 2: S, C and one of I and D.
  */
-static strut_status judge_tensegrity(const strut_model *model, const double *q,
+static strut_status judge_tensegrity(const strut_model *model, const double *positions,
                                      strut_rigidity *rigidity) {
   strut_tensegrity *tensegrity = &rigidity->tensegrity;
   *tensegrity = (strut_tensegrity){.self_stress = rigidity->states.count > 0,
@@ -129,7 +130,7 @@ static strut_status judge_tensegrity(const strut_model *model, const double *q,
         (mechanisms->by_forces || (mechanisms->stiffener && mechanisms->stiffener_pulls));
     tensegrity->all_states = tensegrity->mechanism && all_states_stiffen(rigidity);
     tensegrity->struts_apart = apart(model, rigidity, largest, scratch);
-    tensegrity->struts_inside = inside(model, q, rigidity, largest, scratch);
+    tensegrity->struts_inside = inside(model, positions, rigidity, largest, scratch);
     strut_release(scratch);
   }
   tensegrity->label = label_of(tensegrity);
@@ -142,11 +143,13 @@ static double resolved(double force, double stiffness, double size) {
   return fabs(force) > least ? force : 0.0;
 }
 
-static void measure_elements(const strut_model *model, const double *q, strut_rigidity *rigidity) {
+static void measure_elements(const strut_model *model, const double *positions,
+                             strut_rigidity *rigidity) {
   const strut_equilibrium_matrix *matrix = &rigidity->matrix;
   strut_element_pose pose;
   for (int32_t j = matrix->members; j < matrix->columns; j++) {
-    strut_element_evaluate(model, matrix->curved[j], model->members.rest, q, (double)NAN, &pose);
+    strut_element_evaluate(model, matrix->curved[j], model->members.rest, positions, (double)NAN,
+                           &pose);
     const strut_element *element = &model->elements.element[matrix->curved[j]];
     double least = element->role == STRUT_ELEMENT_CELL ? 0.0 : fabs(pose.strain);
     pose.force = resolved(pose.force, element->numbers.stiffness, least);
@@ -156,7 +159,8 @@ static void measure_elements(const strut_model *model, const double *q, strut_ri
   }
 }
 
-static bool measure_forces(const strut_model *model, const double *q, strut_rigidity *rigidity) {
+static bool measure_forces(const strut_model *model, const double *positions,
+                           strut_rigidity *rigidity) {
   const strut_member_table *members = &model->members;
   rigidity->force = strut_arena_allocate(&rigidity->arena, (size_t)rigidity->matrix.columns + 1,
                                          sizeof *rigidity->force);
@@ -165,7 +169,7 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
   if (!rigidity->force || !rigidity->density) return false;
   for (int32_t j = 0; j < members->count; j++) {
     double length = rigidity->matrix.length[j];
-    rigidity->force[j] = resolved(strut_member_elastic_tension(model, members->rest, j, q),
+    rigidity->force[j] = resolved(strut_member_elastic_tension(model, members->rest, j, positions),
                                   members->stiffness[j], length + members->rest[j]) +
                          0.0; /* no -0 */
     if (length > 0)
@@ -175,15 +179,15 @@ static bool measure_forces(const strut_model *model, const double *q, strut_rigi
     rigidity->largest_force = fmax(rigidity->largest_force, fabs(rigidity->force[j]));
     if (model->scene->members[j].kind == STRUT_CABLE) rigidity->has_cables = true;
   }
-  measure_elements(model, q, rigidity);
+  measure_elements(model, positions, rigidity);
   return true;
 }
 
 /* Adds what acts beside the members; also to the scale of balance. */
-static void add_outer_forces(const strut_model *model, const double *q, double *net,
+static void add_outer_forces(const strut_model *model, const double *positions, double *net,
                              double *scale) {
   strut_force_visit visit = {.model = model,
-                             .q = q,
+                             .q = positions,
                              .rest = model->members.rest,
                              .least = -HUGE_VAL,
                              .closed = STRUT_CLOSED_TOUCHING};
@@ -209,7 +213,8 @@ static double largest_free(const strut_equilibrium_matrix *matrix, const double 
   return largest;
 }
 
-static bool measure_balance(const strut_model *model, const double *q, strut_rigidity *rigidity) {
+static bool measure_balance(const strut_model *model, const double *positions,
+                            strut_rigidity *rigidity) {
   const strut_equilibrium_matrix *matrix = &rigidity->matrix;
   strut_arena scratch = {0};
   double *net = strut_arena_allocate(&scratch, (size_t)model->length, sizeof *net);
@@ -222,7 +227,7 @@ static bool measure_balance(const strut_model *model, const double *q, strut_rig
     rigidity->prestressed = members > 0;
     rigidity->self_equilibrium =
         rigidity->prestressed && largest_free(matrix, net) <= STRUT_BALANCE_TOLERANCE * members;
-    add_outer_forces(model, q, net, &rigidity->largest_force);
+    add_outer_forces(model, positions, net, &rigidity->largest_force);
     rigidity->residual = largest_free(matrix, net);
     rigidity->equilibrium = rigidity->residual <= STRUT_BALANCE_TOLERANCE * rigidity->largest_force;
   }
@@ -286,12 +291,12 @@ static void respect_cables(const strut_model *model, strut_rigidity *rigidity) {
       rigidity->stress.super_stable = false;
 }
 
-static strut_status find_all(const strut_model *model, const double *q, strut_rigidity *rigidity,
-                             strut_error *error) {
+static strut_status find_all(const strut_model *model, const double *positions,
+                             strut_rigidity *rigidity, strut_error *error) {
   strut_status status =
-      strut_equilibrium_matrix_build(model, q, &rigidity->arena, &rigidity->matrix);
+      strut_equilibrium_matrix_build(model, positions, &rigidity->arena, &rigidity->matrix);
   if (status != STRUT_OK) return status;
-  if (!measure_forces(model, q, rigidity) || !measure_balance(model, q, rigidity) ||
+  if (!measure_forces(model, positions, rigidity) || !measure_balance(model, positions, rigidity) ||
       !count_bars(model, rigidity))
     return STRUT_NO_MEMORY;
   status = strut_null_spaces_find(&rigidity->matrix, &rigidity->arena, &rigidity->spaces, error);
@@ -300,20 +305,20 @@ static strut_status find_all(const strut_model *model, const double *q, strut_ri
   if (status == STRUT_OK) status = pull_cables(model, rigidity);
   if (status != STRUT_OK) return status;
   const double *force = rigidity->prestressed && rigidity->equilibrium ? rigidity->force : NULL;
-  status = strut_mechanisms_find(model, q, force, rigidity);
+  status = strut_mechanisms_find(model, positions, force, rigidity);
   choose_stress(rigidity);
   if (status == STRUT_OK && rigidity->judged) {
     status = strut_stress_matrix_judge(model, &rigidity->matrix, rigidity->judged, &rigidity->arena,
                                        &rigidity->stress);
     respect_cables(model, rigidity);
   }
-  return status == STRUT_OK ? judge_tensegrity(model, q, rigidity) : status;
+  return status == STRUT_OK ? judge_tensegrity(model, positions, rigidity) : status;
 }
 
-strut_status strut_rigidity_find(const strut_model *model, const double *q,
+strut_status strut_rigidity_find(const strut_model *model, const double *positions,
                                  strut_rigidity *rigidity, strut_error *error) {
   *rigidity = (strut_rigidity){0};
-  strut_status status = find_all(model, q, rigidity, error);
+  strut_status status = find_all(model, positions, rigidity, error);
   if (status == STRUT_NO_MEMORY) strut_fail(error, status, "out of memory");
   return status;
 }

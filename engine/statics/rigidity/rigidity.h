@@ -59,8 +59,8 @@ static inline double strut_column_density(const strut_equilibrium_matrix *matrix
 }
 
 /** A of the positions q (length), in the arena. STRUT_OK or STRUT_NO_MEMORY. */
-STRUT_API strut_status strut_equilibrium_matrix_build(const strut_model *model, const double *q,
-                                                      strut_arena *arena,
+STRUT_API strut_status strut_equilibrium_matrix_build(const strut_model *model,
+                                                      const double *positions, strut_arena *arena,
                                                       strut_equilibrium_matrix *matrix);
 
 /** y (rows) = A t for t (columns). */
@@ -283,14 +283,14 @@ typedef struct strut_rigidity {
  * where it can be walked along by a tenth of the structure's size with all lengths kept. All in the arena.
  * STRUT_OK or STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_mechanisms_find(const strut_model *model, const double *q,
+STRUT_API strut_status strut_mechanisms_find(const strut_model *model, const double *positions,
                                              const double *force, strut_rigidity *rigidity);
 
 /**
  * All of it at the positions q (length). strut_rigidity_free releases it, after a failure too.
  * STRUT_OK, STRUT_NO_MEMORY, or STRUT_SINGULAR where the rank cannot be found.
  */
-STRUT_API strut_status strut_rigidity_find(const strut_model *model, const double *q,
+STRUT_API strut_status strut_rigidity_find(const strut_model *model, const double *positions,
                                            strut_rigidity *rigidity, strut_error *error);
 STRUT_API void strut_rigidity_free(strut_rigidity *rigidity);
 

@@ -32,8 +32,8 @@ typedef struct strut_linear_matrices {
  * nothing of it counts, unless its rest length is zero too; then c acts alike in all directions.
  * STRUT_OK or STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_linear_matrices_build(const strut_model *model, const double *q,
-                                                   strut_arena *arena,
+STRUT_API strut_status strut_linear_matrices_build(const strut_model *model,
+                                                   const double *positions, strut_arena *arena,
                                                    strut_linear_matrices *matrices);
 
 /* Static stiffness of nodes: what a small force at a node meets along its direction, 1/(d' K^-1 d).
@@ -51,7 +51,8 @@ typedef struct strut_node_stiffness strut_node_stiffness;
  * At the shape q, which is an equilibrium. *reason: why there is none, a constant, and *stiffness is
  * NULL; else NULL. The model must outlive it.
  */
-STRUT_API strut_status strut_node_stiffness_create(const strut_model *model, const double *q,
+STRUT_API strut_status strut_node_stiffness_create(const strut_model *model,
+                                                   const double *positions,
                                                    strut_node_stiffness **stiffness,
                                                    const char **reason, strut_error *error);
 /** Along the unit vector `direction` [N/m]; NAN where the node cannot move that way. */

@@ -209,12 +209,12 @@ static void add_sparse(stiff *self, const strut_sparse *matrix) {
 }
 
 /* Adds to K a contact stiffness along the ground, equal to that normal to it. */
-static void hold_contacts(stiff *self, const strut_model *model, const double *q,
+static void hold_contacts(stiff *self, const strut_model *model, const double *positions,
                           const int32_t *row_of) {
   const strut_contact_table *contacts = &model->contacts;
   for (int32_t i = 0; i < contacts->count; i++) {
     uint32_t at = contacts->at[i];
-    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, NULL, -1);
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, positions, NULL, -1);
     const double *t = pose.axes.tangent;
     if (!(pose.gap < 0)) continue;
     for (uint32_t a = 0; a < 2; a++)
@@ -277,28 +277,28 @@ double strut_node_stiffness_along(stiff *self, int32_t node, const double direct
 }
 
 /* K at q, with its rigid motions lifted, factored; or why not. */
-static strut_status fill_stiffness(stiff *self, const strut_model *model, const double *q,
+static strut_status fill_stiffness(stiff *self, const strut_model *model, const double *positions,
                                    const char **reason) {
   strut_linear_matrices matrices;
   self->k = strut_arena_allocate(&self->arena, self->n * self->n, sizeof *self->k);
   self->rigid = strut_arena_allocate(&self->arena, 3 * self->n, sizeof *self->rigid);
   self->load = strut_arena_allocate(&self->arena, 3 * self->n, sizeof *self->load);
   strut_status status = self->k && self->rigid && self->load
-                            ? strut_linear_matrices_build(model, q, &self->arena, &matrices)
+                            ? strut_linear_matrices_build(model, positions, &self->arena, &matrices)
                             : STRUT_NO_MEMORY;
   if (status) return status;
   add_sparse(self, matrices.elastic);
   add_sparse(self, matrices.geometric);
   add_sparse(self, matrices.contact);
-  hold_contacts(self, model, q, self->potential->row_of);
-  self->rigid_count = strut_rigid_motions(self->potential, q, NULL, self->rigid);
+  hold_contacts(self, model, positions, self->potential->row_of);
+  self->rigid_count = strut_rigid_motions(self->potential, positions, NULL, self->rigid);
   lift_rigid(self);
   if (!factorise(self)) *reason = "a motion has no stiffness";
   return STRUT_OK;
 }
 
-strut_status strut_node_stiffness_create(const strut_model *model, const double *q, stiff **to,
-                                         const char **reason, strut_error *error) {
+strut_status strut_node_stiffness_create(const strut_model *model, const double *positions,
+                                         stiff **to, const char **reason, strut_error *error) {
   stiff *self = strut_allocate(1, sizeof *self);
   *to = NULL;
   *reason = NULL;
@@ -307,7 +307,7 @@ strut_status strut_node_stiffness_create(const strut_model *model, const double 
   if (!status) self->n = (size_t)self->potential->n;
   if (!status && self->n == 0) *reason = "nothing can move";
   if (!status && self->n > STRUT_STIFFNESS_COORDINATES) *reason = "more than 1000 free coordinates";
-  if (!status && !*reason) status = fill_stiffness(self, model, q, reason);
+  if (!status && !*reason) status = fill_stiffness(self, model, positions, reason);
   if (status == STRUT_NO_MEMORY) strut_no_memory(error, "");
   if (status || *reason)
     strut_node_stiffness_free(self);

@@ -62,7 +62,8 @@ typedef struct strut_rigid_fit {
   double from[2], to[2], cosine, sine, side;
 } strut_rigid_fit;
 /** Of q onto a, both (2 nodes); shapes without extent are only shifted. */
-strut_rigid_fit strut_rigid_fit_find(int32_t nodes, const double *a, const double *q, double side);
+strut_rigid_fit strut_rigid_fit_find(int32_t nodes, const double *a, const double *positions,
+                                     double side);
 void strut_rigid_fit_apply(const strut_rigid_fit *fit, const double at[2], double moved[2]);
 
 /**
@@ -141,8 +142,8 @@ void strut_stationary_set_start(strut_stationary_set *set, const strut_potential
 void strut_stationary_set_free(strut_stationary_set *set);
 
 /** Finds or judges and adds q; *index is its point, whose `found` has grown by one. */
-strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,
-                                      bool *fresh, strut_error *error);
+strut_status strut_stationary_set_add(strut_stationary_set *set, const double *positions,
+                                      int32_t *index, bool *fresh, strut_error *error);
 /** The k-th different placement of a point (length), or NULL. */
 const double *strut_stationary_set_placement(const strut_stationary_set *set, int32_t index,
                                              int32_t k);
@@ -169,13 +170,13 @@ void strut_climber_free(strut_climber *climber);
  * Moves q (length) up along `index` >= 1 modes and down all others. direction (n), or NULL: which
  * mode to follow first, with index 1. True if g = 0 there to what rounding allows.
  */
-bool strut_climb(strut_climber *climber, int32_t index, const double *direction, double *q);
+bool strut_climb(strut_climber *climber, int32_t index, const double *direction, double *positions);
 
 /**
  * Moves q by `far` along mode number `mode` of its Hessian, ascending, idle ones not counted, to
  * start a climb; that direction is written to direction (n). False if there are fewer modes.
  */
-bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *q,
+bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *positions,
                       double *direction);
 
 /* Shapes to start a search from: folds of a known shape, and random ones, each by its number alone. */

@@ -13,14 +13,16 @@
 
 /* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
 
-strut_rigid_fit strut_rigid_fit_find(int32_t nodes, const double *a, const double *q, double side) {
+strut_rigid_fit strut_rigid_fit_find(int32_t nodes, const double *a, const double *positions,
+                                     double side) {
   strut_rigid_fit fit = {.cosine = 1.0, .side = side};
   double along = 0.0, across = 0.0;
-  for (int32_t at = 0; at < 2 * nodes; at++) fit.to[at % 2] += a[at], fit.from[at % 2] += q[at];
+  for (int32_t at = 0; at < 2 * nodes; at++)
+    fit.to[at % 2] += a[at], fit.from[at % 2] += positions[at];
   for (int c = 0; c < 2; c++) fit.to[c] /= nodes, fit.from[c] /= nodes;
   for (int32_t i = 0; i < nodes; i++) {
     double ax = a[2 * i] - fit.to[0], ay = a[2 * i + 1] - fit.to[1];
-    double bx = side * (q[2 * i] - fit.from[0]), by = q[2 * i + 1] - fit.from[1];
+    double bx = side * (positions[2 * i] - fit.from[0]), by = positions[2 * i + 1] - fit.from[1];
     along += ax * bx + ay * by;
     across += ay * bx - ax * by;
   }
@@ -187,12 +189,12 @@ const char *strut_stability_name(strut_stability stability) {
 }
 
 /* Few coordinates: all eigenvalues, each with its own error. */
-static strut_status judge_dense(const judgement *self, const double *q, strut_arena *arena,
+static strut_status judge_dense(const judgement *self, const double *positions, strut_arena *arena,
                                 strut_critical_point *point, strut_error *error) {
   int32_t n = self->potential->n;
   strut_spectrum spectrum;
   strut_spectrum_workspace *room = strut_spectrum_create(self->potential);
-  bool good = room && strut_spectrum_compute(room, q, self->least, true, &spectrum);
+  bool good = room && strut_spectrum_compute(room, positions, self->least, true, &spectrum);
   point->eigenvalues = strut_arena_allocate(arena, (size_t)n, sizeof *point->eigenvalues);
   if (good && point->eigenvalues) {
     for (int32_t i = 0; i < n; i++) {
@@ -220,18 +222,18 @@ static bool is_finite(const strut_sparse *matrix) {
   return true;
 }
 
-static strut_status judge_point(judgement *self, const double *q, strut_arena *arena,
+static strut_status judge_point(judgement *self, const double *positions, strut_arena *arena,
                                 strut_critical_point *point, strut_error *error) {
   const strut_potential *potential = self->potential;
   double size = potential->model->size > 0 ? potential->model->size : 1.0;
-  strut_potential_gradient(potential, q, self->work);
+  strut_potential_gradient(potential, positions, self->work);
   point->residual = strut_largest_magnitude(self->work, potential->n);
-  point->potential = strut_potential_value(potential, q);
-  self->least = 32.0 * strut_potential_rounding(potential, q);
-  strut_potential_hessian_above(potential, q, self->least, self->hessian);
+  point->potential = strut_potential_value(potential, positions);
+  self->least = 32.0 * strut_potential_rounding(potential, positions);
+  strut_potential_hessian_above(potential, positions, self->least, self->hessian);
   double noise =
       potential->n * DBL_EPSILON * largest_diagonal(self->hessian) + 64.0 * self->least / size;
-  self->rigid = strut_rigid_motions(potential, q, NULL, self->motion);
+  self->rigid = strut_rigid_motions(potential, positions, NULL, self->motion);
   for (int32_t i = 0; i < self->rigid * potential->n; i += potential->n)
     strut_sparse_multiply(self->hessian, self->motion + i, self->work + i);
   self->rigid =
@@ -239,8 +241,8 @@ static strut_status judge_point(judgement *self, const double *q, strut_arena *a
   point->rigid = self->rigid;
   bool dense = potential->n <= STRUT_DENSE_STATICS ||
                strut_sparse_algebra_load(&self->sparse, NULL) != STRUT_OK;
-  strut_status status =
-      dense ? judge_dense(self, q, arena, point, error) : judge_sparse(self, arena, point, error);
+  strut_status status = dense ? judge_dense(self, positions, arena, point, error)
+                              : judge_sparse(self, arena, point, error);
   if (status) return status;
   if (point->zero < point->rigid) point->zero = point->rigid;
   point->label = label_of(point, potential->n);
@@ -251,7 +253,7 @@ static strut_status judge_point(judgement *self, const double *q, strut_arena *a
  * Classifies one stationary point q: label, eigenvalues, zero modes. The point's arrays are in the
  * arena.
  */
-static strut_status critical_judge(const strut_potential *potential, const double *q,
+static strut_status critical_judge(const strut_potential *potential, const double *positions,
                                    strut_arena *arena, strut_critical_point *point,
                                    strut_error *error) {
   size_t n = (size_t)potential->n, length = (size_t)potential->model->length;
@@ -265,8 +267,8 @@ static strut_status critical_judge(const strut_potential *potential, const doubl
   j.hessian = strut_potential_matrix(potential, &scratch);
   strut_status status = STRUT_NO_MEMORY;
   if (point->q && point->softest && j.motion && j.work && j.hessian) {
-    memcpy(point->q, q, length * sizeof *q);
-    status = judge_point(&j, q, arena, point, error);
+    memcpy(point->q, positions, length * sizeof *positions);
+    status = judge_point(&j, positions, arena, point, error);
   } else {
     strut_no_memory(error, "");
   }
@@ -342,11 +344,11 @@ static bool same_energy(const strut_stationary_set *set, double a, double b) {
   return fabs(a - b) <= set->flat + 1e-9 * fmin(fabs(a), fabs(b));
 }
 
-static bool same_point(const strut_stationary_set *set, const double *q, const double *known,
-                       double near) {
-  if (place_distance(set, q, known) <= near) return true;
+static bool same_point(const strut_stationary_set *set, const double *positions,
+                       const double *known, double near) {
+  if (place_distance(set, positions, known) <= near) return true;
   return set->congruent &&
-         strut_shape_distance(set->potential->model, q, known, true, NULL) <= near;
+         strut_shape_distance(set->potential->model, positions, known, true, NULL) <= near;
 }
 
 /*
@@ -369,30 +371,30 @@ static double position_blur(const strut_stationary_set *set, const strut_critica
   return fmin(far, MOST_BLUR * set->near);
 }
 
-static int32_t find_point(const strut_stationary_set *set, const double *q, double energy) {
+static int32_t find_point(const strut_stationary_set *set, const double *positions, double energy) {
   for (size_t i = 0; i < set->count; i++)
     if (same_energy(set, energy, set->points[i].potential) &&
-        same_point(set, q, set->points[i].q, set->near))
+        same_point(set, positions, set->points[i].q, set->near))
       return (int32_t)i;
   for (size_t i = 0; i < set->count; i++) {
     const strut_critical_point *known = &set->points[i];
     if (fabs(energy - known->potential) > set->flat + 1e-12 * fabs(energy)) continue;
     double near = position_blur(set, known);
-    if (near > set->near && same_point(set, q, known->q, near)) return (int32_t)i;
+    if (near > set->near && same_point(set, positions, known->q, near)) return (int32_t)i;
   }
   return -1;
 }
 
 /* Index of the point that q equals, or -1. */
-static int32_t stationary_set_find(const strut_stationary_set *set, const double *q) {
-  return find_point(set, q, strut_potential_value(set->potential, q));
+static int32_t stationary_set_find(const strut_stationary_set *set, const double *positions) {
+  return find_point(set, positions, strut_potential_value(set->potential, positions));
 }
 
-static bool remember_placement(strut_stationary_set *set, int32_t index, const double *q) {
+static bool remember_placement(strut_stationary_set *set, int32_t index, const double *positions) {
   strut_congruent_copy **end = &set->placement[index];
   double near = fmax(set->near, position_blur(set, &set->points[index]));
   for (; *end; end = &(*end)->next)
-    if (place_distance(set, q, (*end)->q) <= near) return true;
+    if (place_distance(set, positions, (*end)->q) <= near) return true;
   size_t length = (size_t)set->potential->model->length;
   double *copy = strut_arena_allocate(set->arena, length, sizeof *copy);
   *end = strut_arena_allocate(set->arena, 1, sizeof **end);
@@ -400,7 +402,7 @@ static bool remember_placement(strut_stationary_set *set, int32_t index, const d
     *end = NULL;
     return false;
   }
-  memcpy(copy, q, length * sizeof *q);
+  memcpy(copy, positions, length * sizeof *positions);
   (*end)->q = copy;
   return true;
 }
@@ -446,13 +448,13 @@ static void make_degenerate(strut_critical_point *known, const strut_critical_po
   known->down[0] = before.down[0], known->down[1] = before.down[1];
 }
 
-strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q, int32_t *index,
-                                      bool *fresh, strut_error *error) {
+strut_status strut_stationary_set_add(strut_stationary_set *set, const double *positions,
+                                      int32_t *index, bool *fresh, strut_error *error) {
   strut_critical_point point;
-  *index = stationary_set_find(set, q);
+  *index = stationary_set_find(set, positions);
   *fresh = *index < 0;
   if (*fresh) {
-    strut_status status = critical_judge(set->potential, q, set->arena, &point, error);
+    strut_status status = critical_judge(set->potential, positions, set->arena, &point, error);
     if (status) return status;
     *index = find_degenerate(set, &point);
     *fresh = *index < 0;
@@ -468,7 +470,7 @@ strut_status strut_stationary_set_add(strut_stationary_set *set, const double *q
   strut_critical_point *known = &set->points[*index];
   known->found++;
   if (is_degenerate(known) && !*fresh) return STRUT_OK;
-  if (!remember_placement(set, *index, q)) return strut_no_memory(error, "");
+  if (!remember_placement(set, *index, positions)) return strut_no_memory(error, "");
   known->placements = count_placements(set, *index);
   return STRUT_OK;
 }

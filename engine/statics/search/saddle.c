@@ -112,13 +112,13 @@ static double assemble_step(strut_climber *climber, double *length) {
   return change;
 }
 
-static bool decompose_hessian(strut_climber *climber, const double *q, bool careful) {
+static bool decompose_hessian(strut_climber *climber, const double *positions, bool careful) {
   climber->hessian_count++;
-  return strut_spectrum_compute(climber->spectra, q, 0.0, careful, &climber->now);
+  return strut_spectrum_compute(climber->spectra, positions, 0.0, careful, &climber->now);
 }
 
-static void set_trial(strut_climber *climber, const double *q) {
-  strut_potential_move(climber->potential, climber->step, 1.0, q, climber->trial);
+static void set_trial(strut_climber *climber, const double *positions) {
+  strut_potential_move(climber->potential, climber->step, 1.0, positions, climber->trial);
 }
 
 /* Balances modes much stiffer than mu, except followed ones, at the step's end. */
@@ -134,27 +134,27 @@ static bool rebalance_stiff_modes(strut_climber *climber, double mu, double scal
  * order, and without the correction a climb beside them stalls. Stops when the energy `there` no
  * longer falls.
  */
-static double bend_step(strut_climber *climber, const double *q, double mu, double scale,
+static double bend_step(strut_climber *climber, const double *positions, double mu, double scale,
                         double there, double wanted) {
   size_t bytes = (size_t)climber->now.n * sizeof *climber->step;
   for (int i = 0; i < MOST_BENDS && !(there < wanted); i++) {
     memcpy(climber->straight, climber->step, bytes);
     if (!rebalance_stiff_modes(climber, mu, scale)) break;
-    set_trial(climber, q);
-    double lower = strut_potential_value_near(climber->potential, climber->trial, q);
+    set_trial(climber, positions);
+    double lower = strut_potential_value_near(climber->potential, climber->trial, positions);
     if (lower < there) {
       there = lower;
       continue;
     }
     memcpy(climber->step, climber->straight, bytes);
-    set_trial(climber, q);
+    set_trial(climber, positions);
     break;
   }
   return there;
 }
 
 /* One step of the climb; the radius follows how true the quadratic was. */
-static bool climb_once(strut_climber *climber, double *q, double *radius) {
+static bool climb_once(strut_climber *climber, double *positions, double *radius) {
   const strut_potential *potential = climber->potential;
   strut_quadratic image = {climber->now.n,
                            climber->value,
@@ -164,100 +164,105 @@ static bool climb_once(strut_climber *climber, double *q, double *radius) {
                            4.0 * climber->now.noise[0]};
   for (int32_t i = 0; i < climber->now.n; i++)
     image.scale = fmax(image.scale, fabs(climber->value[i]));
-  double here = strut_potential_value(potential, q);
+  double here = strut_potential_value(potential, positions);
   for (int tries = 0; tries < 30; tries++) {
     double length, ratio = 1.0;
     double mu = strut_trust_step(&image, *radius, climber->x);
     double change = assemble_step(climber, &length);
     if (!(length > 0)) return false;
-    set_trial(climber, q);
-    double there = strut_potential_value_near(potential, climber->trial, q);
-    there = bend_step(climber, q, mu, image.scale, there, here + change + 0.3 * fabs(change));
+    set_trial(climber, positions);
+    double there = strut_potential_value_near(potential, climber->trial, positions);
+    there =
+        bend_step(climber, positions, mu, image.scale, there, here + change + 0.3 * fabs(change));
     if (fabs(change) > 1e-9 * (fabs(here) + fabs(there))) ratio = (there - here) / change;
     bool good = ratio > 0.0 && ratio < 2.0;
     if (good && fabs(ratio - 1.0) < 0.3 && length > 0.99 * *radius)
       *radius = fmin(1.6 * *radius, 0.2 * climber->size);
     if (fabs(ratio - 1.0) > 0.7) *radius = 0.4 * length;
     if (good || length < 1e-4 * climber->size) {
-      memcpy(q, climber->trial, (size_t)potential->model->length * sizeof *q);
+      memcpy(positions, climber->trial, (size_t)potential->model->length * sizeof *positions);
       return true;
     }
   }
   return false;
 }
 
-static double evaluate_gradient(strut_climber *climber, const double *q) {
-  strut_potential_gradient(climber->potential, q, climber->g);
+static double evaluate_gradient(strut_climber *climber, const double *positions) {
+  strut_potential_gradient(climber->potential, positions, climber->g);
   return strut_largest_magnitude(climber->g, climber->potential->n);
 }
 
 /* Newton steps as long as they become shorter. */
-static void polish_saddle(strut_climber *climber, double *q) {
+static void polish_saddle(strut_climber *climber, double *positions) {
   double earlier = HUGE_VAL, length;
   for (int i = 0; i < MOST_POLISH; i++) {
-    evaluate_gradient(climber, q);
-    if (!decompose_hessian(climber, q, false)) return;
+    evaluate_gradient(climber, positions);
+    if (!decompose_hessian(climber, positions, false)) return;
     split_gradient(climber, HUGE_VAL);
     for (int32_t k = 0; k < climber->now.n; k++)
       climber->x[k] = climber->idle[k] ? 0.0 : -climber->part[k] / climber->value[k];
     assemble_step(climber, &length);
     if (!(length < 0.9 * earlier) || length > 1e-3 * climber->size) return;
-    set_trial(climber, q);
-    memcpy(q, climber->trial, (size_t)climber->potential->model->length * sizeof *q);
+    set_trial(climber, positions);
+    memcpy(positions, climber->trial,
+           (size_t)climber->potential->model->length * sizeof *positions);
     if (length <= 4.0 * DBL_EPSILON * climber->size) return;
     earlier = length;
   }
 }
 
 /* A member with a rest length that has shrunk to a point pushes nowhere: no gradient is defined. */
-static bool has_collapsed(const strut_climber *climber, const double *q) {
+static bool has_collapsed(const strut_climber *climber, const double *positions) {
   const strut_model *model = climber->potential->model;
   strut_force force;
   for (int32_t i = 0; i < strut_force_count(model, false); i++) {
     strut_force_begin(model, i, &force);
-    if (strut_force_has_collapsed(model, 1e-7, q, &force)) return true;
+    if (strut_force_has_collapsed(model, 1e-7, positions, &force)) return true;
   }
-  return strut_shape_has_collapsed(model, q);
+  return strut_shape_has_collapsed(model, positions);
 }
 
 /* True if the climb has no end: bars that only stretch, bodies that only rise. */
-static bool has_escaped(const strut_climber *climber, const double *q) {
+static bool has_escaped(const strut_climber *climber, const double *positions) {
   const strut_potential *potential = climber->potential;
   for (int32_t i = 0; i < potential->n; i++)
-    if (!(fabs(q[potential->coordinate[i]] - climber->begin[potential->coordinate[i]]) <
+    if (!(fabs(positions[potential->coordinate[i]] - climber->begin[potential->coordinate[i]]) <
           3.0 * climber->size))
       return true;
   return false;
 }
 
-bool strut_climb(strut_climber *climber, int32_t index, const double *direction, double *q) {
+bool strut_climb(strut_climber *climber, int32_t index, const double *direction,
+                 double *positions) {
   assert(index >= 1 && index <= climber->potential->n);
   const strut_potential *potential = climber->potential;
   double radius = 0.03 * climber->size, root = sqrt((double)potential->n);
-  memcpy(climber->begin, q, (size_t)potential->model->length * sizeof *q);
+  memcpy(climber->begin, positions, (size_t)potential->model->length * sizeof *positions);
   if (direction) memcpy(climber->follow, direction, (size_t)potential->n * sizeof *direction);
   for (int i = 0; i < MOST_STEPS; i++) {
-    double residual = evaluate_gradient(climber, q),
-           allowed = 8.0 * strut_potential_rounding(potential, q);
+    double residual = evaluate_gradient(climber, positions),
+           allowed = 8.0 * strut_potential_rounding(potential, positions);
     if (residual <= allowed) {
-      polish_saddle(climber, q);
-      return evaluate_gradient(climber, q) <= 8.0 * strut_potential_rounding(potential, q) &&
-             !has_collapsed(climber, q);
+      polish_saddle(climber, positions);
+      return evaluate_gradient(climber, positions) <=
+                 8.0 * strut_potential_rounding(potential, positions) &&
+             !has_collapsed(climber, positions);
     }
-    if (!decompose_hessian(climber, q, false)) return false;
+    if (!decompose_hessian(climber, positions, false)) return false;
     split_gradient(climber, root * allowed);
-    if (has_escaped(climber, q) || !build_image_function(climber, index, direction != NULL) ||
-        !climb_once(climber, q, &radius))
+    if (has_escaped(climber, positions) ||
+        !build_image_function(climber, index, direction != NULL) ||
+        !climb_once(climber, positions, &radius))
       return false;
   }
   return false;
 }
 
-bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *q,
+bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *positions,
                       double *direction) {
   int32_t n = climber->potential->n, left = mode;
-  evaluate_gradient(climber, q);
-  if (!decompose_hessian(climber, q, true)) return false;
+  evaluate_gradient(climber, positions);
+  if (!decompose_hessian(climber, positions, true)) return false;
   split_gradient(climber, HUGE_VAL);
   for (int32_t i = 0; i < n; i++) {
     if (climber->idle[i] || left-- > 0) continue;
@@ -265,8 +270,9 @@ bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *
       direction[k] =
           (far < 0 ? -1.0 : 1.0) * climber->now.vector[(size_t)i * (size_t)n + (size_t)k];
     for (int32_t k = 0; k < n; k++) climber->step[k] = fabs(far) * direction[k];
-    set_trial(climber, q);
-    memcpy(q, climber->trial, (size_t)climber->potential->model->length * sizeof *q);
+    set_trial(climber, positions);
+    memcpy(positions, climber->trial,
+           (size_t)climber->potential->model->length * sizeof *positions);
     return true;
   }
   return false;

@@ -45,10 +45,10 @@ int64_t strut_fold_count(const strut_potential *potential) {
   return WHOLE + 4 * (int64_t)potential->model->members.count;
 }
 
-static void set_node(const strut_potential *potential, double *q, int32_t node,
+static void set_node(const strut_potential *potential, double *positions, int32_t node,
                      const double at[2]) {
   for (int c = 0; c < 2; c++)
-    if (potential->row_of[2 * node + c] >= 0) q[2 * node + c] = at[c];
+    if (potential->row_of[2 * node + c] >= 0) positions[2 * node + c] = at[c];
 }
 
 /* The mirror image of a node in the line through a with direction u (not of unit length). */
@@ -60,20 +60,22 @@ static void mirror_point(const double *at, const double *a, const double u[2], d
 }
 
 /* All nodes on one side of a member's line go to the other. */
-static void fold_side(const strut_potential *potential, int32_t member, double side, double *q) {
+static void fold_side(const strut_potential *potential, int32_t member, double side,
+                      double *positions) {
   const strut_member_table *members = &potential->model->members;
-  double a[2] = {q[members->from[member]], q[members->from[member] + 1]};
-  double u[2] = {q[members->to[member]] - a[0], q[members->to[member] + 1] - a[1]};
+  double a[2] = {positions[members->from[member]], positions[members->from[member] + 1]};
+  double u[2] = {positions[members->to[member]] - a[0], positions[members->to[member] + 1] - a[1]};
   for (int32_t i = 0; i < potential->model->node_count; i++) {
-    double *at = q + 2 * i, image[2];
+    double *at = positions + 2 * i, image[2];
     if (!(side * (u[0] * (at[1] - a[1]) - u[1] * (at[0] - a[0])) > 0)) continue;
     mirror_point(at, a, u, image);
-    set_node(potential, q, i, image);
+    set_node(potential, positions, i, image);
   }
 }
 
 /* Mirrors one end of a member in the line through its other end and a further neighbour. */
-static void flip_end(const strut_potential *potential, int32_t member, bool first, double *q) {
+static void flip_end(const strut_potential *potential, int32_t member, bool first,
+                     double *positions) {
   const strut_member_table *members = &potential->model->members;
   uint32_t moved = first ? members->from[member] : members->to[member];
   uint32_t hinge = first ? members->to[member] : members->from[member];
@@ -82,88 +84,95 @@ static void flip_end(const strut_potential *potential, int32_t member, bool firs
     if (members->from[j] != moved && members->to[j] != moved) continue;
     uint32_t other = members->from[j] == moved ? members->to[j] : members->from[j];
     if (other == hinge) continue;
-    double u[2] = {q[other] - q[hinge], q[other + 1] - q[hinge + 1]}, image[2];
-    mirror_point(q + moved, q + hinge, u, image);
-    set_node(potential, q, (int32_t)(moved / 2), image);
+    double u[2] = {positions[other] - positions[hinge],
+                   positions[other + 1] - positions[hinge + 1]},
+           image[2];
+    mirror_point(positions + moved, positions + hinge, u, image);
+    set_node(potential, positions, (int32_t)(moved / 2), image);
     return;
   }
 }
 
-static void mirror_whole(const strut_potential *potential, int axis, double *q) {
+static void mirror_whole(const strut_potential *potential, int axis, double *positions) {
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (int32_t i = 0; i < potential->model->node_count; i++) {
-    low = fmin(low, q[2 * i + axis]);
-    high = fmax(high, q[2 * i + axis]);
+    low = fmin(low, positions[2 * i + axis]);
+    high = fmax(high, positions[2 * i + axis]);
   }
   for (int32_t i = 0; i < potential->model->node_count; i++)
-    if (potential->row_of[2 * i + axis] >= 0) q[2 * i + axis] = low + high - q[2 * i + axis];
+    if (potential->row_of[2 * i + axis] >= 0)
+      positions[2 * i + axis] = low + high - positions[2 * i + axis];
 }
 
 /* q (length) becomes fold number `fold` of itself; held coordinates stay. */
-static void strut_fold(const strut_potential *potential, int64_t fold, double *q) {
+static void strut_fold(const strut_potential *potential, int64_t fold, double *positions) {
   assert(fold >= 0 && fold < strut_fold_count(potential));
   if (fold < WHOLE) {
-    mirror_whole(potential, (int)fold, q);
+    mirror_whole(potential, (int)fold, positions);
     return;
   }
   int32_t member = (int32_t)((fold - WHOLE) / 4), variant = (int32_t)((fold - WHOLE) % 4);
   if (variant < 2)
-    fold_side(potential, member, variant == 0 ? 1.0 : -1.0, q);
+    fold_side(potential, member, variant == 0 ? 1.0 : -1.0, positions);
   else
-    flip_end(potential, member, variant == 2, q);
+    flip_end(potential, member, variant == 2, positions);
 }
 
 /* Nodes anywhere in a box about the middle of the start. */
-static void scatter_nodes(const strut_potential *potential, source *self, double half, double *q) {
+static void scatter_nodes(const strut_potential *potential, source *self, double half,
+                          double *positions) {
   const strut_model *model = potential->model;
   double middle[2] = {0.0, 0.0};
   for (int32_t at = 0; at < 2 * model->node_count; at++)
     middle[at % 2] += model->start[at] / model->node_count;
   for (int32_t i = 0; i < potential->n; i++) {
     int32_t at = potential->coordinate[i];
-    q[at] = middle[at % 2] + half * signed_unit(self);
+    positions[at] = middle[at % 2] + half * signed_unit(self);
   }
 }
 
-static void shake_nodes(const strut_potential *potential, source *self, double by, double *q) {
-  for (int32_t i = 0; i < potential->n; i++) q[potential->coordinate[i]] += by * signed_unit(self);
+static void shake_nodes(const strut_potential *potential, source *self, double by,
+                        double *positions) {
+  for (int32_t i = 0; i < potential->n; i++)
+    positions[potential->coordinate[i]] += by * signed_unit(self);
 }
 
 /* Random shape number `index` of `seed`: positions at random, or a shaken or folded start. */
 static void random_shape(const strut_potential *potential, uint64_t seed, uint64_t index,
-                         double *q) {
+                         double *positions) {
   source s = {seed, index, 0};
   double size = potential->model->size > 0 ? potential->model->size : 1.0;
-  memcpy(q, potential->model->start, (size_t)potential->model->length * sizeof *q);
+  memcpy(positions, potential->model->start, (size_t)potential->model->length * sizeof *positions);
   int64_t kind = random_below(&s, 4);
   double part = 0.65 + 0.35 * signed_unit(&s); /* 0.3 to 1 */
   if (kind < 2) {
-    scatter_nodes(potential, &s, size * part, q);
+    scatter_nodes(potential, &s, size * part, positions);
   } else if (kind == 2) {
-    shake_nodes(potential, &s, size * part / (double)(1 << random_below(&s, 5)), q);
+    shake_nodes(potential, &s, size * part / (double)(1 << random_below(&s, 5)), positions);
   } else {
     for (int64_t folds = 1 + random_below(&s, 3); folds > 0; folds--)
-      strut_fold(potential, random_below(&s, strut_fold_count(potential)), q);
-    shake_nodes(potential, &s, 0.02 * size, q);
+      strut_fold(potential, random_below(&s, strut_fold_count(potential)), positions);
+    shake_nodes(potential, &s, 0.02 * size, positions);
   }
 }
 
 /* q shaken by a random part of the structure's size, from a hundredth to a half. */
-static void shake(const strut_potential *potential, uint64_t seed, uint64_t index, double *q) {
+static void shake(const strut_potential *potential, uint64_t seed, uint64_t index,
+                  double *positions) {
   source s = {seed, index, 0};
   double size = potential->model->size > 0 ? potential->model->size : 1.0;
   double part = 0.375 + 0.125 * signed_unit(&s); /* a quarter to a half */
-  shake_nodes(potential, &s, size * part / (double)(1 << random_below(&s, 5)), q);
+  shake_nodes(potential, &s, size * part / (double)(1 << random_below(&s, 5)), positions);
 }
 
 /*
  * Replaces nodes of q by those of `other`, chosen by the bits of random number `index` of `seed`.
  */
 static void cross(const strut_potential *potential, uint64_t seed, uint64_t index,
-                  const double *other, double *q) {
+                  const double *other, double *positions) {
   source s = {seed, index, 0};
   for (int32_t i = 0; i < potential->model->node_count; i++)
-    if (random_below(&s, 2)) set_node(potential, q, i, other + 2 * i);
+    if (random_below(&s, 2)) set_node(potential, positions, i, other + 2 * i);
 }
 
 /* Climbs and crossings draw from numbers of their own. */
@@ -246,64 +255,65 @@ static double slide_onto(const strut_potential *potential, const double *first,
 
 /* The highest of seven points on the straight line from a to b. */
 static void highest_between(const strut_potential *potential, const double *first,
-                            const double *second, double *q) {
+                            const double *second, double *positions) {
   size_t length = (size_t)potential->model->length;
   double highest = -HUGE_VAL, best = 0.5, slide = slide_onto(potential, first, second);
   for (int k = 1; k <= 8; k++) { /* the eighth time for good */
     double t = k < 8 ? k / 8.0 : best;
     for (size_t i = 0; i < length; i++)
-      q[i] = first[i] + t * (second[i] + (i % 2 ? 0.0 : slide) - first[i]);
-    double value = strut_potential_value(potential, q);
+      positions[i] = first[i] + t * (second[i] + (i % 2 ? 0.0 : slide) - first[i]);
+    double value = strut_potential_value(potential, positions);
     if (k < 8 && value > highest) highest = value, best = t;
   }
 }
 
 static bool climb_task(const strut_search_tasks *tasks, worker *self, const strut_task *task,
-                       double *q) {
+                       double *positions) {
   assert(self->climber);
   const strut_potential *potential = tasks->potential;
   double far = 0.02 * (potential->model->size > 0 ? potential->model->size : 1.0);
-  size_t bytes = (size_t)potential->model->length * sizeof *q;
+  size_t bytes = (size_t)potential->model->length * sizeof *positions;
   if (task->kind == STRUT_TASK_CLIMB_MODE) {
-    memcpy(q, task->q, bytes);
-    return strut_climb_away(self->climber, (int32_t)task->number, task->side * far, q,
+    memcpy(positions, task->q, bytes);
+    return strut_climb_away(self->climber, (int32_t)task->number, task->side * far, positions,
                             self->direction) &&
-           strut_climb(self->climber, 1, self->direction, q);
+           strut_climb(self->climber, 1, self->direction, positions);
   }
   int32_t index = 1;
   if (task->kind == STRUT_TASK_CLIMB_PAIR) {
-    highest_between(potential, task->q, task->other, q);
+    highest_between(potential, task->q, task->other, positions);
   } else if (task->kind == STRUT_TASK_CLIMB_SHAPE) {
-    memcpy(q, task->q, bytes);
+    memcpy(positions, task->q, bytes);
   } else if (task->q) {
-    memcpy(q, task->q, bytes);
-    shake(potential, tasks->seed ^ CLIMBS, (uint64_t)task->number, q);
+    memcpy(positions, task->q, bytes);
+    shake(potential, tasks->seed ^ CLIMBS, (uint64_t)task->number, positions);
   } else {
-    random_shape(potential, tasks->seed ^ CLIMBS, (uint64_t)task->number, q);
+    random_shape(potential, tasks->seed ^ CLIMBS, (uint64_t)task->number, positions);
     index = 1 + (int32_t)(task->number / 2 % (potential->n < 4 ? potential->n : 4));
   }
-  return index <= potential->n && strut_climb(self->climber, index, NULL, q);
+  return index <= potential->n && strut_climb(self->climber, index, NULL, positions);
 }
 
 static strut_descent_end descend_task(const strut_search_tasks *tasks, worker *self,
-                                      const strut_task *task, double *q) {
+                                      const strut_task *task, double *positions) {
   const strut_potential *potential = tasks->potential;
   if (task->kind == STRUT_TASK_RANDOM)
-    random_shape(potential, tasks->seed, (uint64_t)task->number, q);
+    random_shape(potential, tasks->seed, (uint64_t)task->number, positions);
   else
-    memcpy(q, task->q, (size_t)potential->model->length * sizeof *q);
-  if (task->kind == STRUT_TASK_FOLD) strut_fold(potential, task->number, q);
+    memcpy(positions, task->q, (size_t)potential->model->length * sizeof *positions);
+  if (task->kind == STRUT_TASK_FOLD) strut_fold(potential, task->number, positions);
   if (task->kind == STRUT_TASK_CROSS) {
-    cross(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, task->other, q);
-    return strut_descend_gently(self->minimiser, q);
+    cross(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, task->other, positions);
+    return strut_descend_gently(self->minimiser, positions);
   }
   if (task->kind == STRUT_TASK_SHAKE) {
-    shake(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, q);
-    return strut_descend_gently(self->minimiser, q);
+    shake(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, positions);
+    return strut_descend_gently(self->minimiser, positions);
   }
-  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(self->minimiser, q, 0.0).end;
-  return strut_descend_along(self->minimiser, task->other, task->side, q) ? STRUT_DESCENT_REACHED
-                                                                          : STRUT_DESCENT_EXHAUSTED;
+  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(self->minimiser, positions, 0.0).end;
+  return strut_descend_along(self->minimiser, task->other, task->side, positions)
+             ? STRUT_DESCENT_REACHED
+             : STRUT_DESCENT_EXHAUSTED;
 }
 
 static int64_t hessians_of(const worker *self) {

@@ -328,20 +328,20 @@ static size_t least(size_t a, size_t b) { return a < b ? a : b; }
  * Insertions, deletions, substitutions and swaps of neighbours from a to b; most + 1 where there are
  * more than `most`. Only the band of the table that so few steps can reach is computed.
  */
-static size_t distance(const word *a, const word *second, size_t most) {
+static size_t distance(const word *self, const word *second, size_t most) {
   size_t rows[3][WORD_MOST + 2];
   size_t *before = rows[0], *above = rows[1], *row = rows[2], beyond = most + 1, last_nearest = 0;
   for (size_t j = 0; j <= second->length; j++) above[j] = least(j, beyond);
-  for (size_t i = 1; i <= a->length; i++) {
+  for (size_t i = 1; i <= self->length; i++) {
     size_t first = i > most ? i - most : 1, last = least(second->length, i + most),
            nearest = beyond;
     row[first - 1] = first == 1 ? least(i, beyond) : beyond;
     for (size_t j = first; j <= last; j++) {
       size_t inserted = j < i + most ? above[j] + 1 : beyond;
-      size_t substituted = above[j - 1] + (a->code[i - 1] != second->code[j - 1]);
+      size_t substituted = above[j - 1] + (self->code[i - 1] != second->code[j - 1]);
       row[j] = least(least(inserted, row[j - 1] + 1), least(substituted, beyond));
-      if (i > 1 && j > 1 && a->code[i - 1] == second->code[j - 2] &&
-          a->code[i - 2] == second->code[j - 1])
+      if (i > 1 && j > 1 && self->code[i - 1] == second->code[j - 2] &&
+          self->code[i - 2] == second->code[j - 1])
         row[j] = least(row[j], before[j - 2] + 1);
       nearest = least(nearest, row[j]);
     }

@@ -9,11 +9,11 @@
 #include "engine/integrate/events/event_kernel.h"
 
 void strut_surface_measure(const strut_contact_table *contacts, const strut_contact_modes *modes,
-                           const strut_ground_motion *motion, int32_t i, const double *q,
+                           const strut_ground_motion *motion, int32_t i, const double *positions,
                            const double *velocity, strut_touch *touch, strut_contact_frame *frame) {
   assert(i >= 0 && i < contacts->count);
   int32_t facet = modes->of[i] == STRUT_MODE_OPEN ? -1 : modes->facet[i];
-  const strut_contact_pose pose = strut_contact_pose_at(contacts, i, q, motion, facet);
+  const strut_contact_pose pose = strut_contact_pose_at(contacts, i, positions, motion, facet);
   const strut_ground_motion *own = strut_contact_motion(contacts, i, motion);
   const double *n = pose.axes.normal, *t = pose.axes.tangent;
   strut_vec2 u = strut_contact_velocity(contacts, i, velocity, motion);
@@ -78,14 +78,15 @@ static void find_friction(const strut_model *model, const strut_event_stepper *s
 }
 
 void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *stepper,
-                              const double *q, const double *velocity, double *force, bool damped,
-                              const strut_step_end *end) {
+                              const double *positions, const double *velocity, double *force,
+                              bool damped, const strut_step_end *end) {
   const strut_contact_table *contacts = &model->contacts;
   for (int32_t k = 0; k < stepper->active.closed_count; k++) {
     int32_t i = stepper->active.closed[k];
     strut_touch *touch = &end->touch[i];
     strut_contact_frame *frame = &end->frame[i];
-    strut_surface_measure(contacts, &stepper->modes, end->motion, i, q, velocity, touch, frame);
+    strut_surface_measure(contacts, &stepper->modes, end->motion, i, positions, velocity, touch,
+                          frame);
     frame->alone =
         strut_component(frame->axes.tangent, force[contacts->at[i]], force[contacts->at[i] + 1]);
     touch->normal = contact_normal_force(&stepper->contacts.entry[i], stepper->modes.damper[i],

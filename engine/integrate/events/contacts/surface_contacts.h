@@ -14,12 +14,12 @@
 
 /** Fills *touch and *frame with the kinematics of contact i at q, v and the motion of the grounds then. */
 void strut_surface_measure(const strut_contact_table *contacts, const strut_contact_modes *modes,
-                           const strut_ground_motion *motion, int32_t i, const double *q,
+                           const strut_ground_motion *motion, int32_t i, const double *positions,
                            const double *velocity, strut_touch *touch, strut_contact_frame *frame);
 /** As add_contact_forces, for surfaces. */
 void strut_surface_add_forces(const strut_model *model, const strut_event_stepper *stepper,
-                              const double *q, const double *velocity, double *force, bool damped,
-                              const strut_step_end *end);
+                              const double *positions, const double *velocity, double *force,
+                              bool damped, const strut_step_end *end);
 /** Force along the surface of closed contact closed[k] by all else on its node, other contacts included. */
 double strut_surface_applied(const strut_contact_table *contacts, const strut_active_set *active,
                              int32_t k, const strut_step_end *end);

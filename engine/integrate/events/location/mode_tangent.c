@@ -149,10 +149,12 @@ STRUT_INLINE void add_block(strut_mode_tangent *tangent, const int32_t a[2], con
 
 /* Member j: with d from end to end and w its rate, tension c (L - rest) + k (L' - rest'), L' = u . w. */
 STRUT_INLINE void add_member(const strut_model *model, const strut_state *state, int32_t j,
-                             const double *q, const double *velocity, strut_mode_tangent *tangent) {
+                             const double *positions, const double *velocity,
+                             strut_mode_tangent *tangent) {
   const strut_member_table *members = &model->members;
   uint32_t from = members->from[j], to = members->to[j];
-  double x = q[to] - q[from], y = q[to + 1] - q[from + 1], length = sqrt(x * x + y * y);
+  double x = positions[to] - positions[from], y = positions[to + 1] - positions[from + 1],
+         length = sqrt(x * x + y * y);
   if (!(length > 0.0)) return;
   double u[2] = {x / length, y / length},
          w[2] = {velocity[to] - velocity[from], velocity[to + 1] - velocity[from + 1]};
@@ -176,13 +178,14 @@ STRUT_INLINE void add_member(const strut_model *model, const strut_state *state,
 
 /* The same of all forces but the ground's, by differences. */
 static void difference_forces(const strut_model *model, strut_state *state,
-                              const strut_event_stepper *stepper, double time, const double *q,
-                              const double *velocity, strut_mode_tangent *tangent) {
+                              const strut_event_stepper *stepper, double time,
+                              const double *positions, const double *velocity,
+                              strut_mode_tangent *tangent) {
   bool balance = state->balance;
   const double unit[2] = {DIFFERENCE * model->size,
                           DIFFERENCE * model->size / stepper->control.wanted_step};
   state->balance = false;
-  memcpy(tangent->place, q, (size_t)model->length * sizeof(double));
+  memcpy(tangent->place, positions, (size_t)model->length * sizeof(double));
   memcpy(tangent->speed, velocity, (size_t)model->length * sizeof(double));
   for (int32_t j = 0; j < 2 * tangent->n; j++) {
     int32_t of = j / tangent->n, at = tangent->coordinate[j % tangent->n];
@@ -282,7 +285,7 @@ static void differentiate_normal(const strut_contact_entry *contact, int8_t damp
 }
 
 static void add_contact(const strut_model *model, const strut_state *state,
-                        const strut_event_stepper *stepper, int32_t i, const double *q,
+                        const strut_event_stepper *stepper, int32_t i, const double *positions,
                         const double *velocity, strut_mode_tangent *tangent) {
   assert(i >= 0 && i < model->contacts.count);
   const strut_contact_table *contacts = &model->contacts;
@@ -292,7 +295,7 @@ static void add_contact(const strut_model *model, const strut_state *state,
   strut_touch o;
   for (int k = 0; k < 2; k++)
     if (row[k] >= 0) x[k] = tangent->force + row[k] * tangent->width;
-  measure_on_line(contacts, i, q, velocity, &o);
+  measure_on_line(contacts, i, positions, velocity, &o);
   o.applied = strut_contact_along_ground(contacts, i, state->latest->force);
   o.normal = contact_normal_force(contact, stepper->modes.damper[i], o.gap, o.into, true);
   friction_slopes f = slopes_of(contact, &stepper->modes, i, &o);
@@ -336,18 +339,19 @@ static void divide_rows(int32_t n, int32_t width, const double *restrict inverse
 }
 
 void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
-                                 const strut_event_stepper *stepper, double time, const double *q,
-                                 const double *velocity, strut_mode_tangent *tangent) {
+                                 const strut_event_stepper *stepper, double time,
+                                 const double *positions, const double *velocity,
+                                 strut_mode_tangent *tangent) {
   memset(tangent->force, 0, (size_t)(tangent->n * tangent->width) * sizeof(double));
-  if (!tangent->plain) difference_forces(model, state, stepper, time, q, velocity, tangent);
+  if (!tangent->plain) difference_forces(model, state, stepper, time, positions, velocity, tangent);
   if (!tangent->plain || asks_applied(stepper))
-    forces_of_structure(model, state, time, q, velocity, STRUT_TERMS_ALL, false);
+    forces_of_structure(model, state, time, positions, velocity, STRUT_TERMS_ALL, false);
   else if ((model->terms & STRUT_TERM_DRIVE) && time != state->latest->drive_time)
     strut_drive_apply(model, state, time);
   for (int32_t j = 0; j < model->members.count && tangent->plain; j++)
-    add_member(model, state, j, q, velocity, tangent);
+    add_member(model, state, j, positions, velocity, tangent);
   for (int32_t k = 0; k < stepper->active.closed_count; k++)
-    add_contact(model, state, stepper, stepper->active.closed[k], q, velocity, tangent);
+    add_contact(model, state, stepper, stepper->active.closed[k], positions, velocity, tangent);
   divide_rows(tangent->n, tangent->width, tangent->inverse, tangent->force, tangent->rate);
   strut_mode_tangent_project(tangent, tangent->rate, tangent->width);
 }

@@ -37,7 +37,8 @@ void strut_mode_tangent_hold(const strut_model *model, const strut_event_stepper
 void strut_mode_tangent_project(const strut_mode_tangent *tangent, double *vector, int32_t width);
 /** Fills `rate` at time t, q and v (length). */
 void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
-                                 const strut_event_stepper *stepper, double t, const double *q,
-                                 const double *velocity, strut_mode_tangent *tangent);
+                                 const strut_event_stepper *stepper, double t,
+                                 const double *positions, const double *velocity,
+                                 strut_mode_tangent *tangent);
 
 #endif

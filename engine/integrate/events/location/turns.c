@@ -37,10 +37,10 @@ static double *ahead_of(const strut_event_stepper *stepper, int32_t k) {
   return stepper->turns.ahead + 2 * (k - stepper->turns.first);
 }
 
-static span span_of(const strut_event_stepper *stepper, int32_t k, const double *q,
+static span span_of(const strut_event_stepper *stepper, int32_t k, const double *positions,
                     const double *velocity, double h) {
   const uint32_t *at = ends_of(stepper, k);
-  double x = q[at[1]] - q[at[0]], y = q[at[1] + 1] - q[at[0] + 1];
+  double x = positions[at[1]] - positions[at[0]], y = positions[at[1] + 1] - positions[at[0] + 1];
   return (span){x, y, h * (velocity[at[1]] - velocity[at[0]]),
                 h * (velocity[at[1] + 1] - velocity[at[0] + 1]), hypot(x, y)};
 }
@@ -154,11 +154,12 @@ void strut_turns_keep(const strut_model *model, const strut_state *state,
 
 /* What a straight member carries where it has no length, tension positive [N]. */
 static double force_at_nothing(const strut_model *model, const strut_state *state,
-                               const strut_event_stepper *stepper, int32_t k, const double *q) {
+                               const strut_event_stepper *stepper, int32_t k,
+                               const double *positions) {
   int32_t j = stepper->laws.item[k].member;
   const uint32_t *at = ends_of(stepper, k);
   double *there = stepper->middle;
-  memcpy(there, q, (size_t)model->length * sizeof *q);
+  memcpy(there, positions, (size_t)model->length * sizeof *positions);
   there[at[1]] = there[at[0]], there[at[1] + 1] = there[at[0] + 1];
   double force = strut_member_elastic_tension(model, state->latest->rest, j, there) +
                  strut_actuator_force_on(model, state, j, -1);
@@ -166,16 +167,17 @@ static double force_at_nothing(const strut_model *model, const strut_state *stat
 }
 
 void strut_turns_hold(const strut_model *model, const strut_state *state,
-                      const strut_event_stepper *stepper, const double *q, const double *velocity) {
+                      const strut_event_stepper *stepper, const double *positions,
+                      const double *velocity) {
   double *force = state->latest->force;
   for (int32_t k = stepper->turns.first; k < stepper->laws.count; k++) {
     const strut_law_switch *law = &stepper->laws.item[k];
     const uint32_t *at = ends_of(stepper, k);
     const double *r = ahead_of(stepper, k);
-    span s = span_of(stepper, k, q, velocity, 1.0);
+    span s = span_of(stepper, k, positions, velocity, 1.0);
     bool is_short = s.length <= nothing(model, stepper, k);
     if (law->guide || !(is_short || is_behind(r, &s))) continue;
-    double pull = force_at_nothing(model, state, stepper, k, q);
+    double pull = force_at_nothing(model, state, stepper, k, positions);
     double push[2] = {2.0 * pull * r[0], 2.0 * pull * r[1]}, u[2] = {0.0, 0.0};
     if (is_short) { /* without a length the damper has no direction either */
       const strut_element *element = strut_element_of_member(&model->elements, law->member);

@@ -116,14 +116,14 @@ static void combine(int32_t all, double h, const double *weight, int count, doub
 
 /* Positions and velocities of the motion itself at stage k. */
 static const double *place_stage(const strut_model *model, const strut_event_stepper *stepper,
-                                 int k, double h, double *q) {
+                                 int k, double h, double *positions) {
   const strut_tableau *tableau = stepper->formula->tableau;
   if (k == 0) return stepper->now->v;
   const double *weight = tableau->weight[k];
   for (int32_t i = 0; i < model->length; i++) {
     double sum = weight[0] * stepper->now->v[i];
     for (int j = 1; j < k; j++) sum += weight[j] * stepper->stage[j][i];
-    q[i] = stepper->now->q[i] + h * sum;
+    positions[i] = stepper->now->q[i] + h * sum;
   }
   return stepper->stage[k];
 }
