@@ -14,78 +14,78 @@
 enum { MOST_STEPS = 80 };
 
 /* Row i becomes the vector of the reflection that clears it, by way of d (its entries) and e. */
-STRUT_INLINE void reflect_row(double *z, size_t n, size_t i, double scale, double *change,
+STRUT_INLINE void reflect_row(double *z, size_t n, size_t i, double scale, double *diagonal,
                               double *e) {
   double h = 0.0, f, g;
-  for (size_t k = 0; k < i; k++) change[k] /= scale, h += change[k] * change[k];
-  f = change[i - 1];
+  for (size_t k = 0; k < i; k++) diagonal[k] /= scale, h += diagonal[k] * diagonal[k];
+  f = diagonal[i - 1];
   g = f > 0 ? -sqrt(h) : sqrt(h);
   e[i] = scale * g;
   h -= f * g;
-  change[i - 1] = f - g;
+  diagonal[i - 1] = f - g;
   for (size_t j = 0; j < i; j++) e[j] = 0.0;
   for (size_t j = 0; j < i; j++) {
     const double *row = z + j * n;
-    f = z[i * n + j] = change[j];
+    f = z[i * n + j] = diagonal[j];
     g = e[j] + row[j] * f;
     for (size_t k = j + 1; k < i; k++) {
-      g += row[k] * change[k];
+      g += row[k] * diagonal[k];
       e[k] += row[k] * f;
     }
     e[j] = g;
   }
   f = 0.0;
-  for (size_t j = 0; j < i; j++) e[j] /= h, f += e[j] * change[j];
-  for (size_t j = 0; j < i; j++) e[j] -= f / (h + h) * change[j];
+  for (size_t j = 0; j < i; j++) e[j] /= h, f += e[j] * diagonal[j];
+  for (size_t j = 0; j < i; j++) e[j] -= f / (h + h) * diagonal[j];
   for (size_t j = 0; j < i; j++) {
     double *row = z + j * n;
-    f = change[j], g = e[j];
-    for (size_t k = j; k < i; k++) row[k] -= f * e[k] + g * change[k];
-    change[j] = row[i - 1];
+    f = diagonal[j], g = e[j];
+    for (size_t k = j; k < i; k++) row[k] -= f * e[k] + g * diagonal[k];
+    diagonal[j] = row[i - 1];
     row[i] = 0.0;
   }
-  change[i] = h;
+  diagonal[i] = h;
 }
 
 /* The matrix as diagonal d and off-diagonal e[1..n-1]; z keeps the reflections. */
 STRUT_CLONES
-static void reduce(double *z, size_t n, double *change, double *e) {
-  for (size_t j = 0; j < n; j++) change[j] = z[j * n + n - 1];
+static void reduce(double *z, size_t n, double *diagonal, double *e) {
+  for (size_t j = 0; j < n; j++) diagonal[j] = z[j * n + n - 1];
   for (size_t i = n - 1; i > 0; i--) {
     double scale = 0.0;
-    for (size_t k = 0; k < i; k++) scale += fabs(change[k]);
+    for (size_t k = 0; k < i; k++) scale += fabs(diagonal[k]);
     if (scale > 0) {
-      reflect_row(z, n, i, scale, change, e);
+      reflect_row(z, n, i, scale, diagonal, e);
       continue;
     }
-    e[i] = change[i - 1];
+    e[i] = diagonal[i - 1];
     for (size_t j = 0; j < i; j++) {
-      change[j] = z[j * n + i - 1];
+      diagonal[j] = z[j * n + i - 1];
       z[j * n + i] = z[i * n + j] = 0.0;
     }
-    change[i] = 0.0;
+    diagonal[i] = 0.0;
   }
 }
 
 /* The product of the reflections into z, transposed; d becomes the diagonal. */
 STRUT_CLONES
-static void accumulate(double *z, size_t n, double *change, double *e) {
+static void accumulate(double *z, size_t n, double *diagonal, double *e) {
   for (size_t i = 0; i + 1 < n; i++) {
-    double h = change[i + 1], *next = z + (i + 1) * n;
+    double h = diagonal[i + 1], *next = z + (i + 1) * n;
     z[i * n + n - 1] = z[i * n + i];
     z[i * n + i] = 1.0;
     if (h != 0.0) {
-      for (size_t k = 0; k <= i; k++) change[k] = next[k] / h;
+      for (size_t k = 0; k <= i; k++) diagonal[k] = next[k] / h;
       for (size_t j = 0; j <= i; j++) {
         double g = 0.0, *row = z + j * n;
         for (size_t k = 0; k <= i; k++) g += next[k] * row[k];
-        for (size_t k = 0; k <= i; k++) row[k] -= g * change[k];
+        for (size_t k = 0; k <= i; k++) row[k] -= g * diagonal[k];
       }
     }
     for (size_t k = 0; k <= i; k++) next[k] = 0.0;
   }
   for (size_t j = 0; j < n; j++) {
-    change[j] = z[j * n + n - 1];
+    diagonal[j] = z[j * n + n - 1];
     z[j * n + n - 1] = 0.0;
   }
   z[n * n - 1] = 1.0;
@@ -102,17 +102,17 @@ STRUT_INLINE void rotate(double *lower, double *upper, size_t n, double c, doubl
 }
 
 /* One QL step on rows l to m; `shift` gathers what was taken off the diagonal. */
-STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *change, double *e,
+STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *diagonal, double *e,
                        double *shift) {
-  double g = change[l], p = (change[l + 1] - g) / (2.0 * e[l]), r = sqrt(p * p + 1.0);
+  double g = diagonal[l], p = (diagonal[l + 1] - g) / (2.0 * e[l]), r = sqrt(p * p + 1.0);
   if (!(r <= DBL_MAX)) r = fabs(p);
   if (p < 0) r = -r;
-  change[l] = e[l] / (p + r);
-  change[l + 1] = e[l] * (p + r);
-  double beside = change[l + 1], off = e[l + 1], h = g - change[l];
-  for (size_t i = l + 2; i < n; i++) change[i] -= h;
+  diagonal[l] = e[l] / (p + r);
+  diagonal[l + 1] = e[l] * (p + r);
+  double beside = diagonal[l + 1], off = e[l + 1], h = g - diagonal[l];
+  for (size_t i = l + 2; i < n; i++) diagonal[i] -= h;
   *shift += h;
-  p = change[m];
+  p = diagonal[m];
   double c = 1.0, c2 = 1.0, c3 = 1.0, s = 0.0, s2 = 0.0;
   for (size_t i = m; i-- > l;) {
     c3 = c2, c2 = c, s2 = s;
@@ -120,27 +120,27 @@ STRUT_INLINE void step(double *z, size_t n, size_t l, size_t m, double *change, 
     r = sqrt(p * p + e[i] * e[i]);
     e[i + 1] = s * r;
     s = r > 0 ? e[i] / r : 0.0, c = r > 0 ? p / r : 1.0;
-    p = c * change[i] - s * g;
-    change[i + 1] = h + s * (c * g + s * change[i]);
+    p = c * diagonal[i] - s * g;
+    diagonal[i + 1] = h + s * (c * g + s * diagonal[i]);
     rotate(z + i * n, z + (i + 1) * n, n, c, s);
   }
   p = -s * s2 * c3 * off * e[l] / beside;
   e[l] = s * p;
-  change[l] = c * p;
+  diagonal[l] = c * p;
 }
 
 STRUT_CLONES
-static bool diagonalise(double *z, size_t n, double *change, double *e) {
+static bool diagonalise(double *z, size_t n, double *diagonal, double *e) {
   double shift = 0.0, largest = 0.0;
   for (size_t l = 0; l < n; l++) {
-    largest = fmax(largest, fabs(change[l]) + fabs(e[l]));
+    largest = fmax(largest, fabs(diagonal[l]) + fabs(e[l]));
     size_t m = l;
     while (fabs(e[m]) > DBL_EPSILON * largest) m++; /* the last one is 0 */
     for (int k = 0; m > l && fabs(e[l]) > DBL_EPSILON * largest; k++) {
       if (k == MOST_STEPS) return false;
-      step(z, n, l, m, change, e, &shift);
+      step(z, n, l, m, diagonal, e, &shift);
     }
-    change[l] += shift;
+    diagonal[l] += shift;
     e[l] = 0.0;
   }
   return true;
