@@ -71,7 +71,8 @@ done
 # What is said.
 shows 0 "50.3292 Hz" modes one_on_ground.yaml
 tells 3 "because nothing presses it down" modes pressed_sideways.yaml
-tells 3 "leave the range of numbers" equilibria pushed.yaml --starts 40
+shows 0 "a friction coefficient of at least 1 holds it" equilibria pushed.yaml --starts 40
+tells 3 "leave the range of numbers" equilibria huge.yaml --starts 1
 tells 3 "the residual is 1e+300 N" form pushed.yaml --given lengths
 tells 2 "check their units" modes stiff.yaml
 tells 3 "moves away without end, n" modes under.yaml

@@ -180,7 +180,8 @@ static strut_status judge_sparse(const judgement *self, strut_arena *arena,
 
 /* Classification of a stationary point: eigenvalues, motions without stiffness, label. */
 
-static const double LARGEST = 1e150; /* entry of a stiffness matrix */
+static const double LARGEST = 1e150;  /* entry of a stiffness matrix */
+static const double FARTHEST = 1e100; /* coordinate [m], so that products of three are finite */
 
 const char *strut_stability_name(strut_stability stability) {
   static const char *const names[] = {"stable", "floppy", "saddle", "maximum"};
@@ -273,6 +274,7 @@ static strut_status critical_judge(const strut_potential *potential, const doubl
     strut_no_memory(error, "");
   }
   bool finite = !status || !j.hessian || is_finite(j.hessian);
+  for (size_t i = 0; i < length; i++) finite = finite && fabs(positions[i]) < FARTHEST;
   strut_arena_free(&scratch);
   if (!finite)
     return strut_fail(error, STRUT_DIVERGED,
