@@ -30,7 +30,7 @@ sources="tests/recipes/recipes.c tests/recipes/things.c tests/recipes/observable
   engine/statics/search/*.c engine/statics/equilibria/*.c |
     grep -v _values.c) \
   $(find engine/scene engine/model engine/forces engine/integrate parser/language/yaml parser/language/expression parser/language/keys parser/language/read parser/language/write parser/language/study engine/run -name '*.c')
-  engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/output/results.c engine/statics/curvature.c engine/statics/dense_algebra.c
+  engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/output/results.c engine/statics/curvature.c engine/statics/dense_algebra.c engine/statics/sparse_algebra.c
   engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
 # shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
