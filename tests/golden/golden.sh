@@ -14,19 +14,10 @@ rm -rf "$scratch"
 mkdir -p "$scratch"
 cd "$root"
 expected=tests/golden/crawler.hash
-# What the run executes, and no more: the mechanics are compiled for each level, the
-# description and its reader once, or once by each compiler.
-engine="tests/golden/golden.c engine/run/settle.c engine/integrate/rk4.c
-  engine/integrate/events/contacts/contact_coupling.c
-  engine/integrate/events/verlet_events.c engine/integrate/events/event_stepping.c
-  engine/integrate/events/event_workspace.c engine/integrate/events/location/event_search.c
-  engine/integrate/events/location/event_log.c engine/integrate/events/location/event_location.c
-  engine/integrate/events/location/event_kinds.c
-  engine/integrate/events/contacts/contact_modes.c
-  engine/integrate/events/contacts/contact_compliance.c engine/integrate/events/contacts/history_modes.c
-  engine/integrate/events/contacts/surface_contacts.c engine/integrate/events/location/variation.c
-  engine/integrate/events/location/mode_tangent.c $(ls engine/integrate/limit/*.c)
-  $(ls engine/base/*.c engine/model/*.c engine/forces/*.c)"
+# The mechanics are compiled for each level, the description and its reader once, or once by each
+# compiler.
+engine="tests/golden/golden.c engine/run/settle.c engine/run/settle_check.c
+  $(find engine/base engine/model engine/forces engine/integrate -name '*.c' ! -name integrator.c | sort)"
 reader=$(find engine/scene parser/language/yaml parser/language/expression parser/language/keys parser/language/read -name '*.c' | sort)
 
 options='-std=c17 -D_POSIX_C_SOURCE=200809L -DSTRUT_VERSION="golden"
