@@ -31,7 +31,7 @@ blocks() {
     !inside && /^ *```/ {
       inside = 1
       language = $0; sub("^ *```", "", language)
-      if (language !~ /^(sh|python|matlab|yaml|json|c|text|csv|cmake|diff|patch|js)$/)
+      if (language !~ /^(sh|python|matlab|yaml|json|c|text|csv|cmake|diff|udiff|js)$/)
         print file ":" NR ": a fence marked \"" language "\": sh for commands, text for the rest"
       out = ""
       if (language == "sh") out = folder "/" (marker == "" ? sprintf("%05d.sh", NR) : marker ".command")
