@@ -27,17 +27,17 @@ static void join_coupled(const strut_sparse *matrix, int32_t *parent) {
 }
 
 /* Inverse of a small positive definite matrix in place, by Gauss-Jordan; false if it is not one. */
-static bool invert_small(int32_t n, double *acceleration) {
+static bool invert_small(int32_t n, double *matrix) {
   for (int32_t p = 0; p < n; p++) {
-    double pivot = acceleration[p * n + p];
+    double pivot = matrix[p * n + p];
     if (!(pivot > 0)) return false;
-    acceleration[p * n + p] = 1.0;
-    for (int32_t j = 0; j < n; j++) acceleration[p * n + j] /= pivot;
+    matrix[p * n + p] = 1.0;
+    for (int32_t j = 0; j < n; j++) matrix[p * n + j] /= pivot;
     for (int32_t i = 0; i < n; i++) {
       if (i == p) continue;
-      double factor = acceleration[i * n + p];
-      acceleration[i * n + p] = 0.0;
-      for (int32_t j = 0; j < n; j++) acceleration[i * n + j] -= factor * acceleration[p * n + j];
+      double factor = matrix[i * n + p];
+      matrix[i * n + p] = 0.0;
+      for (int32_t j = 0; j < n; j++) matrix[i * n + j] -= factor * matrix[p * n + j];
     }
   }
   return true;

@@ -5,8 +5,8 @@
  * Only cholmod_factor.c sees cholmod.h. The factor is simplicial, so that its bits do not depend on the
  * installed BLAS.
  */
-#ifndef STRUT_ENGINE_MODEL_CHOLMOD_FACTOR_H
-#define STRUT_ENGINE_MODEL_CHOLMOD_FACTOR_H
+#ifndef STRUT_ENGINE_MODEL_ALGEBRA_CHOLMOD_FACTOR_H
+#define STRUT_ENGINE_MODEL_ALGEBRA_CHOLMOD_FACTOR_H
 
 #include <stdbool.h>
 

@@ -3,8 +3,8 @@
  * Cholesky factor L (n, n; lower triangle, in rows) of a small dense matrix, such as that by which stuck
  * contacts hold each other. first: (n) the column where each row of L begins; NULL: the first.
  */
-#ifndef STRUT_ENGINE_MODEL_DENSE_CHOLESKY_H
-#define STRUT_ENGINE_MODEL_DENSE_CHOLESKY_H
+#ifndef STRUT_ENGINE_MODEL_ALGEBRA_DENSE_CHOLESKY_H
+#define STRUT_ENGINE_MODEL_ALGEBRA_DENSE_CHOLESKY_H
 
 #include <math.h>
 #include <stdbool.h>

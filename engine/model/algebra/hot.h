@@ -7,8 +7,8 @@
  * functions only, each with a name of its own: clang names the clones of a public one otherwise than
  * gcc, and makes those of equal names in two files collide.
  */
-#ifndef STRUT_ENGINE_MODEL_HOT_H
-#define STRUT_ENGINE_MODEL_HOT_H
+#ifndef STRUT_ENGINE_MODEL_ALGEBRA_HOT_H
+#define STRUT_ENGINE_MODEL_ALGEBRA_HOT_H
 
 #include <math.h>
 

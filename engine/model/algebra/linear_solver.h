@@ -3,8 +3,8 @@
  * A sparse symmetric matrix and its L D L' factor, which CHOLMOD computes (cholmod_factor.h). The factor is
  * copied out, so that solving in the step loop allocates nothing.
  */
-#ifndef STRUT_ENGINE_MODEL_LINEAR_SOLVER_H
-#define STRUT_ENGINE_MODEL_LINEAR_SOLVER_H
+#ifndef STRUT_ENGINE_MODEL_ALGEBRA_LINEAR_SOLVER_H
+#define STRUT_ENGINE_MODEL_ALGEBRA_LINEAR_SOLVER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -7,8 +7,8 @@
  * pulls has several rows, one with fewer adds -0 as well, which changes no bit. Each node adds its pulls in
  * the order of the table's members.
  */
-#ifndef STRUT_ENGINE_MODEL_PULL_ROWS_H
-#define STRUT_ENGINE_MODEL_PULL_ROWS_H
+#ifndef STRUT_ENGINE_MODEL_ALGEBRA_PULL_ROWS_H
+#define STRUT_ENGINE_MODEL_ALGEBRA_PULL_ROWS_H
 
 #include <stdbool.h>
 #include <stdint.h>

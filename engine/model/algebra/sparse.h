@@ -2,8 +2,8 @@
 /**
  * Symmetric sparse matrices put together from contributions that may fall on the same place.
  */
-#ifndef STRUT_ENGINE_MODEL_SPARSE_H
-#define STRUT_ENGINE_MODEL_SPARSE_H
+#ifndef STRUT_ENGINE_MODEL_ALGEBRA_SPARSE_H
+#define STRUT_ENGINE_MODEL_ALGEBRA_SPARSE_H
 
 #include <stdbool.h>
 

@@ -7,8 +7,8 @@
  * where a multiplier passes the unit circle, where the branch turns, and where the sequence of touchdowns,
  * slips and other events changes.
  */
-#ifndef STRUT_ENGINE_RUN_FOLLOW_H
-#define STRUT_ENGINE_RUN_FOLLOW_H
+#ifndef STRUT_ENGINE_RUN_FOLLOW_FOLLOW_H
+#define STRUT_ENGINE_RUN_FOLLOW_FOLLOW_H
 
 #include "engine/run/follow/follow_system.h"
 

@@ -7,8 +7,8 @@
  * and a model of its own. Where the structure travels, shifts along the ground are neutral; the
  * derivative of P is kept without that direction, whose multiplier is then 0 instead of 1.
  */
-#ifndef STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
-#define STRUT_ENGINE_RUN_FOLLOW_SYSTEM_H
+#ifndef STRUT_ENGINE_RUN_FOLLOW_FOLLOW_SYSTEM_H
+#define STRUT_ENGINE_RUN_FOLLOW_FOLLOW_SYSTEM_H
 
 #include "engine/base/flag.h"
 #include "engine/integrate/events/location/event_log.h"

@@ -232,10 +232,10 @@ static const double MARK_TOLERANCE = 1e-6;
 static const double SYMMETRY_ROUNDING = 1e-10;
 
 void strut_measure_tracked_point(const strut_model *model, const strut_state *state,
-                                 const strut_measurement *measurement, double *vector,
+                                 const strut_measurement *measurement, double *place,
                                  double *velocity) {
   if (measurement->node >= 0) {
-    *vector = state->q[2 * measurement->node];
+    *place = state->q[2 * measurement->node];
     *velocity = state->v[2 * measurement->node];
     return;
   }
@@ -248,7 +248,7 @@ void strut_measure_tracked_point(const strut_model *model, const strut_state *st
     sum += strut_sliding_masses_moment(model, state, 0, state->q);
     rate += strut_sliding_masses_momentum(model, state, 0, state->q, state->v);
   }
-  *vector = sum / measurement->total_mass;
+  *place = sum / measurement->total_mass;
   *velocity = rate / measurement->total_mass;
 }
 

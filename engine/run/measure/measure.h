@@ -115,8 +115,7 @@ strut_status strut_measure_create(const strut_model *model, const strut_experime
                                   strut_measurement *measure);
 /** x [m] and velocity [m/s] of the tracked point. */
 void strut_measure_tracked_point(const strut_model *model, const strut_state *state,
-                                 const strut_measurement *measure, double *vector,
-                                 double *velocity);
+                                 const strut_measurement *measure, double *place, double *velocity);
 /** Starts another window at `begin` [s] over `periods`, within the capacity for marks. */
 void strut_measure_window(const strut_model *model, strut_state *state, double begin, double period,
                           size_t periods, strut_measurement *measure);

@@ -5,8 +5,8 @@
  * The rules apply to the plain description, however it was made. A finding names its subject and
  * key, by which a reader of text finds the position.
  */
-#ifndef STRUT_ENGINE_SCENE_CHECK_H
-#define STRUT_ENGINE_SCENE_CHECK_H
+#ifndef STRUT_ENGINE_SCENE_CHECKS_CHECK_H
+#define STRUT_ENGINE_SCENE_CHECKS_CHECK_H
 
 #include "engine/scene/things.h"
 

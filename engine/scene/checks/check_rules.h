@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Shared by the rules of the check; internal to engine/scene. */
-#ifndef STRUT_ENGINE_SCENE_CHECK_RULES_H
-#define STRUT_ENGINE_SCENE_CHECK_RULES_H
+#ifndef STRUT_ENGINE_SCENE_CHECKS_CHECK_RULES_H
+#define STRUT_ENGINE_SCENE_CHECKS_CHECK_RULES_H
 
 #include "engine/scene/checks/check.h"
 #include "engine/scene/things.h"

@@ -3,8 +3,8 @@
  * All branches of periodic motions of a model over one parameter: from steady motions at some of its
  * values, and where a branch doubles its period, from there.
  */
-#ifndef STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
-#define STRUT_ENGINE_STUDY_FOLLOW_STUDY_H
+#ifndef STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_STUDY_H
+#define STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_STUDY_H
 
 #include "engine/base/flag.h"
 #include "engine/output/draw/chart.h"

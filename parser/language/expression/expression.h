@@ -5,8 +5,8 @@
  * A value carries its dimension. A *bare* value is made of plain numbers only and fits any
  * dimension: plain numbers are SI.
  */
-#ifndef STRUT_PARSER_EXPRESSION_EXPRESSION_H
-#define STRUT_PARSER_EXPRESSION_EXPRESSION_H
+#ifndef STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_H
+#define STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,8 +2,8 @@
 /**
  * What the files of the expression reader share: the text under the reader's eye, and its errors.
  */
-#ifndef STRUT_PARSER_EXPRESSION_EXPRESSION_PARTS_H
-#define STRUT_PARSER_EXPRESSION_EXPRESSION_PARTS_H
+#ifndef STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_PARTS_H
+#define STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_PARTS_H
 
 #include "parser/language/expression/expression.h"
 

@@ -2,8 +2,8 @@
 /**
  * Units and dimensions. One table of unit names; a dimension is the exponents of kg, m, s and angle.
  */
-#ifndef STRUT_PARSER_EXPRESSION_UNITS_H
-#define STRUT_PARSER_EXPRESSION_UNITS_H
+#ifndef STRUT_PARSER_LANGUAGE_EXPRESSION_UNITS_H
+#define STRUT_PARSER_LANGUAGE_EXPRESSION_UNITS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -4,8 +4,8 @@
  * and default, and in which field of which struct the value is kept. The reader, its messages, the
  * writer and the reference page all come from it.
  */
-#ifndef STRUT_PARSER_LANGUAGE_KEYS_H
-#define STRUT_PARSER_LANGUAGE_KEYS_H
+#ifndef STRUT_PARSER_LANGUAGE_KEYS_KEYS_H
+#define STRUT_PARSER_LANGUAGE_KEYS_KEYS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -11,8 +11,8 @@
  * from the default. set: a mapping may give only one of the keys of a set (not 0). Words are separated
  * by '|'; those of a nested mapping are what messages call it, if not by its key, and of NAMES what they are.
  */
-#ifndef STRUT_PARSER_LANGUAGE_KEYS_TABLE_H
-#define STRUT_PARSER_LANGUAGE_KEYS_TABLE_H
+#ifndef STRUT_PARSER_LANGUAGE_KEYS_KEYS_TABLE_H
+#define STRUT_PARSER_LANGUAGE_KEYS_KEYS_TABLE_H
 
 #include "engine/scene/things_table.h"
 

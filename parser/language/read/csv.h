@@ -2,8 +2,8 @@
 /**
  * Tables as text: comma-separated cells (RFC 4180) below a header such as "velocity [m/s]".
  */
-#ifndef STRUT_PARSER_READ_CSV_H
-#define STRUT_PARSER_READ_CSV_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_CSV_H
+#define STRUT_PARSER_LANGUAGE_READ_CSV_H
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Programs of signals and states that the reader writes itself: those of oscillators, controllers, networks. */
-#ifndef STRUT_PARSER_READ_PROGRAM_BUILDER_H
-#define STRUT_PARSER_READ_PROGRAM_BUILDER_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_PROGRAM_BUILDER_H
+#define STRUT_PARSER_LANGUAGE_READ_PROGRAM_BUILDER_H
 
 #include "parser/language/read/reader.h"
 

@@ -2,8 +2,8 @@
 /**
  * From YAML text to a checked scene.
  */
-#ifndef STRUT_PARSER_READ_READ_SCENE_H
-#define STRUT_PARSER_READ_READ_SCENE_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
+#define STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
 
 #include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"

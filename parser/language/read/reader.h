@@ -7,8 +7,8 @@
  * be read is reported and marked BROKEN; nothing that depends on it is reported, so that one mistake
  * gives one message.
  */
-#ifndef STRUT_PARSER_READ_READER_H
-#define STRUT_PARSER_READ_READER_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_READER_H
+#define STRUT_PARSER_LANGUAGE_READ_READER_H
 
 #include "engine/base/name_map.h"
 #include "engine/scene/checks/check.h"

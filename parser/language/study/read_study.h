@@ -5,8 +5,8 @@
  * The model's text becomes a tree once; each point's scene is read from that tree with the point's
  * parameters.
  */
-#ifndef STRUT_PARSER_STUDY_READ_STUDY_H
-#define STRUT_PARSER_STUDY_READ_STUDY_H
+#ifndef STRUT_PARSER_LANGUAGE_STUDY_READ_STUDY_H
+#define STRUT_PARSER_LANGUAGE_STUDY_READ_STUDY_H
 
 #include "engine/scene/study.h"
 #include "parser/language/read/read_scene.h"

@@ -2,8 +2,8 @@
 /**
  * What the parts of the study reader share. Internal to parser/.
  */
-#ifndef STRUT_PARSER_STUDY_STUDY_READER_H
-#define STRUT_PARSER_STUDY_STUDY_READER_H
+#ifndef STRUT_PARSER_LANGUAGE_STUDY_STUDY_READER_H
+#define STRUT_PARSER_LANGUAGE_STUDY_STUDY_READER_H
 
 #include "engine/scene/sample.h"
 #include "parser/language/read/reader.h"

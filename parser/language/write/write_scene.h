@@ -2,8 +2,8 @@
 /**
  * Scenes as YAML.
  */
-#ifndef STRUT_PARSER_WRITE_WRITE_SCENE_H
-#define STRUT_PARSER_WRITE_WRITE_SCENE_H
+#ifndef STRUT_PARSER_LANGUAGE_WRITE_WRITE_SCENE_H
+#define STRUT_PARSER_LANGUAGE_WRITE_WRITE_SCENE_H
 
 #include "engine/base/status.h"
 #include "engine/scene/experiment.h"

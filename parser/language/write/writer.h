@@ -2,8 +2,8 @@
 /**
  * Growing YAML text: what the parts of the scene writer share. Internal to parser/.
  */
-#ifndef STRUT_PARSER_WRITE_WRITER_H
-#define STRUT_PARSER_WRITE_WRITER_H
+#ifndef STRUT_PARSER_LANGUAGE_WRITE_WRITER_H
+#define STRUT_PARSER_LANGUAGE_WRITE_WRITER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,8 +2,8 @@
 /**
  * Located messages about a text: collected, sorted, shown with the line and a caret.
  */
-#ifndef STRUT_PARSER_YAML_DIAGNOSTICS_H
-#define STRUT_PARSER_YAML_DIAGNOSTICS_H
+#ifndef STRUT_PARSER_LANGUAGE_YAML_DIAGNOSTICS_H
+#define STRUT_PARSER_LANGUAGE_YAML_DIAGNOSTICS_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -7,8 +7,8 @@
  * text is refused at once. An alias is a copy of the anchored node that shares its children: branches
  * may be shared but there is no cycle, and no way down has more than 64 levels.
  */
-#ifndef STRUT_PARSER_YAML_DOCUMENT_H
-#define STRUT_PARSER_YAML_DOCUMENT_H
+#ifndef STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_H
+#define STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_H
 
 #include <stdbool.h>
 #include <stddef.h>

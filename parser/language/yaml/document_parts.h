@@ -2,8 +2,8 @@
 /**
  * What the files of the document reader share; nobody else includes it.
  */
-#ifndef STRUT_PARSER_YAML_DOCUMENT_PARTS_H
-#define STRUT_PARSER_YAML_DOCUMENT_PARTS_H
+#ifndef STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_PARTS_H
+#define STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_PARTS_H
 
 #include <stdbool.h>
 #include <stddef.h>

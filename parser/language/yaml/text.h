@@ -4,8 +4,8 @@
  *
  * Lines end where libyaml ends them: at LF, CR, CR LF, NEL (U+0085), LS (U+2028) and PS (U+2029).
  */
-#ifndef STRUT_PARSER_YAML_TEXT_H
-#define STRUT_PARSER_YAML_TEXT_H
+#ifndef STRUT_PARSER_LANGUAGE_YAML_TEXT_H
+#define STRUT_PARSER_LANGUAGE_YAML_TEXT_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -3,8 +3,8 @@
  * Analyses: what `strut equilibria`, `modes`, `rigidity`, `form` and `path` compute of a model and report. The
  * program, the library and what is built on it do the same by these rows.
  */
-#ifndef STRUT_PARSER_COMMAND_ANALYSES_H
-#define STRUT_PARSER_COMMAND_ANALYSES_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_ANALYSES_H
+#define STRUT_PARSER_PROGRAM_COMMAND_ANALYSES_H
 
 #include "engine/output/draw/chart.h"
 #include "engine/statics/equilibria/equilibria.h"

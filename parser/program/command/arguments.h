@@ -2,8 +2,8 @@
 /**
  * Commands and the options that they are called with, from the command line or by the library.
  */
-#ifndef STRUT_PARSER_COMMAND_ARGUMENTS_H
-#define STRUT_PARSER_COMMAND_ARGUMENTS_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_ARGUMENTS_H
+#define STRUT_PARSER_PROGRAM_COMMAND_ARGUMENTS_H
 
 #include <float.h>
 #include <math.h>

@@ -2,8 +2,8 @@
 /**
  * What `strut path --periodic` follows: a number under `parameters`, its range, and where branches start.
  */
-#ifndef STRUT_PARSER_COMMAND_FOLLOW_OPTIONS_H
-#define STRUT_PARSER_COMMAND_FOLLOW_OPTIONS_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_FOLLOW_OPTIONS_H
+#define STRUT_PARSER_PROGRAM_COMMAND_FOLLOW_OPTIONS_H
 
 #include "engine/study/follow/follow_study.h"
 #include "parser/program/command/varied_scenes.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Messages to a listener, and the warnings of members that carry too much. */
-#ifndef STRUT_PARSER_COMMAND_MESSAGES_H
-#define STRUT_PARSER_COMMAND_MESSAGES_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_MESSAGES_H
+#define STRUT_PARSER_PROGRAM_COMMAND_MESSAGES_H
 
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/path/path.h"

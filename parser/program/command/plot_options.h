@@ -2,8 +2,8 @@
 /**
  * Options of figures: width, title, axes, and what a figure of a run shows.
  */
-#ifndef STRUT_PARSER_COMMAND_PLOT_OPTIONS_H
-#define STRUT_PARSER_COMMAND_PLOT_OPTIONS_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_PLOT_OPTIONS_H
+#define STRUT_PARSER_PROGRAM_COMMAND_PLOT_OPTIONS_H
 
 #include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_figure.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What options change of an experiment: method, step and span, and how accurately it is run. */
-#ifndef STRUT_PARSER_COMMAND_RUN_SETTINGS_H
-#define STRUT_PARSER_COMMAND_RUN_SETTINGS_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_RUN_SETTINGS_H
+#define STRUT_PARSER_PROGRAM_COMMAND_RUN_SETTINGS_H
 
 #include "engine/scene/experiment.h"
 #include "parser/program/command/arguments.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The language as a JSON Schema, for editors. */
-#ifndef STRUT_PARSER_COMMAND_SCHEMA_H
-#define STRUT_PARSER_COMMAND_SCHEMA_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_SCHEMA_H
+#define STRUT_PARSER_PROGRAM_COMMAND_SCHEMA_H
 
 #include <stdbool.h>
 

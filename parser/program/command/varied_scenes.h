@@ -2,8 +2,8 @@
 /**
  * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
  */
-#ifndef STRUT_PARSER_COMMAND_VARIED_SCENES_H
-#define STRUT_PARSER_COMMAND_VARIED_SCENES_H
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_VARIED_SCENES_H
+#define STRUT_PARSER_PROGRAM_COMMAND_VARIED_SCENES_H
 
 #include "engine/scene/study.h"
 #include "parser/program/command/arguments.h"

@@ -226,14 +226,13 @@ void strut_apply_contact_impulse(const strut_contact_compliance *compliance,
 }
 
 /* In place, lower triangle; false if it is not positive definite. */
-static bool factor(int32_t n, double *acceleration) {
+static bool factor(int32_t n, double *matrix) {
   for (int32_t j = 0; j < n; j++) {
     for (int32_t k = 0; k < j; k++)
-      for (int32_t i = j; i < n; i++)
-        acceleration[i * n + j] -= acceleration[i * n + k] * acceleration[j * n + k];
-    if (!(acceleration[j * n + j] > 0.0)) return false;
-    double root = sqrt(acceleration[j * n + j]);
-    for (int32_t i = j; i < n; i++) acceleration[i * n + j] /= root;
+      for (int32_t i = j; i < n; i++) matrix[i * n + j] -= matrix[i * n + k] * matrix[j * n + k];
+    if (!(matrix[j * n + j] > 0.0)) return false;
+    double root = sqrt(matrix[j * n + j]);
+    for (int32_t i = j; i < n; i++) matrix[i * n + j] /= root;
   }
   return true;
 }

@@ -7,8 +7,8 @@
  * thing of a copy is read, the copy is the reader's *scope*: names are looked up in it, parameters too,
  * and what has a direction or a length is turned and scaled with it.
  */
-#ifndef STRUT_PARSER_READ_COPIES_H
-#define STRUT_PARSER_READ_COPIES_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_REUSE_COPIES_H
+#define STRUT_PARSER_LANGUAGE_READ_REUSE_COPIES_H
 
 #include "parser/language/read/reader.h"
 

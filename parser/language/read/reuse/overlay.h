@@ -7,8 +7,8 @@
  * the place of others that say the same in another way, and `NAME: remove` takes the key away. A node's
  * `[x, y]` counts as {position: [x, y]}. A part that uses a file replaces the one of its name as a whole.
  */
-#ifndef STRUT_PARSER_READ_OVERLAY_H
-#define STRUT_PARSER_READ_OVERLAY_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_REUSE_OVERLAY_H
+#define STRUT_PARSER_LANGUAGE_READ_REUSE_OVERLAY_H
 
 #include <stddef.h>
 

@@ -2,8 +2,8 @@
 /**
  * Files that scenes and studies name: only those below the folder of the file that names them.
  */
-#ifndef STRUT_PARSER_READ_USED_FILES_H
-#define STRUT_PARSER_READ_USED_FILES_H
+#ifndef STRUT_PARSER_LANGUAGE_READ_REUSE_USED_FILES_H
+#define STRUT_PARSER_LANGUAGE_READ_REUSE_USED_FILES_H
 
 #include <stddef.h>
 #include <stdint.h>
