@@ -224,15 +224,15 @@ static strut_status prepare_run(strut_run *run) {
   double begin = (double)run->first * run->dt;
   int64_t marks = run->steady.answer_periods > STRUT_LONGEST_REPEAT ? run->steady.answer_periods
                                                                     : STRUT_LONGEST_REPEAT;
+  run->measure.grid = run->grid, run->measure.samples = run->options->samples;
   if (!run->workspace ||
-      strut_measure_create(run->model, run->experiment, &run->grid, begin, (size_t)marks + 1,
-                           &run->measure) ||
+      strut_measure_create(run->model, run->experiment, begin, (size_t)marks + 1, &run->measure) ||
       (run->steady.wanted &&
        strut_steady_detector_create(run->model, &run->experiment->steady, span.period, begin,
                                     &run->steady.detector)))
     return strut_no_memory(run->error, "for the model");
-  if (run->measure.quantities && strut_quantities_need_pieces(run->measure.quantities) &&
-      run->method->observe) {
+  if (run->measure.quantities && run->method->observe &&
+      (run->options->samples || strut_quantities_need_pieces(run->measure.quantities))) {
     if (!run->method->observe(run->model, run->state, run->workspace))
       return strut_no_memory(run->error, "for the model");
     strut_quantities_observe(run->measure.quantities);

@@ -5,6 +5,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
+#include "engine/run/measure/quantities.h"
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"
@@ -40,7 +41,8 @@ typedef struct strut_run_options {
   int64_t
       most_evaluations; /* force evaluations after which the run ends with STRUT_WORK_LIMIT; 0: no limit */
   bool chosen;          /* method and step were chosen for a wanted accuracy */
-  bool without_balance; /* leaves works and energy residual of the summary 0; cheaper */
+  const strut_run_samples *samples; /* that divide the window in place of periods; may be NULL */
+  bool without_balance;             /* leaves works and energy residual of the summary 0; cheaper */
 } strut_run_options;
 
 /**

@@ -253,6 +253,10 @@ void strut_measure_tracked_point(const strut_model *model, const strut_state *st
 }
 
 static void place_marks(const strut_span *span, double begin, strut_measurement *measurement) {
+  const strut_run_samples *samples = measurement->samples;
+  for (size_t i = 0; samples && i < samples->count; i++)
+    measurement->time[i] = begin + samples->time[i];
+  if (samples) return;
   for (size_t i = 0; i < measurement->marks; i++)
     measurement->time[i] = begin + (span->period > 0 ? span->window_start + (double)i * span->period
                                                      : (i ? span->duration : span->window_start));
@@ -273,14 +277,16 @@ void strut_measure_window(const strut_model *model, strut_state *state, double b
 }
 
 strut_status strut_measure_create(const strut_model *model, const strut_experiment *experiment,
-                                  const strut_time_grid *grid, double begin, size_t capacity,
-                                  strut_measurement *measurement) {
-  *measurement = (strut_measurement){.grid = *grid, .node = experiment->measure_node};
+                                  double begin, size_t capacity, strut_measurement *measurement) {
+  *measurement = (strut_measurement){
+      .grid = measurement->grid, .samples = measurement->samples, .node = experiment->measure_node};
   strut_span span = strut_experiment_span(experiment, model->scene);
   measurement->by_periods = span.period > 0;
   double periods = span.period > 0 ? (span.duration - span.window_start) / span.period : 1.0;
   size_t contacts = (size_t)model->contacts.count;
-  measurement->marks = periods < 1.5 ? 2 : (size_t)ceil(periods - 1e-9) + 1;
+  measurement->marks = measurement->samples ? measurement->samples->count
+                       : periods < 1.5      ? 2
+                                            : (size_t)ceil(periods - 1e-9) + 1;
   measurement->capacity = capacity > measurement->marks ? capacity : measurement->marks;
   measurement->time =
       strut_arena_allocate(&measurement->arena, measurement->capacity, sizeof *measurement->time);
@@ -331,7 +337,8 @@ void strut_measure_begin(const strut_model *model, strut_state *state,
   const strut_marks marks = {.step = measurement->grid.step,
                              .offset = measurement->grid.offset,
                              .count = measurement->marks,
-                             .time = measurement->time};
+                             .time = measurement->time,
+                             .value = measurement->samples ? measurement->samples->value : NULL};
   if (measurement->quantities) strut_quantities_begin(measurement->quantities, &marks, state);
   strut_measure_tracked_point(model, state, measurement, &measurement->last_x,
                               &measurement->last_v);

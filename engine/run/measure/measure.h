@@ -98,7 +98,8 @@ typedef struct strut_measurement {
   double
       apart; /* largest velocity of a node from the tracked point's, at the start and marks [m/s] */
   double path; /* length of the tracked x's way since the start of the window [m] */
-  strut_quantities *quantities; /* NULL where the scene names none */
+  const strut_run_samples *samples; /* whose times are the marks; NULL: those of the experiment */
+  strut_quantities *quantities;     /* NULL where the scene names none */
   strut_arena arena;
   double *work;     /* (marks) work of the drives there [J] */
   double last_work; /* and after the latest step [J] */
@@ -108,11 +109,11 @@ typedef struct strut_measurement {
 
 /**
  * Prepares for a run that starts at the time `begin`, without the offset of the grid [s]; capacity:
- * marks that a later window may need. STRUT_OK or STRUT_NO_MEMORY.
+ * marks that a later window may need. Of the measurement, its grid and samples are the caller's. STRUT_OK or
+ * STRUT_NO_MEMORY.
  */
 strut_status strut_measure_create(const strut_model *model, const strut_experiment *experiment,
-                                  const strut_time_grid *grid, double begin, size_t capacity,
-                                  strut_measurement *measure);
+                                  double begin, size_t capacity, strut_measurement *measure);
 /** x [m] and velocity [m/s] of the tracked point. */
 void strut_measure_tracked_point(const strut_model *model, const strut_state *state,
                                  const strut_measurement *measure, double *place, double *velocity);

@@ -330,6 +330,13 @@ static double primitive_of(const strut_quantities *quantities, const strut_meter
   return meter->rate_of == NONE ? 0.0 : quantities->columns.value[meter->rate_of];
 }
 
+/* Tells who asked for it the values at the next mark. */
+static void keep_values(const strut_quantities *quantities, const double *row) {
+  size_t count = quantities->count;
+  if (quantities->marks.value)
+    memcpy(quantities->marks.value + quantities->next * count, row, count * sizeof *row);
+}
+
 /* Passes the mark at the fraction s of the piece, up to which it has been added; the first opens the window. */
 static void pass_mark(const motion_part *part, double s) {
   strut_quantities *quantities = part->quantities;
@@ -342,6 +349,7 @@ static void pass_mark(const motion_part *part, double s) {
     else
       strut_meter_open(meter, time, row[i], primitive_of(quantities, meter));
   }
+  keep_values(quantities, row);
   if (quantities->next == 0) quantities->begin = time;
   quantities->time = time;
   quantities->next++;
@@ -413,9 +421,11 @@ void strut_quantities_begin(strut_quantities *quantities, const strut_marks *mar
   if (fabs(marks->time[0] / marks->step - (double)state->step) >= MARK_TOLERANCE) return;
   for (size_t i = 0; i < quantities->count; i++) {
     strut_meter *meter = &quantities->meters[i];
-    strut_meter_open(meter, marks->time[0], evaluate_meter(quantities, i),
-                     primitive_of(quantities, meter));
+    double *value = &row_at(quantities, 0)[i];
+    *value = evaluate_meter(quantities, i);
+    strut_meter_open(meter, marks->time[0], *value, primitive_of(quantities, meter));
   }
+  keep_values(quantities, row_at(quantities, 0));
   quantities->begin = quantities->time = marks->time[0];
   quantities->next = 1;
 }

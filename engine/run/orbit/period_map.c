@@ -18,13 +18,13 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
   assert(repeats >= 1 && map->period > 0.0 && experiment->step > 0.0);
   map->steps = (int64_t)ceil(map->period / experiment->step * (1.0 - 1e-9));
   map->dt = map->period / (double)map->steps;
-  const strut_time_grid grid = {.step = map->dt, .last = -1};
+  map->measure.grid = (strut_time_grid){.step = map->dt, .last = -1};
   map->method = strut_integrator_find(experiment->integrator);
   const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
   strut_status status = strut_state_create(model, &map->state, error);
   if (!status) map->workspace = map->method->create(model, map->state, &settings);
   if (!status &&
-      (!map->workspace || strut_measure_create(model, experiment, &grid, 0, 0, &map->measure)))
+      (!map->workspace || strut_measure_create(model, experiment, 0, 0, &map->measure)))
     status = strut_no_memory(error, "");
   if (status) {
     strut_period_map_free(map);
