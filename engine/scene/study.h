@@ -18,6 +18,12 @@
 #include "engine/base/status.h"
 #include "engine/scene/quantity.h"
 
+/** Value of a parameter at a point. */
+typedef struct strut_study_value {
+  double number;    /* SI */
+  const char *word; /* of a text parameter, else NULL */
+} strut_study_value;
+
 /* ---- searches ---- */
 
 /** Methods of searches: X(NAME, word of the language). */
@@ -97,6 +103,58 @@ typedef struct strut_study_search {
   size_t column;        /* of the first variable, among the columns of all axes */
 } strut_study_search;
 
+/* ---- fits ---- */
+
+/** What the numbers of a match are compared with. */
+typedef enum strut_fit_kind {
+  STRUT_FIT_MOTION, /* quantities over time */
+  STRUT_FIT_REST,   /* quantities where the run starts */
+  STRUT_FIT_CURVE,  /* the force of a path at displacements */
+  STRUT_FIT_TABLE   /* columns that a study with its `compute` keeps */
+} strut_fit_kind;
+
+/** Measured numbers and what they are compared with. */
+typedef struct strut_fit_series {
+  const char *of; /* quantity that the model measures, or a column */
+  strut_search_place place;
+  const char *unit;       /* of the numbers, SI; "1": none */
+  const double *measured; /* (count of the match) SI; NAN: a gap */
+  const double *weights;  /* (count) of their squared residuals; NULL: 1 */
+} strut_fit_series;
+
+/** Alignment of the model with what was measured that is found together with the parameters. */
+typedef struct strut_fit_alignment {
+  uint32_t shift, rotate, delay; /* 1: free */
+} strut_fit_alignment;
+
+typedef struct strut_fit_match {
+  const char *name;
+  strut_search_place place;
+  strut_fit_kind kind;
+  uint32_t compute; /* strut_compute, of a TABLE */
+  size_t count;     /* numbers of each series */
+  const double
+      *at; /* (count) times of a MOTION, ascending [s]; displacements of a CURVE [m]; else NULL */
+  double noise; /* standard deviation of the numbers, SI; 0: not known */
+  const char *noise_unit;
+  strut_fit_alignment align;
+  size_t series_count;
+  strut_fit_series *series;
+  strut_study_value *values; /* (set_count of the fit) of the parameters that matches set */
+} strut_fit_match;
+
+typedef struct strut_study_fit {
+  size_t variable_count, match_count;
+  strut_search_variable *variables; /* (variable_count) */
+  strut_fit_match *matches;         /* (match_count) */
+  int32_t starts;
+  int64_t seed;
+  size_t column;    /* of the first variable, among the columns of all axes */
+  size_t set_count; /* columns behind those of the variables: parameters that matches set */
+} strut_study_fit;
+
+enum { STRUT_FIT_MOST_VARIABLES = 20, STRUT_FIT_MOST_MATCHES = 10, STRUT_FIT_MOST_SERIES = 200 };
+
 /* ---- branches ---- */
 
 /** What zeros stand for: of the accuracy; of the steps of a branch, and of a curve over two parameters. */
@@ -145,12 +203,6 @@ typedef struct strut_study_column {
   const double *number;     /* (count of the axis) of a LIST */
   const char *const *words; /* (count of the axis) of a LIST of words */
 } strut_study_column;
-
-/** Value of a parameter at a point. */
-typedef struct strut_study_value {
-  double number;    /* SI */
-  const char *word; /* of a text parameter, else NULL */
-} strut_study_value;
 
 typedef struct strut_study_axis {
   int64_t count; /* values, >= 1 */
@@ -409,6 +461,7 @@ typedef struct strut_study {
     double (*curve)[2]; /* (curve_count) displacement [m], force [N] */
   } goal;
   strut_study_follow *follow; /* motions that are followed; NULL: none */
+  strut_study_fit *fit;       /* what is fitted; NULL: nothing */
 } strut_study;
 
 #endif

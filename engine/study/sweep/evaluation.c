@@ -79,9 +79,8 @@ double strut_goals_shape_distance(const strut_study *study, const strut_scene *s
   return count ? sqrt(square / n) : (double)NAN;
 }
 
-/* The force that holds the displaced coordinate, at a displacement; NAN: not reached. */
-static double force_at(const strut_path *path, double displacement) {
-  for (size_t i = 0; i < path->point_count; i++) {
+double strut_goals_force_at(const strut_path *path, double displacement) {
+  for (size_t i = 0; i < path->point_count && path->coordinate >= 0; i++) {
     const strut_path_point *point = &path->points[i], *before = i ? point - 1 : point;
     double u = point->at.factor, u0 = before->at.factor;
     double f = point->at.reaction[path->coordinate], f0 = before->at.reaction[path->coordinate];
@@ -94,9 +93,9 @@ static double force_at(const strut_path *path, double displacement) {
 
 double strut_goals_curve_distance(const strut_study *study, const strut_path *path) {
   double square = 0.0;
-  if (path->coordinate < 0 || !study->goal.curve_count) return (double)NAN;
+  if (!study->goal.curve_count) return (double)NAN;
   for (size_t i = 0; i < study->goal.curve_count; i++) {
-    double away = force_at(path, study->goal.curve[i][0]) - study->goal.curve[i][1];
+    double away = strut_goals_force_at(path, study->goal.curve[i][0]) - study->goal.curve[i][1];
     square += away * away;
   }
   return sqrt(square / (double)study->goal.curve_count);

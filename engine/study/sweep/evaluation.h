@@ -24,6 +24,11 @@ strut_status strut_goals_check(const strut_study *study, const strut_scene *scen
 double strut_goals_shape_distance(const strut_study *study, const strut_scene *scene,
                                   const double *positions);
 /**
+ * The force that holds the displaced coordinate at a displacement [N]; NAN: that is not reached, or the path displaces
+ * none.
+ */
+double strut_goals_force_at(const strut_path *path, double displacement);
+/**
  * Root mean square difference [N] of the force that holds the displaced coordinate from the wanted
  * curve; where a path passes a displacement several times, its first passage counts. NAN: one of the
  * displacements is not reached.

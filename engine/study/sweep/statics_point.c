@@ -439,18 +439,20 @@ static strut_status find_rigidity(const strut_study *study, strut_sweep_job *job
   return status;
 }
 
-static strut_status follow_path(const strut_study *study, strut_sweep_job *job,
-                                rest_result *result) {
+strut_status strut_statics_path(const strut_study *study, const strut_setup *setup,
+                                const strut_model *model, strut_path *path, strut_error *error) {
   strut_path_options options;
   const char *unit;
-  const strut_experiment *experiment = &job->setup.experiment;
-  strut_status status = choose_path(study, &job->setup, &options, &unit, &job->error);
-  if (!status)
-    status =
-        follows_stages(study, &job->setup)
-            ? strut_path_follow_stages(result->model, experiment, &options, &result->path,
-                                       &job->error)
-            : strut_path_follow(result->model, experiment, &options, &result->path, &job->error);
+  strut_status status = choose_path(study, setup, &options, &unit, error);
+  if (status) return status;
+  return (follows_stages(study, setup) ? strut_path_follow_stages : strut_path_follow)(
+      model, &setup->experiment, &options, path, error);
+}
+
+static strut_status follow_path(const strut_study *study, strut_sweep_job *job,
+                                rest_result *result) {
+  strut_status status =
+      strut_statics_path(study, &job->setup, result->model, &result->path, &job->error);
   if (!status && result->path.remark[0]) /* why it ended early */
     snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
              (int)sizeof job->cells.message - 1, result->path.remark);

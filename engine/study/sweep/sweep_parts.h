@@ -88,6 +88,9 @@ bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup);
 /** STRUT_BAD_SCENE where the study asks for what the scene does not have. */
 strut_status strut_statics_check(const strut_study *study, const strut_setup *setup,
                                  strut_error *error);
+/** Follows the path that the study wants; release it with strut_path_free, after a failure too. */
+strut_status strut_statics_path(const strut_study *study, const strut_setup *setup,
+                                const strut_model *model, strut_path *path, strut_error *error);
 /** Computes what the study wants of a point at rest and appends its cells. */
 strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_job *job);
 

@@ -1,0 +1,461 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/study/fit/fit.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "engine/study/fit/fit_parts.h"
+#include "engine/study/search/optimisers.h"
+#include "engine/study/sweep/grid.h"
+
+/* Of motions a fit takes so much of the time first; and steps of the method in all but the last of them. */
+static const double shares[] = {0.125, 0.25, 0.5, 1.0};
+enum { SHARES = sizeof shares / sizeof shares[0], STEPS_FIRST = 20, FEW = 2 };
+
+/* An end of a profile is found to this part of its distance; in so many fits, at most. */
+static const double FOUND = 0.01;
+enum { MOST_FITS = 12 };
+
+/* Part of a distribution outside of an interval. */
+static const double OUTSIDE = 0.05;
+
+/* Columns of the table behind those of the axes, before the alignments. */
+enum { KIND, OF, END, WORDS, SUM = 0, USED, EVALUATIONS, NUMBERS };
+static const char *const kinds[] = {"start", "low", "high", "without"};
+static const char *const ends[] = {"converged", "stuck", "failed"};
+
+/* A fit of a study while it is made. */
+typedef struct fitting {
+  const strut_fit_layout *layout;
+  strut_points points;
+  int64_t first, count; /* rows of the present stage */
+  strut_fit_result *result;
+  strut_fit_spectrum spectrum; /* at the best, once it is known */
+  const double *best;          /* (parameters) */
+  double rise;                 /* of the sum to an end of an interval */
+} fitting;
+
+static size_t profile_rows(const strut_study_fit *fit) { return 2 * fit->variable_count; }
+
+static size_t omission_rows(const strut_study_fit *fit) {
+  return fit->match_count > 1 ? fit->match_count : 0;
+}
+
+/* ---- one fit ---- */
+
+/* Where a start begins: the first one where the study says, the others spread evenly. */
+static void choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
+  const strut_study_fit *fit = layout->fit;
+  strut_search_spread spread = strut_search_spread_begin(fit->variable_count, (uint64_t)fit->seed);
+  for (size_t i = 0; i < layout->parameters; i++) {
+    size_t k = i - layout->aligned_count;
+    parameters[i] = i < layout->aligned_count
+                        ? strut_fit_parameter(layout, i, layout->aligned[i].start)
+                    : start == 0 ? 1.0 + strut_search_start(&fit->variables[k])
+                                 : 1.0 + strut_search_spread_at(&spread, start - 1, k);
+  }
+}
+
+/* Fits short motions first, so that long ones begin near. */
+static strut_status fit_from(strut_fit_case *one, double *parameters,
+                             strut_fit_solution *solution) {
+  int64_t evaluations = 0;
+  strut_status status = STRUT_OK;
+  for (int k = 0; k < SHARES && !status; k++) {
+    bool last = k + 1 == SHARES;
+    one->share = shares[k], one->known = false;
+    if (!last && strut_fit_used(one) < FEW * one->layout->parameters) continue;
+    strut_least_squares problem = strut_fit_problem(one);
+    if (!last) problem.most_steps = STEPS_FIRST;
+    status = strut_least_squares_solve(&problem, parameters, solution);
+    evaluations += solution->evaluations;
+  }
+  solution->evaluations = evaluations;
+  return status;
+}
+
+/* The least sum where one parameter is held at a value; the others begin on the line that the covariance gives. */
+static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i, double value,
+                             double *parameters, strut_fit_solution *solution) {
+  size_t n = self->layout->parameters;
+  const double *covariance = self->spectrum.covariance;
+  double moved = value - self->best[i];
+  for (size_t j = 0; j < n; j++) {
+    double slope = covariance[j * n + i] / covariance[i * n + i];
+    parameters[j] = self->best[j] + (isfinite(slope) ? slope * moved : 0.0);
+    parameters[j] = fmin(fmax(parameters[j], self->layout->low[j]), self->layout->high[j]);
+  }
+  parameters[i] = value;
+  strut_least_squares problem = strut_fit_problem(one);
+  problem.held = (int32_t)i;
+  return strut_least_squares_solve(&problem, parameters, solution);
+}
+
+/* An end of the profile of a parameter, on side -1 or 1: where the least sum has risen enough. */
+static strut_status find_profile_end(const fitting *self, strut_fit_case *one, size_t i,
+                                     double side, double *parameters,
+                                     strut_fit_solution *solution) {
+  size_t n = self->layout->parameters;
+  double best = self->result->starts[self->result->best].sum;
+  double bound = side < 0.0 ? self->layout->low[i] : self->layout->high[i];
+  double most = fabs(bound - self->best[i]), inside = 0.0, outside = HUGE_VAL, height_inside = 0.0;
+  double distance = sqrt(self->rise * self->spectrum.covariance[i * n + i]);
+  int64_t evaluations = 0;
+  strut_status status = STRUT_OK;
+  for (int k = 0; k < MOST_FITS && !status; k++) {
+    distance = fmin(distance, most);
+    status = fit_held(self, one, i, self->best[i] + side * distance, parameters, solution);
+    evaluations += solution->evaluations;
+    double height = sqrt(fmax(0.0, (solution->sum - best) / self->rise)); /* 1: enough */
+    if (fabs(height - 1.0) < FOUND || (distance >= most && height < 1.0)) break;
+    if (height > 1.0)
+      outside = distance;
+    else
+      inside = distance, height_inside = height;
+    double next = inside + (distance - inside) * (1.0 - height_inside) / (height - height_inside);
+    if (height <= 1.0) next = distance / fmax(height, 0.2);
+    bool between = next > inside && next < outside;
+    distance = between ? next : 0.5 * (inside + outside);
+    if (!isfinite(distance)) distance = most;
+  }
+  solution->evaluations = evaluations;
+  solution->end = solution->sum - best < self->rise * (1.0 - 3.0 * FOUND) ? STRUT_FIT_STUCK
+                                                                          : STRUT_FIT_CONVERGED;
+  return status;
+}
+
+/* What row is which fit. */
+typedef struct row_kind {
+  int kind;    /* of `kinds` */
+  size_t item; /* start, variable or match */
+} row_kind;
+
+static row_kind kind_of(const strut_study_fit *fit, int64_t row) {
+  if (row < fit->starts) return (row_kind){0, (size_t)row};
+  row -= fit->starts;
+  if (row < (int64_t)profile_rows(fit)) return (row_kind){1 + (int)(row % 2), (size_t)row / 2};
+  return (row_kind){3, (size_t)row - profile_rows(fit)};
+}
+
+static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind what,
+                            double *parameters, strut_fit_solution *solution) {
+  const strut_fit_layout *layout = self->layout;
+  *solution = (strut_fit_solution){.end = STRUT_FIT_FAILED, .sum = (double)NAN};
+  if (what.kind == 0) {
+    choose_start(layout, (int64_t)what.item, parameters);
+    return fit_from(one, parameters, solution);
+  }
+  choose_start(layout, 0, parameters);
+  if (!self->best) return STRUT_OK; /* no start has residuals */
+  if (what.kind < 3)
+    return find_profile_end(self, one, layout->aligned_count + what.item,
+                            what.kind == 1 ? -1.0 : 1.0, parameters, solution);
+  one->left_out = (int32_t)what.item;
+  memcpy(parameters, self->best, layout->parameters * sizeof *parameters);
+  strut_least_squares problem = strut_fit_problem(one);
+  if (strut_fit_used(one) < layout->parameters) return STRUT_OK;
+  return strut_least_squares_solve(&problem, parameters, solution);
+}
+
+/* ---- rows ---- */
+
+static const char *item_name(const strut_study_fit *fit, row_kind what) {
+  return what.kind == 0  ? ""
+         : what.kind < 3 ? fit->variables[what.item].name
+                         : fit->matches[what.item].name;
+}
+
+/* The cells of a row: axes, words, numbers, alignments. */
+static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point, size_t used,
+                     const double *parameters, const strut_fit_solution *solution) {
+  const strut_fit_layout *layout = self->layout;
+  const strut_sweep_plan *plan = layout->plan;
+  strut_row_buffer *cells = &job->cells;
+  row_kind what = kind_of(layout->fit, point);
+  strut_grid_values(plan->study, point, cells->values);
+  for (size_t k = 0; k < layout->fit->variable_count; k++) {
+    size_t i = layout->aligned_count + k;
+    cells->values[layout->fit->column + k].number = strut_fit_value(layout, i, parameters[i]);
+  }
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    if (plan->columns[i].word)
+      strut_sweep_word(cells, cells->values[i].word);
+    else
+      strut_sweep_number(cells, cells->values[i].number);
+  }
+  strut_sweep_word(cells, kinds[what.kind]);
+  strut_sweep_word(cells, item_name(layout->fit, what));
+  strut_sweep_word(cells, ends[solution->end]);
+  strut_sweep_number(cells, solution->sum);
+  strut_sweep_number(cells, (double)used);
+  strut_sweep_number(cells, (double)solution->evaluations);
+  for (size_t i = 0; i < layout->aligned_count; i++)
+    strut_sweep_number(cells, strut_fit_value(layout, i, parameters[i]));
+  cells->row = (strut_result_slot){.numbers = cells->numbers,
+                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
+                                   .message = cells->message};
+}
+
+static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
+  const fitting *self = context;
+  strut_fit_case one;
+  strut_fit_solution solution;
+  double parameters[STRUT_LEAST_SQUARES_MOST];
+  job->point = point;
+  job->cells.number_count = job->cells.word_count = 0;
+  job->cells.message[0] = '\0';
+  job->warning_count = 0;
+  job->status = strut_fit_case_create(self->layout, &one) ? STRUT_OK : STRUT_NO_MEMORY;
+  if (!job->status)
+    job->status = fit_row(self, &one, kind_of(self->layout->fit, point), parameters, &solution);
+  if (!job->status) job->status = one.status, job->error = one.error;
+  if (!job->status) fill_row(self, job, point, strut_fit_used(&one), parameters, &solution);
+  strut_fit_case_free(&one);
+}
+
+/* Reads a row back. */
+static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *row) {
+  const strut_fit_layout *layout = self->layout;
+  const strut_sweep_plan *plan = layout->plan;
+  strut_result_slot slot;
+  size_t variables = layout->fit->variable_count;
+  row->parameters = strut_arena_allocate(&self->result->arena, layout->parameters, sizeof(double));
+  row->values = strut_arena_allocate(&self->result->arena, variables, sizeof(double));
+  if (!row->parameters || !row->values) return strut_no_memory(self->points.error, "");
+  if (!strut_slots_get(self->points.slots, point, &slot))
+    return strut_fail(self->points.error, STRUT_FILE_TROUBLE, "row %lld of the fit is missing",
+                      (long long)point);
+  size_t words = 0, own = 0;
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    words += plan->columns[i].word;
+    if (i < layout->fit->column) own += !plan->columns[i].word;
+  }
+  const double *numbers = slot.numbers + plan->axis_columns - words;
+  for (int k = 0; k < STRUT_FIT_END_COUNT; k++)
+    if (strcmp(slot.words[words + END], ends[k]) == 0) row->end = (strut_fit_end)k;
+  row->sum = numbers[SUM];
+  row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
+  memcpy(row->values, slot.numbers + own, variables * sizeof(double));
+  for (size_t i = 0; i < layout->parameters; i++) {
+    size_t k = i - layout->aligned_count;
+    row->parameters[i] = strut_fit_parameter(
+        layout, i, i < layout->aligned_count ? numbers[NUMBERS + i] : row->values[k]);
+  }
+  return STRUT_OK;
+}
+
+strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_error *error) {
+  strut_fit_layout layout = {0};
+  strut_status status = strut_fit_layout_make(plan, NULL, &layout, error);
+  size_t most = plan->axis_columns + WORDS + NUMBERS + layout.aligned_count;
+  strut_slot_column *columns =
+      status ? NULL : strut_arena_allocate(&plan->arena, most, sizeof *columns);
+  if (columns) {
+    memcpy(columns, plan->columns, plan->axis_columns * sizeof *columns);
+    plan->columns = columns;
+    plan->column_count = plan->axis_columns, plan->column_capacity = most;
+  }
+  bool fine = columns && strut_sweep_add_column(plan, "", "kind", "1", true) &&
+              strut_sweep_add_column(plan, "", "of", "1", true) &&
+              strut_sweep_add_column(plan, "", "end", "1", true) &&
+              strut_sweep_add_column(plan, "", "sum", "1", false) &&
+              strut_sweep_add_column(plan, "", "used", "1", false) &&
+              strut_sweep_add_column(plan, "", "evaluations", "1", false);
+  for (size_t i = 0; i < layout.aligned_count && fine; i++) {
+    const char *unit =
+        strut_arena_text(&plan->arena, layout.aligned[i].unit, strlen(layout.aligned[i].unit));
+    fine = unit && strut_sweep_add_column(plan, "", layout.aligned[i].name, unit, false);
+  }
+  if (!status && !fine) status = strut_no_memory(error, "");
+  strut_fit_layout_free(&layout);
+  return status;
+}
+
+/* ---- stages ---- */
+
+static bool choose_row(void *context, int64_t i, int64_t *point) {
+  const fitting *self = context;
+  *point = self->first + i;
+  return !strut_slots_done(self->points.slots, *point) &&
+         strut_slots_claim(self->points.slots, *point);
+}
+
+/* Computes the rows of a stage, or waits until other workers have. */
+static strut_status run_stage(fitting *self, int64_t first, int64_t count) {
+  const strut_flag *interrupt = self->points.interrupt;
+  struct timespec pause = {.tv_nsec = 20000000};
+  self->first = first, self->count = count;
+  for (int64_t left = count; left > 0 && !self->points.status;) {
+    strut_points_run(&self->points, count);
+    left = 0;
+    for (int64_t i = 0; i < count; i++) left += !strut_slots_done(self->points.slots, first + i);
+    if (interrupt && *interrupt && left)
+      return self->points.status = strut_fail(self->points.error, STRUT_INTERRUPTED, "interrupted");
+    if (left && !self->points.status) nanosleep(&pause, NULL);
+  }
+  return self->points.status;
+}
+
+static bool has_residuals(const strut_fit_row *row) {
+  return row->end != STRUT_FIT_FAILED && isfinite(row->sum);
+}
+
+static strut_status read_rows(fitting *self, int64_t first, size_t count, strut_fit_row **rows) {
+  *rows = strut_arena_allocate(&self->result->arena, count + 1, sizeof **rows);
+  strut_status status = *rows ? STRUT_OK : strut_no_memory(self->points.error, "");
+  for (size_t i = 0; i < count && !status; i++)
+    status = read_row(self, first + (int64_t)i, &(*rows)[i]);
+  return status;
+}
+
+/* ---- what the best fit says ---- */
+
+static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
+  const strut_fit_layout *layout = self->layout;
+  strut_fit_result *result = self->result;
+  size_t n = layout->parameters;
+  double *jacobian = strut_allocate(layout->count * n + 1, sizeof *jacobian);
+  result->residual = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
+  result->predicted = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
+  if (!jacobian || !result->residual || !result->predicted) {
+    strut_release(jacobian);
+    return strut_no_memory(self->points.error, "");
+  }
+  strut_least_squares problem = strut_fit_problem(one);
+  bool fine =
+      strut_least_squares_jacobian(&problem, self->best, result->residual, jacobian) &&
+      strut_fit_spectrum_find(jacobian, layout->count, n, &result->arena, &self->spectrum) &&
+      problem.residuals(one, self->best, result->residual);
+  if (fine) strut_fit_align_all(one, self->best, result->predicted);
+  strut_release(jacobian);
+  if (one->status) return strut_fail(self->points.error, one->status, "%s", one->error.message);
+  return fine ? STRUT_OK
+              : strut_fail(self->points.error, STRUT_DIVERGED,
+                           "the model cannot be computed beside the best fit");
+}
+
+/* The best start, its scale of errors, and the rise of the sum at the ends of intervals. */
+static strut_status find_best(fitting *self) {
+  strut_fit_result *result = self->result;
+  strut_fit_case one;
+  for (size_t i = 0; i < result->start_count; i++) {
+    bool better = !result->found || result->starts[i].sum < result->starts[result->best].sum;
+    if (!has_residuals(&result->starts[i]) || !better) continue;
+    result->best = i, result->found = true;
+  }
+  if (!result->found) return STRUT_OK;
+  const strut_fit_row *best = &result->starts[result->best];
+  self->best = best->parameters;
+  result->used = (size_t)best->used;
+  result->freedom = (double)best->used - (double)result->parameters;
+  double variance = result->freedom > 0.0 ? best->sum / result->freedom : HUGE_VAL;
+  double of_normal = gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0), of_student = HUGE_VAL;
+  if (result->freedom > 0.0) {
+    double t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, result->freedom);
+    of_student = t * t * variance;
+  }
+  result->scale = self->layout->noise_known ? 1.0 : sqrt(variance);
+  self->rise = self->layout->noise_known ? of_normal : of_student;
+  if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
+  strut_status status = find_spectrum(self, &one);
+  strut_fit_case_free(&one);
+  return status;
+}
+
+/* Values, errors and intervals of all parameters. */
+static bool fill_estimates(fitting *self) {
+  const strut_fit_layout *layout = self->layout;
+  strut_fit_result *result = self->result;
+  size_t n = layout->parameters, first = layout->aligned_count;
+  const double *covariance = self->spectrum.covariance;
+  result->estimates = strut_arena_allocate(&result->arena, n, sizeof *result->estimates);
+  result->correlation = strut_arena_allocate(
+      &result->arena, result->variable_count * result->variable_count, sizeof(double));
+  if (!result->estimates || !result->correlation) return false;
+  double half = sqrt(self->rise);
+  for (size_t i = 0; i < n; i++) {
+    double slope = fabs(strut_fit_slope(layout, i, self->best[i]));
+    double error = sqrt(covariance[i * n + i]), value = strut_fit_value(layout, i, self->best[i]);
+    strut_fit_estimate *estimate = &result->estimates[i];
+    const char *name = strut_fit_name(layout, i), *unit = strut_fit_unit(layout, i);
+    *estimate = (strut_fit_estimate){.name = strut_arena_text(&result->arena, name, strlen(name)),
+                                     .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
+                                     .value = value,
+                                     .error = slope * error * result->scale};
+    estimate->low = estimate->linear_low = value - slope * error * half;
+    estimate->high = estimate->linear_high = value + slope * error * half;
+    estimate->from = strut_fit_value(layout, i, layout->low[i]);
+    estimate->to = strut_fit_value(layout, i, layout->high[i]);
+    for (size_t j = first; j < n && i >= first; j++)
+      result->correlation[(i - first) * result->variable_count + j - first] =
+          covariance[i * n + j] / (error * sqrt(covariance[j * n + j]));
+    const strut_fit_row *ends_of = i < first ? NULL : &result->ends[2 * (i - first)];
+    if (!ends_of) continue;
+    estimate->low = strut_fit_value(layout, i, ends_of[0].parameters[i]);
+    estimate->high = strut_fit_value(layout, i, ends_of[1].parameters[i]);
+    estimate->open_low = ends_of[0].end != STRUT_FIT_CONVERGED;
+    estimate->open_high = ends_of[1].end != STRUT_FIT_CONVERGED;
+  }
+  return true;
+}
+
+/* ---- all of it ---- */
+
+static strut_status run_stages(fitting *self) {
+  const strut_study_fit *fit = self->layout->fit;
+  strut_fit_result *result = self->result;
+  int64_t starts = fit->starts, profiles = (int64_t)profile_rows(fit),
+          omissions = (int64_t)omission_rows(fit);
+  strut_status status = run_stage(self, 0, starts);
+  if (!status) status = read_rows(self, 0, (size_t)starts, &result->starts);
+  if (!status) status = find_best(self);
+  if (!status) status = run_stage(self, starts, profiles + omissions);
+  if (!status) status = read_rows(self, starts, (size_t)profiles, &result->ends);
+  if (!status) status = read_rows(self, starts + profiles, (size_t)omissions, &result->omissions);
+  if (!status && result->found && !fill_estimates(self))
+    status = strut_no_memory(self->points.error, "");
+  if (!status && result->found &&
+      !strut_fit_judge(self->layout, &self->spectrum, self->best, result))
+    status = strut_no_memory(self->points.error, "");
+  return status;
+}
+
+strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
+                           const strut_sweep_options *options, strut_sweep_state *state,
+                           strut_fit_result *result, strut_error *error) {
+  strut_arena arena = {0};
+  strut_fit_layout layout = {0};
+  const strut_study_fit *fit = plan->study->fit;
+  fitting self = {.layout = &layout,
+                  .result = result,
+                  .points = {.slots = slots,
+                             .state = state,
+                             .error = error,
+                             .context = &self,
+                             .choose = choose_row,
+                             .compute = compute_row,
+                             .shared = options->workers > 0}};
+  *result = (strut_fit_result){.fit = fit, .plan = plan, .start_count = (size_t)fit->starts};
+  strut_points_begin(&self.points);
+  strut_status status = strut_fit_layout_make(plan, options->interrupt, &layout, error);
+  result->parameters = layout.parameters, result->aligned_count = layout.aligned_count;
+  result->variable_count = fit->variable_count, result->omission_count = omission_rows(fit);
+  if (!status) status = strut_points_open(&self.points, plan, options, &arena);
+  if (!status) status = run_stages(&self);
+  strut_points_close(&self.points);
+  strut_fit_layout_free(&layout);
+  strut_arena_free(&arena);
+  if (!self.points.status) self.points.status = status;
+  return strut_points_end(&self.points);
+}
+
+size_t strut_fit_first(const strut_study_fit *fit, size_t match, size_t series) {
+  size_t first = 0;
+  for (size_t m = 0; m < match; m++) first += fit->matches[m].count * fit->matches[m].series_count;
+  return first + series * fit->matches[match].count;
+}
+
+void strut_fit_result_free(strut_fit_result *result) { strut_arena_free(&result->arena); }

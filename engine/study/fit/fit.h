@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * Fits the parameters of a model to measured numbers, and says which of them the numbers determine.
+ *
+ * From each of several starts the weighted sum of squared residuals is made least (least_squares.h), that of motions
+ * over short times first. The interval of a parameter is that of its profile: the values at which the least sum over
+ * all others exceeds the best by what the residuals of a right model do in 5 % of all cases. An interval is given
+ * only where the model explains the numbers, the starts agree, and the numbers determine the parameter.
+ *
+ * The rows of the study's table are the fits: of each start, of both ends of each interval, and without each match.
+ */
+#ifndef STRUT_ENGINE_STUDY_FIT_FIT_H
+#define STRUT_ENGINE_STUDY_FIT_FIT_H
+
+#include "engine/base/memory.h"
+#include "engine/scene/value_rows.h"
+#include "engine/study/fit/least_squares.h"
+#include "engine/study/sweep/sweep.h"
+
+/** X(NAME, words): what is said of a parameter; the first that applies. */
+#define STRUT_FIT_VERDICTS(X)                                                                      \
+  X(UNEXPLAINED, "the model does not explain the data")                                            \
+  X(DISAGREE, "starts disagree")                                                                   \
+  X(UNDETERMINED, "not determined by these data")                                                  \
+  X(IDENTIFIED, "identified")
+
+typedef enum strut_fit_verdict {
+#define STRUT_FIT_VERDICT_ENUM(NAME, words) STRUT_FIT_##NAME,
+  STRUT_FIT_VERDICTS(STRUT_FIT_VERDICT_ENUM)
+#undef STRUT_FIT_VERDICT_ENUM
+      STRUT_FIT_VERDICT_COUNT
+} strut_fit_verdict;
+
+/** A parameter of the study, or a number of an alignment. SI. */
+typedef struct strut_fit_estimate {
+  const char *name, *unit; /* unit "1": none */
+  double value;
+  double error;     /* standard error, by the derivatives; HUGE_VAL: there is none */
+  double low, high; /* 95 %, by the profile; NAN: not given. Of an alignment by the error */
+  double linear_low, linear_high; /* 95 %, by the error */
+  bool open_low, open_high;       /* the profile reaches the end of the range there */
+  double from, to;                /* its range */
+  strut_fit_verdict verdict;
+} strut_fit_estimate;
+
+/** A fit of its own. */
+typedef struct strut_fit_row {
+  strut_fit_end end;
+  double sum; /* of squared residuals */
+  int64_t used, evaluations;
+  double *parameters; /* (parameters) of the problem */
+  double *values;     /* (variables) SI */
+  bool agrees;        /* with the best */
+} strut_fit_row;
+
+/** Residuals of a match, at the best fit. */
+typedef struct strut_fit_residuals {
+  const strut_fit_match *match;
+  int64_t used;
+  double rms;        /* of numbers, SI, weighted */
+  double chi_square; /* sum of squares in units of the noise; NAN: that is not known */
+  double
+      lag; /* correlation of successive residuals of a motion, in its standard errors; NAN: no motion */
+} strut_fit_residuals;
+
+/** A direction in the space of the fitted parameters, each in units of its range. */
+typedef struct strut_fit_direction {
+  double error;       /* standard deviation along it, in such units */
+  const double *part; /* (variables) of length 1 */
+  const char *words;  /* "friction and damping together" */
+} strut_fit_direction;
+
+typedef struct strut_fit_result {
+  const strut_study_fit *fit;
+  const strut_sweep_plan *plan;
+  size_t parameters, aligned_count, variable_count;
+  size_t start_count, best; /* best: a start */
+  bool found;               /* some start has residuals: all below is there */
+  strut_fit_row *starts;    /* (start_count) */
+  strut_fit_row *ends;      /* (variables, 2) of the profiles, low and high */
+  size_t omission_count;
+  strut_fit_row *omissions; /* (omission_count) without each match; none where there is only one */
+  strut_fit_estimate *estimates; /* (parameters) alignments first */
+  double *correlation;           /* (variables, variables) */
+  size_t direction_count;
+  strut_fit_direction *directions; /* that the numbers do not determine */
+  strut_fit_residuals *residuals;  /* (matches) */
+  double *residual,
+      *predicted; /* (numbers: matches, series, count) at the best, aligned; residuals 0 at gaps */
+  size_t used, agreeing;                   /* numbers; starts that agree with the best */
+  double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
+  double scale;       /* by which standard errors of unit noise are multiplied */
+  const char *reason; /* why the model does not explain the data or starts disagree; or "" */
+  strut_arena arena;
+} strut_fit_result;
+
+/** Replaces the columns that are kept by those of a fit. STRUT_BAD_SCENE with what does not fit the model. */
+STRUT_API strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_error *error);
+/** As strut_sweep_run. The result is complete on STRUT_OK; release it with strut_fit_result_free in any case. */
+STRUT_API strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
+                                     const strut_sweep_options *options, strut_sweep_state *state,
+                                     strut_fit_result *result, strut_error *error);
+STRUT_API void strut_fit_result_free(strut_fit_result *result);
+/** Are all parameters identified? */
+STRUT_API bool strut_fit_is_identified(const strut_fit_result *result);
+/** Where the numbers of a series begin among those of all matches. */
+STRUT_API size_t strut_fit_first(const strut_study_fit *fit, size_t match, size_t series);
+/** The rows of a result as people and programs read them. */
+STRUT_API extern const strut_value_rows strut_fit_values;
+/**
+ * Writes fit.csv, covariance.csv, residuals.csv, and of the model beside them, `model`, fitted.yaml with the fitted
+ * values and, where all are identified, uncertain.yaml, a study that samples them.
+ */
+STRUT_API strut_status strut_fit_write(const strut_fit_result *result, const char *directory,
+                                       const char *model, strut_error *error);
+
+#endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/**
+ * What the parts of a fit share. Internal to engine/study/fit.
+ *
+ * Parameters of the least-squares problem are those of the alignments, in the order of the matches, then the fitted
+ * ones. An alignment's is 1 + value / scale; a fitted one's is 1 at its least value, 2 at its largest, and its
+ * logarithm is even between them where the study says so.
+ */
+#ifndef STRUT_ENGINE_STUDY_FIT_FIT_PARTS_H
+#define STRUT_ENGINE_STUDY_FIT_FIT_PARTS_H
+
+#include "engine/study/fit/fit.h"
+#include "engine/study/fit/least_squares.h"
+#include "engine/study/sweep/sweep_parts.h"
+
+/* ---- fit_residuals.c ---- */
+
+/** What an alignment's number does. */
+typedef enum strut_fit_aligns {
+  STRUT_FIT_SHIFT_X,
+  STRUT_FIT_SHIFT_Y,
+  STRUT_FIT_ROTATE,
+  STRUT_FIT_DELAY,
+  STRUT_FIT_ALIGNS_COUNT
+} strut_fit_aligns;
+
+/** A number of an alignment. */
+typedef struct strut_fit_aligned {
+  size_t match;
+  strut_fit_aligns what;
+  const char *name, *unit; /* "film.shift_x" */
+  double start, scale;     /* SI */
+} strut_fit_aligned;
+
+/** A series as the model has it. */
+typedef struct strut_fit_source {
+  size_t first;    /* of its residuals */
+  int axis;        /* 0: x of a place, 1: y, -1: neither */
+  int32_t partner; /* the series of the other coordinate of the same place, or -1 */
+  size_t column;   /* of a TABLE: its number among those of numbers */
+} strut_fit_source;
+
+/** What all evaluations have in common. Constant once made, but for its cache. */
+typedef struct strut_fit_layout {
+  const strut_sweep_plan *plan;
+  const strut_study_fit *fit;
+  size_t count; /* of residuals */
+  size_t aligned_count, parameters;
+  strut_fit_aligned *aligned;
+  strut_fit_source **sources; /* (matches)(series) */
+  strut_study *studies;       /* (matches) as of the study, with the match's `compute` */
+  strut_sweep_plan *tables;   /* (matches) of a TABLE */
+  double *noise;              /* (matches) by which residuals are divided */
+  bool noise_known;
+  double *low, *high; /* (parameters) the box */
+  strut_equilibrium_cache *standing;
+  const strut_flag *interrupt;
+  strut_arena arena;
+} strut_fit_layout;
+
+/** An evaluation: of one thread at a time. Zero-initialise but for what the user fills in. */
+typedef struct strut_fit_case {
+  const strut_fit_layout *layout;
+  double share;         /* of the time of motions that counts */
+  int32_t left_out;     /* this match does not count; -1: all do */
+  double *predicted[3]; /* (count) by the model, before and after by a short time, not aligned */
+  double *latest;       /* (parameters) of that */
+  bool known;
+  double *buffer;      /* (3 count + 3) */
+  strut_status status; /* of what must stop all */
+  strut_error error;
+  strut_arena arena;
+} strut_fit_case;
+
+/** Release it after a failure too. STRUT_BAD_SCENE with what does not fit the model; STRUT_NO_MEMORY. */
+strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_flag *interrupt,
+                                   strut_fit_layout *layout, strut_error *error);
+void strut_fit_layout_free(strut_fit_layout *layout);
+
+/** False: memory is out. */
+bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one);
+void strut_fit_case_free(strut_fit_case *one);
+/** The problem of the case; `near` and most_steps are the caller's to change. */
+strut_least_squares strut_fit_problem(strut_fit_case *one);
+/** The numbers of all series as the case has predicted them at the parameters, aligned: (count). */
+void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to);
+/** How many residuals count. */
+size_t strut_fit_used(const strut_fit_case *one);
+
+/** From a parameter of the problem to its value in SI, and back; and by how much one changes with the other. */
+double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter);
+double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value);
+double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter);
+/** Its name and unit; "1": none. */
+const char *strut_fit_name(const strut_fit_layout *layout, size_t i);
+const char *strut_fit_unit(const strut_fit_layout *layout, size_t i);
+
+/* ---- fit_verdict.c ---- */
+
+/**
+ * Fills what the residuals and the spectrum at the best fit say, and the verdict of each estimate. False: memory is
+ * out.
+ */
+bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
+                     const double *best, strut_fit_result *result);
+
+#endif

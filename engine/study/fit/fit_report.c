@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a fit has found, as people and programs read it, and its files. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/output/file.h"
+#include "engine/output/result_values.h"
+#include "engine/study/fit/fit.h"
+
+static const char *const verdicts[] = {
+#define STRUT_FIT_VERDICT_WORDS(NAME, words) words,
+    STRUT_FIT_VERDICTS(STRUT_FIT_VERDICT_WORDS)};
+static const char *const ends[] = {"converged", "stuck", "failed"};
+
+/* A number in the unit of an estimate. */
+#define STRUT_VALUE_AS_IN(UNIT, NUMBER) STRUT_VALUE_AS_CALLED(NULL, UNIT, NUMBER)
+
+static const strut_fit_result *result_of(const strut_result_object *of) {
+  return strut_result_whole(of);
+}
+
+/* Do both intervals differ by more than a fifth of their size? */
+static bool is_skewed(const strut_fit_estimate *e) {
+  double fifth = 0.2 * (e->linear_high - e->linear_low);
+  return e->verdict == STRUT_FIT_IDENTIFIED &&
+         (fabs(e->low - e->linear_low) > fifth || fabs(e->high - e->linear_high) > fifth);
+}
+
+#define ESTIMATE(X)                                                                                \
+  X("parameter", "", TEXT(e->name), "its name", .label = {""}, .column = {"parameter"})            \
+  X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
+  X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""}, .column = {"value"})     \
+  X("standard_error", "", IN(e->unit, e->error), "by the derivatives; null: there is none",        \
+    .label = {"standard error"}, .column = {"standard_error"})                                     \
+  X("low", "", IN(e->unit, e->low), "95 % interval, by the profile; null: not given",              \
+    .label = {"95 %, from"}, .column = {"low"})                                                    \
+  X("high", "", IN(e->unit, e->high), "likewise", .label = {"to"}, .column = {"high"})             \
+  X("verdict", "", TEXT(verdicts[e->verdict]), "whether it is identified, or why not",             \
+    .label = {""}, .column = {"verdict"})                                                          \
+  X("linear_low", "", IF(is_skewed(e), NUMBER(e->linear_low)),                                     \
+    "95 % interval by the standard error, where it differs by more than a fifth")                  \
+  X("linear_high", "", IF(is_skewed(e), NUMBER(e->linear_high)), "likewise")
+STRUT_VALUES_HERE(estimate_values, ESTIMATE, const strut_fit_estimate *e = of->at)
+
+#define ALIGNMENT(X)                                                                               \
+  X("name", "", TEXT(e->name), "match and number", .label = {"alignment"})                         \
+  X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
+  X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""})                          \
+  X("standard_error", "", IN(e->unit, e->error), "by the derivatives", .label = {"standard error"})
+STRUT_VALUES_HERE(alignment_values, ALIGNMENT, const strut_fit_estimate *e = of->at)
+
+static const char *unit_of_match(const strut_fit_match *match) {
+  for (size_t s = 1; s < match->series_count; s++)
+    if (match->series[s].unit != match->series[0].unit) return "1";
+  return match->series[0].unit;
+}
+
+#define RESIDUALS(X)                                                                               \
+  X("match", "", TEXT(r->match->name), "its name", .label = {""})                                  \
+  X("numbers", "", COUNT(r->used), "that count", .label = {""})                                    \
+  X("rms", "", IN(unit_of_match(r->match), r->rms), "root mean square of the residuals, SI",       \
+    .label = {"residuals"})                                                                        \
+  X("noise", "", IF(r->match->noise > 0.0, IN(r->match->noise_unit, r->match->noise)),             \
+    "standard deviation of the numbers, as given", .label = {""})                                  \
+  X("chi_square", "1", IF(!isnan(r->chi_square), NUMBER(r->chi_square)),                           \
+    "sum of squared residuals in units of the noise", .label = {"chi square"})                     \
+  X("lag", "1", IF(!isnan(r->lag), NUMBER(r->lag)),                                                \
+    "correlation of successive residuals, in its standard errors", .label = {"correlation"})
+STRUT_VALUES_HERE(residual_values, RESIDUALS, const strut_fit_residuals *r = of->at)
+
+static const char *variable_name(const strut_result_object *of, size_t i) {
+  return result_of(of)->fit->variables[i].name;
+}
+
+static strut_value value_of_row(const strut_result_object *of, size_t i) {
+  const strut_fit_row *row = of->at;
+  return STRUT_VALUE_AS_CALLED(NULL, result_of(of)->fit->variables[i].unit, row->values[i]);
+}
+
+#define ROW(X)                                                                                     \
+  X("end", "", TEXT(ends[r->end]), "how it ended", .label = {""})                                  \
+  X("sum", "1", NUMBER(r->sum), "of squared residuals", .label = {"sum of squares"})               \
+  X("evaluations", "", COUNT(r->evaluations), "of the residuals", .label = {""})                   \
+  X("values", "", MAP(result_of(of)->variable_count, variable_name, value_of_row),                 \
+    "of the parameters, SI", .label = {""})
+STRUT_VALUES_HERE(row_values, ROW, const strut_fit_row *r = of->at)
+
+#define START(X)                                                                                   \
+  X("start", "", COUNT(of->index + 1), "its number", .label = {""})                                \
+  X(NULL, "", SAME, "", .rows = &row_values, .label = {" "})                                       \
+  X("agrees", "", FLAG(r->agrees), "with the best", .label = {""})
+STRUT_VALUES_HERE(start_values, START, const strut_fit_row *r = of->at)
+
+#define OMISSION(X)                                                                                \
+  X("without", "", TEXT(result_of(of)->fit->matches[of->index].name), "this match", .label = {""}) \
+  X(NULL, "", SAME, "", .rows = &row_values, .label = {" "})
+STRUT_VALUES_HERE(omission_values, OMISSION, )
+
+#define DIRECTION(X)                                                                               \
+  X("words", "", TEXT(d->words), "what is not determined", .label = {"not determined"})            \
+  X("error", "1", NUMBER(d->error), "standard deviation along it, in parts of the ranges",         \
+    .label = {"standard deviation, in parts of the ranges"})                                       \
+  X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")
+STRUT_VALUES_HERE(direction_values, DIRECTION, const strut_fit_direction *d = of->at)
+
+static strut_value correlations_of(const strut_result_object *of, size_t i) {
+  const strut_fit_result *r = of->at;
+  return STRUT_VALUE_AS_NUMBERS(r->correlation + i * r->variable_count, r->variable_count);
+}
+
+#define FIT(X)                                                                                     \
+  X("identified", "", FLAG(strut_fit_is_identified(r)), "whether all parameters are",              \
+    .label = {""})                                                                                 \
+  X("reason", "", IF(r->reason && * r->reason, TEXT(r->reason)), "why not", .label = {"because"})  \
+  X("parameters", "", IF(r->found, LIST(r->estimates + r->aligned_count, r->variable_count)),      \
+    "what is fitted", .rows = &estimate_values, .label = {""})                                     \
+  X("alignments", "", IF(r->found && r->aligned_count, LIST(r->estimates, r->aligned_count)),      \
+    "of the matches", .rows = &alignment_values, .label = {""})                                    \
+  X("undetermined", "", IF(r->direction_count, LIST(r->directions, r->direction_count)),           \
+    "directions that the numbers do not determine", .rows = &direction_values, .label = {""})      \
+  X("correlation", "1", IF(r->found, MAP(r->variable_count, variable_name, correlations_of)),      \
+    "of the parameters' errors, in their order")                                                   \
+  X("matches", "", IF(r->found, LIST(r->residuals, r->fit->match_count)), "their residuals",       \
+    .rows = &residual_values, .label = {""})                                                       \
+  X("degrees_of_freedom", "", IF(r->found, COUNT(r->freedom)), "numbers less parameters",          \
+    .label = {"degrees of freedom"})                                                               \
+  X("probability", "1", IF(r->found && !isnan(r->probability), NUMBER(r->probability)),            \
+    "of residuals at least so large, if the model is right", .label = {"probability"})             \
+  X("agreeing", "", COUNT(r->agreeing), "starts that end at the best fit",                         \
+    .label = {"starts that agree"})                                                                \
+  X("starts", "", LIST(r->starts, r->start_count), "one by one", .rows = &start_values,            \
+    .label = {""})                                                                                 \
+  X("omissions", "", IF(r->found && r->omission_count, LIST(r->omissions, r->omission_count)),     \
+    "fits without one match", .rows = &omission_values, .label = {""})
+STRUT_VALUES(strut_fit_values, FIT, const strut_fit_result *r = of->at)
+
+/* ---- files ---- */
+
+/* A number with its unit, such as "3000 N/m". */
+static void add_quantity(strut_buffer *text, double value, const char *unit) {
+  bool plain = !*unit || strcmp(unit, "1") == 0;
+  strut_csv_add_number(text, value);
+  strut_buffer_add(text, "%s%s", plain ? "" : " ", plain ? "" : unit);
+}
+
+/* Of the errors of the parameters, SI. */
+static char *covariance_csv(const strut_fit_result *result) {
+  strut_buffer csv = {0};
+  const strut_fit_estimate *estimates = result->estimates + result->aligned_count;
+  size_t n = result->variable_count;
+  strut_buffer_add(&csv, "parameter");
+  for (size_t j = 0; j < n; j++) strut_buffer_add(&csv, ",%s", estimates[j].name);
+  for (size_t i = 0; i < n; i++) {
+    strut_buffer_add(&csv, "\n%s", estimates[i].name);
+    for (size_t j = 0; j < n; j++) {
+      strut_buffer_add(&csv, ",");
+      strut_csv_add_number(
+          &csv, result->correlation[i * n + j] * estimates[i].error * estimates[j].error);
+    }
+  }
+  strut_buffer_add(&csv, "\n");
+  return strut_buffer_take(&csv);
+}
+
+static char *residuals_csv(const strut_fit_result *result) {
+  strut_buffer csv = {0};
+  strut_buffer_add(&csv, "match,of,at,measured,predicted,residual\n");
+  for (size_t m = 0; m < result->fit->match_count; m++)
+    for (size_t s = 0; s < result->fit->matches[m].series_count; s++) {
+      const strut_fit_match *match = &result->fit->matches[m];
+      size_t first = strut_fit_first(result->fit, m, s);
+      for (size_t i = 0; i < match->count; i++) {
+        const double numbers[] = {match->at ? match->at[i] : (double)NAN,
+                                  match->series[s].measured[i], result->predicted[first + i],
+                                  result->residual[first + i]};
+        strut_buffer_add(&csv, "%s,", match->name);
+        strut_csv_add_text(&csv, "%s", match->series[s].of);
+        for (int k = 0; k < 4; k++) {
+          strut_buffer_add(&csv, ",");
+          strut_csv_add_number(&csv, numbers[k]);
+        }
+        strut_buffer_add(&csv, "\n");
+      }
+    }
+  return strut_buffer_take(&csv);
+}
+
+static char *fitted_yaml(const strut_fit_result *result, const char *model) {
+  strut_buffer text = {0};
+  const strut_fit_estimate *estimates = result->estimates + result->aligned_count;
+  strut_buffer_add(&text, "strut: 1\nbase: %s\nparameters:\n", model);
+  for (size_t i = 0; i < result->variable_count; i++) {
+    strut_buffer_add(&text, "  %s: ", estimates[i].name);
+    add_quantity(&text, estimates[i].value, estimates[i].unit);
+    strut_buffer_add(&text, " # %s\n", verdicts[estimates[i].verdict]);
+  }
+  return strut_buffer_take(&text);
+}
+
+/* A study of the fitted model whose parameters are as uncertain as they are, together. */
+static char *uncertain_yaml(const strut_fit_result *result) {
+  strut_buffer text = {0};
+  size_t n = result->variable_count;
+  const strut_fit_estimate *estimates = result->estimates + result->aligned_count;
+  strut_buffer_add(&text,
+                   "strut: 1\nstudy: Uncertain parameters\nmodel: fitted.yaml\naxes:\n"
+                   "  - sample:\n      count: 100\n      over:\n");
+  for (size_t i = 0; i < n; i++) {
+    strut_buffer_add(&text, "        %s: {normal: [", estimates[i].name);
+    add_quantity(&text, estimates[i].value, estimates[i].unit);
+    strut_buffer_add(&text, ", ");
+    add_quantity(&text, estimates[i].error, estimates[i].unit);
+    strut_buffer_add(&text, "]}\n");
+  }
+  strut_buffer_add(&text, "      correlation:\n");
+  for (size_t i = 0; i < n; i++) {
+    strut_buffer_add(&text, "        - [");
+    for (size_t j = 0; j < n; j++) {
+      if (j) strut_buffer_add(&text, ", ");
+      strut_csv_add_number(&text, i == j ? 1.0 : result->correlation[i * n + j]);
+    }
+    strut_buffer_add(&text, "]\n");
+  }
+  return strut_buffer_take(&text);
+}
+
+strut_status strut_fit_write(const strut_fit_result *result, const char *directory,
+                             const char *model, strut_error *error) {
+  if (!result->found) return STRUT_OK;
+  strut_status status = strut_file_write_block(
+      directory, "fit.csv", strut_values_csv(&strut_fit_values, "parameters", NULL, result, NULL),
+      error);
+  if (!status)
+    status = strut_file_write_block(directory, "covariance.csv", covariance_csv(result), error);
+  if (!status)
+    status = strut_file_write_block(directory, "residuals.csv", residuals_csv(result), error);
+  if (!status)
+    status = strut_file_write_block(directory, "fitted.yaml", fitted_yaml(result, model), error);
+  if (!status && strut_fit_is_identified(result))
+    status = strut_file_write_block(directory, "uncertain.yaml", uncertain_yaml(result), error);
+  return status;
+}
