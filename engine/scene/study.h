@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "engine/base/status.h"
+#include "engine/scene/data.h"
 #include "engine/scene/quantity.h"
 
 /* ---- searches ---- */
@@ -409,6 +410,8 @@ typedef struct strut_study {
     double (*curve)[2]; /* (curve_count) displacement [m], force [N] */
   } goal;
   strut_study_follow *follow; /* motions that are followed; NULL: none */
+  size_t table_count;
+  const strut_data_table *tables; /* (table_count) measured data of the study itself */
 } strut_study;
 
 #endif
