@@ -15,6 +15,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/scene/data.h"
 #include "engine/scene/friction.h"
 #include "engine/scene/law.h"
 #include "engine/scene/signal.h"
@@ -336,6 +337,8 @@ typedef struct strut_scene {
   strut_internal_state *states;
   size_t sliding_count;
   strut_sliding_mass *sliding_masses;
+  size_t table_count;
+  const strut_data_table *tables; /* (table_count) measured data; scenes of one text share them */
 } strut_scene;
 
 /** Default structs: zero except where stated above, names empty, indices -1. */

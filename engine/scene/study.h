@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "engine/base/status.h"
+#include "engine/scene/data.h"
 #include "engine/scene/quantity.h"
 
 /** Value of a parameter at a point. */
@@ -462,6 +463,8 @@ typedef struct strut_study {
   } goal;
   strut_study_follow *follow; /* motions that are followed; NULL: none */
   strut_study_fit *fit;       /* what is fitted; NULL: nothing */
+  size_t table_count;
+  const strut_data_table *tables; /* (table_count) measured data of the study itself */
 } strut_study;
 
 #endif

@@ -9,10 +9,7 @@
 #include <stddef.h>
 
 #include "engine/base/status.h"
-
-typedef struct strut_dimension {
-  float kg, m, s, angle;
-} strut_dimension;
+#include "engine/scene/dimension.h"
 
 /** The dimensions that keys of the language expect. */
 #define STRUT_DIM_NONE ((strut_dimension){0, 0, 0, 0})
