@@ -101,6 +101,9 @@ STRUT_API strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *
                                      const strut_sweep_options *options, strut_sweep_state *state,
                                      strut_fit_result *result, strut_error *error);
 STRUT_API void strut_fit_result_free(strut_fit_result *result);
+/** Draws fit.svg, residuals.svg and profiles.svg into the directory. */
+STRUT_API strut_status strut_fit_figures(const strut_fit_result *result, const char *directory,
+                                         strut_error *error);
 /** Are all parameters identified? */
 STRUT_API bool strut_fit_is_identified(const strut_fit_result *result);
 /** Where the numbers of a series begin among those of all matches. */

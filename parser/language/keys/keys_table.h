@@ -153,7 +153,8 @@
   X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(LIMIT), "Largest cost of a point. A point that needs more fails, and its row says so.") \
   X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FORM), "Settings of `compute: form`.") \
   X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SEARCH), "Searches for the parameters with the best value of a column, instead of computing a grid.") \
-  X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FOLLOW), "Follows periodic motions, stable or not, over a parameter, as `strut path --periodic` does, instead of running the points.")
+  X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FOLLOW), "Follows periodic motions, stable or not, over a parameter, as `strut path --periodic` does, instead of running the points.") \
+  X(STUDY, FIT, "fit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FIT), "Finds the parameters with which the model matches measured numbers, and what these say of them.")
 
 #define STRUT_RANGE_KEYS(X) \
   X(RANGE, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_range_keys, from), "First value.") \
@@ -278,6 +279,26 @@
   X(VARIABLE, WRAPS, "wraps", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, wraps), "`yes`: both bounds are the same point, such as 0 deg and 360 deg of a phase.") \
   X(VARIABLE, INTEGER, "integer", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_search_variable, integer), "`yes`: whole numbers only, in the SI unit.")
 
+#define STRUT_FIT_KEYS(X) \
+  X(FIT, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable)", THINGS(VARIABLE), "The parameters to find, up to 20, by their ranges; the first start is at `start`.") \
+  X(FIT, MATCH, "match", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [match](#match), and what is compared", THINGS(MATCH), "Sets of measured numbers, up to 10, all of which count together.") \
+  X(FIT, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "1", OPTIONAL, 0, "", FIELD(strut_study_fit, starts), "Number of fits from different starts; all but the first begin anywhere in the ranges.") \
+  X(FIT, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_fit, seed), "Seed of the starts; the same seed gives the same starts.")
+
+#define STRUT_MATCH_KEYS(X) \
+  X(MATCH, TIME, "time", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the times of a motion. 0 is where the run starts.") \
+  X(MATCH, DISPLACEMENT, "displacement", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the displacements of a `path` over a coordinate, as `path` of the study says.") \
+  X(MATCH, FORCE, "force", NAME, NONE, ANY, "", OPTIONAL, 0, "", NONE, "Column of the forces at these displacements.") \
+  X(MATCH, COMPUTE, "compute", WORD, NONE, ANY, "", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_fit_match, compute), "What is compared are columns of the table of a study that computes this: `frequency_1: 12.5 Hz`.") \
+  X(MATCH, NOISE, "noise", NUMBER, CONTEXT, ANY, "not known", OPTIONAL, 0, "", NONE, "Standard deviation of the numbers. Without it, it follows from the residuals, which then cannot tell whether the model is right.") \
+  X(MATCH, ALIGN, "align", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(ALIGN), "What else may move the model onto the numbers.") \
+  X(MATCH, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "a value", NONE, "Values of other parameters in this match, such as the drive of a film. What one match sets, all must set.")
+
+#define STRUT_ALIGN_KEYS(X) \
+  X(ALIGN, SHIFT, "shift", WORD, NONE, ANY, "fixed", OPTIONAL, 0, "fixed|free", FIELD(strut_fit_match, align.shift), "`free`: coordinates may be shifted.") \
+  X(ALIGN, ROTATE, "rotate", WORD, NONE, ANY, "fixed", OPTIONAL, 0, "fixed|free", FIELD(strut_fit_match, align.rotate), "`free`: coordinates may be rotated about the origin.") \
+  X(ALIGN, DELAY, "delay", WORD, NONE, ANY, "fixed", OPTIONAL, 0, "fixed|free", FIELD(strut_fit_match, align.delay), "`free`: times may be later than those of the run by the same time.")
+
 #define STRUT_FOLLOW_KEYS(X) \
   X(FOLLOW, OVER, "over", NAME, NONE, ANY, "", REQUIRED, 0, "", LATER(FIELD(strut_study_follow, over)), "The parameter that varies.") \
   X(FOLLOW, FROM, "from", NUMBER, CONTEXT, ANY, "", REQUIRED, 0, "", FIELD(strut_study_follow, from), "Lower end of its range.") \
@@ -361,7 +382,10 @@
   STRUT_STIFFNESS_AT_KEYS(X) \
   STRUT_SEARCH_KEYS(X) \
   STRUT_VARIABLE_KEYS(X) \
-  STRUT_FOLLOW_KEYS(X)
+  STRUT_FOLLOW_KEYS(X) \
+  STRUT_FIT_KEYS(X) \
+  STRUT_MATCH_KEYS(X) \
+  STRUT_ALIGN_KEYS(X)
 
 /** The sections: X(NAME, name, its first key, the text above their table in the reference). */
 #define STRUT_SECTIONS(X) \
@@ -435,7 +459,10 @@
   X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE, "`stiffness_at: {...}` of a study.") \
   X(SEARCH, "search", SEARCH_MAXIMISE, "`search: {...}` of a study, with `maximise` or `minimise`. [Searches](search.md) has examples.") \
   X(VARIABLE, "variable", VARIABLE_FROM, "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or texts.") \
-  X(FOLLOW, "follow", FOLLOW_OVER, "`follow: {...}` of a study, as the options of `strut path --periodic`. [Branches of motions](follow.md#studies-of-branches) has an example.")
+  X(FOLLOW, "follow", FOLLOW_OVER, "`follow: {...}` of a study, as the options of `strut path --periodic`. [Branches of motions](follow.md#studies-of-branches) has an example.") \
+  X(FIT, "fit", FIT_OVER, "`fit: {...}` of a study. [From a film to a model](fit.md) has an example.") \
+  X(MATCH, "match", MATCH_TIME, "`match: {NAME: {...}}` of a fit: with `time`, a motion; with `displacement`, a curve of a path; with `compute`, columns of a table; otherwise a shape, where the run starts. The other keys are what the model has, such as `n1.x` or `m3.force`, and their values columns of `data`, or numbers.") \
+  X(ALIGN, "align", ALIGN_SHIFT, "`align: {...}` of a match.")
 /* clang-format on */
 
 #endif

@@ -325,6 +325,7 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   strut_study_read_refine(reader, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   strut_study_read_sensitivity(reader, top);
   strut_study_read_follow(reader, top);
+  strut_study_read_fit(reader, top);
   check_overrides(reader, count);
 }
 
@@ -335,7 +336,8 @@ static void require_points(strut_study_reader *reader, strut_fields *top) {
   if (axes->state != STRUT_ABSENT || reader->reader->holes ||
       strut_slot_of(top, STRUT_KEY_STUDY_SENSITIVITY)->state != STRUT_ABSENT ||
       strut_slot_of(top, STRUT_KEY_STUDY_SEARCH)->state != STRUT_ABSENT ||
-      strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state != STRUT_ABSENT)
+      strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state != STRUT_ABSENT ||
+      strut_slot_of(top, STRUT_KEY_STUDY_FIT)->state != STRUT_ABSENT)
     return;
   strut_report_error(reader->reader, strut_root_place(reader->reader),
                      "the study lacks 'axes', expected %s",
@@ -431,7 +433,11 @@ static const strut_scene_source *source_of(const strut_study_file *file,
 
 /* What the scenes of the study are for. */
 static strut_purpose purpose_of(const strut_study *study) {
+  bool run = !study->fit;
   if (study->follow) return STRUT_FOR_RUN_STEP_LATER;
+  for (size_t m = 0; study->fit && m < study->fit->match_count; m++)
+    run = run || study->fit->matches[m].kind != STRUT_FIT_CURVE ||
+          study->fit->matches[m].compute != STRUT_COMPUTE_RUN;
   return study->compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY_STATICS;
 }
 

@@ -45,6 +45,7 @@ typedef struct strut_study_along {
   strut_study_column *column;
   strut_setting *setting;
   int64_t count;
+  const char *of; /* of a variable: "the search", for messages */
 } strut_study_along;
 
 /** The parameter of that name, or NULL; nothing is reported. */
@@ -72,6 +73,10 @@ bool strut_study_read_along(strut_study_reader *reader, strut_study_along *along
 
 /** Most axes and columns that a search adds. */
 size_t strut_study_search_columns(const strut_slot *slot);
+/** Reads the parameters that a search or a fit, which `of` says, is over, at most `most`, and adds their axis. */
+void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
+                                size_t most, strut_search_variable **variables,
+                                size_t *variable_count, size_t *column);
 /** Reads what is searched, after the axes, and adds its axes. Nothing without one. */
 void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot);
 
@@ -104,6 +109,11 @@ void strut_study_read_goals(strut_study_reader *reader, strut_fields *top);
 
 /** Reads the analysis and adds its points as the last axis, after all others. */
 void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top);
+
+/* study_fit.c */
+
+/** Reads what is fitted, and adds its axes. Nothing without it. */
+void strut_study_read_fit(strut_study_reader *reader, strut_fields *top);
 
 /* study_axes.c: what is followed */
 

@@ -23,8 +23,8 @@ size_t strut_study_search_columns(const strut_slot *slot) {
 }
 
 static bool refuse(strut_study_reader *reader, const strut_study_along *along, const char *why) {
-  return strut_report_error(reader->reader, along->value->place, "variable '%s' of the search %s",
-                            along->parameter->name, why);
+  return strut_report_error(reader->reader, along->value->place, "variable '%s' of %s %s",
+                            along->parameter->name, along->of, why);
 }
 
 static bool read_choices(strut_study_reader *reader, strut_study_along *along,
@@ -122,29 +122,28 @@ static bool read_variable(strut_study_reader *reader, strut_study_along *along,
   return true;
 }
 
-static void read_variables(strut_study_reader *reader, const strut_slot *over,
-                           strut_study_search *search) {
+void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
+                                size_t most, strut_search_variable **variables,
+                                size_t *variable_count, size_t *column) {
   strut_study *study = &reader->file->study;
   strut_arena *arena = &reader->file->arena;
   size_t count = over->value->count;
-  if (count == 0 || count > STRUT_SEARCH_MOST_VARIABLES) {
+  if (count == 0 || count > most) {
     strut_report_error(reader->reader, over->value->place,
-                       "a search is 'over' 1 to %d parameters, found %zu",
-                       STRUT_SEARCH_MOST_VARIABLES, count);
+                       "%s is 'over' 1 to %zu parameters, found %zu", of, most, count);
     return;
   }
   strut_study_axis *axis = &study->axes[study->axis_count++];
   *axis = (strut_study_axis){.count = 1};
   axis->columns = strut_reader_allocate(reader->reader, arena, count, sizeof *axis->columns);
-  search->variables =
-      strut_reader_allocate(reader->reader, arena, count, sizeof *search->variables);
-  search->column = reader->file->column_count;
-  if (!axis->columns || !search->variables) return;
+  *variables = strut_reader_allocate(reader->reader, arena, count, sizeof **variables);
+  *column = reader->file->column_count;
+  if (!axis->columns || !*variables) return;
   for (const strut_tree *key = over->value->first; key; key = key->next->next) {
-    strut_study_along a = {.key = key, .value = key->next};
+    strut_study_along a = {.key = key, .value = key->next, .of = of};
     a.column = &axis->columns[axis->column_count++];
     a.setting = &reader->file->columns[reader->file->column_count++];
-    read_variable(reader, &a, &search->variables[search->variable_count++]);
+    read_variable(reader, &a, &(*variables)[(*variable_count)++]);
   }
 }
 
@@ -304,7 +303,8 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   strut_study_axis *evaluations = &study->axes[study->axis_count++];
   add_evaluations(reader, search, evaluations, over->value->count);
   read_scenarios(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
-  read_variables(reader, over, search);
+  strut_study_read_variables(reader, over, "the search", STRUT_SEARCH_MOST_VARIABLES,
+                             &search->variables, &search->variable_count, &search->column);
   study->search = search;
 }
 

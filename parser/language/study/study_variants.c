@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/checksum.h"
 #include "engine/base/number_text.h"
 #include "parser/language/read/reuse/used_files.h"
 #include "parser/language/study/read_study.h"
@@ -398,6 +399,20 @@ static void put_follow(strut_writer *writer, const strut_study_follow *follow) {
   put_number(writer, follow->basins);
 }
 
+/* Measured numbers, by their sum. */
+static void put_table(strut_writer *writer, const strut_data_table *table) {
+  put_word(writer, table->name);
+  for (size_t i = 0; i < table->column_count; i++) {
+    const strut_data_column *column = &table->columns[i];
+    size_t bytes = table->row_count * sizeof(double);
+    uint64_t sum = column->values ? strut_checksum(column->values, bytes, i) : i;
+    if (column->weights) sum = strut_checksum(column->weights, bytes, sum);
+    put_word(writer, column->name);
+    put_number(writer, (double)(sum >> 32));
+    put_number(writer, (double)(sum & UINT32_MAX));
+  }
+}
+
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
@@ -424,6 +439,8 @@ char *strut_study_identity(const strut_study_file *file) {
   }
   if (study->search) put_search(&w, study->search);
   if (study->follow) put_follow(&w, study->follow);
+  if (study->fit) put_tree(&w, strut_tree_find(file->document.root, "fit", NULL));
+  for (size_t i = 0; i < study->table_count; i++) put_table(&w, &study->tables[i]);
   if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
   return strut_buffer_take(&w.out);
 }

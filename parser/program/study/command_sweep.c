@@ -64,7 +64,7 @@ static strut_status find_shard(const strut_arguments *arguments, strut_sweep_stu
   *shard = (strut_shard){0};
   strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
   if (status) return strut_print_failure(status, &error);
-  const strut_shard part = study->plan.study->search ? (strut_shard){0} : *shard;
+  const strut_shard part = strut_study_has_stages(study->plan.study) ? (strut_shard){0} : *shard;
   if (part.count) strut_shard_points(part, &study->slots);
   *path = strut_shard_path(arguments->output, part, &study->plan.arena);
   return *path ? STRUT_OK : strut_print_out_of_memory();
@@ -92,7 +92,7 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   if (status) return strut_print_failure(status, &error);
   strut_slots_progress progress;
   strut_slots_progress_find(slots, &progress);
-  progress.searches = study->plan.study->search != NULL;
+  progress.searches = strut_study_has_stages(study->plan.study);
   progress.finished = progress.searches && strut_sweep_search_is_finished(arguments->output);
   if (study->plan.study->refine.depth)
     status = strut_sweep_refine_status(&study->plan, arguments->output, slots, &progress, &error);
@@ -215,6 +215,7 @@ static strut_status compute_study(const strut_arguments *arguments, strut_sweep_
   if (!status)
     status = study->plan.study->search   ? strut_sweep_search(&job)
              : study->plan.study->follow ? strut_sweep_follow(&job)
+             : study->plan.study->fit    ? strut_sweep_fit(&job)
                                          : sweep(&job);
   strut_slots_close(job.slots);
   return status;
@@ -235,9 +236,9 @@ static strut_status emit_script(const strut_arguments *arguments, const strut_st
 static strut_status check_search(const strut_arguments *arguments, strut_sweep_study *study) {
   if (arguments->retry)
     return strut_usage_error(arguments,
-                             "--retry cannot be used with a study that searches: each of its "
+                             "--retry cannot be used with a study that searches or fits: each of its "
                              "points depends on those before it");
-  bool several = arguments->shard || arguments->emit.text;
+  bool several = study->plan.study->search && (arguments->shard || arguments->emit.text);
   return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
 }
 
@@ -301,15 +302,15 @@ static strut_status run_sweep(const strut_arguments *given) {
     return strut_usage_error(arguments,
                              "--retry cannot be combined with --count, --status or --emit");
   status = strut_sweep_study_open(arguments, &study);
-  if (!status && arguments->plot && (study.plan.study->search || study.plan.study->follow))
+  if (!status && arguments->plot && (strut_study_has_stages(study.plan.study) || study.plan.study->follow))
     status = strut_usage_error(arguments,
-                               "--plot is for studies of single points: searches and branches of "
-                               "motions are drawn in DIR");
+                               "--plot is for studies of single points: searches, fits and "
+                               "branches of motions are drawn in DIR");
   if (!status && study.plan.study->sensitivity.wanted && (arguments->shard || arguments->emit.text))
     status = strut_usage_error(arguments,
                                "a sensitivity analysis needs all points in one file: run it "
                                "without --shard and --emit");
-  if (!status && study.plan.study->search) status = check_search(arguments, &study);
+  if (!status && strut_study_has_stages(study.plan.study)) status = check_search(arguments, &study);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->count_points)
     status = strut_print_values(arguments, &strut_sweep_count_values, &study.plan, NULL);

@@ -111,6 +111,12 @@ strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurat
 strut_status strut_sweep_search_check_workers(strut_sweep_study *study);
 /** Computes a study that searches, once its slots are open, and writes its results. */
 strut_status strut_sweep_search(strut_study_job *job);
+/** Does the same with a study that fits. */
+strut_status strut_sweep_fit(strut_study_job *job);
+/** Do points depend on those before, so that shards are workers that share one file? */
+static inline bool strut_study_has_stages(const strut_study *study) {
+  return study->search || study->fit;
+}
 /** Are all searches in a directory finished? */
 bool strut_sweep_search_is_finished(const char *directory);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */

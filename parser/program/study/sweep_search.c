@@ -303,7 +303,7 @@ strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *me
   bool search = false, refined = false;
   if (inner.model && access(inner.model, R_OK) == 0) {
     status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
-    search = !status && study.file.study.search;
+    search = !status && strut_study_has_stages(&study.file.study);
     refined = !status && !search && study.file.study.refine.depth > 0;
     strut_study_close(&study.file);
     error = (strut_error){0};

@@ -13,6 +13,7 @@
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/cluster/cluster_script.h"
+#include "engine/study/fit/fit.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/grid.h"
@@ -155,6 +156,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status && file->study.search) status = bind_search(study, error);
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
+  if (!status && file->study.fit) status = strut_fit_add_columns(&study->plan, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
   if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
   return status;
@@ -423,7 +425,7 @@ static void write_partial(const char *directory, strut_slots *slots) {
 
 strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_error *error) {
   const strut_arguments *arguments = job->arguments;
-  const bool search = job->study->plan.study->search;
+  const bool search = strut_study_has_stages(job->study->plan.study);
   const strut_shard part = search ? (strut_shard){0} : job->shard;
   strut_status status = strut_sweep_texts_check(arguments, job->study, error);
   if (!status && !part.count)
@@ -460,7 +462,7 @@ strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *comp
   strut_status synced = strut_slots_sync(job->slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
   if (status && !job->shard.count && state->done > 0) write_partial(directory, job->slots);
-  if (status == STRUT_INTERRUPTED && job->study->plan.study->search)
+  if (status == STRUT_INTERRUPTED && strut_study_has_stages(job->study->plan.study))
     strut_fail(error, status, "interrupted after %lld points; the same command resumes",
                (long long)state->done);
   else if (status == STRUT_INTERRUPTED)

@@ -1,0 +1,368 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What a study fits: parameters, and the measured numbers that the model shall match. See study_reader.h. */
+#include <math.h>
+#include <string.h>
+
+#include "parser/language/study/study_reader.h"
+
+static const strut_owner fit_owner = {"the fit", NULL};
+
+/* A match while it is read. */
+typedef struct reading {
+  strut_fit_match *to;
+  strut_owner owner;
+  strut_fields fields; /* of its own keys */
+  strut_tree own;      /* a mapping of these */
+  strut_tree rest;     /* and one of what is compared */
+  const strut_data_table *table;
+} reading;
+
+/* ---- parameters ---- */
+
+static void read_over(strut_study_reader *reader, const strut_slot *over, strut_study_fit *fit) {
+  strut_study_read_variables(reader, over, "the fit", STRUT_FIT_MOST_VARIABLES, &fit->variables,
+                             &fit->variable_count, &fit->column);
+  for (size_t i = 0; i < fit->variable_count; i++) {
+    const strut_search_variable *variable = &fit->variables[i];
+    if (variable->choice_count || variable->wraps || variable->integer)
+      strut_report_error(reader->reader, over->value->place,
+                         "'%s' of the fit needs a range of any number, such as {from: 1, to: 2}",
+                         variable->name);
+  }
+}
+
+/* ---- what is compared ---- */
+
+/* Divides the mapping of a match into its own keys and the others. */
+static bool divide(strut_study_reader *reader, const strut_tree *map, reading *self) {
+  strut_tree *items = strut_reader_allocate(reader->reader, &reader->reader->scratch,
+                                            2 * (size_t)map->count + 1, sizeof *items);
+  strut_tree **ends[] = {&self->own.first, &self->rest.first};
+  if (!items) return false;
+  self->own = self->rest = *map;
+  self->own.first = self->rest.first = NULL;
+  self->own.count = self->rest.count = 0;
+  for (const strut_tree *key = map->first; key; key = key->next->next) {
+    bool own = false;
+    int first = strut_section_first(STRUT_SECTION_MATCH),
+        n = strut_section_size(STRUT_SECTION_MATCH);
+    for (int k = first; k < first + n; k++)
+      own = own || strcmp(strut_key_at(k)->name, key->text) == 0;
+    items[0] = *key, items[1] = *key->next;
+    items[0].next = &items[1], items[1].next = NULL;
+    *ends[!own] = items;
+    ends[!own] = &items[1].next;
+    (own ? &self->own : &self->rest)->count++;
+    items += 2;
+  }
+  return true;
+}
+
+/* The column behind one of the match's own keys, all of the same table. */
+static const double *read_at(strut_study_reader *reader, reading *self, int key,
+                             strut_dimension dimension, bool ascending) {
+  strut_reader *r = reader->reader;
+  const strut_slot *slot = strut_slot_of(&self->fields, key);
+  const strut_data_table *table;
+  if (slot->state != STRUT_GIVEN) return NULL;
+  const strut_data_column *column =
+      strut_read_data_column(r, slot->value, slot->key->text, self->owner, &dimension, &table);
+  if (!column) return NULL;
+  for (size_t i = 0; i < table->row_count; i++) {
+    if (isfinite(column->values[i]) &&
+        (!ascending || !i || column->values[i] > column->values[i - 1]))
+      continue;
+    strut_refuse_data(r, slot->value, table, column, i,
+                      isfinite(column->values[i]) ? "times must ascend" : "a number is missing");
+    return NULL;
+  }
+  if (ascending && table->row_count < 2) {
+    strut_refuse_data(r, slot->value, table, column, 0, "a motion needs two times or more");
+    return NULL;
+  }
+  self->table = table;
+  self->to->count = table->row_count;
+  return column->values;
+}
+
+static bool set_noise_unit(strut_study_reader *reader, reading *self, const strut_tree *value,
+                           const char *unit) {
+  const strut_slot *noise = strut_slot_of(&self->fields, STRUT_KEY_MATCH_NOISE);
+  strut_quantity q;
+  if (noise->state != STRUT_GIVEN) {
+    self->to->noise_unit = unit;
+    return true;
+  }
+  if (!self->to->noise_unit) {
+    if (!strut_read_quantity(reader->reader, noise->value, "noise", self->owner, &q)) return false;
+    self->to->noise = q.value;
+    self->to->noise_unit = q.bare ? "1" : strut_dimension_unit(q.dimension);
+    if (!(q.value > 0.0))
+      return strut_report_error(reader->reader, noise->value->place,
+                                "'noise' of match '%s' must be above 0", self->to->name);
+  }
+  return strcmp(self->to->noise_unit, unit) == 0 ||
+         strut_report_error(reader->reader, value->place,
+                            "'noise' of match '%s' is in %s, this in %s: give numbers of another "
+                            "dimension a match of their own",
+                            self->to->name, self->to->noise_unit, unit);
+}
+
+/* A number of its own, or a column of the match's table, or of any table where it has none. */
+static bool read_numbers(strut_study_reader *reader, reading *self, const strut_tree *value,
+                         strut_fit_series *series) {
+  strut_reader *r = reader->reader;
+  strut_quantity q;
+  const strut_data_table *table;
+  bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted &&
+               strpbrk(value->text, "0123456789+-") == value->text;
+  if (plain && !self->to->at) {
+    double *number = strut_reader_allocate(r, &reader->file->arena, 1, sizeof *number);
+    if (!number || !strut_read_quantity(r, value, series->of, self->owner, &q)) return false;
+    if (self->table)
+      return strut_report_error(r, value->place,
+                                "match '%s' has columns of '%s': put single numbers "
+                                "into a match of their own",
+                                self->to->name, self->table->name);
+    *number = q.value;
+    series->measured = number;
+    series->unit = q.bare ? "1" : strut_dimension_unit(q.dimension);
+    self->to->count = 1;
+    return true;
+  }
+  const strut_data_column *column =
+      strut_read_data_column(r, value, series->of, self->owner, NULL, &table);
+  if (!column) return false;
+  if (self->table && table != self->table)
+    return strut_report_error(r, value->place,
+                              "match '%s' compares columns of '%s': '%s' needs a "
+                              "match of its own",
+                              self->to->name, self->table->name, table->name);
+  self->table = table;
+  self->to->count = table->row_count;
+  series->measured = column->values;
+  series->weights = column->weights;
+  series->unit = strcmp(column->unit, "1") == 0 ? "1" : strut_dimension_unit(column->dimension);
+  if (column->gap_count == table->row_count)
+    return strut_refuse_data(r, value, table, column, 0, "there are no numbers");
+  return true;
+}
+
+static bool add_series(strut_study_reader *reader, reading *self, const strut_tree *key) {
+  strut_fit_series *series = &self->to->series[self->to->series_count];
+  *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
+  if (!read_numbers(reader, self, key->next, series) ||
+      !set_noise_unit(reader, self, key->next, series->unit))
+    return false;
+  self->to->series_count++;
+  bool moves = self->to->kind == STRUT_FIT_MOTION || self->to->kind == STRUT_FIT_REST;
+  if (moves && !strut_study_measure(reader->file, key)) reader->reader->out_of_memory = true;
+  return true;
+}
+
+static void read_curve(strut_study_reader *reader, reading *self) {
+  const strut_slot *force = strut_slot_of(&self->fields, STRUT_KEY_MATCH_FORCE);
+  self->to->at = read_at(reader, self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
+  if (force->state != STRUT_GIVEN)
+    strut_report_error(reader->reader, self->own.place,
+                       "match '%s' of a displacement lacks 'force'", self->to->name);
+  else if (self->to->at)
+    add_series(reader, self, force->key);
+}
+
+/* What kind of match it is, by the keys that it has. */
+static void choose_kind(strut_study_reader *reader, reading *self) {
+  bool over_time = strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->state != STRUT_ABSENT;
+  bool curve = strut_slot_of(&self->fields, STRUT_KEY_MATCH_DISPLACEMENT)->state != STRUT_ABSENT;
+  bool table = strut_slot_of(&self->fields, STRUT_KEY_MATCH_COMPUTE)->state != STRUT_ABSENT;
+  const strut_slot *align = strut_slot_of(&self->fields, STRUT_KEY_MATCH_ALIGN);
+  self->to->kind = over_time ? STRUT_FIT_MOTION
+                   : curve   ? STRUT_FIT_CURVE
+                   : table   ? STRUT_FIT_TABLE
+                             : STRUT_FIT_REST;
+  if (over_time + curve + table > 1)
+    strut_report_error(reader->reader, self->own.place,
+                       "match '%s' can have only one of 'time', 'displacement' and 'compute'",
+                       self->to->name);
+  if (align->state == STRUT_GIVEN && (curve || table))
+    strut_report_error(reader->reader, align->key->place,
+                       "'align' of match '%s' is for motions and shapes", self->to->name);
+  if (self->to->align.delay && !over_time)
+    strut_report_error(reader->reader, align->value->place, "a delay needs the 'time' of a motion");
+}
+
+static void read_match(strut_study_reader *reader, const strut_tree *key, strut_fit_match *to) {
+  reading self = {.to = to, .owner = {"match", key->text}};
+  strut_reader *r = reader->reader;
+  strut_read_name(r, key, "match");
+  *to = (strut_fit_match){.name = key->text, .place = {key->place.line, key->place.column}};
+  if (key->next->kind != STRUT_TREE_MAP) {
+    strut_report_error(r, key->next->place,
+                       "expected a mapping such as {time: film.t, n1.x: film.x} "
+                       "for match '%s', found %s",
+                       key->text, strut_found(r, key->next));
+    return;
+  }
+  if (!divide(reader, key->next, &self)) return;
+  strut_read_object(r, STRUT_SECTION_MATCH, &self.own, self.owner, &self.fields, to);
+  choose_kind(reader, &self);
+  to->series =
+      strut_reader_allocate(r, &reader->file->arena, self.rest.count + 1, sizeof *to->series);
+  if (!to->series) return;
+  if (to->kind == STRUT_FIT_CURVE) read_curve(reader, &self);
+  if (to->kind == STRUT_FIT_MOTION)
+    to->at = read_at(reader, &self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
+  if (to->kind == STRUT_FIT_MOTION && !to->at) return;
+  const strut_tree *first = self.rest.first;
+  if (to->kind == STRUT_FIT_CURVE && first)
+    strut_report_error(r, first->place,
+                       "a match of a displacement compares its 'force' alone, not '%s'",
+                       strut_sanitised_text(r, first->text));
+  for (; first && to->kind != STRUT_FIT_CURVE; first = first->next->next)
+    add_series(reader, &self, first);
+  if (!self.rest.count && to->kind != STRUT_FIT_CURVE)
+    strut_report_error(r, key->place,
+                       "match '%s' compares nothing: add what the model has, such as "
+                       "'n1.x: film.x'",
+                       key->text);
+}
+
+/* ---- what matches set ---- */
+
+/* The `set` of match m, or NULL. */
+static const strut_tree *set_of(const strut_tree *matches, size_t m) {
+  const strut_tree *key = matches->first;
+  while (m-- > 0) key = key->next->next;
+  const strut_tree *set =
+      key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "set", NULL) : NULL;
+  return set && set->kind == STRUT_TREE_MAP ? set : NULL;
+}
+
+/* A column of a parameter that each match sets, which the first of them names. */
+static void add_set(strut_study_reader *reader, const strut_tree *matches, const strut_tree *key,
+                    strut_study_axis *axis, strut_study_fit *fit) {
+  double *number = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *number);
+  const char **word = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *word);
+  strut_study_along a = {
+      .key = key, .value = key->next, .parameter = strut_study_parameter(reader, key)};
+  a.column = &axis->columns[axis->column_count];
+  a.setting = &reader->file->columns[reader->file->column_count];
+  if (!number || !word || !a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
+  axis->column_count++, reader->file->column_count++;
+  for (size_t m = 0; m < fit->match_count; m++) {
+    const strut_tree *set = set_of(matches, m),
+                     *value = set ? strut_tree_find(set, key->text, NULL) : NULL;
+    strut_study_value *to = &fit->matches[m].values[fit->set_count];
+    if (!value)
+      strut_report_error(reader->reader, key->place, "every match must set '%s': '%s' does not",
+                         a.parameter->name, fit->matches[m].name);
+    else if (a.parameter->text)
+      to->word = value->kind == STRUT_TREE_SCALAR ? value->text : "";
+    else
+      strut_study_read_value(reader, &a, value, key->text, m == 0, &to->number);
+  }
+  a.column->kind = STRUT_RANGE_LIST;
+  *number = fit->matches[0].values[fit->set_count].number;
+  *word = fit->matches[0].values[fit->set_count].word;
+  a.column->number = number, a.column->words = a.parameter->text ? word : NULL;
+  a.column->unit =
+      a.parameter->text || a.setting->bare ? "1" : strut_dimension_unit(a.setting->dimension);
+  fit->set_count++;
+}
+
+static void read_sets(strut_study_reader *reader, const strut_tree *matches, strut_study_fit *fit) {
+  strut_study *study = &reader->file->study;
+  size_t most = reader->declared_count;
+  strut_study_axis *axis = &study->axes[study->axis_count];
+  *axis = (strut_study_axis){.count = 1};
+  axis->columns =
+      strut_reader_allocate(reader->reader, &reader->file->arena, most + 1, sizeof *axis->columns);
+  for (size_t m = 0; m < fit->match_count && axis->columns; m++) {
+    fit->matches[m].values = strut_reader_allocate(reader->reader, &reader->file->arena, most + 1,
+                                                   sizeof *fit->matches[m].values);
+    if (!fit->matches[m].values) return;
+  }
+  for (size_t m = 0; m < fit->match_count && axis->columns; m++) {
+    const strut_tree *set = set_of(matches, m);
+    for (const strut_tree *key = set ? set->first : NULL; key; key = key->next->next) {
+      bool known = false;
+      for (size_t k = 0; k < axis->column_count; k++)
+        known = known || strcmp(axis->columns[k].name, key->text) == 0;
+      if (!known) add_set(reader, matches, key, axis, fit);
+    }
+  }
+  if (axis->column_count) study->axis_count++;
+}
+
+/* ---- all of it ---- */
+
+/* The axis that numbers the fits: of starts, of both ends of each interval, without each match. */
+static void add_rows(strut_study_reader *reader, const strut_study_fit *fit, size_t variables,
+                     strut_study_axis *axis) {
+  size_t count =
+      (size_t)fit->starts + 2 * variables + (fit->match_count > 1 ? fit->match_count : 0);
+  double *numbers =
+      strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *numbers);
+  *axis = (strut_study_axis){.count = numbers ? (int64_t)count : 1, .column_count = 1};
+  axis->columns =
+      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *axis->columns);
+  for (size_t i = 0; i < count && numbers; i++) numbers[i] = (double)(i + 1);
+  if (axis->columns)
+    axis->columns[0] = (strut_study_column){.name = "fit", .unit = "1", .number = numbers};
+  reader->file->column_count++; /* a setting without a name: no parameter */
+}
+
+/* Several matches, or numbers of several dimensions, can be weighed only by their noise. */
+static void require_noise(strut_study_reader *reader, const strut_tree *matches,
+                          const strut_study_fit *fit) {
+  for (size_t m = 0; m < fit->match_count; m++) {
+    const strut_fit_match *match = &fit->matches[m];
+    bool several = fit->match_count > 1;
+    for (size_t s = 1; s < match->series_count; s++)
+      several = several || strcmp(match->series[s].unit, match->series[0].unit) != 0;
+    if (several && match->series_count && !(match->noise > 0.0))
+      strut_report_error(reader->reader, matches->place,
+                         "match '%s' lacks 'noise', the standard deviation of its numbers: without "
+                         "it several kinds of numbers cannot be weighed",
+                         match->name);
+  }
+}
+
+void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
+  static const int others[] = {STRUT_KEY_STUDY_AXES,         STRUT_KEY_STUDY_VARIANTS,
+                               STRUT_KEY_STUDY_REFINE,       STRUT_KEY_STUDY_SEARCH,
+                               STRUT_KEY_STUDY_FOLLOW,       STRUT_KEY_STUDY_SENSITIVITY,
+                               STRUT_KEY_STUDY_TRAJECTORIES, STRUT_KEY_STUDY_CHECK,
+                               STRUT_KEY_STUDY_KEEP,         STRUT_KEY_STUDY_COMPUTE};
+  const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FIT);
+  strut_study *study = &reader->file->study;
+  strut_fields fields;
+  if (slot->state != STRUT_GIVEN) return;
+  strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
+  strut_study_fit *fit =
+      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *fit);
+  if (!study->axes) strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
+  if (!fit || !study->axes || reader->reader->failed) return;
+  *fit = (strut_study_fit){.starts = 1, .seed = 1};
+  strut_read_object(reader->reader, STRUT_SECTION_FIT, slot->value, fit_owner, &fields, fit);
+  const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_FIT_OVER);
+  const strut_slot *matches = strut_slot_of(&fields, STRUT_KEY_FIT_MATCH);
+  if (over->state != STRUT_GIVEN || matches->state != STRUT_GIVEN) return;
+  size_t count = matches->value->count;
+  if (!count || count > STRUT_FIT_MOST_MATCHES) {
+    strut_report_error(reader->reader, matches->value->place,
+                       "a fit has 1 to %d matches, found %zu", STRUT_FIT_MOST_MATCHES, count);
+    return;
+  }
+  fit->matches =
+      strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *fit->matches);
+  if (!fit->matches) return;
+  for (const strut_tree *key = matches->value->first; key; key = key->next->next)
+    read_match(reader, key, &fit->matches[fit->match_count++]);
+  require_noise(reader, matches->value, fit);
+  strut_study_axis *rows = &study->axes[study->axis_count++];
+  add_rows(reader, fit, over->value->count, rows);
+  read_over(reader, over, fit);
+  read_sets(reader, matches->value, fit);
+  if (!reader->reader->failed) study->fit = fit;
+}
