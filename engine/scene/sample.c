@@ -4,6 +4,8 @@
 
 #include <assert.h>
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
@@ -116,22 +118,41 @@ static bool fill_sobol(gsl_rng *rng, uint32_t seed, int64_t count, size_t number
   return true;
 }
 
+bool strut_correlation_factor(size_t count, double *correlation) {
+  gsl_matrix_view matrix = gsl_matrix_view_array(correlation, count, count);
+  return gsl_linalg_cholesky_decomp1(&matrix.matrix) == GSL_SUCCESS;
+}
+
+/* Makes shares those of correlated normal numbers. */
+static void correlate(const double *factor, size_t numbers, int64_t count, double *const *values) {
+  double normal[STRUT_SAMPLE_MOST_NUMBERS];
+  for (int64_t i = 0; i < count; i++) {
+    for (size_t k = 0; k < numbers; k++) normal[k] = gsl_cdf_ugaussian_Pinv(values[k][i]);
+    for (size_t k = 0; k < numbers; k++) {
+      double sum = 0.0;
+      for (size_t j = 0; j <= k; j++) sum += factor[k * numbers + j] * normal[j];
+      values[k][i] = within(gsl_cdf_ugaussian_P(sum));
+    }
+  }
+}
+
 bool strut_sample_make(strut_sample_scheme scheme, uint32_t seed, int64_t count,
                        size_t number_count, const strut_distribution *distributions,
-                       double *const *values) {
+                       const double *factor, double *const *values) {
   assert(number_count > 0 && number_count <= STRUT_SAMPLE_MOST_NUMBERS);
   gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
   bool fine = rng != NULL;
   if (fine && scheme == STRUT_SAMPLE_SOBOL)
     fine = fill_sobol(rng, seed, count, number_count, values);
   for (size_t k = 0; k < number_count && fine; k++) {
-    if (scheme != STRUT_SAMPLE_SOBOL) {
-      gsl_rng_set(rng, seed_of(seed, k));
-      fill_alone(rng, scheme == STRUT_SAMPLE_LHS, values[k], count);
-    }
+    if (scheme == STRUT_SAMPLE_SOBOL) break;
+    gsl_rng_set(rng, seed_of(seed, k));
+    fill_alone(rng, scheme == STRUT_SAMPLE_LHS, values[k], count);
+  }
+  if (fine && factor) correlate(factor, number_count, count, values);
+  for (size_t k = 0; k < number_count && fine; k++)
     for (int64_t i = 0; i < count; i++)
       values[k][i] = strut_distribution_value(&distributions[k], values[k][i]);
-  }
   if (rng) gsl_rng_free(rng);
   return fine;
 }
@@ -198,7 +219,7 @@ bool strut_sensitivity_fill(const strut_study_sensitivity *sensitivity, size_t c
   }
   if (fine && sensitivity->samples > 0)
     fine = strut_sample_make((strut_sample_scheme)sensitivity->scheme, sensitivity->seed,
-                             sensitivity->samples, 2 * count, twice, both);
+                             sensitivity->samples, 2 * count, twice, NULL, both);
   if (fine) fill_samples(sensitivity, count, both, values);
   strut_arena_free(&arena);
   return fine;

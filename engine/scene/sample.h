@@ -44,12 +44,18 @@ STRUT_API const char *strut_distribution_flaw(const strut_distribution *distribu
 /** The value below which the share `u` lies, 0 < u < 1. */
 STRUT_API double strut_distribution_value(const strut_distribution *distribution, double u);
 /**
- * values[k] (count) from distribution k, k < number_count <= STRUT_SAMPLE_MOST_NUMBERS. False: memory is
- * out.
+ * The lower triangle that makes numbers correlated, in place of their correlation (count, count). False: that is not
+ * positive definite.
+ */
+STRUT_API bool strut_correlation_factor(size_t count, double *correlation);
+/**
+ * values[k] (count) from distribution k, k < number_count <= STRUT_SAMPLE_MOST_NUMBERS. factor (number_count,
+ * number_count): what strut_correlation_factor has made, of the normal numbers behind the shares (a Gaussian copula);
+ * NULL: independent. False: memory is out.
  */
 STRUT_API bool strut_sample_make(strut_sample_scheme scheme, uint32_t seed, int64_t count,
                                  size_t number_count, const strut_distribution *distributions,
-                                 double *const *values);
+                                 const double *factor, double *const *values);
 
 /* ---- sensitivity analyses ---- */
 

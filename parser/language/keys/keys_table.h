@@ -215,7 +215,8 @@
   X(SAMPLE, COUNT, "count", NUMBER, NONE, WHOLE(1, 1000000), "", REQUIRED, 0, "", FIELD(strut_sample_keys, count), "Number of points.") \
   X(SAMPLE, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_sample_keys, seed), "Seed of the points; the same seed gives the same points.") \
   X(SAMPLE, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_sample_keys, scheme), "`sobol`: Sobol's sequence, shifted by the seed; `lhs`: Latin hypercube; `random`: independent points.") \
-  X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 40, and their distributions.")
+  X(SAMPLE, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "a [distribution](#distribution)", THINGS(DISTRIBUTION), "The parameters, up to 40, and their distributions.") \
+  X(SAMPLE, CORRELATION, "correlation", FREE, NONE, ANY, "", OPTIONAL, 0, "a list of rows of numbers", NONE, "Correlation of the parameters, in their order, such as `[[1, 0.5], [0.5, 1]]`: that of the normal numbers behind their distributions. Without it they are independent.")
 
 #define STRUT_DISTRIBUTION_KEYS(X) \
   X(DISTRIBUTION, UNIFORM, "uniform", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 10, "", CHOICE(strut_distribution, kind, STRUT_DISTRIBUTION_UNIFORM, NUMBERS(strut_distribution, number)), "`[LEAST, MOST]`.") \

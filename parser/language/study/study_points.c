@@ -333,9 +333,54 @@ static bool read_parameter(strut_study_reader *reader, strut_study_along *along,
   return fine && kinds > 0;
 }
 
+/* One row of a matrix of correlations. */
+static bool read_correlations(strut_study_reader *reader, const strut_tree *row, size_t count,
+                              double *to) {
+  strut_reader *r = reader->reader;
+  strut_quantity q;
+  if (row->kind != STRUT_TREE_LIST || row->count != count)
+    return strut_report_error(r, row->place,
+                              "expected a list of %zu numbers, one for each parameter, found %s",
+                              count, strut_found(r, row));
+  for (const strut_tree *item = row->first; item; item = item->next) {
+    if (!strut_read_any_quantity(r, item, "correlation", sample_owner, "a number", &q))
+      return false;
+    *to++ = q.value;
+  }
+  return true;
+}
+
+/* The factor of the correlation of the parameters; *factor: NULL without one. False: that was reported. */
+static bool read_factor(strut_study_reader *reader, const strut_slot *slot, size_t count,
+                        double **factor) {
+  *factor = NULL;
+  if (slot->state != STRUT_GIVEN) return true;
+  const strut_tree *rows = slot->value;
+  if (rows->kind != STRUT_TREE_LIST || rows->count != count)
+    return strut_report_error(reader->reader, rows->place,
+                              "expected a list of %zu rows, one for each parameter, found %s",
+                              count, strut_found(reader->reader, rows));
+  double *matrix =
+      strut_reader_allocate(reader->reader, &reader->file->arena, count * count, sizeof *matrix);
+  if (!matrix) return false;
+  size_t i = 0;
+  for (const strut_tree *row = rows->first; row; row = row->next)
+    if (!read_correlations(reader, row, count, matrix + count * i++)) return false;
+  bool right = true;
+  for (i = 0; i < count; i++)
+    for (size_t j = 0; j <= i; j++)
+      right = right && matrix[i * count + j] == (i == j ? 1.0 : matrix[j * count + i]);
+  *factor = matrix;
+  return (right && strut_correlation_factor(count, matrix)) ||
+         strut_report_error(reader->reader, rows->place,
+                            "'correlation' must be symmetric and positive definite, with 1 on its "
+                            "diagonal");
+}
+
 /* Makes the values of all columns. */
 static void make_values(strut_study_reader *reader, const strut_sample_keys *keys,
-                        strut_study_axis *axis, const strut_distribution *distributions) {
+                        const double *factor, strut_study_axis *axis,
+                        const strut_distribution *distributions) {
   double *values[STRUT_SAMPLE_MOST_NUMBERS];
   for (size_t i = 0; i < axis->column_count; i++) {
     values[i] = strut_reader_allocate(reader->reader, &reader->file->arena, (size_t)axis->count,
@@ -344,7 +389,7 @@ static void make_values(strut_study_reader *reader, const strut_sample_keys *key
     axis->columns[i].number = values[i];
   }
   if (!strut_sample_make((strut_sample_scheme)keys->scheme, (uint32_t)keys->seed, axis->count,
-                         axis->column_count, distributions, values))
+                         axis->column_count, distributions, factor, values))
     reader->reader->out_of_memory = true;
 }
 
@@ -385,7 +430,10 @@ void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value
   axis->count = keys.count;
   bool fine = strut_study_read_distributions(reader, over->value, sample_owner,
                                              STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
-  if (fine && !fields.broken) make_values(reader, &keys, axis, distributions);
+  double *factor = NULL;
+  fine = fine && read_factor(reader, strut_slot_of(&fields, STRUT_KEY_SAMPLE_CORRELATION),
+                             axis->column_count, &factor);
+  if (fine && !fields.broken) make_values(reader, &keys, factor, axis, distributions);
 }
 
 /* ---- sensitivity analyses ---- */
