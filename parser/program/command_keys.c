@@ -9,6 +9,7 @@
 #include "engine/statics/modes/waves.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare.h"
+#include "engine/study/fit/fit.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
@@ -90,6 +91,8 @@ static strut_status run_results(const strut_arguments *arguments) {
                  {"tradeoff", &strut_tradeoff_values},
                  {"sweep", &strut_sweep_end_values},
                  {"sweep, of a study with `search`", &strut_search_report_values},
+                 {"sweep, of a study with `fit`", &strut_fit_values},
+                 {"sweep --plan", &strut_fit_plan_values},
                  {"sweep --count", &strut_sweep_count_values},
                  {"sweep --status", &strut_slots_progress_values},
                  {"sweep --status, of shards", &strut_shards_progress_values}};

@@ -47,7 +47,7 @@ static size_t omission_rows(const strut_study_fit *fit) {
 /* ---- one fit ---- */
 
 /* Where a start begins: the first one where the study says, the others spread evenly. */
-static void choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
+void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
   const strut_study_fit *fit = layout->fit;
   strut_search_spread spread = strut_search_spread_begin(fit->variable_count, (uint64_t)fit->seed);
   for (size_t i = 0; i < layout->parameters; i++) {
@@ -145,10 +145,10 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
   const strut_fit_layout *layout = self->layout;
   *solution = (strut_fit_solution){.end = STRUT_FIT_FAILED, .sum = (double)NAN};
   if (what.kind == 0) {
-    choose_start(layout, (int64_t)what.item, parameters);
+    strut_fit_choose_start(layout, (int64_t)what.item, parameters);
     return fit_from(one, parameters, solution);
   }
-  choose_start(layout, 0, parameters);
+  strut_fit_choose_start(layout, 0, parameters);
   if (!self->best) return STRUT_OK; /* no start has residuals */
   if (what.kind < 3)
     return find_profile_end(self, one, layout->aligned_count + what.item,

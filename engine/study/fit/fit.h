@@ -117,4 +117,29 @@ STRUT_API extern const strut_value_rows strut_fit_values;
 STRUT_API strut_status strut_fit_write(const strut_fit_result *result, const char *directory,
                                        const char *model, strut_error *error);
 
+/* ---- how to measure ---- */
+
+/** A place of a match, a match or all of them: what their numbers would say of the parameters. */
+typedef struct strut_fit_candidate {
+  const char *name;
+  size_t numbers;
+  double
+      determinant; /* log10 of that of the information, in units of ranges; -HUGE_VAL: it is singular */
+  double least;   /* singular value of the derivatives, in units of the noise per range */
+  double *errors; /* (variables) standard errors, SI; HUGE_VAL: not determined */
+} strut_fit_candidate;
+
+typedef struct strut_fit_plan {
+  const strut_study_fit *fit;
+  size_t variable_count, count;
+  strut_fit_candidate *candidates; /* (count) the best first */
+  double *at;                      /* (parameters) of the problem: the first start */
+  strut_arena arena;
+} strut_fit_plan;
+
+/** From the model alone, at the first start. Release the arena, after a failure too. */
+STRUT_API strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *interrupt,
+                                           strut_fit_plan *plan, strut_error *error);
+STRUT_API extern const strut_value_rows strut_fit_plan_values;
+
 #endif

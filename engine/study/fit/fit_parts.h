@@ -95,6 +95,11 @@ double strut_fit_slope(const strut_fit_layout *layout, size_t i, double paramete
 const char *strut_fit_name(const strut_fit_layout *layout, size_t i);
 const char *strut_fit_unit(const strut_fit_layout *layout, size_t i);
 
+/* ---- fit.c ---- */
+
+/** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
+void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
+
 /* ---- fit_verdict.c ---- */
 
 /**

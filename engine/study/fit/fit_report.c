@@ -134,6 +134,33 @@ static strut_value correlations_of(const strut_result_object *of, size_t i) {
     "fits without one match", .rows = &omission_values, .label = {""})
 STRUT_VALUES(strut_fit_values, FIT, const strut_fit_result *r = of->at)
 
+static const char *planned_name(const strut_result_object *of, size_t i) {
+  return ((const strut_fit_plan *)strut_result_whole(of))->fit->variables[i].name;
+}
+
+static strut_value planned_error(const strut_result_object *of, size_t i) {
+  const strut_fit_plan *plan = strut_result_whole(of);
+  return STRUT_VALUE_AS_CALLED(NULL, plan->fit->variables[i].unit,
+                               ((const strut_fit_candidate *)of->at)->errors[i]);
+}
+
+#define CANDIDATE(X)                                                                               \
+  X("name", "", TEXT(c->name), "a place of a match, a match, or all", .label = {"measured"})       \
+  X("numbers", "", COUNT(c->numbers), "of it", .label = {""})                                      \
+  X("determinant", "1", NUMBER(c->determinant),                                                    \
+    "log10 of that of the information, in units of the ranges", .label = {"log10 determinant"})    \
+  X("least", "1", NUMBER(c->least), "singular value of the derivatives, likewise",                 \
+    .label = {"least singular value"})                                                             \
+  X("standard_errors", "", MAP(p->variable_count, planned_name, planned_error),                    \
+    "of the parameters, SI; null: not determined", .label = {"error of"})
+STRUT_VALUES_HERE(candidate_values, CANDIDATE, const strut_fit_candidate *c = of->at;
+                  const strut_fit_plan *p = strut_result_whole(of))
+
+#define PLAN(X)                                                                                    \
+  X("candidates", "", LIST(p->candidates, p->count), "the best first", .rows = &candidate_values,  \
+    .label = {""})
+STRUT_VALUES(strut_fit_plan_values, PLAN, const strut_fit_plan *p = of->at)
+
 /* ---- files ---- */
 
 /* A number with its unit, such as "3000 N/m". */

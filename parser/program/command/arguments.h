@@ -57,7 +57,7 @@ typedef struct strut_arguments {
   bool no_notes; /* a model's notes have been printed */
 
   bool help, json, csv, quiet, all, force, stuck, wave, basins, own_model, no_motion, no_states;
-  bool count_points, status, retry, parts, study;
+  bool count_points, plan, status, retry, parts, study;
   const char *output, *plot, *animate, *width, *title, *scale, *times;
   const char *at, *supports, *load, *from, *until, *stop, *values;
   const char *shard, *time, *memory;

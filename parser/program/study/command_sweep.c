@@ -36,6 +36,8 @@ static const strut_option options[] = {
     {STRUT_FILLS(plot), "plot", "FILE",
      "draw the first result over the first axis, or as a map of two (.svg, .pdf, .png or .json)"},
     {STRUT_FILLS(count_points), "count", NULL, "only print the number of points and the columns"},
+    {STRUT_FILLS(plan), "plan", NULL,
+     "only print which measurements would determine the parameters of a fit best"},
     {STRUT_FILLS(status), "status", NULL, "only print what is done, missing and failed in DIR"},
     {STRUT_FILLS(json), "json", NULL, "print one JSON object"},
     {.name = NULL},
@@ -296,7 +298,7 @@ static strut_status run_sweep(const strut_arguments *given) {
   strut_status status = strut_try_file(arguments->plot);
   if (status) return status;
   if (!arguments->output && name_results(arguments->model, results)) own.output = results;
-  if (!arguments->output && !arguments->count_points)
+  if (!arguments->output && !arguments->count_points && !arguments->plan)
     return strut_usage_error(arguments, "missing -o DIR, the results directory");
   if (arguments->retry && (arguments->count_points || arguments->status || arguments->emit.text))
     return strut_usage_error(arguments,
@@ -312,7 +314,9 @@ static strut_status run_sweep(const strut_arguments *given) {
                                "without --shard and --emit");
   if (!status && strut_study_has_stages(study.plan.study)) status = check_search(arguments, &study);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
-  if (!status && arguments->count_points)
+  if (!status && arguments->plan)
+    status = strut_sweep_fit_plan(arguments, &study);
+  else if (!status && arguments->count_points)
     status = strut_print_values(arguments, &strut_sweep_count_values, &study.plan, NULL);
   else if (!status && arguments->emit.text)
     status = emit_script(arguments, study.plan.study);

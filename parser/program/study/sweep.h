@@ -113,6 +113,8 @@ strut_status strut_sweep_search_check_workers(strut_sweep_study *study);
 strut_status strut_sweep_search(strut_study_job *job);
 /** Does the same with a study that fits. */
 strut_status strut_sweep_fit(strut_study_job *job);
+/** Prints which measurements would determine the parameters of a study that fits best. */
+strut_status strut_sweep_fit_plan(const strut_arguments *arguments, const strut_sweep_study *study);
 /** Do points depend on those before, so that shards are workers that share one file? */
 static inline bool strut_study_has_stages(const strut_study *study) {
   return study->search || study->fit;

@@ -7,6 +7,7 @@
 #include "engine/study/results/study_table.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
+#include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
 /* `context`: the result. */
@@ -41,6 +42,19 @@ static strut_status complete(const strut_study_job *job, const strut_fit_result 
   fprintf(stderr, "strut: not all parameters are identified%s%s\n", *result->reason ? ": " : "",
           result->reason);
   return STRUT_INACCURATE;
+}
+
+strut_status strut_sweep_fit_plan(const strut_arguments *arguments, const strut_sweep_study *study) {
+  strut_fit_plan plan = {0};
+  strut_error error = {0};
+  if (!study->plan.study->fit)
+    return strut_usage_error(arguments, "--plan is for studies with 'fit'");
+  strut_status status =
+      strut_fit_plan_find(&study->plan, strut_interrupt_watch(), &plan, &error);
+  strut_print_failure(status, &error);
+  if (!status) status = strut_print_values(arguments, &strut_fit_plan_values, &plan, NULL);
+  strut_arena_free(&plan.arena);
+  return status;
 }
 
 strut_status strut_sweep_fit(strut_study_job *job) {
