@@ -15,6 +15,12 @@
 static const double shares[] = {0.125, 0.25, 0.5, 1.0};
 enum { SHARES = sizeof shares / sizeof shares[0], STEPS_FIRST = 20, FEW = 2 };
 
+/* Short motions need not be fitted closer than to this part of the ranges. */
+static const double NEAR_FIRST = 1e-3;
+
+/* So many places are tried where the model cannot be computed at a start. */
+enum { MOST_PLACES = 50 };
+
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
@@ -69,9 +75,25 @@ static strut_status fit_from(strut_fit_case *one, double *parameters,
     one->share = shares[k], one->known = false;
     if (!last && strut_fit_used(one) < FEW * one->layout->parameters) continue;
     strut_least_squares problem = strut_fit_problem(one);
-    if (!last) problem.most_steps = STEPS_FIRST;
+    if (!last) problem.most_steps = STEPS_FIRST, problem.near = NEAR_FIRST;
     status = strut_least_squares_solve(&problem, parameters, solution);
     evaluations += solution->evaluations;
+    if (solution->end == STRUT_FIT_FAILED) break;
+  }
+  solution->evaluations = evaluations;
+  return status;
+}
+
+/* The fit of a start, which begins elsewhere where the model cannot be computed there. */
+static strut_status fit_start(strut_fit_case *one, int64_t start, double *parameters,
+                              strut_fit_solution *solution) {
+  strut_status status = STRUT_OK;
+  int64_t evaluations = 0;
+  for (int k = 0; k < MOST_PLACES && !status && !one->status; k++) {
+    strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
+    status = fit_from(one, parameters, solution);
+    evaluations += solution->evaluations;
+    if (solution->end != STRUT_FIT_FAILED) break;
   }
   solution->evaluations = evaluations;
   return status;
@@ -85,8 +107,10 @@ static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i,
   double moved = value - self->best[i];
   for (size_t j = 0; j < n; j++) {
     double slope = covariance[j * n + i] / covariance[i * n + i];
-    parameters[j] = self->best[j] + (isfinite(slope) ? slope * moved : 0.0);
-    parameters[j] = fmin(fmax(parameters[j], self->layout->low[j]), self->layout->high[j]);
+    parameters[j] = self->best[j] + slope * moved;
+    bool inside = parameters[j] > self->layout->low[j] && parameters[j] < self->layout->high[j];
+    if (!inside)
+      parameters[j] = self->best[j]; /* where it is not determined the line leads anywhere */
   }
   parameters[i] = value;
   strut_least_squares problem = strut_fit_problem(one);
@@ -145,8 +169,7 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
   const strut_fit_layout *layout = self->layout;
   *solution = (strut_fit_solution){.end = STRUT_FIT_FAILED, .sum = (double)NAN};
   if (what.kind == 0) {
-    strut_fit_choose_start(layout, (int64_t)what.item, parameters);
-    return fit_from(one, parameters, solution);
+    return fit_start(one, (int64_t)what.item, parameters, solution);
   }
   strut_fit_choose_start(layout, 0, parameters);
   if (!self->best) return STRUT_OK; /* no start has residuals */
@@ -389,6 +412,7 @@ static bool fill_estimates(fitting *self) {
     estimate->high = estimate->linear_high = value + slope * error * half;
     estimate->from = strut_fit_value(layout, i, layout->low[i]);
     estimate->to = strut_fit_value(layout, i, layout->high[i]);
+    if (!(estimate->error < estimate->to - estimate->from)) estimate->error = HUGE_VAL;
     for (size_t j = first; j < n && i >= first; j++)
       result->correlation[(i - first) * result->variable_count + j - first] =
           covariance[i * n + j] / (error * sqrt(covariance[j * n + j]));

@@ -65,9 +65,10 @@ typedef struct strut_fit_residuals {
 
 /** A direction in the space of the fitted parameters, each in units of its range. */
 typedef struct strut_fit_direction {
-  double error;       /* standard deviation along it, in such units */
-  const double *part; /* (variables) of length 1 */
-  const char *words;  /* "friction and damping together" */
+  double error;           /* standard deviation along it, in such units */
+  const double *part;     /* (variables) of length 1 */
+  const char *words;      /* "friction and damping together" */
+  const char *determined; /* of two parameters: "friction + 0.98 damping"; else NULL */
 } strut_fit_direction;
 
 typedef struct strut_fit_result {

@@ -27,16 +27,16 @@ static bool is_skewed(const strut_fit_estimate *e) {
 }
 
 #define ESTIMATE(X)                                                                                \
-  X("parameter", "", TEXT(e->name), "its name", .label = {""}, .column = {"parameter"})            \
+  X("parameter", "", TEXT(e->name), "its name", .label = {""})                                     \
   X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
-  X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""}, .column = {"value"})     \
+  X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""})                          \
   X("standard_error", "", IN(e->unit, e->error), "by the derivatives; null: there is none",        \
-    .label = {"standard error"}, .column = {"standard_error"})                                     \
+    .label = {"standard error"})                                                                   \
   X("low", "", IN(e->unit, e->low), "95 % interval, by the profile; null: not given",              \
-    .label = {"95 %, from"}, .column = {"low"})                                                    \
-  X("high", "", IN(e->unit, e->high), "likewise", .label = {"to"}, .column = {"high"})             \
+    .label = {"95 %, from"})                                                                       \
+  X("high", "", IN(e->unit, e->high), "likewise", .label = {"to"})                                 \
   X("verdict", "", TEXT(verdicts[e->verdict]), "whether it is identified, or why not",             \
-    .label = {""}, .column = {"verdict"})                                                          \
+    .label = {""})                                                                                 \
   X("linear_low", "", IF(is_skewed(e), NUMBER(e->linear_low)),                                     \
     "95 % interval by the standard error, where it differs by more than a fifth")                  \
   X("linear_high", "", IF(is_skewed(e), NUMBER(e->linear_high)), "likewise")
@@ -98,8 +98,10 @@ STRUT_VALUES_HERE(omission_values, OMISSION, )
 
 #define DIRECTION(X)                                                                               \
   X("words", "", TEXT(d->words), "what is not determined", .label = {"not determined"})            \
+  X("determined", "", IF(d->determined, TEXT(d->determined)),                                      \
+    "of two parameters, each over its range", .label = {"but, over the ranges"})                   \
   X("error", "1", NUMBER(d->error), "standard deviation along it, in parts of the ranges",         \
-    .label = {"standard deviation, in parts of the ranges"})                                       \
+    .label = {"error, of the ranges"})                                                             \
   X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")
 STRUT_VALUES_HERE(direction_values, DIRECTION, const strut_fit_direction *d = of->at)
 
@@ -170,6 +172,23 @@ static void add_quantity(strut_buffer *text, double value, const char *unit) {
   strut_buffer_add(text, "%s%s", plain ? "" : " ", plain ? "" : unit);
 }
 
+static char *estimates_csv(const strut_fit_result *result) {
+  strut_buffer csv = {0};
+  strut_buffer_add(&csv, "parameter,value,standard_error,low,high,verdict\n");
+  for (size_t i = result->aligned_count; i < result->parameters; i++) {
+    const strut_fit_estimate *e = &result->estimates[i];
+    const double numbers[] = {e->value, isfinite(e->error) ? e->error : (double)NAN, e->low,
+                              e->high};
+    strut_buffer_add(&csv, "%s", e->name);
+    for (int k = 0; k < 4; k++) {
+      strut_buffer_add(&csv, ",");
+      strut_csv_add_number(&csv, numbers[k]);
+    }
+    strut_buffer_add(&csv, ",%s\n", verdicts[e->verdict]);
+  }
+  return strut_buffer_take(&csv);
+}
+
 /* Of the errors of the parameters, SI. */
 static char *covariance_csv(const strut_fit_result *result) {
   strut_buffer csv = {0};
@@ -200,6 +219,7 @@ static char *residuals_csv(const strut_fit_result *result) {
         const double numbers[] = {match->at ? match->at[i] : (double)NAN,
                                   match->series[s].measured[i], result->predicted[first + i],
                                   result->residual[first + i]};
+        if (isnan(numbers[1])) continue;
         strut_buffer_add(&csv, "%s,", match->name);
         strut_csv_add_text(&csv, "%s", match->series[s].of);
         for (int k = 0; k < 4; k++) {
@@ -254,9 +274,7 @@ static char *uncertain_yaml(const strut_fit_result *result) {
 strut_status strut_fit_write(const strut_fit_result *result, const char *directory,
                              const char *model, strut_error *error) {
   if (!result->found) return STRUT_OK;
-  strut_status status = strut_file_write_block(
-      directory, "fit.csv", strut_values_csv(&strut_fit_values, "parameters", NULL, result, NULL),
-      error);
+  strut_status status = strut_file_write_block(directory, "fit.csv", estimates_csv(result), error);
   if (!status)
     status = strut_file_write_block(directory, "covariance.csv", covariance_csv(result), error);
   if (!status)

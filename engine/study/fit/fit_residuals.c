@@ -13,7 +13,7 @@
 static const double TOLERANCE = 1e-8;
 
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
-static const double STEP = 1e-4, NEAR = 1e-7;
+static const double STEP = 1e-4, NEAR = 1e-6;
 
 /* Part of the time between samples at which the rate of a motion is taken. */
 static const double BESIDE = 0.01;

@@ -80,26 +80,27 @@ static const char *find_flaw(strut_fit_result *result) {
 
 /* ---- directions ---- */
 
-/* "friction and damping together; determined is friction - 0.98 damping, each over its range". */
-static const char *describe_direction(strut_fit_result *result, const double *part) {
+/* "friction and damping together", and what of two is determined. False: memory is out. */
+static bool describe_direction(strut_fit_result *result, strut_fit_direction *direction) {
   char text[300] = "";
   size_t used = 0, taken = 0, pair[2] = {0, 0};
   const strut_search_variable *variables = result->fit->variables;
   for (size_t k = 0; k < result->variable_count; k++) {
-    if (fabs(part[k]) < PART) continue;
+    if (fabs(direction->part[k]) < PART) continue;
     if (taken < 2) pair[taken] = k;
     taken++;
     if (used < sizeof text - 60)
       used += (size_t)snprintf(text + used, sizeof text - used, "%s%.40s", used ? " and " : "",
                                variables[k].name);
   }
-  if (taken == 2)
-    snprintf(text + used, sizeof text - used,
-             " together; determined is %.40s %+.3g %.40s, each over its range",
-             variables[pair[0]].name, -part[pair[0]] / part[pair[1]], variables[pair[1]].name);
-  else if (taken > 2)
-    snprintf(text + used, sizeof text - used, " together");
-  return strut_arena_text(&result->arena, text, strlen(text));
+  if (taken > 1) snprintf(text + used, sizeof text - used, " together");
+  direction->words = strut_arena_text(&result->arena, text, strlen(text));
+  if (taken != 2) return direction->words != NULL;
+  double other = -direction->part[pair[0]] / direction->part[pair[1]];
+  direction->determined =
+      strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", variables[pair[0]].name,
+                         other < 0.0 ? '-' : '+', fabs(other), variables[pair[1]].name);
+  return direction->words && direction->determined;
 }
 
 /* Directions in which the numbers determine nothing, and who takes part in them. */
@@ -115,8 +116,8 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
     if (!(error * size > WIDE) || !(size > PART)) continue;
     for (size_t i = first; i < n; i++) part[i - first] = spectrum->direction[k * n + i] / size;
     strut_fit_direction *direction = &result->directions[result->direction_count++];
-    *direction = (strut_fit_direction){error, part, describe_direction(result, part)};
-    if (!direction->words) return false;
+    *direction = (strut_fit_direction){.error = error, .part = part};
+    if (!describe_direction(result, direction)) return false;
     for (size_t i = first; i < n; i++)
       if (fabs(part[i - first]) > PART) result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
   }

@@ -276,7 +276,7 @@ void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
   size_t more = strut_study_search_columns(search);
   reader->searching = more > 0;
   study->axes =
-      strut_reader_allocate(reader->reader, arena, listed + more + 2, sizeof *study->axes);
+      strut_reader_allocate(reader->reader, arena, listed + more + 3, sizeof *study->axes);
   reader->file->columns =
       strut_reader_allocate(reader->reader, arena, names + reader->declared_count + more + 1,
                             sizeof *reader->file->columns);

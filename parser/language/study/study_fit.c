@@ -160,6 +160,33 @@ static bool add_series(strut_study_reader *reader, reading *self, const strut_tr
   return true;
 }
 
+/* The other coordinate of the place of a series, which was not measured but turns with it. */
+static void add_partner(strut_study_reader *reader, reading *self, const strut_tree *key,
+                        const double *gaps) {
+  strut_fit_match *to = self->to;
+  size_t length = strlen(key->text);
+  char last = length > 2 && key->text[length - 2] == '.' ? key->text[length - 1] : '\0';
+  if (last != 'x' && last != 'y') return;
+  char *text = strut_arena_text(&reader->file->arena, key->text, length);
+  if (!text) return;
+  text[length - 1] = last == 'x' ? 'y' : 'x';
+  for (size_t s = 0; s < to->series_count; s++)
+    if (strcmp(to->series[s].of, text) == 0) return;
+  strut_tree other = *key;
+  other.text = text;
+  to->series[to->series_count++] = (strut_fit_series){
+      .of = text, .place = {key->place.line, key->place.column}, .unit = "m", .measured = gaps};
+  if (!strut_study_measure(reader->file, &other)) reader->reader->out_of_memory = true;
+}
+
+static void add_partners(strut_study_reader *reader, reading *self) {
+  double *gaps =
+      strut_reader_allocate(reader->reader, &reader->file->arena, self->to->count, sizeof *gaps);
+  for (size_t i = 0; gaps && i < self->to->count; i++) gaps[i] = (double)NAN;
+  for (const strut_tree *key = self->rest.first; key && gaps; key = key->next->next)
+    add_partner(reader, self, key, gaps);
+}
+
 static void read_curve(strut_study_reader *reader, reading *self) {
   const strut_slot *force = strut_slot_of(&self->fields, STRUT_KEY_MATCH_FORCE);
   self->to->at = read_at(reader, self, STRUT_KEY_MATCH_DISPLACEMENT, STRUT_DIM_LENGTH, false);
@@ -172,6 +199,7 @@ static void read_curve(strut_study_reader *reader, reading *self) {
 
 /* What kind of match it is, by the keys that it has. */
 static void choose_kind(strut_study_reader *reader, reading *self) {
+  strut_fields fields;
   bool over_time = strut_slot_of(&self->fields, STRUT_KEY_MATCH_TIME)->state != STRUT_ABSENT;
   bool curve = strut_slot_of(&self->fields, STRUT_KEY_MATCH_DISPLACEMENT)->state != STRUT_ABSENT;
   bool table = strut_slot_of(&self->fields, STRUT_KEY_MATCH_COMPUTE)->state != STRUT_ABSENT;
@@ -180,6 +208,9 @@ static void choose_kind(strut_study_reader *reader, reading *self) {
                    : curve   ? STRUT_FIT_CURVE
                    : table   ? STRUT_FIT_TABLE
                              : STRUT_FIT_REST;
+  if (align->state == STRUT_GIVEN)
+    strut_read_object(reader->reader, STRUT_SECTION_ALIGN, align->value, self->owner, &fields,
+                      self->to);
   if (over_time + curve + table > 1)
     strut_report_error(reader->reader, self->own.place,
                        "match '%s' can have only one of 'time', 'displacement' and 'compute'",
@@ -206,8 +237,8 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
   if (!divide(reader, key->next, &self)) return;
   strut_read_object(r, STRUT_SECTION_MATCH, &self.own, self.owner, &self.fields, to);
   choose_kind(reader, &self);
-  to->series =
-      strut_reader_allocate(r, &reader->file->arena, self.rest.count + 1, sizeof *to->series);
+  to->series = strut_reader_allocate(r, &reader->file->arena, 2 * (size_t)self.rest.count + 1,
+                                     sizeof *to->series);
   if (!to->series) return;
   if (to->kind == STRUT_FIT_CURVE) read_curve(reader, &self);
   if (to->kind == STRUT_FIT_MOTION)
@@ -220,6 +251,7 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
                        strut_sanitised_text(r, first->text));
   for (; first && to->kind != STRUT_FIT_CURVE; first = first->next->next)
     add_series(reader, &self, first);
+  if (to->align.rotate && to->series_count) add_partners(reader, &self);
   if (!self.rest.count && to->kind != STRUT_FIT_CURVE)
     strut_report_error(r, key->place,
                        "match '%s' compares nothing: add what the model has, such as "
