@@ -326,7 +326,8 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   strut_study_read_sensitivity(reader, top);
   strut_study_read_follow(reader, top);
   strut_read_data(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_DATA));
-  file->study.tables = reader->reader->tables, file->study.table_count = reader->reader->table_count;
+  file->study.tables = reader->reader->tables,
+  file->study.table_count = reader->reader->table_count;
   strut_study_read_fit(reader, top);
   check_overrides(reader, count);
 }
@@ -433,14 +434,21 @@ static const strut_scene_source *source_of(const strut_study_file *file,
   return file->sources[i];
 }
 
+/* Does a match of the fit run the model? */
+static bool fits_motions(const strut_study_fit *fit) {
+  bool found = false;
+  for (size_t m = 0; m < fit->match_count; m++) {
+    const strut_fit_match *match = &fit->matches[m];
+    found = found || match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST ||
+            (match->kind == STRUT_FIT_TABLE && match->compute == STRUT_COMPUTE_RUN);
+  }
+  return found;
+}
+
 /* What the scenes of the study are for. */
 static strut_purpose purpose_of(const strut_study *study) {
-  bool run = !study->fit;
-  if (study->follow) return STRUT_FOR_RUN_STEP_LATER;
-  for (size_t m = 0; study->fit && m < study->fit->match_count; m++)
-    run = run || study->fit->matches[m].kind != STRUT_FIT_CURVE ||
-          study->fit->matches[m].compute != STRUT_COMPUTE_RUN;
-  return study->compute == STRUT_COMPUTE_RUN ? STRUT_FOR_RUN : STRUT_FOR_ANY_STATICS;
+  if (study->follow || (study->fit && fits_motions(study->fit))) return STRUT_FOR_RUN_STEP_LATER;
+  return study->compute == STRUT_COMPUTE_RUN && !study->fit ? STRUT_FOR_RUN : STRUT_FOR_ANY_STATICS;
 }
 
 /* Reads a scene, and adjusts it. */

@@ -360,6 +360,34 @@ static void require_noise(strut_study_reader *reader, const strut_tree *matches,
   }
 }
 
+/* Does a match compute one of the words? */
+static bool computes(const strut_study_fit *fit, const char *words) {
+  bool found = false;
+  for (size_t m = 0; m < fit->match_count; m++) {
+    char word[40] = "run";
+    const strut_fit_match *match = &fit->matches[m];
+    if (match->kind == STRUT_FIT_CURVE) strcpy(word, "path");
+    if (match->kind == STRUT_FIT_TABLE)
+      strut_word_at(strut_key_at(STRUT_KEY_MATCH_COMPUTE)->words, (int)match->compute, word,
+                    sizeof word);
+    found = found || strut_word_find(words, word) >= 0;
+  }
+  return found;
+}
+
+/* Keys of the study that no match has a use for. */
+static void refuse_unused(strut_study_reader *reader, strut_fields *top,
+                          const strut_study_fit *fit) {
+  int first = strut_section_first(STRUT_SECTION_STUDY), n = strut_section_size(STRUT_SECTION_STUDY);
+  for (int k = first; k < first + n; k++) {
+    const strut_slot *slot = strut_slot_of(top, k);
+    const char *words = strut_study_key_computes(k);
+    if (words && slot->state == STRUT_GIVEN && !computes(fit, words))
+      strut_report_error(reader->reader, slot->key->place, "no match of the fit uses '%s'",
+                         slot->key->text);
+  }
+}
+
 void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   static const int others[] = {STRUT_KEY_STUDY_AXES,         STRUT_KEY_STUDY_VARIANTS,
                                STRUT_KEY_STUDY_REFINE,       STRUT_KEY_STUDY_SEARCH,
@@ -392,6 +420,7 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   for (const strut_tree *key = matches->value->first; key; key = key->next->next)
     read_match(reader, key, &fit->matches[fit->match_count++]);
   require_noise(reader, matches->value, fit);
+  refuse_unused(reader, top, fit);
   strut_study_axis *rows = &study->axes[study->axis_count++];
   add_rows(reader, fit, over->value->count, rows);
   read_over(reader, over, fit);
