@@ -594,6 +594,19 @@ static bool make_box(strut_fit_layout *layout) {
   return layout->low && layout->high;
 }
 
+/* Keeps all columns that the study can have. */
+static void keep_all(strut_study *study) {
+  const strut_study own = *study;
+  study->keep = (strut_keep_set){{0}};
+  for (unsigned k = 0; k < STRUT_KEEP_COUNT; k++) {
+    bool there = strut_kept_word_at(k)->of >> own.compute & 1u;
+    if (k == STRUT_KEEP_STIFFNESS) there = there && own.goal.stiffness_node;
+    if (k == STRUT_KEEP_SHAPE) there = there && (own.goal.like || own.goal.shape_count);
+    if (k == STRUT_KEEP_CURVE) there = there && own.goal.curve_count;
+    if (there) strut_keep_add(&study->keep, k);
+  }
+}
+
 /* The study that computes the columns of a match, or its path. */
 static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
@@ -601,6 +614,7 @@ static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *
   layout->studies[m].compute =
       match->kind == STRUT_FIT_CURVE ? (uint32_t)STRUT_COMPUTE_PATH : match->compute;
   if (match->kind != STRUT_FIT_TABLE) return STRUT_OK;
+  keep_all(&layout->studies[m]);
   return strut_sweep_plan_make(&layout->studies[m], &layout->plan->scenes, &layout->tables[m],
                                error);
 }
