@@ -76,14 +76,14 @@ static const strut_declared *parameter_of(table *self, size_t i) {
   const strut_declared *found = strut_study_declared(self->r, name);
   if (!found) {
     strut_diagnose(
-        messages(self), self->csv.place[i], "the model has no parameter '%s'%s%s",
+        messages(self), strut_csv_place(&self->csv, i), "the model has no parameter '%s'%s%s",
         strut_sanitised_text(reader, name),
         strut_hint(reader, name, strut_study_declared_name, self->r, self->r->declared_count),
         self->columns ? "" : "; {points: {file: ..., columns: [...]}} chooses columns");
     return NULL;
   }
   if (strut_name_map_find(&self->r->given, found->name) >= 0) {
-    strut_diagnose(messages(self), self->csv.place[i], "parameter '%s' is given twice",
+    strut_diagnose(messages(self), strut_csv_place(&self->csv, i), "parameter '%s' is given twice",
                    found->name);
     return NULL;
   }
@@ -96,7 +96,7 @@ static bool read_number(const char *text, const char *unit, strut_quantity *quan
   char whole[200];
   double plain;
   strut_expression_error error;
-  if (!strut_csv_number(text, &plain) || !isfinite(plain)) return false;
+  if (!strut_csv_number(text, 0, &plain) || !isfinite(plain)) return false;
   int n = snprintf(whole, sizeof whole, "%s %s", *text == '+' ? text + 1 : text, unit);
   return n > 0 && (size_t)n < sizeof whole &&
          strut_expression_evaluate(whole, NULL, quantity, &error);
@@ -116,12 +116,13 @@ static bool check_unit(table *self, size_t i, const strut_study_along *along, co
     setting->dimension = q.dimension;
   }
   if (known && !q.bare && strut_dimension_equal(q.dimension, setting->dimension)) return true;
-  strut_diagnose(
-      messages(self), self->csv.place[i], "expected %s in column '%s', found the unit '%s'",
-      along->parameter->text ? "texts"
-      : setting->bare        ? "a unit"
-                             : strut_expected_number(setting->dimension, expected, sizeof expected),
-      along->parameter->name, strut_sanitised_text(self->r->reader, title));
+  strut_diagnose(messages(self), strut_csv_place(&self->csv, i),
+                 "expected %s in column '%s', found the unit '%s'",
+                 along->parameter->text ? "texts"
+                 : setting->bare
+                     ? "a unit"
+                     : strut_expected_number(setting->dimension, expected, sizeof expected),
+                 along->parameter->name, strut_sanitised_text(self->r->reader, title));
   return false;
 }
 
@@ -141,11 +142,12 @@ static void refuse_cell(table *self, size_t cell, const strut_study_along *along
   const char *text = self->csv.cell[cell];
   const char *expected = along->parameter->text ? "a text of 1 to 23 bytes" : "a number";
   if (!*text)
-    strut_diagnose(messages(self), self->csv.place[cell],
+    strut_diagnose(messages(self), strut_csv_place(&self->csv, cell),
                    "expected %s for '%s', found an empty cell", expected, along->parameter->name);
   else
-    strut_diagnose(messages(self), self->csv.place[cell], "expected %s for '%s', found '%s'",
-                   expected, along->parameter->name, strut_sanitised_text(self->r->reader, text));
+    strut_diagnose(messages(self), strut_csv_place(&self->csv, cell),
+                   "expected %s for '%s', found '%s'", expected, along->parameter->name,
+                   strut_sanitised_text(self->r->reader, text));
 }
 
 /* The cells of column i. */
@@ -233,8 +235,8 @@ static void read_file(table *self, const strut_tree *name, strut_study_axis *axi
   reader->file->table_count++;
   strut_diagnostics_source(messages(self), self->points->file.path, self->points->file.text,
                            self->points->file.length);
-  status = strut_csv_read(self->points->file.text, self->points->file.length, messages(self),
-                          &self->csv);
+  status = strut_csv_read(self->points->file.text, self->points->file.length, STRUT_CSV_ANY_HEADER,
+                          messages(self), &self->csv);
   if (status == STRUT_OK) read_columns(self, axis);
   if (status == STRUT_NO_MEMORY || messages(self)->out_of_memory)
     reader->reader->out_of_memory = true;
