@@ -22,7 +22,7 @@ EXCEPTIONS = {
     'contact.friction': 'of runs',
     'unbalance.speed': 'of runs',
     'load.signal': 'loads with a signal are off at rest',
-    'law.bezier': 'which of the two lists of points is given',
+    'law.source': 'which of the lists of points is given',
     'sliding_mass.travel': 'a tag of its signal, whose value at t = 0 counts',
 }
 

@@ -8,7 +8,13 @@
 
 #include "parser/language/expression/expression.h"
 
-enum { MOST_COLUMNS = 10000, MOST_MESSAGES = 20, SAMPLED_LINES = 30, PEEKED_LINES = 6 };
+enum {
+  MOST_COLUMNS = 10000,
+  MOST_ROWS = 5000000,
+  MOST_MESSAGES = 20,
+  SAMPLED_LINES = 30,
+  PEEKED_LINES = 6
+};
 
 /* A line, as its first cell and how many it has. */
 typedef struct record {
@@ -295,6 +301,11 @@ static void take_row(reader *self, record line, size_t *kept) {
     strut_diagnose(self->diagnostics, strut_place_at(line.line, 1, 1),
                    "%zu cells, expected %zu as in the header", line.count, columns);
   size_t rows = self->csv->row_count;
+  if (rows == MOST_ROWS) {
+    strut_diagnose(self->diagnostics, strut_place_at(line.line, 1, 1), "more than %d rows",
+                   MOST_ROWS);
+    self->at = self->end;
+  }
   if (!strut_grow(&self->row_line, &self->row_capacity, rows + 1, sizeof *self->row_line))
     self->failed = true;
   if (self->failed || line.count != columns) return;
@@ -460,8 +471,9 @@ strut_status strut_csv_read(const char *text, size_t length, int header,
     r.end = r.at + length;
     if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) r.at += 3; /* a byte order mark */
     r.separator = find_separator(&r, header);
-    if (read_header(&r, header)) make_titles(&r);
-    if (!r.failed && !diagnostics->count) read_rows(&r);
+    bool fine = read_header(&r, header);
+    if (fine) make_titles(&r);
+    if (fine && !r.failed) read_rows(&r);
   }
   if (!r.failed && !diagnostics->count && !csv->row_count)
     strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the table has a header but no rows");
