@@ -200,7 +200,9 @@ static const strut_law_curve *make_curve(strut_model *model, const strut_law *gi
     energy[i + 1] = energy[i] + h * (p[0] + h * (p[1] / 2.0 + h * (p[2] / 3.0 + h * p[3] / 4.0)));
   }
   strut_law_numbers numbers = {.curve = curve};
-  if (folds) curve->start = find_start(curve), curve->smooth = law->bezier || law->rounding > 0.0;
+  if (folds)
+    curve->start = find_start(curve),
+    curve->smooth = law->source == STRUT_LAW_CONTROL_POINTS || law->rounding > 0.0;
   double origin = strut_law_respond(law->kind, &numbers, 0.0, 0.0, -1).energy;
   for (size_t i = 0; i < n; i++) energy[i] -= origin;
   return curve;

@@ -86,11 +86,13 @@ static size_t trace(const bezier *self, int pieces, strut_curve_point *point) {
   return count;
 }
 
-static bool is_smooth(const strut_law *law) { return law->bezier || law->rounding > 0.0; }
+static bool is_bezier(const strut_law *law) { return law->source == STRUT_LAW_CONTROL_POINTS; }
+
+static bool is_smooth(const strut_law *law) { return is_bezier(law) || law->rounding > 0.0; }
 
 /* Points that one side has at most, or all where nothing is mirrored. */
 static size_t own_room(const strut_law *law) {
-  if (law->bezier) return 3 + (MOST_FOLDS + 1) * BEZIER_PIECES;
+  if (is_bezier(law)) return 3 + (MOST_FOLDS + 1) * BEZIER_PIECES;
   if (law->rounding > 0.0) return 2 + law->count * (2 * CORNER_PIECES + 1);
   return law->count;
 }
@@ -119,7 +121,7 @@ static size_t trace_own(const strut_law *law, strut_curve_point *point) {
   const strut_curve_point first = {law->x[0], law->force[0], (double)NAN};
   const strut_curve_point last = {law->x[law->count - 1], law->force[law->count - 1], (double)NAN};
   size_t count = 0;
-  if (law->bezier) {
+  if (is_bezier(law)) {
     bezier b = {.count = law->count};
     for (size_t k = 0; k < law->count; k++) b.x[k] = law->x[k], b.force[k] = law->force[k];
     count = law->mirrored ? 0 : 1;
@@ -184,7 +186,7 @@ const char *strut_curve_fault(const strut_law *law) {
   if (law->mirrored && !(law->x[0] == 0.0 && law->force[0] == 0.0))
     return "is mirrored, so that its first point must be [0, 0]";
   if (!(law->rounding >= 0.0 && law->rounding < 1.0)) return "needs a rounding from 0 to below 1";
-  const char *fault = law->bezier ? fault_of_control(law) : NULL;
+  const char *fault = is_bezier(law) ? fault_of_control(law) : NULL;
   if (law->kind == STRUT_LAW_FOLDING && !fault) {
     strut_curve_point *point = strut_allocate(strut_curve_room(law), sizeof *point);
     if (point) fault = fault_of_folds(point, strut_curve_trace(law, point));

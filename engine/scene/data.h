@@ -23,6 +23,7 @@ typedef struct strut_data_column {
   const double *weights;     /* (row_count) >= 0, 0 at gaps; NULL: all are 1 */
   size_t gap_count;          /* of the values */
   double least, most;        /* of the values; NAN where all are gaps */
+  size_t flaw;               /* without values: the row of the cell that is no number */
   bool doubled;              /* an earlier column of the table has this name */
 } strut_data_column;
 
@@ -30,18 +31,23 @@ typedef struct strut_data_table {
   const char *name, *file; /* file: as the text names it */
   size_t row_count, column_count;
   const strut_data_column *columns;
-  int32_t time;          /* column of the time: the first with such a unit; -1: none */
-  uint32_t line, letter; /* place of the file's name in the text of the scene or study, from 1 */
+  int32_t time;       /* column of the time: the first with such a unit; -1: none */
+  const char *naming; /* path of the text that names the file */
   /* as given, so that they can be written again */
-  int32_t header, skip; /* lines; rows after them that are left out */
-  uint32_t flip;        /* 1 x, 2 y, 3 both */
-  double scale, rotate; /* scale: 0 without; [rad] */
-  bool scale_is_length; /* [m] for each unit of the coordinates; otherwise a factor */
-  double shift[2];      /* [m] */
-  const char *weights;  /* a column's name, or that of the last part of such columns; NULL: none */
+  int32_t header, skip;   /* lines, -1: as the file shows; rows below them that are left out */
+  uint32_t flip;          /* 1 x, 2 y, 3 both */
+  double scale;           /* of coordinates */
+  const char *scale_unit; /* "m": for each unit of coordinates without one; NULL: a factor */
+  double rotate;          /* [rad] */
+  double shift[2];        /* [m] */
+  const char *weights;    /* a column's name, or the last part of some; "": none */
   size_t unit_count;
   const char **units; /* (unit_count, 2) of a column: its name, its unit */
 } strut_data_table;
+
+/** Defaults of what is given. */
+#define STRUT_DATA_USUAL                                                                           \
+  { .name = "", .file = "", .weights = "", .header = -1, .scale = 1.0, .time = -1 }
 
 /**
  * The column that "TABLE.COLUMN" names among `count` tables, or NULL; *table, unless NULL, is the table, also

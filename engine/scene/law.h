@@ -70,6 +70,13 @@ typedef enum strut_carries {
   STRUT_CARRIES_COMPRESSION
 } strut_carries;
 
+/** Where the points of a law come from. */
+typedef enum strut_law_source {
+  STRUT_LAW_POINTS,
+  STRUT_LAW_CONTROL_POINTS, /* of a curve: of one Bezier curve */
+  STRUT_LAW_DATA_POINTS     /* of a table: measured ones */
+} strut_law_source;
+
 /** A law as a scene describes it. */
 typedef struct strut_law {
   strut_law_kind kind;
@@ -80,7 +87,8 @@ typedef struct strut_law {
   size_t count;
   const double *x, *force; /* (count) points of a table; of a polynomial coefficients, in `force` */
   bool smooth;             /* of a table: a monotone spline instead of straight lines */
-  bool bezier;             /* of a curve: the points are control points of one Bezier curve */
+  strut_law_source source; /* of these points */
+  const char *data, *over; /* of measured ones: the columns of force and x */
   bool mirrored;           /* of both: x and force count with both signs */
   double rounding;         /* of a curve: share of each piece that its rounded corners take */
 } strut_law;

@@ -77,7 +77,7 @@ double strut_scene_last_signal_event(const strut_scene *scene) {
     last = fmax(last, signal->start);
     if (isfinite(signal->stop)) last = fmax(last, signal->stop);
     if (signal->kind == STRUT_HALF_SINE) last = fmax(last, signal->start + 0.5 / signal->frequency);
-    if (signal->kind == STRUT_TABLE)
+    if (strut_signal_has_points(signal) && signal->outside != STRUT_OUTSIDE_REPEAT)
       last = fmax(last, signal->start + signal->time[signal->point_count - 1]);
   }
   return last;

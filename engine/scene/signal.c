@@ -56,19 +56,100 @@ static void evaluate_table(const strut_signal *signal, double t, double *value, 
   *rate = rise / span;
 }
 
+/* ---- measured signals ---- */
+
+static double span_of(const strut_signal *signal) {
+  return signal->time[signal->point_count - 1] - signal->time[0];
+}
+
+/* Periods of repeated data before t, so that the time that they end at is the next one's. */
+static double cycles_before(const strut_signal *signal, double t) {
+  double first = signal->time[0], span = span_of(signal), k = floor((t - first) / span);
+  if (signal->outside != STRUT_OUTSIDE_REPEAT) return 0.0;
+  if (first + (k + 1.0) * span <= t) return k + 1.0;
+  return first + k * span > t ? k - 1.0 : k;
+}
+
+/* t within the points of repeated data, before the last. */
+static double time_within(const strut_signal *signal, double t) {
+  if (signal->outside != STRUT_OUTSIDE_REPEAT) return t;
+  double within = t - cycles_before(signal, t) * span_of(signal);
+  double last = signal->time[signal->point_count - 1];
+  return fmin(fmax(within, signal->time[0]), nextafter(last, signal->time[0]));
+}
+
+/* The slope of a piece, the first of which is 0. */
+static double secant(const strut_signal *signal, size_t i) {
+  return (signal->value[i + 1] - signal->value[i]) / (signal->time[i + 1] - signal->time[i]);
+}
+
+/* Steffen's at point i: none at extrema, and so that values between points never leave them. */
+static double slope_at(const strut_signal *signal, size_t i) {
+  const double *t = signal->time;
+  if (i == 0) return secant(signal, 0);
+  if (i + 1 == signal->point_count) return secant(signal, i - 1);
+  double before = secant(signal, i - 1), after = secant(signal, i);
+  double mean = (before * (t[i + 1] - t[i]) + after * (t[i] - t[i - 1])) / (t[i + 1] - t[i - 1]);
+  return (copysign(1.0, before) + copysign(1.0, after)) *
+         fmin(fmin(fabs(before), fabs(after)), 0.5 * fabs(mean));
+}
+
+/* Value, rate and second derivative of the spline. */
+static void evaluate_spline(const strut_signal *signal, double t, double result[3]) {
+  size_t low = count_points(signal, t);
+  bool outside = low == 0 || low == signal->point_count;
+  result[0] = signal->value[low ? low - 1 : 0];
+  result[1] = result[2] = 0.0;
+  if (outside) return;
+  size_t i = low - 1;
+  double h = signal->time[low] - signal->time[i], u = t - signal->time[i];
+  double a = slope_at(signal, i), b = slope_at(signal, low), s = secant(signal, i);
+  double c = (3.0 * s - 2.0 * a - b) / h, d = (a + b - 2.0 * s) / (h * h);
+  result[0] += u * (a + u * (c + u * d));
+  result[1] = a + u * (2.0 * c + u * 3.0 * d);
+  result[2] = 2.0 * c + 6.0 * u * d;
+}
+
+static void evaluate_data(const strut_signal *signal, double t, double *value, double *rate) {
+  double spline[3], within = time_within(signal, t);
+  if (!signal->smooth) {
+    evaluate_table(signal, within, value, rate);
+    return;
+  }
+  evaluate_spline(signal, within, spline);
+  *value = spline[0], *rate = spline[1];
+}
+
+/* The rate of lines jumps at their points, that of splines at their ends. */
+static double next_break_of_data(const strut_signal *signal, double t) {
+  size_t last = signal->point_count - 1;
+  bool repeats = signal->outside == STRUT_OUTSIDE_REPEAT;
+  double before = cycles_before(signal, t) * span_of(signal);
+  for (size_t i = count_points(signal, t - before); i <= last; i++) {
+    if (signal->smooth && i > 0) i = last;
+    if (i == 0 && repeats) continue;
+    double at = repeats && i == last
+                    ? signal->time[0] + (cycles_before(signal, t) + 1.0) * span_of(signal)
+                    : signal->time[i] + before;
+    if (at > t) return at;
+  }
+  return (double)INFINITY;
+}
+
 /* Evaluates all kinds but the sine, which strut_signal_evaluate handles first. */
 static void evaluate_other(const strut_signal *signals, const strut_signal_inputs *in,
                            int32_t index, double t, double turns, double *value, double *rate) {
   const strut_signal *signal = &signals[index];
   *value = *rate = 0.0;
   /* a value outside its time */
-  bool holds =
-      signal->kind == STRUT_RAMP || signal->kind == STRUT_TABLE || strut_signal_has_program(signal);
+  bool holds = signal->kind == STRUT_RAMP || strut_signal_has_points(signal) ||
+               strut_signal_has_program(signal);
   if (!holds && (t < signal->start || t >= signal->stop)) return;
   switch (signal->kind) {
     case STRUT_SINE: break;
     case STRUT_RAMP: evaluate_ramp(signal, t, value, rate); break;
     case STRUT_TABLE: evaluate_table(signal, t, value, rate); break;
+    case STRUT_DATA: evaluate_data(signal, t, value, rate); break;
     case STRUT_CONSTANT: *value = signal->amplitude; break;
     case STRUT_HALF_SINE:
       if (turns < 0.5) evaluate_wave(signal, turns, value, rate);
@@ -182,6 +263,7 @@ static double next_break_inside(const strut_signal *signals, const double *start
     case STRUT_TABLE:
       past = count_points(signal, t);
       return past < signal->point_count ? signal->time[past] : first;
+    case STRUT_DATA: return next_break_of_data(signal, t);
     case STRUT_SUM:
       for (size_t i = 0; i < signal->term_count; i++)
         first = fmin(first, strut_signal_next_break_since(signals, started, signal->terms[i], t,
@@ -202,7 +284,7 @@ static double next_break_inside(const strut_signal *signals, const double *start
 static double next_break_of(const strut_signal *signals, const double *started, int32_t index,
                             double t, double until) {
   const strut_signal *signal = &signals[index];
-  if (signal->kind == STRUT_TABLE || strut_signal_has_program(signal))
+  if (strut_signal_has_points(signal) || strut_signal_has_program(signal))
     return next_break_inside(signals, started, signal, t, until);
   if (t < signal->start) return signal->start;
   double first = next_break_inside(signals, started, signal, t, until);
@@ -226,11 +308,18 @@ double strut_signal_next_break(const strut_signal *signals, int32_t index, doubl
   return strut_signal_next_break_since(signals, NULL, index, t, (double)INFINITY);
 }
 
+/* Period of a signal that repeats by itself; 0: it does not. */
+static double own_period(const strut_signal *signal) {
+  if (signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE) return 1.0 / signal->frequency;
+  bool repeats = signal->kind == STRUT_DATA && signal->outside == STRUT_OUTSIDE_REPEAT;
+  return repeats ? span_of(signal) : 0.0;
+}
+
 /* Longest period among a signal's repeating parts, or among its pulses; 0 without any. */
 static double longest_period(const strut_signal *signals, int32_t index, bool pulses) {
   const strut_signal *signal = &signals[index];
-  bool repeats = signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE;
-  if (pulses ? signal->kind == STRUT_HALF_SINE : repeats) return 1.0 / signal->frequency;
+  if (pulses && signal->kind == STRUT_HALF_SINE) return 1.0 / signal->frequency;
+  if (!pulses && own_period(signal) > 0.0) return own_period(signal);
   double longest = 0.0;
   for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
     longest = fmax(longest, longest_period(signals, signal->terms[i], pulses));
@@ -240,8 +329,9 @@ static double longest_period(const strut_signal *signals, int32_t index, bool pu
 /* True where every repeating part of the signal fits a whole number of times into `period`. */
 static bool repeats_within(const strut_signal *signals, int32_t index, double period) {
   const strut_signal *signal = &signals[index];
-  if (signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE) {
-    double times = period * signal->frequency;
+  double own = own_period(signal);
+  if (own > 0.0) {
+    double times = signal->kind == STRUT_DATA ? period / own : period * signal->frequency;
     return fabs(times - floor(times + 0.5)) <= 1e-9 * times;
   }
   for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
@@ -284,7 +374,7 @@ static void add_signal(const strut_signal *signals, int32_t index, times *self) 
   add_time(self, signal->stop);
   if (signal->kind == STRUT_SINE || signal->kind == STRUT_SQUARE || signal->kind == STRUT_HALF_SINE)
     add_wave(signal, self);
-  for (size_t i = 0; signal->kind == STRUT_TABLE && i < signal->point_count; i++)
+  for (size_t i = 0; strut_signal_has_points(signal) && i < signal->point_count; i++)
     add_time(self, signal->time[i]);
   for (size_t i = 0; signal->kind == STRUT_SUM && i < signal->term_count; i++)
     add_signal(signals, signal->terms[i], self);
@@ -325,7 +415,7 @@ static double wave_acceleration(const strut_signal *signal, double turns) {
 
 double strut_signal_acceleration(const strut_signal *signals, int32_t index, double t) {
   const strut_signal *signal = &signals[index];
-  double turns = signal->frequency * (t - signal->start) + signal->phase, sum = 0.0;
+  double turns = signal->frequency * (t - signal->start) + signal->phase, sum = 0.0, spline[3];
   bool on = t >= signal->start && t < signal->stop;
   switch (signal->kind) {
     case STRUT_SINE: return on ? wave_acceleration(signal, turns) : 0.0;
@@ -334,6 +424,10 @@ double strut_signal_acceleration(const strut_signal *signals, int32_t index, dou
       for (size_t i = 0; i < signal->term_count && on; i++)
         sum += strut_signal_acceleration(signals, signal->terms[i], t);
       return sum;
+    case STRUT_DATA:
+      if (!signal->smooth) break;
+      evaluate_spline(signal, time_within(signal, t), spline);
+      return spline[2];
     case STRUT_CONSTANT:
     case STRUT_SQUARE:
     case STRUT_RAMP:
@@ -372,6 +466,10 @@ bool strut_signal_value_jumps(const strut_signal *signals, int32_t index, double
             switches_within(*when = signal->time[i], last))
           return true;
       return false;
+    case STRUT_DATA: /* where they are repeated */
+      if (signal->outside != STRUT_OUTSIDE_REPEAT) return false;
+      *when = signal->time[0] + (cycles_before(signal, 0.0) + 1.0) * span_of(signal);
+      return signal->value[0] != signal->value[signal->point_count - 1] && *when <= last;
     case STRUT_SUM:
       for (size_t i = 0; i < signal->term_count; i++)
         if (strut_signal_value_jumps(signals, signal->terms[i], last, when)) return true;

@@ -24,6 +24,7 @@ typedef enum strut_signal_kind {
   STRUT_TABLE,      /* linear between the points; holds the first and the last value outside */
   STRUT_SUM,        /* the sum of other signals */
   STRUT_EXPRESSION, /* a program of the time, sensors and other signals */
+  STRUT_DATA,       /* measured: as a table, or a spline through its points */
   STRUT_RELAY,      /* one of two values, which a program switches with hysteresis */
   STRUT_SIGNAL_KINDS
 } strut_signal_kind;
@@ -49,6 +50,13 @@ typedef struct strut_trigger {
   bool each;    /* start again each time, not only once */
 } strut_trigger;
 
+/** What a measured signal is before the first and after the last of its points. */
+typedef enum strut_outside {
+  STRUT_OUTSIDE_ERROR, /* a run must lie between them */
+  STRUT_OUTSIDE_HOLD,
+  STRUT_OUTSIDE_REPEAT /* they are one period */
+} strut_outside;
+
 /** A two-position relay with hysteresis. It has a memory: on which side its input has been last. */
 typedef struct strut_relay {
   double upper, lower; /* thresholds of the input */
@@ -58,7 +66,7 @@ typedef struct strut_relay {
 } strut_relay;
 
 /**
- * One waveform; tau = t - start. Except for ramp, table, expression and relay a signal is 0 before start
+ * One waveform; tau = t - start. Except for ramp, table, data, expression and relay a signal is 0 before start
  * and after stop.
  */
 typedef struct strut_signal {
@@ -68,7 +76,7 @@ typedef struct strut_signal {
   double frequency;     /* [Hz], > 0 for sine, half-sine, square */
   double phase;         /* [turns]; sine and square */
   double start, stop;   /* [s]; default 0 and INFINITY */
-  size_t point_count;   /* table: number of points, >= 1 */
+  size_t point_count;   /* table, data: number of points, >= 1 */
   const double *time;   /* (point_count) [s], increasing; at two alike it jumps */
   const double *value;  /* (point_count) */
   size_t term_count;    /* sum: number of terms */
@@ -79,7 +87,15 @@ typedef struct strut_signal {
   double lag;            /* [s] time constant of a first-order lag; 0: none */
   double every;          /* [s] between samples, after the lag; 0: the signal is continuous */
   strut_relay relay;
+  const char *data, *over; /* data: its columns of values and of times; they may be shared */
+  bool smooth;             /* data: by Steffen's monotone spline instead of straight lines */
+  uint32_t outside;        /* data: strut_outside */
 } strut_signal;
+
+/** Has the signal points: is it a table, or data? */
+static inline bool strut_signal_has_points(const strut_signal *signal) {
+  return signal->kind == STRUT_TABLE || signal->kind == STRUT_DATA;
+}
 
 /** Is the signal computed by its program? */
 static inline bool strut_signal_has_program(const strut_signal *signal) {

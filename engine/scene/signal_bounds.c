@@ -306,6 +306,26 @@ static strut_signal_bounds bound_pieces(const bounder *self, int32_t index, doub
   return result;
 }
 
+/* Of a spline, which is monotone between its points: at most twice as steep as straight lines. */
+static strut_signal_bounds bound_spline(const bounder *self, int32_t index, double from,
+                                        double to) {
+  const strut_signal *signal = &self->signals[index];
+  double ends[2], rate;
+  strut_signal_evaluate(self->signals, index, from, &ends[0], &rate);
+  strut_signal_evaluate(self->signals, index, to, &ends[1], &rate);
+  strut_signal_bounds result = {hull(exactly(ends[0]), exactly(ends[1])), ZERO, false};
+  bool repeats = signal->outside == STRUT_OUTSIDE_REPEAT; /* then of all points */
+  for (size_t i = 1; i < signal->point_count; i++) {
+    const double *t = &signal->time[i - 1], *value = &signal->value[i - 1];
+    if (!repeats && (t[1] < from || t[0] > to)) continue;
+    result.rate = hull(result.rate, exactly(2.0 * (value[1] - value[0]) / (t[1] - t[0])));
+    for (int k = 0; k < 2; k++)
+      if (repeats || (t[k] >= from && t[k] <= to))
+        result.value = hull(result.value, exactly(value[k]));
+  }
+  return result;
+}
+
 static strut_signal_bounds bound_signal(bounder *self, int32_t index, double from, double to);
 
 static strut_signal_bounds bound_program(bounder *self, const strut_program *program, double from,
@@ -313,8 +333,8 @@ static strut_signal_bounds bound_program(bounder *self, const strut_program *pro
 
 static strut_signal_bounds bound_kind(bounder *self, int32_t index, double from, double to) {
   const strut_signal *signal = &self->signals[index];
-  bool holds =
-      signal->kind == STRUT_RAMP || signal->kind == STRUT_TABLE || strut_signal_has_program(signal);
+  bool holds = signal->kind == STRUT_RAMP || strut_signal_has_points(signal) ||
+               strut_signal_has_program(signal);
   strut_signal_bounds result = {ZERO, ZERO, false};
   double half = 2.0 * (signal->frequency * (from - signal->start) + signal->phase);
   if (!holds && (to < signal->start || from >= signal->stop)) return result;
@@ -334,6 +354,9 @@ static strut_signal_bounds bound_kind(bounder *self, int32_t index, double from,
       break;
     case STRUT_RAMP:
     case STRUT_TABLE: return bound_pieces(self, index, from, to);
+    case STRUT_DATA:
+      return signal->smooth ? bound_spline(self, index, from, to)
+                            : bound_pieces(self, index, from, to);
     case STRUT_SUM:
       for (size_t i = 0; i < signal->term_count; i++) {
         strut_signal_bounds part = bound_signal(self, signal->terms[i], from, to);

@@ -80,6 +80,7 @@
   X(MEMBER, REFERENCE(strut_member, node, NODE)) \
   X(MEMBER, REFERENCES(strut_member, guides, guide_count, NODE)) \
   X(CELL, FIELD(strut_cell, law)) \
+  X(LAW, CHOICE(strut_law, source, STRUT_LAW_DATA_POINTS, CURVE(strut_law, x, force, count))) \
   X(GROUND, FIELD(strut_ground_section, ground.present)) \
   X(CONTACT, REFERENCE(strut_contact, node, NODE)) \
   X(CONTACT, REFERENCE(strut_contact, ground, GROUND)) \
@@ -93,6 +94,7 @@
   X(SCENE, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, description), "What the scene shows.") \
   X(SCENE, SOURCE, "source", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_scene, source), "Where its numbers come from.") \
   X(SCENE, PARAMETERS, "parameters", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a quoted text", BY_HAND, "Named values for expressions, which `--set` may change.") \
+  X(SCENE, DATA, "data", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of [data](#data)", THINGS(DATA), "Tables of measured data, for signals, laws and positions.") \
   X(SCENE, GROUPS, "groups", THINGS, NONE, ANY, "", OPTIONAL, 0, "keys of a member, a node, a contact or a hinge", NONE, "Defaults that members, nodes, contacts or hinges share. Own keys take precedence.") \
   X(SCENE, NODES, "nodes", THINGS, NONE, ANY, "", OPTIONAL, 0, "`[x, y]` or the keys of a node", THINGS(NODE), "The points of the structure; required unless parts are placed. Under the name of a placed thing, as under `members` and the like, keys change that thing; `*` stands for one part of a name between dots.") \
   X(SCENE, MEMBERS, "members", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a member", THINGS(MEMBER), "The bars, springs and cables between the nodes.") \
@@ -228,8 +230,10 @@
   X(LAW, SCALE, "scale", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, scale), "Elongation over which the slope of an exponential law grows by the factor e.") \
   X(LAW, YIELD, "yield", NUMBER, CONTEXT, ABOVE_ZERO, "", OPTIONAL, 0, "", FIELD(strut_law, yield), "Force, or moment of a hinge, at which an elastic-plastic law yields.") \
   X(LAW, COEFFICIENTS, "coefficients", NUMBERS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_law, kind, STRUT_LAW_POLYNOMIAL, LIST(strut_law, force, count)), "Coefficients of x, x^2, ... of a polynomial, such as `[10 N/m, 0, 1e5 N/m^3]`.") \
-  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", AMONG(strut_law, bezier, false, false, CURVE(strut_law, x, force, count)), "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x, or of a curve, whose x may decrease. Beyond its ends the law continues straight.") \
-  X(LAW, CONTROL_POINTS, "control_points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_law, bezier, true, CURVE(strut_law, x, force, count)), "Control points `[[x, force], ...]` of one Bezier curve, at most 64, instead of `points`.") \
+  X(LAW, POINTS, "points", POINTS, CONTEXT, ANY, "", OPTIONAL, 9, "", AMONG(strut_law, source, STRUT_LAW_POINTS, STRUT_LAW_POINTS, CURVE(strut_law, x, force, count)), "Points `[[x, force], ...]` of a table, such as `[[-1 mm, -5 N], [0, 0], [2 mm, 3 N]]`, with increasing x, or of a curve, whose x may decrease. Beyond its ends the law continues straight.") \
+  X(LAW, CONTROL_POINTS, "control_points", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_law, source, STRUT_LAW_CONTROL_POINTS, CURVE(strut_law, x, force, count)), "Control points `[[x, force], ...]` of one Bezier curve, at most 64, instead of `points`.") \
+  X(LAW, DATA, "data", TEXT, NONE, ANY, "", OPTIONAL, 9, "", CHOICE(strut_law, source, STRUT_LAW_DATA_POINTS, FIELD(strut_law, data)), "Column `TABLE.COLUMN` of [data](#data) with the force of a table, instead of `points`. Where x turns back, or of more than 1000 rows, means of 200 pieces are taken, of loading and unloading apart and then of both.") \
+  X(LAW, OVER, "over", TEXT, NONE, ANY, "", OPTIONAL, 0, "", AMONG(strut_law, source, STRUT_LAW_DATA_POINTS, STRUT_LAW_DATA_POINTS, FIELD(strut_law, over)), "With `data`: column of x.") \
   X(LAW, ROUNDING, "rounding", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_law, rounding), "Rounds the corners of a curve by parabolas, which take this share, below 1, of each piece.") \
   X(LAW, MIRRORED, "mirrored", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, mirrored), "The points of a table or curve, from `[0, 0]` on, also hold for negative x with the opposite force.") \
   X(LAW, SMOOTH, "smooth", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_law, smooth), "A table is a monotone spline through its points (Steffen), instead of straight lines.")
@@ -326,6 +330,10 @@
   X(SIGNAL, TABLE, "table", TABLE, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_TABLE, CURVE(strut_signal, time, value, point_count)), "Points `[[t, value], ...]`, interpolated linearly; constant before the first and after the last. At two points of one time the signal jumps.") \
   X(SIGNAL, SUM, "sum", SIGNALS, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_SUM, REFERENCES(strut_signal, terms, term_count, SIGNAL)), "The sum of the listed signals.") \
   X(SIGNAL, EXPRESSION, "expression", EXPRESSION, CONTEXT, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_EXPRESSION, LIST(strut_signal, program.instruction, program.length)), "An expression of the time `t`, parameters, [sensors](#sensor) and other signals, evaluated with the forces.") \
+  X(SIGNAL, DATA, "data", TEXT, NONE, ANY, "", OPTIONAL, 0, "", CHOICE(strut_signal, kind, STRUT_DATA, FIELD(strut_signal, data)), "A column `TABLE.COLUMN` of [data](#data) over the time of the table. Gaps are bridged.") \
+  X(SIGNAL, OVER, "over", TEXT, NONE, ANY, "the first column whose unit is a time", OPTIONAL, 0, "", AMONG(strut_signal, kind, STRUT_DATA, STRUT_DATA, FIELD(strut_signal, over)), "Beside `data`: the column of the time.") \
+  X(SIGNAL, INTERPOLATION, "interpolation", WORD, NONE, ANY, "linear", OPTIONAL, 0, "linear|smooth", AMONG(strut_signal, kind, STRUT_DATA, STRUT_DATA, FIELD(strut_signal, smooth)), "Beside `data`: straight lines, or a spline that is monotone where the data are (Steffen).") \
+  X(SIGNAL, OUTSIDE, "outside", WORD, NONE, ANY, "error", OPTIONAL, 0, "error|hold|repeat", AMONG(strut_signal, kind, STRUT_DATA, STRUT_DATA, FIELD(strut_signal, outside)), "Beside `data`: what it is before and after the data. `error`: the run must lie within them; `hold`: their first and last value; `repeat`: they are a period.") \
   X(SIGNAL, STARTS, "starts", MAP, NONE, ANY, "", OPTIONAL, 0, "start", NESTED(strut_signal, trigger, STARTS), "Beside one of the keys above: the event at which the time of the signal begins. Before it, the signal is 0.") \
   X(SIGNAL, LAG, "lag", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, lag), "Beside one of the keys above: time constant of a first-order lag, from 0 at t = 0. It precedes sampling.") \
   X(SIGNAL, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_signal, every), "Beside one of the keys above: samples the signal at multiples of this time and holds it in between.")

@@ -18,7 +18,7 @@ static bool fill_column(const strut_csv *csv, strut_table *table, size_t i) {
   if (!text || !value) return false;
   for (size_t k = 0; k < table->row_count; k++) {
     text[k] = csv->cell[(k + 1) * table->column_count + i];
-    numbers = numbers && strut_csv_number(text[k], &value[k]);
+    numbers = numbers && strut_csv_number(text[k], 0, &value[k]);
     some = some || (numbers && !isnan(value[k]));
   }
   table->columns[i].name = csv->titles[i].name;
@@ -60,7 +60,7 @@ strut_status strut_table_read(const char *path, strut_table *table) {
     return status;
   }
   strut_diagnostics_source(&diagnostics, strcmp(path, "-") == 0 ? "<stdin>" : path, text, length);
-  status = strut_csv_read(text, length, &diagnostics, &csv);
+  status = strut_csv_read(text, length, STRUT_CSV_ANY_HEADER, &diagnostics, &csv);
   if (status == STRUT_OK && !make_columns(&csv, table)) status = STRUT_NO_MEMORY;
   if (status == STRUT_BAD_SCENE)
     status = print_messages(&diagnostics);

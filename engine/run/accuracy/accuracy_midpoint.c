@@ -121,7 +121,7 @@ double strut_accuracy_signal_time(const strut_accuracy *accuracy, bool stops) {
     const strut_signal *signal = &scene->signals[i];
     if (signal->kind != STRUT_CONSTANT && signal->stop > signal->start)
       shortest = fmin(shortest, signal->stop - signal->start);
-    for (size_t k = 1; signal->kind == STRUT_TABLE && k < signal->point_count; k++)
+    for (size_t k = 1; strut_signal_has_points(signal) && k < signal->point_count; k++)
       if (signal->time[k] > signal->time[k - 1])
         shortest = fmin(shortest, signal->time[k] - signal->time[k - 1]);
   }

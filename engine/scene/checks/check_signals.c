@@ -15,8 +15,9 @@ enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
 
 static bool check_table(strut_checker *checker) {
   const strut_signal *signal = &checker->scene->signals[checker->index];
-  if (!signal->point_count)
-    return strut_fault_of(checker, "table", "the table of %s has no points", checker->owner);
+  if (signal->point_count < (signal->kind == STRUT_DATA ? 2 : 1))
+    return strut_fault_of(checker, "table", "the table of %s has %s", checker->owner,
+                          signal->point_count ? "one point" : "no points");
   for (size_t i = 0; i < signal->point_count; i++) {
     if (!isfinite(signal->time[i]) || !isfinite(signal->value[i]))
       strut_fault_of(checker, "table", "point %zu in the table of %s is not finite", i + 1,
@@ -36,6 +37,33 @@ static bool check_table(strut_checker *checker) {
     return false;
   }
   return true;
+}
+
+/* How long a run takes [s]; 0 where that is not known, or nothing runs. */
+static double run_time(const strut_checker *checker) {
+  const strut_experiment *experiment = checker->experiment;
+  int32_t period = experiment->period_signal;
+  bool known = experiment->periods == 0.0 ||
+               (strut_exists(period, checker->scene->signal_count) && !checker->wild[period]);
+  if (checker->purpose != STRUT_FOR_RUN || !known) return 0.0;
+  return strut_experiment_span(experiment, checker->scene).duration;
+}
+
+/* Do data last from t = 0 to the end of a run, where they must? */
+static void check_data(strut_checker *checker) {
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  double first = signal->time[0], last = signal->time[signal->point_count - 1],
+         end = run_time(checker);
+  if (signal->outside != STRUT_OUTSIDE_ERROR) return;
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE)
+    strut_fault_of(checker, "data",
+                   "the time of %s begins later, so that its data need 'outside: hold' or 'repeat'",
+                   checker->owner);
+  else if (first > 0.0 || last < end)
+    strut_fault_of(checker, "data",
+                   "the data of %s last from %g s to %g s, expected all times from 0 to %g s; or "
+                   "say what they are 'outside': hold or repeat",
+                   checker->owner, first, last, end);
 }
 
 /* Signal that part i of a sum or an expression refers to; -1: it refers to none. */
@@ -188,12 +216,17 @@ void strut_check_signals(strut_checker *checker) {
       continue;
     }
     bool modified = strut_check_modifiers(checker);
-    checker->wild[i] = !modified || (signal->kind == STRUT_TABLE ? !check_table(checker)
+    checker->wild[i] = !modified || (strut_signal_has_points(signal) ? !check_table(checker)
                                      : signal->kind == STRUT_SUM || strut_signal_has_program(signal)
                                          ? !check_sum(checker, size, depth)
                                          : !check_wave(checker));
     if (!checker->wild[i]) check_jumps(checker);
   }
+  for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++)
+    if (scene->signals[i].kind == STRUT_DATA && !checker->wild[i]) {
+      call_signal(checker, user, i);
+      check_data(checker);
+    }
   strut_release(size);
   strut_release(depth);
   strut_release(user);

@@ -161,6 +161,13 @@ typedef struct strut_network {
   const struct strut_tree *inputs, *scale;
 } strut_network;
 
+/** The object of the section `row of data`. */
+typedef struct strut_row_keys {
+  const char *column[2]; /* of x, of y */
+  int32_t row;           /* from 1 */
+  double time;           /* [s] */
+} strut_row_keys;
+
 /** The object of the section `oscillator`. */
 typedef struct strut_oscillator {
   double frequency, phase, bias; /* [Hz], [rad] */

@@ -123,12 +123,30 @@
   X(NETWORK, SCALE, "scale", NUMBER, CONTEXT, ANY, "1", OPTIONAL, 0, "", FIELD(strut_network, scale), "Factor and unit of the signal.") \
   X(NETWORK, EVERY, "every", NUMBER, TIME, ABOVE_ZERO, "0", OPTIONAL, 0, "", FIELD(strut_network, every), "Sampling interval; 0: the controller is continuous.")
 
+#define STRUT_DATA_KEYS(X) \
+  X(DATA, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_data_table, file), "A table as text, below the folder of this file: cells separated by commas, semicolons or tabs, with a point or, unless commas separate, a comma before decimals. Lines that begin with `#` are comments, empty cells gaps.") \
+  X(DATA, HEADER, "header", NUMBER, NONE, WHOLE(0, 1000), "as the file shows", OPTIONAL, 0, "", FIELD(strut_data_table, header), "Number of lines above the first row, with the names on the last of them that has no units; 0: columns are called 1, 2, ...") \
+  X(DATA, UNITS, "units", THINGS, NONE, ANY, "those in the header", OPTIONAL, 0, "a unit such as `mm`, or what one counts, such as `1/(240 Hz)`", NONE, "Units of columns, by their names or by what follows the last dot of these; `1`: none.") \
+  X(DATA, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", FIELD(strut_data_table, flip), "Changes the sign of coordinates, such as those of pixels, whose y points downwards. The order is always flip, scale, rotate, shift. Columns are coordinates if x and y alone tell their names apart, such as `n1.x` and `n1.y`, `x1` and `y1`.") \
+  X(DATA, SCALE, "scale", NUMBER, CONTEXT, ABOVE_ZERO, "1", OPTIONAL, 0, "", UNIT(strut_data_table, scale, scale_unit), "Length of a pixel, such as `0.21 mm`, for coordinates without unit; or a factor of those that are lengths.") \
+  X(DATA, ROTATE, "rotate", NUMBER, ANGLE, ANY, "0", OPTIONAL, 0, "", FIELD(strut_data_table, rotate), "Turns coordinates about the origin, counter-clockwise.") \
+  X(DATA, SHIFT, "shift", PAIR, LENGTH, ANY, "[0, 0]", OPTIONAL, 0, "", FIELD(strut_data_table, shift), "Is added to coordinates.") \
+  X(DATA, SKIP, "skip", NUMBER, NONE, WHOLE(0, 1000000000), "0", OPTIONAL, 0, "", FIELD(strut_data_table, skip), "Number of rows below the header that are left out.") \
+  X(DATA, WEIGHTS, "weights", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_data_table, weights), "Column of the weights of rows, from 0 on; or what follows the last dot in names of such columns, of which each is for those with the same beginning: `likelihood` for `snout.x` and `snout.likelihood`.")
+
+#define STRUT_ROW_KEYS(X) \
+  X(ROW, IN_X, "x", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_row_keys, column[0]), "Column of the position in x, such as `film.x1`.") \
+  X(ROW, IN_Y, "y", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_row_keys, column[1]), "Column of the position in y.") \
+  X(ROW, ROW, "row", NUMBER, NONE, WHOLE(1, 1000000000), "1", OPTIONAL, 7, "", FIELD(strut_row_keys, row), "Number of the row, counted from 1.") \
+  X(ROW, TIME, "time", NUMBER, TIME, ANY, "", OPTIONAL, 7, "", FIELD(strut_row_keys, time), "Instead of `row`: a time of the table, between whose rows positions are interpolated.")
+
 #define STRUT_STUDY_KEYS(X) \
   X(STUDY, VERSION, "strut", VERSION, NONE, ANY, "", REQUIRED, 0, "1", NONE, "Version of the language.") \
   X(STUDY, NAME, "study", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, name), "Name of the study.") \
   X(STUDY, DESCRIPTION, "description", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, description), "Purpose of the study.") \
   X(STUDY, MODEL, "model", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_study, model), "File of the model, in the folder of the study or below.") \
   X(STUDY, SET, "set", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression or a text", BY_HAND, "Values of the model's parameters at all points; `--set` takes precedence.") \
+  X(STUDY, DATA, "data", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of [data](#data)", THINGS(DATA), "Tables of measured data, for the study itself.") \
   X(STUDY, AXES, "axes", AXES, NONE, ANY, "", OPTIONAL, 0, "", BY_HAND, "The points are all combinations of the axes; the last varies fastest. An axis is `{NAME: [...]}`, `{NAME: {...}}` (a [range](#range)), `{zip: {NAME: ..., NAME: ...}}`, `{points: FILE}` ([points](#points)) or `{sample: {...}}` ([sample](#sample)). Required without `search` or `sensitivity`; with one of these, each point has its own.") \
   X(STUDY, DERIVE, "derive", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression", BY_HAND, "Parameters that follow from others at each point, such as `{step: 1/(1000*frequency)}`.") \
   X(STUDY, VARIANTS, "variants", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [variant](#variant)", THINGS(VARIANT), "Variants of the model, for example with other numerics. They form the first axis, column `variant`.") \
@@ -367,6 +385,8 @@
   STRUT_QUANTITY_FIELDS(X) \
   STRUT_STEADY_FIELDS(X) \
   STRUT_OUTPUT_FIELDS(X) \
+  STRUT_DATA_KEYS(X) \
+  STRUT_ROW_KEYS(X) \
   STRUT_STUDY_KEYS(X) \
   STRUT_RANGE_KEYS(X) \
   STRUT_VARIANT_KEYS(X) \
@@ -444,6 +464,8 @@
   X(QUANTITY, "quantity", QUANTITY_OF, "`run: {measure: {quantities: {NAME: {...}}}}`.") \
   X(STEADY, "steady", STEADY_TOLERANCE, "`run: {measure: {steady: {...}}}`.") \
   X(OUTPUT, "output", OUTPUT_EVERY, "`output: {...}`.") \
+  X(DATA, "data", DATA_FILE, "`data: {NAME: {file: FILE, ...}}` of a scene or a study. `NAME.COLUMN` is a column; its unit stands in the header, `x [mm]` or `Force (N)`, on a line below it, or under `units`. [Measured data](language.md#measured-data) has examples. Parameters are not known here: a file is read once for all points of a study.") \
+  X(ROW, "row of data", ROW_IN_X, "`{NODE: {x: film.x1, y: film.y1, row: 1}}` in place of `[x, y]` of a [configuration](#configuration) or an initial position.") \
   X(STUDY, "study", STUDY_VERSION, "The keys at the top level of a study, a file for `strut sweep`. Expressions in `set` and `derive` may use the model's parameters.") \
   X(RANGE, "range", RANGE_FROM, "`axes: [{NAME: {...}}]`: values of a parameter, by `step` or `count`.") \
   X(VARIANT, "variant", VARIANT_SOLVER, "`variants: {NAME: {...}}` of a study.") \

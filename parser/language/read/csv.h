@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Tables as text: comma-separated cells (RFC 4180) below a header such as "velocity [m/s]".
+ * Tables as text: cells separated by commas, semicolons or tabs (RFC 4180) below a header such as
+ * "velocity [m/s]".
  */
 #ifndef STRUT_PARSER_LANGUAGE_READ_CSV_H
 #define STRUT_PARSER_LANGUAGE_READ_CSV_H
@@ -9,28 +10,40 @@
 #include "engine/base/status.h"
 #include "parser/language/yaml/diagnostics.h"
 
-/** A name and the unit in brackets behind it; "" without. */
+/** A name and the unit in brackets behind it, or on the line below; "" without. */
 typedef struct strut_csv_title {
   const char *name, *unit;
 } strut_csv_title;
 
-/** A table as cells; all of it is in the arena, which the caller frees. */
+/** A table as cells; all of it is in the arena, which the caller frees. The text must outlive it. */
 typedef struct strut_csv {
   size_t column_count, row_count; /* without the header */
   strut_csv_title *titles;        /* (column_count) */
-  const char **cell;              /* (1 + row_count, column_count), the header first */
-  strut_place *place;             /* likewise */
+  char **cell;                    /* (1 + row_count, column_count), the names first */
+  uint32_t *line;                 /* (1 + row_count) where each row begins, from 1 */
+  const char *text, *copy;        /* as given; with its cells terminated */
   strut_arena arena;
 } strut_csv;
 
+/** Lines of the header as the file shows: one, or those of the forms that read_header knows. */
+enum { STRUT_CSV_ANY_HEADER = -1 };
+
 /**
- * Reads a text. STRUT_BAD_SCENE where it is empty, has no rows or lines of different length, as the
- * diagnostics say, whose source it must be; STRUT_NO_MEMORY. The arena must be freed after a failure too.
+ * Reads a text whose first `header` lines are its header; the names are on the last of them that has no
+ * units. Further on, lines that are empty or begin with # are left out. STRUT_BAD_SCENE where it is empty, has
+ * no rows or lines of different length, as the diagnostics say, whose source it must be; STRUT_NO_MEMORY. The
+ * arena must be freed after a failure too.
  */
-STRUT_API strut_status strut_csv_read(const char *text, size_t length,
+STRUT_API strut_status strut_csv_read(const char *text, size_t length, int header,
                                       strut_diagnostics *diagnostics, strut_csv *csv);
 
-/** A number, or NAN for an empty cell, "nan", "null", "none" and "-"; false for any other text. */
-STRUT_API bool strut_csv_number(const char *text, double *value);
+/** The place of a cell, by its number in csv->cell. */
+STRUT_API strut_place strut_csv_place(const strut_csv *csv, size_t cell);
+
+/**
+ * A number times 10^decimal, rounded once, or NAN for an empty cell, "nan", "NA", "null", "none" and "-";
+ * false for any other text.
+ */
+STRUT_API bool strut_csv_number(const char *text, int decimal, double *value);
 
 #endif

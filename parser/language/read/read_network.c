@@ -75,7 +75,7 @@ static bool read_weights(network *self, char *line) {
     size_t length = strlen(cell);
     while (length && strchr(" \t\r", cell[length - 1])) cell[--length] = '\0';
     double value;
-    if (!strut_csv_number(cell, &value) || !isfinite(value))
+    if (!strut_csv_number(cell, 0, &value) || !isfinite(value))
       return fail_network(self, "expected a number, found ", *cell ? cell : "nothing");
     if (count <= self->before) self->weight[count] = value;
   }

@@ -57,6 +57,7 @@ static void read_sections(strut_reader *reader, const strut_setting *settings, s
 #define THINGS(KIND)                                                                               \
   { NULL, STRUT_THING_##KIND }
       STEP(read_head),
+      STEP(strut_read_scene_data),
       STEP(strut_read_groups),
       STEP(strut_read_nodes),
       STEP(strut_merge_nodes),
@@ -195,8 +196,20 @@ static strut_status read_document(strut_document *document, strut_diagnostics *d
   return files ? files : status;
 }
 
-/* Reads the scene from a tree that the caller owns, or from the text if `document` is NULL. */
-static strut_status read_from(const strut_document *document, const strut_setting *settings,
+struct strut_scene_source {
+  strut_document document;
+  strut_arena arena;
+  const char *file, *text;
+  size_t length, count;
+  strut_declared *declared; /* (count) */
+  size_t used_count;
+  strut_used_file *used; /* (used_count) files that the text names; owned */
+  size_t table_count;
+  const strut_data_table *tables; /* (table_count) which all its scenes share */
+};
+
+/* Reads the scene from a source, or from the text if that is NULL. */
+static strut_status read_from(const strut_scene_source *source, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
                               strut_setup *setup) {
   strut_reader *reader = strut_allocate(1, sizeof *reader);
@@ -211,10 +224,12 @@ static strut_status read_from(const strut_document *document, const strut_settin
   reader->purpose = purpose;
   clear_sections(reader);
   strut_c_locale locale = strut_c_locale_enter();
-  if (document)
-    reader->document.root = document->root;
-  else
+  if (source) {
+    reader->document.root = source->document.root;
+    reader->tables = source->tables, reader->table_count = source->table_count;
+  } else {
     status = read_document(&reader->document, diagnostics);
+  }
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   reader->holes = status == STRUT_BAD_SCENE;
   if (status != STRUT_NO_MEMORY && reader->document.root) read_tree(reader, settings, count);
@@ -241,16 +256,6 @@ strut_status strut_setup_read(strut_setup *setup, const char *file, const char *
   strut_release(settings);
   return status;
 }
-
-struct strut_scene_source {
-  strut_document document;
-  strut_arena arena;
-  const char *file, *text;
-  size_t length, count;
-  strut_declared *declared; /* (count) */
-  size_t used_count;
-  strut_used_file *used; /* (used_count) files that the text names; owned */
-};
 
 /* Takes over the texts of used files. */
 static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {
@@ -292,7 +297,7 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
   return STRUT_OK;
 }
 
-/* Reads nothing but the parameters. */
+/* Reads nothing but the parameters and the data. */
 static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
   strut_setup setup;
   strut_reader *reader = strut_allocate(1, sizeof *reader);
@@ -304,7 +309,12 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   reader->document.root = source->document.root;
   strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root,
                     (strut_owner){"the scene", NULL}, &reader->top);
-  if (reader->document.root->kind == STRUT_TREE_MAP) strut_read_parameters(reader, NULL, 0);
+  reader->keep = &source->arena;
+  if (reader->document.root->kind == STRUT_TREE_MAP) {
+    strut_read_parameters(reader, NULL, 0);
+    strut_read_scene_data(reader);
+  }
+  source->tables = reader->tables, source->table_count = reader->table_count;
   strut_status status = reader->failed ? STRUT_BAD_SCENE : keep_declared(reader, source);
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
   free_reader(reader);
@@ -378,7 +388,7 @@ strut_status strut_scene_source_read(const strut_scene_source *source,
                                      strut_setup *setup) {
   strut_diagnostics_source(diagnostics, source->file, source->text, source->length);
   enter_used(source, diagnostics);
-  return read_from(&source->document, settings, setting_count, purpose, diagnostics, setup);
+  return read_from(source, settings, setting_count, purpose, diagnostics, setup);
 }
 
 enum { FIRST_SIZE = 64 * 1024 };

@@ -120,6 +120,15 @@ static bool read_sum(strut_reader *reader, const strut_tree *list, strut_owner o
   return fine;
 }
 
+/* What a signal that has no numbers of its own measures cannot be scaled. */
+static bool check_unscaled(strut_reader *reader, const strut_tree *value, const char *what) {
+  return strut_scope_scale(reader, value) == 1.0 ||
+         strut_report_error(reader, value->place,
+                            "the lengths in %s are not scaled, but this copy is; make the size a "
+                            "parameter of the part and 'set' it",
+                            what);
+}
+
 static bool read_expression(strut_reader *reader, const strut_tree *value, strut_owner owner,
                             meaning *self, strut_signal *signal) {
   char wanted[200];
@@ -128,15 +137,22 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
     return false;
   self->bare = q.bare;
   self->dimension = q.dimension;
-  bool scaled = strut_scope_scale(reader, value) != 1.0;
-  if (scaled)
-    return strut_report_error(
-        reader, value->place,
-        "the lengths in an expression are not scaled, but this copy is; make the "
-        "size a parameter of the part and 'set' it");
+  if (!check_unscaled(reader, value, "an expression")) return false;
   if (!self->expected || q.bare || strut_dimension_equal(q.dimension, *self->expected)) return true;
   strut_expected_quantity(reader->signal_quantity, *self->expected, wanted, sizeof wanted);
   return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
+}
+
+/* A column of data over time. */
+static bool read_data(strut_reader *reader, strut_fields *fields, strut_owner owner, meaning *self,
+                      strut_signal *signal) {
+  const strut_slot *data = strut_slot_of(fields, STRUT_KEY_SIGNAL_DATA);
+  const strut_slot *over = strut_slot_of(fields, STRUT_KEY_SIGNAL_OVER);
+  self->bare = false;
+  return strut_read_data_signal(reader, data->value,
+                                over->state == STRUT_GIVEN ? over->value : NULL, owner,
+                                self->expected, &self->dimension, signal) &&
+         check_unscaled(reader, data->value, "data");
 }
 
 /* The event with which the signal's time begins. */
@@ -174,7 +190,7 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
   strut_read_fields(reader, STRUT_SECTION_SIGNAL, map, owner, &fields);
   int chosen = 0;
   unsigned kinds = 0;
-  for (int kind = STRUT_EXPRESSION; kind >= 0; kind--) /* a relay is a controller */
+  for (int kind = STRUT_DATA; kind >= 0; kind--) /* a relay is a controller */
     if (fields.slot[kind].state == STRUT_GIVEN) chosen = kind, kinds++;
   if (kinds != 1 && !fields.broken)
     strut_report_error(reader, map->place, "expected one kind of signal for %s, found %u",
@@ -189,6 +205,8 @@ static int32_t read_literal(strut_reader *reader, const strut_tree *map, strut_o
     fine = read_table(reader, value, owner, &m, &signal) && fine;
   else if (signal.kind == STRUT_EXPRESSION)
     fine = read_expression(reader, value, owner, &m, &signal) && fine;
+  else if (signal.kind == STRUT_DATA)
+    fine = read_data(reader, &fields, owner, &m, &signal) && fine;
   else if (signal.kind == STRUT_SUM)
     fine = read_sum(reader, value, owner, &m, &signal) && fine;
   else

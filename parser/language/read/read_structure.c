@@ -138,11 +138,14 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
       strut_report_error(reader, tree->place, "unknown node '%s' in %s%s",
                          strut_sanitised_text(reader, tree->text), strut_owner_text(reader, owner),
                          strut_hint_of_things(reader, tree->text, STRUT_THING_NODE));
-    if (!strut_read_pair(reader, tree->next, tree->text, owner, dimension, pair) || node < 0)
+    bool length = strut_dimension_equal(dimension, STRUT_DIM_LENGTH);
+    bool measured = length && tree->next->kind == STRUT_TREE_MAP;
+    bool read = measured ? strut_read_data_point(reader, tree->next, owner, pair)
+                         : strut_read_pair(reader, tree->next, tree->text, owner, dimension, pair);
+    if (!read || node < 0)
       fine = false;
     else if (take) {
-      if (strut_dimension_equal(dimension, STRUT_DIM_LENGTH))
-        strut_place_point(reader, tree->next, pair);
+      if (length) strut_place_point(reader, tree->next, pair);
       take(reader, node, pair, tree->next);
     }
   }
@@ -217,11 +220,15 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
 /* Reports a number that the law needs and does not have, or has and does not need. */
 static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner owner,
                         const strut_law *law) {
-  bool fine = true;
+  bool fine = true, data = strut_slot_of(fields, STRUT_KEY_LAW_DATA)->state != STRUT_ABSENT;
+  if (data && strut_slot_of(fields, STRUT_KEY_LAW_OVER)->state == STRUT_ABSENT)
+    fine = strut_report_error(reader, fields->map->place,
+                              "%s lacks 'over', expected the column of x, such as tensile.x",
+                              strut_owner_text(reader, owner));
   for (int p = 0; p < STRUT_LAW_PARAMETER_COUNT; p++) {
     int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p));
     const strut_slot *slot = strut_slot_of(fields, key);
-    bool needed = strut_law_needs(law->kind, p);
+    bool needed = strut_law_needs(law->kind, p) && !(data && key == STRUT_KEY_LAW_POINTS);
     if (slot->state == STRUT_ABSENT ? !needed : strut_law_allows(law->kind, p)) continue;
     fine = false;
     if (needed)
@@ -274,15 +281,21 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   const strut_slot *coefficients = strut_slot_of(&fields, STRUT_KEY_LAW_COEFFICIENTS);
   const strut_slot *control = strut_slot_of(&fields, STRUT_KEY_LAW_CONTROL_POINTS);
   const strut_slot *points = strut_slot_of(&fields, STRUT_KEY_LAW_POINTS);
+  const strut_slot *data = strut_slot_of(&fields, STRUT_KEY_LAW_DATA);
   strut_store(reader, &fields, within, law);
   bool fine = !fields.broken && check_needs(reader, &fields, within, law);
   fine = read_numbers(reader, &fields, within, strain, force, law) && fine;
   if (!fine) return false;
   if (coefficients->state == STRUT_GIVEN)
     return read_coefficients(reader, coefficients->value, within, strain, force, law);
-  law->bezier = control->state == STRUT_GIVEN;
-  if (law->bezier || points->state == STRUT_GIVEN)
-    return read_points(reader, law->bezier ? control : points, within, strain, force, law);
+  if (data->state == STRUT_GIVEN)
+    return strut_read_data_law(reader, data->value,
+                               strut_slot_of(&fields, STRUT_KEY_LAW_OVER)->value, within,
+                               (const strut_dimension[]){strain, force}, law);
+  law->source = control->state == STRUT_GIVEN ? STRUT_LAW_CONTROL_POINTS : STRUT_LAW_POINTS;
+  if (law->source == STRUT_LAW_CONTROL_POINTS || points->state == STRUT_GIVEN)
+    return read_points(reader, points->state == STRUT_GIVEN ? points : control, within, strain,
+                       force, law);
   return true;
 }
 

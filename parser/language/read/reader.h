@@ -173,6 +173,9 @@ typedef struct strut_reader {
   strut_fields *grounds;       /* of each of the scene's grounds; of `ground` the one above */
   strut_copy *scope;           /* the copy of which a thing is being read; NULL: the scene's own */
   struct strut_copies *copies; /* NULL: the scene has no parts */
+  size_t table_count;
+  const strut_data_table *tables; /* measured data; NULL: not read yet, or none */
+  bool tables_unknown;            /* some could not be read */
 } strut_reader;
 
 /** Reports a scene without nodes. */
@@ -453,6 +456,40 @@ typedef void strut_pair_taker(strut_reader *reader, int32_t node, const double p
                               const strut_tree *value);
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
                            strut_dimension dimension, strut_pair_taker *take);
+
+/* read_data.c: measured data */
+
+/** Reads the tables behind the key into the reader's memory for what it keeps; nothing where it has some. */
+void strut_read_data(strut_reader *reader, const strut_slot *slot);
+/** Those of a scene. */
+void strut_read_scene_data(strut_reader *reader);
+/**
+ * The column with numbers and a unit that "TABLE.COLUMN" names, and its table; NULL: reported. `expected`:
+ * what it must measure, or NULL for anything.
+ */
+const strut_data_column *strut_read_data_column(strut_reader *reader, const strut_tree *value,
+                                                const char *key, strut_owner owner,
+                                                const strut_dimension *expected,
+                                                const strut_data_table **table);
+/**
+ * Reports about a cell of the column in its file, or about its title where row is SIZE_MAX, and that it is
+ * used by `value`. Returns false.
+ */
+bool strut_refuse_data(strut_reader *reader, const strut_tree *value, const strut_data_table *table,
+                       const strut_data_column *column, size_t row, const char *message);
+
+/* use_data.c */
+
+/** A measured signal's points, and what they measure; `over`: the column of the time, or NULL. */
+bool strut_read_data_signal(strut_reader *reader, const strut_tree *value, const strut_tree *over,
+                            strut_owner owner, const strut_dimension *expected,
+                            strut_dimension *found, strut_signal *signal);
+/** The points of a law whose strain and force have these dimensions. */
+bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const strut_tree *over,
+                         strut_owner owner, const strut_dimension dimensions[2], strut_law *law);
+/** A position, `{x: TABLE.COLUMN, y: TABLE.COLUMN, row: 1}`. */
+bool strut_read_data_point(strut_reader *reader, const strut_tree *map, strut_owner owner,
+                           double point[2]);
 
 /* Readers of things, or of sections, beyond their rows: entries of the tables in read_things.c. */
 

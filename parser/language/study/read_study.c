@@ -375,6 +375,8 @@ static strut_status read_all(strut_study_reader *study_reader, const strut_overr
   require_points(study_reader, &top);
   read_rest(study_reader, &top);
   status = strut_study_open_sources(study_reader, &top, error);
+  strut_read_data(reader, strut_slot_of(&top, STRUT_KEY_STUDY_DATA));
+  file->study.tables = reader->tables, file->study.table_count = reader->table_count;
   read_keep(study_reader, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
   strut_study_read_goals(study_reader, &top);
   if (status == STRUT_OK) read_points(study_reader, &top, overrides, count);

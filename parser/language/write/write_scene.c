@@ -129,6 +129,30 @@ static void put_head(strut_writer *writer) {
   strut_put(writer, "\n");
 }
 
+static void put_units(strut_writer *writer, strut_mapping *mapping, int key, const void *object) {
+  const strut_data_table *table = object;
+  if (key != STRUT_KEY_DATA_UNITS || !table->unit_count) return;
+  strut_put_key_name(writer, mapping, key);
+  for (size_t i = 0; i < table->unit_count; i++) {
+    strut_put(writer, i ? ", " : "{");
+    strut_put_name(writer, table->units[2 * i]);
+    strut_put(writer, ": ");
+    strut_put_quoted(writer, table->units[2 * i + 1]);
+  }
+  strut_put(writer, "}");
+}
+
+static void put_data(strut_writer *writer) {
+  static const strut_data_table usual = STRUT_DATA_USUAL;
+  for (size_t i = 0; i < writer->scene->table_count; i++) {
+    strut_put(writer, i ? "  " : "data:\n  ");
+    strut_put_name(writer, writer->scene->tables[i].name);
+    strut_put(writer, ": ");
+    strut_put_mapping(writer, STRUT_SECTION_DATA, &writer->scene->tables[i], &usual, put_units);
+    strut_put(writer, "\n");
+  }
+}
+
 /* The node is a copy; its name is the scene's. */
 static void put_node_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
                              const void *object) {
@@ -355,6 +379,7 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_setup_init(&writer.usual);
   strut_c_locale locale = strut_c_locale_enter();
   put_head(&writer);
+  put_data(&writer);
   put_nodes(&writer);
   strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, NULL);
   strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
