@@ -85,6 +85,9 @@ static bool is_met(strut_fields *fields, const companion *self, const strut_slot
   const strut_key *key = strut_key_at(self->other);
   while (fields && fields->section != key->section) fields = fields->outer;
   if (!fields) return true;
+  if (self->other == STRUT_KEY_STUDY_COMPUTE &&
+      strut_slot_of(fields, STRUT_KEY_STUDY_FIT)->state != STRUT_ABSENT)
+    return true; /* its matches compute several things: study_fit.c */
   *other = strut_slot_of(fields, self->other);
   if ((*other)->state == STRUT_BROKEN) return true;
   if ((*other)->state == STRUT_ABSENT) return strut_word_find(self->words, key->fallback) >= 0;
@@ -113,4 +116,10 @@ bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_ow
     fine = false;
   }
   return fine;
+}
+
+const char *strut_study_key_computes(int key) {
+  for (const companion *c = companions; c < companions + COMPANIONS; c++)
+    if (c->key == key && c->other == STRUT_KEY_STUDY_COMPUTE) return c->words;
+  return NULL;
 }

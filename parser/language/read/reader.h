@@ -348,6 +348,8 @@ const strut_tree *strut_entries(strut_reader *reader, int key);
 
 /** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
 bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner);
+/** What a study must compute for a key of it to mean anything, "modes|path"; NULL: anything. */
+const char *strut_study_key_computes(int key);
 
 /* read_things.c: values into objects */
 
