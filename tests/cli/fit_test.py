@@ -121,7 +121,7 @@ M, FV, FC, OFFSET = 95.1089, 203.5034, 20.3935, -3.1648
 def axis():
     times = [0.005 * i for i in range(401)]
     force = [60 * math.sin(4 * t) + 35 * math.sin(11 * t + 1) for t in times]
-    table("force.csv", {"t [s]": times, "F [N]": force}, 0.0)
+    table("force.csv", {"t [s]": times, "F": force}, 0.0)
 
     def push(t):
         i = min(int(t / 0.005), 399)
@@ -148,18 +148,17 @@ def axis():
     table("axis.csv", {"t [s]": times, "x [m]": places}, 2e-6)
     write("axis-model.yaml", """strut: 1
 name: An electro-mechanical positioning system
-data: {force: {file: force.csv}}
+data: {force: {file: force.csv, units: {F: 1}}}
 parameters: {mass: 80 kg, viscous: 100 N s/m, coulomb: 10 N, offset: 0 N}
 gravity: [0, -10 m/s^2]
 nodes:
   wall: {position: [-1 m, 0], fixed: both}
-  cart: {position: [0, 0], mass: mass}
+  cart: {position: [0, -mass*10 m/s^2/(1e6 N/m)], mass: mass}
 members: {damper: {kind: spring, nodes: [wall, cart], damping: viscous}}
-ground: {stiffness: 1e6 N/m, damping: 1e4 N s/m, friction: {law: coulomb, mu: coulomb/(mass*10 m/s^2)}, contacts: [cart]}
+ground: {stiffness: 1e6 N/m, damping: 1e4 N s/m, friction: {law: coulomb, mu: coulomb/(mass*10 m/s^2)}, contacts: {cart: {}}}
 loads:
-  motor: {node: cart, force: [{data: force.F}, 0]}
-  offset: {node: cart, force: [-offset, 0]}
-initial: {settle: yes}
+  motor: {node: cart, force: [1 N, 0], signal: {data: force.F}}
+  offset: {node: cart, force: [offset, 0]}
 solver: {integrator: adaptive, tolerance: 1e-9, step: 1 ms}
 run: {duration: 2 s}
 """)
@@ -174,7 +173,7 @@ fit:
   match: {axis: {time: axis.t, cart.x: axis.x, noise: 2 um}}
   starts: 2
 """)
-    for name, truth in (("mass", M), ("viscous", FV), ("coulomb", FC), ("offset", OFFSET)):
+    for name, truth in (("mass", M), ("viscous", FV), ("coulomb", FC), ("offset", -OFFSET)):
         identified(found, name, truth, 4.0)
 
 
@@ -198,7 +197,7 @@ data: {pull: {file: pull.csv}}
 parameters: {k: 300 N/m, branch: 100 N/m, dashpot: 100 N s/m}
 nodes:
   foot: {position: [0, 0], fixed: both}
-  grip: {position: [0.1 m, 0], mass: 0.1 kg, moves: {along_x: {data: pull.u}}, fixed: y}
+  grip: {position: [0.1 m, 0], mass: 0.1 kg, moves: {x: {data: pull.u}}, fixed: y}
 members:
   silicone: {kind: spring, nodes: [foot, grip], stiffness: k, maxwell: {stiffness: branch, damping: dashpot}}
 solver: {integrator: adaptive, tolerance: 1e-9, step: 20 ms}

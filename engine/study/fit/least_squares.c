@@ -77,11 +77,14 @@ static bool differentiate(solver *self, size_t i, double *matrix, size_t columns
   if (!problem->derivative || !problem->derivative(problem->context, self->at, i, derivative)) {
     step_beside(problem, i, at, beside);
     self->at[i] = beside[0];
-    bool fine = evaluate(self, self->back);
+    bool below = evaluate(self, self->back);
     self->at[i] = beside[1];
-    fine = evaluate(self, self->ahead) && fine;
+    bool above = evaluate(self, self->ahead);
     self->at[i] = at;
-    if (!fine) return false;
+    if (below == above && !below) return false;
+    if (!below) beside[0] = at, below = evaluate(self, self->back); /* on one side alone */
+    if (!above) beside[1] = at, above = evaluate(self, self->ahead);
+    if (!below || !above) return false;
     for (size_t j = 0; j < problem->count; j++)
       derivative[j] = (self->ahead[j] - self->back[j]) / (beside[1] - beside[0]);
   }

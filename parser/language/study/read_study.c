@@ -325,9 +325,6 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   strut_study_read_refine(reader, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   strut_study_read_sensitivity(reader, top);
   strut_study_read_follow(reader, top);
-  strut_read_data(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_DATA));
-  file->study.tables = reader->reader->tables,
-  file->study.table_count = reader->reader->table_count;
   strut_study_read_fit(reader, top);
   check_overrides(reader, count);
 }
