@@ -36,7 +36,7 @@ static void fill(diagram *d, const precision_row *rows, size_t count, bool time)
   }
 }
 
-static bool fill_panel(const diagram *d, bool time, strut_arena *arena, strut_panel *panel) {
+static void add_panel(const diagram *d, bool time, strut_figure *figure) {
   const strut_work_precision wanted = {
       .cost = strut_axis_of(time ? "CPU time [s]" : "force evaluations", ""),
       .error = {.name = "relative error of the velocity", .unit = "", .low = LEAST, .high = 1.0},
@@ -44,29 +44,17 @@ static bool fill_panel(const diagram *d, bool time, strut_arena *arena, strut_pa
       .count = d->count,
       .groups = d->names,
       .bargains = d->points};
-  bool fine = strut_work_precision_fill(&wanted, arena, panel);
-  panel->height = HEIGHT;
-  return fine;
+  strut_add_work_precision(figure, &wanted)->height = HEIGHT;
 }
 
 strut_status precision_draw(const char *path, const precision_scene *scene,
                             const precision_row *rows, size_t count, strut_error *error) {
   static diagram d[2];
   const strut_plot plot = {.path = path, .width = WIDTH};
-  strut_arena arena = {0};
-  strut_panel panels[2];
-  bool fine = true;
-  for (int time = 0; time < 2 && fine; time++) {
+  strut_figure figure = {.title = scene->title, .columns = 2, .least_width = 0.4 * WIDTH};
+  for (int time = 0; time < 2; time++) {
     fill(&d[time], rows, count, time == 1);
-    fine = fill_panel(&d[time], time == 1, &arena, &panels[time]);
+    add_panel(&d[time], time == 1, &figure);
   }
-  const strut_figure figure = {.title = scene->title,
-                               .panel_count = 2,
-                               .panels = panels,
-                               .columns = 2,
-                               .least_width = 0.4 * WIDTH};
-  strut_status status =
-      fine ? strut_figure_draw(&plot, &figure, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free(&arena);
-  return status;
+  return strut_figure_draw(&plot, &figure, error);
 }

@@ -210,15 +210,12 @@ TEST(labels_of_the_front) {
                                         .groups = groups,
                                         .bargains = savings};
   strut_error error;
-  strut_arena arena = {0};
-  strut_panel panel;
+  strut_figure figure = {0};
   char label[40];
   scratch_make();
   const char *path = scratch_path("front.svg");
-  assert_true(strut_work_precision_fill(&diagram, &arena, &panel));
-  const strut_figure figure = {.panel_count = 1, .panels = &panel};
+  strut_add_work_precision(&figure, &diagram);
   assert_int_equal(strut_figure_draw(&(strut_plot){.path = path}, &figure, &error), STRUT_OK);
-  strut_arena_free(&arena);
   size_t length;
   FREED char *text = scratch_read(path, &length);
   assert_non_null(text);

@@ -21,12 +21,13 @@ static size_t look_of(const strut_panel *panel, size_t i) {
 }
 
 static strut_pen pen_of(const strut_panel *panel, size_t i) {
-  return panel->series[i].pen ? *panel->series[i].pen : strut_series_pen(look_of(panel, i));
+  return panel->series[i].pen.width > 0 ? panel->series[i].pen
+                                        : strut_series_pen(look_of(panel, i));
 }
 
 static bool has_markers(const strut_panel *panel, const strut_series *series) {
   if (series->markers != STRUT_MARKERS_AUTO) return series->markers == STRUT_MARKERS_ALL;
-  return panel->series_count > 1 && !series->pen && !series->cloud;
+  return panel->series_count > 1 && !(series->pen.width > 0) && !series->cloud;
 }
 
 /* ---- the legend ---- */
@@ -149,15 +150,14 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
 
 /* Where point k of a series is: lost ones in the strip, each series at its own height. */
 static void place(const strut_chart *chart, size_t i, size_t k, double at[2]) {
-  const strut_series *series = &chart->panel->series[i];
+  const strut_point *p = &chart->panel->series[i].points[k];
   const strut_box *frame = &chart->axes.frame;
-  bool lost = chart->panel->lost && !isfinite(series->y[k]);
-  bool zero = chart->axes.y.logarithmic && series->y[k] == 0;
+  bool lost = chart->panel->lost && !isfinite(p->y);
+  bool zero = chart->axes.y.logarithmic && p->y == 0;
   at[0] = at[1] = (double)NAN;
-  if (!isfinite(series->x[k]) || (!isfinite(series->y[k]) && !lost)) return;
-  if (chart->axes.x.logarithmic && !(series->x[k] > 0)) return;
-  strut_axes_point(&chart->axes, series->x[k], lost || zero ? chart->axes.y.high : series->y[k],
-                   at);
+  if (!isfinite(p->x) || (!isfinite(p->y) && !lost)) return;
+  if (chart->axes.x.logarithmic && !(p->x > 0)) return;
+  strut_axes_point(&chart->axes, p->x, lost || zero ? chart->axes.y.high : p->y, at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
   double part = ((double)look_of(chart->panel, i) + 0.5) / (double)chart->panel->series_count;
   if (lost) at[1] = chart->strip.y + chart->strip.height * (0.2 + 0.6 * fmin(part, 1));
@@ -168,13 +168,14 @@ static void place_line(strut_chart *chart, size_t i) {
   const strut_series *series = &chart->panel->series[i];
   double(*points)[2] = chart->points[i];
   size_t used = 0, start = 0;
-  assert(!series->count || (series->x && series->y));
+  bool whole = false;
+  for (size_t k = 0; k < series->count; k++) whole = whole || series->points[k].unstable;
   for (size_t k = 0; k <= series->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
-    if (k < series->count && isfinite(series->y[k])) place(chart, i, k, at);
+    if (k < series->count && isfinite(series->points[k].y)) place(chart, i, k, at);
     bool known = isfinite(at[0]) && isfinite(at[1]);
-    if (!known && !series->unstable && used == start) continue;
-    if (!known && !series->unstable) used = start + strut_thin(points + start, used - start, GRAIN);
+    if (!known && !whole && used == start) continue;
+    if (!known && !whole) used = start + strut_thin(points + start, used - start, GRAIN);
     points[used][0] = known ? at[0] : (double)NAN;
     points[used++][1] = at[1];
     if (!known) start = used;
@@ -188,7 +189,7 @@ static void place_chart(strut_chart *chart, strut_box box) {
   bool lost = false;
   for (size_t i = 0; i < panel->series_count && panel->lost; i++)
     for (size_t k = 0; k < panel->series[i].count; k++)
-      lost = lost || !isfinite(panel->series[i].y[k]);
+      lost = lost || !isfinite(panel->series[i].points[k].y);
   double strip = lost ? STRIP : 0;
   const strut_box rest = {box.x, box.y + strip, box.width, box.height - strip};
   chart->axes = strut_axes_place(chart->canvas, rest, panel->x, panel->y);
@@ -242,28 +243,27 @@ static void stroke(const strut_chart *chart, size_t i, size_t from, size_t to) {
   const strut_series *series = &chart->panel->series[i];
   const double(*at)[2] = (const double(*)[2])chart->points[i] + from;
   strut_pen pen = pen_of(chart->panel, i);
-  if (series->unstable && series->unstable[from])
-    pen = (strut_pen){.colour = pen.colour,
-                      .width = (series->pen ? 1.0 : 0.65) * pen.width,
-                      .dash = {3, 2},
-                      .butt = series->pen != NULL};
+  bool own = series->pen.width > 0;
+  if (series->points[from].unstable)
+    pen = (strut_pen){
+        .colour = pen.colour, .width = (own ? 1.0 : 0.65) * pen.width, .dash = {3, 2}, .butt = own};
   if (to > from)
     strut_draw_line(chart->canvas, at, to - from + 1, pen);
-  else if (!series->pen) /* a line of one point would be invisible */
+  else if (!own) /* a line of one point would be invisible */
     strut_draw_marker(chart->canvas, look_of(chart->panel, i), at[0][0], at[0][1], LONE_MARKER);
 }
 
 /* Stretches without a gap and of one stability, which share their ends. */
 static void draw_line(const strut_chart *chart, size_t i) {
   const double(*at)[2] = (const double(*)[2])chart->points[i];
-  const bool *unstable = chart->panel->series[i].unstable;
+  const strut_point *points = chart->panel->series[i].points;
   for (size_t k = 0, from = 0; k < chart->counts[i]; k++) {
     if (isnan(at[k][0])) {
       from = k + 1;
       continue;
     }
     bool last = k + 1 == chart->counts[i] || isnan(at[k + 1][0]);
-    bool turns = unstable && unstable[k] != unstable[from];
+    bool turns = points[k].unstable != points[from].unstable;
     if (!last && !turns) continue;
     stroke(chart, i, from, k);
     from = k;
@@ -279,14 +279,13 @@ static bool is_inside(const strut_chart *chart, const double at[2]) {
 }
 
 static void draw_whisker(const strut_chart *chart, size_t i, size_t k) {
-  const strut_series *series = &chart->panel->series[i];
+  const strut_point *p = &chart->panel->series[i].points[k];
   const strut_pen bar = {.colour = pen_of(chart->panel, i).colour, .width = 0.7, .butt = true};
   double ends[2][2];
-  if (!series->low || !series->high || !isfinite(series->low[k]) || !isfinite(series->high[k]))
-    return;
-  if (chart->axes.y.logarithmic && !(series->low[k] > 0)) return;
-  strut_axes_point(&chart->axes, series->x[k], series->low[k], ends[0]);
-  strut_axes_point(&chart->axes, series->x[k], series->high[k], ends[1]);
+  if (!isfinite(p->low) || !isfinite(p->high)) return;
+  if (chart->axes.y.logarithmic && !(p->low > 0)) return;
+  strut_axes_point(&chart->axes, p->x, p->low, ends[0]);
+  strut_axes_point(&chart->axes, p->x, p->high, ends[1]);
   strut_draw_line(chart->canvas, (const double(*)[2])ends, 2, bar);
   for (int e = 0; e < 2; e++)
     strut_draw_segment(chart->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
@@ -303,9 +302,10 @@ static void draw_point(const strut_chart *chart, size_t i, size_t k) {
     strut_draw_marker(chart->canvas, look_of(chart->panel, i), at[0], at[1], MARKER);
     return;
   }
-  strut_fill fill = {.colour = series->value ? strut_grey(0.75) : pen_of(chart->panel, i).colour};
-  if (series->value && isfinite(series->value[k]))
-    fill.colour = strut_palette_at(scale->colours, series->value[k], scale->low, scale->high);
+  double value = series->points[k].value;
+  strut_fill fill = {.colour = scale->name ? strut_grey(0.75) : pen_of(chart->panel, i).colour};
+  if (scale->name && isfinite(value))
+    fill.colour = strut_palette_at(scale->colours, value, scale->low, scale->high);
   strut_draw_circle(chart->canvas, at[0], at[1], CLOUD, &fill, NULL);
 }
 
@@ -352,20 +352,20 @@ static void mark_beyond(const strut_chart *chart) {
     const strut_series *series = &chart->panel->series[i];
     size_t farthest = SIZE_MAX; /* of the excursion that k is in */
     for (size_t k = 0; k <= series->count; k++) {
-      bool out = k < series->count && (series->y[k] > axis->high || series->y[k] < axis->low);
-      if (out && (farthest == SIZE_MAX || fabs(series->y[k]) > fabs(series->y[farthest])))
-        farthest = k;
+      double y = k < series->count ? series->points[k].y : (double)NAN;
+      bool out = y > axis->high || y < axis->low;
+      if (out && (farthest == SIZE_MAX || fabs(y) > fabs(series->points[farthest].y))) farthest = k;
       if (!out && farthest != SIZE_MAX) {
-        const strut_rounded_quantity value =
-            strut_drawn_quantity(series->y[farthest], 3, axis->unit);
-        draw_mark(chart, &(strut_mark){.at = {series->x[farthest], series->y[farthest]},
+        const strut_point *p = &series->points[farthest];
+        const strut_rounded_quantity value = strut_drawn_quantity(p->y, 3, axis->unit);
+        draw_mark(chart, &(strut_mark){.at = {p->x, p->y},
                                        .text = labelled++ < MOST_LABELLED ? value.text : NULL,
                                        .steady = 0.2});
       }
       if (!out) farthest = SIZE_MAX;
       if (!out) continue;
       beyond.above++;
-      if (fabs(series->y[k]) > fabs(beyond.farthest)) beyond.farthest = series->y[k];
+      if (fabs(y) > fabs(beyond.farthest)) beyond.farthest = y;
     }
   }
   strut_draw_axis_note(chart->canvas, &chart->axes,

@@ -17,45 +17,33 @@ enum { COLUMNS = 3 };
 
 /* A page that is measured, then drawn. */
 typedef struct page {
-  const strut_figure *figure;
+  strut_figure *figure;  /* settled */
   const char *title;     /* NULL: none */
-  strut_panel *panels;   /* (panel_count) settled */
   strut_key_item *items; /* of the legend of all panels */
   size_t item_count;
-  strut_arena arena;
 } page;
 
 /* ---- what the figure leaves open ---- */
 
-/* Settles the charts, together or each by itself. */
-static bool settle(page *self, const strut_plot *plot) {
-  size_t count = self->figure->panel_count, charts = 0;
-  strut_panel *shared = strut_arena_allocate(&self->arena, count + 1, sizeof *shared);
-  self->panels = strut_arena_copy(&self->arena, self->figure->panels, count, sizeof *self->panels);
-  if (!shared || !self->panels) return false;
-  for (size_t i = 0; i < count; i++) {
-    strut_panel *panel = &self->panels[i];
-    if (panel->view) continue;
-    strut_axis_choose(&panel->x, &plot->x);
-    strut_axis_choose(&panel->y, &plot->y);
-    if (self->figure->shared_axes)
-      shared[charts++] = *panel;
-    else if (!strut_panels_settle(panel, 1, &self->arena))
-      return false;
+/* Settles the panels, together or each by itself. */ static bool settle(strut_figure *figure,
+                                                                         const strut_plot *plot) {
+  size_t together = figure->shared_axes ? figure->panel_count : 1;
+  for (size_t i = 0; i < figure->panel_count; i++) {
+    strut_axis_choose(&figure->panels[i].x, &plot->x);
+    strut_axis_choose(&figure->panels[i].y, &plot->y);
   }
-  if (charts && !strut_panels_settle(shared, charts, &self->arena)) return false;
-  for (size_t i = count; charts && i-- > 0;)
-    if (!self->panels[i].view) self->panels[i] = shared[--charts];
-  return true;
+  for (size_t i = 0; i < figure->panel_count; i += together)
+    if (!strut_panels_settle(&figure->panels[i], together, &figure->arena)) return false;
+  return !figure->failed;
 }
 
 static bool gather_legend(page *self) {
   size_t room = 1;
   for (size_t i = 0; i < self->figure->panel_count; i++)
-    room += strut_panel_legend_room(&self->panels[i]);
-  self->items = strut_arena_allocate(&self->arena, room, sizeof *self->items);
+    room += strut_panel_legend_room(&self->figure->panels[i]);
+  self->items = strut_arena_allocate(&self->figure->arena, room, sizeof *self->items);
   for (size_t i = 0; self->items && self->figure->one_legend && i < self->figure->panel_count; i++)
-    self->item_count = strut_panel_legend(&self->panels[i], self->items, self->item_count);
+    self->item_count = strut_panel_legend(&self->figure->panels[i], self->items, self->item_count);
   return self->items != NULL;
 }
 
@@ -64,7 +52,7 @@ static bool gather_legend(page *self) {
 /* Panels in a row with the first, and the width of each. */
 static size_t find_row(const page *self, size_t first, double inner, double *width) {
   const strut_figure *figure = self->figure;
-  const strut_panel *panel = &self->panels[first];
+  const strut_panel *panel = &figure->panels[first];
   size_t left = figure->panel_count - first, count = 1;
   double columns = 1;
   if (left > 1 && panel[1].beside) { /* two by themselves */
@@ -74,7 +62,8 @@ static size_t find_row(const page *self, size_t first, double inner, double *wid
     double most = figure->columns ? (double)figure->columns : COLUMNS;
     columns =
         fmax(1, fmin(fmin(most, floor(inner / figure->least_width)), (double)figure->panel_count));
-    while (count < (size_t)columns && count < left && !panel[count].view && !panel[count].whole)
+    while (count < (size_t)columns && count < left && !panel[count].shape_count &&
+           !panel[count].whole)
       count++;
   }
   *width = (inner - (panel[count - 1].beside ? (columns - 1) * GAP : 0)) / columns;
@@ -91,16 +80,17 @@ static double chart_height(const page *self, const strut_panel *panel, double wi
 /* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */
 static double put_row(page *self, strut_canvas *canvas, strut_box box, size_t first, size_t count,
                       bool *fine) {
-  double gap = self->panels[first + count - 1].beside ? GAP : 0, height = 0;
+  const strut_panel *panels = self->figure->panels;
+  double gap = panels[first + count - 1].beside ? GAP : 0, height = 0;
   for (size_t i = first; i < first + count; i++)
-    height = fmax(height, chart_height(self, &self->panels[i], box.width));
+    height = fmax(height, chart_height(self, &panels[i], box.width));
   box.height = height;
   for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + gap)
-    if (self->panels[i].view)
-      strut_draw_view(canvas, box, &self->panels[i]);
+    if (panels[i].shape_count)
+      strut_draw_view(canvas, box, &panels[i]);
     else
-      *fine =
-          strut_draw_chart(canvas, box, &self->panels[i], !self->figure->one_legend, &self->arena);
+      *fine = strut_draw_chart(canvas, box, &panels[i], !self->figure->one_legend,
+                               &self->figure->arena);
   return height;
 }
 
@@ -128,15 +118,15 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
   if (draw) strut_draw_key(canvas, legend, self->items, self->item_count);
   box.y += strut_key_height(canvas, legend.width, self->items, self->item_count);
   for (size_t i = 0, count; i < figure->panel_count; i += count) {
-    const strut_panel *first = &self->panels[i];
-    if (i > 0 && (first->view || first[-1].view)) box.y += GAP;
+    const strut_panel *first = &figure->panels[i];
+    if (i > 0 && (first->shape_count || first[-1].shape_count)) box.y += GAP;
     strut_box row = box;
     count = find_row(self, i, box.width, &row.width);
-    if (count > 1 || !first->view) {
+    if (count > 1 || !first->shape_count) {
       box.y += put_row(self, canvas, row, i, count, fine);
       continue;
     }
-    while (i + count < figure->panel_count && first[count].view &&
+    while (i + count < figure->panel_count && first[count].shape_count &&
            first[count].small == first->small)
       count++;
     box.y += strut_draw_views(canvas, box, figure, first, count, foot, draw);
@@ -183,15 +173,17 @@ strut_status strut_figure_check_name(const char *path, strut_error *error) {
   return is_data(path) ? STRUT_OK : strut_canvas_check_name(path, error);
 }
 
-strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figure,
-                               strut_error *error) {
+strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
   page p = {.figure = figure};
-  if (is_data(plot->path)) return write_json(plot, figure, error);
+  strut_status status = STRUT_OK;
   strut_c_locale locale = strut_c_locale_enter();
-  strut_status status = settle(&p, plot) && gather_legend(&p)
-                            ? write_page(&p, plot, error)
-                            : strut_no_memory(error, "while drawing");
-  strut_arena_free(&p.arena);
+  if (is_data(plot->path) && !figure->failed)
+    status = write_json(plot, figure, error);
+  else if (settle(figure, plot) && gather_legend(&p))
+    status = write_page(&p, plot, error);
+  else
+    status = strut_no_memory(error, "while drawing");
+  strut_arena_free(&figure->arena);
   strut_c_locale_leave(locale);
   return status;
 }

@@ -2,14 +2,16 @@
 /**
  * A figure as data, and the one painter that draws it.
  *
- * A figure is a page of panels below a heading. A panel is a chart (axes, series, bands, a map) or a view
- * (structures to scale), with marks on it. Whoever has a result fills the description in; the painter measures
+ * A figure is a page of panels below a heading. A panel is a chart (axes, series, bands, a map) or, with shapes, a
+ * view of structures to scale; both have marks. Whoever has a result fills the description in by strut_add_*, whose
+ * lists grow in the figure's arena; memory that is out is told once, by strut_figure_draw. The painter measures
  * texts, lays panels out, settles axes, leaves outliers out, places legends and labels clear of all else, and
- * writes the file: a picture, or the same data as JSON. Everything pointed to lives until the figure is drawn.
+ * writes the file: a picture, or the same data as JSON.
  */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_FIGURE_H
 #define STRUT_ENGINE_OUTPUT_DRAW_FIGURE_H
 
+#include "engine/base/memory.h"
 #include "engine/output/draw/chart.h"
 #include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
@@ -23,17 +25,22 @@ typedef enum strut_markers {
   STRUT_MARKERS_NONE
 } strut_markers;
 
+/** A point of a series, SI. What strut_add_point makes has neither whisker nor value. */
+typedef struct strut_point {
+  double x, y;      /* what is not finite breaks the line */
+  double low, high; /* a whisker along y; NAN: none */
+  double value;     /* a dot's colour on the panel's scale; NAN: grey */
+  bool unstable;    /* the line from here on is dashed and thinner */
+} strut_point;
+
 /** Points joined by a line, or a cloud of dots. */
 typedef struct strut_series {
   const char *label; /* in the legend, where equal ones get one row; NULL: not there */
   size_t count;
-  const double *x, *y;  /* (count) SI; what is not finite breaks the line */
-  int look;             /* index of colour, dashes and marker; -1: the series' own index */
-  const strut_pen *pen; /* replaces the look's line; NULL: the look */
-  const bool *unstable; /* (count) the line from these points on is dashed and thinner; or NULL */
-  const double *low, *high; /* (count) whiskers along y; or NULL */
-  bool cloud;               /* dots instead of a line */
-  const double *value;      /* (count) the dots' colours on the panel's scale, NAN: grey; or NULL */
+  strut_point *points; /* (count) */
+  int look;            /* index of colour, dashes and marker; -1: the series' own index */
+  strut_pen pen;       /* replaces the look's line; width 0: the look */
+  bool cloud; /* dots instead of a line; in the look's colour where the panel has no scale */
   strut_markers markers;
 } strut_series;
 
@@ -84,21 +91,11 @@ typedef enum strut_trail_kind {
 typedef struct strut_trail {
   strut_trail_kind kind;
   size_t count;
-  const double (*at)[2]; /* (count) [m] */
+  double (*at)[2]; /* (count) [m] */
   strut_pen pen;
   double gap; /* left free at both ends of two points, of an arrow at its tip [pt] */
   bool below; /* below the shapes */
 } strut_trail;
-
-/** Structures in a window with one scale for x and y. */
-typedef struct strut_view {
-  size_t shape_count, trail_count;
-  const strut_shape *shapes;
-  const strut_trail *trails;
-  strut_bounds bounds; /* what has to be seen [m] */
-  double margin;       /* around it, for names and arrows [pt] */
-  bool yardstick;      /* a scale bar at its foot */
-} strut_view;
 
 /* ---- both ---- */
 
@@ -118,19 +115,25 @@ typedef struct strut_mark {
 typedef struct strut_panel {
   const char *title; /* may be NULL; of a view at its upper left corner */
   const char *note;  /* of a view, in grey below the title; may be NULL */
-  const strut_view *view;
+  /* A view: structures in a window with one scale for x and y. */
+  size_t shape_count, trail_count;
+  strut_shape *shapes;
+  strut_trail *trails;
+  strut_bounds bounds; /* what has to be seen [m]; all zero: shapes and trails */
+  double margin;       /* around it, for names and arrows [pt] */
+  bool yardstick;      /* a scale bar at its foot */
   /* Else a chart. A range of NAN is found from the data. */
   strut_axis x, y;
   bool outliers; /* few values far away lie beyond the range that is found, marked and counted */
   size_t series_count, band_count;
-  const strut_series *series;
-  const strut_band *bands;
+  strut_series *series;
+  strut_band *bands;
   const strut_map *map;
   const char *lost; /* name of points whose y is not finite, which lie in a strip above; or NULL */
   double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
   /* Both. */
   size_t mark_count;
-  const strut_mark *marks;
+  strut_mark *marks;
   const char *remark; /* inside the frame, where it is emptiest; or NULL */
   /* Beside it; limits that are equal come from the values. Name NULL: none. */
   strut_colour_scale scale;
@@ -140,28 +143,72 @@ typedef struct strut_panel {
   bool small;    /* a view beside many others */
 } strut_panel;
 
+/** Zero-initialise; strut_figure_draw frees what is in its arena. */
 typedef struct strut_figure {
   const char *title, *note; /* the heading; a plot's title replaces the first */
   bool alarm;               /* the note tells of a failure */
   size_t panel_count;
-  const strut_panel *panels; /* in rows; of a row all charts are as high as the highest */
-  size_t columns;            /* at most; 0: 3 */
-  double least_width; /* of a panel in a row with others [pt]; 0: a chart by itself, a view 98 */
+  strut_panel *panels; /* in rows; of a row all charts are as high as the highest */
+  size_t columns;      /* at most; 0: 3 */
+  double least_width;  /* of a panel in a row with others [pt]; 0: a chart by itself, a view 98 */
   double aspect; /* height over width: of a chart without a height, 0: 0.62; of all views, 0: any */
-  bool shared_axes; /* all charts get the ranges that hold all of them */
+  bool shared_axes; /* all charts get the ranges that hold all of them, all views the bounds */
   bool one_legend;  /* of all charts, above them */
   /* The foot, below the first views or all charts: a scale bar of views, keys, a scale of colours of all. */
   bool yardstick;
   size_t key_count;
-  const strut_key_item *keys;
+  strut_key_item *keys;
   strut_colour_scale scale; /* name NULL: none */
+  strut_arena arena;        /* of lists, texts and numbers */
+  bool failed;              /* memory was out */
+  strut_panel spare;        /* what is filled in then */
 } strut_figure;
 
+/* ---- filling in: what is returned stays in place until the next of its list ---- */
+
+STRUT_API strut_panel *strut_add_panel(strut_figure *figure);
+STRUT_API strut_series *strut_add_series(strut_figure *figure, strut_panel *panel,
+                                         const char *label);
+STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x,
+                                       double y);
+/** The line ends, and the next point begins another. */
+STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
+STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
+                                     double high, const char *label);
+STRUT_API strut_mark *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
+                                     const char *text);
+STRUT_API strut_shape *strut_add_shape(strut_figure *figure, strut_panel *panel,
+                                       const strut_model *model, const double *positions);
+/** One of a single colour, without nodes and supports, below others. */
+STRUT_API strut_shape *strut_add_ghost(strut_figure *figure, strut_panel *panel,
+                                       const strut_model *model, const double *positions,
+                                       double grey);
+/** One in the colours of its members' forces, on its ground. */
+STRUT_API strut_shape *strut_add_forces(strut_figure *figure, strut_panel *panel,
+                                        const strut_model *model, const double *positions,
+                                        const double *force, double limit);
+STRUT_API strut_trail *strut_add_trail(strut_figure *figure, strut_panel *panel,
+                                       strut_trail_kind kind, strut_pen pen);
+STRUT_API void strut_add_place(strut_figure *figure, strut_trail *trail, const double place[2]);
+/** An item of the key below the figure; without a text none. */
+STRUT_API strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
+                                        const char *text);
+/** A text in the arena, whatever the locale; "" where memory is out. */
+STRUT_API const char *strut_figure_text(strut_figure *figure, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+/** (count) zeroed numbers in the arena, or a copy; NULL: memory is out. */
+STRUT_API double *strut_figure_numbers(strut_figure *figure, size_t count);
+STRUT_API double *strut_figure_copy(strut_figure *figure, const double *from, size_t count);
+/** The scale of signed forces; without a name where the limit is 0. */
+STRUT_API strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond);
+/** The largest magnitude of those that are finite; 0 of none. */
+STRUT_API double strut_largest(const double *values, size_t count);
+
 /**
- * Draws it into the plot's file; into one that ends with .json it writes its data. Fails as strut_canvas_open and
- * strut_canvas_commit, or STRUT_NO_MEMORY.
+ * Draws it into the plot's file; into one that ends with .json it writes its data. Frees what the figure's arena
+ * holds. Fails as strut_canvas_open and strut_canvas_commit, or STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_figure_draw(const strut_plot *plot, const strut_figure *figure,
+STRUT_API strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure,
                                          strut_error *error);
 /** STRUT_OK if a figure can be written into a file of that name, else STRUT_USAGE with the endings there are. */
 STRUT_API strut_status strut_figure_check_name(const char *path, strut_error *error);

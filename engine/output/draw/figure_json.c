@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A figure's data as JSON: for programs that draw it in their own way. */
+#include <math.h>
+
 #include "engine/output/draw/figure.h"
 #include "engine/output/result_values.h"
 
@@ -16,17 +18,28 @@ static strut_value category(const strut_result_object *of, size_t i) {
 STRUT_VALUES_HERE(axis_values, AXIS, const strut_axis *a = of->at)
 
 static strut_value stable(const strut_result_object *of, size_t i) {
-  return STRUT_VALUE_AS_FLAG(!((const strut_series *)of->at)->unstable[i]);
+  return STRUT_VALUE_AS_FLAG(!((const strut_series *)of->at)->points[i].unstable);
 }
+
+/* Whether any point has a whisker, a value, or no stability. */
+static bool any(const strut_series *series, int what) {
+  for (const strut_point *p = series->points; p < series->points + series->count; p++)
+    if (what == 0 ? p->unstable : isfinite(what == 1 ? p->low : p->value)) return true;
+  return false;
+}
+
+static const strut_point none;
+#define STRUT_VALUE_AS_OF_POINTS(NUMBER)                                                           \
+  STRUT_VALUE_AS_OF_STRUCTS(&(s->points ? s->points : &none)->NUMBER, s->count, sizeof *s->points)
 
 #define SERIES(X)                                                                                  \
   X("label", "", TEXT(s->label), "in the legend")                                                  \
-  X("x", "", NUMBERS(s->x, s->count), "in the axis's unit")                                        \
-  X("y", "", NUMBERS(s->y, s->count), "null: a gap")                                               \
-  X("low", "", IF(s->low, NUMBERS(s->low, s->count)), "ends of whiskers")                          \
-  X("high", "", IF(s->high, NUMBERS(s->high, s->count)), "ends of whiskers")                       \
-  X("stable", "", IF(s->unstable, ARRAY(s->count, stable)), "else the line is dashed")             \
-  X("value", "", IF(s->value, NUMBERS(s->value, s->count)), "the dots' colours")
+  X("x", "", OF_POINTS(x), "in the axis's unit")                                                   \
+  X("y", "", OF_POINTS(y), "null: a gap")                                                          \
+  X("low", "", IF(any(s, 1), OF_POINTS(low)), "ends of whiskers")                                  \
+  X("high", "", IF(any(s, 1), OF_POINTS(high)), "ends of whiskers")                                \
+  X("stable", "", IF(any(s, 0), ARRAY(s->count, stable)), "else the line is dashed")               \
+  X("value", "", IF(any(s, 2), OF_POINTS(value)), "the dots' colours")
 STRUT_VALUES_HERE(series_values, SERIES, const strut_series *s = of->at)
 
 #define BAND(X)                                                                                    \
@@ -80,9 +93,9 @@ STRUT_VALUES_HERE(shape_values, SHAPE, const strut_shape *s = of->at)
 STRUT_VALUES_HERE(trail_values, TRAIL, const strut_trail *t = of->at)
 
 #define VIEW(X)                                                                                    \
-  X("shapes", "", LIST(v->shapes, v->shape_count), "the lowest first", .rows = &shape_values)      \
-  X("trails", "", LIST(v->trails, v->trail_count), "lines over them", .rows = &trail_values)
-STRUT_VALUES_HERE(view_values, VIEW, const strut_view *v = of->at)
+  X("shapes", "", LIST(p->shapes, p->shape_count), "the lowest first", .rows = &shape_values)      \
+  X("trails", "", LIST(p->trails, p->trail_count), "lines over them", .rows = &trail_values)
+STRUT_VALUES_HERE(view_values, VIEW, const strut_panel *p = of->at)
 
 #define SCALE(X)                                                                                   \
   X("name", "", TEXT(s->name), "what the colours show")                                            \
@@ -94,12 +107,13 @@ STRUT_VALUES_HERE(scale_values, SCALE, const strut_colour_scale *s = of->at)
 #define PANEL(X)                                                                                   \
   X("title", "", TEXT(p->title), "above it")                                                       \
   X("note", "", IF(p->note, TEXT(p->note)), "below that")                                          \
-  X("x", "", IF(!p->view, PART(&p->x)), "", .rows = &axis_values)                                  \
-  X("y", "", IF(!p->view, PART(&p->y)), "", .rows = &axis_values)                                  \
-  X("series", "", IF(!p->view, LIST(p->series, p->series_count)), "", .rows = &series_values)      \
+  X("x", "", IF(!p->shape_count, PART(&p->x)), "", .rows = &axis_values)                           \
+  X("y", "", IF(!p->shape_count, PART(&p->y)), "", .rows = &axis_values)                           \
+  X("series", "", IF(!p->shape_count, LIST(p->series, p->series_count)), "",                       \
+    .rows = &series_values)                                                                        \
   X("bands", "", IF(p->bands, LIST(p->bands, p->band_count)), "", .rows = &band_values)            \
   X("map", "", IF(p->map, PART(p->map)), "", .rows = &map_values)                                  \
-  X("view", "", IF(p->view, PART(p->view)), "", .rows = &view_values)                              \
+  X("view", "", IF(p->shape_count, PART(p)), "", .rows = &view_values)                             \
   X("marks", "", IF(p->marks, LIST(p->marks, p->mark_count)), "", .rows = &mark_values)            \
   X("scale", "", IF(p->scale.name, PART(&p->scale)), "", .rows = &scale_values)
 STRUT_VALUES_HERE(panel_values, PANEL, const strut_panel *p = of->at)

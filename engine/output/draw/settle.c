@@ -9,13 +9,11 @@ static const double ONE_SIGN = 1e-9; /* noise of the other sign makes no signed 
 
 static void include_series(const strut_series *series, bool lost, strut_axis *axis,
                            strut_axis *other_axis) {
-  for (size_t k = 0; k < series->count; k++) {
-    if (!isfinite(series->x[k]) || (!isfinite(series->y[k]) && !lost)) continue;
-    if (axis) strut_axis_include(axis, series->x[k]);
-    if (!other_axis) continue;
-    strut_axis_include(other_axis, series->y[k]);
-    if (series->low) strut_axis_include(other_axis, series->low[k]);
-    if (series->high) strut_axis_include(other_axis, series->high[k]);
+  for (const strut_point *p = series->points; p < series->points + series->count; p++) {
+    if (!isfinite(p->x) || (!isfinite(p->y) && !lost)) continue;
+    if (axis) strut_axis_include(axis, p->x);
+    for (int k = 0; other_axis && k < 3; k++)
+      strut_axis_include(other_axis, k == 0 ? p->y : k == 1 ? p->low : p->high);
   }
 }
 
@@ -38,9 +36,8 @@ static size_t gather(const strut_panel *panels, size_t count, bool scale, double
     const strut_map *map = panels[i].map;
     for (size_t s = 0; s < panels[i].series_count; s++) {
       const strut_series *series = &panels[i].series[s];
-      const double *from = scale ? series->value : series->y;
-      for (size_t k = 0; from && k < series->count; k++, known++)
-        if (values) values[known] = from[k];
+      for (size_t k = 0; k < series->count; k++, known++)
+        if (values) values[known] = scale ? series->points[k].value : series->points[k].y;
     }
     for (size_t k = 0; scale && map && map->value && k < map->columns * map->rows; k++, known++)
       if (values) values[known] = map->value[k];
@@ -81,7 +78,33 @@ static bool settle_scale(const strut_panel *panels, size_t count, strut_colour_s
   return true;
 }
 
+/* What is seen, where that is open. */
+static strut_bounds find_bounds(const strut_panel *panel) {
+  strut_bounds b = panel->bounds;
+  if (b.low[0] != 0 || b.low[1] != 0 || b.high[0] != 0 || b.high[1] != 0) return b;
+  b = strut_bounds_none();
+  for (size_t i = 0; i < panel->shape_count; i++)
+    strut_bounds_add(&b, panel->shapes[i].model, panel->shapes[i].q);
+  for (size_t i = 0; i < panel->trail_count; i++)
+    for (size_t k = 0; k < panel->trails[i].count; k++)
+      strut_bounds_widen(&b, panel->trails[i].at[k], panel->trails[i].at[k]);
+  return b;
+}
+
+static void settle_views(strut_panel *panels, size_t count) {
+  strut_bounds all = strut_bounds_none();
+  for (size_t i = 0; i < count; i++) {
+    const strut_bounds own = find_bounds(&panels[i]);
+    strut_bounds_widen(&all, own.low, own.high);
+  }
+  for (size_t i = 0; i < count; i++) panels[i].bounds = all;
+}
+
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena) {
+  if (panels->shape_count) {
+    settle_views(panels, count);
+    return true;
+  }
   strut_axis x = panels[0].x, y = panels[0].y;
   strut_colour_scale scale = panels[0].scale;
   bool fit_x = isnan(x.low) || isnan(x.high), fit_y = isnan(y.low) || isnan(y.high);

@@ -51,6 +51,12 @@ void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const doub
   }
 }
 
+void strut_bounds_share(strut_bounds *bounds, const double size[2]) {
+  double middle = 0.5 * (bounds->low[0] + bounds->high[0]);
+  bounds->low[0] = middle - 0.5 * size[0], bounds->high[0] = middle + 0.5 * size[0];
+  bounds->high[1] = bounds->low[1] + size[1];
+}
+
 double strut_bounds_extent(const strut_bounds *bounds) {
   return fmax(bounds->high[0] - bounds->low[0], bounds->high[1] - bounds->low[1]);
 }

@@ -26,6 +26,8 @@ STRUT_API void strut_bounds_widen(strut_bounds *bounds, const double low[2], con
 /** Widens the bounds by all nodes of a shape q (model->length). */
 STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model,
                                 const double *positions);
+/** Makes the bounds as large as `size`, about their middle and from their foot on. */
+STRUT_API void strut_bounds_share(strut_bounds *bounds, const double size[2]);
 /** The larger extent [m]. */
 STRUT_API double strut_bounds_extent(const strut_bounds *bounds);
 /**

@@ -17,7 +17,7 @@ enum { LED = 200, COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
 /* ---- one view ---- */
 
 /* True if names cover little of what is seen. */
-static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_view *view,
+static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                       const strut_model *model) {
   double covered = 0.0, seen = COVERED;
   for (int d = 0; d < 2; d++)
@@ -100,7 +100,7 @@ static void draw_trail(strut_canvas *canvas, const strut_window *window, const s
   }
 }
 
-static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_view *view,
+static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                         bool below) {
   for (size_t i = 0; i < view->trail_count; i++)
     if (view->trails[i].below == below) draw_trail(canvas, window, &view->trails[i]);
@@ -112,8 +112,8 @@ static void draw_arrows(strut_canvas *canvas, const strut_window *window,
   const strut_trail_kind kind = STRUT_TRAIL_ARROW;
   for (int32_t i = 0;
        shape->from && i < shape->model->node_count && shape->model->node_count <= LED; i++) {
-    const double at[2][2] = {{shape->from[2 * i], shape->from[2 * i + 1]},
-                             {shape->q[2 * i], shape->q[2 * i + 1]}};
+    double at[2][2] = {{shape->from[2 * i], shape->from[2 * i + 1]},
+                       {shape->q[2 * i], shape->q[2 * i + 1]}};
     draw_trail(canvas, window, &(strut_trail){kind, 2, at, strut_displacement_pen(), NODE, false});
   }
 }
@@ -140,15 +140,14 @@ void strut_draw_mark(strut_canvas *canvas, strut_box inside, const double at[2],
 }
 
 /* More than the margin takes below a view, for the forces of the ground [pt]. */
-static double room_for_arrows(const strut_view *view) {
+static double room_for_arrows(const strut_panel *view) {
   double room = 0.0;
   for (size_t i = 0; i < view->shape_count; i++)
     if (view->shapes[i].forces) room = fmax(room, view->shapes[i].arrow - view->margin);
   return room;
 }
 
-strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *panel) {
-  const strut_view *view = panel->view;
+strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view) {
   strut_box inside = box;
   inside.height -= room_for_arrows(view);
   strut_window window = strut_window_fit(inside, view->bounds, view->margin);
@@ -170,10 +169,10 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
                                 s->arrow);
   }
   draw_trails(canvas, &window, view, false);
-  for (size_t i = 0; i < panel->mark_count; i++) {
+  for (size_t i = 0; i < view->mark_count; i++) {
     double at[2];
-    strut_window_point(&window, panel->marks[i].at, at);
-    strut_draw_mark(canvas, box, at, &panel->marks[i]);
+    strut_window_point(&window, view->marks[i].at, at);
+    strut_draw_mark(canvas, box, at, &view->marks[i]);
   }
   strut_canvas_unclip(canvas);
   for (size_t i = 0; i < view->shape_count; i++) {
@@ -225,7 +224,7 @@ typedef struct extent {
 static extent extent_of(const strut_panel *panels, size_t count) {
   extent e = {0};
   for (size_t i = 0; i < count; i++) {
-    const strut_view *view = panels[i].view;
+    const strut_panel *view = &panels[i];
     for (int d = 0; d < 2; d++)
       e.size[d] = fmax(e.size[d], view->bounds.high[d] - view->bounds.low[d]);
     e.margin = fmax(e.margin, view->margin);

@@ -6,7 +6,7 @@
 #include "engine/output/draw/figure.h"
 
 /** Draws shapes, trails and marks of a view into a box: that of all its window, margins included. */
-strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *panel);
+strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view);
 /**
  * Lays (count) panels with views out from the upper left corner of `box` on, as many to a row as make the structures
  * largest, with the figure's foot below if `foot`; draws them if `draw`. Returns the height [pt].

@@ -15,13 +15,11 @@ static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie bey
 typedef struct ladder {
   const strut_equilibria *all;
   const size_t *chosen; /* (count) states, in the order of their places */
-  size_t count;
-  double zero;                         /* the lowest energy [J] */
-  strut_series levels, arcs[2];        /* arcs between neighbours, and others */
-  double *level[2], *arc[2][2], *tops; /* their x and y; heights of the barriers drawn */
-  size_t top_count, mark_count;
-  strut_mark *marks;
-  strut_arena *arena;
+  size_t count, top_count;
+  double zero;  /* the lowest energy [J] */
+  double *tops; /* heights of the barriers drawn */
+  strut_figure *figure;
+  strut_panel *panel;
 } ladder;
 
 /* The barrier between the states at two places: its top above zero, its height from either side [J]. */
@@ -59,81 +57,65 @@ bool strut_ladder_wanted(const strut_equilibria *all, const size_t *chosen, size
   return false;
 }
 
-static void add_point(strut_series *series, double *const columns[2], double x, double y) {
-  columns[0][series->count] = x, columns[1][series->count++] = y;
-}
-
 /* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
-static void add_arc(ladder *self, size_t left, size_t right, double top, double most) {
-  bool far = right > left + 1;
+static void add_arc(ladder *self, strut_series *arcs, size_t left, size_t right, double top) {
+  double most = self->panel->y.high;
   top = top <= most ? top : 1.3 * most;
   for (int i = 0; i < ARC; i++) {
     double t = (double)i / (ARC - 1), low = level_energy(self, t < 0.5 ? left : right);
     double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
-    add_point(&self->arcs[far], self->arc[far],
-              (double)left + LEVEL + t * ((double)(right - left) - 2 * LEVEL),
-              low + rise * (top - low));
+    strut_add_point(self->figure, arcs,
+                    (double)left + LEVEL + t * ((double)(right - left) - 2 * LEVEL),
+                    low + rise * (top - low));
   }
-  add_point(&self->arcs[far], self->arc[far], (double)NAN, (double)NAN);
+  strut_add_gap(self->figure, arcs);
 }
 
 /* The heights from either side, above the top. */
-static bool name_pass(ladder *self, size_t left, const pass *p) {
+static void name_pass(ladder *self, size_t left, const pass *p) {
   char text[2][80] = {"", ""};
   for (int back = 0; back < 2; back++)
     if (isfinite(p->height[back]))
       snprintf(text[back], sizeof text[back], back ? "\xe2\x86\x90 %s" : "%s \xe2\x86\x92",
                strut_drawn_quantity(p->height[back], 3, "J").text);
-  strut_mark *mark = &self->marks[self->mark_count++];
-  *mark = (strut_mark){.at = {(double)left + 0.5, p->top},
-                       .text = strut_arena_format(self->arena, "%s%s%s", text[0],
-                                                  text[0][0] && text[1][0] ? "\n" : "", text[1]),
-                       .gap = 2,
-                       .angle = 0.5 * STRUT_PI,
-                       .steady = 1,
-                       .priority = 1};
-  return mark->text != NULL;
+  strut_mark *mark =
+      strut_add_mark(self->figure, self->panel, (double)left + 0.5, p->top,
+                     strut_figure_text(self->figure, "%s%s%s", text[0],
+                                       text[0][0] && text[1][0] ? "\n" : "", text[1]));
+  mark->gap = 2;
+  mark->angle = 0.5 * STRUT_PI;
+  mark->steady = mark->priority = 1;
 }
 
 /*
- * Gathers the tops of the barriers, or adds these below an axis that ends at `most`. Among many states, only those
- * between neighbours remain readable.
+ * Gathers the tops of the barriers or, with a series, adds those between neighbours, or all others. Among many states,
+ * only those between neighbours remain readable.
  */
-static bool add_passes(ladder *self, const double *most) {
-  bool fine = true;
+static void add_passes(ladder *self, strut_series *arcs, bool far) {
   for (size_t left = 0; left < self->count; left++)
-    for (size_t right = left + 1; right < self->count && fine; right++) {
+    for (size_t right = left + 1; right < self->count; right++) {
       if (right > left + 1 && self->count > FEW) continue;
       const pass p = find_pass(self, left, right);
-      if (!p.known) continue;
-      if (most) add_arc(self, left, right, p.top, *most);
-      if (most && right == left + 1) fine = name_pass(self, left, &p);
-      if (!most) self->tops[self->top_count++] = p.top;
+      if (!p.known || (arcs && far != (right > left + 1))) continue;
+      if (arcs) add_arc(self, arcs, left, right, p.top);
+      if (arcs && !far) name_pass(self, left, &p);
+      if (!arcs) self->tops[self->top_count++] = p.top;
     }
-  return fine;
 }
 
-static void add_level(ladder *self, size_t place) {
+static void add_level(ladder *self, strut_series *levels, size_t place) {
   double x = (double)place, energy = level_energy(self, place);
   bool few = self->count <= FEW;
-  add_point(&self->levels, self->level, x - LEVEL, energy);
-  add_point(&self->levels, self->level, x + LEVEL, energy);
-  add_point(&self->levels, self->level, (double)NAN, (double)NAN);
-  self->marks[self->mark_count++] = (strut_mark){.at = {x, energy},
-                                                 .text = self->all->list[self->chosen[place]].name,
-                                                 .font = {.size = few ? 8 : 7, .bold = few},
-                                                 .gap = 3,
-                                                 .angle = -0.5 * STRUT_PI,
-                                                 .steady = 1,
-                                                 .priority = 2};
-}
-
-static double *allocate_columns(strut_series *series, double *columns[2], size_t count,
-                                strut_arena *arena) {
-  columns[0] = strut_arena_allocate(arena, 2 * count + 2, sizeof **columns);
-  if (columns[0]) columns[1] = columns[0] + count + 1;
-  series->x = columns[0], series->y = columns[1];
-  return columns[0];
+  strut_add_point(self->figure, levels, x - LEVEL, energy);
+  strut_add_point(self->figure, levels, x + LEVEL, energy);
+  strut_add_gap(self->figure, levels);
+  strut_mark *mark = strut_add_mark(self->figure, self->panel, x, energy,
+                                    self->all->list[self->chosen[place]].name);
+  mark->font = (strut_font){.size = few ? 8 : 7, .bold = few};
+  mark->gap = 3;
+  mark->angle = -0.5 * STRUT_PI;
+  mark->steady = 1;
+  mark->priority = 2;
 }
 
 /* The energy axis, which leaves out single barriers far above all else. */
@@ -146,40 +128,31 @@ static strut_axis find_axis(ladder *self, strut_beyond *beyond) {
   return y;
 }
 
-bool strut_ladder_fill(const strut_equilibria *all, const size_t *chosen, size_t count,
-                       strut_arena *arena, strut_panel *panel) {
+strut_panel *strut_add_ladder(strut_figure *figure, const strut_equilibria *all,
+                              const size_t *chosen, size_t count) {
   static const strut_pen pens[] = {
       {.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9},
       {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
       {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
   static const char *const no_names[] = {NULL};
-  ladder l = {.all = all, .chosen = chosen, .count = count, .zero = HUGE_VAL, .arena = arena};
-  strut_series *series = strut_arena_allocate(arena, 3, sizeof *series);
+  ladder l = {.all = all, .chosen = chosen, .count = count, .zero = HUGE_VAL, .figure = figure};
   strut_beyond beyond = {0};
   char text[STRUT_BEYOND_TEXT];
-  for (size_t k = 0; k < count; k++) l.zero = fmin(l.zero, all->list[chosen[k]].energy);
-  l.marks = strut_arena_allocate(arena, 2 * count, sizeof *l.marks);
-  l.tops = strut_arena_allocate(arena, count * count + 1, sizeof *l.tops);
-  bool fine = series && l.marks && l.tops && allocate_columns(&l.levels, l.level, 3 * count, arena);
-  for (int far = 0; far < 2 && fine; far++)
-    fine = allocate_columns(&l.arcs[far], l.arc[far], (ARC + 1) * count * (far ? FEW : 1), arena);
-  if (!fine) return false;
-  add_passes(&l, NULL);
-  strut_axis y = find_axis(&l, &beyond);
-  if (!add_passes(&l, &y.high)) return false;
-  for (size_t k = 0; k < count; k++) add_level(&l, k);
-  for (int i = 0; i < 3; i++) {
-    series[i] = i < 2 ? l.arcs[i] : l.levels;
-    series[i].pen = &pens[i];
-  }
   double wider = count > FEW ? 0.8 : 0.5; /* names are wider than their levels */
-  *panel = (strut_panel){.x = {"", "", false, -wider, (double)count - 1 + wider, no_names, 0},
-                         .y = y,
-                         .series_count = 3,
-                         .series = series,
-                         .mark_count = l.mark_count,
-                         .marks = l.marks};
-  strut_beyond_text(&beyond, "barrier", "J", text);
-  panel->remark = strut_arena_format(arena, "%s", text);
-  return panel->remark != NULL;
+  for (size_t k = 0; k < count; k++) l.zero = fmin(l.zero, all->list[chosen[k]].energy);
+  l.panel = strut_add_panel(figure);
+  l.tops = strut_figure_numbers(figure, count * count);
+  if (!l.tops) return l.panel;
+  add_passes(&l, NULL, false);
+  l.panel->x = (strut_axis){"", "", false, -wider, (double)count - 1 + wider, no_names, 0};
+  l.panel->y = find_axis(&l, &beyond);
+  for (int i = 0; i < 3; i++) {
+    strut_series *series = strut_add_series(figure, l.panel, NULL);
+    series->pen = pens[i];
+    for (size_t k = 0; k < count && i == 2; k++) add_level(&l, series, k);
+    if (i < 2) add_passes(&l, series, i == 1);
+  }
+  l.panel->remark =
+      strut_figure_text(figure, "%s", strut_beyond_text(&beyond, "barrier", "J", text));
+  return l.panel;
 }

@@ -9,7 +9,7 @@
 static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
 static const double ARROW = 20, MARGIN = 17, LEAST_MARGIN = 6, LADDER = 150; /* [pt] */
 static const double ROUNDING = 1e-12; /* of the largest energy: written as zero */
-enum { MOST_CARDS = 12, MOST_SMALL = 6, PANELS = MOST_CARDS + MOST_SMALL + 1, NOTE = 300 };
+enum { MOST_CARDS = 12, MOST_SMALL = 6 };
 
 /* The equilibria that are drawn. */
 typedef struct picture {
@@ -21,12 +21,7 @@ typedef struct picture {
   size_t cards, small;              /* drawn of both */
   double size[2], force_limit, contact_limit, largest_energy;
   strut_beyond beyond; /* force_limit */
-  size_t panel_count;
-  strut_panel panels[PANELS];
-  strut_view views[PANELS];
-  strut_shape shapes[PANELS];
-  char texts[PANELS][NOTE];
-  strut_arena arena;
+  strut_figure figure;
 } picture;
 
 /* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
@@ -46,8 +41,8 @@ static void add_by_energy(const strut_equilibria *all, size_t *index, size_t *co
 
 static bool choose_equilibria(picture *self) {
   size_t count = self->all->count;
-  self->standing = strut_arena_allocate(&self->arena, count, sizeof *self->standing);
-  self->aside = strut_arena_allocate(&self->arena, count, sizeof *self->aside);
+  self->standing = strut_arena_allocate(&self->figure.arena, count, sizeof *self->standing);
+  self->aside = strut_arena_allocate(&self->figure.arena, count, sizeof *self->aside);
   if (!self->standing || !self->aside) return false;
   for (size_t i = 0; i < count; i++) {
     const strut_equilibrium *equilibrium = &self->all->list[i];
@@ -82,121 +77,97 @@ static void find_scales(picture *self) {
   }
   for (size_t k = 0; k < self->cards; k++) {
     const strut_equilibrium *equilibrium = &self->all->list[self->standing[k]];
-    for (size_t j = 0; j < self->model->scene->member_count; j++)
-      most[k] = fmax(most[k], fabs(equilibrium->member_force[j]));
-    for (int32_t i = 0; i < equilibrium->contact_count && equilibrium->normal; i++)
-      self->contact_limit = fmax(self->contact_limit, fabs(equilibrium->normal[i]));
+    most[k] = strut_largest(equilibrium->member_force, self->model->scene->member_count);
+    self->contact_limit =
+        fmax(self->contact_limit,
+             strut_largest(equilibrium->normal, (size_t)equilibrium->contact_count));
   }
   self->force_limit =
       strut_limit_without_outliers(most, self->cards, 0.0, COLLAPSED, &self->beyond);
   self->beyond.below = self->beyond.above; /* of either sign */
 }
 
-/* As large as all others, about the shape's middle, from the ground or its foot on. */
-static strut_bounds shared_bounds(const picture *self, size_t i) {
-  const strut_ground *ground = &self->model->scene->ground;
-  strut_bounds b = bounds_of(self, i);
-  double middle = 0.5 * (b.low[0] + b.high[0]);
-  if (ground->present && ground->slope == 0) b.low[1] = fmin(b.low[1], ground->height);
-  for (int side = -1; side <= 1; side += 2)
-    (side < 0 ? b.low : b.high)[0] = middle + side * 0.5 * self->size[0];
-  b.high[1] = b.low[1] + self->size[1];
-  return b;
-}
-
-/* The panel of an equilibrium. */
-static strut_shape *add_panel(picture *self, size_t i, double margin) {
+/* Adds the panel of an equilibrium, without its shape. */
+static strut_panel *add_panel(picture *self, size_t i, double margin) {
   const strut_equilibrium *equilibrium = &self->all->list[i];
-  size_t k = self->panel_count++;
-  double energy =
-      fabs(equilibrium->energy) > ROUNDING * self->largest_energy ? equilibrium->energy : 0;
-  self->shapes[k] = (strut_shape){.model = self->model, .q = drawn_shape(self, i), .ground = true};
-  self->views[k] = (strut_view){.shape_count = 1,
-                                .shapes = &self->shapes[k],
-                                .bounds = shared_bounds(self, i),
-                                .margin = margin};
-  self->panels[k] = (strut_panel){.note = self->texts[k], .view = &self->views[k]};
-  snprintf(self->texts[k], NOTE, "%s, %s", strut_drawn_quantity(energy, 6, "J").text,
-           equilibrium->verdict);
-  return &self->shapes[k];
+  const strut_ground *ground = &self->model->scene->ground;
+  bool zero = !(fabs(equilibrium->energy) > ROUNDING * self->largest_energy);
+  strut_panel *panel = strut_add_panel(&self->figure);
+  panel->bounds = bounds_of(self, i);
+  if (ground->present && ground->slope == 0)
+    panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
+  strut_bounds_share(&panel->bounds, self->size);
+  panel->margin = margin;
+  panel->note = strut_figure_text(&self->figure, "%s, %s",
+                                  strut_drawn_quantity(zero ? 0 : equilibrium->energy, 6, "J").text,
+                                  equilibrium->verdict);
+  return panel;
 }
 
-/* An equilibrium that stands, with the forces in it and of the ground. False: out of memory. */
-static bool add_card(picture *self, size_t i) {
+/* An equilibrium that stands, with the forces in it and of the ground. */
+static void add_card(picture *self, size_t i) {
   const strut_equilibrium *equilibrium = &self->all->list[i];
   const strut_contact_table *contacts = &self->model->contacts;
-  double(*force)[2] =
-      strut_arena_allocate(&self->arena, (size_t)contacts->count + 1, sizeof *force);
+  double *force = strut_figure_numbers(&self->figure, 2 * (size_t)contacts->count);
   for (int32_t k = 0; force && k < equilibrium->contact_count && equilibrium->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
-      if (contacts->entry[c].node == equilibrium->contacts[k]) force[c][0] = equilibrium->normal[k];
-  strut_shape *shape = add_panel(self, i, MARGIN);
-  self->panels[self->panel_count - 1].title = equilibrium->name;
-  shape->style = (strut_structure_style){.colouring = STRUT_COLOUR_FORCE,
-                                         .values = equilibrium->member_force,
-                                         .slack_forces = equilibrium->member_force,
-                                         .limit = self->force_limit};
+      if (contacts->entry[c].node == equilibrium->contacts[k])
+        force[2 * c] = equilibrium->normal[k];
+  strut_panel *panel = add_panel(self, i, MARGIN);
+  panel->title = equilibrium->name;
+  strut_shape *shape = strut_add_forces(&self->figure, panel, self->model, drawn_shape(self, i),
+                                        equilibrium->member_force, self->force_limit);
   shape->names = true;
   shape->forces = (const double(*)[2])force;
   shape->force_limit = self->contact_limit;
   shape->arrow = ARROW;
-  return force != NULL;
 }
 
-/* Cards, their energies with the barriers, and the others small. False: out of memory. */
-static bool add_panels(picture *self) {
-  for (size_t k = 0; k < self->cards; k++)
-    if (!add_card(self, self->standing[k])) return false;
+/* Cards, their energies with the barriers, and the others small. */
+static void add_panels(picture *self) {
+  for (size_t k = 0; k < self->cards; k++) add_card(self, self->standing[k]);
   if (self->cards > 1 && strut_ladder_wanted(self->all, self->standing, self->cards)) {
-    strut_panel *ladder = &self->panels[self->panel_count++];
-    if (!strut_ladder_fill(self->all, self->standing, self->cards, &self->arena, ladder))
-      return false;
+    strut_panel *ladder = strut_add_ladder(&self->figure, self->all, self->standing, self->cards);
     ladder->height = LADDER;
     ladder->whole = true;
   }
   for (size_t k = 0; k < self->small; k++) {
-    add_panel(self, self->aside[k], LEAST_MARGIN)->style =
-        (strut_structure_style){.colouring = STRUT_COLOUR_ONE,
-                                .colour = strut_grey(0.45),
-                                .thinness = 0.4,
-                                .no_nodes = true};
-    self->panels[self->panel_count - 1].small = true;
+    strut_panel *panel = add_panel(self, self->aside[k], LEAST_MARGIN);
+    strut_shape *shape =
+        strut_add_ghost(&self->figure, panel, self->model, drawn_shape(self, self->aside[k]), 0.45);
+    shape->style.thinness = 0.4;
+    shape->style.no_supports = false;
+    shape->ground = panel->small = true;
   }
-  return true;
 }
 
-static void describe_all(const picture *self, char text[NOTE]) {
-  size_t stable = self->standing_count - self->floppy_count;
-  char floppy[40] = "", aside[200] = "";
-  if (self->floppy_count) snprintf(floppy, sizeof floppy, ", %zu floppy", self->floppy_count);
+static const char *describe_all(picture *self) {
+  size_t stable = self->standing_count - self->floppy_count, floppy = self->floppy_count;
+  bool few = self->small < self->aside_count;
+  const char *aside = "";
   if (self->small)
-    snprintf(aside, sizeof aside,
-             "; small and grey: stable on static supports, but not at rest on the ground%s%.0zu%s",
-             self->small < self->aside_count ? " (the lowest of " : "",
-             self->small < self->aside_count ? self->aside_count : 0,
-             self->small < self->aside_count ? ")" : "");
-  snprintf(text, NOTE, "%zu stable equilibri%s%s%s%s%s", stable, stable == 1 ? "um" : "a",
-           self->model->scene->ground.present ? " on the ground" : "", floppy,
-           self->cards < self->standing_count ? ", the lowest are drawn" : "", aside);
+    aside = strut_figure_text(
+        &self->figure,
+        "; small and grey: stable on static supports, but not at rest on the ground%s%.0zu%s",
+        few ? " (the lowest of " : "", few ? self->aside_count : 0, few ? ")" : "");
+  return strut_figure_text(
+      &self->figure, "%zu stable equilibri%s%s%s%.0zu%s%s%s", stable, stable == 1 ? "um" : "a",
+      self->model->scene->ground.present ? " on the ground" : "", floppy ? ", " : "", floppy,
+      floppy ? " floppy" : "", self->cards < self->standing_count ? ", the lowest are drawn" : "",
+      aside);
 }
 
 strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                      const strut_equilibria *equilibria, strut_error *error) {
-  picture p = {.model = model, .all = equilibria};
-  char note[NOTE];
-  bool good = choose_equilibria(&p);
-  if (good) find_scales(&p);
-  good = good && add_panels(&p);
-  describe_all(&p, note);
-  const strut_figure figure = {.title = model->scene->name,
-                               .note = note,
-                               .panel_count = p.panel_count,
-                               .panels = p.panels,
-                               .yardstick = p.cards > 0,
-                               .scale = {p.force_limit > 0 ? "force" : NULL, "N", -p.force_limit,
-                                         p.force_limit, STRUT_COLOURS_SIGNED, p.beyond}};
-  strut_status status =
-      good ? strut_figure_draw(plot, &figure, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free(&p.arena);
-  return status;
+  picture p = {.model = model, .all = equilibria, .figure.title = model->scene->name};
+  if (choose_equilibria(&p)) {
+    find_scales(&p);
+    add_panels(&p);
+  } else {
+    p.figure.failed = true;
+  }
+  p.figure.note = describe_all(&p);
+  p.figure.yardstick = p.cards > 0;
+  p.figure.scale = strut_force_scale(p.force_limit, &p.beyond);
+  return strut_figure_draw(plot, &p.figure, error);
 }

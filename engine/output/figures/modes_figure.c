@@ -2,10 +2,8 @@
 #include "engine/output/figures/statics_figures.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/output/draw/figure.h"
@@ -15,14 +13,6 @@ enum { NAMED = 12, TITLE = 200, MOST = STRUT_MODES_FIGURE_MOST };
 static const double MARGIN = 13.0, NARROWEST = 112.0; /* [pt]; panels, for their titles */
 static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
 
-/* A mode's panel: the shape at rest, and displaced. */
-typedef struct mode_panel {
-  strut_view view;
-  strut_shape shapes[2];
-  double *moved, *strain; /* (length) [m], (members) */
-  char title[TITLE], words[TITLE + TITLE / 2];
-} mode_panel;
-
 typedef struct picture {
   const strut_model *model;
   const strut_modes *modes;
@@ -30,11 +20,7 @@ typedef struct picture {
   const strut_mode *shown[MOST];
   double *taut; /* (members) 0 where a cable is slack at rest */
   double size;  /* larger extent of the shape at rest [m] */
-  strut_bounds bounds;
-  mode_panel *of; /* (count) */
-  strut_panel *panels;
-  strut_mark *rings; /* (closed_count) around contacts that are closed */
-  strut_arena arena;
+  strut_figure figure;
 } picture;
 
 /* Chooses the modes with panels: rigid-body motions only if there are no others. */
@@ -69,144 +55,122 @@ static double find_strains(const picture *self, const double *moved, double *str
 }
 
 /* "mode 3: 1.02 Hz, zeta = 0.1" and the moving nodes. */
-static void describe_mode(const strut_mode *mode, size_t number, mode_panel *to) {
-  const char *end = strchr(mode->description, ';');
-  int length = strut_text_bytes(mode->description, end ? (int)(end - mode->description) : TITLE);
-  char growth[TITLE / 2] = "", damping[40] = "";
-  strut_c_locale locale = strut_c_locale_enter();
-  if (mode->kind == STRUT_MODE_ELASTIC && mode->damping_ratio > 0)
-    snprintf(damping, sizeof damping, ", \xCE\xB6 = %.2g", mode->damping_ratio);
-  if (mode->just_taut)
-    snprintf(damping, sizeof damping, ", %d member%s just taut", (int)mode->just_taut,
-             mode->just_taut == 1 ? "" : "s");
-  if (mode->kind == STRUT_MODE_UNSTABLE)
-    snprintf(growth, sizeof growth, "grows e-fold in %s: ",
-             strut_drawn_quantity(1.0 / sqrt(-mode->eigenvalue), 3, "s").text);
+static void describe_mode(strut_figure *figure, const strut_mode *mode, size_t number,
+                          strut_panel *to) {
   static const char *const kinds[] = {[STRUT_MODE_RIGID] = "rigid-body motion",
                                       [STRUT_MODE_MECHANISM] = "mechanism",
                                       [STRUT_MODE_UNSTABLE] = "unstable",
                                       [STRUT_MODE_UNKNOWN] = "frequency not known"};
+  const char *end = strchr(mode->description, ';'), *rest = "";
+  int length = strut_text_bytes(mode->description, end ? (int)(end - mode->description) : TITLE);
+  if (mode->just_taut)
+    rest = strut_figure_text(figure, ", %d member%s just taut", (int)mode->just_taut,
+                             mode->just_taut == 1 ? "" : "s");
+  else if (mode->kind == STRUT_MODE_ELASTIC && mode->damping_ratio > 0)
+    rest = strut_figure_text(figure, ", \xCE\xB6 = %.2g", mode->damping_ratio);
   const strut_rounded_quantity frequency =
       strut_drawn_quantity(mode->angular_frequency / STRUT_TAU, 4, "Hz");
-  snprintf(to->title, TITLE, "mode %zu: %s%s", number,
-           mode->kind == STRUT_MODE_ELASTIC ? frequency.text : kinds[mode->kind], damping);
-  snprintf(to->words, sizeof to->words, "%s%.*s", growth, length, mode->description);
-  strut_c_locale_leave(locale);
+  to->title = strut_figure_text(
+      figure, "mode %zu: %s%s", number,
+      mode->kind == STRUT_MODE_ELASTIC ? frequency.text : kinds[mode->kind], rest);
+  bool grows = mode->kind == STRUT_MODE_UNSTABLE;
+  to->note = strut_figure_text(
+      figure, "%s%s%s%.*s", grows ? "grows e-fold in " : "",
+      grows ? strut_drawn_quantity(1.0 / sqrt(-mode->eigenvalue), 3, "s").text : "",
+      grows ? ": " : "", length, mode->description);
 }
 
-/* Fills in a panel, and widens the picture's bounds to it. False: out of memory. */
-static bool add_mode(picture *self, size_t k) {
-  const strut_mode *mode = self->shown[k];
+/* The shape at rest, and displaced. */
+static void add_mode(picture *self, const strut_mode *mode) {
   const strut_model *model = self->model;
-  mode_panel *to = &self->of[k];
-  double most = 0.0;
-  to->moved =
-      strut_arena_copy(&self->arena, self->modes->q, (size_t)model->length, sizeof *to->moved);
-  to->strain = strut_arena_allocate(&self->arena, model->scene->member_count + 1, sizeof(double));
-  if (!to->moved || !to->strain) return false;
+  const double *q = self->modes->q;
+  strut_panel *panel = strut_add_panel(&self->figure);
+  double most = 0.0, *moved = strut_figure_copy(&self->figure, q, (size_t)model->length);
+  double *strain = strut_figure_numbers(&self->figure, model->scene->member_count);
+  if (!moved || !strain) return;
   for (int32_t i = 0; i < model->node_count; i++)
     most = fmax(most, hypot(mode->shape[2 * i], mode->shape[2 * i + 1]));
   for (int32_t i = 0; i < model->length && most > 0; i++)
-    to->moved[i] += STRUT_MODES_FIGURE_SWING * self->size / most * mode->shape[i];
-  strut_bounds_add(&self->bounds, model, to->moved);
-  describe_mode(mode, (size_t)(mode - self->modes->list) + 1, to);
-  to->shapes[0] = (strut_shape){.model = model,
-                                .q = self->modes->q,
-                                .style = {.colouring = STRUT_COLOUR_ONE,
-                                          .colour = strut_grey(0.8),
-                                          .slack_forces = self->taut,
-                                          .no_nodes = true},
-                                .ground = true};
-  to->shapes[1] = (strut_shape){.model = model,
-                                .q = to->moved,
-                                .style = {.colouring = STRUT_COLOUR_FORCE,
-                                          .values = to->strain,
-                                          .limit = find_strains(self, to->moved, to->strain),
-                                          .slack_forces = self->taut,
-                                          .no_supports = true},
-                                .from = self->modes->q,
-                                .names = model->node_count <= NAMED};
-  to->view = (strut_view){.shape_count = 2, .shapes = to->shapes, .margin = MARGIN};
-  self->panels[k] = (strut_panel){.title = to->title,
-                                  .note = to->words,
-                                  .view = &to->view,
-                                  .marks = self->rings,
-                                  .mark_count = (size_t)self->modes->closed_count};
-  return true;
-}
-
-/* Fills in all panels. False: out of memory. */
-static bool add_modes(picture *self) {
-  const double *q = self->modes->q;
-  self->of = strut_arena_allocate(&self->arena, self->count + 1, sizeof *self->of);
-  self->panels = strut_arena_allocate(&self->arena, self->count + 1, sizeof *self->panels);
-  self->rings = strut_arena_allocate(&self->arena, (size_t)self->modes->closed_count + 1,
-                                     sizeof *self->rings);
-  self->taut =
-      strut_arena_allocate(&self->arena, self->model->scene->member_count + 1, sizeof(double));
-  if (!self->of || !self->panels || !self->rings || !self->taut) return false;
-  for (size_t j = 0; j < self->model->scene->member_count; j++)
-    self->taut[j] = self->model->scene->members[j].kind != STRUT_CABLE ||
-                    strut_member_path_length(self->model, (int32_t)j, q) >
-                        self->model->members.rest[j] * (1 - 1e-12);
+    moved[i] += STRUT_MODES_FIGURE_SWING * self->size / most * mode->shape[i];
+  describe_mode(&self->figure, mode, (size_t)(mode - self->modes->list) + 1, panel);
+  panel->margin = MARGIN;
+  strut_shape *shape = strut_add_ghost(&self->figure, panel, model, q, 0.8);
+  shape->style.slack_forces = self->taut;
+  shape->style.no_supports = false;
+  shape->ground = true;
+  shape = strut_add_forces(&self->figure, panel, model, moved, strain,
+                           find_strains(self, moved, strain));
+  shape->style.slack_forces = self->taut;
+  shape->style.no_supports = true;
+  shape->ground = false;
+  shape->from = q;
+  shape->names = model->node_count <= NAMED;
   for (int32_t k = 0; k < self->modes->closed_count; k++) {
     const double *at = q + 2 * self->modes->closed[k];
-    self->rings[k] = (strut_mark){.at = {at[0], at[1]}, .ring = true};
+    strut_add_mark(&self->figure, panel, at[0], at[1], NULL)->ring = true;
   }
-  self->bounds = strut_bounds_none();
-  strut_bounds_add(&self->bounds, self->model, q);
-  self->size = strut_bounds_extent(&self->bounds);
+}
+
+static void add_modes(picture *self) {
+  size_t members = self->model->scene->member_count;
+  strut_bounds bounds = strut_bounds_none();
+  self->taut = strut_figure_numbers(&self->figure, members);
+  for (size_t j = 0; self->taut && j < members; j++)
+    self->taut[j] = self->model->scene->members[j].kind != STRUT_CABLE ||
+                    strut_member_path_length(self->model, (int32_t)j, self->modes->q) >
+                        self->model->members.rest[j] * (1 - 1e-12);
+  strut_bounds_add(&bounds, self->model, self->modes->q);
+  self->size = strut_bounds_extent(&bounds);
   if (!(self->size > 0)) self->size = self->model->size;
-  for (size_t k = 0; k < self->count; k++)
-    if (!add_mode(self, k)) return false;
-  for (size_t k = 0; k < self->count; k++) self->of[k].view.bounds = self->bounds;
-  return true;
+  for (size_t k = 0; k < self->count; k++) add_mode(self, self->shown[k]);
 }
 
 /* Names the modes that have no panel; empty where all have one. */
-static void describe_omitted(const picture *self, char text[TITLE]) {
+static const char *describe_omitted(picture *self) {
   size_t rigid = 0, left = self->modes->count - self->count;
   for (size_t i = 0; i < self->modes->count; i++)
     rigid += self->modes->list[i].kind == STRUT_MODE_RIGID;
   if (self->shown[0]->kind == STRUT_MODE_RIGID) rigid -= self->count;
   left -= rigid;
-  text[0] = '\0';
-  int used = 0;
+  const char *text = "";
   if (rigid)
-    used = snprintf(text, TITLE, "not drawn: %zu rigid-body motion%s", rigid, rigid > 1 ? "s" : "");
+    text = strut_figure_text(&self->figure, "not drawn: %zu rigid-body motion%s", rigid,
+                             rigid > 1 ? "s" : "");
   if (left)
-    snprintf(text + used, TITLE - (size_t)used, "%s%zu higher mode%s",
-             used ? ", " : "not drawn: ", left, left > 1 ? "s" : "");
+    text = strut_figure_text(&self->figure, "%s%zu higher mode%s",
+                             *text ? strut_figure_text(&self->figure, "%s, ", text) : "not drawn: ",
+                             left, left > 1 ? "s" : "");
+  return text;
+}
+
+static void add_keys(picture *self) {
+  const strut_modes *modes = self->modes;
+  const strut_pen grey = {.colour = strut_grey(0.8), .width = 1.8};
+  const strut_pen ring = {.colour = strut_grey(0.1), .width = 0.9};
+  strut_add_key(
+      &self->figure, STRUT_KEY_LINE, grey,
+      strut_figure_text(&self->figure, "%s %.*s%s", modes->at_rest ? "equilibrium" : "shape",
+                        strut_text_bytes(modes->at, 150), modes->at,
+                        modes->at_rest ? "" : " (no equilibrium)"));
+  strut_add_key(&self->figure, STRUT_KEY_ARROW, strut_displacement_pen(), "displacement");
+  strut_add_key(&self->figure, STRUT_KEY_SIGNED, grey, "stretches, relative per mode")->before =
+      "shortens";
+  if (modes->closed_count) strut_add_key(&self->figure, STRUT_KEY_DOT, ring, "closed contact");
+  const char *rest = describe_omitted(self);
+  if (*rest) strut_add_key(&self->figure, STRUT_KEY_WORDS, grey, rest);
 }
 
 strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
                                 const strut_modes *modes, size_t panels, strut_error *error) {
-  picture p = {.model = model, .modes = modes};
-  char at[TITLE], rest[TITLE];
+  picture p = {.model = model,
+               .modes = modes,
+               .figure = {.title = model->scene->name,
+                          .columns = MOST,
+                          .least_width = NARROWEST,
+                          .aspect = 0.95,
+                          .shared_axes = true}};
   choose_modes(&p, panels);
-  describe_omitted(&p, rest);
-  snprintf(at, TITLE, "%s %.*s%s", modes->at_rest ? "equilibrium" : "shape",
-           strut_text_bytes(modes->at, 150), modes->at, modes->at_rest ? "" : " (no equilibrium)");
-  const strut_pen grey = {.colour = strut_grey(0.8), .width = 1.8};
-  const strut_pen ring = {.colour = strut_grey(0.1), .width = 0.9};
-  const strut_key_item keys[] = {
-      {.sign = STRUT_KEY_LINE, .pen = grey, .text = at},
-      {.sign = STRUT_KEY_ARROW, .pen = strut_displacement_pen(), .text = "displacement"},
-      {.sign = STRUT_KEY_SIGNED, .before = "shortens", .text = "stretches, relative per mode"},
-      {.sign = STRUT_KEY_DOT, .pen = ring, .text = modes->closed_count ? "closed contact" : NULL},
-      {.sign = STRUT_KEY_WORDS, .text = *rest ? rest : NULL}};
-  strut_status status = add_modes(&p) ? STRUT_OK : strut_no_memory(error, "while drawing");
-  if (status == STRUT_OK)
-    status = strut_figure_draw(plot,
-                               &(strut_figure){.title = model->scene->name,
-                                               .panel_count = p.count,
-                                               .panels = p.panels,
-                                               .columns = MOST,
-                                               .least_width = NARROWEST,
-                                               .aspect = 0.95,
-                                               .key_count = sizeof keys / sizeof *keys,
-                                               .keys = keys},
-                               error);
-  strut_arena_free(&p.arena);
-  return status;
+  add_modes(&p);
+  add_keys(&p);
+  return strut_figure_draw(plot, &p.figure, error);
 }

@@ -16,7 +16,7 @@ static const double FEW_FRAMES = 0.05;
 static const double SMALLEST = 0.2; /* of the model's size, for a drawing */
 
 static const struct {
-  bool (*fill)(strut_run_scene *run, strut_figure *figure, char *note);
+  const char *(*fill)(strut_run_scene *run, strut_figure *figure);
   bool velocity; /* its heading tells the velocity */
 } views[] = {
     [STRUT_RUN_OVERVIEW] = {strut_run_overview, true},
@@ -65,22 +65,15 @@ static bool is_shape(const strut_run_scene *run, size_t frame) {
   return strut_bounds_extent(&b) <= BURST * run->model->size;
 }
 
-static double largest(const double *values, size_t count) {
-  double most = 0;
-  for (size_t i = 0; values && i < count; i++)
-    if (isfinite(values[i])) most = fmax(most, fabs(values[i]));
-  return most;
-}
-
-bool strut_run_find_limits(strut_run_scene *run) {
+void strut_run_find_limits(strut_run_scene *run) {
   const strut_trajectory *trajectory = run->motion;
-  double *most = strut_arena_allocate(&run->arena, run->frames + 1, sizeof *most);
-  if (!most) return false;
+  double *most = strut_figure_numbers(run->page, run->frames);
+  if (!most) return;
   for (size_t f = 0; f < run->frames && trajectory->force; f++)
-    most[f] = largest(trajectory->force + f * trajectory->member_count, trajectory->member_count);
+    most[f] =
+        strut_largest(trajectory->force + f * trajectory->member_count, trajectory->member_count);
   run->force_limit = strut_limit_without_outliers(most, run->frames, 0.0, FEW_FRAMES, &run->beyond);
   run->beyond.below = run->beyond.above; /* of either sign */
-  return true;
 }
 
 void strut_run_count_frames(strut_run_scene *run) {
@@ -92,8 +85,8 @@ void strut_run_count_frames(strut_run_scene *run) {
   if (run->frames > 1 && fine && period > 0) run->period = period;
 }
 
-double *strut_run_coordinates(strut_run_scene *run, size_t frame) {
-  double *q = strut_arena_allocate(&run->arena, (size_t)run->model->length, sizeof *q);
+double *strut_run_coordinates(const strut_run_scene *run, size_t frame) {
+  double *q = strut_figure_numbers(run->page, (size_t)run->model->length);
   if (q) memcpy(q, strut_run_positions(run, frame), 2 * run->motion->node_count * sizeof *q);
   return q;
 }
@@ -167,21 +160,22 @@ static const double STANDING = 1e-6; /* of the model's size over the whole run: 
 
 void strut_run_expect_frame(strut_run_scene *run, size_t frame) {
   const strut_trajectory *trajectory = run->motion;
-  for (size_t i = 0; trajectory->contact && i < 2 * trajectory->contact_count; i++) {
-    double force = fabs(trajectory->contact[2 * frame * trajectory->contact_count + i]);
-    if (isfinite(force)) run->contact_limit = fmax(run->contact_limit, force);
-  }
+  if (trajectory->contact)
+    run->contact_limit =
+        fmax(run->contact_limit,
+             strut_largest(trajectory->contact + 2 * frame * trajectory->contact_count,
+                           2 * trajectory->contact_count));
 }
 
-bool strut_run_shape(strut_run_scene *run, size_t frame, strut_shape *shape) {
+strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel, size_t frame) {
   const strut_trajectory *trajectory = run->motion;
-  *shape = (strut_shape){.model = run->model,
-                         .q = strut_run_coordinates(run, frame),
-                         .style.time = trajectory->time ? trajectory->time[frame] : 0.0,
-                         .ground = true,
-                         .moving = trajectory->time != NULL,
-                         .force_limit = run->contact_limit,
-                         .arrow = STRUT_RUN_ARROW};
+  strut_shape *shape =
+      strut_add_shape(run->page, panel, run->model, strut_run_coordinates(run, frame));
+  shape->style.time = trajectory->time ? trajectory->time[frame] : 0.0;
+  shape->ground = true;
+  shape->moving = trajectory->time != NULL;
+  shape->force_limit = run->contact_limit;
+  shape->arrow = STRUT_RUN_ARROW;
   if (trajectory->force) {
     shape->style.colouring = STRUT_COLOUR_FORCE;
     shape->style.values = shape->style.slack_forces =
@@ -191,28 +185,17 @@ bool strut_run_shape(strut_run_scene *run, size_t frame, strut_shape *shape) {
   if (trajectory->contact && run->contact_limit > 0)
     shape->forces =
         (const double(*)[2])(trajectory->contact + 2 * frame * trajectory->contact_count);
-  return shape->q != NULL;
+  return shape;
 }
 
-strut_colour_scale strut_run_scale(const strut_run_scene *run) {
-  bool known = run->motion->force && run->force_limit > 0;
-  return (strut_colour_scale){.name = known ? "force" : NULL,
-                              .unit = "N",
-                              .low = -run->force_limit,
-                              .high = run->force_limit,
-                              .colours = STRUT_COLOURS_SIGNED,
-                              .beyond = run->beyond};
-}
-
-const strut_key_item *strut_run_arrow_item(strut_run_scene *run) {
-  strut_key_item *item = strut_arena_allocate(&run->arena, 1, sizeof *item);
-  if (!item) return NULL;
-  item->sign = STRUT_KEY_ARROW;
-  item->pen = (strut_pen){.colour = strut_palette_thing(1), .width = 1.1};
-  if (!(run->contact_limit > 0)) return item;
-  item->text = strut_arena_format(&run->arena, "contact force, up to %s",
-                                  strut_drawn_quantity(run->contact_limit, 3, "N").text);
-  return item->text ? item : NULL;
+void strut_run_add_scales(const strut_run_scene *run) {
+  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
+  run->page->yardstick = true;
+  run->page->scale = strut_force_scale(run->motion->force ? run->force_limit : 0, &run->beyond);
+  if (run->contact_limit > 0)
+    strut_add_key(run->page, STRUT_KEY_ARROW, pen,
+                  strut_figure_text(run->page, "contact force, up to %s",
+                                    strut_drawn_quantity(run->contact_limit, 3, "N").text));
 }
 
 /* The measured velocity; 0 for a structure that stands still. */
@@ -226,76 +209,64 @@ static double shown_velocity(const strut_run_scene *run) {
 
 static const double FRINGE =
     1.8; /* both edges of dashes, which show on both sides of what lies on them [pt] */
-static const strut_colour DASHES = {0.25, 0.25, 0.25, 1};
 
 bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
-  *other =
-      (strut_run_scene){.figure = run->figure, .model = run->model, .motion = run->figure->other};
+  *other = (strut_run_scene){
+      .figure = run->figure, .model = run->model, .motion = run->figure->other, .page = run->page};
   if (!other->motion || !other->motion->position) return false;
   strut_run_count_frames(other);
   return other->frames > 0;
 }
 
-bool strut_run_other_shape(strut_run_scene *other, size_t frame, strut_shape *shape) {
-  *shape = (strut_shape){.model = other->model,
-                         .q = strut_run_coordinates(other, frame),
-                         .style = {.colouring = STRUT_COLOUR_ONE,
-                                   .colour = DASHES,
-                                   .fringe = FRINGE,
-                                   .no_nodes = true,
-                                   .no_supports = true}};
-  return shape->q != NULL;
+void strut_run_add_other(const strut_run_scene *other, strut_panel *panel, size_t frame) {
+  strut_shape *shape =
+      strut_add_ghost(other->page, panel, other->model, strut_run_coordinates(other, frame), 0.25);
+  shape->style.fringe = FRINGE;
 }
 
 strut_pen strut_run_other_pen(void) {
-  return (strut_pen){
-      .colour = DASHES, .width = STRUT_RUN_TRAIL + FRINGE, .dash = {2.2, 2.2}, .butt = true};
+  return (strut_pen){.colour = strut_grey(0.25),
+                     .width = STRUT_RUN_TRAIL + FRINGE,
+                     .dash = {2.2, 2.2},
+                     .butt = true};
 }
 
-void strut_run_describe_other(const strut_run_scene *run, char *text, size_t size) {
-  size_t used = strlen(text);
-  if (run->figure->other)
-    snprintf(text + used, size - used, "; thick dashes: %s",
-             run->figure->other_name ? run->figure->other_name : "another");
+const char *strut_run_other_text(const strut_run_scene *run) {
+  const char *name = run->figure->other_name;
+  if (!run->figure->other) return "";
+  return strut_figure_text(run->page, "; thick dashes: %s", name ? name : "another");
 }
 
 /* ---- the whole figure ---- */
 
-/* What the figure shows, in `note`: the failure, `what`, the velocity. */
-static void describe_run(const strut_run_scene *run, const char *what, char note[STRUT_RUN_NOTE]) {
+/* What the figure shows: the failure, `what`, the velocity. */
+static const char *describe_run(const strut_run_scene *run, const char *what) {
   const strut_summary *summary = run->summary;
-  bool failed = summary && summary->status != STRUT_OK;
-  int used = 0;
-  if (failed)
-    used = snprintf(note, STRUT_RUN_NOTE, "%s at %s; ",
-                    summary->status == STRUT_DIVERGED ? "diverged" : "stopped",
-                    strut_drawn_quantity(summary->duration, 4, "s").text);
-  used += snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "%.400s", what);
-  if (!views[run->figure->view].velocity || !summary || failed || !isfinite(summary->velocity))
-    return;
+  if (summary && summary->status != STRUT_OK)
+    return strut_figure_text(run->page, "%s at %s; %.400s",
+                             summary->status == STRUT_DIVERGED ? "diverged" : "stopped",
+                             strut_drawn_quantity(summary->duration, 4, "s").text, what);
+  if (!views[run->figure->view].velocity || !summary || !isfinite(summary->velocity)) return what;
   double v = shown_velocity(run);
-  snprintf(note + used, STRUT_RUN_NOTE - (size_t)used, "; velocity of %.60s %s%s",
-           strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,
-           v > 0   ? " \xe2\x86\x92"
-           : v < 0 ? " \xe2\x86\x90"
-                   : "");
+  return strut_figure_text(run->page, "%.400s; velocity of %.60s %s%s", what,
+                           strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,
+                           v > 0   ? " \xe2\x86\x92"
+                           : v < 0 ? " \xe2\x86\x90"
+                                   : "");
 }
 
 strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
                                    const strut_model *model, const strut_trajectory *motion,
                                    const strut_summary *summary, strut_error *error) {
-  strut_run_scene run = {.figure = figure, .model = model, .motion = motion, .summary = summary};
-  char what[STRUT_RUN_NOTE] = "", note[STRUT_RUN_NOTE];
+  strut_figure page = {.title = model->scene->name,
+                       .alarm = summary && summary->status != STRUT_OK};
+  strut_run_scene run = {
+      .figure = figure, .model = model, .motion = motion, .summary = summary, .page = &page};
+  const strut_plot plot = {.path = path, .width = figure->width, .title = figure->title};
   if (motion->position) strut_run_count_frames(&run);
   if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
-  const strut_plot plot = {.path = path, .width = figure->width, .title = figure->title};
-  strut_figure page = {
-      .title = model->scene->name, .note = note, .alarm = summary && summary->status != STRUT_OK};
-  bool good = strut_run_find_limits(&run) && views[figure->view].fill(&run, &page, what);
-  describe_run(&run, what, note);
-  strut_status status =
-      good ? strut_figure_draw(&plot, &page, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free(&run.arena);
-  return status;
+  strut_run_find_limits(&run);
+  page.note = describe_run(&run, views[figure->view].fill(&run, &page));
+  return strut_figure_draw(&plot, &page, error);
 }

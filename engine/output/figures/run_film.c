@@ -115,48 +115,42 @@ static void find_view(making *self) {
   strut_run_add_ground(&self->run, &self->view);
 }
 
-enum { MARKS = 40 };
-
-/* Marks along the ground, which they show passing. Returns their number. */
-static size_t add_marks(const making *self, const strut_window *window, double at[MARKS][2][2],
-                        strut_trail trails[MARKS]) {
+/* Marks along the ground, which they show passing. */
+static void add_marks(const making *self, const strut_window *window, strut_figure *page,
+                      strut_panel *panel) {
+  enum { MARKS = 40 };
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.9, .butt = true};
   double step = pow(10.0, ceil(log10(20.0 / window->scale))),
          right = window->left + window->box.width / window->scale;
   const strut_ground *ground = &self->run.model->scene->ground;
-  size_t count = 0;
-  if (!ground->present || ground->belt_speed != 0) return 0;
-  for (double x = step * ceil(window->left / step); x < right && count < MARKS; x += step) {
-    double y = strut_run_ground_at(&self->run, x);
-    for (int end = 0; end < 2; end++) at[count][end][0] = x, at[count][end][1] = y;
-    at[count][1][1] -= 9 / window->scale;
-    trails[count] = (strut_trail){.count = 2, .at = (const double(*)[2])at[count], .pen = pen};
-    count++;
+  double x = step * ceil(window->left / step);
+  if (!ground->present || ground->belt_speed != 0) return;
+  for (int i = 0; x < right && i < MARKS; i++, x += step) {
+    strut_trail *trail = strut_add_trail(page, panel, STRUT_TRAIL_LINE, pen);
+    for (int end = 0; end < 2; end++)
+      strut_add_place(
+          page, trail,
+          (const double[2]){x, strut_run_ground_at(&self->run, x) - end * 9 / window->scale});
   }
-  return count;
 }
 
 static bool draw(making *self, strut_canvas *canvas, size_t i) {
   strut_box page = strut_canvas_box(canvas), box = {0, HEAD, PAGE, page.height - HEAD - FOOT};
-  strut_run_scene run = self->run; /* with an arena for this frame alone */
+  strut_figure sheet = {0}; /* of this frame alone */
+  strut_run_scene run = self->run;
   size_t frame = frame_at(self, i);
   char text[160], fitted[STRUT_FITTED_TEXT];
   const strut_font bold = {.size = 11, .bold = true};
-  double at[MARKS][2][2];
-  strut_trail marks[MARKS];
-  strut_shape shape;
-  strut_view view = {.shape_count = 1,
-                     .shapes = &shape,
-                     .trails = marks,
-                     .bounds = move(self, i, 1, self->view),
-                     .margin = MARGIN};
-  const strut_window window = strut_window_fit(box, view.bounds, MARGIN);
-  run.arena = (strut_arena){0};
+  strut_panel *panel = strut_add_panel(&sheet);
+  panel->bounds = move(self, i, 1, self->view);
+  panel->margin = MARGIN;
+  const strut_window window = strut_window_fit(box, panel->bounds, MARGIN);
+  run.page = &sheet;
   strut_canvas_clear(canvas, strut_grey(1));
-  view.trail_count = add_marks(self, &window, at, marks);
-  bool good = strut_run_shape(&run, frame, &shape);
-  if (good) strut_draw_view(canvas, box, &(strut_panel){.view = &view});
-  strut_arena_free(&run.arena);
+  add_marks(self, &window, &sheet, panel);
+  strut_run_add_shape(&run, panel, frame);
+  if (!sheet.failed) strut_draw_view(canvas, box, panel);
+  strut_arena_free(&sheet.arena);
   strut_text_fit(canvas, run.model->scene->name, bold, 0.7 * PAGE, 0, fitted);
   strut_draw_text(canvas, EDGE, EDGE - 4, fitted, bold);
   double digits = fmin(fmax(ceil(-log10(self->film->speed / self->film->fps) - 1e-6), 0), 6);
@@ -166,10 +160,11 @@ static bool draw(making *self, strut_canvas *canvas, size_t i) {
            strut_run_measured_name(&run), moved < 0 ? "" : "+",
            strut_drawn_quantity(moved, 3, "m").text);
   strut_draw_text(canvas, EDGE, page.height - 25, text, (strut_font){.size = 11});
-  const strut_colour_scale scale = strut_run_scale(&run);
+  const strut_colour_scale scale =
+      strut_force_scale(run.motion->force ? run.force_limit : 0, &run.beyond);
   if (scale.name)
     strut_draw_colour_scale(canvas, (strut_box){PAGE - 190, page.height - 36, 180, 30}, &scale);
-  return good;
+  return !sheet.failed;
 }
 
 static strut_status draw_all(making *self, strut_canvas *canvas, FILE *pipe, strut_error *error) {
@@ -209,7 +204,9 @@ static strut_status encode(making *self, strut_error *error) {
 strut_status strut_film_make(strut_film *film, const strut_model *model,
                              const strut_trajectory *motion, strut_error *error) {
   const strut_run_figure figure = {.experiment = film->experiment};
-  making m = {.film = film, .run = {.figure = &figure, .model = model, .motion = motion}};
+  strut_figure page = {0};
+  making m = {.film = film,
+              .run = {.figure = &figure, .model = model, .motion = motion, .page = &page}};
   if (motion->position) strut_run_count_frames(&m.run);
   if (!m.run.frames)
     return strut_fail(error, STRUT_DIVERGED, "the recording holds no motion to film");
@@ -218,9 +215,9 @@ strut_status strut_film_make(strut_film *film, const strut_model *model,
   film->every = m.run.frames > 1 ? film->motion / (double)(m.run.frames - 1) : 0;
   for (size_t i = 0; i < m.run.frames; i++) strut_run_expect_frame(&m.run, i);
   find_view(&m);
-  strut_status status = strut_run_find_limits(&m.run)
-                            ? encode(&m, error)
-                            : strut_no_memory(error, "while making a film");
-  strut_arena_free(&m.run.arena);
+  strut_run_find_limits(&m.run);
+  strut_status status =
+      page.failed ? strut_no_memory(error, "while making a film") : encode(&m, error);
+  strut_arena_free(&page.arena);
   return status;
 }

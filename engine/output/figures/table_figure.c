@@ -4,14 +4,13 @@
 #include <assert.h>
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/output/figures/table_choice.h"
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
-enum { NAME = 48, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
+enum { NAME = 46, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
 enum { MOST_CELLS = 4000000 };
 
 /* A figure being filled in. */
@@ -19,10 +18,9 @@ typedef struct maker {
   const strut_table_figure *figure;
   const strut_table *table;
   strut_table_groups panels, curves; /* curves, or categories of a map */
-  const char *y_name;
-  double *at[2]; /* of a map: the grid's positions */
+  double *at[2];                     /* of a map: the grid's positions */
   size_t count[2];
-  strut_arena arena;
+  strut_figure page;
   strut_error *error;
 } maker;
 
@@ -30,32 +28,31 @@ static const strut_table_column *column_of(const maker *self, int column) {
   return column == STRUT_NO_COLUMN ? NULL : &self->table->columns[column];
 }
 
-/* "a) friction = 0.1" */
-static const char *panel_title(maker *self, size_t panel) {
-  const strut_table_column *column = column_of(self, self->figure->panels);
-  return strut_arena_format(&self->arena, "%c) %s = %s%s%s", (char)('a' + (int)(panel % 26)),
-                            column->name, self->panels.name[panel], *column->unit ? " " : "",
-                            column->unit);
+static double value_of(const maker *self, int column, size_t row) {
+  const strut_table_column *of = column_of(self, column);
+  return of && of->value ? of->value[row] : (double)NAN;
+}
+
+static bool is_in_panel(const maker *self, size_t panel, size_t row) {
+  return strut_table_belongs(self->table, self->figure->panels, self->panels.name[panel], row);
 }
 
 /* ---- curves ---- */
 
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *rows) {
-  const strut_table_figure *figure = self->figure;
   size_t count = 0;
   for (size_t i = 0; i < self->table->row_count; i++)
-    if (strut_table_belongs(self->table, figure->panels, self->panels.name[panel], i) &&
-        strut_table_belongs(self->table, figure->by, self->curves.name[curve], i))
+    if (is_in_panel(self, panel, i) &&
+        strut_table_belongs(self->table, self->figure->by, self->curves.name[curve], i))
       rows[count++] = i;
   return count;
 }
 
 /* Grey areas over stretches of matching rows. */
-static bool add_bands(maker *self, const size_t *rows, size_t count, strut_panel *panel) {
+static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel *panel) {
   const strut_table_column *band = column_of(self, self->figure->band);
   const double *x = column_of(self, self->figure->x)->value;
-  strut_band *bands = (strut_band *)panel->bands;
   const char *wanted = self->figure->band_value;
   for (size_t i = 0; band && i < count; i++) {
     if (strcmp(band->text[rows[i]], wanted) != 0) continue;
@@ -64,17 +61,13 @@ static bool add_bands(maker *self, const size_t *rows, size_t count, strut_panel
     double low = x[rows[i]], high = x[rows[last]];
     if (i > 0) low = 0.5 * (low + x[rows[i - 1]]);
     if (last + 1 < count) high = 0.5 * (high + x[rows[last + 1]]);
-    bands[panel->band_count++] =
-        (strut_band){.low = fmin(low, high),
-                     .high = fmax(low, high),
-                     .label = strut_arena_format(&self->arena, "%s %s", band->name, wanted)};
-    if (!bands[panel->band_count - 1].label) return false;
+    strut_add_band(&self->page, panel, fmin(low, high), fmax(low, high),
+                   strut_figure_text(&self->page, "%s %s", band->name, wanted));
     i = last;
   }
-  return true;
 }
 
-/* What the legend says of y column k of a curve; NULL: there is one curve only, or no memory. */
+/* What the legend says of y column k of a curve; NULL: there is one curve only. */
 static const char *curve_name(maker *self, size_t curve, int k) {
   const strut_table_figure *figure = self->figure;
   const char *column = column_of(self, figure->y[k])->name, *group = self->curves.name[curve];
@@ -82,86 +75,56 @@ static const char *curve_name(maker *self, size_t curve, int k) {
   bool several = figure->y_count > 1;
   if (self->curves.count * (size_t)figure->y_count < 2) return NULL;
   if (!group) return column;
-  return strut_arena_format(&self->arena, "%s%s%s %s%s%s", several ? column : "",
-                            several ? ", " : "", by->name, group, by->value && *by->unit ? " " : "",
-                            by->value ? by->unit : "");
+  return strut_figure_text(&self->page, "%s%s%s %s%s%s", several ? column : "", several ? ", " : "",
+                           by->name, group, by->value && *by->unit ? " " : "",
+                           by->value ? by->unit : "");
 }
 
-static bool add_curve(maker *self, const size_t *rows, size_t count, size_t curve, int k,
-                      strut_panel *panel) {
-  double *x = strut_arena_allocate(&self->arena, count, sizeof *x);
-  double *y = strut_arena_allocate(&self->arena, count, sizeof *y);
-  for (size_t i = 0; x && y && i < count; i++) {
-    x[i] = column_of(self, self->figure->x)->value[rows[i]];
-    y[i] = column_of(self, self->figure->y[k])->value[rows[i]];
-  }
-  ((strut_series *)panel->series)[panel->series_count++] = (strut_series){
-      .label = curve_name(self, curve, k), .count = count, .x = x, .y = y, .look = -1};
-  return x && y;
-}
-
-static bool fill_curves(maker *self, size_t number, strut_panel *panel) {
+static void add_curves(maker *self, size_t number, strut_panel *panel) {
   const strut_table_figure *figure = self->figure;
-  size_t most = self->curves.count * (size_t)figure->y_count, rows = self->table->row_count;
-  size_t *row = strut_arena_allocate(&self->arena, rows, sizeof *row);
-  panel->series = strut_arena_allocate(&self->arena, most, sizeof *panel->series);
-  panel->bands =
-      strut_arena_allocate(&self->arena, rows * self->curves.count, sizeof *panel->bands);
+  size_t *row = strut_arena_allocate(&self->page.arena, self->table->row_count + 1, sizeof *row);
   panel->outliers = true;
-  bool fine = row && panel->series && panel->bands;
-  for (size_t c = 0; c < self->curves.count && fine; c++) {
+  self->page.failed = self->page.failed || !row;
+  for (size_t c = 0; c < self->curves.count && row; c++) {
     size_t count = rows_of(self, number, c, row);
-    fine = add_bands(self, row, count, panel);
-    for (int k = 0; k < figure->y_count && fine; k++)
-      fine = add_curve(self, row, count, c, k, panel);
+    add_bands(self, row, count, panel);
+    for (int k = 0; k < figure->y_count; k++) {
+      strut_series *series = strut_add_series(&self->page, panel, curve_name(self, c, k));
+      for (size_t i = 0; i < count; i++)
+        strut_add_point(&self->page, series, value_of(self, figure->x, row[i]),
+                        value_of(self, figure->y[k], row[i]));
+    }
   }
-  return fine;
 }
 
 /* ---- points ---- */
 
-/* A cloud of the points that are marked, or of the others. */
-static bool fill_cloud(maker *self, bool marked, strut_series *cloud) {
+/* A cloud of the points that are marked, with a ring around each, over one of the others. */
+static void add_points(maker *self, size_t number, strut_panel *panel) {
   const strut_table_figure *figure = self->figure;
-  const int columns[] = {figure->x, figure->y[0], figure->value};
-  double *to[3];
-  for (int d = 0; d < 3; d++) {
-    to[d] = strut_arena_allocate(&self->arena, self->table->row_count + 1, sizeof *to[d]);
-    if (!to[d]) return false;
+  for (int marked = 0; marked < 2; marked++) {
+    strut_series *cloud = strut_add_series(&self->page, panel, NULL);
+    cloud->cloud = true;
+    cloud->look = 0;
+    for (size_t i = 0; i < self->table->row_count; i++) {
+      if (!is_in_panel(self, number, i) || !figure->shown[i] || figure->marked[i] != marked)
+        continue;
+      double x = value_of(self, figure->x, i), y = value_of(self, figure->y[0], i);
+      strut_add_point(&self->page, cloud, x, y)->value = value_of(self, figure->value, i);
+      if (marked) strut_add_mark(&self->page, panel, x, y, NULL)->ring = true;
+    }
   }
-  for (size_t i = 0; i < self->table->row_count; i++) {
-    if (!figure->shown[i] || figure->marked[i] != marked) continue;
-    for (int d = 0; d < 3; d++)
-      to[d][cloud->count] = columns[d] >= 0 ? column_of(self, columns[d])->value[i] : (double)NAN;
-    cloud->count++;
-  }
-  cloud->cloud = true;
-  cloud->x = to[0], cloud->y = to[1], cloud->value = figure->value >= 0 ? to[2] : NULL;
-  return true;
-}
-
-static bool fill_points(maker *self, strut_panel *panel) {
-  strut_series *clouds = strut_arena_allocate(&self->arena, 2, sizeof *clouds);
-  if (!clouds || !fill_cloud(self, false, &clouds[0]) || !fill_cloud(self, true, &clouds[1]))
-    return false;
-  strut_mark *marks = strut_arena_allocate(&self->arena, clouds[1].count + 1, sizeof *marks);
-  for (size_t i = 0; marks && i < clouds[1].count; i++)
-    marks[i] = (strut_mark){.at = {clouds[1].x[i], clouds[1].y[i]}, .ring = true};
-  panel->series = clouds, panel->series_count = 2;
-  panel->marks = marks, panel->mark_count = clouds[1].count;
   panel->room = 0.04;
-  return marks != NULL;
 }
 
 /* ---- maps ---- */
 
 /* The different finite values of a column, ascending. False: out of memory. */
 static bool find_positions(maker *self, int column, int d) {
-  const double *value = column_of(self, column)->value;
-  double *all = strut_arena_allocate(&self->arena, self->table->row_count, sizeof *all);
+  double *all = strut_figure_numbers(&self->page, self->table->row_count);
   size_t used = 0, *kept = &self->count[d];
   for (size_t i = 0; all && i < self->table->row_count; i++)
-    if (isfinite(value[i])) all[used++] = value[i];
+    if (isfinite(value_of(self, column, i))) all[used++] = value_of(self, column, i);
   if (all && used) gsl_sort(all, 1, used);
   double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
@@ -217,35 +180,57 @@ static strut_status prepare_grid(maker *self) {
   return STRUT_OK;
 }
 
-/* Puts row i of the table into its cell. */
-static void fill_cell(const maker *self, size_t i, int *category, double *value, bool *doubtful) {
-  const strut_table_figure *figure = self->figure;
-  const strut_table_column *of = column_of(self, figure->value),
-                           *doubt = column_of(self, figure->doubt);
-  double x = column_of(self, figure->x)->value[i], y = column_of(self, figure->y[0])->value[i];
-  if (!isfinite(x) || !isfinite(y)) return;
-  size_t k = nearest_index(self->at[1], self->count[1], y) * self->count[0] +
-             nearest_index(self->at[0], self->count[0], x);
-  if (of->value) value[k] = of->value[i];
-  for (size_t g = 0; g < self->curves.count; g++)
-    if (strcmp(self->curves.name[g], of->text[i]) == 0) category[k] = (int)g;
-  if (doubt) doubtful[k] = is_doubtful(doubt->text[i]);
+/* Cells without a row (+ 1) get that of a neighbour, again and again: of a grid that is refined in places. */
+static void spread(const maker *self, uint32_t *row, uint32_t *before) {
+  size_t wide = self->count[0], cells = wide * self->count[1];
+  for (bool changed = before != NULL; changed;) {
+    changed = false;
+    memcpy(before, row, cells * sizeof *row);
+    for (size_t k = 0; k < cells; k++) {
+      const size_t near[] = {k % wide ? k - 1 : k, k % wide + 1 < wide ? k + 1 : k,
+                             k >= wide ? k - wide : k, k + wide < cells ? k + wide : k};
+      for (int n = 0; n < 4 && !row[k]; n++) row[k] = before[near[n]];
+      changed = changed || row[k] != before[k];
+    }
+  }
 }
 
-static bool fill_map(maker *self, size_t number, strut_panel *panel) {
-  const strut_table_figure *figure = self->figure;
-  const strut_table_column *of = column_of(self, figure->value),
-                           *doubt = column_of(self, figure->doubt);
+/* The row of the table in each cell of a panel, + 1; 0: none. NULL: out of memory. */
+static uint32_t *find_rows(maker *self, size_t number) {
+  size_t cells = self->count[0] * self->count[1];
+  uint32_t *row = strut_arena_allocate(&self->page.arena, cells, sizeof *row);
+  for (size_t i = 0; row && i < self->table->row_count; i++) {
+    double x = value_of(self, self->figure->x, i), y = value_of(self, self->figure->y[0], i);
+    if (!is_in_panel(self, number, i) || !isfinite(x) || !isfinite(y)) continue;
+    row[nearest_index(self->at[1], self->count[1], y) * self->count[0] +
+        nearest_index(self->at[0], self->count[0], x)] = (uint32_t)i + 1;
+  }
+  if (row && self->figure->spread)
+    spread(self, row, strut_arena_allocate(&self->page.arena, cells, sizeof *row));
+  return row;
+}
+
+static void add_map(maker *self, size_t number, strut_panel *panel) {
+  const strut_table_column *of = column_of(self, self->figure->value),
+                           *doubt = column_of(self, self->figure->doubt);
   size_t count = self->count[0] * self->count[1];
-  strut_map *map = strut_arena_allocate(&self->arena, 1, sizeof *map);
-  int *category = strut_arena_allocate(&self->arena, count, sizeof *category);
-  double *value = strut_arena_allocate(&self->arena, count, sizeof *value);
-  bool *doubtful = strut_arena_allocate(&self->arena, count, sizeof *doubtful);
-  if (!map || !category || !value || !doubtful) return false;
-  for (size_t k = 0; k < count; k++) value[k] = (double)NAN, category[k] = -1;
-  for (size_t i = 0; i < self->table->row_count; i++)
-    if (strut_table_belongs(self->table, figure->panels, self->panels.name[number], i))
-      fill_cell(self, i, category, value, doubtful);
+  strut_arena *arena = &self->page.arena;
+  strut_map *map = strut_arena_allocate(arena, 1, sizeof *map);
+  int *category = strut_arena_allocate(arena, count, sizeof *category);
+  double *value = strut_arena_allocate(arena, count, sizeof *value);
+  bool *doubtful = strut_arena_allocate(arena, count, sizeof *doubtful);
+  const uint32_t *row = find_rows(self, number);
+  panel->map = map;
+  self->page.failed |= !map || !category || !value || !doubtful || !row;
+  if (self->page.failed) return;
+  for (size_t k = 0; k < count; k++) {
+    value[k] = (double)NAN, category[k] = -1;
+    if (!row[k]) continue;
+    value[k] = value_of(self, self->figure->value, row[k] - 1);
+    for (size_t g = 0; g < self->curves.count; g++)
+      if (strcmp(self->curves.name[g], of->text[row[k] - 1]) == 0) category[k] = (int)g;
+    doubtful[k] = doubt && is_doubtful(doubt->text[row[k] - 1]);
+  }
   *map = (strut_map){.columns = self->count[0],
                      .rows = self->count[1],
                      .xs = self->at[0],
@@ -256,8 +241,6 @@ static bool fill_map(maker *self, size_t number, strut_panel *panel) {
                      .value = value,
                      .doubtful = doubt ? doubtful : NULL,
                      .doubt = doubt ? doubt->name : NULL};
-  panel->map = map;
-  return true;
 }
 
 /* ---- the whole ---- */
@@ -265,15 +248,11 @@ static bool fill_map(maker *self, size_t number, strut_panel *panel) {
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *self) {
   const strut_table_figure *figure = self->figure;
-  char text[NAME] = "";
-  size_t used = 0;
-  for (int k = 0; k < figure->y_count && figure->y_count > 1; k++) {
-    const char *column = column_of(self, figure->y[k])->name;
-    if (k == MOST_NAMES || used + strlen(column) + 3 > NAME) return "";
-    used += (size_t)snprintf(text + used, NAME - used, "%s%s", k ? ", " : "", column);
-  }
-  return figure->y_count > 1 ? strut_arena_format(&self->arena, "%s", text)
-                             : column_of(self, figure->y[0])->name;
+  const char *text = column_of(self, figure->y[0])->name;
+  if (figure->y_count > MOST_NAMES) return "";
+  for (int k = 1; k < figure->y_count; k++)
+    text = strut_figure_text(&self->page, "%s, %s", text, column_of(self, figure->y[k])->name);
+  return figure->y_count > 1 && strlen(text) > NAME ? "" : text;
 }
 
 static strut_status check_column(const maker *self, int column) {
@@ -305,39 +284,27 @@ static strut_status prepare(maker *self) {
     status = strut_table_groups_find(self->table, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
                                      &self->curves, self->error);
   if (!status && figure->kind == STRUT_TABLE_MAP) status = prepare_grid(self);
-  if (!status && !(self->y_name = name_y_axis(self)))
-    status = strut_no_memory(self->error, "while drawing");
   return status;
 }
 
-static bool fill_panel(maker *self, size_t i, strut_panel *panel) {
+static void add_panel(maker *self, size_t i) {
+  static void (*const fill[])(maker *, size_t, strut_panel *) = {add_curves, add_map, add_points};
   const strut_table_figure *figure = self->figure;
-  const strut_table_column *column = column_of(self, figure->x), *y = column_of(self, figure->y[0]);
-  const strut_table_column *value = column_of(self, figure->value);
-  *panel = (strut_panel){.x = strut_axis_of(column->name, column->unit),
-                         .y = strut_axis_of(self->y_name, y->unit)};
+  const strut_table_column *x = column_of(self, figure->x), *y = column_of(self, figure->y[0]);
+  const strut_table_column *value = column_of(self, figure->value),
+                           *of = column_of(self, figure->panels);
+  strut_panel *panel = strut_add_panel(&self->page);
+  panel->x = strut_axis_of(x->name, x->unit);
+  panel->y = strut_axis_of(name_y_axis(self), y->unit);
   panel->x.logarithmic = figure->log_x, panel->y.logarithmic = figure->log_y;
   if (value && value->value)
     panel->scale =
         (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = figure->colours};
-  if (figure->panels != STRUT_NO_COLUMN && !(panel->title = panel_title(self, i))) return false;
-  return figure->kind == STRUT_TABLE_CURVES ? fill_curves(self, i, panel)
-         : figure->kind == STRUT_TABLE_MAP  ? fill_map(self, i, panel)
-                                            : fill_points(self, panel);
-}
-
-static strut_status draw(maker *self, const strut_plot *plot) {
-  strut_panel *panels = strut_arena_allocate(&self->arena, self->panels.count, sizeof *panels);
-  bool fine = panels != NULL, map = self->figure->kind == STRUT_TABLE_MAP;
-  for (size_t i = 0; i < self->panels.count && fine; i++) fine = fill_panel(self, i, &panels[i]);
-  const strut_figure figure = {.panel_count = self->panels.count,
-                               .panels = panels,
-                               .least_width = map ? MAP_WIDTH : CURVES_WIDTH,
-                               .aspect = map ? 0.8 : 0.62,
-                               .shared_axes = true,
-                               .one_legend = true};
-  return fine ? strut_figure_draw(plot, &figure, self->error)
-              : strut_no_memory(self->error, "while drawing");
+  if (of) /* "a) friction = 0.1" */
+    panel->title =
+        strut_figure_text(&self->page, "%c) %s = %s%s%s", (char)('a' + (int)(i % 26)), of->name,
+                          self->panels.name[i], *of->unit ? " " : "", of->unit);
+  fill[figure->kind](self, i, panel);
 }
 
 /* The rows that are compared are equal in these columns. */
@@ -354,18 +321,25 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *
                               const strut_table *table, strut_error *error) {
   strut_table_chosen chosen = {0};
   strut_table_figure drawn = *figure;
-  maker m = {.figure = &drawn, .error = error};
+  bool map = figure->kind == STRUT_TABLE_MAP;
+  maker m = {.figure = &drawn,
+             .error = error,
+             .page = {.least_width = map ? MAP_WIDTH : CURVES_WIDTH,
+                      .aspect = map ? 0.8 : 0.62,
+                      .shared_axes = true,
+                      .one_legend = true}};
   assert(figure->y_count > 0 && figure->y_count <= STRUT_MOST_Y);
   strut_status status =
       strut_table_choose(table, &figure->choice, pair_rows(figure), &chosen, error);
   m.table = chosen.table;
-  if (figure->kind == STRUT_TABLE_MAP && figure->choice.difference != STRUT_NO_COLUMN && !status) {
+  if (map && figure->choice.difference != STRUT_NO_COLUMN && !status) {
     if (!table->columns[figure->value].value) drawn.doubt = (int)chosen.table->column_count - 1;
     if (drawn.colours == STRUT_COLOURS_AUTO) drawn.colours = STRUT_COLOURS_DIVERGING;
   }
   if (!status) status = prepare(&m);
-  if (!status) status = draw(&m, plot);
-  strut_arena_free(&m.arena);
+  for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
+  if (!status) status = strut_figure_draw(plot, &m.page, error);
+  strut_arena_free(&m.page.arena);
   strut_table_chosen_free(&chosen);
   return status;
 }

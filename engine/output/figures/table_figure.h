@@ -42,6 +42,7 @@ typedef struct strut_table_figure {
   /* Of maps and points. */
   int value, doubt; /* doubt: hatched where it is not empty, 0, false or no */
   strut_colours colours;
+  bool spread;                /* cells of a map without a row are as the nearest that have one */
   const bool *shown, *marked; /* (rows) of points; NULL: all, none */
 } strut_table_figure;
 

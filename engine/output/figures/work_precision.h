@@ -5,7 +5,6 @@
 #ifndef STRUT_ENGINE_OUTPUT_FIGURES_WORK_PRECISION_H
 #define STRUT_ENGINE_OUTPUT_FIGURES_WORK_PRECISION_H
 
-#include "engine/base/memory.h"
 #include "engine/output/draw/figure.h"
 
 typedef struct strut_saving {
@@ -26,8 +25,8 @@ typedef struct strut_work_precision {
 
 /** Flags (count) the Pareto-optimal points: no other is better in both. Diverged ones never are. */
 STRUT_API void strut_pareto_front(const strut_saving *bargains, size_t count, bool *front);
-/** Fills a panel, whose data are in the arena. False: out of memory. */
-STRUT_API bool strut_work_precision_fill(const strut_work_precision *diagram, strut_arena *arena,
-                                         strut_panel *panel);
+/** Adds a panel. */
+STRUT_API strut_panel *strut_add_work_precision(strut_figure *figure,
+                                                const strut_work_precision *diagram);
 
 #endif

@@ -4,28 +4,20 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/vec.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/follow/follow_study.h"
 
 static const double ASPECT = 0.6;
-enum { MOST_NAMES = 40, MOST_KEYS = 18, MOST_LINES = 12, CURVE_KEYS = 4 };
+enum { MOST_NAMES = 40, MOST_LINES = 12, CURVE_KEYS = 4, LABEL = 120 };
 
 /* ---- pictures of branches ---- */
 
 /* A picture that is filled line by line, point by point. */
 typedef struct picture {
-  const char *title;
-  strut_axis along, upwards;
-  size_t line_count, count, mark_count, key_count;
-  strut_series *lines;
-  strut_pen *pens; /* (line_count) */
-  double *x, *y;   /* (count) of all lines */
-  bool *unstable;  /* (count) */
-  strut_mark *marks;
-  strut_key_item keys[MOST_KEYS];
-  strut_arena arena;
+  strut_panel *panel;
+  strut_series *line; /* the last one */
+  strut_figure figure;
 } picture;
 
 static strut_colour colour_of(strut_follow_kind kind) {
@@ -36,11 +28,10 @@ static strut_colour colour_of(strut_follow_kind kind) {
   return thing[kind] ? strut_palette_thing(thing[kind] - 1U) : strut_grey(1.0);
 }
 
-static strut_key_item line_key(strut_colour colour, bool unstable, const char *text) {
-  strut_key_item item = {
-      .sign = STRUT_KEY_LINE, .pen = {.colour = colour, .width = 1.4}, .text = text};
-  if (unstable) item.pen.width = 0.9, item.pen.dash[0] = 3.0, item.pen.dash[1] = 2.0;
-  return item;
+static void add_line_key(picture *self, strut_colour colour, bool unstable, const char *text) {
+  strut_pen pen = {.colour = colour, .width = unstable ? 0.9 : 1.4};
+  if (unstable) pen.dash[0] = 3.0, pen.dash[1] = 2.0;
+  strut_add_key(&self->figure, STRUT_KEY_LINE, pen, text);
 }
 
 /* What every figure of branches explains. */
@@ -49,72 +40,43 @@ static void add_keys(picture *self) {
                                             STRUT_FOLLOW_TORUS, STRUT_FOLLOW_TOUCH};
   static const char *const texts[] = {"fold", "period doubling", "torus, branching",
                                       "an event that changes the stability"};
-  self->keys[self->key_count++] = line_key(strut_grey(0.2), false, "stable");
-  self->keys[self->key_count++] = line_key(strut_grey(0.2), true, "unstable");
+  const strut_pen rim = {.colour = strut_grey(0.1), .width = 0.6};
+  add_line_key(self, strut_grey(0.2), false, "stable");
+  add_line_key(self, strut_grey(0.2), true, "unstable");
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    self->keys[self->key_count++] =
-        (strut_key_item){.sign = STRUT_KEY_DOT,
-                         .pen = {.colour = strut_grey(0.1), .width = 0.6},
-                         .fill = {.colour = colour_of(kinds[i])},
-                         .text = texts[i]};
+    strut_add_key(&self->figure, STRUT_KEY_DOT, rim, texts[i])->fill.colour = colour_of(kinds[i]);
 }
 
-static bool begin_picture(picture *self, size_t lines, size_t points) {
-  self->lines = strut_arena_allocate(&self->arena, lines + 1, sizeof *self->lines);
-  self->pens = strut_arena_allocate(&self->arena, lines + 1, sizeof *self->pens);
-  self->marks = strut_arena_allocate(&self->arena, points + 1, sizeof *self->marks);
-  self->x = strut_arena_allocate(&self->arena, points + 1, sizeof *self->x);
-  self->y = strut_arena_allocate(&self->arena, points + 1, sizeof *self->y);
-  self->unstable = strut_arena_allocate(&self->arena, points + 1, sizeof *self->unstable);
-  return self->lines && self->pens && self->marks && self->x && self->y && self->unstable;
+static void begin_picture(picture *self, const char *title, strut_axis along, strut_axis upwards) {
+  *self = (picture){.figure = {.title = title, .aspect = ASPECT}};
+  self->panel = strut_add_panel(&self->figure);
+  self->panel->x = along, self->panel->y = upwards;
 }
 
 static void begin_line(picture *self, size_t look) {
-  strut_pen *pen = &self->pens[self->line_count];
-  *pen = (strut_pen){.colour = strut_palette_thing(look), .width = 1.4};
-  self->lines[self->line_count++] = (strut_series){.x = self->x + self->count,
-                                                   .y = self->y + self->count,
-                                                   .unstable = self->unstable + self->count,
-                                                   .pen = pen};
+  self->line = strut_add_series(&self->figure, self->panel, NULL);
+  self->line->pen = (strut_pen){.colour = strut_palette_thing(look), .width = 1.4};
 }
 
 static void add_point(picture *self, double x, double y, bool stable) {
-  self->x[self->count] = x, self->y[self->count] = y;
-  self->unstable[self->count++] = !stable;
-  self->lines[self->line_count - 1].count++;
+  strut_add_point(&self->figure, self->line, x, y)->unstable = !stable;
 }
 
-static bool mark_point(picture *self, strut_follow_kind kind, const char *word, const char *node) {
-  strut_mark *mark = &self->marks[self->mark_count++];
-  *mark = (strut_mark){.at = {self->x[self->count - 1], self->y[self->count - 1]},
-                       .text = strut_arena_format(&self->arena, "%s%s%.60s", word,
-                                                  node && *node ? " " : "", node ? node : ""),
-                       .dot = true,
-                       .colour = colour_of(kind),
-                       .angle = 0.25 * STRUT_PI};
-  return mark->text != NULL;
+static void mark_point(picture *self, strut_follow_kind kind, double x, double y, const char *word,
+                       const char *node) {
+  strut_mark *mark = strut_add_mark(&self->figure, self->panel, x, y,
+                                    strut_figure_text(&self->figure, "%s%s%.60s", word,
+                                                      node && *node ? " " : "", node ? node : ""));
+  mark->dot = true;
+  mark->colour = colour_of(kind);
+  mark->angle = 0.25 * STRUT_PI;
 }
 
-static strut_status draw_picture(const strut_plot *plot, const picture *self, bool fine,
-                                 strut_error *error) {
-  const strut_panel panel = {.x = self->along,
-                             .y = self->upwards,
-                             .series_count = self->line_count,
-                             .series = self->lines,
-                             .mark_count = self->mark_count,
-                             .marks = self->marks};
-  const strut_figure figure = {.title = self->title,
-                               .panel_count = 1,
-                               .panels = &panel,
-                               .aspect = ASPECT,
-                               .keys = self->keys,
-                               .key_count = self->key_count};
-  for (size_t i = 0; i < self->mark_count && self->mark_count > MOST_NAMES; i++)
-    self->marks[i].text = NULL;
-  strut_status status =
-      fine ? strut_figure_draw(plot, &figure, error) : strut_no_memory(error, "while drawing");
-  strut_arena_free((strut_arena *)&self->arena);
-  return status;
+static strut_status draw_picture(const strut_plot *plot, picture *self, strut_error *error) {
+  strut_panel *panel = self->panel;
+  for (size_t i = 0; i < panel->mark_count && panel->mark_count > MOST_NAMES; i++)
+    if (!self->figure.failed) panel->marks[i].text = NULL;
+  return strut_figure_draw(plot, &self->figure, error);
 }
 
 /* ---- velocity over the parameter ---- */
@@ -127,32 +89,27 @@ static bool is_special(strut_follow_kind kind) {
   return kind >= STRUT_FOLLOW_FOLD && kind <= STRUT_FOLLOW_TORUS;
 }
 
-/* Appends the line of a branch and its marks. Events that change nothing are in the table alone. */
-static bool add_branch(picture *self, const strut_follow_branch *branch, size_t look) {
-  bool fine = true;
+/* Adds the line of a branch and its marks. Events that change nothing are in the table alone. */
+static void add_branch(picture *self, const strut_follow_branch *branch, size_t look) {
   begin_line(self, look);
-  for (size_t k = 0; k < branch->count && fine; k++) {
+  for (size_t k = 0; k < branch->count; k++) {
     const strut_follow_point *point = &branch->points[k];
-    add_point(self, point->value, branch->travels ? point->velocity : point->amplitude,
-              point->stable);
+    double height = branch->travels ? point->velocity : point->amplitude;
+    add_point(self, point->value, height, point->stable);
     if (is_special(point->kind) || (point->detail && point->changes))
-      fine = mark_point(self, point->kind, strut_follow_kind_word(point->kind), point->node);
+      mark_point(self, point->kind, point->value, height, strut_follow_kind_word(point->kind),
+                 point->node);
   }
-  return fine;
 }
 
 strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_result *result,
                                  strut_error *error) {
-  size_t points = 0;
-  for (size_t i = 0; i < result->count; i++) points += result->branches[i].branch.count;
-  picture p = {.title = result->title,
-               .along = strut_axis_of(result->name, result->unit),
-               .upwards = height_axis(result->count && result->branches[0].branch.travels)};
-  bool fine = begin_picture(&p, result->count, points);
+  picture p;
+  begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
+                height_axis(result->count && result->branches[0].branch.travels));
   add_keys(&p);
-  for (size_t i = 0; i < result->count && fine; i++)
-    fine = add_branch(&p, &result->branches[i].branch, i);
-  return draw_picture(plot, &p, fine, error);
+  for (size_t i = 0; i < result->count; i++) add_branch(&p, &result->branches[i].branch, i);
+  return draw_picture(plot, &p, error);
 }
 
 /* ---- curves over two parameters ---- */
@@ -171,36 +128,29 @@ static size_t look_of(strut_follow_kind kind) {
   return look;
 }
 
-static bool add_curve(picture *self, const strut_follow_curve *curve) {
-  bool fine = true;
+static void add_curve(picture *self, const strut_follow_curve *curve) {
   begin_line(self, look_of(curve->kind));
-  for (size_t k = 0; k < curve->count && fine; k++) {
+  for (size_t k = 0; k < curve->count; k++) {
     const strut_follow_curve_point *point = &curve->points[k];
     add_point(self, point->value[0], point->value[1], point->stable);
-    if (point->cusp) fine = mark_point(self, curve->kind, "cusp", NULL);
+    if (point->cusp) mark_point(self, curve->kind, point->value[0], point->value[1], "cusp", NULL);
   }
-  return fine;
 }
 
 strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_follow_result *result,
                                         strut_error *error) {
-  size_t points = 0;
-  for (size_t i = 0; i < result->curve_count; i++) points += result->curves[i].count;
-  picture p = {.title = result->title,
-               .along = strut_axis_of(result->name, result->unit),
-               .upwards = strut_axis_of(result->second.name, result->second.unit)};
-  bool fine = begin_picture(&p, result->curve_count, points);
+  picture p;
+  begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
+                strut_axis_of(result->second.name, result->second.unit));
   for (size_t i = 0; i < CURVE_KEYS; i++)
-    p.keys[p.key_count++] = line_key(strut_palette_thing(i), false, kinds[i].text);
-  p.keys[p.key_count++] = line_key(strut_grey(0.2), false, "of a motion that is stable beside it");
-  p.keys[p.key_count++] = line_key(strut_grey(0.2), true, "of an unstable motion");
-  for (size_t i = 0; i < result->curve_count && fine; i++) fine = add_curve(&p, &result->curves[i]);
-  return draw_picture(plot, &p, fine, error);
+    add_line_key(&p, strut_palette_thing(i), false, kinds[i].text);
+  add_line_key(&p, strut_grey(0.2), false, "of a motion that is stable beside it");
+  add_line_key(&p, strut_grey(0.2), true, "of an unstable motion");
+  for (size_t i = 0; i < result->curve_count; i++) add_curve(&p, &result->curves[i]);
+  return draw_picture(plot, &p, error);
 }
 
 /* ---- the branches of a study: a colour for each point of the axes ---- */
-
-enum { LABEL = 120 };
 
 /* Columns of the table that are drawn. */
 enum { BRANCH, VELOCITY, AMPLITUDE, STABLE, POINT, NODE, CHANGES, VALUE, DRAWN };
@@ -233,7 +183,7 @@ static bool same_axes(const source *self, size_t a, size_t b) {
 }
 
 /* "friction 0.2, start I" */
-static const char *row_label(const source *self, size_t row, strut_arena *arena) {
+static const char *row_label(const source *self, size_t row, picture *p) {
   char text[LABEL] = "";
   size_t used = 0;
   for (size_t i = 0; i < self->axes && used < sizeof text; i++) {
@@ -245,41 +195,37 @@ static const char *row_label(const source *self, size_t row, strut_arena *arena)
         isfinite(value) ? strut_quantity_of_any(value, 4, unit).text : text_of(column, row));
     used += n > 0 ? (size_t)n : 0;
   }
-  return strut_arena_format(arena, "%s", text);
+  return strut_figure_text(&p->figure, "%s", text);
 }
 
-/* Appends the point of a row, and a mark where it is special. */
-static bool add_row(const source *self, picture *p, size_t row) {
+/* Adds the point of a row, and a mark where it is special. */
+static void add_row(const source *self, picture *p, size_t row) {
   double amplitude = number_of(self->column[AMPLITUDE], row); /* of structures that do not travel */
+  double value = number_of(self->column[VALUE], row);
+  double height = isfinite(amplitude) ? amplitude : number_of(self->column[VELOCITY], row);
   const char *word = text_of(self->column[POINT], row);
   strut_follow_kind kind = STRUT_FOLLOW_REGULAR;
   for (int k = 0; k < STRUT_FOLLOW_KINDS; k++)
     if (strcmp(strut_follow_kind_word((strut_follow_kind)k), word) == 0)
       kind = (strut_follow_kind)k;
-  add_point(p, number_of(self->column[VALUE], row),
-            isfinite(amplitude) ? amplitude : number_of(self->column[VELOCITY], row),
-            strcmp(text_of(self->column[STABLE], row), "yes") == 0);
-  if (!is_special(kind) && strcmp(text_of(self->column[CHANGES], row), "yes") != 0) return true;
-  return mark_point(p, kind, strut_follow_kind_word(kind), text_of(self->column[NODE], row));
+  add_point(p, value, height, strcmp(text_of(self->column[STABLE], row), "yes") == 0);
+  if (is_special(kind) || strcmp(text_of(self->column[CHANGES], row), "yes") == 0)
+    mark_point(p, kind, value, height, strut_follow_kind_word(kind),
+               text_of(self->column[NODE], row));
 }
 
-/* Lines, marks and keys of all rows. False: no memory. */
-static bool gather(const source *self, picture *p) {
+/* Lines, marks and keys of all rows. */
+static void gather(const source *self, picture *p) {
   size_t rows = self->table->row_count, look = 0;
-  bool fine = begin_picture(p, rows, rows);
   const strut_table_column *branch = self->column[BRANCH];
-  for (size_t i = 0; i < rows && fine; i++) {
+  for (size_t i = 0; i < rows; i++) {
     bool other = i == 0 || !same_axes(self, i - 1, i);
     if (other && i > 0) look++;
-    if (other && self->axes && look < MOST_LINES) {
-      const char *label = row_label(self, i, &p->arena);
-      p->keys[p->key_count++] = line_key(strut_palette_thing(look), false, label);
-      fine = label != NULL;
-    }
+    if (other && self->axes && look < MOST_LINES)
+      add_line_key(p, strut_palette_thing(look), false, row_label(self, i, p));
     if (other || number_of(branch, i) != number_of(branch, i - 1)) begin_line(p, look);
-    fine = fine && add_row(self, p, i);
+    add_row(self, p, i);
   }
-  return fine;
 }
 
 strut_status strut_follow_points_figure(const strut_plot *plot, const strut_sweep_plan *plan,
@@ -291,13 +237,10 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
   for (int i = 0; i < DRAWN; i++)
     if (!(s.column[i] = find_column(table, i == VALUE ? follow->over : names[i])))
       return strut_fail(error, STRUT_FILE_TROUBLE, "branches.csv lacks a column");
-  picture p = {
-      .title = plan->study->name,
-      .along = strut_axis_of(follow->over, follow->unit),
-      .upwards = height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0)))};
-  strut_c_locale locale = strut_c_locale_enter();
-  bool fine = gather(&s, &p);
-  strut_c_locale_leave(locale);
+  picture p;
+  begin_picture(&p, plan->study->name, strut_axis_of(follow->over, follow->unit),
+                height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0))));
+  gather(&s, &p);
   add_keys(&p);
-  return draw_picture(plot, &p, fine, error);
+  return draw_picture(plot, &p, error);
 }

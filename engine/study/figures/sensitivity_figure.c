@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/output/figures/table_figure.h"
 #include "engine/study/sensitivity/sensitivity.h"
 
@@ -24,79 +23,62 @@ static size_t find_result(const strut_sensitivity_result *result, size_t i, size
   return parameters;
 }
 
-static void add_point(strut_series *series, double x, double y) {
-  ((double *)series->x)[series->count] = fmin(MOST, fmax(LEAST, x));
-  if (isnan(x)) ((double *)series->x)[series->count] = x;
-  ((double *)series->y)[series->count++] = y;
+static void add_line(strut_figure *figure, strut_series *series, double x1, double y1, double x2,
+                     double y2) {
+  strut_add_point(figure, series, fmin(MOST, fmax(LEAST, x1)), y1);
+  strut_add_point(figure, series, fmin(MOST, fmax(LEAST, x2)), y2);
+  strut_add_gap(figure, series);
 }
 
-static void add_line(strut_series *series, double x1, double y1, double x2, double y2) {
-  add_point(series, x1, y1);
-  add_point(series, x2, y2);
-  add_point(series, (double)NAN, (double)NAN);
-}
-
-/* Bars of the first order and of the whole, the first parameter at the top, and their whiskers. */
-static void add_bars(strut_series *series, const strut_sensitivity_row *row, double place) {
+/* Bars of the first order, of the whole, or their whiskers. */
+static void add_bars(strut_figure *figure, strut_series *series, int which,
+                     const strut_sensitivity_row *row, double place) {
   for (int k = 0; k < 2; k++) {
     const strut_estimate *estimate = &row[k].estimate;
-    double y = place + (k ? -0.5 : 0.5) * BAR;
+    double y = place + (k ? -0.5 : 0.5) * BAR, low = estimate->low, high = estimate->high;
     if (!isfinite(estimate->value)) continue;
-    add_line(&series[k], 0, y, estimate->value, y);
-    if (!isfinite(estimate->low) || !isfinite(estimate->high)) continue;
-    add_line(&series[2], estimate->low, y, estimate->high, y);
-    add_line(&series[2], estimate->low, y - CAP, estimate->low, y + CAP);
-    add_line(&series[2], estimate->high, y - CAP, estimate->high, y + CAP);
+    if (which == k) add_line(figure, series, 0, y, estimate->value, y);
+    if (which < 2 || !isfinite(low) || !isfinite(high)) continue;
+    add_line(figure, series, low, y, high, y);
+    add_line(figure, series, low, y - CAP, low, y + CAP);
+    add_line(figure, series, high, y - CAP, high, y + CAP);
   }
 }
 
-/* A panel of (count) parameters, from row `first` on. False: out of memory. */
-static bool fill_bars(const strut_sensitivity_result *result, size_t first, size_t count,
-                      strut_arena *arena, strut_panel *panel) {
+/* Adds a panel of (count) parameters, from row `first` on, the first parameter at the top. */
+static void add_panel(strut_figure *figure, const strut_sensitivity_row *rows, size_t count) {
   static const strut_pen pens[] = {{.colour = {0.16, 0.38, 0.62, 1.0}, .width = 8, .butt = true},
                                    {.colour = {0.65, 0.76, 0.87, 1.0}, .width = 8, .butt = true},
                                    {.colour = {0.15, 0.15, 0.15, 1.0}, .width = 0.7, .butt = true}};
   static const char *const labels[] = {"first order",
                                        "total, parts of the variance; whiskers: 95 %", NULL};
-  strut_series *series = strut_arena_allocate(arena, 3, sizeof *series);
-  const char **names = strut_arena_allocate(arena, count, sizeof *names);
-  if (!series || !names) return false;
+  strut_panel *panel = strut_add_panel(figure);
+  const char **names = strut_arena_allocate(&figure->arena, count, sizeof *names);
+  figure->failed |= !names;
+  for (size_t k = 0; k < count && names; k++) names[count - 1 - k] = rows[2 * k].parameter;
   for (int i = 0; i < 3; i++) {
-    series[i] = (strut_series){.label = labels[i],
-                               .x = strut_arena_allocate(arena, 18 * count, sizeof(double)),
-                               .y = strut_arena_allocate(arena, 18 * count, sizeof(double)),
-                               .pen = &pens[i]};
-    if (!series[i].x || !series[i].y) return false;
+    strut_series *series = strut_add_series(figure, panel, labels[i]);
+    series->pen = pens[i];
+    for (size_t k = 0; k < count; k++)
+      add_bars(figure, series, i, &rows[2 * k], (double)(count - 1 - k));
   }
-  for (size_t k = 0; k < count; k++) {
-    const strut_sensitivity_row *row = &result->rows[first + 2 * k];
-    names[count - 1 - k] = row->parameter;
-    add_bars(series, row, (double)(count - 1 - k));
-  }
-  *panel = (strut_panel){.title = result->rows[first].of,
-                         .x = {.high = MOST},
-                         .y = {"", "", false, -0.6, (double)count - 0.4, names, count},
-                         .series_count = 3,
-                         .series = series,
-                         .height = FRAME + ROW * (double)count};
-  return true;
+  panel->title = rows->of;
+  panel->x.high = MOST;
+  panel->y = (strut_axis){"", "", false, -0.6, (double)count - 0.4, names, count};
+  panel->height = FRAME + ROW * (double)count;
 }
 
 static strut_status draw_bars(const strut_plot *plot, const strut_sensitivity_result *result,
                               bool *drawn, strut_error *error) {
-  strut_arena arena = {0};
-  strut_panel *panels = strut_arena_allocate(&arena, result->count, sizeof *panels);
-  strut_figure figure = {.panels = panels, .one_legend = true};
-  bool fine = panels != NULL;
+  strut_figure figure = {.one_legend = true};
   size_t first = 0, count = 0;
-  for (size_t i = 0; fine && (count = find_result(result, i, &first)); i = first + 2 * count)
-    if (isfinite(result->rows[first].estimate.value))
-      fine = fill_bars(result, first, count, &arena, &panels[figure.panel_count++]);
-  *drawn = figure.panel_count > 0;
-  strut_status status = fine ? STRUT_OK : strut_no_memory(error, "while drawing");
-  if (!status && *drawn) status = strut_figure_draw(plot, &figure, error);
-  strut_arena_free(&arena);
-  return status;
+  *drawn = false;
+  for (size_t i = 0; (count = find_result(result, i, &first)); i = first + 2 * count) {
+    if (!isfinite(result->rows[first].estimate.value)) continue;
+    add_panel(&figure, &result->rows[first], count);
+    *drawn = true;
+  }
+  return *drawn ? strut_figure_draw(plot, &figure, error) : STRUT_OK;
 }
 
 /* ---- over an axis ---- */

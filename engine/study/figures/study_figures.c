@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
 #include "engine/output/figures/table_choice.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/report/study_report.h"
@@ -21,104 +20,6 @@ static bool of_runs(const strut_study_figure *figure) {
 static bool of_search(const strut_study_figure *figure) {
   return figure->kind >= STRUT_FIGURE_BEST;
 }
-
-/* ---- maps of the finest grid ---- */
-
-/* Is it a column of this axis? */
-static bool is_of_axis(const strut_study *study, size_t axis, const char *name) {
-  for (size_t i = 0; name && i < study->axes[axis].column_count; i++)
-    if (strcmp(study->axes[axis].columns[i].name, name) == 0) return true;
-  return false;
-}
-
-/* Does the figure show the two axes that are refined? */
-static bool shows_refined_axes(const strut_sweep_plan *plan, const strut_study_figure *figure) {
-  const strut_study *study = plan->study;
-  const size_t *axes = study->refine.axes;
-  return (is_of_axis(study, axes[0], figure->x) && is_of_axis(study, axes[1], figure->y)) ||
-         (is_of_axis(study, axes[1], figure->x) && is_of_axis(study, axes[0], figure->y));
-}
-
-/* The row of each known point, + 1; 0: none. */
-static uint32_t *find_rows(const strut_sweep_plan *plan, const strut_table *from,
-                           strut_arena *arena) {
-  uint32_t *row = strut_arena_allocate(arena, (size_t)plan->points, sizeof *row);
-  for (size_t i = 0; row && i < from->row_count; i++) {
-    double point = from->columns[0].value ? from->columns[0].value[i] : -1.0;
-    if (point >= 0.0 && point < (double)plan->points) row[(size_t)point] = (uint32_t)i + 1;
-  }
-  return row;
-}
-
-/* Which value of a point is the column's; axis_columns: none of a refined axis. */
-static size_t refined_value(const strut_sweep_plan *plan, const char *name) {
-  const strut_study *study = plan->study;
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    size_t axis;
-    const strut_study_column *column = strut_grid_column(study, i, &axis);
-    bool refined = axis == study->refine.axes[0] || axis == study->refine.axes[1];
-    if (refined && strcmp(column->name, name) == 0) return i;
-  }
-  return plan->axis_columns;
-}
-
-static bool make_column(strut_table *to, const strut_table_column *from, size_t rows, size_t i) {
-  strut_table_column *column = &to->columns[i];
-  column->name = from->name;
-  column->unit = from->unit;
-  column->text = strut_arena_allocate(&to->arena, rows, sizeof *column->text);
-  if (from->value) column->value = strut_arena_allocate(&to->arena, rows, sizeof *column->value);
-  return column->text && (!from->value || column->value);
-}
-
-/* Fills a row for `point` from the row `source` of `from`. */
-static bool fill_row(const strut_sweep_plan *plan, const strut_table *from, size_t source,
-                     const strut_study_value *values, strut_table *to) {
-  size_t row = to->row_count++;
-  for (size_t i = 0; i < from->column_count; i++) {
-    const strut_table_column *column = &from->columns[i];
-    const char **text = (const char **)to->columns[i].text;
-    double *value = (double *)to->columns[i].value;
-    size_t k = refined_value(plan, column->name);
-    text[row] = column->text[source];
-    if (value) value[row] = column->value[source];
-    if (k == plan->axis_columns || !value) continue;
-    char number[STRUT_NUMBER_TEXT];
-    size_t length = strut_number_text(values[k].number, number);
-    value[row] = values[k].number;
-    text[row] = strut_arena_text(&to->arena, number, length);
-    if (!text[row]) return false;
-  }
-  return true;
-}
-
-/*
- * The table of all points of the finest grid, in an arena of its own: points that were not computed have
- * the row of the known one nearest to them, `from` being the table of these.
- */
-static strut_status expand_refined(const strut_sweep_plan *plan, const strut_refinement *refinement,
-                                   const strut_table *from, strut_table *to, strut_error *error) {
-  strut_arena arena = {0};
-  size_t points = (size_t)plan->points;
-  *to = (strut_table){0};
-  uint32_t *row = find_rows(plan, from, &arena);
-  strut_study_value *values = strut_arena_allocate(&arena, plan->axis_columns + 1, sizeof *values);
-  to->columns = strut_arena_allocate(&to->arena, from->column_count, sizeof *to->columns);
-  to->column_count = from->column_count;
-  bool fine = row && values && to->columns;
-  for (size_t i = 0; i < from->column_count && fine; i++)
-    fine = make_column(to, &from->columns[i], points, i);
-  for (int64_t point = 0; point < plan->points && fine; point++) {
-    int64_t source = strut_refinement_stand_in(refinement, point);
-    if (source < 0 || !row[source]) continue;
-    strut_grid_values(plan->study, point, values);
-    fine = fill_row(plan, from, row[source] - 1, values, to);
-  }
-  strut_arena_free(&arena);
-  return fine ? STRUT_OK : strut_no_memory(error, "while drawing");
-}
-
-/* ---- figures ---- */
 
 static int column_of(const strut_table *table, const char *name) {
   for (size_t i = 0; name && i < table->column_count; i++)
@@ -149,8 +50,9 @@ static strut_plot plot_of(const strut_study_figure *figure, const char *path) {
                       .y = axis_of(figure->y_label, figure->y_limits)};
 }
 
+/* A table; of a refined grid, of which points were left out as equal to those beside them. */
 static strut_status draw_table(const strut_study_figure *f, const char *path,
-                               const strut_table *table, strut_error *error) {
+                               const strut_table *table, bool refined, strut_error *error) {
   const strut_plot plot = plot_of(f, path);
   strut_table_figure figure = STRUT_TABLE_FIGURE;
   bool map = f->kind == STRUT_FIGURE_MAP;
@@ -164,6 +66,7 @@ static strut_status draw_table(const strut_study_figure *f, const char *path,
     figure.value = column_of(table, f->color);
     figure.colours = (strut_colours)f->colours;
     figure.doubt = column_of(table, "flips");
+    figure.spread = refined;
   } else {
     figure.by = column_of(table, f->series);
     figure.between = f->kind == STRUT_FIGURE_MOTION;
@@ -177,19 +80,8 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
                                 strut_error *error) {
   strut_table motion = {0};
   strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
-  if (!status) status = draw_table(figure, path, &motion, error);
+  if (!status) status = draw_table(figure, path, &motion, false, error);
   strut_arena_free(&motion.arena);
-  return status;
-}
-
-/* A map of the finest grid. */
-static strut_status draw_refined(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                 const char *path, const strut_table *table,
-                                 const strut_refinement *refinement, strut_error *error) {
-  strut_table fine = {0};
-  strut_status status = expand_refined(plan, refinement, table, &fine, error);
-  if (!status) status = draw_table(figure, path, &fine, error);
-  strut_arena_free(&fine.arena);
   return status;
 }
 
@@ -207,10 +99,8 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
     status = strut_search_figure(plan, figure, file, table, error);
   else if (of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, PAGE, error);
-  else if (refinement && figure->kind == STRUT_FIGURE_MAP && shows_refined_axes(plan, figure))
-    status = draw_refined(plan, figure, file, table, refinement, error);
   else
-    status = draw_table(figure, file, table, error);
+    status = draw_table(figure, file, table, refinement != NULL, error);
   strut_arena_free(&arena);
   return status;
 }

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The diagram of a study: settings of the unchanged model, and what models are worth. */
 #include <math.h>
-#include <stdio.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/output/figures/work_precision.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
@@ -17,16 +15,15 @@ typedef struct panel {
   size_t count;
   const char *groups[MOST_GROUPS];
   size_t group_count;
-  strut_arena *arena;
+  strut_figure *figure;
 } panel;
 
-static bool add_group(panel *self, const char *name) {
-  self->groups[self->group_count] = strut_arena_format(self->arena, "%s", name);
-  return self->groups[self->group_count++] != NULL;
+static void add_group(panel *self, const char *name) {
+  self->groups[self->group_count++] = strut_figure_text(self->figure, "%s", name);
 }
 
 /* A point of the diagram, and one more at the upper edge where some of its runs diverged. */
-static bool add_saving(panel *self, const strut_tradeoff *tradeoff, const strut_tradeoff_row *row,
+static void add_saving(panel *self, const strut_tradeoff *tradeoff, const strut_tradeoff_row *row,
                        const strut_spread *spread, bool label) {
   char text[STRUT_TRADEOFF_TEXT];
   strut_saving lost = {.group = (int)self->group_count - 1,
@@ -38,7 +35,7 @@ static bool add_saving(panel *self, const strut_tradeoff *tradeoff, const strut_
   bool gone = !(spread->median <= BEYOND);
   const double *errors = spread == &row->total_spread ? row->total : row->error;
   if (label)
-    saving.label = strut_arena_format(self->arena, "%s", strut_tradeoff_step_text(row, text));
+    saving.label = strut_figure_text(self->figure, "%s", strut_tradeoff_step_text(row, text));
   if (!gone) saving.error = spread->median;
   if (!gone && tradeoff->point_count > 1) {
     saving.low = saving.high = spread->median;
@@ -48,22 +45,20 @@ static bool add_saving(panel *self, const strut_tradeoff *tradeoff, const strut_
   }
   self->savings[self->count++] = saving;
   if (row->diverged && !gone) self->savings[self->count++] = lost;
-  return !label || saving.label;
 }
 
 /* Step errors of the unchanged model, a group for each method. */
-static bool fill_methods(panel *self, const strut_tradeoff *tradeoff) {
+static void fill_methods(panel *self, const strut_tradeoff *tradeoff) {
   int last = -1;
   for (size_t i = 0; i < tradeoff->row_count; i++) {
     const strut_tradeoff_row *row = &tradeoff->rows[i];
     char text[STRUT_TRADEOFF_TEXT];
     if (row->variant != 0) continue;
     if (row->group != last && self->group_count == MOST_GROUPS) break;
-    if (row->group != last && !add_group(self, strut_tradeoff_group_text(row, text))) return false;
+    if (row->group != last) add_group(self, strut_tradeoff_group_text(row, text));
     last = row->group;
-    if (!add_saving(self, tradeoff, row, &row->error_spread, row->front)) return false;
+    add_saving(self, tradeoff, row, &row->error_spread, row->front);
   }
-  return true;
 }
 
 static bool on_total_front(const strut_tradeoff *tradeoff, const strut_tradeoff_row *row) {
@@ -78,10 +73,10 @@ static bool on_total_front(const strut_tradeoff *tradeoff, const strut_tradeoff_
 }
 
 /* Total errors, a group for each model with those of its rows that no other of it beats, by cost. */
-static bool fill_models(panel *self, const strut_tradeoff *tradeoff) {
+static void fill_models(panel *self, const strut_tradeoff *tradeoff) {
   for (size_t v = 0; v < tradeoff->variant_count; v++) {
     if (!tradeoff->variants[v].run) continue;
-    if (!add_group(self, tradeoff->variants[v].name)) return false;
+    add_group(self, tradeoff->variants[v].name);
     const strut_tradeoff_row *next = NULL;
     for (double done = 0;; done = next->evaluations) {
       next = NULL;
@@ -92,48 +87,42 @@ static bool fill_models(panel *self, const strut_tradeoff *tradeoff) {
         if (!next || row->evaluations < next->evaluations) next = row;
       }
       if (!next) break;
-      if (!add_saving(self, tradeoff, next, &next->total_spread, false)) return false;
+      add_saving(self, tradeoff, next, &next->total_spread, false);
     }
   }
-  return true;
 }
 
 strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *tradeoff,
                                    strut_error *error) {
   static const char *const titles[] = {"Methods: unchanged model (beyond 1000 %: diverged)",
                                        "Models: cheapest method for each error"};
-  strut_arena arena = {0};
-  panel gathered[2] = {{.arena = &arena}, {.arena = &arena}};
-  strut_panel panels[2];
+  strut_figure figure = {0};
   size_t models = 0;
   char text[3 * STRUT_TRADEOFF_TEXT];
-  strut_c_locale locale = strut_c_locale_enter();
-  const char *cost = strut_arena_format(&arena, "cost in force evaluations, %s = 1",
-                                        strut_tradeoff_base_text(tradeoff, text));
+  const char *cost = strut_figure_text(&figure, "cost in force evaluations, %s = 1",
+                                       strut_tradeoff_base_text(tradeoff, text));
   for (size_t i = 0; i < tradeoff->variant_count; i++) models += tradeoff->variants[i].run ? 1 : 0;
-  bool fine = cost != NULL;
-  for (int i = 0; i < 2 && fine; i++) {
-    panel *self = &gathered[i];
-    const char *measure = strut_arena_format(&arena, "%s error of the %s%s", i ? "total" : "step",
-                                             strut_tradeoff_measure_text(tradeoff->measure),
-                                             tradeoff->point_count > 1 ? ", median to worst" : "");
-    self->savings =
-        strut_arena_allocate(&arena, 2 * tradeoff->row_count + 1, sizeof *self->savings);
-    fine = measure && self->savings &&
-           (i ? fill_models(self, tradeoff) : fill_methods(self, tradeoff));
+  for (int i = 0; i < (models > 1 ? 2 : 1); i++) {
+    panel self = {.figure = &figure};
+    const char *measure = strut_figure_text(&figure, "%s error of the %s%s", i ? "total" : "step",
+                                            strut_tradeoff_measure_text(tradeoff->measure),
+                                            tradeoff->point_count > 1 ? ", median to worst" : "");
+    self.savings =
+        strut_arena_allocate(&figure.arena, 2 * tradeoff->row_count + 1, sizeof *self.savings);
+    figure.failed |= !self.savings;
+    if (figure.failed) break;
+    if (i)
+      fill_models(&self, tradeoff);
+    else
+      fill_methods(&self, tradeoff);
     const strut_work_precision diagram = {.title = titles[i],
                                           .cost = strut_axis_of(cost, ""),
                                           .error = strut_axis_of(measure, ""),
-                                          .group_count = self->group_count,
-                                          .count = self->count,
-                                          .groups = self->groups,
-                                          .bargains = self->savings};
-    fine = fine && strut_work_precision_fill(&diagram, &arena, &panels[i]);
+                                          .group_count = self.group_count,
+                                          .count = self.count,
+                                          .groups = self.groups,
+                                          .bargains = self.savings};
+    strut_add_work_precision(&figure, &diagram);
   }
-  const strut_figure figure = {.panel_count = models > 1 ? 2 : 1, .panels = panels};
-  strut_status status =
-      fine ? strut_figure_draw(plot, &figure, error) : strut_no_memory(error, "while drawing");
-  strut_c_locale_leave(locale);
-  strut_arena_free(&arena);
-  return status;
+  return strut_figure_draw(plot, &figure, error);
 }

@@ -282,23 +282,3 @@ int64_t strut_refinement_coarse(const strut_sweep_plan *plan) {
   }
   return points;
 }
-
-int64_t strut_refinement_stand_in(const strut_refinement *refinement, int64_t point) {
-  int64_t i = place(refinement, point, 0), k = place(refinement, point, 1);
-  if (refinement->known[point]) return point;
-  for (int64_t side = 2; side <= refinement->side; side *= 2) {
-    int64_t low[2] = {i / side * side, k / side * side}, high[2];
-    high[0] = i % side ? low[0] + side : low[0];
-    high[1] = k % side ? low[1] + side : low[1];
-    int64_t base = point - i * refinement->stride[0] - k * refinement->stride[1];
-    bool all = true;
-    for (int c = 0; c < 4; c++)
-      all = all && refinement->known[base + (c & 1 ? high : low)[0] * refinement->stride[0] +
-                                     (c & 2 ? high : low)[1] * refinement->stride[1]];
-    if (!all) continue;
-    int64_t near_i = 2 * (i - low[0]) < side ? low[0] : high[0];
-    int64_t near_k = 2 * (k - low[1]) < side ? low[1] : high[1];
-    return base + near_i * refinement->stride[0] + near_k * refinement->stride[1];
-  }
-  return -1;
-}

@@ -187,10 +187,5 @@ STRUT_API void strut_refinement_count(const strut_refinement *refinement, strut_
                                       int64_t *wanted, int64_t *done);
 /** Points of the coarsest grid. */
 STRUT_API int64_t strut_refinement_coarse(const strut_sweep_plan *plan);
-/**
- * The known point that stands for any point of the finest grid: itself, or the nearest corner of the
- * smallest cell around it whose corners are known. -1: there is none.
- */
-STRUT_API int64_t strut_refinement_stand_in(const strut_refinement *refinement, int64_t point);
 
 #endif

@@ -84,12 +84,9 @@ enum { WIDTH = 510, MARGIN = 24 }; /* [pt] of a drawing */
 
 static strut_status draw_structure(const strut_model *model, const double *positions,
                                    const char *path, strut_error *what) {
-  const strut_shape shape = {
+  strut_shape shape = {
       .model = model, .q = positions, .style.member_names = true, .ground = true, .names = true};
-  strut_view view = {
-      .shape_count = 1, .shapes = &shape, .bounds = strut_bounds_none(), .margin = MARGIN};
-  strut_bounds_add(&view.bounds, model, positions);
-  const strut_panel panel = {.view = &view};
+  strut_panel panel = {.shape_count = 1, .shapes = &shape, .margin = MARGIN};
   return strut_figure_draw(&(strut_plot){.path = path, .width = WIDTH},
                            &(strut_figure){.panel_count = 1, .panels = &panel, .aspect = 1.2},
                            what);

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Filling a figure in. See figure.h. */
+#include <assert.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/base/c_locale.h"
+#include "engine/output/draw/figure.h"
+
+enum { TEXT = 800 }; /* bytes of a text at most */
+
+/* One more item of a list, whose address that is: zeroed, in the arena, or the spare. Room doubles. */
+static void *add(strut_figure *figure, void *list, size_t *count, size_t size) {
+  char *items;
+  assert(size <= sizeof figure->spare);
+  if (!figure->failed && (*count & (*count - 1)) == 0) {
+    memcpy(&items, list, sizeof items);
+    char *more = strut_arena_allocate(&figure->arena, *count ? 2 * *count : 1, size);
+    if (more && *count) memcpy(more, items, *count * size);
+    if (more) memcpy(list, &more, sizeof more);
+    figure->failed = !more;
+  }
+  if (figure->failed) return memset(&figure->spare, 0, sizeof figure->spare);
+  memcpy(&items, list, sizeof items);
+  return items + (*count)++ * size;
+}
+
+#define ADD(FIGURE, LIST, COUNT) add(FIGURE, &(LIST), &(COUNT), sizeof *(LIST))
+
+strut_panel *strut_add_panel(strut_figure *figure) {
+  return ADD(figure, figure->panels, figure->panel_count);
+}
+
+strut_series *strut_add_series(strut_figure *figure, strut_panel *panel, const char *label) {
+  strut_series *series = ADD(figure, panel->series, panel->series_count);
+  series->label = label;
+  series->look = -1;
+  return series;
+}
+
+strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x, double y) {
+  strut_point *point = ADD(figure, series->points, series->count);
+  *point = (strut_point){x, y, (double)NAN, (double)NAN, (double)NAN, false};
+  return point;
+}
+
+void strut_add_gap(strut_figure *figure, strut_series *series) {
+  strut_add_point(figure, series, (double)NAN, (double)NAN);
+}
+
+strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low, double high,
+                           const char *label) {
+  strut_band *band = ADD(figure, panel->bands, panel->band_count);
+  *band = (strut_band){low, high, false, label};
+  return band;
+}
+
+strut_mark *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
+                           const char *text) {
+  strut_mark *mark = ADD(figure, panel->marks, panel->mark_count);
+  mark->at[0] = x, mark->at[1] = y;
+  mark->text = text;
+  return mark;
+}
+
+strut_shape *strut_add_shape(strut_figure *figure, strut_panel *panel, const strut_model *model,
+                             const double *positions) {
+  strut_shape *shape = ADD(figure, panel->shapes, panel->shape_count);
+  shape->model = model;
+  shape->q = positions;
+  figure->failed = figure->failed || !positions;
+  return shape;
+}
+
+strut_shape *strut_add_ghost(strut_figure *figure, strut_panel *panel, const strut_model *model,
+                             const double *positions, double grey) {
+  strut_shape *shape = strut_add_shape(figure, panel, model, positions);
+  shape->style = (strut_structure_style){.colouring = STRUT_COLOUR_ONE,
+                                         .colour = strut_grey(grey),
+                                         .no_nodes = true,
+                                         .no_supports = true};
+  return shape;
+}
+
+strut_shape *strut_add_forces(strut_figure *figure, strut_panel *panel, const strut_model *model,
+                              const double *positions, const double *force, double limit) {
+  strut_shape *shape = strut_add_shape(figure, panel, model, positions);
+  shape->style = (strut_structure_style){
+      .colouring = STRUT_COLOUR_FORCE, .values = force, .slack_forces = force, .limit = limit};
+  shape->ground = true;
+  return shape;
+}
+
+strut_trail *strut_add_trail(strut_figure *figure, strut_panel *panel, strut_trail_kind kind,
+                             strut_pen pen) {
+  strut_trail *trail = ADD(figure, panel->trails, panel->trail_count);
+  trail->kind = kind;
+  trail->pen = pen;
+  return trail;
+}
+
+void strut_add_place(strut_figure *figure, strut_trail *trail, const double place[2]) {
+  memcpy(ADD(figure, trail->at, trail->count), place, sizeof *trail->at);
+}
+
+strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
+                              const char *text) {
+  strut_key_item *item = ADD(figure, figure->keys, figure->key_count);
+  item->sign = sign;
+  item->pen = pen;
+  item->text = text;
+  return item;
+}
+
+const char *strut_figure_text(strut_figure *figure, const char *format, ...) {
+  char text[TEXT];
+  va_list rest;
+  strut_c_locale locale = strut_c_locale_enter();
+  va_start(rest, format);
+  vsnprintf(text, sizeof text, format, rest);
+  va_end(rest);
+  strut_c_locale_leave(locale);
+  const char *kept = strut_arena_text(&figure->arena, text, (size_t)strut_text_bytes(text, TEXT));
+  figure->failed = figure->failed || !kept;
+  return kept ? kept : "";
+}
+
+double *strut_figure_numbers(strut_figure *figure, size_t count) {
+  double *numbers = strut_arena_allocate(&figure->arena, count + 1, sizeof *numbers);
+  figure->failed = figure->failed || !numbers;
+  return numbers;
+}
+
+double *strut_figure_copy(strut_figure *figure, const double *from, size_t count) {
+  double *numbers = strut_figure_numbers(figure, count);
+  return numbers ? memcpy(numbers, from, count * sizeof *numbers) : NULL;
+}
+
+strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond) {
+  return (strut_colour_scale){.name = limit > 0 ? "force" : NULL,
+                              .unit = "N",
+                              .low = -limit,
+                              .high = limit,
+                              .colours = STRUT_COLOURS_SIGNED,
+                              .beyond = beyond ? *beyond : (strut_beyond){0}};
+}
+
+double strut_largest(const double *values, size_t count) {
+  double most = 0;
+  for (size_t i = 0; values && i < count; i++)
+    if (isfinite(values[i])) most = fmax(most, fabs(values[i]));
+  return most;
+}
