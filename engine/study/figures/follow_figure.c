@@ -133,7 +133,7 @@ static bool add_branch(picture *self, const strut_follow_branch *branch, size_t 
   begin_line(self, look);
   for (size_t k = 0; k < branch->count && fine; k++) {
     const strut_follow_point *point = &branch->points[k];
-    add_point(self, point->value, branch->travels ? point->velocity : point->amplitude,
+    add_point(self, point->at.value[0], branch->travels ? point->velocity : point->amplitude,
               point->stable);
     if (is_special(point->kind) || (point->detail && point->changes))
       fine = mark_point(self, point->kind, strut_follow_kind_word(point->kind), point->node);
@@ -171,13 +171,13 @@ static size_t look_of(strut_follow_kind kind) {
   return look;
 }
 
-static bool add_curve(picture *self, const strut_follow_curve *curve) {
+static bool add_curve(picture *self, const strut_follow_branch *curve) {
   bool fine = true;
   begin_line(self, look_of(curve->kind));
   for (size_t k = 0; k < curve->count && fine; k++) {
-    const strut_follow_curve_point *point = &curve->points[k];
-    add_point(self, point->value[0], point->value[1], point->stable);
-    if (point->cusp) fine = mark_point(self, curve->kind, "cusp", NULL);
+    const strut_follow_point *point = &curve->points[k];
+    add_point(self, point->at.value[0], point->at.value[1], point->stable);
+    if (point->kind == STRUT_FOLLOW_CUSP) fine = mark_point(self, curve->kind, "cusp", NULL);
   }
   return fine;
 }
