@@ -70,9 +70,8 @@ typedef struct strut_follow_branch {
 } strut_follow_branch;
 
 typedef struct strut_follow_limits {
-  int32_t steps;      /* most steps each way */
-  double longest;     /* step of a parameter, in its range */
-  bool without_words; /* events are not located */
+  int32_t steps;  /* most steps each way */
+  double longest; /* step of a parameter, in its range */
   /** Fraction of the range covered; may be NULL. */
   void (*progress)(void *context, double fraction);
   void *progress_context;

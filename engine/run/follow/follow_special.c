@@ -204,7 +204,7 @@ bool strut_follow_locate(strut_follow_walk *walk, const strut_follow_orbit *firs
   double least = LOCATED_EVENT * to.distance;
   bool many = first->word.count > MOST_LETTERS || second->word.count > MOST_LETTERS;
   if (many && !signatures) return true;
-  for (int i = 0; i < MOST_CHANGES && !walk->limits->without_words; i++) {
+  for (int i = 0; i < MOST_CHANGES; i++) {
     if (strut_follow_words_equal(&here->word, &to.word)) break;
     bracket k = {here, &to};
     walk->s->precision = STRUT_FOLLOW_ROUGH;
