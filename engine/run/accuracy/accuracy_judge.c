@@ -114,8 +114,7 @@ static bool is_followed(const strut_ladder *ladder, const strut_summary *summary
 
 void strut_ladder_extend_coarse(strut_ladder *ladder) {
   const strut_evidence *evidence = &EVIDENCE[HALVED_AGAIN];
-  if (ladder->kept || ladder->runs != ladder->coarse_runs || !strut_ladder_is_coarse(ladder, 2))
-    return;
+  if (ladder->kept || ladder->runs != ladder->coarse_runs || ladder->runs < 2) return;
   if (ladder->runs > 2 && !shrinks(ladder, evidence)) return;
   double wanted = ladder->a->target;
   double apart = fmax(ladder->distance / fmin(evidence->apart_of_wanted * wanted, evidence->apart),

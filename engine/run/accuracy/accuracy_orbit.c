@@ -74,14 +74,13 @@ static bool uses_finer_steps(const strut_accuracy *accuracy) {
 }
 
 static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model *model) {
-  size_t length = (size_t)model->length;
-  solve->end_state.q = strut_arena_allocate(&solve->arena, length, sizeof(double));
-  solve->end_state.v = strut_arena_allocate(&solve->arena, length, sizeof(double));
-  solve->fixed_point = strut_arena_allocate(&solve->arena, 2 * length + 1, sizeof(double));
-  solve->orbit.y = strut_arena_allocate(&solve->arena, 2 * length + 1, sizeof(double));
-  if (solve->end_state.q && solve->end_state.v && solve->fixed_point && solve->orbit.y)
-    return STRUT_OK;
-  return strut_no_memory(solve->a->error, "");
+  solve->both = 2 * (size_t)model->length + 1;
+  double **const arrays[] = {&solve->end.y, &solve->known.y, &solve->fixed_point};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    if (!(*arrays[i] = strut_arena_allocate(&solve->arena, solve->both, sizeof(double))))
+      return strut_no_memory(solve->a->error, "");
+  solve->orbit.y = solve->known.y;
+  return STRUT_OK;
 }
 
 /*
@@ -121,14 +120,9 @@ static strut_status run_coarse(strut_orbit_solve *solve, bool *steady) {
   strut_accuracy_begin_phase(accuracy, "waiting for steady motion");
   status = run_coarse_from_start(solve, first);
   if (!status && solve->coarse_run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow &&
-      periods > first) {
-    strut_summary more = {0};
-    status = strut_orbit_solve_run_until_steady(solve, accuracy->coarse,
-                                                fmin(0.005, 0.5 * accuracy->target), 5,
-                                                periods - first, true, &more);
-    if (!status) strut_summary_append(&solve->coarse_run, &more);
-    strut_summary_free(&more);
-  }
+      periods > first)
+    status = strut_orbit_solve_run_on(solve, accuracy->coarse, fmin(0.005, 0.5 * accuracy->target),
+                                      5, periods - first, true, &solve->coarse_run);
   *steady = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC &&
             strut_accuracy_orbit_covers_window(accuracy, &solve->coarse_run.steady);
   return status == STRUT_DIVERGED ? STRUT_OK : status;
@@ -136,9 +130,8 @@ static strut_status run_coarse(strut_orbit_solve *solve, bool *steady) {
 
 /* Takes the end of the coarse run as fixed point of the coarse map. */
 static void take_end_as_fixed_point(strut_orbit_solve *solve) {
-  strut_orbit_solve_copy_end_to_orbit(solve);
-  memcpy(solve->fixed_point, solve->orbit.y,
-         (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
+  strut_orbit_place_copy(solve, &solve->end, &solve->known);
+  memcpy(solve->fixed_point, solve->orbit.y, solve->both * sizeof(double));
   solve->travel = solve->coarse_run.velocity * solve->coarse_map.period * solve->coarse_map.repeats;
 }
 
@@ -177,7 +170,7 @@ static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
   solve->coarse_map.interrupt = solve->reference_map.interrupt = accuracy->options->interrupt;
   solve->coarse_map.most_evaluations = solve->reference_map.most_evaluations =
       strut_accuracy_evaluations_left(accuracy);
-  solve->coarse_map.time = solve->reference_map.time = solve->end_state.time;
+  solve->coarse_map.time = solve->reference_map.time = solve->end.time;
   take_end_as_fixed_point(solve);
   return STRUT_OK;
 }
@@ -222,7 +215,6 @@ static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool
   strut_accuracy *accuracy = solve->a;
   double period = solve->coarse_map.period;
   e.measure_last = 0.0;
-  strut_orbit_solve_copy_orbit_to_end(solve);
   e.steady.wanted = false;
   e.step = period / ceil(period / e.step * (1.0 - 1e-9)); /* as the maps have it */
   e.periods = orbit_periods(solve);
@@ -234,8 +226,9 @@ static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool
     options.to = NULL;
   else
     options.sink_count = 0;
-  solve->end_state.balance = &solve->history.energy;
-  options.from = &solve->end_state;
+  strut_orbit_place_copy(solve, &solve->known, &solve->end);
+  const strut_snapshot from = strut_orbit_place_snapshot(solve, &solve->end);
+  options.from = &from;
   options.progress = NULL;
   return strut_accuracy_run(accuracy, &e, &options, summary);
 }
@@ -259,8 +252,7 @@ static void free_solve(strut_orbit_solve *solve) {
 static void accept_fixed_point(strut_orbit_solve *solve) {
   solve->coarse_run.velocity =
       solve->travel / (solve->coarse_map.period * solve->coarse_map.repeats);
-  memcpy(solve->orbit.y, solve->fixed_point,
-         (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
+  memcpy(solve->orbit.y, solve->fixed_point, solve->both * sizeof(double));
   solve->until_steady = solve->coarse_map.evaluations;
 }
 
@@ -312,9 +304,8 @@ static strut_status find_finer_fixed_point(strut_orbit_solve *solve, bool from_o
   *found = false;
   if (!uses_finer_steps(accuracy) || solve->finer > 1.0) return STRUT_OK;
   if (from_orbit) {
-    memcpy(solve->orbit.y, solve->fixed_point,
-           (2 * (size_t)solve->coarse_map.model->length + 1) * sizeof(double));
-    strut_orbit_solve_copy_orbit_to_end(solve);
+    memcpy(solve->orbit.y, solve->fixed_point, solve->both * sizeof(double));
+    strut_orbit_place_copy(solve, &solve->known, &solve->end);
   }
   strut_accuracy_begin_phase(accuracy, "finding the orbit by finer steps");
   accuracy->coarse.step = step / FINER, solve->finer = FINER;
@@ -372,13 +363,11 @@ static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *stea
   *steady = to.found;
   if (status || solve->answer) return status;
   if (!to.found && solve->coarse_map.repeats == 1) {
-    strut_summary more = {0};
-    status = strut_orbit_solve_run_until_steady(
-        solve, accuracy->coarse, fmin(0.002, STRUT_FIXED_POINT_PART * accuracy->target), 5, CHANCE,
-        true, &more);
-    *steady = !status && more.steady.kind == STRUT_MOTION_PERIODIC && more.steady.repeats == 1;
-    if (!status) strut_summary_append(&solve->coarse_run, &more);
-    strut_summary_free(&more);
+    const strut_steady_summary *found = &solve->coarse_run.steady;
+    status = strut_orbit_solve_run_on(solve, accuracy->coarse,
+                                      fmin(0.002, STRUT_FIXED_POINT_PART * accuracy->target), 5,
+                                      CHANCE, true, &solve->coarse_run);
+    *steady = !status && found->kind == STRUT_MOTION_PERIODIC && found->repeats == 1;
     take_end_as_fixed_point(solve);
     accept_fixed_point(solve);
   }

@@ -54,11 +54,6 @@ static inline int strut_ladder_runs_with_error_control(const strut_ladder *ladde
   return ladder->runs - ladder->coarse_runs;
 }
 
-/** Are there so many runs, and all by the coarse method? */
-static inline bool strut_ladder_is_coarse(const strut_ladder *ladder, int least) {
-  return ladder->runs >= least && strut_ladder_runs_with_error_control(ladder) < 1;
-}
-
 static inline double strut_ladder_velocity_size(const strut_ladder *ladder, double velocity) {
   return fmax(fabs(velocity), ladder->a->scale);
 }

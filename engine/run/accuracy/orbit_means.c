@@ -24,12 +24,8 @@ static const double PERIODIC = 1e-4;
 static const double WIDER = 1.25;
 
 static strut_status continue_coarse_run(strut_orbit_solve *solve, double periods) {
-  strut_summary more = {0};
-  strut_status status = strut_orbit_solve_run_until_steady(
-      solve, solve->a->coarse, solve->a->target, 5, periods, true, &more);
-  if (!status) strut_summary_append(&solve->coarse_run, &more);
-  strut_summary_free(&more);
-  return status;
+  return strut_orbit_solve_run_on(solve, solve->a->coarse, solve->a->target, 5, periods, true,
+                                  &solve->coarse_run);
 }
 
 /* The mean of a run that has ended, and the interval within which it is known. */
@@ -41,7 +37,7 @@ static strut_orbit_mean mean_of(const strut_summary *run) {
       .periods = run->steady.periods};
 }
 
-/* Runs from solve->end_state, which becomes the run's end. */
+/* Runs from solve->end, which becomes the run's end. */
 static strut_status run_for_mean(strut_orbit_solve *solve, strut_experiment e, double periods,
                                  strut_summary *run, strut_orbit_mean *mean) {
   strut_summary_free(run);
@@ -83,43 +79,20 @@ static void accept_mean(strut_orbit_solve *solve, strut_orbit_answer answer, str
   strut_orbit_solve_accept_last_run(solve, answer, mean.interval);
 }
 
-/* Where a run has ended. */
-typedef struct run_end {
-  double *y; /* (2 length) positions, then velocities */
-  double refined, time;
-  strut_orbit_history history;
-} run_end;
-
-static void keep_end(const strut_orbit_solve *solve, run_end *end) {
-  size_t length = (size_t)solve->coarse_map.model->length;
-  memcpy(end->y, solve->end_state.q, length * sizeof(double));
-  memcpy(end->y + length, solve->end_state.v, length * sizeof(double));
-  end->refined = solve->end_state.refined, end->time = solve->end_state.time;
-  end->history = solve->history;
-}
-
-static void return_to(strut_orbit_solve *solve, const run_end *end) {
-  size_t length = (size_t)solve->coarse_map.model->length;
-  memcpy(solve->end_state.q, end->y, length * sizeof(double));
-  memcpy(solve->end_state.v, end->y + length, length * sizeof(double));
-  solve->end_state.refined = end->refined, solve->end_state.time = end->time;
-  solve->history = end->history;
-}
-
 /* Ever longer runs from solve->orbit by the coarse step and by half of it, until the mean of the latter, whose end is
-   solve->end_state, is known well enough. */
-static strut_status run_by_two_steps(strut_orbit_solve *solve, run_end *end, strut_summary run[2],
-                                     strut_orbit_mean mean[2]) {
+   solve->end, is known well enough. */
+static strut_status run_by_two_steps(strut_orbit_solve *solve, strut_orbit_place *end,
+                                     strut_summary run[2], strut_orbit_mean mean[2]) {
   strut_accuracy *accuracy = solve->a;
   const strut_experiment by[2] = {accuracy->coarse, strut_orbit_solve_halve_step(solve)};
   double most = most_periods(solve, 3.0 * cost_of_period(&solve->coarse_run));
   for (double periods = fmin(PERIODS, most);;) {
     for (int k = 0; k < 2; k++) {
-      strut_orbit_solve_copy_orbit_to_end(solve);
+      strut_orbit_place_copy(solve, &solve->known, &solve->end);
       accuracy->check_evaluations += run[k].spent.evaluations;
       strut_status status = run_for_mean(solve, by[k], periods, &run[k], &mean[k]);
       if (status) return status;
-      if (k == 0) keep_end(solve, end);
+      if (k == 0) strut_orbit_place_copy(solve, &solve->end, end);
     }
     double size = strut_accuracy_velocity_scale(accuracy, mean[1].velocity);
     double wanted = ENOUGH * accuracy->target * size;
@@ -132,19 +105,23 @@ static strut_status run_by_two_steps(strut_orbit_solve *solve, run_end *end, str
   }
 }
 
-strut_status strut_orbit_solve_average(strut_orbit_solve *solve) {
-  size_t both = 2 * (size_t)solve->coarse_map.model->length;
-  run_end end = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
+/*
+ * Mean velocity of the motion from solve->end by the coarse method with half its step, checked by that with its
+ * whole step: over as many periods as the wanted accuracy takes, the scene has and the budget allows. Where both
+ * differ by more than their scatter, a third run from where the second has ended decides. Sets solve->answer.
+ */
+static strut_status average(strut_orbit_solve *solve) {
+  strut_orbit_place end = {.y = strut_arena_allocate(&solve->arena, solve->both, sizeof(double))};
   strut_summary run[2] = {{0}, {0}};
   strut_orbit_mean mean[2] = {{.periods = 0}, {.periods = 0}};
   if (!end.y) return strut_no_memory(solve->a->error, "");
   strut_accuracy_begin_phase(solve->a, "averaging over many periods");
-  strut_orbit_solve_copy_end_to_orbit(solve);
+  strut_orbit_place_copy(solve, &solve->end, &solve->known);
   strut_status status = run_by_two_steps(solve, &end, run, mean);
   solve->a->check_evaluations += run[0].spent.evaluations;
   if (!status && !agree(&mean[0], &mean[1])) { /* does the half step leave the other motion? */
     strut_orbit_mean before = mean[1];
-    return_to(solve, &end);
+    strut_orbit_place_copy(solve, &end, &solve->end);
     solve->a->check_evaluations += run[1].spent.evaluations;
     status = run_for_mean(solve, strut_orbit_solve_halve_step(solve), (double)before.periods,
                           &run[1], &mean[1]);
@@ -172,7 +149,7 @@ strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool 
     status = continue_coarse_run(solve, MORE_PERIODS);
   *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
   if (status || solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
-  return strut_orbit_solve_average(solve);
+  return average(solve);
 }
 
 strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {

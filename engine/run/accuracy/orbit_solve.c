@@ -42,7 +42,9 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
                                                 double periods, bool from_end,
                                                 strut_summary *summary) {
   strut_accuracy *accuracy = solve->a;
-  strut_snapshot from = solve->end_state;
+  strut_orbit_place *end = &solve->end;
+  const strut_snapshot from = strut_orbit_place_snapshot(solve, end);
+  strut_snapshot to = from;
   e.steady.wanted = true;
   e.steady.tolerance = tolerance;
   e.steady.floor = tolerance * accuracy->scale;
@@ -57,23 +59,42 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
                                .progress = accuracy->options->progress,
                                .progress_context = accuracy->options->progress_context,
                                .from = from_end ? &from : accuracy->options->from,
-                               .to = &solve->end_state};
-  if (!from_end) solve->history = (strut_orbit_history){0};
-  from.balance = &solve->history.energy;
+                               .to = &to};
+  if (!from_end) end->energy = (strut_energy){0}, end->steps = end->events = 0;
   strut_status status = strut_accuracy_run(accuracy, &e, &options, summary);
-  solve->history.energy = summary->energy; /* it continues that of the runs before */
-  solve->history.steps += summary->spent.steps;
-  solve->history.events += summary->spent.events;
+  end->time = to.time, end->y[solve->both - 1] = to.refined;
+  end->energy = summary->energy; /* it continues that of the runs before */
+  end->steps += summary->spent.steps;
+  end->events += summary->spent.events;
   return status;
 }
 
-void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve) {
-  size_t length = (size_t)solve->coarse_map.model->length;
-  memcpy(solve->orbit.y, solve->end_state.q, length * sizeof(double));
-  memcpy(solve->orbit.y + length, solve->end_state.v, length * sizeof(double));
-  solve->orbit.y[2 * length] = solve->end_state.refined;
-  solve->orbit_time = solve->end_state.time;
-  solve->orbit_history = solve->history;
+strut_status strut_orbit_solve_run_on(strut_orbit_solve *solve, strut_experiment experiment,
+                                      double tolerance, int32_t successive, double periods,
+                                      bool from_end, strut_summary *run) {
+  strut_summary more = {0};
+  strut_status status = strut_orbit_solve_run_until_steady(solve, experiment, tolerance, successive,
+                                                           periods, from_end, &more);
+  if (!status) strut_summary_append(run, &more);
+  strut_summary_free(&more);
+  return status;
+}
+
+void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_place *from,
+                            strut_orbit_place *to) {
+  double *y = to->y;
+  memcpy(y, from->y, solve->both * sizeof *y);
+  *to = *from;
+  to->y = y;
+}
+
+strut_snapshot strut_orbit_place_snapshot(const strut_orbit_solve *solve,
+                                          const strut_orbit_place *place) {
+  return (strut_snapshot){.q = place->y,
+                          .v = place->y + (solve->both - 1) / 2,
+                          .time = place->time,
+                          .refined = place->y[solve->both - 1],
+                          .balance = &place->energy};
 }
 
 /* ---- the reference method and the check of its tolerance ---- */
@@ -99,17 +120,8 @@ double strut_orbit_solve_error_share(const strut_orbit_solve *solve) {
   return solve->error / (solve->a->target * size);
 }
 
-void strut_orbit_solve_copy_orbit_to_end(strut_orbit_solve *solve) {
-  size_t length = (size_t)solve->coarse_map.model->length;
-  memcpy(solve->end_state.q, solve->orbit.y, length * sizeof(double));
-  memcpy(solve->end_state.v, solve->orbit.y + length, length * sizeof(double));
-  solve->end_state.refined = solve->orbit.y[2 * length];
-  solve->end_state.time = solve->orbit_time;
-  solve->history = solve->orbit_history;
-}
-
 static void accept_reference_run(strut_orbit_solve *solve) {
-  strut_orbit_solve_copy_end_to_orbit(solve);
+  strut_orbit_place_copy(solve, &solve->end, &solve->known);
   solve->orbit.velocity = solve->last_run.velocity;
   solve->error = solve->last_run.steady.interval;
   solve->answer = STRUT_ORBIT_REFERENCE;
@@ -118,18 +130,16 @@ static void accept_reference_run(strut_orbit_solve *solve) {
 strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
                                              double periods) {
   strut_accuracy *accuracy = solve->a;
-  strut_summary more = {0};
   strut_accuracy_begin_phase(accuracy, "until steady by adaptive");
-  strut_orbit_solve_copy_orbit_to_end(solve);
+  strut_orbit_place_copy(solve, &solve->known, &solve->end);
   /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
   if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
     solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / STRUT_TIGHTENED);
     solve->tightened = true;
   }
-  strut_status status = strut_orbit_solve_run_until_steady(
-      solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4, periods, from_orbit, &more);
-  if (!status) strut_summary_append(&solve->last_run, &more);
-  strut_summary_free(&more);
+  strut_status status =
+      strut_orbit_solve_run_on(solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4,
+                               periods, from_orbit, &solve->last_run);
   if (!status && solve->last_run.steady.kind == STRUT_MOTION_PERIODIC) accept_reference_run(solve);
   return status;
 }
@@ -142,7 +152,7 @@ static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   for (int k = 0; k < MOST_CHECKS; k++) {
     strut_summary finer = {0};
-    strut_orbit_solve_copy_orbit_to_end(solve);
+    strut_orbit_place_copy(solve, &solve->known, &solve->end);
     solve->reference.tolerance = fmax(1e-12, 0.1 * solve->reference.tolerance);
     strut_status status = strut_orbit_solve_run_until_steady(
         solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4, TRIAL, true, &finer);
@@ -171,12 +181,11 @@ static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
  */
 static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
-  size_t both = 2 * (size_t)solve->coarse_map.model->length + 1;
   strut_experiment finer = solve->reference;
   strut_period_map map = {.model = NULL};
-  strut_orbit there = {.y = strut_arena_allocate(&solve->arena, both, sizeof(double))};
+  strut_orbit there = {.y = strut_arena_allocate(&solve->arena, solve->both, sizeof(double))};
   if (!there.y) return strut_no_memory(accuracy->error, "");
-  memcpy(there.y, solve->orbit.y, both * sizeof(double));
+  memcpy(there.y, solve->orbit.y, solve->both * sizeof(double));
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
   double size = strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity),
          half = 0.5 * accuracy->target * size;
@@ -220,7 +229,7 @@ strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve) {
 
 void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_answer end,
                                        double error) {
-  strut_orbit_solve_copy_end_to_orbit(solve);
+  strut_orbit_place_copy(solve, &solve->end, &solve->known);
   solve->orbit.velocity = solve->last_run.velocity;
   solve->error = error;
   solve->answer = end;
@@ -237,46 +246,37 @@ bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve) {
 
 strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
-  strut_summary half = {0};
+  strut_summary *run = &solve->last_run;
   solve->answer = STRUT_ORBIT_NONE;
-  strut_status status = strut_orbit_solve_run_until_steady(
+  strut_status status = strut_orbit_solve_run_on(
       solve, strut_orbit_solve_halve_step(solve), fmin(0.001, 0.2 * accuracy->target), 4,
-      fmax(20.0, strut_accuracy_transient_periods(accuracy)), false, &half);
-  if (status) {
-    strut_summary_free(&half);
-    return status;
-  }
-  bool periodic = half.steady.kind == STRUT_MOTION_PERIODIC;
-  strut_summary_append(&solve->last_run, &half);
-  double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
-  if (periodic && apart <= AGREE * accuracy->target *
-                               strut_accuracy_velocity_scale(accuracy, solve->last_run.velocity))
-    strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK,
-                                      apart + solve->last_run.steady.interval);
+      fmax(20.0, strut_accuracy_transient_periods(accuracy)), false, run);
+  if (status) return status;
+  double apart = fabs(run->velocity - solve->coarse_run.velocity);
+  if (run->steady.kind == STRUT_MOTION_PERIODIC &&
+      apart <= AGREE * accuracy->target * strut_accuracy_velocity_scale(accuracy, run->velocity))
+    strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK, apart + run->steady.interval);
   return STRUT_OK;
 }
 
 strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
-  strut_summary half = {0};
+  strut_summary *run = &solve->last_run;
   strut_experiment finer = strut_orbit_solve_halve_step(solve);
   finer.steady.creep = accuracy->coarse.steady.creep;
   strut_status status =
-      strut_orbit_solve_run_until_steady(solve, finer, accuracy->target, 5, CREEPING, true, &half);
-  if (!status) {
-    strut_steady_summary found = half.steady;
-    strut_summary_append(&solve->last_run, &half);
-    double apart = fabs(solve->last_run.velocity - solve->coarse_run.velocity);
-    bool steady = found.kind == STRUT_MOTION_CREEPING || found.kind == STRUT_MOTION_PERIODIC;
-    solve->last_run.steady.kind = STRUT_MOTION_CREEPING;
-    solve->last_run.steady.repeats = 0;
-    if (steady && fabs(solve->last_run.velocity) <= finer.steady.creep)
-      strut_orbit_solve_accept_last_run(
-          solve, STRUT_ORBIT_CREEPING,
-          apart + fmax(found.interval, solve->coarse_run.steady.interval));
-  }
-  strut_summary_free(&half);
-  return status;
+      strut_orbit_solve_run_on(solve, finer, accuracy->target, 5, CREEPING, true, run);
+  if (status) return status;
+  const strut_steady_summary found = run->steady;
+  double apart = fabs(run->velocity - solve->coarse_run.velocity);
+  bool steady = found.kind == STRUT_MOTION_CREEPING || found.kind == STRUT_MOTION_PERIODIC;
+  run->steady.kind = STRUT_MOTION_CREEPING;
+  run->steady.repeats = 0;
+  if (steady && fabs(run->velocity) <= finer.steady.creep)
+    strut_orbit_solve_accept_last_run(
+        solve, STRUT_ORBIT_CREEPING,
+        apart + fmax(found.interval, solve->coarse_run.steady.interval));
+  return STRUT_OK;
 }
 
 /* The summary of a periodic orbit to a wanted accuracy: what it cost, how it was found, its error. */
@@ -352,10 +352,10 @@ static int64_t sum_evaluations(const strut_orbit_solve *solve) {
 static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summary *orbit,
                               strut_summary *summary) {
   const strut_snapshot *from = solve->a->options->from;
-  double before = solve->orbit_time - (from ? from->time : 0.0);
+  double before = solve->known.time - (from ? from->time : 0.0);
   summary->duration = before + orbit->duration;
-  summary->spent.steps = solve->orbit_history.steps + orbit->spent.steps;
-  summary->spent.events = solve->orbit_history.events + orbit->spent.events;
+  summary->spent.steps = solve->known.steps + orbit->spent.steps;
+  summary->spent.events = solve->known.events + orbit->spent.events;
   summary->steady.periods = llround(before / solve->coarse_map.period);
 }
 

@@ -18,11 +18,13 @@ static const double STRUT_TIGHTENED = 25.0;
 /** Part of the wanted error of the velocity to which the fixed point of a period map is sought. */
 static const double STRUT_FIXED_POINT_PART = 0.1;
 
-/** What was simulated from t = 0 up to a state: nothing that was tried and left. */
-typedef struct strut_orbit_history {
+/** A state, and what was simulated from t = 0 up to it: nothing that was tried and left. */
+typedef struct strut_orbit_place {
+  double *y;   /* (2 length + 1) as of a period map */
+  double time; /* from which it may be run on [s] */
   strut_energy energy;
   int64_t steps, events;
-} strut_orbit_history;
+} strut_orbit_place;
 
 /** The run or correction that gives the answer. */
 typedef enum strut_orbit_answer {
@@ -48,13 +50,11 @@ typedef struct strut_orbit_solve {
   strut_accuracy *a;
   strut_experiment reference; /* with error control */
   strut_period_map coarse_map, reference_map;
-  strut_summary coarse_run; /* up to the steady state */
-  strut_snapshot end_state;
-  strut_orbit_history history; /* up to end_state */
-  double orbit_time;           /* of orbit.y, from which it may be run on [s] */
-  strut_orbit_history orbit_history;
-  double *fixed_point; /* (2 length + 1) of the coarse map */
-  double travel;       /* over one application of it [m] */
+  strut_summary coarse_run;     /* up to the steady state */
+  size_t both;                  /* 2 length + 1 */
+  strut_orbit_place end, known; /* where the latest run has ended; the orbit, whose y is orbit.y */
+  double *fixed_point;          /* (both) of the coarse map */
+  double travel;                /* over one application of it [m] */
   strut_orbit orbit;
   double error;         /* of orbit.velocity, estimated [m/s] */
   int64_t until_steady; /* evaluations of the coarse map up to its fixed point */
@@ -75,18 +75,23 @@ void strut_orbit_solve_count_evaluations(strut_orbit_solve *solve);
 /** Appends a continuation: costs add up, results are replaced; empties `part`. */
 void strut_summary_append(strut_summary *whole, strut_summary *part);
 /**
- * Runs `experiment` for at most `periods`, from solve->end_state or the start of the scene, until
- * it is steady within `tolerance` [1] over `successive` periods. The end becomes solve->end_state.
+ * Runs `experiment` for at most `periods`, from solve->end or the start of the scene, until
+ * it is steady within `tolerance` [1] over `successive` periods. The end becomes solve->end.
  */
 strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve,
                                                 strut_experiment experiment, double tolerance,
                                                 int32_t successive, double periods, bool from_end,
                                                 strut_summary *summary);
-/** Copies solve->end_state to solve->orbit. */
-void strut_orbit_solve_copy_end_to_orbit(strut_orbit_solve *solve);
-
-/** Copies solve->orbit to solve->end_state, from which later runs start. */
-void strut_orbit_solve_copy_orbit_to_end(strut_orbit_solve *solve);
+/** The same, appended to the run so far, which stays as it is after a failure. */
+strut_status strut_orbit_solve_run_on(strut_orbit_solve *solve, strut_experiment experiment,
+                                      double tolerance, int32_t successive, double periods,
+                                      bool from_end, strut_summary *run);
+/** Copies a place to another one. */
+void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_place *from,
+                            strut_orbit_place *to);
+/** The place as the start or the end of a run. */
+strut_snapshot strut_orbit_place_snapshot(const strut_orbit_solve *solve,
+                                          const strut_orbit_place *place);
 /**
  * Turns the status of map evaluations into an error: out of memory, over budget, or interrupted.
  */
@@ -113,15 +118,9 @@ void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_ans
 
 /**
  * Runs the coarse method on until its motion is periodic or not; *periodic: it became so after all, and
- * solve->end_state is on its orbit. An irregular motion is averaged as by strut_orbit_solve_average.
+ * solve->end is on its orbit. An irregular motion is averaged.
  */
 strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic);
-/**
- * Mean velocity of the motion from solve->end_state by the coarse method with half its step, checked by that with its
- * whole step: over as many periods as the wanted accuracy takes, the scene has and the budget allows. Where both
- * differ by more than their scatter, a third run from where the second has ended decides. Sets solve->answer.
- */
-strut_status strut_orbit_solve_average(strut_orbit_solve *solve);
 /**
  * The reference method (solve->last_run) did not become periodic, the coarse one did: the mean velocity by the
  * reference method over many periods from there must agree with the orbit's. Sets solve->answer.

@@ -16,22 +16,16 @@ static const double FOUND = 1e-4, ASIDE = 0.7;
 static const double WINDOW = 0.05, EDGE = 1e-5;
 /* The same motion as that of a curve: parts of the range, and unknowns of order one. */
 static const double SAME = 5e-3, NEAR = 0.1;
-enum { MOST_ROOTS = 12, FEW = 4, CLOSED = 8, SLOTS = 6 };
+enum { MOST_ROOTS = 12, FEW = 4, CLOSED = 8 };
 
 /* Where a walk stands, and what it works with. */
-typedef struct walk {
-  strut_follow_surface *u;
+typedef struct curve_walk {
+  strut_follow_walk w;
   strut_follow_criterion criterion;
-  strut_follow_curve *curve;
-  const strut_follow_curve_limits *limits;
-  strut_follow_surface_point *slot[SLOTS]; /* points: here, next, trials */
-  double *along, *across;                  /* (m) the direction, and across it in the surface */
-  double *step, *before; /* (m) unit vectors of the latest step and the one before */
-  double slope;          /* of the test function across; NAN: not known */
-  size_t room;
-  double arc;
-  bool backwards;
-} walk;
+  double *along, *across; /* (m) the direction, and across it in the surface */
+  double *step, *before;  /* (m) unit vectors of the latest step and the one before */
+  double slope;           /* of the test function across; NAN: not known */
+} curve_walk;
 
 static double normalise(double *a, size_t n) {
   double length = sqrt(strut_dot(a, a, (ptrdiff_t)n));
@@ -44,68 +38,31 @@ bool strut_follow_curve_known(strut_follow_kind kind) {
          kind == STRUT_FOLLOW_LIFT;
 }
 
-/* ---- points of the result ---- */
-
-static strut_follow_curve_point *append(walk *self) {
-  strut_follow_curve *curve = self->curve;
-  if (curve->count == self->room) {
-    size_t room = self->room ? 2 * self->room : 128;
-    strut_follow_curve_point *points = strut_arena_allocate(&curve->arena, room, sizeof *points);
-    if (!points) {
-      self->u->status = strut_no_memory(self->u->error, "");
-      return NULL;
-    }
-    if (curve->count) memcpy(points, curve->points, curve->count * sizeof *points);
-    curve->points = points;
-    self->room = room;
-  }
-  return &curve->points[curve->count++];
-}
-
-/* Multipliers but for the one that decides: the largest, and whether all are within the circle. */
-static void judge(const walk *self, const strut_follow_surface_point *point,
-                  strut_follow_curve_point *to) {
-  double wanted = self->curve->kind == STRUT_FOLLOW_DOUBLING ? -1.0 : 1.0, least = HUGE_VAL;
-  bool decides =
-      self->curve->kind == STRUT_FOLLOW_FOLD || self->curve->kind == STRUT_FOLLOW_DOUBLING;
-  size_t own = point->multipliers;
-  for (size_t i = 0; i < point->multipliers && decides; i++) {
-    double off = hypot(point->multiplier[i][0] - wanted, point->multiplier[i][1]);
+/* Of a point at o: the largest multiplier but for the one that decides, and whether all are within the circle. */
+static void judge(const strut_follow_orbit *orbit, strut_follow_kind kind, strut_follow_point *to) {
+  double wanted = kind == STRUT_FOLLOW_DOUBLING ? -1.0 : 1.0, least = HUGE_VAL;
+  bool decides = kind == STRUT_FOLLOW_FOLD || kind == STRUT_FOLLOW_DOUBLING;
+  size_t own = orbit->multipliers;
+  for (size_t i = 0; i < orbit->multipliers && decides; i++) {
+    double off = hypot(orbit->multiplier[i][0] - wanted, orbit->multiplier[i][1]);
     if (off < least) least = off, own = i;
   }
   to->stable = true;
   to->multiplier[0] = to->multiplier[1] = (double)NAN;
-  for (size_t i = point->multipliers; i-- > 0;) {
+  for (size_t i = orbit->multipliers; i-- > 0;) {
     if (i == own) continue;
-    memcpy(to->multiplier, point->multiplier[i], sizeof to->multiplier);
-    to->stable = to->stable && hypot(point->multiplier[i][0], point->multiplier[i][1]) <= 1.0;
+    memcpy(to->multiplier, orbit->multiplier[i], sizeof to->multiplier);
+    to->stable = to->stable && hypot(orbit->multiplier[i][0], orbit->multiplier[i][1]) <= 1.0;
   }
 }
 
-/* Appends p, which is complete. False: the motion is lost, or status. */
-static bool add_point(walk *self, strut_follow_surface_point *point) {
-  strut_follow_surface *surface = self->u;
-  strut_follow_system *system = &surface->s;
-  if (!strut_follow_surface_set(surface, point->value)) return false;
-  double *y = strut_arena_allocate(&self->curve->arena, system->both, sizeof *y);
-  if (!y) surface->status = strut_no_memory(surface->error, "");
-  if (!y) return false;
-  strut_follow_centre(system, point->y);
-  memcpy(y, point->y, system->both * sizeof *y);
-  memcpy(system->buffers.end, point->y, system->both * sizeof *y);
-  const strut_follow_period period = strut_follow_apply(system, system->buffers.end, true);
-  if (!isfinite(period.travel)) return false;
-  strut_follow_curve_point *to = append(self);
-  if (!to) return false;
-  *to =
-      (strut_follow_curve_point){.value = {point->value[0], point->value[1]},
-                                 .arc = self->backwards ? -self->arc : self->arc,
-                                 .velocity = period.travel / (system->period * system->how.repeats),
-                                 .work = period.work / system->how.repeats,
-                                 .amplitude = period.amplitude,
-                                 .y = y};
-  judge(self, point, to);
-  return true;
+/* Appends o, which is complete. False: the motion is lost, or status. */
+static bool add_point(curve_walk *self, strut_follow_orbit *orbit) {
+  strut_follow_branch *curve = self->w.branch;
+  if (!strut_follow_measure(self->w.s, &curve->arena, orbit)) return false;
+  strut_follow_point *to = strut_follow_add(&self->w, orbit, self->w.arc, STRUT_FOLLOW_REGULAR);
+  if (to) judge(orbit, curve->kind, to);
+  return to != NULL;
 }
 
 /* ---- the root across a direction ---- */
@@ -113,42 +70,45 @@ static bool add_point(walk *self, strut_follow_surface_point *point) {
 /* A trial across the direction: its place and the test function there. */
 typedef struct trial {
   double at, value;
-  strut_follow_surface_point *p;
+  strut_follow_orbit *p;
 } trial;
 
+/* An orbit at `from`, moved by a multiple of a direction. NULL: out of memory. */
+static strut_follow_orbit *moved_by(curve_walk *self, const strut_follow_orbit *from,
+                                    const double *direction, double factor) {
+  strut_follow_orbit *orbit = strut_follow_orbit_new(self->w.s, &self->w.branch->arena, &from->at);
+  if (orbit) strut_follow_move(self->w.s, &orbit->at, direction, factor);
+  return orbit;
+}
+
 /* Evaluates the trial `aside` of the direction, from `guess`, which lies on the surface or near it. */
-static bool try_aside(walk *self, const strut_follow_surface_point *base, double h, double aside,
-                      const strut_follow_surface_point *guess, double moved, trial *t) {
-  const double *const rows[2] = {self->along, self->across};
-  const double offset[2] = {h, aside};
-  strut_follow_surface_point_copy(self->u, guess, t->p);
-  strut_follow_surface_move(self->u, t->p, self->across, moved);
+static bool try_aside(curve_walk *self, const strut_follow_orbit *base, double h, double aside,
+                      const strut_follow_orbit *guess, double moved, trial *t) {
+  const strut_follow_planes planes = {&base->at, {self->along, self->across}, {h, aside}};
+  int rounds;
+  t->p = guess ? moved_by(self, guess, self->across, moved) : NULL;
   t->at = aside;
-  return strut_follow_surface_correct(self->u, t->p, base, rows, offset) &&
-         strut_follow_criterion_at(self->u, &self->criterion, t->p, &t->value);
+  return t->p && strut_follow_newton(self->w.s, &planes, &t->p->at, &rounds) &&
+         strut_follow_criterion_at(self->w.s, &self->criterion, t->p, &t->value);
 }
 
 /*
- * The root at distance h along the direction from base, at most `window` aside of it, into `next`; slots 2 to
- * 4 are scratch. False: there is none. *tries: how many evaluations it took.
+ * The root at distance h along the direction from base, at most `window` aside of it. NULL: there is none.
+ * *tries: how many evaluations it took.
  */
-static bool find_root(walk *self, const strut_follow_surface_point *base, double h, double window,
-                      strut_follow_surface_point *next, int *tries) {
-  trial a = {.p = self->slot[2]}, b = {.p = self->slot[3]}, c = {.p = self->slot[4]};
+static strut_follow_orbit *find_root(curve_walk *self, const strut_follow_orbit *base, double h,
+                                     double window, int *tries) {
+  trial a, b, c;
   double least = FOUND * fmax(h, 0.1 * window) + 1e-9;
-  bool bracketed = false;
-  strut_follow_surface_point *ahead = self->slot[5];
-  strut_follow_surface_point_copy(self->u, base, ahead);
-  strut_follow_surface_move(self->u, ahead, self->along, h);
   *tries = 1;
-  if (!try_aside(self, base, h, 0.0, ahead, 0.0, &a)) return false;
+  if (!try_aside(self, base, h, 0.0, moved_by(self, base, self->along, h), 0.0, &a)) return NULL;
   double guess =
       isfinite(self->slope) && self->slope != 0.0 ? -a.value / self->slope : 0.1 * window;
   guess = fmin(fmax(guess, -0.5 * window), 0.5 * window);
   if (fabs(guess) < least) guess = guess < 0.0 ? -least : least;
-  if (!try_aside(self, base, h, guess, a.p, guess - a.at, &b)) return false;
+  if (!try_aside(self, base, h, guess, a.p, guess - a.at, &b)) return NULL;
   for (*tries = 2; *tries < MOST_ROOTS; ++*tries) {
-    bracketed = (a.value <= 0.0) != (b.value <= 0.0);
+    bool bracketed = (a.value <= 0.0) != (b.value <= 0.0);
     double slope = (b.value - a.value) / (b.at - a.at);
     if (fabs(a.value) < fabs(b.value)) { /* b is the better one */
       trial keep = a;
@@ -156,128 +116,100 @@ static bool find_root(walk *self, const strut_follow_surface_point *base, double
     }
     double at = slope != 0.0 && isfinite(slope) ? b.at - b.value / slope : 2.0 * b.at - a.at;
     if (isfinite(slope) && slope != 0.0) self->slope = slope;
-    if (b.value == 0.0 || fabs(at - b.at) < least) {
-      strut_follow_surface_point_copy(self->u, b.p, next);
-      return fabs(b.at) <= window;
-    }
+    if (b.value == 0.0 || fabs(at - b.at) < least) return fabs(b.at) <= window ? b.p : NULL;
     if (bracketed && !((at - a.at) * (at - b.at) < 0.0)) at = 0.5 * (a.at + b.at);
-    if (fabs(at) > window || !try_aside(self, base, h, at, b.p, at - b.at, &c)) return false;
+    if (fabs(at) > window || !try_aside(self, base, h, at, b.p, at - b.at, &c)) return NULL;
     /* where a root is between two trials it stays there */
-    if (bracketed && (c.value <= 0.0) == (b.value <= 0.0) && (c.value <= 0.0) != (a.value <= 0.0)) {
-      trial keep = b;
-      b = c, c = keep;
-      if (fabs(b.at - a.at) < least) {
-        strut_follow_surface_point_copy(self->u, b.p, next);
-        return true;
-      }
-    } else {
-      trial keep = a;
-      a = b, b = c, c = keep;
-    }
+    bool stays =
+        bracketed && (c.value <= 0.0) == (b.value <= 0.0) && (c.value <= 0.0) != (a.value <= 0.0);
+    if (!stays) a = b;
+    b = c;
+    if (stays && fabs(b.at - a.at) < least) return b.p;
   }
-  return false;
+  return NULL;
 }
 
 /* ---- directions ---- */
 
-/* Sets the direction to the vector's part in the tangent plane at p, and what is across it. */
-static bool set_direction(walk *self, const strut_follow_surface_point *point,
-                          const double *vector) {
-  size_t m = self->u->m;
-  double c = strut_dot(vector, point->basis[0], (ptrdiff_t)m),
-         d = strut_dot(vector, point->basis[1], (ptrdiff_t)m), length = hypot(c, d);
+/* Sets the direction to the vector's part in the tangent plane at o, and what is across it. */
+static bool set_direction(curve_walk *self, const strut_follow_orbit *orbit, const double *vector) {
+  size_t m = self->w.s->m;
+  double c = strut_dot(vector, orbit->tangent[0], (ptrdiff_t)m),
+         d = strut_dot(vector, orbit->tangent[1], (ptrdiff_t)m), length = hypot(c, d);
   if (!(length > 1e-6)) return false;
   c /= length, d /= length;
-  double turn = 0.0;
+  double turn = 0.0, *across = self->w.s->buffers.x;
   for (size_t i = 0; i < m; i++) {
-    double across = -d * point->basis[0][i] + c * point->basis[1][i];
-    turn += across * self->across[i];
-    self->along[i] = c * point->basis[0][i] + d * point->basis[1][i];
-    self->step[i] = across; /* kept for a moment */
+    across[i] = -d * orbit->tangent[0][i] + c * orbit->tangent[1][i];
+    turn += across[i] * self->across[i];
+    self->along[i] = c * orbit->tangent[0][i] + d * orbit->tangent[1][i];
   }
-  for (size_t i = 0; i < m; i++) self->across[i] = turn < 0.0 ? -self->step[i] : self->step[i];
+  for (size_t i = 0; i < m; i++) self->across[i] = turn < 0.0 ? -across[i] : across[i];
   return true;
 }
 
 /*
- * Moves p, near the curve, onto it at the second parameter's value, and sets the direction there, in which
- * the second parameter grows. False: there is no curve.
+ * The orbit on the curve near o, at the second parameter's value; sets the direction there, in which the second
+ * parameter grows. NULL: there is no curve.
  */
-static bool begin(walk *self, strut_follow_surface_point *point) {
-  strut_follow_surface *surface = self->u;
-  size_t m = surface->m;
+static strut_follow_orbit *begin(curve_walk *self, strut_follow_orbit *orbit) {
+  strut_follow_system *system = self->w.s;
+  size_t m = system->m;
   int tries;
-  double value, beside;
-  if (!strut_follow_surface_complete(surface, point)) return false;
-  double a = point->basis[0][m - 1], b = point->basis[1][m - 1], length = hypot(a, b);
-  if (!(length > 0.0)) return false;
+  double value;
+  if (!strut_follow_complete(system, orbit, NULL)) return NULL;
+  double a = orbit->tangent[0][m - 1], b = orbit->tangent[1][m - 1], length = hypot(a, b);
+  if (!(length > 0.0)) return NULL;
   for (size_t i = 0; i < m; i++) { /* along: to the second parameter; across: at its value */
-    self->along[i] = (a * point->basis[0][i] + b * point->basis[1][i]) / length;
-    self->across[i] = (b * point->basis[0][i] - a * point->basis[1][i]) / length;
+    self->along[i] = (a * orbit->tangent[0][i] + b * orbit->tangent[1][i]) / length;
+    self->across[i] = (b * orbit->tangent[0][i] - a * orbit->tangent[1][i]) / length;
   }
-  self->slope = (double)NAN;
-  if (!find_root(self, point, 0.0, WINDOW, self->slot[1], &tries) || !isfinite(self->slope))
-    return false;
-  strut_follow_surface_point_copy(surface, self->slot[1], point);
-  if (!strut_follow_surface_complete(surface, point)) return false;
+  orbit = find_root(self, orbit, 0.0, WINDOW, &tries);
+  if (!orbit || !isfinite(self->slope) || !strut_follow_complete(system, orbit, NULL)) return NULL;
   /* the direction in which the test function stays zero */
   const double h = 0.1 * WINDOW;
-  trial t = {.p = self->slot[2]};
-  strut_follow_surface_point *ahead = self->slot[5];
-  strut_follow_surface_point_copy(surface, point, ahead);
-  strut_follow_surface_move(surface, ahead, self->along, h);
-  if (!strut_follow_criterion_at(surface, &self->criterion, point, &value) ||
-      !try_aside(self, point, h, 0.0, ahead, 0.0, &t))
-    return false;
-  beside = (t.value - value) / h;
-  double *vector = self->before;
+  trial t;
+  if (!strut_follow_criterion_at(system, &self->criterion, orbit, &value) ||
+      !try_aside(self, orbit, h, 0.0, moved_by(self, orbit, self->along, h), 0.0, &t))
+    return NULL;
+  double beside = (t.value - value) / h, *vector = self->before;
   for (size_t i = 0; i < m; i++)
     vector[i] = self->slope * self->along[i] - beside * self->across[i];
-  if (normalise(vector, m) == 0.0) return false;
-  if (vector[m - 1] < 0.0)
-    for (size_t i = 0; i < m; i++) vector[i] = -vector[i];
+  if (normalise(vector, m) == 0.0) return NULL;
+  for (size_t i = 0; i < m && self->before[m - 1] < 0.0; i++) vector[i] = -vector[i];
   self->slope = (double)NAN;
-  return set_direction(self, point, vector);
+  return set_direction(self, orbit, vector) ? orbit : NULL;
 }
 
 /* ---- the walk ---- */
 
-/* Which edge of the ranges a value is nearest to, as a distance within [1]; below 0 outside. */
-static double within(const strut_follow_surface *surface, const double value[2], int *which) {
+/* Distance of the values to the nearest edge of the ranges [1]; below 0 outside. */
+static double within(const strut_follow_system *system, const double value[2]) {
   double least = HUGE_VAL;
-  for (int k = 0; k < 2; k++) {
-    double part = (value[k] - surface->low[k]) / (surface->high[k] - surface->low[k]),
-           in = fmin(part, 1.0 - part);
-    if (in < least) least = in, *which = k;
+  for (size_t k = 0; k < 2; k++) {
+    double part = strut_follow_scaled(system, k, value[k]);
+    least = fmin(least, fmin(part, 1.0 - part));
   }
   return least;
 }
 
 /* The step shortened so that it ends on the first edge it would pass. */
-static double limited(const walk *self, const strut_follow_surface_point *point, double h) {
-  const strut_follow_surface *surface = self->u;
+static double limited(const curve_walk *self, const strut_follow_orbit *orbit, double h) {
+  const strut_follow_system *system = self->w.s;
   for (size_t k = 0; k < 2; k++) {
-    double rate = self->along[surface->s.n + k];
-    double part = (point->value[k] - surface->low[k]) / (surface->high[k] - surface->low[k]);
-    h = fmin(h, self->limits->longest / fmax(fabs(rate), 1e-9));
+    double rate = self->along[system->n + k];
+    double part = strut_follow_scaled(system, k, orbit->at.value[k]);
+    h = fmin(h, self->w.limits->longest / fmax(fabs(rate), 1e-9));
     if (rate > 0.0) h = fmin(h, fmax((1.0 - part) / rate, 0.5 * EDGE));
     if (rate < 0.0) h = fmin(h, fmax(-part / rate, 0.5 * EDGE));
   }
   return h;
 }
 
-/* Unit vector of the step into w->step; returns its length. */
-static double measure_step(walk *self, const strut_follow_surface_point *first,
-                           const strut_follow_surface_point *second) {
-  for (size_t i = 0; i < self->u->m; i++)
-    self->step[i] = strut_follow_surface_difference(self->u, first, second, i);
-  return normalise(self->step, self->u->m);
-}
-
 /* Does the curve turn back in the plane of the parameters between the step before and the latest? */
-static bool turns_back(const walk *self, bool stepped) {
-  size_t n = self->u->s.n;
-  return stepped && self->curve->kind == STRUT_FOLLOW_FOLD &&
+static bool turns_back(const curve_walk *self, bool stepped) {
+  size_t n = self->w.s->n;
+  return stepped && self->w.branch->kind == STRUT_FOLLOW_FOLD &&
          strut_dot(self->step + n, self->before + n, 2) < 0.0;
 }
 
@@ -285,57 +217,64 @@ static bool turns_back(const walk *self, bool stepped) {
  * The cusp within the latest three points a, b and the one that is appended next, at which the parameters'
  * rates vanish: by parabolas through them.
  */
-static bool add_cusp(walk *self, const strut_follow_surface_point *next, double length) {
-  strut_follow_curve *curve = self->curve;
+static bool add_cusp(curve_walk *self, const strut_follow_orbit *next, double length) {
+  const strut_follow_system *system = self->w.s;
+  strut_follow_branch *curve = self->w.branch;
   if (curve->count < 2) return true;
-  strut_follow_curve_point a = curve->points[curve->count - 2], b = curve->points[curve->count - 1];
+  strut_follow_point a = curve->points[curve->count - 2], b = curve->points[curve->count - 1];
   double x = fabs(b.arc - a.arc), z = length, up = 0.0, down = 0.0, rate[2], bend[2];
   for (int k = 0; k < 2; k++) {
-    double range = self->u->high[k] - self->u->low[k];
-    double p = (b.value[k] - a.value[k]) / range / x, q = (next->value[k] - b.value[k]) / range / z;
+    double range = system->high[k] - system->low[k];
+    double p = (b.at.value[k] - a.at.value[k]) / range / x,
+           q = (next->at.value[k] - b.at.value[k]) / range / z;
     bend[k] = (q - p) / (x + z);
     rate[k] = p + x * bend[k]; /* at b */
     up -= rate[k] * bend[k], down += 2.0 * bend[k] * bend[k];
   }
   double at = down > 0.0 ? fmin(fmax(up / down, -x), z) : 0.0;
-  strut_follow_curve_point *cusp = append(self);
+  strut_follow_point *cusp = strut_follow_add(&self->w, next, 0.0, STRUT_FOLLOW_CUSP);
   if (!cusp) return false;
   *cusp = b;
-  cusp->cusp = true;
-  cusp->arc = b.arc + (self->backwards ? -at : at);
+  cusp->kind = STRUT_FOLLOW_CUSP;
+  cusp->arc = b.arc + (self->w.backwards ? -at : at);
   for (int k = 0; k < 2; k++)
-    cusp->value[k] += at * (rate[k] + at * bend[k]) * (self->u->high[k] - self->u->low[k]);
+    cusp->at.value[k] += at * (rate[k] + at * bend[k]) * (system->high[k] - system->low[k]);
   if (at < 0.0) { /* it lies before b */
-    curve->points[curve->count - 2] = *cusp;
-    curve->points[curve->count - 1] = b;
+    cusp[-1] = *cusp;
+    *cusp = b;
   }
   return true;
 }
 
-static bool is_closed(const walk *self, const strut_follow_surface_point *first,
-                      const strut_follow_surface_point *point, double h) {
-  double off = 0.0;
-  for (size_t i = 0; i < self->u->m; i++)
-    off += pow(strut_follow_surface_difference(self->u, first, point, i), 2);
-  return sqrt(off) < 0.6 * h;
+/* The direction behind a step, with half of the change between the latest two. */
+static bool lead_on(curve_walk *self, const strut_follow_orbit *orbit, bool stepped) {
+  double ahead[STRUT_FOLLOW_MOST + 2], weight = stepped ? 0.5 : 0.0;
+  for (size_t i = 0; i < self->w.s->m; i++) {
+    double latest = self->step[i];
+    ahead[i] = latest + weight * (latest - self->before[i]);
+    self->before[i] = latest;
+  }
+  return set_direction(self, orbit, ahead);
 }
 
-/* Takes steps from slot 0 until the curve ends; returns why. */
-static const char *walk_on(walk *self, const strut_follow_surface_point *first) {
-  strut_follow_surface *surface = self->u;
-  strut_follow_surface_point *here = self->slot[0], *next = self->slot[1];
+/* Takes steps from o until the curve ends; returns why. */
+static const char *walk_on(curve_walk *self, const strut_follow_orbit *first) {
+  strut_follow_system *system = self->w.s;
+  const strut_follow_orbit *here = first;
   double h = FIRST;
   bool stepped = false;
-  size_t m = surface->m;
-  int which = 0;
-  for (int32_t steps = 0; steps < self->limits->steps;) {
+  for (int32_t steps = 0; steps < self->w.limits->steps;) {
     int tries = 0;
     h = limited(self, here, h);
-    bool good = find_root(self, here, h, ASIDE * h, next, &tries) &&
-                strut_follow_surface_complete(surface, next);
-    if (surface->status) return "interrupted";
-    double length = good ? measure_step(self, here, next) : 0.0;
-    double angle = good ? acos(fmin(1.0, strut_dot(self->step, self->along, (ptrdiff_t)m))) : 0.0;
+    strut_follow_orbit *next = find_root(self, here, h, ASIDE * h, &tries);
+    bool good = next && strut_follow_complete(system, next, NULL);
+    if (system->status) return "interrupted";
+    double length = 0.0, angle = 0.0;
+    if (good) {
+      strut_follow_between(system, &here->at, &next->at, self->step);
+      length = normalise(self->step, system->m);
+      angle = acos(fmin(1.0, strut_dot(self->step, self->along, (ptrdiff_t)system->m)));
+    }
     bool back = good && turns_back(self, stepped);
     if (!good || angle > SHARP || (back && h > CUSP)) {
       if (h <= LEAST) return "no such motion was found beyond";
@@ -343,32 +282,24 @@ static const char *walk_on(walk *self, const strut_follow_surface_point *first) 
       self->slope = good ? self->slope : (double)NAN;
       continue;
     }
-    double in = within(surface, next->value, &which);
+    double in = within(system, next->at.value);
     if (in < -10.0 * EDGE) { /* past an edge: nearer to it first */
       if (h <= LEAST) return "the range of a parameter ends";
       h = fmax(0.5 * h, LEAST);
       continue;
     }
     if (back && !add_cusp(self, next, length)) return "interrupted";
-    self->arc += length;
+    self->w.arc += length;
     if (!add_point(self, next))
-      return surface->status ? "interrupted" : "the motion was lost beyond";
+      return system->status ? "interrupted" : "the motion was lost beyond";
     self->criterion.phase = self->criterion.next_phase;
     steps++;
     if (in < EDGE) return "the range of a parameter ends";
-    if (steps > CLOSED && is_closed(self, first, next, h)) return "the curve is closed";
-    /* the direction, with half of the change between the latest two steps */
-    double vector_weight = stepped ? 0.5 : 0.0;
-    for (size_t i = 0; i < m; i++) {
-      double latest = self->step[i], change = latest - self->before[i];
-      self->before[i] = latest;
-      self->along[i] = latest + vector_weight * change;
-    }
-    memcpy(surface->x, self->along, m * sizeof(double));
-    if (!set_direction(self, next, surface->x)) return "no such motion was found beyond";
+    if (steps > CLOSED && strut_follow_is_closed(&self->w, first, next, h))
+      return "the curve is closed";
+    if (!lead_on(self, next, stepped)) return "no such motion was found beyond";
     stepped = true;
-    here = next, next = self->slot[0];
-    self->slot[1] = next, self->slot[0] = here;
+    here = next;
     if (tries <= FEW && angle < STRAIGHT) h = fmin(1.5 * h, MOST);
   }
   return "the number of steps is used up";
@@ -376,131 +307,74 @@ static const char *walk_on(walk *self, const strut_follow_surface_point *first) 
 
 /* ---- the curve ---- */
 
-static bool allocate(walk *self, strut_arena *arena) {
-  size_t m = self->u->m;
-  bool good = (self->along = strut_arena_allocate(arena, m, sizeof(double))) &&
-              (self->across = strut_arena_allocate(arena, m, sizeof(double))) &&
-              (self->step = strut_arena_allocate(arena, m, sizeof(double))) &&
-              (self->before = strut_arena_allocate(arena, m, sizeof(double))) &&
-              (self->criterion.scratch = strut_arena_allocate(arena, m * m, sizeof(double)));
-  for (int i = 0; i < SLOTS && good; i++)
-    good = (self->slot[i] = strut_follow_surface_point_new(self->u, arena)) != NULL;
-  if (!good) self->u->status = strut_no_memory(self->u->error, "");
-  return good;
-}
-
-/* The points of the way back, which were appended last, go before those of the way forth. */
-static void order_points(strut_follow_curve *curve, size_t forth) {
-  size_t back = curve->count - forth;
-  strut_follow_curve_point *point = curve->points;
-  for (size_t i = 0, k = curve->count; i + 1 < k; i++) {
-    strut_follow_curve_point keep = point[i];
-    point[i] = point[--k], point[k] = keep;
-  }
-  for (size_t i = back, k = curve->count; i + 1 < k; i++) {
-    strut_follow_curve_point keep = point[i];
-    point[i] = point[--k], point[k] = keep;
-  }
-  curve->start = back;
-  double least = curve->count ? point[0].arc : 0.0;
-  for (size_t i = 0; i < curve->count; i++) point[i].arc -= least;
-}
-
-/* Both ways from the point in slot 0, which is on the curve; `first`: a copy of it. */
-static void walk_both_ways(walk *self, strut_follow_surface_point *first, double *direction) {
-  strut_follow_curve *curve = self->curve;
-  size_t m = self->u->m;
+/* Both ways from the orbit, which is on the curve. */
+static void walk_both_ways(curve_walk *self, strut_follow_orbit *orbit) {
+  strut_follow_branch *curve = self->w.branch;
+  strut_follow_system *system = self->w.s;
   const strut_follow_criterion criterion = self->criterion;
-  memcpy(direction, self->along, m * sizeof(double));
-  strut_follow_surface_point_copy(self->u, self->slot[0], first);
-  if (!add_point(self, self->slot[0])) return;
-  curve->ends[1] = walk_on(self, first);
+  double back[STRUT_FOLLOW_MOST + 2];
+  for (size_t i = 0; i < system->m; i++) back[i] = -self->along[i];
+  if (!add_point(self, orbit)) return;
+  curve->ends[1] = curve->ends[0] = walk_on(self, orbit);
   size_t forth = curve->count;
-  if (!self->u->status && strcmp(curve->ends[1], "the curve is closed") != 0) {
-    strut_follow_surface_point_copy(self->u, first, self->slot[0]);
-    for (size_t i = 0; i < m; i++) direction[i] = -direction[i];
+  if (!system->status && strcmp(curve->ends[1], "the curve is closed") != 0) {
     self->criterion = criterion;
-    self->arc = 0.0;
-    self->backwards = true;
+    self->w.arc = 0.0;
+    self->w.backwards = true;
     self->slope = (double)NAN;
-    curve->ends[0] = set_direction(self, self->slot[0], direction) ? walk_on(self, first) : "";
-  } else {
-    curve->ends[0] = curve->ends[1];
+    curve->ends[0] = set_direction(self, orbit, back) ? walk_on(self, orbit) : "";
   }
-  order_points(curve, forth);
+  strut_follow_order(curve, forth);
 }
 
-strut_status strut_follow_curve_make(strut_follow_surface *surface,
+strut_status strut_follow_curve_make(strut_follow_system *system,
                                      const strut_follow_curve_start *start,
-                                     const strut_follow_curve_limits *limits,
-                                     strut_follow_curve *curve, strut_error *error) {
-  strut_arena arena = {0};
-  int64_t maps = surface->s.spent.maps;
-  *curve = (strut_follow_curve){.kind = start->kind,
-                                .repeats = surface->s.how.repeats,
-                                .travels = surface->s.travels,
-                                .ends = {"", ""}};
-  walk w = {.u = surface,
-            .criterion = {.kind = start->kind},
-            .curve = curve,
-            .limits = limits,
-            .slope = (double)NAN};
-  surface->error = error;
-  surface->status = STRUT_OK;
-  strut_follow_surface_point *first = NULL;
-  double *direction = NULL;
-  if (allocate(&w, &arena)) {
-    first = strut_follow_surface_point_new(surface, &arena);
-    direction = strut_arena_allocate(&arena, surface->m, sizeof *direction);
-    if (!first || !direction) surface->status = strut_no_memory(error, "");
-  }
-  if (!surface->status) {
-    strut_follow_surface_point *point = w.slot[0];
-    bool gap = start->kind == STRUT_FOLLOW_TOUCH || start->kind == STRUT_FOLLOW_LIFT;
-    memcpy(point->value, start->value, sizeof point->value);
-    memcpy(point->y, start->y, surface->s.both * sizeof(double));
-    surface->s.derivative.known = false;
-    if (start->node) curve->node = strut_arena_format(&curve->arena, "%s", start->node);
-    if (gap && !strut_follow_criterion_choose(surface, &w.criterion, point, start->node))
-      curve->ends[0] = "no extremum of its gap is near zero there";
-    else if (!begin(&w, point))
-      curve->ends[0] = "no curve leads through it";
-    else
-      walk_both_ways(&w, first, direction);
-    curve->contact = w.criterion.contact;
-  }
-  curve->maps = surface->s.spent.maps - maps;
-  strut_arena_free(&arena);
-  return surface->status;
+                                     const strut_follow_limits *limits,
+                                     strut_follow_branch *curve) {
+  *curve = (strut_follow_branch){.kind = start->kind,
+                                 .repeats = system->how.repeats,
+                                 .travels = system->travels,
+                                 .ends = {"", ""}};
+  curve_walk w = {.w = {.s = system, .limits = limits, .branch = curve},
+                  .criterion = {.kind = start->kind},
+                  .slope = (double)NAN};
+  double **const arrays[] = {&w.along, &w.across, &w.step, &w.before};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    *arrays[i] = strut_follow_allocate(system, &curve->arena, system->m, sizeof(double));
+  strut_follow_orbit *orbit = strut_follow_orbit_new(system, &curve->arena, &start->at);
+  if (system->status) return system->status;
+  bool gap = start->kind == STRUT_FOLLOW_TOUCH || start->kind == STRUT_FOLLOW_LIFT;
+  system->derivative.known = false;
+  system->precision = STRUT_FOLLOW_EXACT;
+  if (start->node) curve->node = strut_arena_format(&curve->arena, "%s", start->node);
+  if (gap && !strut_follow_criterion_choose(system, &w.criterion, &start->at, start->node))
+    curve->ends[0] = "no extremum of its gap is near zero there";
+  else if (!(orbit = begin(&w, orbit)))
+    curve->ends[0] = "no curve leads through it";
+  else
+    walk_both_ways(&w, orbit);
+  return system->status;
 }
 
-void strut_follow_curve_free(strut_follow_curve *curve) {
-  strut_arena_free(&curve->arena);
-  *curve = (strut_follow_curve){.count = 0};
-}
-
-bool strut_follow_curve_passes(const strut_follow_surface *surface, const strut_follow_curve *curve,
+bool strut_follow_curve_passes(const strut_follow_system *system, const strut_follow_branch *curve,
                                const strut_follow_curve_start *start) {
-  const strut_follow_system *system = &surface->s;
   bool same_node =
       !start->node == !curve->node && (!start->node || strcmp(start->node, curve->node) == 0);
   if (curve->kind != start->kind || curve->repeats != system->how.repeats || !same_node)
     return false;
-  double b = start->value[1];
+  const double *wanted = start->at.value;
   for (size_t k = 0; k + 1 < curve->count; k++) {
-    const strut_follow_curve_point *point = &curve->points[k], *q = point + 1;
-    if ((point->value[1] - b) * (q->value[1] - b) > 0.0) continue;
-    double part = q->value[1] != point->value[1]
-                      ? (b - point->value[1]) / (q->value[1] - point->value[1])
-                      : 0.0;
-    double off = fabs(point->value[0] + part * (q->value[0] - point->value[0]) - start->value[0]);
-    double most = 0.0;
+    const strut_follow_motion *a = &curve->points[k].at, *b = &curve->points[k + 1].at;
+    double rise = b->value[1] - a->value[1], most = 0.0;
+    if ((a->value[1] - wanted[1]) * (b->value[1] - wanted[1]) > 0.0) continue;
+    double part = rise != 0.0 ? (wanted[1] - a->value[1]) / rise : 0.0;
+    double off = fabs(a->value[0] + part * (b->value[0] - a->value[0]) - wanted[0]);
     for (size_t i = 0; i < system->n; i++) {
-      double y =
-          point->y[system->place[i]] + part * (q->y[system->place[i]] - point->y[system->place[i]]);
-      most = fmax(most, fabs(y - start->y[system->place[i]]) / strut_follow_unit(system, i));
+      size_t at = system->place[i];
+      double y = a->y[at] + part * (b->y[at] - a->y[at]);
+      most = fmax(most, fabs(y - start->at.y[at]) / strut_follow_unit(system, i));
     }
-    if (off < SAME * (surface->high[0] - surface->low[0]) && most < NEAR) return true;
+    if (off < SAME * (system->high[0] - system->low[0]) && most < NEAR) return true;
   }
   return false;
 }

@@ -1,215 +1,207 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* One periodic motion: Newton's method, its multipliers, its tangent. */
+/* One periodic motion: Newton's method, its multipliers, its tangents. */
 #include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/run/follow/follow_parts.h"
 
-/* Residuals of an orbit: wanted, and accepted where rounding or kinks prevent that. */
-static const double CONVERGED = 1e-7, ACCEPTED = 2e-6;
-/* Residual that suffices where the derivative of the orbit itself follows and corrects it once more. */
-static const double NEAR = 2e-6, FARTHEST = 1e-2;
-/* Residual that suffices while events are located; reduction of a step that is slow. */
-static const double ROUGH = 1e-5, SLOW = 0.5;
-/* Newton's step that is too long to trust, in unknowns of order one. */
-static const double LONGEST = 3.0;
+/*
+ * Residuals of an orbit that suffice: where the derivative of the orbit itself follows and corrects it once more; while
+ * events are located; and otherwise.
+ */
+static const double ENOUGH[] = {
+    [STRUT_FOLLOW_CLOSE] = 2e-6, [STRUT_FOLLOW_ROUGH] = 1e-5, [STRUT_FOLLOW_EXACT] = 1e-7};
+/* That where rounding or kinks prevent a smaller one, and that which is too far to be corrected once more. */
+static const double ACCEPTED = 2e-6, FARTHEST = 1e-2;
+/* Reduction of a step that is slow; Newton's step that is too long to trust, in unknowns of order one. */
+static const double SLOW = 0.5, LONGEST = 3.0;
 /* Pairs outside the unit circle by less than this count as on it: rounding. */
 static const double ON_CIRCLE = 1e-6;
 enum { MOST_ROUNDS = 14, MOST_HALVINGS = 4, MOST_DERIVATIVES = 2 };
 
-strut_follow_orbit *strut_follow_orbit_new(strut_follow_walk *walk) {
-  strut_arena *arena = &walk->branch->arena;
-  size_t n = walk->s->n;
-  strut_follow_orbit *orbit = strut_arena_allocate(arena, 1, sizeof *orbit);
-  bool good = orbit && (orbit->y = strut_arena_allocate(arena, walk->s->both, sizeof(double))) &&
-              (orbit->tangent = strut_arena_allocate(arena, n + 1, sizeof(double))) &&
-              (orbit->multiplier = strut_arena_allocate(arena, n, sizeof *orbit->multiplier));
-  if (!good) walk->status = strut_no_memory(walk->error, "");
-  return good ? orbit : NULL;
+strut_follow_orbit *strut_follow_orbit_new(strut_follow_system *system, strut_arena *arena,
+                                           const strut_follow_motion *from) {
+  strut_follow_orbit *orbit = strut_follow_allocate(system, arena, 1, sizeof *orbit);
+  if (!orbit) return NULL;
+  orbit->at.y = strut_follow_allocate(system, arena, system->both, sizeof(double));
+  orbit->multiplier = strut_follow_allocate(system, arena, system->n, sizeof *orbit->multiplier);
+  for (size_t k = 0; k < system->parameters; k++)
+    orbit->tangent[k] = strut_follow_allocate(system, arena, system->m, sizeof(double));
+  if (system->status) return NULL;
+  memcpy(orbit->at.value, from ? from->value : system->value, sizeof orbit->at.value);
+  if (from) memcpy(orbit->at.y, from->y, system->both * sizeof(double));
+  return orbit;
 }
 
-static bool set_value(strut_follow_walk *walk, double value) {
-  walk->status = strut_follow_set_value(walk->s, value, walk->error);
-  return walk->status == STRUT_OK;
-}
-
-static bool interrupted(strut_follow_walk *walk) {
-  if (!walk->s->how.interrupt || !*walk->s->how.interrupt) return false;
-  walk->status = strut_fail(walk->error, STRUT_INTERRUPTED, "interrupted at %.9g of the parameter",
-                            walk->s->value);
-  return true;
-}
-
-/* normal . (x - base) - distance */
-static double off_plane(const strut_follow_walk *walk, const double *unknowns, double value,
-                        const double *normal, const double *base_y, double base_value,
-                        double distance) {
-  const strut_follow_system *system = walk->s;
-  double sum = normal[system->n] * (value - base_value) / (system->high - system->low) - distance;
-  for (size_t i = 0; i < system->n; i++)
-    sum += normal[i] * (unknowns[system->place[i]] - base_y[system->place[i]]) /
-           strut_follow_unit(system, i);
-  return sum;
-}
-
-/* A trial of Newton's method: a state and a value, and what is left there. */
+/* A trial of Newton's method: a motion, and what is left there of the equations and the planes. */
 typedef struct trial {
-  double *y, *f; /* (both), (n) */
-  double value, left, plane;
+  strut_follow_motion at;
+  double *f; /* (n) */
+  double left, off[2];
 } trial;
 
 /* Evaluates t. False: interrupted, or the value has no scene; a lost motion has left = HUGE_VAL. */
-static bool evaluate(strut_follow_walk *walk, const strut_follow_section *section, trial *self) {
-  if (interrupted(walk) || !set_value(walk, self->value)) return false;
-  self->left = strut_follow_residual(walk->s, self->y, self->f);
-  self->plane = fabs(off_plane(walk, self->y, self->value, section->normal, section->base_y,
-                               section->base_value, section->distance));
-  return !interrupted(walk);
+static bool evaluate(strut_follow_system *system, const strut_follow_planes *planes, trial *self) {
+  double *between = system->buffers.x;
+  if (strut_follow_interrupted(system) || !strut_follow_set_value(system, self->at.value))
+    return false;
+  self->left = strut_follow_residual(system, self->at.y, self->f);
+  strut_follow_between(system, planes->base, &self->at, between);
+  for (size_t k = 0; k < system->parameters; k++) {
+    self->off[k] = strut_dot(planes->row[k], between, (ptrdiff_t)system->m) - planes->offset[k];
+    self->left = fmax(self->left, fabs(self->off[k]));
+  }
+  return !strut_follow_interrupted(system);
 }
 
-static double size_of(const trial *self) { return fmax(self->left, self->plane); }
-
-/* Fills w->right with Newton's step at t. False: singular, or too long to trust. */
-static bool find_step(strut_follow_walk *walk, const strut_follow_section *section,
-                      const trial *self) {
-  const strut_follow_system *system = walk->s;
+static double largest_of(const strut_follow_system *system, const double *x) {
   double most = 0.0;
-  for (size_t i = 0; i < system->n; i++) walk->right[i] = -self->f[i];
-  walk->right[system->n] = -off_plane(walk, self->y, self->value, section->normal, section->base_y,
-                                      section->base_value, section->distance);
-  if (!strut_follow_solve(walk->s, section->normal, walk->right)) return false;
-  for (size_t i = 0; i <= system->n; i++) most = fmax(most, fabs(walk->right[i]));
-  return most <= LONGEST;
+  for (size_t i = 0; i < system->m; i++) most = isnan(x[i]) ? HUGE_VAL : fmax(most, fabs(x[i]));
+  return most;
+}
+
+/* Newton's step at t, in the buffer x. False: singular, or too long to trust. */
+static bool find_step(strut_follow_system *system, const strut_follow_planes *planes,
+                      const trial *self) {
+  double *x = system->buffers.x;
+  for (size_t i = 0; i < system->n; i++) x[i] = -self->f[i];
+  for (size_t k = 0; k < system->parameters; k++) x[system->n + k] = -self->off[k];
+  return strut_follow_solve(system, planes->row, x) && largest_of(system, x) <= LONGEST;
 }
 
 /* Takes a part of the step from t to `next`. */
-static bool take_step(strut_follow_walk *walk, const strut_follow_section *section,
-                      const trial *self, double part, trial *next) {
-  strut_follow_system *system = walk->s;
-  memcpy(next->y, self->y, system->both * sizeof(double));
-  strut_follow_move(system, next->y, walk->right, part);
-  next->value = self->value + part * walk->right[system->n] * (system->high - system->low);
-  return evaluate(walk, section, next);
+static bool take_step(strut_follow_system *system, const strut_follow_planes *planes,
+                      const trial *self, const double *step, double part, trial *next) {
+  memcpy(next->at.y, self->at.y, system->both * sizeof(double));
+  memcpy(next->at.value, self->at.value, sizeof next->at.value);
+  strut_follow_move(system, &next->at, step, part);
+  return evaluate(system, planes, next);
 }
 
-static bool differentiate_at(strut_follow_walk *walk, const trial *self) {
-  bool lost = false;
-  if (!set_value(walk, self->value)) return false;
-  walk->status = strut_follow_differentiate(walk->s, self->y, self->f, &lost, walk->error);
-  return !walk->status && !lost;
+static bool differentiate(strut_follow_system *system, trial *self) {
+  return strut_follow_differentiate_states(system, &self->at, self->f) &&
+         strut_follow_differentiate_parameters(system, &self->at, self->f);
 }
 
 /*
  * The derivative of an earlier point serves, updated, while it makes the residual fall; where it does not,
  * a new one is made at the best point so far, and its steps are halved until the residual falls.
  */
-static bool iterate(strut_follow_walk *walk, const strut_follow_section *section, trial *here,
+static bool iterate(strut_follow_system *system, const strut_follow_planes *planes, trial *here,
                     trial *next, int *rounds) {
-  const double enough = walk->rough ? ROUGH : walk->s->variation && !walk->exact ? NEAR : CONVERGED;
-  bool wanted = !walk->s->derivative.known;
+  const double enough =
+      ENOUGH[system->variation || system->precision ? system->precision : STRUT_FOLLOW_EXACT];
+  double step[STRUT_FOLLOW_MOST + 2];
+  bool wanted = !system->derivative.known;
   int slow = 0, made = 0;
-  if (!evaluate(walk, section, here) || !isfinite(here->left)) return false;
+  if (!evaluate(system, planes, here) || !isfinite(here->left)) return false;
   for (*rounds = 0; *rounds < MOST_ROUNDS; ++*rounds) {
-    if (size_of(here) <= enough) return true;
+    if (here->left <= enough) return true;
     bool own = wanted;
-    if (own && (made++ == MOST_DERIVATIVES || !differentiate_at(walk, here)))
-      return size_of(here) <= ACCEPTED;
+    if (own && (made++ == MOST_DERIVATIVES || !differentiate(system, here)))
+      return here->left <= ACCEPTED;
     wanted = false;
-    if (!find_step(walk, section, here)) {
+    if (!find_step(system, planes, here)) {
       if (own) return false;
       wanted = true;
       continue;
     }
+    memcpy(step, system->buffers.x, system->m * sizeof(double));
     double part = 1.0;
-    if (!take_step(walk, section, here, part, next)) return false;
-    for (int k = 0; k < MOST_HALVINGS && own && !(size_of(next) < size_of(here)); k++)
-      if (!take_step(walk, section, here, part *= 0.5, next)) return false;
-    if (!(size_of(next) < size_of(here))) {
-      if (own) return size_of(here) <= ACCEPTED;
+    if (!take_step(system, planes, here, step, part, next)) return false;
+    for (int k = 0; k < MOST_HALVINGS && own && !(next->left < here->left); k++)
+      if (!take_step(system, planes, here, step, part *= 0.5, next)) return false;
+    if (!(next->left < here->left)) {
+      if (own) return here->left <= ACCEPTED;
       wanted = true; /* at the better point, before this step */
       continue;
     }
-    if (part == 1.0) {
-      const strut_follow_border border = {1, {walk->s->derivative.column}, {section->normal}};
-      strut_follow_update(walk->s, &border, next->f, walk->right);
-    }
-    slow = size_of(next) > SLOW * size_of(here) ? slow + 1 : 0;
+    if (part == 1.0) strut_follow_update(system, next->f, step);
+    slow = next->left > SLOW * here->left ? slow + 1 : 0;
     trial keep = *here;
     *here = *next, *next = keep;
-    if (slow >= 2 && size_of(here) <= ACCEPTED) return true;
+    if (slow >= 2 && here->left <= ACCEPTED) return true;
     wanted = slow >= 2;
   }
-  return size_of(here) <= ACCEPTED;
+  return here->left <= ACCEPTED;
 }
 
-bool strut_follow_newton(strut_follow_walk *walk, double *unknowns, double *value,
-                         const strut_follow_section *plane, int *rounds) {
-  const strut_follow_system *system = walk->s;
-  trial here = {.y = walk->trials, .f = walk->trials + 2 * system->both, .value = *value};
-  trial next = {.y = walk->trials + system->both, .f = walk->trials + 2 * system->both + system->n};
-  memcpy(here.y, unknowns, system->both * sizeof(double));
+bool strut_follow_newton(strut_follow_system *system, const strut_follow_planes *planes,
+                         strut_follow_motion *motion, int *rounds) {
+  size_t both = system->both;
+  double *trials = system->buffers.trials;
+  trial here = {.at = {{motion->value[0], motion->value[1]}, trials}, .f = trials + 2 * both};
+  trial next = {.at.y = trials + both, .f = trials + 2 * both + system->n};
+  memcpy(here.at.y, motion->y, both * sizeof(double));
   *rounds = 0;
-  if (!iterate(walk, plane, &here, &next, rounds)) return false;
-  memcpy(unknowns, here.y, system->both * sizeof(double));
-  *value = here.value;
+  if (!iterate(system, planes, &here, &next, rounds)) return false;
+  memcpy(motion->y, here.at.y, both * sizeof(double));
+  memcpy(motion->value, here.at.value, sizeof motion->value);
   return true;
 }
 
-/* Travel, work and word of the orbit; `carry`: and the derivative there, and in w->f the residual. */
-static bool measure(strut_follow_walk *walk, strut_follow_orbit *orbit, bool carry) {
-  strut_follow_system *system = walk->s;
-  if (!set_value(walk, orbit->value)) return false;
-  strut_follow_centre(system, orbit->y);
-  memcpy(walk->try_y, orbit->y, system->both * sizeof(double));
-  strut_follow_period p = carry ? strut_follow_carry(system, walk->try_y, true)
-                                : strut_follow_apply(system, walk->try_y, true);
-  if (carry) strut_follow_change(system, orbit->y, walk->try_y, walk->f);
-  if (interrupted(walk) || !isfinite(p.travel)) return false;
+/* Travel, work and word of the orbit; `carry`: and the derivative there, with the residual in the buffer f. */
+static bool measure(strut_follow_system *system, strut_arena *arena, strut_follow_orbit *orbit,
+                    bool carry) {
+  double *end = system->buffers.end;
+  if (!strut_follow_set_value(system, orbit->at.value)) return false;
+  strut_follow_centre(system, orbit->at.y);
+  memcpy(end, orbit->at.y, system->both * sizeof(double));
+  strut_follow_period p =
+      carry ? strut_follow_carry(system, end, true) : strut_follow_apply(system, end, true);
+  if (carry) strut_follow_change(system, orbit->at.y, end, system->buffers.f);
+  if (strut_follow_interrupted(system) || !isfinite(p.travel)) return false;
   orbit->velocity = p.travel / (system->period * system->how.repeats);
   orbit->work = p.work / system->how.repeats;
   orbit->amplitude = p.amplitude;
-  if (!strut_follow_word_read(system, &walk->branch->arena, &orbit->word)) {
-    walk->status = strut_no_memory(walk->error, "");
-    return false;
-  }
-  return true;
+  if (!strut_follow_word_read(system, arena, &orbit->word))
+    system->status = strut_no_memory(system->error, "");
+  return !system->status;
 }
 
-bool strut_follow_measure(strut_follow_walk *walk, strut_follow_orbit *orbit) {
-  return measure(walk, orbit, false);
+bool strut_follow_measure(strut_follow_system *system, strut_arena *arena,
+                          strut_follow_orbit *orbit) {
+  return measure(system, arena, orbit, false);
 }
 
-bool strut_follow_multipliers(const strut_follow_system *system, double *scratch,
-                              double (*multiplier)[2], size_t *count) {
+/*
+ * Multipliers of the derivative by size; the one of shifts, 0 in it, is left out. direction (n), unless NULL:
+ * eigenvector of the real one nearest to `value`.
+ */
+static bool find_multipliers(strut_follow_system *system, strut_follow_orbit *orbit, double value,
+                             double *direction) {
   size_t n = system->n;
-  gsl_matrix_view view = gsl_matrix_view_array(scratch, n, n);
-  gsl_eigen_nonsymm_workspace *space = gsl_eigen_nonsymm_alloc(n);
+  gsl_matrix_view view = gsl_matrix_view_array(system->buffers.matrix, n, n);
+  gsl_eigen_nonsymmv_workspace *space = gsl_eigen_nonsymmv_alloc(n);
   gsl_vector_complex *values = gsl_vector_complex_alloc(n);
-  memcpy(scratch, system->derivative.jacobian, n * n * sizeof(double));
-  bool good = space && values;
-  bool found = good && gsl_eigen_nonsymm(&view.matrix, values, space) == 0;
-  *count = 0;
+  gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(n, n);
+  memcpy(system->buffers.matrix, system->derivative.jacobian, n * n * sizeof(double));
+  bool good = space && values && vectors;
+  if (!good) system->status = strut_no_memory(system->error, "");
+  bool found = good && gsl_eigen_nonsymmv(&view.matrix, values, vectors, space) == 0;
+  double nearest = HUGE_VAL;
+  orbit->multipliers = 0;
   for (size_t i = 0; i < n && found; i++) { /* insertion by size */
     double re = GSL_REAL(gsl_vector_complex_get(values, i));
     double im = GSL_IMAG(gsl_vector_complex_get(values, i)), size = hypot(re, im);
-    size_t at = (*count)++;
-    for (; at > 0 && size > hypot(multiplier[at - 1][0], multiplier[at - 1][1]); at--)
-      memcpy(multiplier[at], multiplier[at - 1], sizeof multiplier[0]);
-    multiplier[at][0] = re, multiplier[at][1] = im;
+    size_t at = orbit->multipliers++;
+    double(*list)[2] = orbit->multiplier;
+    for (; at > 0 && size > hypot(list[at - 1][0], list[at - 1][1]); at--)
+      memcpy(list[at], list[at - 1], sizeof list[0]);
+    list[at][0] = re, list[at][1] = im;
+    if (!direction || im != 0.0 || !(fabs(re - value) < nearest)) continue;
+    nearest = fabs(re - value);
+    for (size_t j = 0; j < n; j++) direction[j] = GSL_REAL(gsl_matrix_complex_get(vectors, j, i));
   }
-  if (*count && system->travels) --*count;
-  gsl_eigen_nonsymm_free(space);
+  if (orbit->multipliers && system->travels) orbit->multipliers--;
+  gsl_eigen_nonsymmv_free(space);
   gsl_vector_complex_free(values);
-  return good;
-}
-
-static bool find_multipliers(strut_follow_walk *walk, strut_follow_orbit *orbit) {
-  bool good =
-      strut_follow_multipliers(walk->s, walk->eigen, orbit->multiplier, &orbit->multipliers);
-  if (!good) walk->status = strut_no_memory(walk->error, "");
-  return good;
+  gsl_matrix_complex_free(vectors);
+  return good && (!direction || isfinite(nearest));
 }
 
 static strut_follow_signature signature_of(const strut_follow_orbit *orbit, double along) {
@@ -229,127 +221,92 @@ static strut_follow_signature signature_of(const strut_follow_orbit *orbit, doub
   return g;
 }
 
-/* Multipliers and tangent from the derivative, which is there but for the parameter's. */
-static bool complete(strut_follow_walk *walk, strut_follow_orbit *orbit, const double *before) {
-  strut_follow_system *system = walk->s;
-  double length = 0.0;
-  bool lost = false;
-  walk->status =
-      strut_follow_differentiate_parameter(system, orbit->y, walk->f, &lost, walk->error);
-  if (walk->status || lost || interrupted(walk) || !find_multipliers(walk, orbit)) return false;
-  memset(walk->right, 0, (system->n + 1) * sizeof(double));
-  walk->right[system->n] = 1.0;
-  if (!strut_follow_solve(system, before, walk->right)) return false;
-  for (size_t i = 0; i <= system->n; i++) length += walk->right[i] * walk->right[i];
-  length = sqrt(length);
-  if (!(length > 0.0) || !isfinite(length)) return false;
-  for (size_t i = 0; i <= system->n; i++) orbit->tangent[i] = walk->right[i] / length;
-  orbit->signature = signature_of(orbit, orbit->tangent[system->n]);
-  orbit->complete = true;
-  return true;
-}
-
-bool strut_follow_complete(strut_follow_walk *walk, strut_follow_orbit *orbit,
-                           const double *before) {
-  strut_follow_system *system = walk->s;
-  bool lost = false;
-  if (orbit->complete) return true;
-  if (!set_value(walk, orbit->value)) return false;
-  if (system->variation) {
-    memcpy(walk->try_y, orbit->y, system->both * sizeof(double));
-    lost = !isfinite(strut_follow_carry(system, walk->try_y, false).travel);
-    strut_follow_change(system, orbit->y, walk->try_y, walk->f);
-    return !lost && !interrupted(walk) && complete(walk, orbit, before);
+/* The null space of [jacobian - 1, columns]: the last columns of Q in the factors Q R of the transpose. */
+static bool find_tangents(strut_follow_system *system, strut_follow_orbit *orbit) {
+  size_t n = system->n, m = system->m;
+  gsl_matrix *transpose = gsl_matrix_alloc(m, n), *q = gsl_matrix_alloc(m, m);
+  gsl_matrix *r = gsl_matrix_alloc(m, n);
+  gsl_vector *scale = gsl_vector_alloc(n);
+  bool good = transpose && q && r && scale;
+  for (size_t i = 0; i < n && good; i++) {
+    for (size_t j = 0; j < n; j++)
+      gsl_matrix_set(transpose, j, i, system->derivative.jacobian[i * n + j] - (i == j));
+    for (size_t k = 0; n + k < m; k++)
+      gsl_matrix_set(transpose, n + k, i, system->derivative.column[k][i]);
   }
-  if (!isfinite(strut_follow_residual(system, orbit->y, walk->f))) return false;
-  strut_follow_difference(system, orbit->y, &lost);
-  return !lost && complete(walk, orbit, before);
+  if (good) {
+    gsl_linalg_QR_decomp(transpose, scale);
+    gsl_linalg_QR_unpack(transpose, scale, q, r);
+    for (size_t i = 0; i < m; i++)
+      for (size_t k = 0; n + k < m; k++) orbit->tangent[k][i] = gsl_matrix_get(q, i, n + k);
+  } else {
+    system->status = strut_no_memory(system->error, "");
+  }
+  gsl_matrix_free(transpose);
+  gsl_matrix_free(q);
+  gsl_matrix_free(r);
+  gsl_vector_free(scale);
+  return good;
 }
 
-/* Moves the orbit by Newton's step from the residual w->f on the plane normal to `before`. */
-static void polish(strut_follow_walk *walk, strut_follow_orbit *orbit, const double *before) {
-  strut_follow_system *system = walk->s;
-  double most = 0.0;
-  for (size_t i = 0; i < system->n; i++) walk->right[i] = -walk->f[i];
-  walk->right[system->n] = 0.0;
-  if (!strut_follow_solve(system, before, walk->right)) return;
-  for (size_t i = 0; i <= system->n; i++) most = fmax(most, fabs(walk->right[i]));
-  if (!(most < FARTHEST)) return;
-  strut_follow_move(system, orbit->y, walk->right, 1.0);
-  orbit->value += walk->right[system->n] * (system->high - system->low);
-}
-
-bool strut_follow_examine(strut_follow_walk *walk, strut_follow_orbit *orbit,
-                          const double *before) {
-  if (!walk->s->variation)
-    return measure(walk, orbit, false) && strut_follow_complete(walk, orbit, before);
-  if (!measure(walk, orbit, true) || !complete(walk, orbit, before)) return false;
-  polish(walk, orbit, before);
-  return true;
-}
-
-/* By inverse iteration on jacobian - value. */
-bool strut_follow_eigenvector(strut_follow_walk *walk, const strut_follow_orbit *orbit,
-                              double value, double *direction) {
-  strut_follow_system *system = walk->s;
-  size_t n = system->n;
-  bool lost = false;
-  if (!set_value(walk, orbit->value) || !isfinite(strut_follow_residual(system, orbit->y, walk->f)))
+/* Multipliers and tangents from the derivative, which is there but for the parameters'. */
+static bool complete(strut_follow_system *system, strut_follow_orbit *orbit, const double *before) {
+  double *tangent = orbit->tangent[0];
+  if (!strut_follow_differentiate_parameters(system, &orbit->at, system->buffers.f) ||
+      !find_multipliers(system, orbit, 0.0, NULL) || !find_tangents(system, orbit))
     return false;
-  walk->status = strut_follow_differentiate(system, orbit->y, walk->f, &lost, walk->error);
-  if (walk->status || lost) return false;
-  system->derivative.known = false;
-  double *matrix =
-      system->derivative
-          .jacobian; /* jacobian - 1 must be jacobian - value: shifted, and back by the next */
-  for (size_t i = 0; i < n; i++) matrix[i * n + i] += 1.0 - value - 1e-7;
-  memset(system->derivative.column, 0, n * sizeof(double));
-  for (size_t i = 0; i < n; i++) direction[i] = 1.0 / (double)(i + 1);
-  double *unit = strut_arena_allocate(&walk->branch->arena, n + 1, sizeof(double));
-  if (!unit) walk->status = strut_no_memory(walk->error, "");
-  if (!unit) return false;
-  unit[n] = 1.0;
-  for (int k = 0; k < 4; k++) {
-    double length = 0.0;
-    memcpy(walk->right, direction, n * sizeof(double));
-    walk->right[n] = 0.0;
-    if (!strut_follow_solve(system, unit, walk->right)) return false;
-    for (size_t i = 0; i < n; i++) length += walk->right[i] * walk->right[i];
-    length = sqrt(length);
-    if (!(length > 0.0) || !isfinite(length)) return false;
-    for (size_t i = 0; i < n; i++) direction[i] = walk->right[i] / length;
-  }
+  bool back = before && strut_dot(tangent, before, (ptrdiff_t)system->m) < 0.0;
+  for (size_t i = 0; i < system->m && back; i++) tangent[i] = -tangent[i];
+  orbit->signature = signature_of(orbit, tangent[system->n]);
+  return orbit->complete = largest_of(system, tangent) <= 1.0 + 1e-9;
+}
+
+bool strut_follow_complete(strut_follow_system *system, strut_follow_orbit *orbit,
+                           const double *before) {
+  return orbit->complete ||
+         (strut_follow_differentiate_states(system, &orbit->at, system->buffers.f) &&
+          !strut_follow_interrupted(system) && complete(system, orbit, before));
+}
+
+/* Moves the orbit by Newton's step from the residual in the buffer f on the plane normal to `before`. */
+static void polish(strut_follow_system *system, strut_follow_orbit *orbit, const double *before) {
+  const double *const rows[2] = {before};
+  double *x = system->buffers.x;
+  for (size_t i = 0; i < system->n; i++) x[i] = -system->buffers.f[i];
+  x[system->n] = 0.0;
+  if (strut_follow_solve(system, rows, x) && largest_of(system, x) < FARTHEST)
+    strut_follow_move(system, &orbit->at, x, 1.0);
+}
+
+bool strut_follow_examine(strut_follow_system *system, strut_arena *arena,
+                          strut_follow_orbit *orbit, const double *before) {
+  if (!system->variation)
+    return measure(system, arena, orbit, false) && strut_follow_complete(system, orbit, before);
+  if (!measure(system, arena, orbit, true) || !complete(system, orbit, before)) return false;
+  polish(system, orbit, before);
   return true;
 }
 
-strut_status strut_follow_correct(strut_follow_system *system, double *unknowns, bool *found,
-                                  char *reason, strut_error *error) {
-  strut_follow_branch scratch = {0};
-  strut_follow_walk w = {.s = system, .branch = &scratch, .error = error};
-  size_t n = system->n;
-  double value = system->value;
+bool strut_follow_eigenvector(strut_follow_system *system, const strut_follow_orbit *orbit,
+                              double value, double *direction) {
+  strut_follow_orbit there = *orbit;
+  return strut_follow_differentiate_states(system, &orbit->at, system->buffers.f) &&
+         find_multipliers(system, &there, value, direction);
+}
+
+bool strut_follow_correct(strut_follow_system *system, double *unknowns, char *reason) {
+  strut_follow_motion motion = {{system->value[0], system->value[1]}, unknowns};
+  const strut_follow_precision precision = system->precision;
   int rounds = 0;
-  *found = false;
-  double *normal = strut_arena_allocate(&scratch.arena, n + 1, sizeof(double));
-  double *base = strut_arena_allocate(&scratch.arena, system->both, sizeof(double));
-  w.right = strut_arena_allocate(&scratch.arena, n + 1, sizeof(double));
-  w.trials = strut_arena_allocate(&scratch.arena, 2 * (system->both + n), sizeof(double));
-  if (!normal || !base || !w.right || !w.trials) {
-    strut_arena_free(&scratch.arena);
-    return strut_no_memory(error, "");
-  }
-  memcpy(base, unknowns, system->both * sizeof(double));
-  normal[n] = 1.0;
   system->derivative.known = false;
-  w.exact = true;
-  *found = strut_follow_newton(&w, base, &value,
-                               &(strut_follow_section){normal, unknowns, value, 0.0}, &rounds);
-  if (*found) memcpy(unknowns, base, system->both * sizeof(double));
-  if (!*found)
+  system->precision = STRUT_FOLLOW_EXACT;
+  bool found = strut_follow_newton(system, &(strut_follow_planes){&motion, {system->upward}, {0.0}},
+                                   &motion, &rounds);
+  system->precision = precision;
+  if (!found)
     snprintf(reason, 200,
              "Newton's method on the period map did not converge in %d rounds; the motion may be "
              "irregular, or one of a family, such as at rest",
              rounds);
-  strut_arena_free(&scratch.arena);
-  return w.status;
+  return found;
 }

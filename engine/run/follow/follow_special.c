@@ -3,6 +3,7 @@
  * What changes between two orbits of a step: events by bisection on their words, then multipliers and
  * turns by bisection on their signatures, within what is left between the events.
  */
+#include <complex.h>
 #include <math.h>
 #include <string.h>
 
@@ -30,23 +31,20 @@ typedef struct span {
 /* The orbit at `distance` along the step, from a guess between two others; NULL: none. */
 static strut_follow_orbit *orbit_between(const span *self, const strut_follow_orbit *left,
                                          const strut_follow_orbit *right, double distance) {
-  strut_follow_walk *walk = self->w;
-  const strut_follow_system *system = walk->s;
-  strut_follow_orbit *orbit = strut_follow_orbit_new(walk);
+  strut_follow_system *system = self->w->s;
+  strut_arena *arena = &self->w->branch->arena;
+  strut_follow_orbit *orbit = strut_follow_orbit_new(system, arena, &left->at);
   int rounds;
   if (!orbit) return NULL;
   double part = (distance - left->distance) / (right->distance - left->distance);
   for (size_t i = 0; i < system->both; i++)
-    orbit->y[i] = left->y[i] + part * (right->y[i] - left->y[i]);
-  orbit->value = left->value + part * (right->value - left->value);
+    orbit->at.y[i] += part * (right->at.y[i] - left->at.y[i]);
+  orbit->at.value[0] += part * (right->at.value[0] - left->at.value[0]);
   orbit->distance = distance;
-  if (!strut_follow_newton(
-          walk, orbit->y, &orbit->value,
-          &(strut_follow_section){self->a->tangent, self->a->y, self->a->value, distance},
-          &rounds) ||
-      !strut_follow_measure(walk, orbit))
-    return NULL;
-  return orbit;
+  const strut_follow_planes planes = {&self->a->at, {self->a->tangent[0]}, {distance}};
+  bool found = strut_follow_newton(system, &planes, &orbit->at, &rounds) &&
+               strut_follow_measure(system, arena, orbit);
+  return found ? orbit : NULL;
 }
 
 static bool same_signature(strut_follow_signature a, strut_follow_signature b) {
@@ -72,7 +70,7 @@ static bool bracket_signature(const span *self, double least, bracket *k) {
   for (int i = 0; i < MOST_HALVINGS && k->to->distance - k->from->distance > least; i++) {
     strut_follow_orbit *orbit =
         orbit_between(self, k->from, k->to, 0.5 * (k->from->distance + k->to->distance));
-    if (!orbit || !strut_follow_complete(self->w, orbit, self->a->tangent)) return false;
+    if (!orbit || !strut_follow_complete(self->w->s, orbit, self->a->tangent[0])) return false;
     if (same_signature(k->from->signature, orbit->signature))
       k->from = orbit;
     else
@@ -96,7 +94,7 @@ static bool add_event(const span *self, const bracket *k) {
   const bracket ahead = walk->backwards ? (bracket){k->to, k->from} : *k;
   if (!strut_follow_words_compare(walk->s, &ahead.from->word, &ahead.to->word, &walk->branch->arena,
                                   &found)) {
-    walk->status = strut_no_memory(walk->error, "");
+    walk->s->status = strut_no_memory(walk->s->error, "");
     return false;
   }
   strut_follow_point *point = strut_follow_add(
@@ -155,7 +153,7 @@ static bool add_signature(const span *self, const bracket *k) {
   strut_follow_point *point = strut_follow_add(walk, k->to, arc, kind);
   if (!point) return false;
   if (kind != STRUT_FOLLOW_FOLD)
-    point->value = k->from->value + part * (k->to->value - k->from->value);
+    point->at.value[0] = k->from->at.value[0] + part * (k->to->at.value[0] - k->from->at.value[0]);
   const bracket ahead = walk->backwards ? (bracket){k->to, k->from} : *k;
   note_stability(point, &ahead);
   point->multiplier[0] = value[0], point->multiplier[1] = value[1];
@@ -173,15 +171,15 @@ static bool add_signature(const span *self, const bracket *k) {
                            fabs(atan2(value[1], value[0])) * 57.29577951308232);
   else
     point->detail = strut_arena_format(arena, "a multiplier %s the unit circle at 1", sense);
-  if (!point->detail) walk->status = strut_no_memory(walk->error, "");
+  if (!point->detail) walk->s->status = strut_no_memory(walk->s->error, "");
   if (!point->detail) return false;
   if (kind == STRUT_FOLLOW_DOUBLING) {
     size_t index = (size_t)(point - walk->branch->points);
-    double *direction = strut_arena_allocate(arena, walk->s->n, sizeof(double));
-    if (direction && strut_follow_eigenvector(walk, k->to, value[0], direction))
+    double *direction = strut_follow_allocate(walk->s, arena, walk->s->n, sizeof(double));
+    if (direction && strut_follow_eigenvector(walk->s, k->to, value[0], direction))
       walk->branch->points[index].critical = direction;
   }
-  return walk->status == STRUT_OK;
+  return walk->s->status == STRUT_OK;
 }
 
 /* Changes of the signature between two complete orbits without events between them. */
@@ -189,7 +187,7 @@ static bool locate_signatures(const span *self, strut_follow_orbit *from, strut_
   double least = LOCATED * fmax(to->distance - from->distance, 1e-6);
   for (int i = 0; i < MOST_CHANGES && !same_signature(from->signature, to->signature); i++) {
     bracket k = {from, to};
-    if (!bracket_signature(self, least, &k)) return self->w->status == STRUT_OK;
+    if (!bracket_signature(self, least, &k)) return self->w->s->status == STRUT_OK;
     if (!add_signature(self, &k)) return false;
     from = k.to;
   }
@@ -206,57 +204,31 @@ bool strut_follow_locate(strut_follow_walk *walk, const strut_follow_orbit *firs
   double least = LOCATED_EVENT * to.distance;
   bool many = first->word.count > MOST_LETTERS || second->word.count > MOST_LETTERS;
   if (many && !signatures) return true;
-  for (int i = 0; i < MOST_CHANGES && !walk->limits->without_words; i++) {
+  for (int i = 0; i < MOST_CHANGES; i++) {
     if (strut_follow_words_equal(&here->word, &to.word)) break;
     bracket k = {here, &to};
-    walk->rough = true;
+    walk->s->precision = STRUT_FOLLOW_ROUGH;
     bool narrow = bracket_event(&p, least, &k);
-    walk->rough = false;
-    if (walk->status) return false;
+    walk->s->precision = STRUT_FOLLOW_CLOSE;
+    if (walk->s->status) return false;
     if (!narrow) break;
     if (signatures) {
-      if (!strut_follow_complete(walk, k.from, first->tangent) ||
-          !strut_follow_complete(walk, k.to, first->tangent))
-        return walk->status == STRUT_OK;
+      if (!strut_follow_complete(walk->s, k.from, first->tangent[0]) ||
+          !strut_follow_complete(walk->s, k.to, first->tangent[0]))
+        return walk->s->status == STRUT_OK;
       if (!locate_signatures(&p, here, k.from)) return false;
     }
     if (!add_event(&p, &k)) return false;
     here = k.to;
   }
   if (!signatures) return true;
-  if (!strut_follow_complete(walk, here, first->tangent)) return walk->status == STRUT_OK;
+  if (!strut_follow_complete(walk->s, here, first->tangent[0])) return walk->s->status == STRUT_OK;
   return locate_signatures(&p, here, &to);
 }
 
 /* Gap in units of the motion within which a start is on the curve; shift of the phase in a step. */
 static const double NEAR = 0.02, PHASE = 0.1;
 enum { MOST_EXTREMA = 64 };
-
-/* ---- determinants ---- */
-
-/* det(jacobian + shift), by elimination with pivots; the multipliers that decide are of order one. */
-static double determinant(const double *jacobian, double shift, size_t n, double *a) {
-  double value = 1.0;
-  memcpy(a, jacobian, n * n * sizeof(double));
-  for (size_t i = 0; i < n; i++) a[i * n + i] += shift;
-  for (size_t k = 0; k < n; k++) {
-    size_t best = k;
-    for (size_t i = k + 1; i < n; i++)
-      if (fabs(a[i * n + k]) > fabs(a[best * n + k])) best = i;
-    double pivot = a[best * n + k];
-    if (pivot == 0.0) return 0.0;
-    for (size_t j = k; j < n && best != k; j++) {
-      double keep = a[k * n + j];
-      a[k * n + j] = a[best * n + j], a[best * n + j] = keep;
-    }
-    value *= best != k ? -pivot : pivot;
-    for (size_t i = k + 1; i < n; i++) {
-      double factor = a[i * n + k] / pivot;
-      for (size_t j = k; j < n; j++) a[i * n + j] -= factor * a[k * n + j];
-    }
-  }
-  return value;
-}
 
 /* ---- extrema of a gap ---- */
 
@@ -293,9 +265,8 @@ static void watch_gap(void *context, const strut_state *state) {
   double sign = self->highest ? -1.0 : 1.0;
   if (sign * self->rate < 0.0 && sign * rate >= 0.0 && self->count < MOST_EXTREMA) {
     double rise = gap - self->gap, a = h * self->rate, b = h * rate;
-    double c = 3.0 * rise - 2.0 * a - b, d = a + b - 2.0 * rise; /* slope a + 2 c x + 3 d x^2 */
-    double root = sqrt(fmax(0.0, c * c - 3.0 * d * a));
-    double x = -a / (c + (a < 0.0 ? root : -root));
+    double c = 3.0 * rise - 2.0 * a - b, d = a + b - 2.0 * rise;
+    double x = strut_follow_extremum(rise, a, b);
     if (!(x >= 0.0 && x <= 1.0)) x = 1.0;
     self->found[self->count++] = (extremum){self->gap + x * (a + x * (c + x * d)),
                                             (self->time + x * h - self->begin) / self->span};
@@ -304,20 +275,19 @@ static void watch_gap(void *context, const strut_state *state) {
 }
 
 /* All extrema of the contact's gap in a repetition. False: the motion is lost. */
-static bool find_extrema(strut_follow_surface *surface, const strut_follow_surface_point *point,
+static bool find_extrema(strut_follow_system *system, const strut_follow_motion *motion,
                          bool highest, int32_t contact, gap_watch *self) {
-  strut_follow_system *system = &surface->s;
-  if (!strut_follow_surface_set(surface, point->value)) return false;
+  if (!strut_follow_set_value(system, motion->value)) return false;
   strut_period_map *map = &system->map[0];
+  double *end = system->buffers.end;
   *self = (gap_watch){.model = system->model, .contact = contact, .highest = highest};
   self->dt = map->dt;
   self->span = system->period * system->how.repeats;
-  memcpy(system->buffers.end, point->y, system->both * sizeof(double));
-  self->gap = gap_of(self, system->buffers.end, system->buffers.end + system->model->length, NULL,
-                     &self->rate);
+  memcpy(end, motion->y, system->both * sizeof(double));
+  self->gap = gap_of(self, end, end + system->model->length, NULL, &self->rate);
   map->watch = watch_gap;
   map->watch_context = self;
-  double travel = strut_period_map_apply(map, system->buffers.end);
+  double travel = strut_period_map_apply(map, end);
   map->watch = NULL;
   return isfinite(travel);
 }
@@ -328,32 +298,32 @@ static double phase_distance(double a, double b) {
   return fmin(off, 1.0 - off);
 }
 
-static bool gap_at(strut_follow_surface *surface, strut_follow_criterion *criterion,
-                   const strut_follow_surface_point *point, double *value) {
+static bool gap_at(strut_follow_system *system, strut_follow_criterion *criterion,
+                   const strut_follow_motion *motion, double *value) {
   gap_watch w;
   double nearest = HUGE_VAL;
-  if (!find_extrema(surface, point, criterion->kind == STRUT_FOLLOW_LIFT, criterion->contact, &w))
+  if (!find_extrema(system, motion, criterion->kind == STRUT_FOLLOW_LIFT, criterion->contact, &w))
     return false;
   for (size_t i = 0; i < w.count; i++) {
     double off = phase_distance(w.found[i].phase, criterion->phase);
     if (off >= nearest) continue;
     nearest = off;
-    *value = w.found[i].gap / surface->s.length;
+    *value = w.found[i].gap / system->length;
     criterion->next_phase = w.found[i].phase;
   }
   return nearest <= PHASE;
 }
 
-bool strut_follow_criterion_choose(strut_follow_surface *surface, strut_follow_criterion *criterion,
-                                   const strut_follow_surface_point *point, const char *node) {
-  double least = NEAR * surface->s.length;
+bool strut_follow_criterion_choose(strut_follow_system *system, strut_follow_criterion *criterion,
+                                   const strut_follow_motion *motion, const char *node) {
+  double least = NEAR * system->length;
   bool found = false;
   gap_watch w;
-  if (!strut_follow_surface_set(surface, point->value)) return false;
-  for (int32_t i = 0; i < surface->s.model->contacts.count && !surface->status; i++) {
-    const char *name = surface->s.setup.scene.nodes[surface->s.model->contacts.entry[i].node].name;
-    if (!node || strcmp(name, node) != 0) continue;
-    if (!find_extrema(surface, point, criterion->kind == STRUT_FOLLOW_LIFT, i, &w)) continue;
+  if (!node || !strut_follow_set_value(system, motion->value)) return false;
+  for (int32_t i = 0; i < system->model->contacts.count && !system->status; i++) {
+    const char *name = system->setup.scene.nodes[system->model->contacts.entry[i].node].name;
+    if (strcmp(name, node) != 0) continue;
+    if (!find_extrema(system, motion, criterion->kind == STRUT_FOLLOW_LIFT, i, &w)) continue;
     for (size_t k = 0; k < w.count; k++) {
       if (fabs(w.found[k].gap) >= least) continue;
       least = fabs(w.found[k].gap);
@@ -365,13 +335,16 @@ bool strut_follow_criterion_choose(strut_follow_surface *surface, strut_follow_c
   return found;
 }
 
-bool strut_follow_criterion_at(strut_follow_surface *surface, strut_follow_criterion *criterion,
-                               strut_follow_surface_point *point, double *value) {
-  size_t n = surface->s.n;
+/* Of folds and doublings det(jacobian -+ 1), which is the product of the multipliers -+ 1: pairs make it real. */
+bool strut_follow_criterion_at(strut_follow_system *system, strut_follow_criterion *criterion,
+                               strut_follow_orbit *orbit, double *value) {
+  double complex product = 1.0;
   if (criterion->kind == STRUT_FOLLOW_TOUCH || criterion->kind == STRUT_FOLLOW_LIFT)
-    return gap_at(surface, criterion, point, value);
-  if (!strut_follow_surface_complete(surface, point)) return false;
-  *value = determinant(point->jacobian, criterion->kind == STRUT_FOLLOW_DOUBLING ? 1.0 : -1.0, n,
-                       criterion->scratch);
+    return gap_at(system, criterion, &orbit->at, value);
+  if (!strut_follow_complete(system, orbit, NULL)) return false;
+  const double shift = criterion->kind == STRUT_FOLLOW_DOUBLING ? 1.0 : -1.0;
+  for (size_t i = 0; i < orbit->multipliers; i++)
+    product *= CMPLX(orbit->multiplier[i][0] + shift, orbit->multiplier[i][1]);
+  *value = creal(product);
   return isfinite(*value);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/run/follow/follow_system.h"
 
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
@@ -66,16 +67,13 @@ static strut_status check_scene(const strut_follow_system *system, strut_error *
 /* ---- models of values ---- */
 
 static void drop_model(strut_follow_system *system) {
-  for (int i = 0; system->map && i < system->how.threads; i++) {
-    system->spent.evaluations += system->map[i].evaluations;
-    system->spent.maps += system->map[i].applied;
+  for (int i = 0; system->map && i < system->how.threads; i++)
     strut_period_map_free(&system->map[i]);
-  }
   strut_model_free(system->model);
   system->model = NULL;
   system->variation = NULL;
   strut_setup_free(&system->setup);
-  system->value = (double)NAN;
+  system->value[0] = system->value[1] = (double)NAN;
 }
 
 static strut_status make_maps(strut_follow_system *system, strut_error *error) {
@@ -113,63 +111,75 @@ static bool has_same_structure(const strut_follow_system *system) {
          model->elements.count == system->log->elements;
 }
 
-strut_status strut_follow_set_value(strut_follow_system *system, double value, strut_error *error) {
-  if (system->model && system->value == value) return STRUT_OK;
-  drop_model(system);
+static strut_status make_model(strut_follow_system *system, const double value[2],
+                               strut_error *error) {
   strut_status status = system->scenes.setup(system->scenes.context, value, &system->setup, error);
   if (status) return status;
-  system->spent.scenes++;
   status = strut_model_compile(&system->setup.scene, &system->model, error);
-  if (!status) {
-    system->period = strut_experiment_span(&system->setup.experiment, &system->setup.scene).period;
-    status = check_scene(system, error);
-  }
+  if (status) return status;
+  system->period = strut_experiment_span(&system->setup.experiment, &system->setup.scene).period;
+  status = check_scene(system, error);
   if (!status && system->log && !has_same_structure(system))
     status =
         strut_fail(error, STRUT_USAGE,
                    "the parameter changes what the structure consists of, over which no motion "
                    "is followed");
-  if (!status) status = make_maps(system, error);
-  if (status) {
-    drop_model(system);
-    return status;
-  }
-  system->value = value;
-  return STRUT_OK;
+  return status ? status : make_maps(system, error);
 }
 
-strut_status strut_follow_set_repeats(strut_follow_system *system, int32_t repeats,
-                                      strut_error *error) {
-  double value = system->value;
-  if (repeats == system->how.repeats) return STRUT_OK;
-  system->how.repeats = repeats;
-  system->derivative.known = false;
+bool strut_follow_set_value(strut_follow_system *system, const double value[2]) {
+  const double wanted[2] = {value[0], value[1]};
+  if (system->status) return false;
+  if (system->model && system->value[0] == value[0] && system->value[1] == value[1]) return true;
   drop_model(system);
-  return strut_follow_set_value(system, value, error);
+  strut_status status = make_model(system, wanted, system->error);
+  if (status) drop_model(system);
+  /* in a plane some values may have no scene, where curves end */
+  if (!(status == STRUT_BAD_SCENE && system->parameters == 2)) system->status = status;
+  if (status) return false;
+  memcpy(system->value, wanted, sizeof wanted);
+  return true;
 }
 
-strut_status strut_follow_set_steps(strut_follow_system *system, int64_t steps,
-                                    strut_error *error) {
-  double value = system->value;
-  if (steps == system->how.steps_per_period) return STRUT_OK;
+bool strut_follow_set_periods(strut_follow_system *system, int32_t repeats, int64_t steps) {
+  const double value[2] = {system->value[0], system->value[1]};
+  if (repeats == system->how.repeats && steps == system->how.steps_per_period)
+    return !system->status;
+  system->how.repeats = repeats;
   system->how.steps_per_period = steps;
   system->derivative.known = false;
   drop_model(system);
-  return strut_follow_set_value(system, value, error);
+  return strut_follow_set_value(system, value);
 }
 
-static bool allocate(strut_follow_system *system) {
-  strut_arena *arena = &system->arena;
-  size_t n = system->n, square = (n + 1) * (n + 1);
-  return (system->place = strut_arena_allocate(arena, n, sizeof *system->place)) &&
-         (system->along = strut_arena_allocate(arena, n, sizeof(double))) &&
-         (system->derivative.jacobian = strut_arena_allocate(arena, square, sizeof(double))) &&
-         (system->derivative.column = strut_arena_allocate(arena, n, sizeof(double))) &&
-         (system->buffers.there = strut_arena_allocate(
-              arena, (size_t)system->how.threads * system->both, sizeof(double))) &&
-         (system->buffers.end = strut_arena_allocate(arena, system->both, sizeof(double))) &&
-         (system->buffers.seen = strut_arena_allocate(arena, 4 * system->both, sizeof(double))) &&
-         (system->buffers.matrix = strut_arena_allocate(arena, square, sizeof(double)));
+void *strut_follow_allocate(strut_follow_system *system, strut_arena *arena, size_t count,
+                            size_t size) {
+  void *array = strut_arena_allocate(arena, count, size);
+  if (!array && !system->status) system->status = strut_no_memory(system->error, "");
+  return array;
+}
+
+static void allocate(strut_follow_system *system) {
+  size_t n = system->n, m = system->m, both = system->both;
+  const struct {
+    double **array;
+    size_t count;
+  } arrays[] = {{&system->along, n},
+                {&system->upward, m},
+                {&system->derivative.jacobian, n * n},
+                {&system->derivative.column[0], n},
+                {&system->derivative.column[1], n},
+                {&system->buffers.there, (size_t)system->how.threads * both},
+                {&system->buffers.end, both},
+                {&system->buffers.seen, 4 * both},
+                {&system->buffers.matrix, m * m},
+                {&system->buffers.trials, 2 * (both + n)},
+                {&system->buffers.f, n},
+                {&system->buffers.x, m}};
+  system->place = strut_follow_allocate(system, &system->arena, n, sizeof *system->place);
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+    *arrays[i].array =
+        strut_follow_allocate(system, &system->arena, arrays[i].count, sizeof(double));
 }
 
 static void choose_unknowns(strut_follow_system *system) {
@@ -182,26 +192,29 @@ static void choose_unknowns(strut_follow_system *system) {
     system->along[k] = system->travels ? model->contacts.tangent[i % 2] / sqrt((double)nodes) : 0.0;
     k++;
   }
+  system->upward[system->m - 1] = 1.0;
 }
 
-strut_status strut_follow_open(strut_follow_system *system, double value, strut_error *error) {
+strut_status strut_follow_open(strut_follow_system *system, const double value[2],
+                               strut_error *error) {
   if (system->how.threads < 1) system->how.threads = 1;
-  system->value = (double)NAN;
+  system->error = error;
   system->n = system->both = 0;
-  system->map =
-      strut_arena_allocate(&system->arena, (size_t)system->how.threads, sizeof *system->map);
-  if (!system->map) return strut_no_memory(error, "");
-  strut_status status = strut_follow_set_value(system, value, error);
-  if (status) return status;
+  system->map = strut_follow_allocate(system, &system->arena, (size_t)system->how.threads,
+                                      sizeof *system->map);
+  if (!system->map || !strut_follow_set_value(system, value)) return system->status;
   const strut_model *model = system->model;
   for (int32_t i = 0; i < 2 * model->node_count; i++) system->n += model->fixed[i] ? 0 : 2;
+  system->m = system->n + system->parameters;
   system->both = 2 * (size_t)model->length + 1;
   system->travels = system->map[0].travels;
   if (system->n == 0 || system->n > STRUT_FOLLOW_MOST)
-    return strut_fail(error, STRUT_USAGE,
-                      "%zu free coordinates; motions are followed with 1 to %d of them",
-                      system->n / 2, STRUT_FOLLOW_MOST / 2);
-  if (!allocate(system)) return strut_no_memory(error, "");
+    return system->status =
+               strut_fail(error, STRUT_USAGE,
+                          "%zu free coordinates; motions are followed with 1 to %d of them",
+                          system->n / 2, STRUT_FOLLOW_MOST / 2);
+  allocate(system);
+  if (system->status) return system->status;
   choose_unknowns(system);
   system->length = model->size;
   system->speed = model->size * STRUT_TAU / system->period;
@@ -211,6 +224,13 @@ strut_status strut_follow_open(strut_follow_system *system, double value, strut_
 void strut_follow_close(strut_follow_system *system) {
   drop_model(system);
   strut_arena_free(&system->arena);
+}
+
+bool strut_follow_interrupted(strut_follow_system *system) {
+  if (!system->how.interrupt || !*system->how.interrupt) return false;
+  system->status = strut_fail(system->error, STRUT_INTERRUPTED,
+                              "interrupted at %.9g of the parameter", system->value[0]);
+  return true;
 }
 
 /* ---- the map ---- */
@@ -242,6 +262,12 @@ bool strut_follow_set_units(strut_follow_system *system, const double *unknowns)
   return good;
 }
 
+double strut_follow_extremum(double rise, double a, double b) {
+  double c = 3.0 * rise - 2.0 * a - b, d = a + b - 2.0 * rise; /* slope a + 2 c x + 3 d x^2 */
+  double root = sqrt(fmax(0.0, c * c - 3.0 * d * a));
+  return -a / (c + (a < 0.0 ? root : -root));
+}
+
 /* Range of each coordinate: ends of steps, and extrema of the cubics between them. */
 static void watch_range(void *context, const strut_state *state) {
   strut_follow_system *system = context;
@@ -251,10 +277,9 @@ static void watch_range(void *context, const strut_state *state) {
   for (size_t i = 0; i < count; i++) {
     double rise = state->q[i] - q[i], a = h * v[i], b = h * state->v[i];
     double top = state->q[i];
-    if (a * b < 0.0) { /* slope of the cubic: a + 2 c x + 3 d x^2 */
+    if (a * b < 0.0) {
       double c = 3.0 * rise - 2.0 * a - b, d = a + b - 2.0 * rise;
-      double root = sqrt(fmax(0.0, c * c - 3.0 * d * a));
-      double x = -a / (c + (a < 0.0 ? root : -root));
+      double x = strut_follow_extremum(rise, a, b);
       if (x > 0.0 && x < 1.0) top = q[i] + x * (a + x * (c + x * d));
     }
     low[i] = fmin(low[i], fmin(top, state->q[i]));
@@ -333,7 +358,8 @@ strut_follow_period strut_follow_carry(strut_follow_system *system, double *unkn
   return p;
 }
 
-void strut_follow_difference(strut_follow_system *system, const double *unknowns, bool *lost) {
+/* Fills the jacobian by central differences of whole runs. */
+static bool difference(strut_follow_system *system, const double *unknowns) {
   size_t n = system->n;
   int gone = 0;
 #ifdef _OPENMP
@@ -361,41 +387,54 @@ void strut_follow_difference(strut_follow_system *system, const double *unknowns
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
       system->derivative.jacobian[i * n + j] -= system->along[i] * system->along[j];
-  *lost = gone > 0;
-  system->derivative.known = !*lost;
+  return system->derivative.known = !gone;
 }
 
-strut_status strut_follow_differentiate(strut_follow_system *system, const double *unknowns,
-                                        const double *f, bool *lost, strut_error *error) {
-  memcpy(system->buffers.end, unknowns, system->both * sizeof(double));
-  if (system->variation)
-    *lost = !isfinite(strut_follow_carry(system, system->buffers.end, false).travel);
-  else
-    strut_follow_difference(system, unknowns, lost);
-  return *lost ? STRUT_OK : strut_follow_differentiate_parameter(system, unknowns, f, lost, error);
+bool strut_follow_differentiate_states(strut_follow_system *system,
+                                       const strut_follow_motion *motion, double *f) {
+  double *end = system->buffers.end;
+  if (!strut_follow_set_value(system, motion->value)) return false;
+  if (!system->variation)
+    return isfinite(strut_follow_residual(system, motion->y, f)) && difference(system, motion->y);
+  memcpy(end, motion->y, system->both * sizeof(double));
+  bool lost = !isfinite(strut_follow_carry(system, end, false).travel);
+  strut_follow_change(system, motion->y, end, f);
+  return !lost;
 }
 
-strut_status strut_follow_differentiate_parameter(strut_follow_system *system,
-                                                  const double *unknowns, const double *f,
-                                                  bool *lost, strut_error *error) {
-  size_t n = system->n;
-  double value = system->value, step = PARAMETER_DIFFERENCE * (system->high - system->low);
-  if (value + step > fmax(system->low, system->high)) step = -step;
-  strut_status status = strut_follow_set_value(system, value + step, error);
-  if (status) return status;
-  *lost = !isfinite(strut_follow_residual(system, unknowns, system->derivative.column));
-  for (size_t i = 0; i < n; i++)
-    system->derivative.column[i] =
-        (system->derivative.column[i] - f[i]) * (system->high - system->low) / step;
-  return strut_follow_set_value(system, value, error);
+bool strut_follow_differentiate_parameters(strut_follow_system *system,
+                                           const strut_follow_motion *motion, const double *f) {
+  bool lost = false;
+  for (size_t k = 0; k < system->parameters && !lost; k++) {
+    double *column = system->derivative.column[k];
+    double range = system->high[k] - system->low[k], step = PARAMETER_DIFFERENCE * range;
+    double beside[2] = {motion->value[0], motion->value[1]};
+    if (beside[k] + step > system->high[k]) step = -step;
+    beside[k] += step;
+    lost = !strut_follow_set_value(system, beside) ||
+           !isfinite(strut_follow_residual(system, motion->y, column)) ||
+           strut_follow_interrupted(system);
+    for (size_t i = 0; i < system->n; i++) column[i] = (column[i] - f[i]) * range / step;
+  }
+  return strut_follow_set_value(system, motion->value) && !lost;
 }
 
 /* ---- unknowns ---- */
 
-void strut_follow_move(const strut_follow_system *system, double *unknowns, const double *change,
-                       double factor) {
+void strut_follow_move(const strut_follow_system *system, strut_follow_motion *motion,
+                       const double *change, double factor) {
   for (size_t i = 0; i < system->n; i++)
-    unknowns[system->place[i]] += factor * change[i] * strut_follow_unit(system, i);
+    motion->y[system->place[i]] += factor * change[i] * strut_follow_unit(system, i);
+  for (size_t k = 0; k < system->parameters; k++)
+    motion->value[k] += factor * change[system->n + k] * (system->high[k] - system->low[k]);
+}
+
+double strut_follow_between(const strut_follow_system *system, const strut_follow_motion *from,
+                            const strut_follow_motion *to, double *change) {
+  strut_follow_change(system, from->y, to->y, change);
+  for (size_t k = 0; k < system->parameters; k++)
+    change[system->n + k] = (to->value[k] - from->value[k]) / (system->high[k] - system->low[k]);
+  return sqrt(strut_dot(change, change, (ptrdiff_t)system->m));
 }
 
 void strut_follow_centre(const strut_follow_system *system, double *unknowns) {
@@ -408,34 +447,33 @@ void strut_follow_centre(const strut_follow_system *system, double *unknowns) {
   for (int32_t i = 0; i < 2 * model->node_count; i++) unknowns[i] -= mean * t[i % 2];
 }
 
-bool strut_follow_solve_with(const strut_follow_system *system, const strut_follow_border *border,
-                             double *a, double *vector) {
-  size_t n = system->n, m = n + border->count;
-  double most = 0.0;
+bool strut_follow_solve(strut_follow_system *system, const double *const rows[2], double *vector) {
+  size_t n = system->n, m = system->m;
+  double most = 0.0, *a = system->buffers.matrix;
   for (size_t i = 0; i < n; i++) {
     for (size_t j = 0; j < n; j++) a[i * m + j] = system->derivative.jacobian[i * n + j] - (i == j);
-    for (size_t k = 0; k < border->count; k++) a[i * m + n + k] = border->column[k][i];
+    for (size_t k = 0; n + k < m; k++) a[i * m + n + k] = system->derivative.column[k][i];
   }
-  for (size_t k = 0; k < border->count; k++)
-    memcpy(a + (n + k) * m, border->row[k], m * sizeof(double));
+  for (size_t k = 0; n + k < m; k++) memcpy(a + (n + k) * m, rows[k], m * sizeof(double));
   for (size_t i = 0; i < m * m; i++) most = fmax(most, fabs(a[i]));
-  return strut_solve_dense(a, vector, m, 1e-14 * most);
+  gsl_matrix_view matrix = gsl_matrix_view_array(a, m, m);
+  gsl_vector_view right = gsl_vector_view_array(vector, m);
+  gsl_permutation *order = gsl_permutation_alloc(m);
+  int sign;
+  bool regular = order && gsl_linalg_LU_decomp(&matrix.matrix, order, &sign) == 0;
+  for (size_t i = 0; i < m && regular; i++) regular = fabs(a[i * m + i]) > 1e-14 * most;
+  if (regular) gsl_linalg_LU_svx(&matrix.matrix, order, &right.vector);
+  gsl_permutation_free(order);
+  return regular;
 }
 
-bool strut_follow_solve(strut_follow_system *system, const double *normal, double *vector) {
-  const strut_follow_border border = {1, {system->derivative.column}, {normal}};
-  return strut_follow_solve_with(system, &border, system->buffers.matrix, vector);
-}
-
-void strut_follow_update(strut_follow_system *system, const strut_follow_border *border,
-                         const double *f, const double *vector) {
-  double size = 0.0;
-  for (size_t j = 0; j < system->n + border->count; j++) size += vector[j] * vector[j];
-  if (!(size > 0.0)) return;
-  for (size_t i = 0; i < system->n; i++) {
-    for (size_t j = 0; j < system->n; j++)
-      system->derivative.jacobian[i * system->n + j] += f[i] * vector[j] / size;
-    for (size_t k = 0; k < border->count; k++)
-      border->column[k][i] += f[i] * vector[system->n + k] / size;
+void strut_follow_update(strut_follow_system *system, const double *f, const double *vector) {
+  size_t n = system->n;
+  double size = strut_dot(vector, vector, (ptrdiff_t)system->m);
+  for (size_t i = 0; i < n && size > 0.0; i++) {
+    for (size_t j = 0; j < n; j++)
+      system->derivative.jacobian[i * n + j] += f[i] * vector[j] / size;
+    for (size_t k = 0; k < system->parameters; k++)
+      system->derivative.column[k][i] += f[i] * vector[n + k] / size;
   }
 }

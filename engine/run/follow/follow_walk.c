@@ -5,9 +5,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
-#include "engine/run/follow/follow.h"
 #include "engine/run/follow/follow_parts.h"
-#include "engine/run/simulate.h"
 
 /* Steps of arclength [1]: the first, the least; and least cosine between successive tangents. */
 static const double FIRST = 0.01, LEAST = 5e-5, MOST = 1.0, STRAIGHT = 0.5;
@@ -31,113 +29,94 @@ const char *strut_follow_kind_word(strut_follow_kind kind) {
   return words[kind];
 }
 
-static bool grow(strut_follow_walk *walk) {
-  strut_follow_branch *branch = walk->branch;
-  if (branch->count < walk->room) return true;
-  size_t room = walk->room ? 2 * walk->room : 256;
-  strut_follow_point *points = strut_arena_allocate(&branch->arena, room, sizeof *points);
-  if (!points) walk->status = strut_no_memory(walk->error, "");
-  if (!points) return false;
-  if (branch->count) memcpy(points, branch->points, branch->count * sizeof *points);
-  branch->points = points;
-  walk->room = room;
-  return true;
-}
-
 strut_follow_point *strut_follow_add(strut_follow_walk *walk, const strut_follow_orbit *orbit,
                                      double arc, strut_follow_kind kind) {
   strut_follow_branch *branch = walk->branch;
-  if (!grow(walk)) return NULL;
+  strut_follow_system *system = walk->s;
+  if (branch->count == branch->room) {
+    size_t room = branch->room ? 2 * branch->room : 256;
+    strut_follow_point *points =
+        strut_follow_allocate(system, &branch->arena, room, sizeof *points);
+    if (!points) return NULL;
+    if (branch->count) memcpy(points, branch->points, branch->count * sizeof *points);
+    branch->points = points;
+    branch->room = room;
+  }
   strut_follow_point *point = &branch->points[branch->count];
   *point = (strut_follow_point){.kind = kind,
-                                .value = orbit->value,
+                                .at = orbit->at,
                                 .arc = walk->backwards ? -arc : arc,
                                 .velocity = orbit->velocity,
                                 .work = orbit->work,
                                 .amplitude = orbit->amplitude,
-                                .multiplier = {(double)NAN, (double)NAN},
-                                .y = orbit->y};
+                                .multiplier = {(double)NAN, (double)NAN}};
   const strut_follow_signature g = orbit->signature;
   point->stable = orbit->complete && g.plus == 0 && g.minus == 0 && g.pairs == 0;
   if (orbit->complete && orbit->multipliers)
     memcpy(point->multiplier, orbit->multiplier[0], sizeof point->multiplier);
-  point->word = strut_follow_word_text(walk->s, &orbit->word, &branch->arena);
-  if (!point->word) walk->status = strut_no_memory(walk->error, "");
+  point->word = strut_follow_word_text(system, &orbit->word, &branch->arena);
+  if (!point->word) system->status = strut_no_memory(system->error, "");
   if (!point->word) return NULL;
   branch->count++;
   return point;
+}
+
+static double cosine(const strut_follow_walk *walk, const double *first, const double *second) {
+  return strut_dot(first, second, (ptrdiff_t)walk->s->m);
 }
 
 /*
  * A guess of the orbit one step h from o, along the parabola through o and the orbit before, whose tangents
  * turn by little; along the tangent of o otherwise.
  */
-static void predict(strut_follow_walk *walk, const strut_follow_orbit *orbit, double h,
+static void predict(const strut_follow_walk *walk, const strut_follow_orbit *orbit, double h,
                     strut_follow_orbit *next) {
-  const strut_follow_system *system = walk->s;
-  const strut_follow_orbit *follow_orbit = orbit->before;
-  double bend = 0.0, *way = walk->right;
-  if (follow_orbit && follow_orbit->complete && h <= REACH * orbit->distance &&
-      strut_dot(follow_orbit->tangent, orbit->tangent, (ptrdiff_t)(system->n + 1)) > SMOOTH)
+  const strut_follow_orbit *before = orbit->before;
+  const double *tangent = orbit->tangent[0];
+  double bend = 0.0, *way = walk->s->buffers.x;
+  if (before && before->complete && h <= REACH * orbit->distance &&
+      cosine(walk, before->tangent[0], tangent) > SMOOTH)
     bend = 0.5 * h * h / orbit->distance;
-  for (size_t i = 0; i <= system->n; i++) {
-    way[i] = h * orbit->tangent[i];
-    if (bend > 0.0) way[i] += bend * (orbit->tangent[i] - follow_orbit->tangent[i]);
+  for (size_t i = 0; i < walk->s->m; i++) {
+    way[i] = h * tangent[i];
+    if (bend > 0.0) way[i] += bend * (tangent[i] - before->tangent[0][i]);
   }
-  memcpy(next->y, orbit->y, system->both * sizeof(double));
-  strut_follow_move(system, next->y, way, 1.0);
-  next->value = orbit->value + way[system->n] * (system->high - system->low);
+  strut_follow_move(walk->s, &next->at, way, 1.0);
   next->distance = h;
 }
 
 /* The orbit one step h from o, complete; NULL: none, and `reason` says why. */
 static strut_follow_orbit *try_step(strut_follow_walk *walk, const strut_follow_orbit *orbit,
                                     double h, int *rounds, const char **reason) {
-  strut_follow_orbit *next = strut_follow_orbit_new(walk);
+  strut_arena *arena = &walk->branch->arena;
+  strut_follow_orbit *next = strut_follow_orbit_new(walk->s, arena, &orbit->at);
   if (!next) return NULL;
   predict(walk, orbit, h, next);
   next->before = orbit;
-  if (!strut_follow_newton(walk, next->y, &next->value,
-                           &(strut_follow_section){orbit->tangent, orbit->y, orbit->value, h},
-                           rounds)) {
+  if (!strut_follow_newton(walk->s, &(strut_follow_planes){&orbit->at, {orbit->tangent[0]}, {h}},
+                           &next->at, rounds)) {
     *reason = "no periodic motion was found beyond: Newton's method does not converge";
     return NULL;
   }
-  if (!strut_follow_examine(walk, next, orbit->tangent)) {
+  if (!strut_follow_examine(walk->s, arena, next, orbit->tangent[0])) {
     *reason = "the motion was lost beyond";
     return NULL;
   }
   return next;
 }
 
-/* secant (n + 1): unit vector from a to b; returns their distance. */
-static double secant_of(const strut_follow_system *system, const strut_follow_orbit *first,
-                        const strut_follow_orbit *second, double *secant) {
-  size_t n = system->n;
-  for (size_t i = 0; i < n; i++)
-    secant[i] =
-        (second->y[system->place[i]] - first->y[system->place[i]]) / strut_follow_unit(system, i);
-  secant[n] = (second->value - first->value) / (system->high - system->low);
-  double length = sqrt(strut_dot(secant, secant, (ptrdiff_t)(n + 1)));
-  for (size_t i = 0; i <= n && length > 0.0; i++) secant[i] /= length;
-  return length;
-}
-
 /*
  * Behind a corner the derivative may be that of neither side, and its tangent lead back: then the way
  * come from a to b leads on.
  */
-static bool straighten(strut_follow_walk *walk, const strut_follow_orbit *first,
+static void straighten(const strut_follow_walk *walk, const strut_follow_orbit *first,
                        strut_follow_orbit *second) {
-  size_t n = walk->s->n;
-  double *secant = strut_arena_allocate(&walk->branch->arena, n + 1, sizeof(double));
-  if (!secant) walk->status = strut_no_memory(walk->error, "");
-  if (!secant) return false;
-  secant_of(walk->s, first, second, secant);
-  if (strut_dot(secant, second->tangent, (ptrdiff_t)(n + 1)) >= STRAIGHT) return true;
-  memcpy(second->tangent, secant, (n + 1) * sizeof(double));
-  second->signature.turn = secant[n] < 0.0 ? -1 : 1;
-  return true;
+  double *secant = walk->s->buffers.x;
+  double length = strut_follow_between(walk->s, &first->at, &second->at, secant);
+  for (size_t i = 0; i < walk->s->m && length > 0.0; i++) secant[i] /= length;
+  if (cosine(walk, secant, second->tangent[0]) >= STRAIGHT) return;
+  memcpy(second->tangent[0], secant, walk->s->m * sizeof(double));
+  second->signature.turn = secant[walk->s->n] < 0.0 ? -1 : 1;
 }
 
 /* Does b lie on the way behind a, on which the latest points are? */
@@ -147,34 +126,20 @@ static bool retraces(const strut_follow_walk *walk, const strut_follow_orbit *fi
   const strut_follow_branch *branch = walk->branch;
   size_t from = branch->count > LATEST ? branch->count - LATEST : 0;
   if (from < walk->begin) from = walk->begin;
-  double step = 0.0, least = HUGE_VAL;
-  for (size_t i = 0; i < system->n; i++)
-    step += pow(
-        (second->y[system->place[i]] - first->y[system->place[i]]) / strut_follow_unit(system, i),
-        2);
-  step += pow((second->value - first->value) / (system->high - system->low), 2);
+  double d[STRUT_FOLLOW_MOST + 2], e[STRUT_FOLLOW_MOST + 2], least = HUGE_VAL;
+  double step = strut_follow_between(system, &first->at, &second->at, d);
   for (size_t k = from; k + 1 < branch->count; k++) {
-    const strut_follow_point *point = &branch->points[k], *q = point + 1;
-    double whole = 0.0, along = 0.0, off = 0.0;
-    for (size_t i = 0; i <= system->n; i++) {
-      double unit = i < system->n ? strut_follow_unit(system, i) : system->high - system->low;
-      double d = (i < system->n ? q->y[system->place[i]] - point->y[system->place[i]]
-                                : q->value - point->value) /
-                 unit;
-      double e = (i < system->n ? second->y[system->place[i]] - point->y[system->place[i]]
-                                : second->value - point->value) /
-                 unit;
-      whole += d * d, along += d * e, off += e * e;
-    }
-    double part = whole > 0.0 ? along / whole : 0.0;
-    if (part < 0.0 || part > 1.0) continue;
-    least = fmin(least, off - part * along);
+    const strut_follow_point *point = &branch->points[k];
+    double whole = strut_follow_between(system, &point->at, &point[1].at, d);
+    double off = strut_follow_between(system, &point->at, &second->at, e);
+    double along = cosine(walk, d, e), part = whole > 0.0 ? along / (whole * whole) : 0.0;
+    if (part >= 0.0 && part <= 1.0) least = fmin(least, off * off - part * along);
   }
-  return least < BACK * BACK * step;
+  return least < BACK * BACK * step * step;
 }
 
 static bool outside(const strut_follow_system *system, double value) {
-  double part = strut_follow_scaled(system, value);
+  double part = strut_follow_scaled(system, 0, value);
   return part < -1e-9 || part > 1.0 + 1e-9;
 }
 
@@ -182,29 +147,22 @@ static bool outside(const strut_follow_system *system, double value) {
 static strut_follow_orbit *at_edge(strut_follow_walk *walk, const strut_follow_orbit *orbit,
                                    const strut_follow_orbit *next) {
   strut_follow_system *system = walk->s;
-  double edge = strut_follow_scaled(system, next->value) > 0.5 ? system->high : system->low;
-  double part = (edge - orbit->value) / (next->value - orbit->value);
+  const double value = orbit->at.value[0], beyond = next->at.value[0];
+  double edge = strut_follow_scaled(system, 0, beyond) > 0.5 ? system->high[0] : system->low[0];
+  double part = (edge - value) / (beyond - value);
   int rounds;
-  double *normal = strut_arena_allocate(&walk->branch->arena, system->n + 1, sizeof(double));
-  strut_follow_orbit *last = strut_follow_orbit_new(walk);
-  if (!normal && !walk->status) walk->status = strut_no_memory(walk->error, "");
-  if (!normal || !last) return NULL;
-  if (!(part > 1e-6)) return NULL; /* o is there already */
+  strut_follow_orbit *last = strut_follow_orbit_new(system, &walk->branch->arena, &orbit->at);
+  if (!last || !(part > 1e-6)) return NULL; /* o is there already */
   for (size_t i = 0; i < system->both; i++)
-    last->y[i] = orbit->y[i] + part * (next->y[i] - orbit->y[i]);
-  last->value = edge;
-  normal[system->n] = 1.0;
-  if (!strut_follow_newton(walk, last->y, &last->value,
-                           &(strut_follow_section){normal, last->y, edge, 0.0}, &rounds) ||
-      !strut_follow_examine(walk, last, orbit->tangent))
+    last->at.y[i] += part * (next->at.y[i] - orbit->at.y[i]);
+  last->at.value[0] = edge;
+  if (!strut_follow_newton(system, &(strut_follow_planes){&last->at, {system->upward}, {0.0}},
+                           &last->at, &rounds) ||
+      !strut_follow_examine(system, &walk->branch->arena, last, orbit->tangent[0]))
     return NULL;
-  last->value = edge;
-  double z =
-      (last->value - orbit->value) / (system->high - system->low) * orbit->tangent[system->n];
-  for (size_t i = 0; i < system->n; i++)
-    z += orbit->tangent[i] * (last->y[system->place[i]] - orbit->y[system->place[i]]) /
-         strut_follow_unit(system, i);
-  last->distance = z;
+  last->at.value[0] = edge;
+  strut_follow_between(system, &orbit->at, &last->at, system->buffers.x);
+  last->distance = cosine(walk, orbit->tangent[0], system->buffers.x);
   return last;
 }
 
@@ -216,51 +174,40 @@ static bool accept_step(strut_follow_walk *walk, const strut_follow_orbit *orbit
   return strut_follow_add(walk, next, walk->arc, kind) != NULL;
 }
 
-/* Has the branch come back to where it began? */
-static bool is_closed(const strut_follow_walk *walk, const strut_follow_orbit *begin,
-                      const strut_follow_orbit *orbit, double h) {
-  const strut_follow_system *system = walk->s;
-  double off = pow((orbit->value - begin->value) / (system->high - system->low), 2);
-  for (size_t i = 0; i < system->n; i++)
-    off += pow(
-        (orbit->y[system->place[i]] - begin->y[system->place[i]]) / strut_follow_unit(system, i),
-        2);
-  return sqrt(off) < 0.6 * h &&
-         strut_dot(orbit->tangent, begin->tangent, (ptrdiff_t)(system->n + 1)) > 0.8;
+bool strut_follow_is_closed(const strut_follow_walk *walk, const strut_follow_orbit *begin,
+                            const strut_follow_orbit *orbit, double step) {
+  return strut_follow_between(walk->s, &begin->at, &orbit->at, walk->s->buffers.x) < 0.6 * step;
 }
 
 /* Beyond a corner the branch may lead backwards: looks along the tangent that holds there. */
 static strut_follow_orbit *turn_at_corner(strut_follow_walk *walk, strut_follow_orbit *orbit,
                                           double h, const char **reason) {
   strut_follow_system *system = walk->s;
-  strut_follow_orbit *beyond = strut_follow_orbit_new(walk);
+  strut_arena *arena = &walk->branch->arena;
+  strut_follow_orbit *beyond = strut_follow_orbit_new(system, arena, &orbit->at);
   if (!beyond) return NULL;
-  memcpy(beyond->y, orbit->y, system->both * sizeof(double));
-  strut_follow_move(system, beyond->y, orbit->tangent, h);
-  beyond->value = orbit->value + h * orbit->tangent[system->n] * (system->high - system->low);
-  if (outside(system, beyond->value) || !strut_follow_complete(walk, beyond, orbit->tangent))
+  strut_follow_move(system, &beyond->at, orbit->tangent[0], h);
+  if (outside(system, beyond->at.value[0]) ||
+      !strut_follow_complete(system, beyond, orbit->tangent[0]))
     return NULL;
   for (int side = 1; side >= -1; side -= 2) {
     strut_follow_orbit from = *orbit;
-    double *tangent = strut_arena_allocate(&walk->branch->arena, system->n + 1, sizeof(double));
+    double *tangent = strut_follow_allocate(system, arena, system->m, sizeof *tangent);
     int rounds;
-    if (!tangent) walk->status = strut_no_memory(walk->error, "");
     if (!tangent) return NULL;
-    for (size_t i = 0; i <= system->n; i++) tangent[i] = side * beyond->tangent[i];
-    from.tangent = tangent;
-    if (strut_dot(tangent, orbit->tangent, (ptrdiff_t)(system->n + 1)) < -0.98) continue;
+    for (size_t i = 0; i < system->m; i++) tangent[i] = side * beyond->tangent[0][i];
+    from.tangent[0] = tangent;
+    if (cosine(walk, tangent, orbit->tangent[0]) < -0.98) continue;
     strut_follow_orbit *next = try_step(walk, &from, 4.0 * h, &rounds, reason);
-    if (walk->status) return NULL;
-    if (!next || strut_dot(next->tangent, orbit->tangent, (ptrdiff_t)(system->n + 1)) < -0.98)
-      continue;
-    return next;
+    if (system->status) return NULL;
+    if (next && cosine(walk, next->tangent[0], orbit->tangent[0]) >= -0.98) return next;
   }
   return NULL;
 }
 
 /* A step that is not too long, neither in the parameter nor in the motion. */
 static double limited(const strut_follow_walk *walk, const strut_follow_orbit *orbit, double h) {
-  double along = fabs(orbit->tangent[walk->s->n]);
+  double along = fabs(orbit->tangent[0][walk->s->n]);
   return fmin(h, fmin(MOST, walk->limits->longest / fmax(along, 1e-9)));
 }
 
@@ -273,13 +220,12 @@ static const char *walk_on(strut_follow_walk *walk, strut_follow_orbit *orbit, d
   for (int32_t steps = 0; steps < walk->limits->steps; steps++) {
     int rounds = 0;
     strut_follow_orbit *next = try_step(walk, orbit, h, &rounds, &reason);
-    if (walk->status) return "";
+    if (system->status) return "";
     if (next && retraces(walk, orbit, next)) {
       reason = "no periodic motion was found beyond: the branch leads back";
       next = NULL;
     }
-    bool sharp = next && h > CORNER &&
-                 strut_dot(orbit->tangent, next->tangent, (ptrdiff_t)(system->n + 1)) < STRAIGHT;
+    bool sharp = next && h > CORNER && cosine(walk, orbit->tangent[0], next->tangent[0]) < STRAIGHT;
     if (!next || sharp || (rounds > MANY && h > CORNER)) {
       if (h > LEAST) {
         h = fmax(0.35 * h, LEAST);
@@ -287,24 +233,26 @@ static const char *walk_on(strut_follow_walk *walk, strut_follow_orbit *orbit, d
         continue;
       }
       next = turn_at_corner(walk, orbit, 10.0 * LEAST, &reason);
-      if (walk->status || !next || retraces(walk, orbit, next)) return reason;
+      if (system->status || !next || retraces(walk, orbit, next)) return reason;
     }
-    if (!straighten(walk, orbit, next)) return "";
-    if (outside(system, next->value)) {
+    straighten(walk, orbit, next);
+    if (outside(system, next->at.value[0])) {
       strut_follow_orbit *last = at_edge(walk, orbit, next);
-      if (!walk->status && !last && h > LEAST) { /* nearer to the edge first */
+      if (!system->status && !last && h > LEAST) { /* nearer to the edge first */
         h = fmax(0.35 * h, LEAST);
         steps--;
         continue;
       }
-      if (!walk->status && last) accept_step(walk, orbit, last, STRUT_FOLLOW_END);
+      if (!system->status && last) accept_step(walk, orbit, last, STRUT_FOLLOW_END);
       return "the range of the parameter ends";
     }
     if (!accept_step(walk, orbit, next, STRUT_FOLLOW_REGULAR)) return reason;
-    if (steps > CLOSED && is_closed(walk, begin, next, h)) return "the branch is closed";
+    if (steps > CLOSED && strut_follow_is_closed(walk, begin, next, h) &&
+        cosine(walk, next->tangent[0], begin->tangent[0]) > 0.8)
+      return "the branch is closed";
     if (walk->limits->progress)
       walk->limits->progress(walk->limits->progress_context,
-                             strut_follow_scaled(system, next->value));
+                             strut_follow_scaled(system, 0, next->at.value[0]));
     if (rounds <= FEW) h *= 1.5;
     h = limited(walk, next, h);
     orbit = next;
@@ -312,64 +260,34 @@ static const char *walk_on(strut_follow_walk *walk, strut_follow_orbit *orbit, d
   return "the number of steps is used up";
 }
 
-static bool allocate(strut_follow_walk *walk) {
-  strut_arena *arena = &walk->branch->arena;
-  size_t n = walk->s->n;
-  bool good =
-      (walk->right = strut_arena_allocate(arena, n + 1, sizeof(double))) &&
-      (walk->f = strut_arena_allocate(arena, n, sizeof(double))) &&
-      (walk->try_y = strut_arena_allocate(arena, walk->s->both, sizeof(double))) &&
-      (walk->trials = strut_arena_allocate(arena, 2 * (walk->s->both + n), sizeof(double))) &&
-      (walk->eigen = strut_arena_allocate(arena, (n + 1) * (n + 1), sizeof(double)));
-  if (!good) walk->status = strut_no_memory(walk->error, "");
-  return good;
+static void reverse(strut_follow_point *points, size_t count) {
+  for (size_t i = 0; 2 * i + 1 < count; i++) {
+    strut_follow_point keep = points[i];
+    points[i] = points[count - 1 - i], points[count - 1 - i] = keep;
+  }
 }
 
-/* The points of the way back, which were appended last, go before those of the way forth. */
-static void order_points(strut_follow_branch *branch, size_t forth) {
+void strut_follow_order(strut_follow_branch *branch, size_t forth) {
   size_t back = branch->count - forth;
-  strut_follow_point *point = branch->points;
-  for (size_t i = 0, k = branch->count - 1; i < k; i++, k--) {
-    strut_follow_point keep = point[i];
-    point[i] = point[k], point[k] = keep;
-  }
-  for (size_t i = back, k = branch->count - 1; i < k; i++, k--) {
-    strut_follow_point keep = point[i];
-    point[i] = point[k], point[k] = keep;
-  }
+  reverse(branch->points, branch->count);
+  reverse(branch->points + back, forth);
   branch->start = back;
-  double least = branch->count ? point[0].arc : 0.0;
-  for (size_t i = 0; i < branch->count; i++) point[i].arc -= least;
-}
-
-/* The first orbit, with a tangent in which the parameter grows. */
-static strut_follow_orbit *first_orbit(strut_follow_walk *walk, const double *unknowns) {
-  strut_follow_system *system = walk->s;
-  double *upward = strut_arena_allocate(&walk->branch->arena, system->n + 1, sizeof(double));
-  strut_follow_orbit *orbit = strut_follow_orbit_new(walk);
-  if (!upward && !walk->status) walk->status = strut_no_memory(walk->error, "");
-  if (!upward || !orbit) return NULL;
-  upward[system->n] = 1.0;
-  memcpy(orbit->y, unknowns, system->both * sizeof(double));
-  orbit->value = system->value;
-  return strut_follow_examine(walk, orbit, upward) ? orbit : NULL;
+  double least = branch->count ? branch->points[0].arc : 0.0;
+  for (size_t i = 0; i < branch->count; i++) branch->points[i].arc -= least;
 }
 
 /*
  * The first orbit of a doubled branch, off y along the direction, behind y itself as the branch's first
  * point. NULL: there is none.
  */
-static strut_follow_orbit *doubled_orbit(strut_follow_walk *walk, const double *unknowns,
+static strut_follow_orbit *doubled_orbit(strut_follow_walk *walk, strut_follow_orbit *base,
                                          const double *direction, const char **reason) {
   strut_follow_system *system = walk->s;
-  strut_follow_orbit *base = strut_follow_orbit_new(walk), *next = NULL;
+  strut_follow_orbit *next = NULL;
   int rounds;
-  if (!base) return NULL;
-  memcpy(base->y, unknowns, system->both * sizeof(double));
-  memcpy(base->tangent, direction, system->n * sizeof(double));
-  base->value = system->value;
-  if (!strut_follow_measure(walk, base)) return NULL;
-  for (double off = LEAVE; off > 0.01 * LEAVE && !next && !walk->status; off *= 0.3)
+  memcpy(base->tangent[0], direction, system->n * sizeof(double));
+  if (!strut_follow_measure(system, &walk->branch->arena, base)) return NULL;
+  for (double off = LEAVE; off > 0.01 * LEAVE && !next && !system->status; off *= 0.3)
     next = try_step(walk, base, off, &rounds, reason);
   if (!next || !strut_follow_add(walk, base, 0.0, STRUT_FOLLOW_START)) return NULL;
   walk->arc = next->distance;
@@ -378,41 +296,36 @@ static strut_follow_orbit *doubled_orbit(strut_follow_walk *walk, const double *
 
 strut_status strut_follow_branch_make(strut_follow_system *system, const double *unknowns,
                                       const double *direction, const strut_follow_limits *limits,
-                                      strut_follow_branch *branch, strut_error *error) {
-  double clock = strut_run_clock();
-  int64_t evaluations = system->spent.evaluations, maps = system->spent.maps,
-          scenes = system->spent.scenes;
+                                      strut_follow_branch *branch) {
   *branch = (strut_follow_branch){
       .repeats = system->how.repeats, .travels = system->travels, .ends = {"", ""}};
-  strut_follow_walk w = {.s = system, .limits = limits, .branch = branch, .error = error};
+  strut_follow_walk w = {.s = system, .limits = limits, .branch = branch};
   double first = fmin(FIRST, limits->longest);
-  if (!allocate(&w)) return w.status;
-  strut_follow_orbit *orbit = direction ? doubled_orbit(&w, unknowns, direction, &branch->ends[1])
-                                        : first_orbit(&w, unknowns);
+  strut_follow_orbit *orbit = strut_follow_orbit_new(system, &branch->arena, NULL);
+  if (orbit) memcpy(orbit->at.y, unknowns, system->both * sizeof(double));
+  if (orbit && direction)
+    orbit = doubled_orbit(&w, orbit, direction, &branch->ends[1]);
+  else if (orbit && !strut_follow_examine(system, &branch->arena, orbit, system->upward))
+    orbit = NULL;
   strut_follow_kind kind = direction ? STRUT_FOLLOW_REGULAR : STRUT_FOLLOW_START;
-  if (orbit && strut_follow_add(&w, orbit, w.arc, kind)) {
-    branch->ends[1] = walk_on(&w, orbit, first);
-    size_t forth = branch->count;
-    w.arc = 0.0;
-    w.backwards = true;
-    if (!w.status && !direction && strcmp(branch->ends[1], "the branch is closed") != 0) {
-      for (size_t i = 0; i <= system->n; i++) orbit->tangent[i] = -orbit->tangent[i];
-      orbit->signature.turn = -orbit->signature.turn;
-      branch->ends[0] = walk_on(&w, orbit, first);
-    } else {
-      branch->ends[0] = direction ? "the branch begins here" : branch->ends[1];
-    }
-    if (w.status == STRUT_INTERRUPTED) {
-      if (!direction) branch->ends[0] = "interrupted";
-      if (!*branch->ends[1]) branch->ends[1] = "interrupted";
-    }
-    order_points(branch, forth);
+  if (!orbit || !strut_follow_add(&w, orbit, w.arc, kind)) return system->status;
+  branch->ends[1] = walk_on(&w, orbit, first);
+  size_t forth = branch->count;
+  w.arc = 0.0;
+  w.backwards = true;
+  if (!system->status && !direction && strcmp(branch->ends[1], "the branch is closed") != 0) {
+    for (size_t i = 0; i < system->m; i++) orbit->tangent[0][i] = -orbit->tangent[0][i];
+    orbit->signature.turn = -orbit->signature.turn;
+    branch->ends[0] = walk_on(&w, orbit, first);
+  } else {
+    branch->ends[0] = direction ? "the branch begins here" : branch->ends[1];
   }
-  branch->evaluations = system->spent.evaluations - evaluations;
-  branch->maps = system->spent.maps - maps;
-  branch->scenes = system->spent.scenes - scenes;
-  branch->seconds = strut_run_clock() - clock;
-  return w.status;
+  if (system->status == STRUT_INTERRUPTED) {
+    if (!direction) branch->ends[0] = "interrupted";
+    if (!*branch->ends[1]) branch->ends[1] = "interrupted";
+  }
+  strut_follow_order(branch, forth);
+  return system->status;
 }
 
 void strut_follow_branch_free(strut_follow_branch *branch) {
@@ -423,41 +336,27 @@ void strut_follow_branch_free(strut_follow_branch *branch) {
 /* Shapes closer than this to each other, in unknowns of order one, are the same. */
 static const double SAME = 1e-4, NEAR = 0.3;
 
-/* Largest difference of two states in unknowns. */
-static double apart(const strut_follow_system *system, const double *first, const double *second) {
-  double most = 0.0;
-  for (size_t i = 0; i < system->n; i++)
-    most = fmax(most, fabs(first[system->place[i]] - second[system->place[i]]) /
-                          strut_follow_unit(system, i));
-  return most;
-}
-
-strut_status strut_follow_is_on(strut_follow_system *system, const strut_follow_branch *branch,
-                                const double *unknowns, bool *on, strut_error *error) {
-  double *here = strut_arena_allocate(&system->arena, 2 * system->both, sizeof(double));
-  double *mine = here + system->both;
+bool strut_follow_is_on(strut_follow_system *system, const strut_follow_branch *branch,
+                        const double *unknowns) {
+  double *here = strut_follow_allocate(system, &system->arena, 2 * system->both, sizeof *here);
+  double *mine = here + system->both, *f = system->buffers.f, value = system->value[0];
   char reason[200];
-  double value = system->value;
-  *on = false;
-  if (!here) return strut_no_memory(error, "");
+  if (!here) return false;
   memcpy(mine, unknowns, system->both * sizeof(double));
   strut_follow_centre(system, mine);
-  for (size_t i = 0; i + 1 < branch->count && !*on; i++) {
-    const strut_follow_point *point = &branch->points[i], *b = point + 1;
-    if ((point->value - value) * (b->value - value) > 0.0) continue;
+  for (size_t i = 0; i + 1 < branch->count && !system->status; i++) {
+    const strut_follow_motion *a = &branch->points[i].at, *b = &branch->points[i + 1].at;
+    if ((a->value[0] - value) * (b->value[0] - value) > 0.0) continue;
     double part =
-        b->value != point->value ? (value - point->value) / (b->value - point->value) : 0.0;
-    for (size_t k = 0; k < system->both; k++)
-      here[k] = point->y[k] + part * (b->y[k] - point->y[k]);
-    if (apart(system, here, mine) > NEAR) continue;
-    bool found;
-    strut_status status = strut_follow_correct(system, here, &found, reason, error);
-    if (status) return status;
-    if (!found) continue;
+        b->value[0] != a->value[0] ? (value - a->value[0]) / (b->value[0] - a->value[0]) : 0.0;
+    for (size_t k = 0; k < system->both; k++) here[k] = a->y[k] + part * (b->y[k] - a->y[k]);
+    if (strut_follow_change(system, mine, here, f) > NEAR ||
+        !strut_follow_correct(system, here, reason))
+      continue;
     strut_follow_centre(system, here);
-    *on = apart(system, here, mine) < SAME;
+    if (strut_follow_change(system, mine, here, f) < SAME) return true;
   }
-  return STRUT_OK;
+  return false;
 }
 
 /* How many fixed steps of a period a branch takes. */
@@ -471,37 +370,28 @@ static const double TURN = 0.8, USUAL_ACCURACY = 1e-3, MOST_TURN = 1.0, STABLE =
 static const double LITTLE_TRAVEL = 0.3;
 enum { LEAST_STEPS = 400, MOST_STEPS = 20000, MOST_DOUBLINGS = 3 };
 
-/* Steps of the period at the present value. */
-static strut_status steps_here(const strut_follow_system *system, double accuracy, double *steps,
-                               strut_error *error) {
-  strut_step_limit limit;
-  strut_status status = strut_step_limit_estimate(system->model, &limit, error);
-  double turn = fmin(TURN * pow(accuracy / USUAL_ACCURACY, 0.25), MOST_TURN);
-  if (status) return status;
-  double longest = STABLE * limit.of[system->map[0].method->region];
-  if (limit.largest_frequency > 0.0) longest = fmin(longest, turn / limit.largest_frequency);
-  *steps = fmax(*steps, ceil(system->period / longest));
-  return STRUT_OK;
-}
-
-strut_status strut_follow_choose_steps(strut_follow_system *system, double accuracy, bool *good,
-                                       strut_error *error) {
-  const double value = system->value, at[3] = {system->low, system->high, value};
+bool strut_follow_choose_steps(strut_follow_system *system, double accuracy) {
+  const double own = system->value[0], other = system->value[1];
+  const double at[3][2] = {{system->low[0], other}, {system->high[0], other}, {own, other}};
   double steps = LEAST_STEPS;
+  double turn = fmin(TURN * pow(accuracy / USUAL_ACCURACY, 0.25), MOST_TURN);
   for (int k = 0; k < 3; k++) {
-    strut_status status = strut_follow_set_value(system, at[k], error);
-    if (!status) status = steps_here(system, accuracy, &steps, error);
-    if (status) return status;
+    strut_step_limit limit;
+    if (!strut_follow_set_value(system, at[k])) return false;
+    system->status = strut_step_limit_estimate(system->model, &limit, system->error);
+    if (system->status) return false;
+    double longest = STABLE * limit.of[system->map[0].method->region];
+    if (limit.largest_frequency > 0.0) longest = fmin(longest, turn / limit.largest_frequency);
+    steps = fmax(steps, ceil(system->period / longest));
   }
-  *good = steps <= MOST_STEPS;
-  return *good ? strut_follow_set_steps(system, (int64_t)steps, error) : STRUT_OK;
+  return steps <= MOST_STEPS &&
+         strut_follow_set_periods(system, system->how.repeats, (int64_t)steps);
 }
 
 /* What a branch tells of the motion y: velocity [m/s] and amplitude over a period [m/s]. */
 static bool tell_motion(strut_follow_system *system, const double *unknowns, double *velocity,
                         double *swing) {
-  double *end = strut_arena_allocate(&system->arena, system->both, sizeof *end);
-  if (!end) return false;
+  double *end = system->buffers.end;
   memcpy(end, unknowns, system->both * sizeof *end);
   strut_follow_period p = strut_follow_apply(system, end, true);
   *velocity = p.travel / (system->period * system->how.repeats);
@@ -509,25 +399,24 @@ static bool tell_motion(strut_follow_system *system, const double *unknowns, dou
   return isfinite(p.travel);
 }
 
-strut_status strut_follow_check_steps(strut_follow_system *system, double *unknowns,
-                                      double accuracy, strut_error *error) {
-  double *fine = strut_arena_allocate(&system->arena, system->both, sizeof *fine);
+void strut_follow_check_steps(strut_follow_system *system, double *unknowns, double accuracy) {
+  double *fine = strut_follow_allocate(system, &system->arena, system->both, sizeof *fine);
   double u[2] = {0}, swing[2] = {0};
   char reason[200];
-  if (!fine) return strut_no_memory(error, "");
-  for (int k = 0; k < MOST_DOUBLINGS; k++) {
+  for (int k = 0; k < MOST_DOUBLINGS && !system->status; k++) {
     int64_t steps = system->how.steps_per_period;
     bool found = tell_motion(system, unknowns, &u[0], &swing[0]);
     memcpy(fine, unknowns, system->both * sizeof *fine);
-    strut_status status = strut_follow_set_steps(system, 2 * steps, error);
-    if (!status && found) status = strut_follow_correct(system, fine, &found, reason, error);
-    found = found && !status && tell_motion(system, fine, &u[1], &swing[1]);
+    found = strut_follow_set_periods(system, system->how.repeats, 2 * steps) && found &&
+            strut_follow_correct(system, fine, reason) &&
+            tell_motion(system, fine, &u[1], &swing[1]);
     double travel = system->travels ? fmax(fabs(u[0]), LITTLE_TRAVEL * swing[0]) : HUGE_VAL;
     bool near = found && fabs(u[1] - u[0]) <= accuracy * travel &&
                 (system->travels || fabs(swing[1] - swing[0]) <= accuracy * swing[0]);
-    if (!status && (near || !found)) return strut_follow_set_steps(system, steps, error);
-    if (status) return status;
+    if (near || !found) {
+      strut_follow_set_periods(system, system->how.repeats, steps);
+      return;
+    }
     memcpy(unknowns, fine, system->both * sizeof *unknowns);
   }
-  return STRUT_OK;
 }

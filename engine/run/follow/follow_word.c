@@ -144,50 +144,29 @@ static strut_follow_kind kind_of(const strut_follow_system *system,
   return STRUT_FOLLOW_SWITCH;
 }
 
-/* Is the mode between two flights? */
-static bool between_flights(const strut_follow_word *word, const strut_follow_letter *letter) {
-  int8_t before = -1, after = -1;
+/* The mode of the same item before or behind a letter, around the period; -1: there is no other. */
+static int neighbour(const strut_follow_word *word, const strut_follow_letter *letter,
+                     bool behind) {
   size_t at = (size_t)(letter - word->letter);
-  for (size_t k = 1; k <= word->count && before < 0; k++) {
-    const strut_follow_letter *follow_letter = &word->letter[(at + word->count - k) % word->count];
-    if (follow_letter->item == letter->item && follow_letter != letter)
-      before = follow_letter->mode;
+  for (size_t k = 1; k < word->count; k++) {
+    const strut_follow_letter *other =
+        &word->letter[(at + (behind ? k : word->count - k)) % word->count];
+    if (other->item == letter->item) return other->mode;
   }
-  for (size_t k = 1; k <= word->count && after < 0; k++) {
-    const strut_follow_letter *o = &word->letter[(at + k) % word->count];
-    if (o->item == letter->item && o != letter) after = o->mode;
-  }
-  return before == STRUT_LOGGED_OPEN && after == STRUT_LOGGED_OPEN;
+  return -1;
 }
 
 /* A sentence on what begins or ceases for a moment. */
 static const char *sentence(strut_follow_kind kind, bool begins, const char *name,
                             strut_arena *arena) {
-  const char *verb = begins ? "begins to" : "no longer";
-  const char *what = "";
-  switch (kind) {
-    case STRUT_FOLLOW_TOUCH:
-      what = begins ? "touch the ground once more" : "touches it once more";
-      break;
-    case STRUT_FOLLOW_LIFT:
-      what = begins ? "leave the ground for a moment" : "leaves the ground for a moment";
-      break;
-    case STRUT_FOLLOW_STICK: what = begins ? "stick for a moment" : "sticks for a moment"; break;
-    case STRUT_FOLLOW_SLIP: what = begins ? "slip for a moment" : "slips for a moment"; break;
-    case STRUT_FOLLOW_SWITCH:
-      what = begins ? "change its mode for a moment" : "changes its mode for a moment";
-      break;
-    case STRUT_FOLLOW_REGULAR:
-    case STRUT_FOLLOW_START:
-    case STRUT_FOLLOW_END:
-    case STRUT_FOLLOW_FOLD:
-    case STRUT_FOLLOW_BRANCHING:
-    case STRUT_FOLLOW_DOUBLING:
-    case STRUT_FOLLOW_TORUS:
-    case STRUT_FOLLOW_MEETING:
-    case STRUT_FOLLOW_KINDS: break;
-  }
-  return strut_arena_format(arena, "%s %s %s", name, verb, what);
+  static const char *const what[STRUT_FOLLOW_KINDS][2] = {
+      [STRUT_FOLLOW_TOUCH] = {"touches it once more", "touch the ground once more"},
+      [STRUT_FOLLOW_LIFT] = {"leaves the ground for a moment", "leave the ground for a moment"},
+      [STRUT_FOLLOW_STICK] = {"sticks for a moment", "stick for a moment"},
+      [STRUT_FOLLOW_SLIP] = {"slips for a moment", "slip for a moment"},
+      [STRUT_FOLLOW_SWITCH] = {"changes its mode for a moment", "change its mode for a moment"}};
+  return strut_arena_format(arena, "%s %s %s", name, begins ? "begins to" : "no longer",
+                            what[kind][begins]);
 }
 
 static bool compare_orders(const strut_follow_system *system, const strut_follow_word *first,
@@ -218,7 +197,8 @@ bool strut_follow_words_compare(const strut_follow_system *system, const strut_f
     const strut_follow_letter *letter = shortest(longer, item);
     if (!letter) continue;
     bool touch = letter->item < system->log->contacts && letter->mode != STRUT_LOGGED_OPEN &&
-                 between_flights(longer, letter);
+                 neighbour(longer, letter, false) == STRUT_LOGGED_OPEN &&
+                 neighbour(longer, letter, true) == STRUT_LOGGED_OPEN;
     point->kind = kind_of(system, letter, touch);
     if (touch) point->kind = STRUT_FOLLOW_TOUCH;
     point->node = strut_arena_format(arena, "%s", item_name(system, item));
@@ -232,16 +212,14 @@ bool strut_follow_words_compare(const strut_follow_system *system, const strut_f
   return compare_orders(system, first, second, arena, point);
 }
 
-static const char *mode_text(const strut_follow_system *system, const strut_follow_letter *letter) {
-  if (letter->item >= system->log->contacts) return letter->mode > 0 ? "*" : "o";
-  switch ((strut_logged_contact)letter->mode) {
-    case STRUT_LOGGED_OPEN: return "^";
-    case STRUT_LOGGED_SLIDE: return "_";
-    case STRUT_LOGGED_FORWARD: return ">";
-    case STRUT_LOGGED_BACKWARD: return "<";
-    case STRUT_LOGGED_STICK: return "=";
-  }
-  return "?";
+static char sign_of(const strut_follow_system *system, const strut_follow_letter *letter) {
+  static const char signs[] = {[STRUT_LOGGED_OPEN] = '^',
+                               [STRUT_LOGGED_SLIDE] = '_',
+                               [STRUT_LOGGED_FORWARD] = '>',
+                               [STRUT_LOGGED_BACKWARD] = '<',
+                               [STRUT_LOGGED_STICK] = '='};
+  if (letter->item >= system->log->contacts) return letter->mode > 0 ? '*' : 'o';
+  return signs[letter->mode];
 }
 
 const char *strut_follow_word_text(const strut_follow_system *system, const strut_follow_word *word,
@@ -251,8 +229,8 @@ const char *strut_follow_word_text(const strut_follow_system *system, const stru
   text[0] = '\0';
   for (size_t i = 0; i < word->count; i++) {
     char one[80];
-    int n = snprintf(one, sizeof one, "%s%.60s%s", i ? " " : "",
-                     item_name(system, word->letter[i].item), mode_text(system, &word->letter[i]));
+    int n = snprintf(one, sizeof one, "%s%.60s%c", i ? " " : "",
+                     item_name(system, word->letter[i].item), sign_of(system, &word->letter[i]));
     if (used + (size_t)n + 5 >= sizeof text) {
       memcpy(text + used, " ...", 5);
       break;

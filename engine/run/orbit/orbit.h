@@ -56,12 +56,6 @@ double strut_period_map_size(const strut_period_map *map, const double *change);
 /** NULL-safe on a zeroed map. */
 void strut_period_map_free(strut_period_map *map);
 
-/**
- * x (n) becomes a^-1 x by elimination with pivots; a (n, n), row by row, is lost. False where a pivot is not
- * above `least`.
- */
-bool strut_solve_dense(double *a, double *vector, size_t n, double least);
-
 /* An accurate periodic motion from a coarse one, by defect correction on the period map.
  *
  * Let C and F be the period maps of a coarse and of an accurate method, and y a fixed point of C. F

@@ -134,28 +134,3 @@ void strut_period_map_free(strut_period_map *map) {
   strut_state_free(map->state);
   *map = (strut_period_map){.model = NULL};
 }
-
-bool strut_solve_dense(double *a, double *vector, size_t n, double least) {
-  for (size_t p = 0; p < n; p++) {
-    size_t best = p;
-    for (size_t i = p + 1; i < n; i++)
-      if (fabs(a[i * n + p]) > fabs(a[best * n + p])) best = i;
-    if (!(fabs(a[best * n + p]) > least)) return false;
-    for (size_t j = 0; j < n && best != p; j++) {
-      double keep = a[p * n + j];
-      a[p * n + j] = a[best * n + j], a[best * n + j] = keep;
-    }
-    double keep = vector[p];
-    vector[p] = vector[best], vector[best] = keep;
-    for (size_t i = p + 1; i < n; i++) {
-      double factor = a[i * n + p] / a[p * n + p];
-      for (size_t j = p; j < n; j++) a[i * n + j] -= factor * a[p * n + j];
-      vector[i] -= factor * vector[p];
-    }
-  }
-  for (size_t i = n; i-- > 0;) {
-    for (size_t j = i + 1; j < n; j++) vector[i] -= a[i * n + j] * vector[j];
-    vector[i] /= a[i * n + i];
-  }
-  return true;
-}

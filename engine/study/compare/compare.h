@@ -17,51 +17,79 @@
 #include "engine/scene/experiment.h"
 #include "engine/scene/things.h"
 
-enum { STRUT_COMPARE_MOST = 100, STRUT_COMPARE_FREQUENCIES = 3 };
+enum { STRUT_COMPARE_MOST = 100 };
 
-/** What is compared, in order: X(NAME, key, unit); unit "" of counts, "1" of ratios. */
+/**
+ * What is compared, in order: X(NAME, key, unit, GROUP, value, reason); unit "" of counts, "1" of ratios. A group is
+ * computed at once, see compare.c, where `f` has its facts; the reason is that of a value which is not finite.
+ */
 #define STRUT_COMPARE_TABLE(X)                                                                     \
-  X(NODES, "nodes", "")                                                                            \
-  X(MEMBERS, "members", "")                                                                        \
-  X(BARS, "bars", "")                                                                              \
-  X(SPRINGS, "springs", "")                                                                        \
-  X(CABLES, "cables", "")                                                                          \
-  X(CONTACTS, "contacts", "")                                                                      \
-  X(ACTUATORS, "actuators", "")                                                                    \
-  X(MASS, "mass", "kg")                                                                            \
-  X(FREEDOMS, "degrees_of_freedom", "")                                                            \
-  X(SELF_STRESSES, "self_stress_states", "") /* as drawn, like the next three */                   \
-  X(MECHANISMS, "mechanisms", "")    /* all that stretch no member but rigid-body motions */       \
-  X(FINITE, "finite_mechanisms", "") /* of them */                                                 \
-  X(RIGID_MOTIONS, "rigid_body_motions", "")                                                       \
-  X(STATES, "stable_states", "")           /* equilibria that stand */                             \
-  X(LOWEST_ENERGY, "lowest_energy", "J")   /* of those */                                          \
-  X(ENERGY_SPAN, "energy_span", "J")       /* from the lowest to the highest */                    \
-  X(LOWEST_BARRIER, "lowest_barrier", "J") /* out of the state that a run starts in */             \
-  X(PRESTRESS, "prestress", "N")           /* root of the mean square of member forces at rest */  \
-  X(TENSION, "largest_tension", "N")       /* largest, at rest */                                  \
-  X(COMPRESSION, "largest_compression", "N") /* largest, at rest; positive */                      \
-  X(FREQUENCY_1, "frequency_1", "Hz")        /* lowest elastic ones, contacts sliding */           \
-  X(FREQUENCY_2, "frequency_2", "Hz")                                                              \
-  X(FREQUENCY_3, "frequency_3", "Hz")                                                              \
-  X(STIFFNESS_X, "stiffness_x", "N/m") /* of the softest node under a unit load */                 \
-  X(STIFFNESS_Y, "stiffness_y", "N/m")                                                             \
-  X(STEP_LIMIT, "step_limit", "s") /* rk4's */                                                     \
-  X(FRICTION, "friction", "1")     /* sliding, where all contacts agree */                         \
-  X(DRIVE_FREQUENCY, "drive_frequency", "Hz")                                                      \
-  X(DRIVE_AMPLITUDE, "drive_amplitude", "m")                                                       \
-  X(VELOCITY, "velocity", "m/s")                                                                   \
-  X(VELOCITY_ERROR, "velocity_error", "1")        /* expected, as a part of it */                  \
-  X(TRAVEL, "travel_per_period", "m")             /* per period */                                 \
-  X(DRIVE_ENERGY, "drive_energy_per_period", "J") /* per period */                                 \
-  X(DRIVE_POWER, "drive_power", "W")                                                               \
-  X(TRANSPORT, "cost_of_transport", "1")          /* drive power over weight times speed */        \
-  X(DUTY, "contact_duty", "1")                    /* mean over the contacts that touch at all */   \
-  X(EVALUATIONS, "evaluations_per_second", "1/s") /* of the forces, per simulated second */        \
-  X(CPU, "cpu_per_second", "s/s")                 /* seconds per simulated second: a measurement */
+  X(NODES, "nodes", "", STRUCTURE, (double)f->scene->node_count, NULL)                             \
+  X(MEMBERS, "members", "", STRUCTURE, (double)f->scene->member_count, NULL)                       \
+  X(BARS, "bars", "", STRUCTURE, count_members(f, STRUT_BAR), NULL)                                \
+  X(SPRINGS, "springs", "", STRUCTURE, count_members(f, STRUT_SPRING), NULL)                       \
+  X(CABLES, "cables", "", STRUCTURE, count_members(f, STRUT_CABLE), NULL)                          \
+  X(CONTACTS, "contacts", "", STRUCTURE, (double)f->scene->contact_count, NULL)                    \
+  X(ACTUATORS, "actuators", "", STRUCTURE, (double)f->scene->actuator_count, NULL)                 \
+  X(MASS, "mass", "kg", STRUCTURE, total_mass(f->scene), NULL)                                     \
+  X(FREEDOMS, "degrees_of_freedom", "", STRUCTURE, free_coordinates(f->scene), NULL)               \
+  X(SELF_STRESSES, "self_stress_states", "", DRAWN, f->drawn.states.count, NULL)                   \
+  /* all that stretch no member but rigid-body motions */                                          \
+  X(MECHANISMS, "mechanisms", "", DRAWN,                                                           \
+    f->drawn.mechanisms.count - f->drawn.mechanisms.rigid_body, NULL)                              \
+  X(FINITE, "finite_mechanisms", "", DRAWN, f->drawn.mechanisms.finite, NULL)                      \
+  X(RIGID_MOTIONS, "rigid_body_motions", "", DRAWN, f->drawn.mechanisms.rigid_body, NULL)          \
+  X(STATES, "stable_states", "", STABLE, (double)c->state_count, NULL)                             \
+  X(LOWEST_ENERGY, "lowest_energy", "J", STABLE, state_energy(c, 0), why_no_state(f))              \
+  X(ENERGY_SPAN, "energy_span", "J", STABLE,                                                       \
+    state_energy(c, c->state_count - 1) - state_energy(c, 0), why_no_state(f))                     \
+  /* out of the state that a run starts in */                                                      \
+  X(LOWEST_BARRIER, "lowest_barrier", "J", STABLE, lowest_barrier(f),                              \
+    !c->state_count ? why_no_state(f)                                                              \
+    : f->start < 0  ? "the start is in none of the listed states"                                  \
+                    : "no path to another state is known")                                          \
+  /* root of the mean square of member forces, and the largest ones */                             \
+  X(PRESTRESS, "prestress", "N", FORCES, root_mean_square(f), no_members)                          \
+  X(TENSION, "largest_tension", "N", FORCES, largest_force(f, 1.0), no_members)                    \
+  X(COMPRESSION, "largest_compression", "N", FORCES, largest_force(f, -1.0), no_members)           \
+  /* elastic, contacts sliding */                                                                  \
+  X(FREQUENCY_1, "frequency_1", "Hz", FREQUENCIES, frequency(f, 0), fewer_modes)                   \
+  X(FREQUENCY_2, "frequency_2", "Hz", FREQUENCIES, frequency(f, 1), fewer_modes)                   \
+  X(FREQUENCY_3, "frequency_3", "Hz", FREQUENCIES, frequency(f, 2), fewer_modes)                   \
+  /* of the softest node under a unit load */                                                      \
+  X(STIFFNESS_X, "stiffness_x", "N/m", STIFFNESS, least_stiffness(c, 0), held)                     \
+  X(STIFFNESS_Y, "stiffness_y", "N/m", STIFFNESS, least_stiffness(c, 1), held)                     \
+  /* rk4's */                                                                                      \
+  X(STEP_LIMIT, "step_limit", "s", LIMIT, f->plan.runnable ? f->plan.step_limit : (double)NAN,     \
+    f->plan.runnable ? "the step is not limited" : "a free node has no mass")                      \
+  /* sliding */                                                                                    \
+  X(FRICTION, "friction", "1", STRUCTURE, common_friction(f->scene),                               \
+    f->scene->contact_count ? "friction differs between contacts" : "no contact nodes")            \
+  X(DRIVE_FREQUENCY, "drive_frequency", "Hz", STRUCTURE, drive_frequency(f),                       \
+    why_no_drive(f, "the drive is not periodic"))                                                  \
+  X(DRIVE_AMPLITUDE, "drive_amplitude", "m", STRUCTURE, drive_amplitude(f),                        \
+    why_no_drive(f, "the drive has no single amplitude"))                                          \
+  X(VELOCITY, "velocity", "m/s", MOTION, f->run.velocity, NULL)                                    \
+  X(VELOCITY_ERROR, "velocity_error", "1", MOTION, f->run.accuracy.expected, NULL) /* expected */  \
+  X(TRAVEL, "travel_per_period", "m", MOTION, f->run.velocity * f->period, no_periods)             \
+  X(DRIVE_ENERGY, "drive_energy_per_period", "J", WINDOW, f->power * f->period,                    \
+    f->scene->actuator_count ? no_periods : no_drive)                                              \
+  X(DRIVE_POWER, "drive_power", "W", WINDOW, f->power, f->scene->actuator_count ? NULL : no_drive) \
+  /* drive power over weight times speed */                                                        \
+  X(TRANSPORT, "cost_of_transport", "1", WINDOW, cost_of_transport(f),                             \
+    !f->scene->actuator_count   ? no_drive                                                         \
+    : !(weight(f->scene) > 0.0) ? "there is no weight"                                             \
+    : c->still                  ? "the velocity is zero within its error"                          \
+                                : "the drives do no work")                                                          \
+  /* mean over the contacts that touch at all */                                                   \
+  X(DUTY, "contact_duty", "1", WINDOW, mean_duty(c), "nothing touches a ground")                   \
+  /* of the forces; seconds per simulated second: a measurement */                                 \
+  X(EVALUATIONS, "evaluations_per_second", "1/s", MOTION, evaluations(&f->run) / f->run.duration,  \
+    NULL)                                                                                          \
+  X(CPU, "cpu_per_second", "s/s", MOTION, f->cpu / f->run.duration, NULL)
 
 typedef enum strut_compare_quantity {
-#define STRUT_COMPARE_ENUM(name, key, unit) STRUT_COMPARE_##name,
+#define STRUT_COMPARE_ENUM(name, ...) STRUT_COMPARE_##name,
   STRUT_COMPARE_TABLE(STRUT_COMPARE_ENUM)
 #undef STRUT_COMPARE_ENUM
       STRUT_COMPARE_QUANTITIES

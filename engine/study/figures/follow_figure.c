@@ -94,10 +94,11 @@ static void add_branch(picture *self, const strut_follow_branch *branch, size_t 
   begin_line(self, look);
   for (size_t k = 0; k < branch->count; k++) {
     const strut_follow_point *point = &branch->points[k];
-    double height = branch->travels ? point->velocity : point->amplitude;
-    add_point(self, point->value, height, point->stable);
+    double height = branch->travels ? point->velocity : point->amplitude,
+           value = point->at.value[0];
+    add_point(self, value, height, point->stable);
     if (is_special(point->kind) || (point->detail && point->changes))
-      mark_point(self, point->kind, point->value, height, strut_follow_kind_word(point->kind),
+      mark_point(self, point->kind, value, height, strut_follow_kind_word(point->kind),
                  point->node);
   }
 }
@@ -128,12 +129,13 @@ static size_t look_of(strut_follow_kind kind) {
   return look;
 }
 
-static void add_curve(picture *self, const strut_follow_curve *curve) {
+static void add_curve(picture *self, const strut_follow_branch *curve) {
   begin_line(self, look_of(curve->kind));
   for (size_t k = 0; k < curve->count; k++) {
-    const strut_follow_curve_point *point = &curve->points[k];
-    add_point(self, point->value[0], point->value[1], point->stable);
-    if (point->cusp) mark_point(self, curve->kind, point->value[0], point->value[1], "cusp", NULL);
+    const strut_follow_point *point = &curve->points[k];
+    double x = point->at.value[0], y = point->at.value[1];
+    add_point(self, x, y, point->stable);
+    if (point->kind == STRUT_FOLLOW_CUSP) mark_point(self, curve->kind, x, y, "cusp", NULL);
   }
 }
 

@@ -16,73 +16,58 @@ enum { STEPS_PER_PERIOD = 200 };
 
 /* ---- following ---- */
 
-static void note(strut_follow_result *result, const char *text) {
-  if (result->note_count == sizeof result->notes / sizeof result->notes[0]) return;
-  snprintf(result->notes[result->note_count++], STRUT_FOLLOW_NOTE, "%s", text);
-}
-
 /* The curve through a special point of a branch, unless it is known. */
-static strut_status follow_from(const strut_follow_options *options, strut_follow_result *result,
-                                strut_follow_surface *surface, const strut_follow_point *point,
-                                strut_error *error) {
+static void follow_from(const strut_follow_options *options, strut_follow_result *result,
+                        strut_follow_system *system, const strut_follow_point *point) {
   bool gap = point->kind == STRUT_FOLLOW_TOUCH || point->kind == STRUT_FOLLOW_LIFT;
-  const strut_follow_curve_start start = {.kind = point->kind,
-                                          .node = gap ? point->node : NULL,
-                                          .value = {point->value, options->second.value},
-                                          .y = point->y};
-  const strut_follow_curve_limits limits = {
+  const strut_follow_curve_start start = {point->kind, gap ? point->node : NULL, point->at};
+  const strut_follow_limits limits = {
       .steps = options->steps > 0 ? options->steps : STRUT_FOLLOW_USUAL_CURVE_STEPS,
       .longest = LONGEST};
   for (size_t i = 0; i < result->curve_count; i++)
-    if (strut_follow_curve_passes(surface, &result->curves[i], &start)) return STRUT_OK;
-  if (result->curve_count == STRUT_FOLLOW_MOST_CURVES) return STRUT_OK;
-  strut_follow_curve *curve = &result->curves[result->curve_count];
-  int64_t steps = surface->s.how.steps_per_period;
-  if (gap && steps < STEPS_PER_PERIOD) surface->s.how.steps_per_period = STEPS_PER_PERIOD;
-  strut_status status = strut_follow_curve_make(surface, &start, &limits, curve, error);
-  surface->s.how.steps_per_period = steps;
+    if (strut_follow_curve_passes(system, &result->curves[i], &start)) return;
+  if (result->curve_count == STRUT_FOLLOW_MOST_CURVES) return;
+  strut_follow_branch *curve = &result->curves[result->curve_count];
+  int64_t steps = system->how.steps_per_period;
+  if (gap && steps < STEPS_PER_PERIOD)
+    strut_follow_set_periods(system, system->how.repeats, STEPS_PER_PERIOD);
+  strut_status status = strut_follow_curve_make(system, &start, &limits, curve);
+  strut_follow_set_periods(system, system->how.repeats, steps);
   if (curve->count > 1 && (!status || status == STRUT_INTERRUPTED)) {
     result->curve_count++;
-    return status;
+    return;
   }
-  if (!status) {
-    char text[STRUT_FOLLOW_NOTE];
-    const char *word = strut_follow_kind_word(point->kind);
-    snprintf(text, sizeof text, "the curve of the %s%s%.60s at %s is not followed: %.120s", word,
-             gap ? " of " : "", gap ? point->node : "",
-             strut_quantity_of_any(point->value, 6, *result->unit ? result->unit : "1").text,
-             curve->count ? curve->ends[1] : curve->ends[0]);
-    note(result, text);
-  }
-  strut_follow_curve_free(curve);
-  return status;
+  if (!status)
+    strut_follow_note(
+        result, "the curve of the %s%s%.60s at %s is not followed: %.120s",
+        strut_follow_kind_word(point->kind), gap ? " of " : "", gap ? point->node : "",
+        strut_quantity_of_any(point->at.value[0], 6, *result->unit ? result->unit : "1").text,
+        curve->count ? curve->ends[1] : curve->ends[0]);
+  strut_follow_branch_free(curve);
 }
 
 strut_status strut_follow_find_curves(const strut_follow_options *options,
                                       strut_follow_result *result, const strut_follow_system *like,
                                       strut_error *error) {
-  strut_follow_surface u = {.scenes = options->second.scenes,
-                            .low = {options->low, options->second.low},
-                            .high = {options->high, options->second.high},
-                            .s = {.how.method = like->how.method,
-                                  .how.tolerance = like->how.tolerance,
-                                  .how.steps_per_period = like->how.steps_per_period,
-                                  .how.repeats = 1,
-                                  .how.threads = options->threads,
-                                  .how.interrupt = options->interrupt}};
+  strut_follow_system plane = {.scenes = options->scenes,
+                               .parameters = 2,
+                               .low = {options->low, options->second.low},
+                               .high = {options->high, options->second.high},
+                               .how = like->how};
+  plane.how.repeats = 1;
   const double value[2] = {0.5 * (options->low + options->high), options->second.value};
-  strut_status status = strut_follow_surface_open(&u, value, error);
-  u.s.length = like->length, u.s.speed = like->speed;
-  for (size_t i = 0; i < result->count && !status; i++) {
+  strut_status status = strut_follow_open(&plane, value, error);
+  plane.length = like->length, plane.speed = like->speed;
+  for (size_t i = 0; i < result->count; i++) {
     const strut_follow_branch *branch = &result->branches[i].branch;
     for (size_t k = 0; k < branch->count && !status; k++) {
       if (!strut_follow_curve_known(branch->points[k].kind)) continue;
-      u.s.how.repeats = branch->repeats;
-      u.s.value = (double)NAN; /* the maps are made again, with their repeats and steps */
-      status = follow_from(options, result, &u, &branch->points[k], error);
+      strut_follow_set_periods(&plane, branch->repeats, plane.how.steps_per_period);
+      follow_from(options, result, &plane, &branch->points[k]);
+      status = plane.status;
     }
   }
-  strut_follow_surface_close(&u);
+  strut_follow_close(&plane);
   return status;
 }
 
@@ -94,9 +79,9 @@ strut_status strut_follow_find_curves(const strut_follow_options *options,
   X(NULL, "", TEXT(c->node), "", .column = {"node"})                                               \
   X(NULL, "", COUNT(c->repeats), "", .column = {"period_multiple"})                                \
   X(NULL, "", NUMBER(p->arc), "", .column = {"arclength"})                                         \
-  X("values", "", NUMBERS(p->value, 2), "of both parameters")                                      \
-  X(NULL, "", CALLED(r->name, r->unit, p->value[0]), "", .column = {""})                           \
-  X(NULL, "", CALLED(r->second.name, r->second.unit, p->value[1]), "", .column = {""})             \
+  X("values", "", NUMBERS(p->at.value, 2), "of both parameters")                                   \
+  X(NULL, "", CALLED(r->name, r->unit, p->at.value[0]), "", .column = {""})                        \
+  X(NULL, "", CALLED(r->second.name, r->second.unit, p->at.value[1]), "", .column = {""})          \
   X("velocity", "m/s", NUMBER(p->velocity), "mean", .column = {"velocity [m/s]"})                  \
   X(NULL, "", NUMBER(p->work), "", .column = {"work [J]"})                                         \
   X(NULL, "", NUMBER(c->travels ? (double)NAN : p->amplitude), "", .column = {"amplitude [m]"})    \
@@ -104,27 +89,29 @@ strut_status strut_follow_find_curves(const strut_follow_options *options,
   X("stable", "", FLAG(p->stable), "whether it is, beside the curve")                              \
   X(NULL, "", TEXT(p->stable ? "yes" : "no"), "", .column = {"stable"})                            \
   X(NULL, "", PART(p->multiplier), "", .rows = &strut_follow_multiplier_values)                    \
-  X(NULL, "",                                                                                      \
-    TEXT(p->cusp                 ? "cusp"                                                          \
-         : of->index == c->start ? "start"                                                         \
-                                 : ""),                                                            \
-    "", .column = {"point"})
+  X(NULL, "", TEXT(of->index == c->start ? "start" : strut_follow_kind_word(p->kind)), "",         \
+    .column = {"point"})
 STRUT_VALUES_HERE(point_values, POINT, const strut_follow_result *r = strut_result_whole(of);
-                  const strut_follow_curve *c = of->outer->at;
-                  const strut_follow_curve_point *p = of->at)
+                  const strut_follow_branch *c = of->outer->at;
+                  const strut_follow_point *p = of->at)
+
+static const strut_follow_point *cusp_at(const strut_result_object *of, size_t k) {
+  const strut_follow_point *point = &((const strut_follow_branch *)of->at)->points[k];
+  return point->kind == STRUT_FOLLOW_CUSP ? point : NULL;
+}
 
 static strut_value cusp_of(const strut_result_object *of, size_t k) {
-  const strut_follow_curve_point *point = &((const strut_follow_curve *)of->at)->points[k];
-  return STRUT_VALUE_AS_IF(point->cusp, NUMBERS(point->value, 2));
+  const strut_follow_point *cusp = cusp_at(of, k);
+  return STRUT_VALUE_AS_IF(cusp, NUMBERS(cusp->at.value, 2));
 }
 
 /* A parameter's value at a cusp. */
 static strut_value cusp_value_of(const strut_result_object *of, size_t k) {
   const strut_follow_result *result = strut_result_whole(of);
-  const strut_follow_curve_point *point = &((const strut_follow_curve *)of->at)->points[k / 2];
-  return STRUT_VALUE_AS_IF(point->cusp,
-                           CALLED(k % 2 ? result->second.name : result->name,
-                                  k % 2 ? result->second.unit : result->unit, point->value[k % 2]));
+  const strut_follow_point *cusp = cusp_at(of, k / 2);
+  return STRUT_VALUE_AS_IF(
+      cusp, CALLED(k % 2 ? result->second.name : result->name,
+                   k % 2 ? result->second.unit : result->unit, cusp->at.value[k % 2]));
 }
 
 #define CURVE(X)                                                                                   \
@@ -137,7 +124,7 @@ static strut_value cusp_value_of(const strut_result_object *of, size_t k) {
   X("cusps", "", ARRAY(c->count, cusp_of), "values of both parameters where two folds meet")       \
   X(NULL, "", ARRAY(2 * c->count, cusp_value_of), "", .label = {"cusps"})                          \
   X("points", "", LIST(c->points, c->count), "all", .rows = &point_values)
-STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_curve *c = of->at)
+STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_branch *c = of->at)
 
 #define CURVES(X)                                                                                  \
   X("and", "", TEXT(r->second.name), "the second parameter", .label = {""})                        \
@@ -190,11 +177,7 @@ static bool comes_back(strut_follow_system *system, const double *unknowns, cons
   for (int period = 0; period < PERIODS; period += system->how.repeats) {
     if (!isfinite(strut_follow_apply(system, work, false).travel)) return false;
     strut_follow_centre(system, work);
-    double off = 0.0;
-    for (size_t i = 0; i < system->n; i++)
-      off = fmax(off, fabs(work[system->place[i]] - unknowns[system->place[i]]) /
-                          strut_follow_unit(system, i));
-    if (off < NEAR) return true;
+    if (strut_follow_change(system, unknowns, work, system->buffers.f) < NEAR) return true;
   }
   return false;
 }
@@ -206,23 +189,19 @@ static double smallest_kick(strut_follow_system *system, const double *unknowns,
   while (comes_back(system, unknowns, self, high, work)) {
     low = high, high *= GROWTH;
     if (high > LARGEST * system->speed) return HUGE_VAL;
-    if (system->how.interrupt && *system->how.interrupt) return (double)NAN;
+    if (strut_follow_interrupted(system)) return (double)NAN;
   }
-  for (int i = 0; i < HALVINGS; i++) {
+  for (int i = 0; i < HALVINGS && !strut_follow_interrupted(system); i++) {
     double middle = low > 0.0 ? sqrt(low * high) : 0.5 * high;
     *(comes_back(system, unknowns, self, middle, work) ? &low : &high) = middle;
-    if (system->how.interrupt && *system->how.interrupt) return (double)NAN;
   }
   return high;
 }
 
-strut_status strut_follow_push(strut_follow_system *system, const double *unknowns,
-                               strut_follow_basin *basin, strut_error *error) {
-  double *work = strut_arena_allocate(&system->arena, system->both, sizeof(double));
-  if (!work) return strut_no_memory(error, "");
-  for (int i = 0; i < STRUT_FOLLOW_KICKS; i++)
+bool strut_follow_push(strut_follow_system *system, const double *unknowns,
+                       strut_follow_basin *basin) {
+  double *work = strut_follow_allocate(system, &system->arena, system->both, sizeof *work);
+  for (int i = 0; i < STRUT_FOLLOW_KICKS && !system->status; i++)
     basin->kick[i] = smallest_kick(system, unknowns, &kicks[i], work);
-  if (system->how.interrupt && *system->how.interrupt)
-    return strut_fail(error, STRUT_INTERRUPTED, "interrupted while motions were kicked");
-  return STRUT_OK;
+  return !system->status;
 }

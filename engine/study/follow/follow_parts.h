@@ -13,8 +13,13 @@
 #include "engine/study/sweep/sweep.h"
 
 /** Finds the smallest kicks that a stable motion y (both) at the system's value does not survive. */
-strut_status strut_follow_push(strut_follow_system *system, const double *unknowns,
-                               strut_follow_basin *basin, strut_error *error);
+bool strut_follow_push(strut_follow_system *system, const double *unknowns,
+                       strut_follow_basin *basin);
+/** A copy of a text that belongs to the result; NULL of NULL, or out of memory. */
+char *strut_follow_text(strut_follow_result *result, const char *text);
+/** Adds a sentence to the result's notes. */
+__attribute__((format(printf, 2, 3))) void strut_follow_note(strut_follow_result *result,
+                                                             const char *format, ...);
 
 /**
  * Follows the curves through all special points of the result's branches; `like` is an open system over the

@@ -77,9 +77,10 @@ strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *er
 
 /* ---- what is followed at a point ---- */
 
-static strut_status setup_at(void *context, double value, strut_setup *setup, strut_error *error) {
+static strut_status setup_at(void *context, const double value[2], strut_setup *setup,
+                             strut_error *error) {
   const point_work *self = context;
-  return self->options->setup(self->options->context, self->values, value, setup, error);
+  return self->options->setup(self->options->context, self->values, value[0], setup, error);
 }
 
 static double own_value(const strut_study_follow *follow, const strut_scene *scene) {
@@ -171,11 +172,11 @@ static counts count_branches(const strut_follow_result *result) {
       c.kinds[point->kind]++;
       c.events += point->kind > STRUT_FOLLOW_TORUS;
       if (point->stable && branch->travels)
-        take_extreme(&c.high, point->velocity, point->value, true);
+        take_extreme(&c.high, point->velocity, point->at.value[0], true);
       if (point->stable && branch->travels)
-        take_extreme(&c.low, point->velocity, point->value, false);
+        take_extreme(&c.low, point->velocity, point->at.value[0], false);
       if (point->stable && !branch->travels)
-        take_extreme(&c.wide, point->amplitude, point->value, true);
+        take_extreme(&c.wide, point->amplitude, point->at.value[0], true);
     }
   }
   return c;

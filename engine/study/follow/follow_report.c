@@ -18,7 +18,7 @@ STRUT_VALUES(strut_follow_multiplier_values, MULTIPLIER, const double *m = of->a
 
 #define MOTION(X)                                                                                  \
   X("arclength", "1", NUMBER(p->arc), "along the branch", .column = {"arclength"})                 \
-  X("value", "", CALLED(r->name, r->unit, p->value), "of the parameter", .column = {""},           \
+  X("value", "", CALLED(r->name, r->unit, p->at.value[0]), "of the parameter", .column = {""},     \
     .label = {""})                                                                                 \
   X("velocity", "m/s", NUMBER(p->velocity), "mean", .column = {"velocity [m/s]"}, .label = {""})   \
   X("work", "J", NUMBER(p->work), "that goes in, for a drive period", .column = {"work [J]"})      \

@@ -34,13 +34,16 @@ typedef struct follower {
   bool opened, stepped; /* stepped: fixed steps, whose number has been chosen */
 } follower;
 
-__attribute__((format(printf, 2, 3))) static void note(follower *self, const char *format, ...) {
+void strut_follow_note(strut_follow_result *result, const char *format, ...) {
   va_list arguments;
-  if (self->r->note_count == sizeof self->r->notes / sizeof self->r->notes[0]) return;
+  if (result->note_count == sizeof result->notes / sizeof result->notes[0]) return;
   va_start(arguments, format);
-  vsnprintf(self->r->notes[self->r->note_count++], STRUT_FOLLOW_NOTE, format, arguments);
+  vsnprintf(result->notes[result->note_count++], STRUT_FOLLOW_NOTE, format, arguments);
   va_end(arguments);
 }
+
+/* The values of both parameters at one of the first. */
+#define VALUES_AT(SELF, VALUE) ((const double[2]){VALUE, (SELF)->o->second.value})
 
 static void name_start(const follower *self, const strut_follow_start *start, char *text,
                        size_t size) {
@@ -92,8 +95,9 @@ static strut_status open_with(follower *self, double value, const char *method) 
   strut_follow_system *system = &self->s;
   bool adaptive = strcmp(method, strut_integrator_for(STRUT_ROLE_REFERENCE)->name) == 0;
   *system = (strut_follow_system){.scenes = self->o->scenes,
-                                  .low = self->o->low,
-                                  .high = self->o->high,
+                                  .parameters = 1,
+                                  .low = {self->o->low},
+                                  .high = {self->o->high},
                                   .how.method = method,
                                   .how.tolerance = fmin(2.5e-6, accuracy_of(self) * TOLERANCE),
                                   .how.steps_per_period = adaptive ? STEPS_PER_PERIOD : FIXED_STEPS,
@@ -103,7 +107,7 @@ static strut_status open_with(follower *self, double value, const char *method) 
   snprintf(self->r->method, sizeof self->r->method, "%s", method);
   self->r->tolerance = system->how.tolerance;
   self->opened = true;
-  return strut_follow_open(system, value, self->error);
+  return strut_follow_open(system, VALUES_AT(self, value), self->error);
 }
 
 /*
@@ -114,95 +118,93 @@ static strut_status open_system(follower *self, double value) {
   strut_follow_system *system = &self->s;
   const char *fixed = strut_integrator_for(STRUT_ROLE_EXACT_STICK)->name;
   const char *careful = strut_integrator_for(STRUT_ROLE_REFERENCE)->name;
-  if (self->opened) return strut_follow_set_value(system, value, self->error);
+  if (self->opened) {
+    strut_follow_set_value(system, VALUES_AT(self, value));
+    return system->status;
+  }
   strut_status status = open_with(self, value, self->o->method ? self->o->method : fixed);
-  bool good = !self->o->method && system->variation;
-  if (!status && good)
-    status = strut_follow_choose_steps(system, accuracy_of(self), &good, self->error);
-  self->stepped = good;
-  if (!status && !good && !self->o->method) {
-    strut_follow_close(system);
-    status = open_with(self, value, careful);
+  if (!status && !self->o->method) {
+    self->stepped = system->variation && strut_follow_choose_steps(system, accuracy_of(self));
+    status = system->status;
+    if (!status && !self->stepped) {
+      strut_follow_close(system);
+      status = open_with(self, value, careful);
+    }
   }
   if (status) return status;
-  self->r->title = strut_arena_format(
-      &self->r->arena, "%s", system->setup.scene.name ? system->setup.scene.name : "model");
+  self->r->title =
+      strut_follow_text(self->r, system->setup.scene.name ? system->setup.scene.name : "model");
   return self->r->title ? STRUT_OK : strut_no_memory(self->error, "");
 }
 
 /* Is the motion on a branch that is known? Notes it. */
-static strut_status find_known(follower *self, const double *unknowns, const char *label,
-                               bool *known) {
-  *known = false;
-  for (size_t i = 0; i < self->r->count && !*known; i++) {
+static bool is_known(follower *self, const double *unknowns, const char *label) {
+  for (size_t i = 0; i < self->r->count; i++) {
     const strut_follow_branch *branch = &self->r->branches[i].branch;
-    if (branch->repeats != self->s.how.repeats) continue;
-    strut_status status = strut_follow_is_on(&self->s, branch, unknowns, known, self->error);
-    if (status) return status;
-    if (*known) note(self, "the motion from %s is on branch %zu", label, i + 1);
+    if (branch->repeats != self->s.how.repeats || !strut_follow_is_on(&self->s, branch, unknowns))
+      continue;
+    strut_follow_note(self->r, "the motion from %s is on branch %zu", label, i + 1);
+    return true;
   }
-  return STRUT_OK;
+  return false;
 }
 
-static strut_status add_branch(follower *self, const double *unknowns, const double *direction,
-                               const char *label, int32_t parent) {
+static void add_branch(follower *self, const double *unknowns, const double *direction,
+                       const char *label, int32_t parent) {
   if (self->r->count == STRUT_FOLLOW_MOST_BRANCHES) {
-    note(self, "there are more branches, which were not followed");
-    return STRUT_OK;
+    strut_follow_note(self->r, "there are more branches, which were not followed");
+    return;
   }
   strut_followed_branch *branch = &self->r->branches[self->r->count];
   branch->parent = parent;
   snprintf(branch->label, sizeof branch->label, "%s", label);
-  strut_status status = strut_follow_branch_make(&self->s, unknowns, direction, &self->limits,
-                                                 &branch->branch, self->error);
-  if ((status && status != STRUT_INTERRUPTED) || branch->branch.count < 2) {
-    const char *why = branch->branch.ends[1];
-    if (!status)
-      note(self, "no branch leads away from %s%s%s", label, why && *why ? ": " : "",
-           why ? why : "");
-    strut_follow_branch_free(&branch->branch);
-    return status;
+  strut_status status =
+      strut_follow_branch_make(&self->s, unknowns, direction, &self->limits, &branch->branch);
+  if ((!status || status == STRUT_INTERRUPTED) && branch->branch.count >= 2) {
+    self->r->count++;
+    return;
   }
-  self->r->count++;
-  return status;
+  const char *why = branch->branch.ends[1];
+  if (!status)
+    strut_follow_note(self->r, "no branch leads away from %s%s%s", label, *why ? ": " : "", why);
+  strut_follow_branch_free(&branch->branch);
 }
 
 /*
  * Makes the motion exact. Where Newton's method does not get there, as at kinks, a stable motion is
  * approached by running on.
  */
-static strut_status make_exact(follower *self, double *unknowns, bool *found, char reason[200]) {
+static bool make_exact(follower *self, double *unknowns, char reason[200]) {
   strut_follow_system *system = &self->s;
-  strut_status status = strut_follow_correct(system, unknowns, found, reason, self->error);
-  for (int k = 0; k < MORE_RUNS && !status && !*found; k++) {
+  bool found = strut_follow_correct(system, unknowns, reason);
+  for (int k = 0; k < MORE_RUNS && !system->status && !found; k++) {
     for (int i = 0; i < MORE_PERIODS; i++)
-      if (!isfinite(strut_follow_apply(system, unknowns, false).travel)) return STRUT_OK;
+      if (!isfinite(strut_follow_apply(system, unknowns, false).travel)) return false;
     strut_follow_centre(system, unknowns);
-    status = strut_follow_correct(system, unknowns, found, reason, self->error);
+    found = strut_follow_correct(system, unknowns, reason);
   }
-  return status;
+  return found;
 }
 
 /* The motion at the start, which the run has found, and its branch. */
-static strut_status follow_motion(follower *self, const char *label, double *unknowns,
-                                  int32_t repeats) {
+static void follow_motion(follower *self, const char *label, double *unknowns, int32_t repeats) {
+  strut_follow_system *system = &self->s;
+  bool first = self->r->count == 0;
   char reason[200] = "";
-  bool found = false, known = false;
-  strut_status status = strut_follow_set_repeats(&self->s, repeats, self->error);
-  if (status) return status;
-  if (self->r->count == 0 && !strut_follow_set_units(&self->s, unknowns)) return STRUT_OK;
-  strut_follow_centre(&self->s, unknowns);
-  status = make_exact(self, unknowns, &found, reason);
-  if (!status && found && self->stepped && self->r->count == 0)
-    status = strut_follow_check_steps(&self->s, unknowns, accuracy_of(self), self->error);
-  if (status) return status;
+  if (!strut_follow_set_periods(system, repeats, system->how.steps_per_period)) return;
+  if (first && !strut_follow_set_units(system, unknowns)) return;
+  strut_follow_centre(system, unknowns);
+  bool found = make_exact(self, unknowns, reason);
+  if (found && self->stepped && first)
+    strut_follow_check_steps(system, unknowns, accuracy_of(self));
+  if (system->status) return;
   if (!found) {
-    note(self, "the motion from %s: %s", label, reason);
-    return STRUT_OK;
+    strut_follow_note(self->r, "the motion from %s: %s", label, reason);
+    return;
   }
-  strut_follow_centre(&self->s, unknowns);
-  status = find_known(self, unknowns, label, &known);
-  return status || known ? status : add_branch(self, unknowns, NULL, label, -1);
+  strut_follow_centre(system, unknowns);
+  if (!is_known(self, unknowns, label) && !system->status)
+    add_branch(self, unknowns, NULL, label, -1);
 }
 
 static strut_status follow_start(follower *self, const strut_follow_start *start) {
@@ -213,7 +215,8 @@ static strut_status follow_start(follower *self, const strut_follow_start *start
   name_start(self, start, label, sizeof label);
   strut_status status = open_system(self, start->value);
   if (status) return status;
-  status = self->o->scenes.setup(self->o->scenes.context, start->value, &setup, self->error);
+  status = self->o->scenes.setup(self->o->scenes.context, VALUES_AT(self, start->value), &setup,
+                                 self->error);
   if (status) return status;
   status = place_start(self, start, &setup);
   if (!status) status = strut_model_compile(&setup.scene, &model, self->error);
@@ -221,13 +224,15 @@ static strut_status follow_start(follower *self, const strut_follow_start *start
   if (!status && !y) status = strut_no_memory(self->error, "");
   if (!status) status = run_start(self, &setup, model, y, &summary);
   if (status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT) {
-    note(self, "the run from %.80s failed: %.200s", label, self->error->message);
+    strut_follow_note(self->r, "the run from %.80s failed: %.200s", label, self->error->message);
     status = STRUT_OK;
   } else if (!status && summary.steady.kind != STRUT_MOTION_PERIODIC) {
-    note(self, "the motion from %s is %s after %" PRId64 " periods, which starts no branch", label,
-         strut_motion_name(summary.steady.kind), summary.steady.periods);
+    strut_follow_note(self->r,
+                      "the motion from %s is %s after %" PRId64 " periods, which starts no branch",
+                      label, strut_motion_name(summary.steady.kind), summary.steady.periods);
   } else if (!status) {
-    status = follow_motion(self, label, y, summary.steady.repeats > 0 ? summary.steady.repeats : 1);
+    follow_motion(self, label, y, summary.steady.repeats > 0 ? summary.steady.repeats : 1);
+    status = self->s.status;
   }
   strut_summary_free(&summary);
   strut_release(y);
@@ -238,94 +243,82 @@ static strut_status follow_start(follower *self, const strut_follow_start *start
 
 /* ---- doubled branches ---- */
 
-static strut_status follow_doubling(follower *self, size_t index, const strut_follow_point *point) {
+static void follow_doubling(follower *self, size_t index, const strut_follow_point *point) {
   char label[STRUT_FOLLOW_LABEL];
+  strut_follow_system *system = &self->s;
   int32_t repeats = 2 * self->r->branches[index].branch.repeats;
-  if (repeats > MOST_REPEATS) return STRUT_OK;
+  double value = point->at.value[0];
+  if (repeats > MOST_REPEATS) return;
   snprintf(label, sizeof label, "the period doubling of branch %zu at %s", index + 1,
-           strut_quantity_of_any(point->value, 6, *self->o->unit ? self->o->unit : "1").text);
-  strut_status status = strut_follow_set_value(&self->s, point->value, self->error);
-  if (!status) status = strut_follow_set_repeats(&self->s, repeats, self->error);
+           strut_quantity_of_any(value, 6, *self->o->unit ? self->o->unit : "1").text);
   /* it may be known from another doubling, at its other end */
-  for (size_t i = 0; i < self->r->count && !status; i++) {
+  for (size_t i = 0; i < self->r->count; i++) {
     const strut_followed_branch *branch = &self->r->branches[i];
     if (branch->parent != (int32_t)index || branch->branch.count == 0) continue;
     const strut_follow_point *last = &branch->branch.points[branch->branch.count - 1];
-    if (fabs(last->value - point->value) < 2e-3 * (self->o->high - self->o->low)) return STRUT_OK;
+    if (fabs(last->at.value[0] - value) < 2e-3 * (self->o->high - self->o->low)) return;
   }
-  return status ? status : add_branch(self, point->y, point->critical, label, (int32_t)index);
+  if (strut_follow_set_value(system, point->at.value) &&
+      strut_follow_set_periods(system, repeats, system->how.steps_per_period))
+    add_branch(self, point->at.y, point->critical, label, (int32_t)index);
 }
 
-static strut_status follow_doublings(follower *self) {
+static void follow_doublings(follower *self) {
   for (size_t i = 0; i < self->r->count; i++)
-    for (size_t k = 0; k < self->r->branches[i].branch.count; k++) {
+    for (size_t k = 0; k < self->r->branches[i].branch.count && !self->s.status; k++) {
       const strut_follow_point *point = &self->r->branches[i].branch.points[k];
-      if (point->kind != STRUT_FOLLOW_DOUBLING || !point->critical) continue;
-      strut_status status = follow_doubling(self, i, point);
-      if (status) return status;
+      if (point->kind == STRUT_FOLLOW_DOUBLING && point->critical) follow_doubling(self, i, point);
     }
-  return STRUT_OK;
 }
 
 /* ---- basins ---- */
 
 /* The motion of a branch between two of its points, made exact; kicked where it is stable. */
-static strut_status push_between(follower *self, size_t index, size_t k, double value) {
-  const strut_follow_branch *branch = &self->r->branches[index].branch;
-  const strut_follow_point *from = &branch->points[k], *to = from + 1;
-  strut_follow_basin *basin = &self->r->basins[self->r->basin_count];
-  double part = to->value != from->value ? (value - from->value) / (to->value - from->value) : 0.0;
+static void push_between(follower *self, size_t index, const strut_follow_point *from,
+                         double value) {
+  strut_follow_system *system = &self->s;
+  strut_follow_result *result = self->r;
+  const strut_follow_motion *a = &from->at, *b = &from[1].at;
+  double rise = b->value[0] - a->value[0], part = rise != 0.0 ? (value - a->value[0]) / rise : 0.0;
   char reason[200];
-  bool found = false;
-  if (!from->stable || !to->stable || self->r->basin_count == STRUT_FOLLOW_MOST_BASINS)
-    return STRUT_OK;
-  strut_status status = strut_follow_set_value(&self->s, value, self->error);
-  if (!status) status = strut_follow_set_repeats(&self->s, branch->repeats, self->error);
-  double *y = status ? NULL : strut_arena_allocate(&self->r->arena, self->s.both, sizeof(double));
-  if (!y) return status ? status : strut_no_memory(self->error, "");
-  for (size_t i = 0; i < self->s.both; i++) y[i] = from->y[i] + part * (to->y[i] - from->y[i]);
-  status = strut_follow_correct(&self->s, y, &found, reason, self->error);
-  if (status || !found) return status;
-  strut_follow_centre(&self->s, y);
+  if (!from->stable || !from[1].stable || result->basin_count == STRUT_FOLLOW_MOST_BASINS) return;
+  if (!strut_follow_set_value(system, VALUES_AT(self, value)) ||
+      !strut_follow_set_periods(system, result->branches[index].branch.repeats,
+                                system->how.steps_per_period))
+    return;
+  double *y = strut_follow_allocate(system, &result->arena, system->both, sizeof *y);
+  for (size_t i = 0; i < system->both && y; i++) y[i] = a->y[i] + part * (b->y[i] - a->y[i]);
+  if (!y || !strut_follow_correct(system, y, reason)) return;
+  strut_follow_centre(system, y);
+  strut_follow_basin *basin = &result->basins[result->basin_count];
   *basin = (strut_follow_basin){.branch = index, .value = value};
-  basin->velocity = from->velocity + part * (to->velocity - from->velocity);
-  status = strut_follow_push(&self->s, y, basin, self->error);
-  if (!status) self->r->basin_count++;
-  return status;
+  if (strut_follow_push(system, y, basin)) result->basin_count++;
 }
 
-static strut_status push_motions(follower *self) {
+static void push_motions(follower *self) {
   for (size_t v = 0; v < self->o->start_count; v++) {
     double value = self->o->starts[v].value;
     bool again = false;
     for (size_t i = 0; i < v; i++) again = again || self->o->starts[i].value == value;
     for (size_t i = 0; i < self->r->count && !again; i++) {
       const strut_follow_branch *branch = &self->r->branches[i].branch;
-      for (size_t k = 0; k + 1 < branch->count; k++) {
-        double low = branch->points[k].value, high = branch->points[k + 1].value;
+      for (size_t k = 0; k + 1 < branch->count && !self->s.status; k++) {
+        const strut_follow_point *from = &branch->points[k];
+        double low = from->at.value[0], high = from[1].at.value[0];
         bool within = low < high ? low <= value && value < high : high < value && value <= low;
-        if (branch->points[k + 1].value == value && k + 2 == branch->count) within = true;
-        strut_status status = within ? push_between(self, i, k, value) : STRUT_OK;
-        if (status) return status;
+        if (high == value && k + 2 == branch->count) within = true;
+        if (within) push_between(self, i, from, value);
       }
     }
   }
-  return STRUT_OK;
 }
 
-/* The second parameter, with texts that stay. */
-static strut_status keep_second(strut_follow_result *result, const strut_follow_second *second,
-                                strut_error *error) {
-  result->second = *second;
-  result->second.name = strut_arena_format(&result->arena, "%s", second->name);
-  result->second.unit = strut_arena_format(&result->arena, "%s", second->unit);
-  result->second.scenes = (strut_follow_plane){NULL, NULL};
-  return result->second.name && result->second.unit ? STRUT_OK : strut_no_memory(error, "");
+char *strut_follow_text(strut_follow_result *result, const char *text) {
+  return text ? strut_arena_format(&result->arena, "%s", text) : NULL;
 }
 
 strut_status strut_follow_make(const strut_follow_options *options, strut_follow_result *result,
                                strut_error *error) {
-  double clock = strut_run_clock();
   *result = (strut_follow_result){.low = options->low, .high = options->high};
   follower f = {.o = options,
                 .r = result,
@@ -334,23 +327,26 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
                            .longest = LONGEST,
                            .progress = options->progress,
                            .progress_context = options->progress_context}};
-  result->name = strut_arena_format(&result->arena, "%s", options->name);
-  result->unit = strut_arena_format(&result->arena, "%s", options->unit);
-  strut_status status = result->name && result->unit ? STRUT_OK : strut_no_memory(error, "");
-  if (!status && options->second.name) status = keep_second(result, &options->second, error);
+  result->second = options->second;
+  result->name = strut_follow_text(result, options->name);
+  result->unit = strut_follow_text(result, options->unit);
+  result->second.name = strut_follow_text(result, options->second.name);
+  result->second.unit = strut_follow_text(result, options->second.unit);
+  bool kept = result->name && result->unit && !result->second.name == !options->second.name;
+  strut_status status = kept ? STRUT_OK : strut_no_memory(error, "");
   for (size_t i = 0; i < options->start_count && !status; i++)
     status = follow_start(&f, &options->starts[i]);
-  if (!status && !options->not_doubled) status = follow_doublings(&f);
-  if (!status && options->basins) status = push_motions(&f);
+  if (!status) follow_doublings(&f);
+  if (!status && options->basins) push_motions(&f);
+  if (!status) status = f.s.status;
   if (!status && result->second.name && result->count > 0)
     status = strut_follow_find_curves(options, result, &f.s, error);
   if (!status && result->count == 0)
     status = strut_fail(error, STRUT_NOT_SETTLED, "there is no periodic motion to follow: %s",
                         result->note_count ? result->notes[0] : "no start was given");
   if (status == STRUT_INTERRUPTED && result->count > 0)
-    note(&f, "interrupted: branches are missing, or end early");
+    strut_follow_note(result, "interrupted: branches are missing, or end early");
   if (f.opened) strut_follow_close(&f.s);
-  result->seconds = strut_run_clock() - clock;
   return status;
 }
 
@@ -366,7 +362,7 @@ strut_status strut_follow_possible(const strut_follow_options *options, strut_er
 
 void strut_follow_free(strut_follow_result *result) {
   for (size_t i = 0; i < result->count; i++) strut_follow_branch_free(&result->branches[i].branch);
-  for (size_t i = 0; i < result->curve_count; i++) strut_follow_curve_free(&result->curves[i]);
+  for (size_t i = 0; i < result->curve_count; i++) strut_follow_branch_free(&result->curves[i]);
   strut_arena_free(&result->arena);
   result->count = result->note_count = 0;
 }

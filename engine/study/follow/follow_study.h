@@ -8,7 +8,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/output/draw/chart.h"
-#include "engine/run/follow/follow_parts.h"
+#include "engine/run/follow/follow.h"
 #include "engine/scene/study.h"
 #include "engine/scene/value_rows.h"
 
@@ -26,7 +26,6 @@ typedef struct strut_follow_second {
   const char *name, *unit; /* name NULL: there is none; unit "": none */
   double low, high;        /* its range [SI] */
   double value;            /* where the branches are [SI] */
-  strut_follow_plane scenes;
 } strut_follow_second;
 
 typedef struct strut_follow_options {
@@ -34,11 +33,10 @@ typedef struct strut_follow_options {
   double low, high;        /* its range [SI], low < high */
   size_t start_count;
   const strut_follow_start *starts; /* (start_count) at least one */
-  strut_follow_scenes scenes;
-  const char *method; /* NULL: chosen */
-  double accuracy;    /* relative, of velocities; 0: STRUT_FOLLOW_USUAL_PERCENT */
-  int32_t steps;      /* most of a branch each way; 0: STRUT_FOLLOW_USUAL_STEPS */
-  bool not_doubled;   /* do not follow doubled branches */
+  strut_follow_scenes scenes;       /* of this parameter and of `second`, if there is one */
+  const char *method;               /* NULL: chosen */
+  double accuracy;                  /* relative, of velocities; 0: STRUT_FOLLOW_USUAL_PERCENT */
+  int32_t steps;                    /* most of a branch each way; 0: STRUT_FOLLOW_USUAL_STEPS */
   int threads;
   const strut_flag *interrupt;
   void (*progress)(void *context, double fraction); /* may be NULL */
@@ -56,7 +54,7 @@ typedef struct strut_followed_branch {
 /** How far a stable motion may be pushed at the start of a period. */
 typedef struct strut_follow_basin {
   size_t branch; /* index */
-  double value, velocity;
+  double value;
   /** Speeds of the smallest kicks found from which it does not come back within 60 periods [m/s];
       INFINITY: none that is sensible. */
   double kick[STRUT_FOLLOW_KICKS];
@@ -68,7 +66,7 @@ typedef struct strut_follow_result {
   char *title;       /* of the model */
   char *name, *unit; /* of the parameter */
   char method[32];
-  double low, high, tolerance, seconds;
+  double low, high, tolerance;
   size_t count;
   strut_followed_branch branches[STRUT_FOLLOW_MOST_BRANCHES];
   size_t note_count;
@@ -76,9 +74,9 @@ typedef struct strut_follow_result {
   strut_arena arena;
   size_t basin_count;
   strut_follow_basin basins[STRUT_FOLLOW_MOST_BASINS];
-  strut_follow_second second; /* texts belong to the result; without scenes */
+  strut_follow_second second; /* texts belong to the result */
   size_t curve_count;
-  strut_follow_curve curves[STRUT_FOLLOW_MOST_CURVES];
+  strut_follow_branch curves[STRUT_FOLLOW_MOST_CURVES];
 } strut_follow_result;
 
 /**

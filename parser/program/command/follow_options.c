@@ -59,19 +59,10 @@ static strut_status read_ends(const strut_arguments *arguments, const followed *
       self->given->name, example ? ", each such as " : "", example ? example : "");
 }
 
-/* The scene of a value of the first parameter, the second one being where the branches are. */
-static strut_status setup_first(void *context, double value, strut_setup *setup,
-                                strut_error *error) {
-  strut_follow_source *source = context;
-  const strut_study_value values[] = {{.number = value}, {.number = source->second_value}};
-  return strut_varied_scenes_read(&source->scenes, values, setup, error);
-}
-
-static strut_status setup_both(void *context, const double values[2], strut_setup *setup,
-                               strut_error *error) {
-  const strut_follow_source *source = context;
+static strut_status setup_at(void *context, const double values[2], strut_setup *setup,
+                             strut_error *error) {
   const strut_study_value both[] = {{.number = values[0]}, {.number = values[1]}};
-  return strut_varied_scenes_read(&source->scenes, both, setup, error);
+  return strut_varied_scenes_read(&((strut_follow_source *)context)->scenes, both, setup, error);
 }
 
 /* The scene's own value where it is within the range, or the middle. */
@@ -107,12 +98,11 @@ static strut_status read_ranges(const strut_arguments *arguments, const strut_sc
   *dimension = dimensions[0];
   wanted->name = names[0];
   wanted->unit = strut_unit_of(dimensions[0]);
-  wanted->scenes = (strut_follow_scenes){setup_first, source};
+  wanted->scenes = (strut_follow_scenes){setup_at, source};
   if (!both) return STRUT_OK;
   second->name = names[1];
   second->unit = strut_unit_of(dimensions[1]);
-  second->value = source->second_value = own_value(scene, names[1], second->low, second->high);
-  second->scenes = (strut_follow_plane){setup_both, source};
+  second->value = own_value(scene, names[1], second->low, second->high);
   return STRUT_OK;
 }
 

@@ -15,7 +15,6 @@ typedef struct strut_follow_source {
   strut_varied_scenes scenes;
   char from[1024]; /* names of configurations, each ended by NUL */
   strut_follow_start starts[STRUT_FOLLOW_MOST_STARTS];
-  double second_value; /* of the second parameter, where the branches are [SI] */
 } strut_follow_source;
 
 /**
