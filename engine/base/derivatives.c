@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "engine/base/derivatives.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+
+#include "engine/base/memory.h"
+
+/* Relative error of an output that does not know its own, and bounds of those that do. */
+static const double USUAL_NOISE = 1e-12, LEAST_NOISE = 1e-15, MOST_NOISE = 1e-6;
+/* The steps along all parameters, as a part of those along one: different ones, lest kinks cancel. */
+static const double PART = 0.125, SPREAD = 0.3;
+static const double BENT =
+    0.1; /* difference of one-sided derivatives, in parts of their mean, to be looked at */
+static const double GOLDEN = 0.6180339887498949;
+
+/* Two points along a direction: `central` at 1 and -1, else at 1 and 2 steps. */
+typedef struct pair {
+  bool central;
+  double *step;      /* (parameters) 0: another one's */
+  double *values[2]; /* (outputs) */
+  strut_status status[2];
+  strut_error error[2];
+} pair;
+
+typedef struct differences {
+  const strut_derivatives_task *task;
+  double *outputs, *errors; /* (outputs) of the point */
+  pair *pairs;              /* (parameters + 1) the last along all */
+  strut_arena arena;
+} differences;
+
+const char *strut_derivative_words(strut_derivative_verdict verdict) {
+  static const char *const words[] = {
+#define WORDS(name, words) words,
+      STRUT_DERIVATIVE_VERDICTS(WORDS)};
+  return words[verdict];
+}
+
+static strut_status evaluate(const differences *self, const double *at, double *outputs,
+                             double *errors, strut_error *error) {
+  const strut_derivatives_task *task = self->task;
+  for (size_t j = 0; j < task->output_count; j++) outputs[j] = errors[j] = (double)NAN;
+  strut_status status = task->evaluate(task->context, at, outputs, errors, error);
+  for (size_t j = 0; j < task->output_count && status; j++) outputs[j] = (double)NAN;
+  return status == STRUT_NO_MEMORY || status == STRUT_INTERRUPTED ? status : STRUT_OK;
+}
+
+/* One end of a pair. */
+static strut_status evaluate_end(const differences *self, pair *along, int end) {
+  const strut_derivatives_task *task = self->task;
+  size_t n = task->parameter_count, m = task->output_count;
+  double *at = strut_allocate(n + m, sizeof *at);
+  if (!at) return strut_no_memory(&along->error[end], "");
+  double length = end == 0 ? 1.0 : along->central ? -1.0 : 2.0;
+  for (size_t i = 0; i < n; i++) at[i] = task->parameters[i].value + length * along->step[i];
+  strut_status status = evaluate(self, at, along->values[end], at + n, &along->error[end]);
+  strut_release(at);
+  return status;
+}
+
+/* The largest relative noise of an output, which all steps are chosen by. */
+static double noise_of(const differences *self) {
+  double noise = 0.0;
+  for (size_t j = 0; j < self->task->output_count; j++) {
+    double own = self->errors[j] / fabs(self->outputs[j]);
+    noise = fmax(noise, isfinite(own) ? fmin(fmax(own, LEAST_NOISE), MOST_NOISE) : USUAL_NOISE);
+  }
+  return noise;
+}
+
+static double scale_of(const strut_derivatives_parameter *by) {
+  return by->scale > 0.0 ? by->scale : by->value != 0.0 ? fabs(by->value) : 1.0;
+}
+
+/* The step along a parameter that balances rounding and curvature, exact in binary; *central: to both sides. */
+static double choose_step(const strut_derivatives_parameter *by, double noise, bool *central) {
+  double h = exp2(floor(log2(scale_of(by) * cbrt(noise)) + 0.5));
+  double below = by->value - by->low, above = by->high - by->value, room = fmin(below, above);
+  *central = room >= h / 64.0;
+  if (*central) h = fmin(h, room);
+  if (!*central) h = below > above ? -fmin(h, below / 2.0) : fmin(h, above / 2.0);
+  return by->value + h - by->value;
+}
+
+static bool prepare(differences *self) {
+  const strut_derivatives_task *task = self->task;
+  size_t n = task->parameter_count, m = task->output_count;
+  double noise = noise_of(self), part = PART;
+  pair *all = &self->pairs[n];
+  all->central = true;
+  for (size_t i = 0; i <= n; i++) {
+    self->pairs[i].step = strut_arena_allocate(&self->arena, n, sizeof(double));
+    for (int end = 0; end < 2; end++)
+      self->pairs[i].values[end] = strut_arena_allocate(&self->arena, m, sizeof(double));
+    if (!self->pairs[i].step || !self->pairs[i].values[0] || !self->pairs[i].values[1])
+      return false;
+  }
+  for (size_t i = 0; i < n; i++) {
+    double h = choose_step(&task->parameters[i], noise, &self->pairs[i].central);
+    part = PART * (1.0 + SPREAD * fmod((double)i * GOLDEN, 1.0));
+    self->pairs[i].step[i] = h;
+    all->step[i] = task->parameters[i].value + part * h - task->parameters[i].value;
+    all->central = all->central && self->pairs[i].central;
+  }
+  return true;
+}
+
+static strut_status evaluate_pairs(differences *self, strut_error *error) {
+  const int64_t count = 2 * (int64_t)(self->task->parameter_count + 1);
+  int threads = self->task->threads;
+  (void)threads; /* without OpenMP */
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+#endif
+  for (int64_t k = 0; k < count; k++) {
+    pair *along = &self->pairs[k / 2];
+    along->status[k % 2] = evaluate_end(self, along, (int)(k % 2));
+  }
+  for (int64_t k = 0; k < count; k++) {
+    const pair *along = &self->pairs[k / 2];
+    if (!along->status[k % 2]) continue;
+    if (error) *error = along->error[k % 2];
+    return along->status[k % 2];
+  }
+  return STRUT_OK;
+}
+
+/* By how much an output changes with one step along the pair, and by how much twice on both sides of the point. */
+static double slope(const differences *self, const pair *along, size_t j, double *bend) {
+  double here = self->outputs[j], first = along->values[0][j], second = along->values[1][j];
+  *bend = along->central ? first - here + (second - here) : second - first - (first - here);
+  return along->central ? (first - second) / 2.0 : (4.0 * (first - here) - (second - here)) / 2.0;
+}
+
+/* What is known of all directions together, of one output. */
+typedef struct agreement {
+  double noise;
+  double off; /* by how much the pair along all disagrees with the others, in their steps */
+  double together, most; /* how much it bends, and what smooth bends along each add up to at most */
+} agreement;
+
+/*
+ * Does a bend along one parameter come from a kink at the point? A smooth one shrinks with the square of the steps,
+ * and what the differences get wrong with the cube.
+ */
+static bool is_kink(double bend, double change, const agreement *of) {
+  bool bent = fabs(bend) > BENT * fabs(change) && fabs(bend) > 32.0 * of->noise;
+  bool lasts = fabs(of->together) > of->most && fabs(of->together) > 8.0 * of->noise;
+  return bent && (lasts || of->off > fabs(bend) / 4.0);
+}
+
+static agreement agree(const differences *self, size_t j) {
+  double own = self->errors[j], size = fabs(self->outputs[j]), roots = 0.0, bends = 0.0, bend;
+  agreement a = {.noise = isfinite(own) ? own : USUAL_NOISE * size};
+  const pair *all = &self->pairs[self->task->parameter_count];
+  double change = slope(self, all, j, &a.together);
+  for (size_t i = 0; i < self->task->parameter_count; i++) {
+    double part = all->step[i] / self->pairs[i].step[i];
+    change -= part * slope(self, &self->pairs[i], j, &bend);
+    roots += part * sqrt(fabs(bend)), bends += part * fabs(bend);
+  }
+  a.off = fabs(change) / PART + 4.0 * DBL_EPSILON * size;
+  a.most = fmin(2.0 * roots * roots, bends / 2.0);
+  return a;
+}
+
+/* The derivatives of one output. */
+static void conclude(const differences *self, size_t j, strut_derivative *to) {
+  const strut_derivatives_task *task = self->task;
+  const agreement all = agree(self, j);
+  double own = isfinite(self->errors[j]) ? self->errors[j] : 0.0, bend;
+  for (size_t i = 0; i < task->parameter_count; i++) {
+    double h = self->pairs[i].step[i], change = slope(self, &self->pairs[i], j, &bend);
+    double error = 2.0 * all.off;
+    if (task->parameter_count > 1 && fabs(bend) > BENT * fabs(change))
+      error += fabs(bend); /* together with others it is not told apart for certain */
+    to[i].value = change / h;
+    to[i].error = error / fabs(h) + own / scale_of(&task->parameters[i]);
+    to[i].verdict = !isfinite(to[i].value + to[i].error) ? STRUT_DERIVATIVE_UNKNOWN
+                    : is_kink(bend, change, &all)        ? STRUT_DERIVATIVE_NONE
+                                                         : STRUT_DERIVATIVE_THERE;
+    if (to[i].verdict != STRUT_DERIVATIVE_THERE) to[i].value = to[i].error = (double)NAN;
+  }
+}
+
+static strut_status find(differences *self, strut_error *error) {
+  const strut_derivatives_task *task = self->task;
+  size_t n = task->parameter_count, m = task->output_count;
+  strut_status status = STRUT_OK;
+  double *at = strut_arena_allocate(&self->arena, n, sizeof *at);
+  self->outputs = strut_arena_allocate(&self->arena, m, sizeof *self->outputs);
+  self->errors = strut_arena_allocate(&self->arena, m, sizeof *self->errors);
+  self->pairs = strut_arena_allocate(&self->arena, n + 1, sizeof *self->pairs);
+  if (!at || !self->outputs || !self->errors || !self->pairs) return strut_no_memory(error, "");
+  for (size_t i = 0; i < n; i++) at[i] = task->parameters[i].value;
+  for (size_t j = 0; j < m && task->outputs; j++) {
+    self->outputs[j] = task->outputs[j];
+    self->errors[j] = task->errors ? task->errors[j] : (double)NAN;
+  }
+  if (!task->outputs) status = evaluate(self, at, self->outputs, self->errors, error);
+  if (status) return status;
+  return prepare(self) ? evaluate_pairs(self, error) : strut_no_memory(error, "");
+}
+
+strut_status strut_derivatives_find(const strut_derivatives_task *task,
+                                    strut_derivative *derivatives, strut_error *error) {
+  differences self = {.task = task};
+  strut_status status = find(&self, error);
+  for (size_t j = 0; j < task->output_count && !status; j++)
+    conclude(&self, j, derivatives + j * task->parameter_count);
+  strut_arena_free(&self.arena);
+  return status;
+}

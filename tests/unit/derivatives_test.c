@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Derivatives by differences against formulas: errors that hold, kinks, bounds, bits and the number of evaluations. */
+#include <math.h>
+#include <stdatomic.h>
+
+#include "engine/base/derivatives.h"
+#include "tests/support/test.h"
+
+enum { COUNT = 3, OUTPUTS = 6 };
+static atomic_int calls;
+
+/* What is asked: smooth; an extremum in all; small noise; a kink; a kink that only together differs; missing below. */
+static strut_status functions(void *context, const double *p, double *y, double *errors,
+                              strut_error *error) {
+  (void)context, (void)error;
+  calls++;
+  double x = p[0], u = p[1], w = p[2], noise = 1e-9 * sin(1e12 * (x + u + w));
+  if (x < 0.0 || w > 3.0) return strut_fail(error, STRUT_USAGE, "out of range");
+  y[0] = exp(x) * sin(u) + w * w * w;
+  y[1] = (x + u + w - 6.0) * (x + u + w - 6.0) + 10.0;
+  y[2] = x * u * w + noise, errors[2] = 1e-9;
+  y[3] = fmax(x - 1.0, 0.0) + u;
+  y[4] = fabs((x - 1.0) - (u - 2.0)) + w;
+  y[5] = sqrt(w - 3.0);
+  return STRUT_OK;
+}
+
+static const strut_derivatives_parameter usual[COUNT] = {
+    {1.0, 0.0, 9.0, 0.0}, {2.0, -9.0, 9.0, 0.0}, {3.0, 0.0, 3.0, 0.0}};
+
+static void find(const strut_derivatives_parameter *by, int threads,
+                 strut_derivative d[OUTPUTS][COUNT]) {
+  const strut_derivatives_task task = {.parameter_count = COUNT,
+                                       .output_count = OUTPUTS,
+                                       .parameters = by,
+                                       .evaluate = functions,
+                                       .threads = threads};
+  calls = 0;
+  assert_int_equal(strut_derivatives_find(&task, d[0], NULL), STRUT_OK);
+  assert_int_equal(calls, 2 * COUNT + 3);
+}
+
+static void expect(strut_derivative d, double value, double within) {
+  assert_int_equal(d.verdict, STRUT_DERIVATIVE_THERE);
+  assert_true(fabs(d.value - value) <= d.error && d.error <= within);
+}
+
+/* The third parameter is at the end of its range. */
+TEST(formulas) {
+  strut_derivative d[OUTPUTS][COUNT];
+  find(usual, 1, d);
+  expect(d[0][0], exp(1.0) * sin(2.0), 1e-3);
+  expect(d[0][1], exp(1.0) * cos(2.0), 1e-3);
+  expect(d[0][2], 27.0, 1e-3);
+  for (int i = 0; i < COUNT; i++) expect(d[1][i], 0.0, 0.01);
+  expect(d[2][0], 6.0, 1e-3);
+  expect(d[2][2], 2.0, 1e-3);
+}
+
+TEST(kinks) {
+  strut_derivative d[OUTPUTS][COUNT];
+  find(usual, 1, d);
+  assert_int_equal(d[3][0].verdict, STRUT_DERIVATIVE_NONE);
+  expect(d[3][1], 1.0, 1.0);
+  assert_int_equal(d[4][0].verdict, STRUT_DERIVATIVE_NONE);
+  assert_int_equal(d[4][1].verdict, STRUT_DERIVATIVE_NONE);
+  expect(d[4][2], 1.0, 1.0);
+  assert_int_equal(d[5][2].verdict, STRUT_DERIVATIVE_UNKNOWN);
+  assert_string_equal(strut_derivative_words(d[3][0].verdict), "not differentiable here");
+}
+
+TEST(any_number_of_threads) {
+  strut_derivative one[OUTPUTS][COUNT], four[OUTPUTS][COUNT];
+  find(usual, 1, one);
+  find(usual, 4, four);
+  for (int j = 0; j < OUTPUTS; j++)
+    for (int i = 0; i < COUNT; i++) {
+      assert_int_equal(one[j][i].verdict, four[j][i].verdict);
+      assert_true(one[j][i].value == four[j][i].value || isnan(one[j][i].value));
+      assert_true(one[j][i].error == four[j][i].error || isnan(one[j][i].error));
+    }
+}
