@@ -25,6 +25,7 @@ static strut_status complete(const strut_study_job *job, const strut_fit_result 
   strut_slots *const sources[] = {job->slots};
   strut_error error = {0};
   strut_status status = strut_fit_write(result, directory, "model.yaml", &error);
+  if (!status) status = strut_fit_figures(result, directory, &error);
   if (!status)
     status = strut_study_table_write_partial(directory, "table.csv", sources, 1, NULL, &error);
   if (status) return strut_print_failure(status, &error);
