@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of a fit: what was measured and the model, residuals, profiles. */
 #include <math.h>
+#include <string.h>
 
 #include "engine/output/draw/figure.h"
 #include "engine/study/fit/fit.h"
@@ -15,6 +16,11 @@ static bool is_measured(const strut_fit_match *match, size_t s) {
   bool some = false;
   for (size_t i = 0; i < match->count; i++) some = some || !isnan(match->series[s].measured[i]);
   return some;
+}
+
+/* An axis for values in a unit; "1": none. */
+static strut_axis axis_in(const char *name, const char *unit) {
+  return strut_axis_of(name, strcmp(unit, "1") == 0 ? "" : unit);
 }
 
 static strut_axis axis_of_match(const strut_fit_match *match) {
@@ -37,7 +43,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   const double *model = result->predicted + strut_fit_first(result->fit, m, s);
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
-  panel->y = strut_axis_of(match->series[s].of, match->series[s].unit);
+  panel->y = axis_in(match->series[s].of, match->series[s].unit);
   panel->title = match->name;
   strut_series *dots = strut_add_series(figure, panel, "measured");
   dots->cloud = true, dots->look = 1;
@@ -78,7 +84,7 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   const strut_fit_row *ends = &result->ends[2 * k];
   double best = result->starts[result->best].sum, variance = result->scale * result->scale;
   strut_panel *panel = strut_add_panel(figure);
-  panel->x = strut_axis_of(e->name, e->unit);
+  panel->x = axis_in(e->name, e->unit);
   panel->y = strut_axis_of("rise of the sum of squares over its variance", "");
   strut_series *line = strut_add_series(figure, panel, "by the standard error");
   line->look = 1, line->markers = STRUT_MARKERS_NONE;
@@ -86,11 +92,16 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
     double z = 5.0 * i / (CURVE - 1.0) - 2.5;
     strut_add_point(figure, line, e->value + z * e->error, z * z);
   }
-  strut_series *profile = strut_add_series(figure, panel, "profile");
-  profile->look = 0, profile->markers = STRUT_MARKERS_ALL;
-  strut_add_point(figure, profile, ends[0].values[k], (ends[0].sum - best) / variance);
-  strut_add_point(figure, profile, e->value, 0.0);
-  strut_add_point(figure, profile, ends[1].values[k], (ends[1].sum - best) / variance);
+  for (int side = 0; side < 2; side++) {
+    double way = ends[side].values[k] - e->value, rise = (ends[side].sum - best) / variance;
+    strut_series *profile = strut_add_series(figure, panel, "through the ends of the profile");
+    profile->look = 0, profile->markers = STRUT_MARKERS_NONE;
+    for (int i = 0; i < CURVE && isfinite(rise); i++) {
+      double part = i / (CURVE - 1.0);
+      strut_add_point(figure, profile, e->value + part * way, part * part * rise);
+    }
+    strut_add_mark(figure, panel, ends[side].values[k], rise, NULL)->dot = true;
+  }
 }
 
 /* Draws a figure as directory/name. */
@@ -103,8 +114,8 @@ static strut_status draw(strut_figure *figure, const char *directory, const char
 strut_status strut_fit_figures(const strut_fit_result *result, const char *directory,
                                strut_error *error) {
   const char *title = result->plan->study->name;
-  strut_figure data = {.title = title, .columns = 2}, residuals = {.title = title, .columns = 2},
-               profiles = {.title = title, .columns = 2};
+  const strut_figure empty = {.title = title, .columns = 2, .least_width = 200.0};
+  strut_figure data = empty, residuals = empty, profiles = empty;
   if (!result->found) return STRUT_OK;
   for (size_t m = 0; m < result->fit->match_count; m++) {
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++)
