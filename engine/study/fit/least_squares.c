@@ -10,11 +10,17 @@
 /* Gradients, and changes of the sum, at which the method ends, relative. */
 static const double FLAT = 1e-15;
 
-/* How strongly points outside of the box are drawn back, in residuals per unit of a parameter. */
-static const double DRAWN = 1e6;
+/*
+ * How strongly points outside of the box are drawn back, in lengths of the first residuals per unit of a parameter.
+ * Residuals do not change there, so that any such force ends on the bound.
+ */
+static const double DRAWN = 10.0;
 
-/* Where there are no residuals each counts as so much more than it was at the last point that had some. */
-static const double WORSE = 1e3;
+/* A parameter so many of the changes at which the method ends away from a bound, or half a step, is on it. */
+static const double CLOSE = 100.0;
+
+/* Each residual where there are none: worse than any that is one, and its square is still a number. */
+static const double NONE = 1e150;
 
 /* Singular values below this part of the largest are 0. */
 static const double SINGULAR = 1e-12;
@@ -25,7 +31,12 @@ typedef struct solver {
   size_t free;          /* parameters */
   double *at;           /* (parameters) of the problem, within the box */
   double *ahead, *back; /* (count) residuals beside a point */
-  double *known;        /* (count) at the latest point that had some */
+  double *derivative;   /* (count) */
+  double *known; /* (count) at the latest point that had some: where the matrix is asked for */
+  double drawn;  /* residuals per unit outside of the box */
+  bool lost;     /* residuals end there while they get smaller */
+  bool changed;  /* others are stopped than at the matrix before */
+  bool stopped[STRUT_LEAST_SQUARES_MOST]; /* (free) */
   int64_t evaluations;
 } solver;
 
@@ -57,53 +68,64 @@ static int find_residuals(const gsl_vector *x, void *context, gsl_vector *f) {
   if (evaluate(self, f->data))
     memcpy(self->known, f->data, count * sizeof *self->known);
   else
-    for (size_t i = 0; i < count; i++) f->data[i] = WORSE * (1.0 + fabs(self->known[i]));
-  for (size_t k = 0; k < self->free; k++) f->data[count + k] = DRAWN * outside[k];
+    for (size_t i = 0; i < count; i++) f->data[i] = NONE;
+  for (size_t k = 0; k < self->free; k++) f->data[count + k] = self->drawn * outside[k];
   return GSL_SUCCESS;
 }
 
-/* Steps beside a parameter, both within the box. */
-static void step_beside(const strut_least_squares *problem, size_t i, double at, double beside[2]) {
-  double h = problem->step * fmax(fabs(at), 1.0);
-  beside[0] = fmax(at - h, problem->low[i]);
-  beside[1] = fmin(at + h, problem->high[i]);
+/* Residuals where parameter i is moved to `beside`; where there are none it stays, and they are those known. */
+static const double *look_beside(solver *self, size_t i, double *beside, double *residual) {
+  double at = self->at[i];
+  self->at[i] = *beside;
+  bool fine = *beside != at && evaluate(self, residual);
+  self->at[i] = at;
+  if (fine) return residual;
+  *beside = at;
+  return self->known;
 }
 
-/* The derivative by parameter i into column k of a matrix of that many columns. False: there is none. */
-static bool differentiate(solver *self, size_t i, double *matrix, size_t columns, size_t k) {
+/* The derivative by parameter i, and how far that could be looked at to both sides: 0, 0 where it could not. */
+static void differentiate(solver *self, size_t i, double *derivative, double side[2]) {
   const strut_least_squares *problem = self->problem;
-  double at = self->at[i], beside[2];
-  double *derivative = self->ahead;
+  double at = self->at[i], h = problem->step * fmax(fabs(at), 1.0);
+  double low = fmax(at - h, problem->low[i]), high = fmin(at + h, problem->high[i]);
   if (!problem->derivative || !problem->derivative(problem->context, self->at, i, derivative)) {
-    step_beside(problem, i, at, beside);
-    self->at[i] = beside[0];
-    bool below = evaluate(self, self->back);
-    self->at[i] = beside[1];
-    bool above = evaluate(self, self->ahead);
-    self->at[i] = at;
-    if (below == above && !below) return false;
-    if (!below) beside[0] = at, below = evaluate(self, self->back); /* on one side alone */
-    if (!above) beside[1] = at, above = evaluate(self, self->ahead);
-    if (!below || !above) return false;
+    const double *back = look_beside(self, i, &low, self->back);
+    const double *ahead = look_beside(self, i, &high, self->ahead);
     for (size_t j = 0; j < problem->count; j++)
-      derivative[j] = (self->ahead[j] - self->back[j]) / (beside[1] - beside[0]);
+      derivative[j] = high > low ? (ahead[j] - back[j]) / (high - low) : 0.0;
   }
-  for (size_t j = 0; j < problem->count; j++) matrix[j * columns + k] = derivative[j];
+  side[0] = at - low;
+  side[1] = high - at;
+}
+
+/* Residuals get smaller where parameter i cannot go: out of the box, or to where there are none. */
+static bool is_stopped(solver *self, size_t i, const double *derivative, const double side[2]) {
+  double at = self->at[i], slope = 0.0;
+  double near = fmin(CLOSE * self->problem->near, 0.5 * self->problem->step) * fmax(fabs(at), 1.0);
+  for (size_t j = 0; j < self->problem->count; j++) slope += derivative[j] * self->known[j];
+  if (slope == 0.0 || side[slope < 0.0] > near) return false;
+  if (at - self->problem->low[i] > near && self->problem->high[i] - at > near) self->lost = true;
   return true;
 }
 
+/* A stopped parameter moves for no residual: it is drawn to its bound, while others go their way. */
 static int find_jacobian(const gsl_vector *x, void *context, gsl_matrix *jacobian) {
   solver *self = context;
   size_t count = self->problem->count;
-  double outside[STRUT_LEAST_SQUARES_MOST];
+  double outside[STRUT_LEAST_SQUARES_MOST], side[2];
   gsl_matrix_set_zero(jacobian);
+  self->lost = false;
   enter_box(self, x, outside);
   for (size_t i = 0, k = 0; i < self->problem->parameters; i++) {
     if (is_held(self, i)) continue;
-    if (outside[k] != 0.0)
-      gsl_matrix_set(jacobian, count + k, k, DRAWN);
-    else if (!differentiate(self, i, jacobian->data, jacobian->tda, k))
-      return GSL_EFAILED;
+    differentiate(self, i, self->derivative, side);
+    bool stopped = is_stopped(self, i, self->derivative, side);
+    self->changed = self->changed || stopped != self->stopped[k];
+    self->stopped[k] = stopped;
+    for (size_t j = 0; j < count && !stopped; j++)
+      gsl_matrix_set(jacobian, j, k, self->derivative[j]);
+    if (stopped || outside[k] != 0.0) gsl_matrix_set(jacobian, count + k, k, self->drawn);
     k++;
   }
   return GSL_SUCCESS;
@@ -115,13 +137,30 @@ static bool allocate(solver *self, strut_arena *arena) {
   self->ahead = strut_arena_allocate(arena, count, sizeof *self->ahead);
   self->back = strut_arena_allocate(arena, count, sizeof *self->back);
   self->known = strut_arena_allocate(arena, count, sizeof *self->known);
-  return self->at && self->ahead && self->back && self->known;
+  self->derivative = strut_arena_allocate(arena, count, sizeof *self->derivative);
+  return self->at && self->ahead && self->back && self->known && self->derivative;
 }
 
 static double sum_of_squares(const double *residual, size_t count) {
   double sum = 0.0;
   for (size_t i = 0; i < count; i++) sum += residual[i] * residual[i];
   return sum;
+}
+
+/*
+ * Goes on until steps are short, or none makes the sum smaller; and on where parameters were stopped or let go since.
+ * False: there were too many steps.
+ */
+static bool converge(solver *self, gsl_multifit_nlinear_workspace *workspace) {
+  size_t most = (size_t)self->problem->most_steps, steps = 0;
+  int status = GSL_EMAXITER, info = 0;
+  do {
+    self->changed = false;
+    status = gsl_multifit_nlinear_driver(most - steps, self->problem->near, FLAT, FLAT, NULL, NULL,
+                                         &info, workspace);
+    steps = gsl_multifit_nlinear_niter(workspace);
+  } while (self->changed && steps < most);
+  return !status || info == GSL_ENOPROG;
 }
 
 /* Solves for the free parameters in x. */
@@ -132,20 +171,18 @@ static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *sol
                                      .n = self->problem->count + self->free,
                                      .p = self->free,
                                      .params = self};
-  int info = 0;
   settings.solver = gsl_multifit_nlinear_solver_svd;
+  settings.trs = gsl_multifit_nlinear_trs_lmaccel;
+  self->drawn = DRAWN * sqrt(solution->sum);
   gsl_multifit_nlinear_workspace *workspace =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, system.n, system.p);
   if (!workspace) return STRUT_NO_MEMORY;
-  int status = gsl_multifit_nlinear_init(x, &system, workspace);
-  if (!status)
-    status = gsl_multifit_nlinear_driver((size_t)self->problem->most_steps, self->problem->near,
-                                         FLAT, FLAT, NULL, NULL, &info, workspace);
+  bool fine = !gsl_multifit_nlinear_init(x, &system, workspace) && converge(self, workspace);
   gsl_vector_memcpy(x, gsl_multifit_nlinear_position(workspace));
   solution->steps = (int64_t)gsl_multifit_nlinear_niter(workspace);
   solution->sum =
       sum_of_squares(gsl_multifit_nlinear_residual(workspace)->data, self->problem->count);
-  solution->end = status ? STRUT_FIT_STUCK : STRUT_FIT_CONVERGED;
+  solution->end = fine && !self->lost ? STRUT_FIT_CONVERGED : STRUT_FIT_STUCK;
   gsl_multifit_nlinear_free(workspace);
   return STRUT_OK;
 }
@@ -182,11 +219,17 @@ bool strut_least_squares_jacobian(const strut_least_squares *problem, const doub
                                   double *residual, double *jacobian) {
   strut_arena arena = {0};
   solver self = {.problem = problem};
+  double side[2];
   bool fine = allocate(&self, &arena);
   if (fine) memcpy(self.at, parameters, problem->parameters * sizeof *parameters);
-  fine = fine && evaluate(&self, residual);
-  for (size_t i = 0; i < problem->parameters && fine; i++)
-    fine = differentiate(&self, i, jacobian, problem->parameters, i);
+  fine = fine && evaluate(&self, self.known);
+  for (size_t i = 0; i < problem->parameters && fine; i++) {
+    differentiate(&self, i, self.derivative, side);
+    fine = side[0] + side[1] > 0.0;
+    for (size_t j = 0; j < problem->count; j++)
+      jacobian[j * problem->parameters + i] = self.derivative[j];
+  }
+  if (fine) memcpy(residual, self.known, problem->count * sizeof *residual);
   strut_arena_free(&arena);
   return fine;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Nonlinear least squares: the parameters with the least sum of squared residuals, by GSL's trust-region method
- * (Levenberg and Marquardt) on central differences; and what the residuals say of them.
+ * (Levenberg and Marquardt, with geodesic acceleration) on central differences; and what the residuals say of them.
  *
  * Parameters are scaled by the caller so that a change of 1 is large, and lie in a box. Outside of it residuals are
- * those of the nearest point of the box, and further ones draw back to it.
+ * those of the nearest point of the box, and further ones draw back to it. A parameter that would leave the box, or go
+ * where there are no residuals, stays where it is as long as that is so.
  */
 #ifndef STRUT_ENGINE_STUDY_FIT_LEAST_SQUARES_H
 #define STRUT_ENGINE_STUDY_FIT_LEAST_SQUARES_H
@@ -34,7 +35,7 @@ typedef struct strut_least_squares {
 
 typedef enum strut_fit_end {
   STRUT_FIT_CONVERGED,
-  STRUT_FIT_STUCK,  /* no step makes the sum smaller, or there were too many */
+  STRUT_FIT_STUCK,  /* too many steps, or residuals end where they get smaller */
   STRUT_FIT_FAILED, /* there are no residuals where it begins */
   STRUT_FIT_END_COUNT
 } strut_fit_end;
