@@ -121,6 +121,7 @@ static void begin(problem *p, int start) {
                                     .high = p->high,
                                     .step = 1e-6,
                                     .near = 1e-10,
+                                    .exact = true,
                                     .held = -1,
                                     .most_steps = 1000,
                                     .residuals = find_residuals,

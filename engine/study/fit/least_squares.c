@@ -172,7 +172,7 @@ static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *sol
                                      .p = self->free,
                                      .params = self};
   settings.solver = gsl_multifit_nlinear_solver_svd;
-  settings.trs = gsl_multifit_nlinear_trs_lmaccel;
+  if (self->problem->exact) settings.trs = gsl_multifit_nlinear_trs_lmaccel;
   self->drawn = DRAWN * sqrt(solution->sum);
   gsl_multifit_nlinear_workspace *workspace =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, system.n, system.p);

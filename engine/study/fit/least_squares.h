@@ -21,8 +21,9 @@ typedef struct strut_least_squares {
   const double *low, *high; /* (parameters) the box; infinite where there is no bound */
   double step;              /* of differences, relative to a parameter where that is above 1 */
   double near;              /* changes of parameters at which the method ends, relative likewise */
-  int32_t held;             /* this parameter stays where it is; -1: none */
-  int32_t most_steps;       /* of the method */
+  bool exact;   /* residuals are known to rounding: second differences along a step are of use */
+  int32_t held; /* this parameter stays where it is; -1: none */
+  int32_t most_steps; /* of the method */
   /**
    * Fills the residuals (count) at the parameters; false where there are none: the point counts as worse than
    * others.
