@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/checksum.h"
 #include "engine/base/number_text.h"
 #include "parser/language/read/reuse/used_files.h"
 #include "parser/language/study/read_study.h"
@@ -398,11 +399,29 @@ static void put_follow(strut_writer *writer, const strut_study_follow *follow) {
   put_number(writer, follow->basins);
 }
 
+/* What is measured, by checksums. */
+static void put_tables(strut_writer *writer, const strut_data_table *tables, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < tables[i].column_count; k++) {
+      const double *values = tables[i].columns[k].values;
+      size_t bytes = values ? tables[i].row_count * sizeof *values : 0;
+      uint64_t sum = strut_checksum(values, bytes, tables[i].row_count);
+      put_word(writer, tables[i].columns[k].name);
+      put_number(writer, (double)(sum >> 32));
+      put_number(writer, (double)(sum & UINT32_MAX));
+    }
+}
+
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
-  for (size_t i = 0; i < file->source_count; i++)
+  for (size_t i = 0; i < file->source_count; i++) {
+    size_t count;
+    const strut_data_table *tables = strut_scene_source_tables(file->sources[i], &count);
     put_tree(&w, strut_scene_source_document(file->sources[i])->root);
+    put_tables(&w, tables, count);
+  }
+  put_tables(&w, study->tables, study->table_count);
   for (size_t i = 0; i < file->setting_count; i++) {
     put_word(&w, file->settings[i].name);
     put_word(&w, file->settings[i].text);
