@@ -90,7 +90,7 @@ bool strut_read_data_signal(strut_reader *reader, const strut_tree *value, const
   c.y = strut_read_data_column(reader, value, "data", owner, expected, &c.table);
   if (!c.y || !read_over(reader, over, value, owner, &time, &c)) return false;
   size_t row = find_disorder(&c, 1.0);
-  snprintf(message, sizeof message, "expected times that increase, found %g s after a later one",
+  snprintf(message, sizeof message, "expected a time above that of the row before, found %g s",
            row < c.table->row_count ? c.x->values[row] : 0.0);
   if (row < c.table->row_count)
     return strut_refuse_data(reader, c.value, c.table, c.x, row, message);
@@ -168,6 +168,17 @@ static bool take_means(strut_reader *reader, const columns *self, const strut_tr
   return true;
 }
 
+/* The points of a law in increasing order of x, which `falls`. */
+static bool turn_round(strut_reader *reader, strut_law *law, size_t count) {
+  double *turned = strut_reader_allocate(reader, &reader->scene->arena, 2 * count, sizeof *turned);
+  for (size_t k = 0; turned && k < count; k++) {
+    turned[k] = law->x[count - 1 - k];
+    turned[count + k] = law->force[count - 1 - k];
+  }
+  law->x = turned, law->force = turned ? turned + count : NULL;
+  return turned != NULL;
+}
+
 bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const strut_tree *over,
                          strut_owner owner, const strut_dimension dimensions[2], strut_law *law) {
   columns c = {.table = NULL};
@@ -175,18 +186,13 @@ bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const st
   if (!c.y || !read_over(reader, over, value, owner, &dimensions[0], &c)) return false;
   law->data = name_column(reader, c.table, c.y);
   law->over = name_column(reader, c.table, c.x);
-  law->count = count_whole(&c);
+  size_t count = count_whole(&c);
   bool rises = find_disorder(&c, 1.0) == SIZE_MAX, falls = find_disorder(&c, -1.0) == SIZE_MAX;
-  if ((!rises && !falls) || law->count > MOST_POINTS) return take_means(reader, &c, value, law);
-  if (!take_rows(reader, &c, &law->x, &law->force) || rises) return true;
-  double *turned =
-      strut_reader_allocate(reader, &reader->scene->arena, 2 * law->count, sizeof *turned);
-  for (size_t k = 0; turned && k < law->count; k++) {
-    turned[k] = law->x[law->count - 1 - k];
-    turned[law->count + k] = law->force[law->count - 1 - k];
-  }
-  law->x = turned, law->force = turned ? turned + law->count : NULL;
-  return turned != NULL;
+  if ((!rises && !falls) || count > MOST_POINTS) return take_means(reader, &c, value, law);
+  bool fine =
+      take_rows(reader, &c, &law->x, &law->force) && (rises || turn_round(reader, law, count));
+  law->count = fine ? count : 0;
+  return fine;
 }
 
 /* ---- positions ---- */
@@ -225,6 +231,6 @@ bool strut_read_data_point(strut_reader *reader, const strut_tree *map, strut_ow
   strut_row_keys keys = {.row = 1};
   if (!strut_read_object(reader, STRUT_SECTION_ROW, map, owner, &fields, &keys)) return false;
   const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_ROW_TIME);
-  bool fine = read_at(reader, fields.slot[0].value, owner, time, &keys, &point[0]);
-  return read_at(reader, fields.slot[1].value, owner, time, &keys, &point[1]) && fine;
+  return read_at(reader, fields.slot[0].value, owner, time, &keys, &point[0]) &&
+         read_at(reader, fields.slot[1].value, owner, time, &keys, &point[1]);
 }
