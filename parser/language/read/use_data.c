@@ -111,20 +111,32 @@ typedef struct piece {
   size_t count[2];
 } piece;
 
-/* Sums rows by pieces; x turns back where it does so by more than a twentieth of its range. */
+/* Adds the rows from `from` to before `to`. */
+static void sum_rows(const columns *self, size_t from, size_t to, int way, piece pieces[PIECES]) {
+  double least = self->x->least, range = self->x->most - least;
+  for (size_t k = from; k < to; k++) {
+    if (!is_whole(self, k)) continue;
+    double x = self->x->values[k];
+    piece *p = &pieces[(size_t)((x - least) / range * (PIECES - 1) + 0.5)];
+    p->x[way] += x, p->y[way] += self->y->values[k], p->count[way]++;
+  }
+}
+
+/* Sums rows by pieces; x has turned where it goes back by more than a twentieth of its range. */
 static void sum_pieces(const columns *self, piece pieces[PIECES]) {
-  double least = self->x->least, range = self->x->most - least, extreme = 0.0;
+  double range = self->x->most - self->x->least, extreme = (double)NAN;
+  size_t from = 0, turn = 0, rows = self->table->row_count;
   int way = 0; /* 1: unloading */
-  bool begun = false;
-  for (size_t k = 0; k < self->table->row_count; k++) {
+  for (size_t k = 0; k < rows; k++) {
     if (!is_whole(self, k)) continue;
     double x = self->x->values[k], ahead = way ? extreme - x : x - extreme;
-    if (!begun || ahead > 0.0) extreme = x;
-    if (begun && ahead < -0.05 * range) way = !way, extreme = x;
-    begun = true;
-    size_t i = (size_t)((x - least) / range * (PIECES - 1) + 0.5);
-    pieces[i].x[way] += x, pieces[i].y[way] += self->y->values[k], pieces[i].count[way]++;
+    if (ahead < -0.05 * range) {
+      sum_rows(self, from, turn + 1, way, pieces);
+      from = turn + 1, way = !way, ahead = 1.0;
+    }
+    if (!(ahead <= 0.0)) extreme = x, turn = k;
   }
+  sum_rows(self, from, rows, way, pieces);
 }
 
 /* Means of both ways; returns their number and the largest difference between the ways. */
@@ -162,7 +174,7 @@ static bool take_means(strut_reader *reader, const columns *self, const strut_tr
   law->count = mean_of_ways(pieces, x, x + PIECES, &apart);
   strut_note(reader->diagnostics, value->place,
              "the law of '%s' over '%s' is a mean of %zu rows at %zu places; loading and unloading "
-             "differ by up to %.3g %s",
+             "differ by up to %.2g %s",
              law->data, law->over, count_whole(self), law->count, apart,
              strut_dimension_unit(self->y->dimension));
   return true;
