@@ -12,6 +12,7 @@
 
 #include "engine/base/status.h"
 #include "engine/output/file.h"
+#include "engine/scene/data.h"
 
 /** Results being written. Zero-initialise. */
 typedef struct strut_results {
@@ -61,5 +62,12 @@ STRUT_API strut_status strut_ownership_claim(const char *directory, const char *
 STRUT_API strut_status strut_ownership_check_path(const char *path, strut_error *error);
 STRUT_API strut_status strut_ownership_claim_path(const char *path, const char *part,
                                                   strut_error *error);
+
+/**
+ * Copies the files of measured data to where a scene in the directory names them. STRUT_USAGE where one is
+ * called as a file of results, or another file is there.
+ */
+STRUT_API strut_status strut_data_copy(const strut_data_table *tables, size_t count,
+                                       const char *directory, strut_error *error);
 
 #endif

@@ -44,6 +44,8 @@ static strut_status begin_results(const strut_arguments *arguments, const strut_
   if (!arguments->output) return STRUT_OK;
   strut_status status = strut_results_begin(&keep->results, arguments->output, error);
   if (status != STRUT_OK) return status;
+  status = strut_data_copy(setup->scene.tables, setup->scene.table_count, arguments->output, error);
+  if (status != STRUT_OK) return status;
   keep->scene_text = strut_setup_write(setup);
   if (keep->scene_text) {
     keep->csv = keep->sinks[keep->sink_count++] = strut_csv_create(keep->results.stage);

@@ -183,7 +183,7 @@ TEST(written_scenes_read_back_to_the_same_bits) {
       fail_msg("%s is refused", files[i].path);
     char *written = strut_setup_write(&first);
     assert_non_null(written);
-    if (read_quietly(written, strlen(written), &second) != STRUT_OK)
+    if (read_quietly_as(files[i].path, written, strlen(written), &second) != STRUT_OK)
       fail_msg("%s, written: refused:\n%s", files[i].path, written);
     same_scene(&first, &second);
     char *again = strut_setup_write(&second);

@@ -230,3 +230,64 @@ TEST(breaks) {
   assert_true(strut_signal_next_break(s, 6, 0) == 1.0 && strut_signal_next_break(s, 6, 1) == 2.0);
   assert_true(isinf(strut_signal_next_break(s, 6, 2)));
 }
+
+/* ---- measured signals ---- */
+
+static const double measured_times[] = {0.0, 0.1, 0.15, 0.4, 0.5},
+                    measured_values[] = {1.0, 2.0, 2.0, -1.0, 0.5};
+
+static strut_signal measured(bool smooth, uint32_t outside) {
+  strut_signal s = strut_signal_default(STRUT_DATA);
+  s.time = measured_times, s.value = measured_values, s.point_count = 5;
+  s.smooth = smooth, s.outside = outside;
+  return s;
+}
+
+TEST(data_with_straight_lines_are_a_table) {
+  strut_signal s = measured(false, STRUT_OUTSIDE_HOLD), table = s;
+  table.kind = STRUT_TABLE;
+  for (int i = -10; i < 80; i++) {
+    double t = 0.01 * i;
+    assert_true(value_of(&s, 0, t) == value_of(&table, 0, t));
+    assert_true(rate_of(&s, 0, t) == rate_of(&table, 0, t));
+    assert_true(strut_signal_next_break(&s, 0, t) == strut_signal_next_break(&table, 0, t));
+  }
+}
+
+/* Monotone between points, smooth at them, with the rate that differences have. */
+TEST(smooth_data_stay_between_their_points) {
+  strut_signal s = measured(true, STRUT_OUTSIDE_HOLD);
+  for (size_t i = 0; i < 5; i++) near(value_of(&s, 0, measured_times[i]), measured_values[i], 0);
+  for (int i = 1; i < 500; i++) {
+    double t = 0.001 * i, h = 1e-7, value = value_of(&s, 0, t);
+    near(rate_of(&s, 0, t), (value_of(&s, 0, t + h) - value_of(&s, 0, t - h)) / (2 * h), 1e-4);
+    near(strut_signal_acceleration(&s, 0, t), (rate_of(&s, 0, t + h) - rate_of(&s, 0, t)) / h,
+         i % 50 ? 1e-2 : 1e9);
+    assert_true(value >= -1.0 && value <= 2.0);
+    if (t > 0.1 && t < 0.15) near(value, 2.0, 0);
+  }
+  /* Steffen's slopes: of the first piece at its begin, the smaller of two secants inside */
+  near(rate_of(&s, 0, 0.0), 10.0, 1e-12);
+  near(rate_of(&s, 0, 0.1), 0.0, 1e-12);
+  assert_true(strut_signal_next_break(&s, 0, 0.05) == 0.5);
+  assert_true(isinf(strut_signal_next_break(&s, 0, 0.5)));
+}
+
+TEST(repeated_data_are_periodic) {
+  for (int smooth = 0; smooth < 2; smooth++) {
+    strut_signal s = measured(smooth, STRUT_OUTSIDE_REPEAT);
+    double when = 0.0, t = 0.0;
+    near(strut_signal_period(&s, 0), 0.5, 0);
+    for (int i = 0; i < 400; i++)
+      near(value_of(&s, 0, 0.00125 * i + 7.5), value_of(&s, 0, 0.00125 * i), 1e-12);
+    assert_true(strut_signal_value_jumps(&s, 0, 1.0, &when) && when == 0.5);
+    for (int k = 1; k <= 1000; k++) { /* of lines at each point, none twice */
+      double next = strut_signal_next_break(&s, 0, t);
+      int n = smooth ? 1 : 4;
+      near(next, 0.5 * ((k - 1) / n) + measured_times[smooth ? 4 : (k - 1) % n + 1], 1e-10);
+      assert_true(next > t);
+      t = next;
+      if (k % n == 0) near(value_of(&s, 0, t), 1.0, 1e-9); /* from the right */
+    }
+  }
+}

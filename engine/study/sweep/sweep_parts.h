@@ -150,7 +150,8 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
 typedef struct strut_sweep_record strut_sweep_record;
 /** Takes results of a point into directory/runs/POINT. NULL with the error. */
 strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
-                                             const char *scene_text, strut_error *error);
+                                             const char *scene_text, const strut_scene *scene,
+                                             strut_error *error);
 /** Removes what killed processes left of unfinished runs below the directory, and nothing else. */
 void strut_sweep_records_clear(const char *directory);
 strut_sink *strut_sweep_record_sink(strut_sweep_record *record);

@@ -83,7 +83,8 @@ static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_j
   if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
   char *text = worker->plan->scenes.text(&job->setup);
   if (!text) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
-  job->files = strut_sweep_record_begin(worker->options->directory, job->point, text, &job->error);
+  job->files = strut_sweep_record_begin(worker->options->directory, job->point, text,
+                                        &job->setup.scene, &job->error);
   strut_release(text);
   if (!job->files) return job->error.status;
   job->sinks[0] = strut_sweep_record_sink(job->files);
@@ -278,7 +279,8 @@ static void discard(strut_sweep_record *record) {
 }
 
 strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
-                                             const char *scene_text, strut_error *error) {
+                                             const char *scene_text, const strut_scene *scene,
+                                             strut_error *error) {
   strut_arena arena = {0};
   strut_sweep_record *record = strut_allocate(1, sizeof *record);
   char *path = strut_arena_format(&arena, "%s/runs/%09lld", directory, (long long)point);
@@ -295,6 +297,7 @@ strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t poin
     if (!record->hdf5) status = strut_no_memory(error, "");
   }
   if (!status) status = strut_file_write_text(record->results.stage, "scene.yaml", text, error);
+  if (!status) status = strut_data_copy(scene->tables, scene->table_count, path, error);
   strut_arena_free(&arena);
   if (status) {
     discard(record);

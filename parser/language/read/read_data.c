@@ -416,7 +416,8 @@ static bool read_table(strut_reader *reader, const strut_tree *key, strut_data_t
   table->naming = strut_keep_text(reader, strut_diagnostics_file(reader->diagnostics, place));
   bool fine = strut_read_name(reader, key, "table");
   if (fine && strchr(key->text, '.'))
-    fine = strut_report_error(reader, place, "a dot ends the name of a table; expected none");
+    fine =
+        strut_report_error(reader, place, "a name of data has no dot: one ends it, as in film.x");
   strut_read_fields_of(reader, STRUT_SECTION_DATA, key, owner, &l.fields);
   strut_require(reader, &l.fields, owner, place);
   fine = strut_store(reader, &l.fields, owner, table) && read_scale(&l, owner) && fine;
@@ -509,7 +510,7 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
       return NULL;
     }
   if (!column->values) {
-    strut_refuse_data(reader, value, *table, column, column->flaw, "expected a number");
+    strut_refuse_data(reader, value, *table, column, column->flaw, "expected a finite number");
     return NULL;
   }
   bool fits = column->unit && (!expected || strut_dimension_equal(column->dimension, *expected));

@@ -378,6 +378,11 @@ bool strut_scene_source_uses_files(const strut_scene_source *source) {
   return source->used_count > 0;
 }
 
+const strut_data_table *strut_scene_source_tables(const strut_scene_source *source, size_t *count) {
+  *count = source->table_count;
+  return source->tables;
+}
+
 strut_document *strut_scene_source_document(strut_scene_source *source) {
   return &source->document;
 }

@@ -64,6 +64,9 @@ STRUT_API const strut_declared *strut_scene_source_parameter(const strut_scene_s
 STRUT_API const char *strut_scene_source_parameter_name(const void *source, size_t i);
 /** Does the text name files, which the tree has taken in? */
 STRUT_API bool strut_scene_source_uses_files(const strut_scene_source *source);
+/** The *count tables of measured data, which all its scenes share. */
+STRUT_API const strut_data_table *strut_scene_source_tables(const strut_scene_source *source,
+                                                            size_t *count);
 /** The tree, which may be changed until the first scene is made. */
 STRUT_API strut_document *strut_scene_source_document(strut_scene_source *source);
 /** As strut_setup_read, from the tree, with settings in place of overrides. */

@@ -90,7 +90,7 @@ bool strut_read_data_signal(strut_reader *reader, const strut_tree *value, const
   c.y = strut_read_data_column(reader, value, "data", owner, expected, &c.table);
   if (!c.y || !read_over(reader, over, value, owner, &time, &c)) return false;
   size_t row = find_disorder(&c, 1.0);
-  snprintf(message, sizeof message, "expected times that increase, found %g s after a later one",
+  snprintf(message, sizeof message, "expected a time above that of the row before, found %g s",
            row < c.table->row_count ? c.x->values[row] : 0.0);
   if (row < c.table->row_count)
     return strut_refuse_data(reader, c.value, c.table, c.x, row, message);
@@ -111,20 +111,32 @@ typedef struct piece {
   size_t count[2];
 } piece;
 
-/* Sums rows by pieces; x turns back where it does so by more than a twentieth of its range. */
+/* Adds the rows from `from` to before `to`. */
+static void sum_rows(const columns *self, size_t from, size_t to, int way, piece pieces[PIECES]) {
+  double least = self->x->least, range = self->x->most - least;
+  for (size_t k = from; k < to; k++) {
+    if (!is_whole(self, k)) continue;
+    double x = self->x->values[k];
+    piece *p = &pieces[(size_t)((x - least) / range * (PIECES - 1) + 0.5)];
+    p->x[way] += x, p->y[way] += self->y->values[k], p->count[way]++;
+  }
+}
+
+/* Sums rows by pieces; x has turned where it goes back by more than a twentieth of its range. */
 static void sum_pieces(const columns *self, piece pieces[PIECES]) {
-  double least = self->x->least, range = self->x->most - least, extreme = 0.0;
+  double range = self->x->most - self->x->least, extreme = (double)NAN;
+  size_t from = 0, turn = 0, rows = self->table->row_count;
   int way = 0; /* 1: unloading */
-  bool begun = false;
-  for (size_t k = 0; k < self->table->row_count; k++) {
+  for (size_t k = 0; k < rows; k++) {
     if (!is_whole(self, k)) continue;
     double x = self->x->values[k], ahead = way ? extreme - x : x - extreme;
-    if (!begun || ahead > 0.0) extreme = x;
-    if (begun && ahead < -0.05 * range) way = !way, extreme = x;
-    begun = true;
-    size_t i = (size_t)((x - least) / range * (PIECES - 1) + 0.5);
-    pieces[i].x[way] += x, pieces[i].y[way] += self->y->values[k], pieces[i].count[way]++;
+    if (ahead < -0.05 * range) {
+      sum_rows(self, from, turn + 1, way, pieces);
+      from = turn + 1, way = !way, ahead = 1.0;
+    }
+    if (!(ahead <= 0.0)) extreme = x, turn = k;
   }
+  sum_rows(self, from, rows, way, pieces);
 }
 
 /* Means of both ways; returns their number and the largest difference between the ways. */
@@ -162,10 +174,21 @@ static bool take_means(strut_reader *reader, const columns *self, const strut_tr
   law->count = mean_of_ways(pieces, x, x + PIECES, &apart);
   strut_note(reader->diagnostics, value->place,
              "the law of '%s' over '%s' is a mean of %zu rows at %zu places; loading and unloading "
-             "differ by up to %.3g %s",
+             "differ by up to %.2g %s",
              law->data, law->over, count_whole(self), law->count, apart,
              strut_dimension_unit(self->y->dimension));
   return true;
+}
+
+/* The points of a law in increasing order of x, which `falls`. */
+static bool turn_round(strut_reader *reader, strut_law *law, size_t count) {
+  double *turned = strut_reader_allocate(reader, &reader->scene->arena, 2 * count, sizeof *turned);
+  for (size_t k = 0; turned && k < count; k++) {
+    turned[k] = law->x[count - 1 - k];
+    turned[count + k] = law->force[count - 1 - k];
+  }
+  law->x = turned, law->force = turned ? turned + count : NULL;
+  return turned != NULL;
 }
 
 bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const strut_tree *over,
@@ -175,18 +198,13 @@ bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const st
   if (!c.y || !read_over(reader, over, value, owner, &dimensions[0], &c)) return false;
   law->data = name_column(reader, c.table, c.y);
   law->over = name_column(reader, c.table, c.x);
-  law->count = count_whole(&c);
+  size_t count = count_whole(&c);
   bool rises = find_disorder(&c, 1.0) == SIZE_MAX, falls = find_disorder(&c, -1.0) == SIZE_MAX;
-  if ((!rises && !falls) || law->count > MOST_POINTS) return take_means(reader, &c, value, law);
-  if (!take_rows(reader, &c, &law->x, &law->force) || rises) return true;
-  double *turned =
-      strut_reader_allocate(reader, &reader->scene->arena, 2 * law->count, sizeof *turned);
-  for (size_t k = 0; turned && k < law->count; k++) {
-    turned[k] = law->x[law->count - 1 - k];
-    turned[law->count + k] = law->force[law->count - 1 - k];
-  }
-  law->x = turned, law->force = turned ? turned + law->count : NULL;
-  return turned != NULL;
+  if ((!rises && !falls) || count > MOST_POINTS) return take_means(reader, &c, value, law);
+  bool fine =
+      take_rows(reader, &c, &law->x, &law->force) && (rises || turn_round(reader, law, count));
+  law->count = fine ? count : 0;
+  return fine;
 }
 
 /* ---- positions ---- */
@@ -225,6 +243,6 @@ bool strut_read_data_point(strut_reader *reader, const strut_tree *map, strut_ow
   strut_row_keys keys = {.row = 1};
   if (!strut_read_object(reader, STRUT_SECTION_ROW, map, owner, &fields, &keys)) return false;
   const strut_slot *time = strut_slot_of(&fields, STRUT_KEY_ROW_TIME);
-  bool fine = read_at(reader, fields.slot[0].value, owner, time, &keys, &point[0]);
-  return read_at(reader, fields.slot[1].value, owner, time, &keys, &point[1]) && fine;
+  return read_at(reader, fields.slot[0].value, owner, time, &keys, &point[0]) &&
+         read_at(reader, fields.slot[1].value, owner, time, &keys, &point[1]);
 }

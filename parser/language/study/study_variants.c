@@ -399,25 +399,31 @@ static void put_follow(strut_writer *writer, const strut_study_follow *follow) {
   put_number(writer, follow->basins);
 }
 
-/* Measured numbers, by their sum. */
-static void put_table(strut_writer *writer, const strut_data_table *table) {
-  put_word(writer, table->name);
-  for (size_t i = 0; i < table->column_count; i++) {
-    const strut_data_column *column = &table->columns[i];
-    size_t bytes = table->row_count * sizeof(double);
-    uint64_t sum = column->values ? strut_checksum(column->values, bytes, i) : i;
-    if (column->weights) sum = strut_checksum(column->weights, bytes, sum);
-    put_word(writer, column->name);
-    put_number(writer, (double)(sum >> 32));
-    put_number(writer, (double)(sum & UINT32_MAX));
-  }
+/* What is measured, by checksums. */
+static void put_tables(strut_writer *writer, const strut_data_table *tables, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < tables[i].column_count; k++) {
+      const double *values = tables[i].columns[k].values;
+      size_t bytes = values ? tables[i].row_count * sizeof *values : 0;
+      const double *weights = tables[i].columns[k].weights;
+      uint64_t sum = strut_checksum(values, bytes, tables[i].row_count);
+      if (weights) sum = strut_checksum(weights, bytes, sum);
+      put_word(writer, tables[i].columns[k].name);
+      put_number(writer, (double)(sum >> 32));
+      put_number(writer, (double)(sum & UINT32_MAX));
+    }
 }
 
 char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
-  for (size_t i = 0; i < file->source_count; i++)
+  for (size_t i = 0; i < file->source_count; i++) {
+    size_t count;
+    const strut_data_table *tables = strut_scene_source_tables(file->sources[i], &count);
     put_tree(&w, strut_scene_source_document(file->sources[i])->root);
+    put_tables(&w, tables, count);
+  }
+  put_tables(&w, study->tables, study->table_count);
   for (size_t i = 0; i < file->setting_count; i++) {
     put_word(&w, file->settings[i].name);
     put_word(&w, file->settings[i].text);
@@ -440,7 +446,6 @@ char *strut_study_identity(const strut_study_file *file) {
   if (study->search) put_search(&w, study->search);
   if (study->follow) put_follow(&w, study->follow);
   if (study->fit) put_tree(&w, strut_tree_find(file->document.root, "fit", NULL));
-  for (size_t i = 0; i < study->table_count; i++) put_table(&w, &study->tables[i]);
   if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
   return strut_buffer_take(&w.out);
 }

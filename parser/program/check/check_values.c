@@ -9,6 +9,7 @@
 #include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/result_values.h"
+#include "parser/language/expression/units.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
@@ -178,6 +179,36 @@ static size_t method_count(void) {
   X("text", "", TEXT(finding->message), "one sentence")
 STRUT_VALUES_HERE(warning_values, WARNING, const strut_finding *finding = of->at)
 
+static const char *unit_of(const strut_data_column *d) {
+  const char *unit = d->unit ? strut_dimension_unit(d->dimension) : "";
+  return strcmp(unit, "1") == 0 ? "" : unit;
+}
+
+static bool has_range(const strut_data_column *d) { return d->values && !isnan(d->least); }
+
+#define DATA_COLUMN(X)                                                                             \
+  X("unit", "", KNOWN(d->unit != NULL, TEXT(d->unit)), "as given; null: not known", COLUMN)        \
+  X("numbers", "", FLAG(d->values != NULL), "or texts", COLUMN)                                    \
+  X("least", "", KNOWN(has_range(d), CALLED("least", unit_of(d), d->least)), "in SI", COLUMN)      \
+  X("most", "", KNOWN(has_range(d), CALLED("most", unit_of(d), d->most)), "in SI", COLUMN)         \
+  X("gaps", "", COUNT(d->gap_count), "rows without a value", COLUMN)
+STRUT_VALUES_HERE(data_column_values, DATA_COLUMN, const strut_data_column *d = of->at)
+
+static const char *data_column_name(const strut_result_object *of, size_t i) {
+  return ((const strut_data_table *)of->at)->columns[i].name;
+}
+
+#define DATA_TABLE(X)                                                                              \
+  X("file", "", TEXT(t->file), "as the scene names it", COLUMN)                                    \
+  X("rows", "", COUNT(t->row_count), "below the header", COLUMN)                                   \
+  X("columns", "", NAMED(t->columns, t->column_count, data_column_name), "by name",                \
+    .rows = &data_column_values, .label = {"column"})
+STRUT_VALUES_HERE(data_table_values, DATA_TABLE, const strut_data_table *t = of->at)
+
+static const char *data_table_name(const strut_result_object *of, size_t i) {
+  return of->scene->tables[i].name;
+}
+
 #define THINGS(X, THING, OF)                                                                       \
   X(#OF, "", NAMED(of->scene->OF, of->scene->THING##_count, THING##_name), "by name",              \
     .rows = &THING##_values, .label = {#THING})
@@ -212,6 +243,8 @@ STRUT_VALUES_HERE(warning_values, WARNING, const strut_finding *finding = of->at
   THINGS(X, cell, cells)                                                                           \
   THINGS(X, collision, collisions)                                                                 \
   THINGS(X, distance, distances)                                                                   \
+  X("data", "", NAMED(of->scene->tables, of->scene->table_count, data_table_name), "by name",      \
+    .rows = &data_table_values, .label = {"data"})                                                 \
   X("warnings", "", LIST(c->found.items, c->found.count), "of the scene", .rows = &warning_values)
 STRUT_VALUES_HERE(scene_values, SCENE, const strut_check_result *c = of->at;
                   const strut_cost_estimate *e = c->estimate)

@@ -278,7 +278,16 @@ strut_status strut_sweep_texts_check(const strut_arguments *arguments,
 
 strut_status strut_sweep_texts_write(const strut_arguments *arguments,
                                      const strut_sweep_study *study, strut_error *error) {
-  return for_each(arguments, study, write_copy, error);
+  const strut_study_file *file = &study->file;
+  strut_status status = for_each(arguments, study, write_copy, error);
+  if (!status)
+    status = strut_data_copy(file->study.tables, file->study.table_count, arguments->output, error);
+  for (size_t i = 0; i < file->source_count && !status; i++) {
+    size_t count;
+    const strut_data_table *tables = strut_scene_source_tables(file->sources[i], &count);
+    status = strut_data_copy(tables, count, arguments->output, error);
+  }
+  return status;
 }
 
 /* The paths of this program and of the current directory. */
