@@ -54,8 +54,7 @@ static void evaluate_cost(tradeoff_study *study, strut_tradeoff_row *row,
   size_t count = 0;
   for (int planned = 0; planned < 2 && count == 0; planned++)
     for (size_t p = 0; p < tradeoff->point_count; p++) {
-      const tradeoff_setting own = {row->method, row->step, row->tolerance, row->refine};
-      double forces = planned ? strut_tradeoff_planned(study, p, own) : row->forces[p];
+      double forces = planned ? strut_tradeoff_planned(study, p, row->setting) : row->forces[p];
       double unit = base && isfinite(base->forces[p])
                         ? base->forces[p]
                         : strut_tradeoff_planned(study, p, study->base);
@@ -95,7 +94,8 @@ static void find_fronts(strut_tradeoff *tradeoff) {
   }
 }
 
-void strut_tradeoff_judge(tradeoff_study *study) {
+/* Errors, spreads, costs and fronts of all rows, from values and references. */
+static void judge(tradeoff_study *study) {
   strut_tradeoff *tradeoff = study->result;
   for (size_t i = 0; i < tradeoff->variant_count; i++) {
     strut_model_variant *variant = &tradeoff->variants[i];
@@ -113,12 +113,12 @@ void strut_tradeoff_judge(tradeoff_study *study) {
   find_fronts(tradeoff);
 }
 
-double strut_tradeoff_smallest_error(const tradeoff_study *study, int variant) {
-  const strut_tradeoff *tradeoff = study->result;
+/* The smallest worst error of a row of the unchanged model, not counting what a floor hides; 1 where there is none. */
+static double smallest_error(const strut_tradeoff *tradeoff) {
   double smallest = 1;
   for (size_t i = 0; i < tradeoff->row_count; i++) {
     double worst = tradeoff->rows[i].error_spread.worst;
-    if (tradeoff->rows[i].variant == variant && worst > 0 && worst < smallest) smallest = worst;
+    if (tradeoff->rows[i].variant == 0 && worst > 0 && worst < smallest) smallest = worst;
   }
   return smallest;
 }
@@ -126,8 +126,9 @@ double strut_tradeoff_smallest_error(const tradeoff_study *study, int variant) {
 /* Is b a finer setting of the same group, or a itself? */
 static bool is_finer(const strut_tradeoff_row *first, const strut_tradeoff_row *second) {
   if (first->group != second->group) return false;
-  return isfinite(first->tolerance) ? second->tolerance <= first->tolerance
-                                    : second->step <= first->step;
+  const tradeoff_setting *coarse = &first->setting, *fine = &second->setting;
+  return isfinite(coarse->tolerance) ? fine->tolerance <= coarse->tolerance
+                                     : fine->step <= coarse->step;
 }
 
 double strut_tradeoff_promise(const strut_tradeoff *tradeoff, int row) {
@@ -145,22 +146,18 @@ static bool is_confirmed(const strut_tradeoff *tradeoff, const strut_tradeoff_ro
   return finer;
 }
 
-/* The cheapest confirmed row that keeps a level, of any method but one. */
-static int best_but(const strut_tradeoff *tradeoff, int variant, double level,
+/* The cheapest confirmed row of the unchanged model that keeps a level, of any method but one; -1: none. */
+static int best_but(const strut_tradeoff *tradeoff, double level,
                     const strut_integrator *excluded) {
   int best = -1;
   for (size_t i = 0; i < tradeoff->row_count; i++) {
     const strut_tradeoff_row *row = &tradeoff->rows[i];
-    if (row->variant != variant || row->method == excluded || row->above) continue;
+    if (row->variant != 0 || row->setting.method == excluded || row->above) continue;
     if (!is_confirmed(tradeoff, row) || !(strut_tradeoff_promise(tradeoff, (int)i) <= level))
       continue;
     if (best < 0 || row->evaluations < tradeoff->rows[best].evaluations) best = (int)i;
   }
   return best;
-}
-
-int strut_tradeoff_best(const strut_tradeoff *tradeoff, int variant, double level) {
-  return best_but(tradeoff, variant, level, NULL);
 }
 
 /*
@@ -185,9 +182,9 @@ static double interpolate_cost(const strut_tradeoff *tradeoff, int row, double e
 strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *tradeoff, double error) {
   strut_tradeoff_advice a = {.error = error, .cost = (double)NAN};
   a.known = tradeoff->variants[0].floor_spread.worst <= SURE * 0.5 * error;
-  a.row = a.known ? strut_tradeoff_best(tradeoff, 0, error) : -1;
-  a.half = a.row < 0 ? -1 : strut_tradeoff_best(tradeoff, 0, 0.5 * error);
-  a.other = a.row < 0 ? -1 : best_but(tradeoff, 0, error, tradeoff->rows[a.row].method);
+  a.row = a.known ? best_but(tradeoff, error, NULL) : -1;
+  a.half = a.row < 0 ? -1 : best_but(tradeoff, 0.5 * error, NULL);
+  a.other = a.row < 0 ? -1 : best_but(tradeoff, error, tradeoff->rows[a.row].setting.method);
   if (a.half >= 0)
     a.cost = a.half == a.row ? 1
                              : fmax(1, interpolate_cost(tradeoff, a.half, 0.5 * error) /
@@ -211,25 +208,6 @@ static const double CHEAP_FLOOR = 1e-10, CHEAP = 8;
  */
 static const double FOR_BASE = 0.5, FOR_VARIANTS = 0.35, FOR_REFERENCE = 0.5;
 
-static strut_status out_of_memory(tradeoff_study *study) {
-  return strut_no_memory(study->error, "");
-}
-
-strut_status strut_tradeoff_compile(const tradeoff_study *study, size_t point, int variant,
-                                    const strut_model **model) {
-  assert(point < study->result->point_count && variant >= 0 && variant < TRADEOFF_VARIANTS);
-  tradeoff_model *self = &study->models[point * TRADEOFF_VARIANTS + (size_t)variant];
-  strut_status status = STRUT_OK;
-  if (!self->model) {
-    self->scene = study->setups[point]->scene;
-    status = strut_tradeoff_change_scene(study, variant, &self->scene, &self->arena)
-                 ? strut_no_memory(study->error, "")
-                 : strut_model_compile(&self->scene, &self->model, study->error);
-  }
-  *model = self->model;
-  return status;
-}
-
 static void free_models(tradeoff_study *study) {
   size_t count = study->models ? study->result->point_count * TRADEOFF_VARIANTS : 0;
   for (size_t i = 0; i < count; i++) {
@@ -245,20 +223,20 @@ static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tra
   return walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
 }
 
-static strut_status measure_points(tradeoff_study *study) {
-  for (size_t p = 0; p < study->result->point_count; p++) {
+static void measure_points(tradeoff_study *study) {
+  for (size_t p = 0; p < study->result->point_count && !study->status; p++) {
     const strut_setup *setup = study->setups[p];
     const strut_model *model = NULL;
-    strut_status status = strut_tradeoff_compile(study, p, 0, &model);
-    if (status != STRUT_OK) return status;
     strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
+    study->status = strut_tradeoff_compile(study, p, 0, &model);
+    if (study->status) return;
     study->size[p] = model->size;
     study->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
   }
-  return STRUT_OK;
+  study->result->scale = study->scale[0];
 }
 
-static strut_status prepare(tradeoff_study *study, size_t count) {
+static void prepare(tradeoff_study *study, size_t count) {
   strut_tradeoff *tradeoff = study->result;
   const strut_scene *scene = &study->setups[0]->scene;
   tradeoff->name = scene->name;
@@ -267,108 +245,101 @@ static strut_status prepare(tradeoff_study *study, size_t count) {
   tradeoff->measure = choose_measure(study->setups[0], study->options->measure);
   tradeoff->value_count = tradeoff->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
-  study->size = strut_arena_allocate(&tradeoff->arena, count, sizeof *study->size);
-  study->scale = strut_arena_allocate(&tradeoff->arena, count, sizeof *study->scale);
-  study->scratch = strut_arena_allocate(&tradeoff->arena, most, sizeof *study->scratch);
-  study->spare = strut_arena_allocate(&tradeoff->arena, 2 * count, sizeof *study->spare);
-  study->coarse_value = strut_arena_allocate(&tradeoff->arena, most, sizeof *study->coarse_value);
+  study->size = strut_tradeoff_allocate(study, count, sizeof(double));
+  study->scale = strut_tradeoff_allocate(study, count, sizeof(double));
+  study->scratch = strut_tradeoff_allocate(study, most, sizeof(double));
+  study->spare = strut_tradeoff_allocate(study, 2 * count, sizeof(double));
+  study->coarse_value = strut_tradeoff_allocate(study, most, sizeof(double));
   study->models = strut_allocate(count * TRADEOFF_VARIANTS, sizeof *study->models);
-  if (!study->models || !study->size || !study->scale || !study->scratch || !study->spare ||
-      !study->coarse_value)
-    return out_of_memory(study);
-  if (!(strut_experiment_span(&study->setups[0]->experiment, scene).duration > 0))
-    return strut_fail(study->error, STRUT_USAGE,
-                      "the scene has no run: add 'run' with a duration or periods");
-  strut_status status = measure_points(study);
-  if (status != STRUT_OK) return status;
-  tradeoff->scale = study->scale[0];
-  return STRUT_OK;
+  if (!study->models) study->status = strut_no_memory(study->error, "");
+  if (!study->status && !(strut_experiment_span(&study->setups[0]->experiment, scene).duration > 0))
+    study->status = strut_fail(study->error, STRUT_USAGE,
+                               "the scene has no run: add 'run' with a duration or periods");
+  if (!study->status) measure_points(study);
 }
 
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
-static strut_status choose_base(tradeoff_study *study) {
+static void choose_base(tradeoff_study *study) {
   strut_tradeoff *tradeoff = study->result;
   strut_experiment e = strut_tradeoff_experiment(study, 0);
   strut_span span = strut_tradeoff_span(study, 0);
   tradeoff->periods = e.periods;
   tradeoff->duration = span.duration;
-  for (size_t i = 0; strut_integrator_at(i); i++) {
-    const strut_integrator *method = strut_integrator_at(i);
+  const strut_integrator *method;
+  for (size_t i = 0; (method = strut_integrator_at(i)) && !study->status; i++) {
     if (strut_tradeoff_is_adaptive(method) || !strut_tradeoff_can_run(study, method, 0)) continue;
     double step = e.step > 0 ? e.step : span.duration / 1000, limit = 0;
-    bool cannot = false;
-    strut_status status = strut_tradeoff_limit(study, 0, method, &limit, &cannot);
-    if (status != STRUT_OK) return status;
-    if (cannot) continue;
+    if (!strut_tradeoff_limit(study, 0, method, &limit)) continue;
     bool wild = !(e.step > 0) || e.step > limit;
     if (wild && isfinite(limit)) step = 0.5 * limit;
     step = strut_tradeoff_fit_step(study, 0, step);
     study->base = study->coarse = (tradeoff_setting){method, step, (double)NAN, (double)NAN};
     study->limit = isfinite(limit) ? limit : 0;
     study->coarse.step = fmax(step, COARSE * study->limit);
-    tradeoff->base_method = method;
-    tradeoff->base_step = step;
-    return STRUT_OK;
+    tradeoff->base_setting = study->base;
+    return;
   }
-  return study->error->status != STRUT_OK
-             ? study->error->status
-             : strut_fail(study->error, STRUT_USAGE, "no method can run this scene");
+  if (!study->status) study->status = study->error->status;
+  if (!study->status)
+    study->status = strut_fail(study->error, STRUT_USAGE, "no method can run this scene");
 }
 
 /* The coarse run, and positions as measure instead if the structure does not travel. */
-static strut_status run_coarse(tradeoff_study *study) {
+static void run_coarse(tradeoff_study *study) {
   strut_tradeoff *tradeoff = study->result;
-  tradeoff_outcome outcome;
   double *value = study->coarse_value;
-  strut_status status = strut_tradeoff_run(study, 0, 0, study->coarse, value, &outcome);
-  if (status != STRUT_OK) return status;
-  if (outcome.cannot) return study->error->status;
+  tradeoff_outcome outcome = strut_tradeoff_run(study, 0, 0, study->coarse, value);
+  if (outcome.cannot) study->status = study->error->status;
   bool still =
       tradeoff->measure == STRUT_TRADEOFF_VELOCITY && fabs(value[0]) < 1e-9 * study->scale[0];
-  if (study->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return STRUT_OK;
+  if (study->status || study->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
   tradeoff->measure = STRUT_TRADEOFF_POSITION;
   tradeoff->value_count = 2 * study->setups[0]->scene.node_count;
-  return strut_tradeoff_run(study, 0, 0, study->coarse, value, &outcome);
+  strut_tradeoff_run(study, 0, 0, study->coarse, value);
 }
 
 /* Without an accuracy, or a reference as for energies, the scene's own run bounds the work too. */
-static strut_status make_reference(tradeoff_study *study, tradeoff_reference *reference) {
+static void make_reference(tradeoff_study *study, tradeoff_reference *reference) {
   strut_tradeoff *tradeoff = study->result;
   bool asked = tradeoff->accuracy > 0, balance = tradeoff->measure == STRUT_TRADEOFF_ENERGY;
-  double target = asked ? OWN_PART * tradeoff->accuracy : OWN_FLOOR, own = 0;
-  for (size_t p = 0; p < tradeoff->point_count; p++)
-    own += strut_tradeoff_planned(study, p, study->base);
+  double target = asked ? OWN_PART * tradeoff->accuracy : OWN_FLOOR;
+  double own = strut_tradeoff_planned_at_all(study, study->base);
   study->least_unit = tradeoff->work_unit = asked && !balance ? 0 : own;
-  strut_status status = strut_tradeoff_reference_begin(study, 0, reference);
-  if (status == STRUT_OK)
-    status = strut_tradeoff_reference_refine(study, reference, target, HUGE_VAL);
-  if (status == STRUT_OK && !tradeoff->variants[0].run)
-    status = strut_fail(study->error, STRUT_DIVERGED, "no reference solution: %s",
-                        tradeoff->variants[0].remark);
-  if (status == STRUT_OK && !asked)
-    status = strut_tradeoff_reference_refine(study, reference, CHEAP_FLOOR, CHEAP * own);
-  return status;
+  strut_tradeoff_reference_begin(study, 0, reference);
+  strut_tradeoff_reference_refine(study, reference, target, HUGE_VAL);
+  if (!study->status && !tradeoff->variants[0].run)
+    study->status = strut_fail(study->error, STRUT_DIVERGED, "no reference solution: %s",
+                               tradeoff->variants[0].remark);
+  if (!asked) strut_tradeoff_reference_refine(study, reference, CHEAP_FLOOR, CHEAP * own);
 }
 
-static strut_status study_own_model(tradeoff_study *study, step_series_list *own) {
+/* Do the options not exclude the method? */
+static bool is_wanted(const tradeoff_study *study, const strut_integrator *method) {
+  bool wanted = study->options->method_count == 0;
+  for (size_t i = 0; i < study->options->method_count; i++)
+    wanted = wanted || study->options->methods[i] == method;
+  return wanted;
+}
+
+static void study_own_model(tradeoff_study *study) {
   strut_tradeoff *tradeoff = study->result;
+  step_series_list own = {.count = 0};
   tradeoff_reference reference;
-  strut_status status = make_reference(study, &reference);
-  for (size_t i = 0; strut_integrator_at(i) && status == STRUT_OK; i++)
-    if (strut_tradeoff_is_wanted(study, strut_integrator_at(i), 0))
-      status = strut_tradeoff_add_method(study, own, 0, strut_integrator_at(i));
-  double share = tradeoff->variant_count > 1 ? 1 - FOR_VARIANTS : 1;
-  if (status == STRUT_OK) status = strut_tradeoff_run_base(study, own, FOR_BASE);
-  if (status == STRUT_OK) status = strut_tradeoff_run_series(study, own, share, 0.2, 0.6);
-  strut_tradeoff_judge(study);
-  for (int i = 0; i < 3 && status == STRUT_OK && !(tradeoff->accuracy > 0); i++) {
-    double target =
-        0.01 * strut_tradeoff_smallest_error(study, 0); /* a smaller floor uncovers more */
-    status =
-        strut_tradeoff_reference_refine(study, &reference, target, FOR_REFERENCE * tradeoff->work);
-    strut_tradeoff_judge(study);
+  const strut_integrator *method;
+  make_reference(study, &reference);
+  for (size_t i = 0; (method = strut_integrator_at(i)); i++)
+    if (is_wanted(study, method) && strut_tradeoff_can_run(study, method, 0))
+      strut_tradeoff_add_method(study, &own, 0, method);
+  strut_tradeoff_run_base(study, &own, FOR_BASE);
+  strut_tradeoff_run_series(study, &own, tradeoff->variant_count > 1 ? 1 - FOR_VARIANTS : 1, 0.2,
+                            0.6);
+  for (int i = 0; i < 4 && !study->status; i++) {
+    judge(study);
+    if (tradeoff->accuracy > 0 || i == 3) return;
+    /* a smaller floor uncovers more */
+    strut_tradeoff_reference_refine(study, &reference, 0.01 * smallest_error(tradeoff),
+                                    FOR_REFERENCE * tradeoff->work);
   }
-  return status;
 }
 
 /* Methods of the unchanged model that are cheapest at some error level. */
@@ -376,81 +347,69 @@ static size_t best_methods(const strut_tradeoff *tradeoff,
                            const strut_integrator *best[BEST_METHODS]) {
   size_t count = 0;
   for (size_t i = 0; i < strut_tradeoff_level_count(tradeoff); i++) {
-    int row = strut_tradeoff_best(tradeoff, 0, strut_tradeoff_level(tradeoff, i));
+    int row = best_but(tradeoff, strut_tradeoff_level(tradeoff, i), NULL);
     bool is_known = row < 0;
     for (size_t k = 0; k < count && !is_known; k++)
-      is_known = best[k] == tradeoff->rows[row].method;
-    if (!is_known && count < BEST_METHODS) best[count++] = tradeoff->rows[row].method;
+      is_known = best[k] == tradeoff->rows[row].setting.method;
+    if (!is_known && count < BEST_METHODS) best[count++] = tradeoff->rows[row].setting.method;
   }
   return count;
 }
 
 /* Does the variant change the coarse run? */
-static strut_status differs(tradeoff_study *study, int variant, bool *different) {
-  const strut_tradeoff *tradeoff = study->result;
-  tradeoff_outcome outcome;
-  *different = true;
-  if (!strut_tradeoff_can_run(study, study->coarse.method, variant)) return STRUT_OK;
-  strut_status status =
-      strut_tradeoff_run(study, 0, variant, study->coarse, study->scratch, &outcome);
-  if (status != STRUT_OK || outcome.cannot || outcome.status != STRUT_OK) return status;
-  *different = false;
-  for (size_t i = 0; i < tradeoff->value_count; i++)
-    if (study->scratch[i] != study->coarse_value[i]) *different = true;
-  return STRUT_OK;
+static bool differs(tradeoff_study *study, int variant) {
+  if (!strut_tradeoff_can_run(study, study->coarse.method, variant)) return true;
+  tradeoff_outcome outcome = strut_tradeoff_run(study, 0, variant, study->coarse, study->scratch);
+  bool different = !outcome.good;
+  for (size_t i = 0; i < study->result->value_count; i++)
+    different = different || study->scratch[i] != study->coarse_value[i];
+  return different;
 }
 
 /* The rows of a variant whose reference is known, unless it is farther off than the accuracy. */
-static strut_status run_variant(tradeoff_study *study, const tradeoff_reference *reference,
-                                double share, double from, double to) {
+static void run_variant(tradeoff_study *study, const tradeoff_reference *reference, double share,
+                        double from, double to) {
   strut_tradeoff *tradeoff = study->result;
   int variant = reference->variant;
   const strut_integrator *best[BEST_METHODS];
   size_t count = best_methods(tradeoff, best);
   step_series_list all = {.count = 0};
-  strut_status status = STRUT_OK;
-  strut_tradeoff_judge(study);
+  judge(study);
   if (tradeoff->accuracy > 0 && tradeoff->variants[variant].model_spread.worst > tradeoff->accuracy)
-    return STRUT_OK;
+    return;
   study->allowed = fmax(1, strut_tradeoff_work_left(study, share));
-  for (size_t i = 0; i < count && status == STRUT_OK; i++)
+  for (size_t i = 0; i < count; i++)
     if (strut_tradeoff_can_run(study, best[i], variant))
-      status = strut_tradeoff_add_method(study, &all, variant, best[i]);
-  if (status == STRUT_OK && all.count == 0 && reference->method[0])
-    status = strut_tradeoff_add_method(study, &all, variant, reference->method[0]);
-  return status == STRUT_OK ? strut_tradeoff_run_series(study, &all, share, from, to) : status;
+      strut_tradeoff_add_method(study, &all, variant, best[i]);
+  if (all.count == 0 && reference->method[0])
+    strut_tradeoff_add_method(study, &all, variant, reference->method[0]);
+  strut_tradeoff_run_series(study, &all, share, from, to);
 }
 
-static strut_status study_variant(tradeoff_study *study, int variant, double share, double from,
-                                  double to) {
+static void study_variant(tradeoff_study *study, int variant, double share, double from,
+                          double to) {
   strut_tradeoff *tradeoff = study->result;
   strut_model_variant *f = &tradeoff->variants[variant];
   double left = strut_tradeoff_work_left(study, share);
   double target = tradeoff->accuracy > 0 ? OTHER_PART * tradeoff->accuracy : OTHER_FLOOR;
-  if (left <= 0 || tradeoff->cut) {
-    snprintf(f->remark, sizeof f->remark, "%s",
-             tradeoff->cut ? STRUT_TRADEOFF_NO_TIME : STRUT_TRADEOFF_NO_WORK);
-    return STRUT_OK;
-  }
+  const char *remark = tradeoff->cut              ? STRUT_TRADEOFF_NO_TIME
+                       : left <= 0                ? STRUT_TRADEOFF_NO_WORK
+                       : !differs(study, variant) ? "the motion does not depend on it"
+                                                  : NULL;
+  if (remark) snprintf(f->remark, sizeof f->remark, "%s", remark);
+  if (remark || study->status) return;
   tradeoff_reference reference;
-  bool different = true;
-  strut_status status = differs(study, variant, &different);
-  if (status == STRUT_OK && !different)
-    snprintf(f->remark, sizeof f->remark, "the motion does not depend on it");
-  if (status != STRUT_OK || !different) return status;
-  status = strut_tradeoff_reference_begin(study, variant, &reference);
-  if (status == STRUT_OK)
-    status = strut_tradeoff_reference_refine(study, &reference, target, 0.5 * left);
-  if (status != STRUT_OK || !f->run) return status;
-  return run_variant(study, &reference, share, from, to);
+  strut_tradeoff_reference_begin(study, variant, &reference);
+  strut_tradeoff_reference_refine(study, &reference, target, 0.5 * left);
+  if (!study->status && f->run) run_variant(study, &reference, share, from, to);
 }
 
 /* Order of rows: by group, coarse before fine. */
 static bool before(const strut_tradeoff_row *first, const strut_tradeoff_row *second) {
   if (first->group != second->group) return first->group < second->group;
-  if (isfinite(first->tolerance) && first->tolerance != second->tolerance)
-    return first->tolerance > second->tolerance;
-  return first->step > second->step;
+  const tradeoff_setting *a = &first->setting, *b = &second->setting;
+  if (isfinite(a->tolerance) && a->tolerance != b->tolerance) return a->tolerance > b->tolerance;
+  return a->step > b->step;
 }
 
 static void sort_rows(strut_tradeoff *tradeoff) {
@@ -466,29 +425,26 @@ static void sort_rows(strut_tradeoff *tradeoff) {
     if (tradeoff->rows[i].base) tradeoff->base = (int)i;
 }
 
-static strut_status make(tradeoff_study *study, size_t count) {
+static void make(tradeoff_study *study, size_t count) {
   strut_tradeoff *tradeoff = study->result;
-  step_series_list own = {.count = 0};
-  strut_status status = prepare(study, count);
-  if (status == STRUT_OK) status = choose_base(study);
-  if (status == STRUT_OK) status = run_coarse(study);
-  if (status == STRUT_OK && strut_tradeoff_list_variants(study) != STRUT_OK)
-    status = out_of_memory(study);
-  if (status == STRUT_OK) status = study_own_model(study, &own);
+  prepare(study, count);
+  if (!study->status) choose_base(study);
+  if (!study->status) run_coarse(study);
+  if (!study->status) strut_tradeoff_list_variants(study);
+  if (!study->status) study_own_model(study);
   double others = (double)(tradeoff->variant_count - 1);
-  for (size_t i = 1; i < tradeoff->variant_count && status == STRUT_OK; i++) {
+  for (size_t i = 1; i < tradeoff->variant_count && !study->status; i++) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
     double left =
         strut_tradeoff_work_left(study, 1) / (STRUT_TRADEOFF_MOST_WORK * tradeoff->work_unit);
     double share =
         1 - left + fmax(0, left) / (double)(tradeoff->variant_count - i); /* shared evenly */
-    status = study_variant(study, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
+    study_variant(study, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }
-  if (status != STRUT_OK) return status;
-  strut_tradeoff_judge(study);
+  if (study->status) return;
+  judge(study);
   sort_rows(tradeoff);
   tradeoff->spent = strut_tradeoff_cpu_clock() - study->began;
-  return STRUT_OK;
 }
 
 strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
@@ -503,9 +459,9 @@ strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
       .error = error ? error : &own,
       .began = strut_tradeoff_cpu_clock(),
       .budget = options->budget > 0 ? options->budget : STRUT_TRADEOFF_USUAL_BUDGET};
-  strut_status status = make(&s, count);
+  make(&s, count);
   free_models(&s);
-  return status;
+  return s.status;
 }
 
 void strut_tradeoff_free(strut_tradeoff *result) {

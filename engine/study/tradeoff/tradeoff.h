@@ -80,17 +80,21 @@ typedef struct strut_model_variant {
   strut_spread model_spread, floor_spread;
 } strut_model_variant;
 
+typedef struct strut_tradeoff_setting {
+  const strut_integrator *method;
+  double step;      /* [s]; fitted to each point's periods. Of an adaptive method the largest */
+  double tolerance; /* NAN where the method is not adaptive */
+  double refine;    /* as strut_experiment.refine; NAN where nothing is refined */
+} strut_tradeoff_setting;
+
 /** One setting, run at every operating point. */
 typedef struct strut_tradeoff_row {
   int variant; /* index */
   int group;   /* settings that differ by their step or tolerance alone */
-  const strut_integrator *method;
-  bool base;        /* the setting that costs are relative to */
-  double step;      /* [s]; fitted to each point's periods. Of an adaptive method the largest */
-  double tolerance; /* NAN where the method is not adaptive */
-  double refine;    /* as strut_experiment.refine; NAN where nothing is refined */
-  double *value;    /* (points, values); NAN where it diverged */
-  double *forces;   /* (points) force evaluations; NAN where it diverged */
+  strut_tradeoff_setting setting;
+  bool base;             /* costs are relative to it */
+  double *value;         /* (points, values); NAN where it diverged */
+  double *forces;        /* (points) force evaluations; NAN where it diverged */
   double *error, *total; /* (points) step error and total error; INFINITY where it diverged */
   strut_spread error_spread, total_spread;
   size_t diverged;    /* points */
@@ -111,8 +115,7 @@ typedef struct strut_tradeoff {
   double scale;    /* velocities below it have errors relative to it [m/s]; of the first point */
   double periods;  /* run; 0 where the run is given in seconds */
   double duration; /* of the first point [s] */
-  const strut_integrator *base_method; /* what costs are relative to */
-  double base_step;                    /* [s] */
+  strut_tradeoff_setting base_setting; /* what costs are relative to */
   double base_evaluations;             /* of the first point */
   double base_seconds;                 /* NAN: not run */
   int base;                            /* row; -1: not run, its evaluations are those planned */
@@ -139,27 +142,20 @@ STRUT_API strut_status strut_tradeoff_make(const strut_setup *const *setups, siz
 /** A zeroed struct is allowed. */
 STRUT_API void strut_tradeoff_free(strut_tradeoff *result);
 
-/** Median, 90th percentile and worst of (count) values; scratch holds as many. */
-STRUT_API strut_spread strut_spread_of(const double *values, size_t count, double *scratch);
-
 /** Errors of the recommendations, in descending order: the accuracy, else decades from 2 % down. */
 STRUT_API size_t strut_tradeoff_level_count(const strut_tradeoff *result);
 STRUT_API double strut_tradeoff_level(const strut_tradeoff *result, size_t i);
 /** The largest worst total error of a row and of all finer ones of its group. */
 STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
-/**
- * The cheapest row of a variant whose worst total error stays within `level`, and that of all
- * smaller steps or tolerances of its group too, of which there is one at least: a single small
- * error at a large step is luck. Its step is stable. -1: none.
- */
-STRUT_API int strut_tradeoff_best(const strut_tradeoff *result, int variant, double level);
-
 /** Answer to the question which setting of the unchanged model to use for an error. */
 typedef struct strut_tradeoff_advice {
   double error;
   bool known; /* the reference's floor is at most a tenth of half the error */
-  int row;    /* strut_tradeoff_best; -1: none */
-  int half;   /* the same for half the error */
+  /** The cheapest row of the unchanged model whose worst total error stays within `error`, and that of all smaller steps
+      or tolerances of its group too, of which there is one at least: a single small error at a large step is luck. Its
+      step is stable. -1: none. */
+  int row;
+  int half; /* the same for half the error */
   double
       cost;  /* of half the error over that of `row`, interpolated between the steps of the group of
                   `half`; NAN: not measured */

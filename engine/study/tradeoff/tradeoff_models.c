@@ -54,19 +54,18 @@ static bool has_damped_ground(const strut_scene *scene) {
   return any;
 }
 
+/* What the contacts of the last three have. */
+static const strut_friction_law law_of[KINDS] = {[KARNOPP] = STRUT_FRICTION_KARNOPP,
+                                                 [COULOMB] = STRUT_FRICTION_COULOMB,
+                                                 [SMOOTH] = STRUT_FRICTION_SMOOTH};
+
 static bool makes_sense(const strut_scene *scene, kind what) {
-  switch (what) {
-    case OWN: return true;
-    case MASS: return has_member_mass(scene);
-    case RIGID: return has_still_bars(scene) && !scene->ground_count;
-    case KARNOPP: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_KARNOPP);
-    case COULOMB: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_COULOMB);
-    case SMOOTH: return has_any_friction(scene) && !has_friction(scene, STRUT_FRICTION_SMOOTH);
-    case GROUND:
-      return scene->contact_count > 0 && !scene->ground_count && has_damped_ground(scene);
-    case KINDS: break;
-  }
-  return false;
+  if (what == OWN) return true;
+  if (what == MASS) return has_member_mass(scene);
+  if (what == RIGID) return has_still_bars(scene) && !scene->ground_count;
+  if (what == GROUND)
+    return scene->contact_count > 0 && !scene->ground_count && has_damped_ground(scene);
+  return has_any_friction(scene) && !has_friction(scene, law_of[what]);
 }
 
 /* The regularisation speed for friction laws that need one [m/s]. */
@@ -77,23 +76,22 @@ static double regularisation_speed(const tradeoff_study *study, const strut_fric
 
 static void describe(const tradeoff_study *study, kind what, strut_model_variant *variant) {
   const strut_scene *scene = &study->setups[0]->scene;
-  if (what == OWN) snprintf(variant->name, sizeof variant->name, "unchanged model");
-  if (what == COULOMB) snprintf(variant->name, sizeof variant->name, "Coulomb friction");
-  if (what == MASS)
-    snprintf(variant->name, sizeof variant->name, "%s masses",
-             scene->mass_model == STRUT_MASS_LUMPED ? "consistent" : "lumped");
-  if (what == RIGID)
-    snprintf(variant->name, sizeof variant->name, "%s bars",
-             scene->bar_model == STRUT_BARS_RIGID ? "elastic" : "rigid");
-  if (what == KARNOPP || what == SMOOTH) {
-    double speed = regularisation_speed(study, &scene->contacts[0].friction);
-    snprintf(variant->name, sizeof variant->name, "%s friction, %s",
-             what == SMOOTH ? "smooth" : "Karnopp", strut_quantity_of(speed, 3, "m/s").text);
-  }
+  const bool lumped = scene->mass_model == STRUT_MASS_LUMPED,
+             rigid = scene->bar_model == STRUT_BARS_RIGID,
+             approach = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
+  const char *const names[KINDS] = {
+      [OWN] = "unchanged model",
+      [MASS] = lumped ? "consistent masses" : "lumped masses",
+      [RIGID] = rigid ? "elastic bars" : "rigid bars",
+      [GROUND] = approach ? "Hunt-Crossley ground" : "approach-only ground damping",
+      [KARNOPP] = "Karnopp friction, ",
+      [COULOMB] = "Coulomb friction",
+      [SMOOTH] = "smooth friction, "};
+  char speed[STRUT_QUANTITY_TEXT] = "";
+  if (what == KARNOPP || what == SMOOTH)
+    strut_quantity_text(regularisation_speed(study, &scene->contacts[0].friction), 3, "m/s", speed);
+  snprintf(variant->name, sizeof variant->name, "%s%s", names[what], speed);
   if (what != GROUND) return;
-  bool printed = scene->ground.damping_law == STRUT_DAMPING_APPROACH;
-  snprintf(variant->name, sizeof variant->name, "%s",
-           printed ? "Hunt-Crossley ground" : "approach-only ground damping");
   snprintf(variant->remark, sizeof variant->remark,
            "damped as by the scene's law at the depth at which the ground carries the weight, %s",
            strut_quantity_of(depth_at_rest(scene, &scene->contacts[0]), 3, "m").text);
@@ -107,24 +105,21 @@ static kind kind_of(const tradeoff_study *study, int variant) {
   return OWN;
 }
 
-strut_status strut_tradeoff_list_variants(tradeoff_study *study) {
+void strut_tradeoff_list_variants(tradeoff_study *study) {
   strut_tradeoff *tradeoff = study->result;
+  const size_t points = tradeoff->point_count;
   bool all = !study->options->own_model && tradeoff->measure != STRUT_TRADEOFF_ENERGY;
-  tradeoff->variants = strut_arena_allocate(&tradeoff->arena, KINDS, sizeof *tradeoff->variants);
-  if (!tradeoff->variants) return STRUT_NO_MEMORY;
-  for (int what = OWN; what < KINDS; what++) {
+  tradeoff->variants = strut_tradeoff_allocate(study, KINDS, sizeof *tradeoff->variants);
+  for (int what = OWN; what < KINDS && !study->status; what++) {
     if (!makes_sense(&study->setups[0]->scene, (kind)what) || (what != OWN && !all)) continue;
     strut_model_variant *variant = &tradeoff->variants[tradeoff->variant_count++];
     describe(study, (kind)what, variant);
-    variant->value = strut_arena_allocate(
-        &tradeoff->arena, tradeoff->point_count * tradeoff->value_count, sizeof *variant->value);
     variant->floor =
-        strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof *variant->floor);
-    variant->model_error =
-        strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof *variant->model_error);
-    if (!variant->value || !variant->floor || !variant->model_error) return STRUT_NO_MEMORY;
+        strut_tradeoff_allocate(study, points * (tradeoff->value_count + 2), sizeof(double));
+    if (study->status) return;
+    variant->model_error = variant->floor + points;
+    variant->value = variant->model_error + points;
   }
-  return STRUT_OK;
 }
 
 static void change_contact(const tradeoff_study *study, kind what, const strut_scene *scene,
@@ -137,15 +132,14 @@ static void change_contact(const tradeoff_study *study, kind what, const strut_s
   else if (what == GROUND)
     contact->damping = contact->dissipation * slope;
   if (!rough) return;
-  if (what == KARNOPP) contact->friction.law = STRUT_FRICTION_KARNOPP;
-  if (what == COULOMB) contact->friction.law = STRUT_FRICTION_COULOMB;
-  if (what == SMOOTH) contact->friction.law = STRUT_FRICTION_SMOOTH;
+  if (what > GROUND) contact->friction.law = law_of[what];
   if (what == KARNOPP) contact->friction.stick_velocity = speed;
   if (what == SMOOTH) contact->friction.width = speed;
 }
 
-strut_status strut_tradeoff_change_scene(const tradeoff_study *study, int variant,
-                                         strut_scene *scene, strut_arena *arena) {
+/* Changes a scene into that of a variant; new contacts come from the arena. */
+static strut_status change_scene(const tradeoff_study *study, int variant, strut_scene *scene,
+                                 strut_arena *arena) {
   kind what = kind_of(study, variant);
   if (what == MASS)
     scene->mass_model =
@@ -154,7 +148,7 @@ strut_status strut_tradeoff_change_scene(const tradeoff_study *study, int varian
     scene->bar_model = scene->bar_model == STRUT_BARS_RIGID ? STRUT_BARS_ELASTIC : STRUT_BARS_RIGID;
   if (what < GROUND) return STRUT_OK;
   strut_contact *contacts = strut_arena_allocate(arena, scene->contact_count, sizeof *contacts);
-  if (!contacts) return STRUT_NO_MEMORY;
+  if (!contacts) return strut_no_memory(study->error, "");
   if (what == GROUND)
     scene->ground.damping_law = scene->ground.damping_law == STRUT_DAMPING_APPROACH
                                     ? STRUT_DAMPING_HUNT_CROSSLEY
@@ -165,6 +159,19 @@ strut_status strut_tradeoff_change_scene(const tradeoff_study *study, int varian
   }
   scene->contacts = contacts;
   return STRUT_OK;
+}
+
+strut_status strut_tradeoff_compile(const tradeoff_study *study, size_t point, int variant,
+                                    const strut_model **model) {
+  tradeoff_model *self = &study->models[point * TRADEOFF_VARIANTS + (size_t)variant];
+  strut_status status = STRUT_OK;
+  if (!self->model) {
+    self->scene = study->setups[point]->scene;
+    status = change_scene(study, variant, &self->scene, &self->arena);
+    if (!status) status = strut_model_compile(&self->scene, &self->model, study->error);
+  }
+  *model = self->model;
+  return status;
 }
 
 bool strut_tradeoff_has_switches(const strut_scene *scene) {
@@ -181,12 +188,4 @@ bool strut_tradeoff_can_run(const tradeoff_study *study, const strut_integrator 
   if (exact && !method->events) return false;
   return !method->events || strut_tradeoff_is_adaptive(method) ||
          strut_tradeoff_has_switches(&study->setups[0]->scene);
-}
-
-bool strut_tradeoff_is_wanted(const tradeoff_study *study, const strut_integrator *method,
-                              int variant) {
-  bool wanted = study->options->method_count == 0;
-  for (size_t i = 0; i < study->options->method_count; i++)
-    wanted = wanted || study->options->methods[i] == method;
-  return wanted && strut_tradeoff_can_run(study, method, variant);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What the parts of a tradeoff share: settings, single runs, the budget.
+ * What the parts of a tradeoff share: single runs, the budget. What stops the study is its `status`, after which
+ * nothing more is run.
  */
 #ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_PARTS_H
 #define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_PARTS_H
@@ -8,18 +9,15 @@
 #include "engine/output/buffer.h"
 #include "engine/study/tradeoff/tradeoff.h"
 
-typedef struct tradeoff_setting {
-  const strut_integrator *method;
-  double step, tolerance, refine; /* tolerance, refine: NAN where they say nothing */
-} tradeoff_setting;
+typedef strut_tradeoff_setting tradeoff_setting;
 
 /** Result of one run. */
 typedef struct tradeoff_outcome {
-  strut_status status; /* STRUT_OK, or STRUT_DIVERGED for any failure during the run */
-  bool cannot;         /* the method cannot run this model at all; error holds the reason */
-  bool cut;            /* by the bound on work */
-  double evaluations;  /* of the forces, without those of settling */
-  double seconds;      /* CPU time of the stepping alone */
+  bool good;          /* it did not fail */
+  bool cannot;        /* the method cannot run this model at all; the study's error says why */
+  bool cut;           /* by the bound on work */
+  double evaluations; /* of the forces, without those of settling */
+  double seconds;     /* CPU time of the stepping alone */
 } tradeoff_outcome;
 
 /** Remarks of variants that are not run. */
@@ -39,6 +37,7 @@ typedef struct tradeoff_study {
   const strut_setup *const *setups;
   const strut_tradeoff_options *options;
   strut_tradeoff *result;
+  strut_status status; /* what stops everything */
   strut_error *error;
   double began;                  /* CPU clock [s] */
   double budget, stepping;       /* CPU time: limit, and of all steps so far [s] */
@@ -53,6 +52,8 @@ typedef struct tradeoff_study {
   tradeoff_model *models; /* (points, TRADEOFF_VARIANTS) */
 } tradeoff_study;
 
+/** (count) zeros of that size in the result's arena; NULL: out of memory. */
+void *strut_tradeoff_allocate(tradeoff_study *study, size_t count, size_t size);
 /** This thread's CPU time [s]. */
 double strut_tradeoff_cpu_clock(void);
 /** Force evaluations left until a share of the bound on work is spent; below 0: over. */
@@ -61,6 +62,8 @@ double strut_tradeoff_work_left(const tradeoff_study *study, double share);
 bool strut_tradeoff_has_time(tradeoff_study *study, double evaluations);
 /** Force evaluations that a setting plans at a point: what a run makes that no event interrupts. */
 double strut_tradeoff_planned(const tradeoff_study *study, size_t point, tradeoff_setting setting);
+/** The same of all points. */
+double strut_tradeoff_planned_at_all(const tradeoff_study *study, tradeoff_setting setting);
 /** strut_simulate's experiment for `point`, cut to the periods that are wanted. */
 strut_experiment strut_tradeoff_experiment(const tradeoff_study *study, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
@@ -71,17 +74,16 @@ strut_span strut_tradeoff_span(const tradeoff_study *study, size_t point);
 double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point);
 /**
  * The largest step of a method worth trying in a variant at the first point [s], INFINITY where
- * nothing limits it. *cannot: the method cannot run it, and the study's error says why. Fails with
- * STRUT_NO_MEMORY alone.
+ * nothing limits it. False: the method cannot run it, and the study's error says why.
  */
-strut_status strut_tradeoff_limit(tradeoff_study *study, int variant,
-                                  const strut_integrator *method, double *limit, bool *cannot);
+bool strut_tradeoff_limit(tradeoff_study *study, int variant, const strut_integrator *method,
+                          double *limit);
 /**
  * Runs a variant with a setting at an operating point; its values go into (value_count) `value`,
- * NAN where it diverged. Fails with STRUT_INTERRUPTED and STRUT_NO_MEMORY alone.
+ * NAN where it diverged.
  */
-strut_status strut_tradeoff_run(tradeoff_study *study, size_t point, int variant,
-                                tradeoff_setting setting, double *value, tradeoff_outcome *outcome);
+tradeoff_outcome strut_tradeoff_run(tradeoff_study *study, size_t point, int variant,
+                                    tradeoff_setting setting, double *value);
 /** Distance of two answers at a point: that of errors. INFINITY where one is not a number. */
 double strut_tradeoff_distance(const tradeoff_study *study, size_t point, const double *value,
                                const double *reference);
@@ -94,15 +96,9 @@ bool strut_tradeoff_is_adaptive(const strut_integrator *method);
  */
 bool strut_tradeoff_can_run(const tradeoff_study *study, const strut_integrator *method,
                             int variant);
-/** As strut_tradeoff_can_run, and the options do not exclude the method. */
-bool strut_tradeoff_is_wanted(const tradeoff_study *study, const strut_integrator *method,
-                              int variant);
 
-/** Lists the unchanged model and the variants that apply to it. STRUT_OK or STRUT_NO_MEMORY. */
-strut_status strut_tradeoff_list_variants(tradeoff_study *study);
-/** Changes a scene into that of a variant; new contacts come from the arena. */
-strut_status strut_tradeoff_change_scene(const tradeoff_study *study, int variant,
-                                         strut_scene *scene, strut_arena *arena);
+/** Lists the unchanged model and the variants that apply to it. */
+void strut_tradeoff_list_variants(tradeoff_study *study);
 /** A point's model in a variant, compiled once and kept. Fails as strut_model_compile. */
 strut_status strut_tradeoff_compile(const tradeoff_study *study, size_t point, int variant,
                                     const strut_model **model);
@@ -118,21 +114,18 @@ typedef struct tradeoff_reference {
 } tradeoff_reference;
 
 /** Chooses the methods. Without any, the variant is marked as not run, with a remark. */
-strut_status strut_tradeoff_reference_begin(tradeoff_study *study, int variant,
-                                            tradeoff_reference *self);
+void strut_tradeoff_reference_begin(tradeoff_study *study, int variant, tradeoff_reference *self);
 /**
  * Refines until every floor is at most `target`; after the first two levels for `most`
  * evaluations.
  */
-strut_status strut_tradeoff_reference_refine(tradeoff_study *study, tradeoff_reference *self,
-                                             double target, double most);
+void strut_tradeoff_reference_refine(tradeoff_study *study, tradeoff_reference *self, double target,
+                                     double most);
 
-/** Errors, spreads, costs and fronts of all rows, from values and references. */
-void strut_tradeoff_judge(tradeoff_study *study);
+/** Median, 90th percentile and worst of (count) values; scratch holds as many. */
+strut_spread strut_spread_of(const double *values, size_t count, double *scratch);
 /** Errors of one row. */
 void strut_tradeoff_judge_row(tradeoff_study *study, strut_tradeoff_row *row);
-/** The smallest worst error of a row, not counting what a floor hides; 1 where there is none. */
-double strut_tradeoff_smallest_error(const tradeoff_study *study, int variant);
 
 enum { MOST_STEP_SERIES = 64 };
 
@@ -155,16 +148,16 @@ typedef struct step_series_list {
 } step_series_list;
 
 /** Adds a series for each refinement of a method that makes a difference in this scene. */
-strut_status strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int variant,
-                                       const strut_integrator *method);
+void strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int variant,
+                               const strut_integrator *method);
 /**
  * Runs all series from coarse to fine, the cheapest row next, within a share of the bound on work;
  * reports progress between two fractions.
  */
-strut_status strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, double share,
-                                       double from, double to);
+void strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, double share,
+                               double from, double to);
 /** Adds the row of the base to its method's series, or to one of its own, if the share allows. */
-strut_status strut_tradeoff_run_base(tradeoff_study *study, step_series_list *own, double share);
+void strut_tradeoff_run_base(tradeoff_study *study, step_series_list *own, double share);
 
 enum { STRUT_TRADEOFF_TEXT = 100 };
 

@@ -29,33 +29,29 @@ static tradeoff_setting setting_of(const tradeoff_study *study, const tradeoff_r
   return setting;
 }
 
-/* The best method that can run it, other than `not`; its step limit into r->limit. */
-static strut_status choose(tradeoff_study *study, tradeoff_reference *self, int which,
-                           const strut_integrator * not ) {
+/* The best method that can run it, other than the first; of that its step limit into r->limit. */
+static void choose(tradeoff_study *study, tradeoff_reference *self, int which) {
   bool tried[64] = {false};
-  for (;;) {
-    const strut_integrator *best = NULL;
+  while (!study->status) {
+    const strut_integrator *best = NULL, *method;
     size_t at = 0;
-    for (size_t i = 0; i < 64 && strut_integrator_at(i); i++) {
-      const strut_integrator *method = strut_integrator_at(i);
-      bool wanted = which == 0 ? !strut_tradeoff_is_adaptive(method)
-                               : method != not &&(!best || !strut_tradeoff_is_adaptive(best));
+    for (size_t i = 0; i < 64 && (method = strut_integrator_at(i)); i++) {
+      bool adaptive = strut_tradeoff_is_adaptive(method);
+      bool wanted = which == 0
+                        ? !adaptive
+                        : method != self->method[0] && (!best || !strut_tradeoff_is_adaptive(best));
       if (tried[i] || !wanted || !strut_tradeoff_can_run(study, method, self->variant)) continue;
-      bool better = !best || (which == 1 && strut_tradeoff_is_adaptive(method)) ||
-                    merit(study, method) > merit(study, best);
-      if (better) best = method, at = i;
+      if (!best || (which == 1 && adaptive) || merit(study, method) > merit(study, best))
+        best = method, at = i;
     }
-    if (!best) return STRUT_OK;
+    if (!best) return;
     tried[at] = true;
-    self->method[which] = best;
     double limit = 0;
-    bool cannot = false;
-    strut_status status = strut_tradeoff_limit(study, self->variant, best, &limit, &cannot);
-    if (status != STRUT_OK) return status;
+    if (!strut_tradeoff_limit(study, self->variant, best, &limit)) continue;
     if (!isfinite(limit)) limit = strut_tradeoff_longest_step(study, 0);
-    if (which == 0 && limit > 0 && !cannot) self->limit = 0.5 * limit;
-    if (!cannot) return STRUT_OK;
-    self->method[which] = NULL;
+    if (which == 0 && limit > 0) self->limit = 0.5 * limit;
+    self->method[which] = best;
+    return;
   }
 }
 
@@ -64,41 +60,34 @@ static void mark_not_run(strut_model_variant *variant, const char *why) {
   snprintf(variant->remark, sizeof variant->remark, "%s", why);
 }
 
-strut_status strut_tradeoff_reference_begin(tradeoff_study *study, int variant,
-                                            tradeoff_reference *self) {
-  strut_tradeoff *result = study->result;
-  strut_model_variant *f = &result->variants[variant];
+void strut_tradeoff_reference_begin(tradeoff_study *study, int variant, tradeoff_reference *self) {
+  const strut_tradeoff *result = study->result;
+  strut_model_variant *f = &study->result->variants[variant];
+  const size_t points = result->point_count, values = 2 * result->value_count;
+  const bool balance = result->measure == STRUT_TRADEOFF_ENERGY;
   *self = (tradeoff_reference){.variant = variant, .limit = study->base.step};
-  self->level = strut_arena_allocate(&result->arena, result->point_count, sizeof *self->level);
-  self->idle = strut_arena_allocate(&result->arena, result->point_count, sizeof *self->idle);
-  self->latest =
-      strut_arena_allocate(&result->arena, 2 * result->value_count, sizeof *self->latest);
-  self->before = strut_arena_allocate(&result->arena, 2 * result->value_count * result->point_count,
-                                      sizeof *self->before);
-  for (int k = 0; k < 2; k++)
-    self->work[k] =
-        strut_arena_allocate(&result->arena, result->point_count, sizeof *self->work[k]);
-  if (!self->level || !self->idle || !self->latest || !self->before || !self->work[0] ||
-      !self->work[1])
-    return strut_no_memory(study->error, "");
+  self->level = strut_tradeoff_allocate(study, 2 * points, sizeof *self->level);
+  self->work[0] =
+      strut_tradeoff_allocate(study, 2 * points + values * (points + 1), sizeof *self->latest);
+  if (study->status) return;
+  self->idle = self->level + points;
+  self->work[1] = self->work[0] + points;
+  self->latest = self->work[1] + points;
+  self->before = self->latest + values;
   f->run = true;
-  for (size_t p = 0; p < result->point_count; p++) f->floor[p] = HUGE_VAL;
-  if (result->measure == STRUT_TRADEOFF_ENERGY) {
-    for (size_t p = 0; p < result->point_count; p++) f->floor[p] = 0;
+  for (size_t p = 0; p < points; p++) f->floor[p] = balance ? 0 : HUGE_VAL;
+  if (balance) {
     snprintf(f->reference[0], sizeof f->reference[0], "none: an exact balance closes at 0");
-    return STRUT_OK;
+    return;
   }
-  strut_status status = choose(study, self, 0, NULL);
-  if (status == STRUT_OK && self->method[0]) status = choose(study, self, 1, self->method[0]);
-  if (status == STRUT_OK && !self->method[0]) mark_not_run(f, study->error->message);
-  if (status == STRUT_OK && self->method[0] && !self->method[1]) {
-    self->method[1] = self->method[0];
-    size_t used = strlen(f->remark);
-    snprintf(f->remark + used, sizeof f->remark - used,
-             "%sonly one method can run it: no second method confirms the answer",
-             used ? "; " : "");
-  }
-  return status;
+  choose(study, self, 0);
+  if (self->method[0]) choose(study, self, 1);
+  if (!study->status && !self->method[0]) mark_not_run(f, study->error->message);
+  if (study->status || !self->method[0] || self->method[1]) return;
+  self->method[1] = self->method[0];
+  size_t used = strlen(f->remark);
+  snprintf(f->remark + used, sizeof f->remark - used,
+           "%sonly one method can run it: no second method confirms the answer", used ? "; " : "");
 }
 
 static void name_setting(tradeoff_setting setting, char name[100]) {
@@ -137,23 +126,20 @@ static void count_reference(strut_tradeoff *result, const tradeoff_reference *se
  * Refines the reference of one point by one level, until the study has made `end` force
  * evaluations.
  */
-static strut_status refine_point(tradeoff_study *study, tradeoff_reference *self, size_t p,
-                                 double end) {
+static void refine_point(tradeoff_study *study, tradeoff_reference *self, size_t p, double end) {
   strut_tradeoff *result = study->result;
   strut_model_variant *variant = &result->variants[self->variant];
   size_t count = result->value_count;
   double *a = self->latest, *b = self->latest + count, *kept = variant->value + p * count;
-  strut_status status = STRUT_OK;
-  for (int k = 0; k < 2 && status == STRUT_OK; k++) {
-    tradeoff_outcome outcome;
+  for (int k = 0; k < 2 && !study->status; k++) {
     study->allowed = isfinite(end) ? fmax(1, end - result->work) : 0;
-    status = strut_tradeoff_run(study, p, self->variant, setting_of(study, self, k, self->level[p]),
-                                k ? b : a, &outcome);
+    tradeoff_outcome outcome = strut_tradeoff_run(
+        study, p, self->variant, setting_of(study, self, k, self->level[p]), k ? b : a);
     self->work[k][p] = outcome.evaluations;
     if (outcome.cut) self->level[p] = MOST_LEVELS;
   }
   study->allowed = 0;
-  if (status != STRUT_OK || self->level[p] == MOST_LEVELS) return status;
+  if (study->status || self->level[p] == MOST_LEVELS) return;
   count_reference(result, self, study->least_unit);
   double apart = estimate_error(study, self, p);
   memcpy(self->before + 2 * p * count, self->latest, 2 * count * sizeof *self->latest);
@@ -166,27 +152,25 @@ static strut_status refine_point(tradeoff_study *study, tradeoff_reference *self
       name_setting(setting_of(study, self, k, self->level[p]), variant->reference[k]);
   }
   self->level[p]++;
-  return STRUT_OK;
 }
 
-strut_status strut_tradeoff_reference_refine(tradeoff_study *study, tradeoff_reference *self,
-                                             double target, double most) {
+void strut_tradeoff_reference_refine(tradeoff_study *study, tradeoff_reference *self, double target,
+                                     double most) {
   strut_tradeoff *result = study->result;
+  if (study->status) return;
   strut_model_variant *variant = &result->variants[self->variant];
-  if (!variant->run || !self->method[0]) return STRUT_OK;
+  if (!variant->run || !self->method[0]) return;
   double end = result->work + most;
   for (bool more = true; more;) {
     more = false;
-    for (size_t p = 0; p < result->point_count; p++) {
+    for (size_t p = 0; p < result->point_count && !study->status; p++) {
       double next = 2 * (self->work[0][p] + self->work[1][p]);
       if (variant->floor[p] <= target || self->level[p] >= MOST_LEVELS ||
-          self->idle[p] >= MOST_IDLE)
+          self->idle[p] >= MOST_IDLE || (self->level[p] >= 2 && result->work + next > end) ||
+          !strut_tradeoff_has_time(study, next))
         continue;
-      if (self->level[p] >= 2 && result->work + next > end) continue;
-      if (!strut_tradeoff_has_time(study, next)) continue;
-      strut_status status = refine_point(study, self, p, end);
-      if (status != STRUT_OK) return status;
-      more = true;
+      refine_point(study, self, p, end);
+      more = !study->status;
     }
   }
   for (size_t p = 0; p < result->point_count; p++)
@@ -194,5 +178,4 @@ strut_status strut_tradeoff_reference_refine(tradeoff_study *study, tradeoff_ref
       mark_not_run(variant, result->cut               ? STRUT_TRADEOFF_NO_TIME
                             : result->work + 1 >= end ? STRUT_TRADEOFF_NO_WORK
                                                       : "no two methods complete the run");
-  return STRUT_OK;
 }

@@ -14,21 +14,22 @@
 
 const char *strut_tradeoff_group_text(const strut_tradeoff_row *row,
                                       char text[STRUT_TRADEOFF_TEXT]) {
-  if (!isfinite(row->refine))
-    snprintf(text, STRUT_TRADEOFF_TEXT, "%s", row->method->name);
-  else if (row->refine > 0)
-    snprintf(text, STRUT_TRADEOFF_TEXT, "%s, refined %.3g", row->method->name, row->refine);
+  if (!isfinite(row->setting.refine))
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s", row->setting.method->name);
+  else if (row->setting.refine > 0)
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s, refined %.3g", row->setting.method->name,
+             row->setting.refine);
   else
-    snprintf(text, STRUT_TRADEOFF_TEXT, "%s, refined", row->method->name);
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s, refined", row->setting.method->name);
   return text;
 }
 
 const char *strut_tradeoff_step_text(const strut_tradeoff_row *row,
                                      char text[STRUT_TRADEOFF_TEXT]) {
-  if (isfinite(row->tolerance))
-    snprintf(text, STRUT_TRADEOFF_TEXT, "%.0e", row->tolerance);
+  if (isfinite(row->setting.tolerance))
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%.0e", row->setting.tolerance);
   else
-    snprintf(text, STRUT_TRADEOFF_TEXT, "%s", strut_quantity_of(row->step, 3, "s").text);
+    snprintf(text, STRUT_TRADEOFF_TEXT, "%s", strut_quantity_of(row->setting.step, 3, "s").text);
   return text;
 }
 
@@ -40,22 +41,26 @@ const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure) {
 /* The mapping of the language that runs a row. With error control the error left depends on the grid by chance: its
    step is given in full. */
 static void write_solver(const strut_tradeoff_row *row, char text[STRUT_VALUE_ROOM]) {
-  bool adaptive = isfinite(row->tolerance);
-  int used = snprintf(text, STRUT_VALUE_ROOM, "solver: {integrator: %s, step: ", row->method->name);
+  bool adaptive = isfinite(row->setting.tolerance);
+  int used = snprintf(text, STRUT_VALUE_ROOM,
+                      "solver: {integrator: %s, step: ", row->setting.method->name);
   char *end = text + STRUT_VALUE_ROOM, *at = text + used;
   if (adaptive)
-    at += snprintf(at, (size_t)(end - at), "%.17g s, tolerance: %.0e", row->step, row->tolerance);
+    at += snprintf(at, (size_t)(end - at), "%.17g s, tolerance: %.0e", row->setting.step,
+                   row->setting.tolerance);
   else
-    at += snprintf(at, (size_t)(end - at), "%s", strut_quantity_of(row->step, 6, "s").text);
-  if (row->refine > 0 || (!adaptive && !isfinite(row->refine) && row->method->events))
-    at += snprintf(at, (size_t)(end - at), ", refine: %.3g", row->refine > 0 ? row->refine : 1.0);
+    at += snprintf(at, (size_t)(end - at), "%s", strut_quantity_of(row->setting.step, 6, "s").text);
+  if (row->setting.refine > 0 ||
+      (!adaptive && !isfinite(row->setting.refine) && row->setting.method->events))
+    at += snprintf(at, (size_t)(end - at), ", refine: %.3g",
+                   row->setting.refine > 0 ? row->setting.refine : 1.0);
   snprintf(at, (size_t)(end - at), "}");
 }
 
 const char *strut_tradeoff_base_text(const strut_tradeoff *tradeoff,
                                      char text[3 * STRUT_TRADEOFF_TEXT]) {
-  snprintf(text, 3 * STRUT_TRADEOFF_TEXT, "%s, %s", tradeoff->base_method->name,
-           strut_quantity_of(tradeoff->base_step, 3, "s").text);
+  snprintf(text, 3 * STRUT_TRADEOFF_TEXT, "%s, %s", tradeoff->base_setting.method->name,
+           strut_quantity_of(tradeoff->base_setting.step, 3, "s").text);
   return text;
 }
 
@@ -100,12 +105,12 @@ static void write_group(const strut_result_object *of, char text[STRUT_VALUE_ROO
     .label = {""})                                                                                 \
   X("group", "", WORDS(write_group), "settings that differ by their step alone",                   \
     .column = {"group"}, .label = {"method"})                                                      \
-  X("method", "", TEXT(row->method->name), "of integration", .column = {"method"})                 \
-  X("refine", "1", NUMBER(row->refine), "of steps with events", .column = {"refine"})              \
-  X("step", "s", NUMBER(row->step), "the largest, where it adapts", .column = {"step [s]"},        \
-    .label = {""})                                                                                 \
-  X("tolerance", "1", NUMBER(row->tolerance), "of an adaptive method", .column = {"tolerance"},    \
-    .label = {""})                                                                                 \
+  X("method", "", TEXT(row->setting.method->name), "of integration", .column = {"method"})         \
+  X("refine", "1", NUMBER(row->setting.refine), "of steps with events", .column = {"refine"})      \
+  X("step", "s", NUMBER(row->setting.step), "the largest, where it adapts",                        \
+    .column = {"step [s]"}, .label = {""})                                                         \
+  X("tolerance", "1", NUMBER(row->setting.tolerance), "of an adaptive method",                     \
+    .column = {"tolerance"}, .label = {""})                                                        \
   X("evaluations", "1", NUMBER(row->evaluations), "of forces, over those of the base",             \
     .column = {"evaluations"}, .label = {"cost"})                                                  \
   X("rate", "1/s", NUMBER(row->rate), "evaluations for a simulated second")                        \

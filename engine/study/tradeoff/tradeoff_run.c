@@ -11,6 +11,12 @@
 /* CPU time of steps from which that of an evaluation is known [s]. */
 static const double LEAST_KNOWN = 0.1;
 
+void *strut_tradeoff_allocate(tradeoff_study *study, size_t count, size_t size) {
+  void *array = strut_arena_allocate(&study->result->arena, count, size);
+  if (!array) study->status = strut_no_memory(study->error, "");
+  return array;
+}
+
 double strut_tradeoff_cpu_clock(void) {
   struct timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -68,6 +74,13 @@ double strut_tradeoff_planned(const tradeoff_study *study, size_t point, tradeof
   return round(steps) * setting.method->evaluations;
 }
 
+double strut_tradeoff_planned_at_all(const tradeoff_study *study, tradeoff_setting setting) {
+  double planned = 0;
+  for (size_t p = 0; p < study->result->point_count; p++)
+    planned += strut_tradeoff_planned(study, p, setting);
+  return planned;
+}
+
 /* A sink that measures the CPU time of the stepping alone. */
 static strut_status begin_clock(void *context, const strut_record_layout *layout,
                                 strut_error *error) {
@@ -101,67 +114,56 @@ double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point) {
   return (span.period > 0 ? span.period : span.duration) / 20;
 }
 
-static bool is_permanent_failure(strut_status status) {
-  return status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
-}
-
 /*
  * Where nothing vibrates, as for rigid bars swinging under gravity, the stability limit may exceed
  * the duration: then a part of the duration counts.
  */
-strut_status strut_tradeoff_limit(tradeoff_study *study, int variant,
-                                  const strut_integrator *method, double *limit, bool *cannot) {
+bool strut_tradeoff_limit(tradeoff_study *study, int variant, const strut_integrator *method,
+                          double *limit) {
   const strut_model *model = NULL;
   strut_experiment e = strut_tradeoff_experiment(study, 0);
   e.integrator = method->name;
   *limit = HUGE_VAL;
   strut_status status = strut_tradeoff_compile(study, 0, variant, &model);
-  if (status == STRUT_OK) status = strut_integrator_check(model, &e, study->error);
-  if (status == STRUT_OK) status = strut_step_limit_for_method(model, method, limit, study->error);
+  if (!status) status = strut_integrator_check(model, &e, study->error);
+  if (!status) status = strut_step_limit_for_method(model, method, limit, study->error);
   if (isfinite(*limit)) *limit = fmin(*limit, strut_tradeoff_longest_step(study, 0));
-  *cannot = status != STRUT_OK;
-  return status == STRUT_NO_MEMORY ? status : STRUT_OK;
+  if (status == STRUT_NO_MEMORY) study->status = status;
+  return !status;
 }
 
-static strut_status simulate(tradeoff_study *study, size_t point, int variant,
-                             const strut_experiment *experiment, double *value,
-                             tradeoff_outcome *outcome) {
+tradeoff_outcome strut_tradeoff_run(tradeoff_study *study, size_t point, int variant,
+                                    tradeoff_setting setting, double *value) {
+  tradeoff_outcome outcome = {.seconds = (double)NAN};
   const strut_model *model = NULL;
   strut_summary summary = {0};
-  strut_sink clock = {&outcome->seconds, begin_clock, NULL, end_clock, STRUT_CHANNEL_POSITION};
+  strut_sink clock = {&outcome.seconds, begin_clock, NULL, end_clock, STRUT_CHANNEL_POSITION};
   strut_sink *sinks[] = {&clock};
   const strut_run_options options = {.force = true,
                                      .interrupt = study->options->interrupt,
                                      .sinks = sinks,
                                      .sink_count = 1,
                                      .most_evaluations = (int64_t)study->allowed};
-  strut_status status = strut_tradeoff_compile(study, point, variant, &model);
-  if (status == STRUT_OK)
-    status = strut_simulate(model, experiment, &options, &summary, study->error);
-  outcome->evaluations = (double)summary.spent.evaluations;
-  study->result->work += outcome->evaluations;
-  if (isfinite(outcome->seconds)) study->stepping += outcome->seconds;
-  outcome->cannot = is_permanent_failure(status);
-  outcome->cut = status == STRUT_WORK_LIMIT;
-  bool ours = status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY;
-  outcome->status = status == STRUT_OK ? STRUT_OK : STRUT_DIVERGED;
-  if (status == STRUT_OK) take_values(study, &summary, value);
-  strut_summary_free(&summary);
-  return ours ? status : STRUT_OK;
-}
-
-strut_status strut_tradeoff_run(tradeoff_study *study, size_t point, int variant,
-                                tradeoff_setting setting, double *value,
-                                tradeoff_outcome *outcome) {
-  *outcome = (tradeoff_outcome){.seconds = (double)NAN};
-  for (size_t i = 0; i < study->result->value_count; i++) value[i] = (double)NAN;
   strut_experiment e = strut_tradeoff_experiment(study, point);
   e.integrator = setting.method->name;
   e.step = strut_tradeoff_fit_step(study, point, setting.step);
   if (isfinite(setting.tolerance)) e.tolerance = setting.tolerance;
   e.refine = isfinite(setting.refine) ? setting.refine : 1;
   e.output_every = strut_tradeoff_span(study, point).duration;
-  return simulate(study, point, variant, &e, value, outcome);
+  for (size_t i = 0; i < study->result->value_count; i++) value[i] = (double)NAN;
+  if (study->status) return outcome;
+  strut_status status = strut_tradeoff_compile(study, point, variant, &model);
+  if (!status) status = strut_simulate(model, &e, &options, &summary, study->error);
+  outcome.evaluations = (double)summary.spent.evaluations;
+  study->result->work += outcome.evaluations;
+  if (isfinite(outcome.seconds)) study->stepping += outcome.seconds;
+  outcome.cannot = status == STRUT_USAGE || status == STRUT_BAD_SCENE || status == STRUT_SINGULAR;
+  outcome.cut = status == STRUT_WORK_LIMIT;
+  outcome.good = !status;
+  if (!status) take_values(study, &summary, value);
+  strut_summary_free(&summary);
+  if (status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY) study->status = status;
+  return outcome;
 }
 
 double strut_tradeoff_distance(const tradeoff_study *study, size_t point, const double *value,
@@ -205,73 +207,66 @@ static void report_progress(const tradeoff_study *study, double fraction) {
     study->options->progress(study->options->progress_context, fraction);
 }
 
-static strut_status out_of_memory(tradeoff_study *study) {
-  return strut_no_memory(study->error, "");
-}
-
 /* ---- rows ---- */
 
 static strut_tradeoff_row *new_row(tradeoff_study *study, const step_series *from,
                                    tradeoff_setting setting) {
   strut_tradeoff *tradeoff = study->result;
+  const size_t points = tradeoff->point_count;
   if (tradeoff->row_count == study->row_capacity) {
     size_t capacity = study->row_capacity ? 2 * study->row_capacity : 64;
-    strut_tradeoff_row *rows = strut_arena_allocate(&tradeoff->arena, capacity, sizeof *rows);
+    strut_tradeoff_row *rows = strut_tradeoff_allocate(study, capacity, sizeof *rows);
     if (!rows) return NULL;
     for (size_t i = 0; i < tradeoff->row_count; i++) rows[i] = tradeoff->rows[i];
     tradeoff->rows = rows;
     study->row_capacity = capacity;
   }
   strut_tradeoff_row *row = &tradeoff->rows[tradeoff->row_count];
+  setting.step = strut_tradeoff_fit_step(study, 0, setting.step);
   *row = (strut_tradeoff_row){.variant = from->variant,
                               .group = from->group,
-                              .method = setting.method,
-                              .step = strut_tradeoff_fit_step(study, 0, setting.step),
-                              .tolerance = setting.tolerance,
-                              .refine = setting.refine,
+                              .setting = setting,
                               .cpu = (double)NAN,
                               .seconds = (double)NAN};
-  row->value = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count * tradeoff->value_count,
-                                    sizeof(double));
-  row->forces = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof(double));
-  row->error = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof(double));
-  row->total = strut_arena_allocate(&tradeoff->arena, tradeoff->point_count, sizeof(double));
-  if (!row->value || !row->forces || !row->error || !row->total) return NULL;
+  row->value =
+      strut_tradeoff_allocate(study, points * (tradeoff->value_count + 3), sizeof *row->value);
+  if (!row->value) return NULL;
+  row->forces = row->value + points * tradeoff->value_count;
+  row->error = row->forces + points;
+  row->total = row->error + points;
   tradeoff->row_count++;
   return row;
 }
 
 /*
- * Runs a setting at every point as a new row; *made: NULL if its method cannot run it, or if the bound on
+ * Runs a setting at every point as a new row; NULL: its method cannot run it, or the bound on
  * work ends the run, and with it the series.
  */
-static strut_status run_row(tradeoff_study *study, step_series *from, tradeoff_setting setting,
-                            double most, strut_tradeoff_row **made) {
+static strut_tradeoff_row *run_row(tradeoff_study *study, step_series *from,
+                                   tradeoff_setting setting, double most) {
   strut_tradeoff *tradeoff = study->result;
   double began = tradeoff->work;
-  tradeoff_outcome outcome = {0};
+  tradeoff_outcome outcome = {.good = false};
   strut_tradeoff_row *row = new_row(study, from, setting);
   size_t finished = 0;
-  strut_status status = row ? STRUT_OK : out_of_memory(study);
-  for (size_t p = 0;
-       p < tradeoff->point_count && status == STRUT_OK && !outcome.cannot && !outcome.cut; p++) {
+  for (size_t p = 0; p < tradeoff->point_count && !study->status && !outcome.cannot && !outcome.cut;
+       p++) {
     study->allowed = fmax(1, most - (tradeoff->work - began));
-    status = strut_tradeoff_run(study, p, row->variant, setting,
-                                row->value + p * tradeoff->value_count, &outcome);
-    bool good = outcome.status == STRUT_OK;
-    row->forces[p] = good ? outcome.evaluations : (double)NAN;
-    row->diverged += !good;
-    if (good) study->spare[finished++] = outcome.seconds;
+    outcome =
+        strut_tradeoff_run(study, p, row->variant, setting, row->value + p * tradeoff->value_count);
+    row->forces[p] = outcome.good ? outcome.evaluations : (double)NAN;
+    row->diverged += !outcome.good;
+    if (outcome.good) study->spare[finished++] = outcome.seconds;
   }
   study->allowed = 0;
-  if (status != STRUT_OK) return status;
+  if (study->status) return NULL;
   row->seconds = strut_spread_of(study->spare, finished, study->scratch).median;
   row->above = from->limited && setting.step > from->first.step;
   from->last_cost = tradeoff->work - began;
   if (outcome.cut) from->over = true, tradeoff->left_out++;
-  if (outcome.cannot || outcome.cut) tradeoff->row_count--;
-  *made = outcome.cannot || outcome.cut ? NULL : row;
-  return STRUT_OK;
+  if (!outcome.cannot && !outcome.cut) return row;
+  tradeoff->row_count--;
+  return NULL;
 }
 
 /* ---- series of steps ---- */
@@ -305,50 +300,39 @@ static step_series *add_series(tradeoff_study *study, step_series_list *all, int
 }
 
 /* Do two refinements differ at one of the first points? They do not without touchdowns. */
-static strut_status differ(tradeoff_study *study, int variant, tradeoff_setting a,
-                           tradeoff_setting b, bool *different) {
-  tradeoff_outcome one = {0}, other = {0};
-  strut_status status = STRUT_OK;
-  *different = false;
-  for (size_t p = 0; p < study->result->point_count && p < LOOKED_AT && !*different && !status;
-       p++) {
-    status = strut_tradeoff_run(study, p, variant, a, study->scratch, &one);
-    if (!status) status = strut_tradeoff_run(study, p, variant, b, study->scratch, &other);
-    bool both = one.status == STRUT_OK && other.status == STRUT_OK;
-    *different =
-        !status && (one.status != other.status || (both && one.evaluations != other.evaluations));
+static bool differ(tradeoff_study *study, int variant, tradeoff_setting a, tradeoff_setting b) {
+  for (size_t p = 0; p < study->result->point_count && p < LOOKED_AT && !study->status; p++) {
+    tradeoff_outcome one = strut_tradeoff_run(study, p, variant, a, study->scratch);
+    tradeoff_outcome other = strut_tradeoff_run(study, p, variant, b, study->scratch);
+    if (one.good != other.good || (one.good && one.evaluations != other.evaluations)) return true;
   }
-  return status;
+  return false;
 }
 
 /* Adds series with refined steps of an event method; `first` is the one without refinement. */
-static strut_status add_refined(tradeoff_study *study, step_series_list *all, int variant,
-                                tradeoff_setting first, bool limited) {
+static void add_refined(tradeoff_study *study, step_series_list *all, int variant,
+                        tradeoff_setting first, bool limited) {
   static const double ways[] = {(double)NAN, 0, 8};
   tradeoff_setting setting[3];
-  strut_status status = STRUT_OK;
   for (int i = 0; i < 3; i++) {
     setting[i] = first;
     setting[i].step *= 0.8;
     setting[i].refine = ways[i];
   }
-  for (int i = 1; i < 3 && !status; i++) {
+  for (int i = 1; i < 3; i++) {
     bool new = true;
-    for (int k = 0; k < i && new && !status; k++)
-      status = differ(study, variant, setting[k], setting[i], &new);
+    for (int k = 0; k < i && new; k++) new = differ(study, variant, setting[k], setting[i]);
     first.refine = ways[i];
-    if (!status && new && !add_series(study, all, variant, first, limited)) break;
+    if (new && !study->status) add_series(study, all, variant, first, limited);
   }
-  return status;
 }
 
-strut_status strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int variant,
-                                       const strut_integrator *method) {
-  tradeoff_setting first = {method, study->base.step, (double)NAN, 1};
-  bool adaptive = strut_tradeoff_is_adaptive(method), cannot = false;
+void strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int variant,
+                               const strut_integrator *method) {
+  tradeoff_setting first = {method, study->base.step, (double)NAN, (double)NAN};
+  bool adaptive = strut_tradeoff_is_adaptive(method);
   double limit = 0;
-  strut_status status = strut_tradeoff_limit(study, variant, method, &limit, &cannot);
-  if (status != STRUT_OK || cannot) return status;
+  if (study->status || !strut_tradeoff_limit(study, variant, method, &limit)) return;
   if (adaptive) first.step = fmax(10 * first.step, study->limit), first.tolerance = 1e-2;
   bool limited = !adaptive && isfinite(limit) && limit > 0;
   if (limited) first.step = limit;
@@ -356,9 +340,8 @@ strut_status strut_tradeoff_add_method(tradeoff_study *study, step_series_list *
     double most = study->limit > 0 ? FREE * study->limit : FREE_OF_BASE * first.step;
     first.step = fmin(most, strut_tradeoff_longest_step(study, 0));
   }
-  first.refine = (double)NAN;
-  if (!add_series(study, all, variant, first, limited)) return status;
-  return method->events && !adaptive ? add_refined(study, all, variant, first, limited) : status;
+  if (add_series(study, all, variant, first, limited) && method->events && !adaptive)
+    add_refined(study, all, variant, first, limited);
 }
 
 /* Was this setting run already? With few steps per period several settings may coincide. */
@@ -366,8 +349,8 @@ static bool is_known(const strut_tradeoff *tradeoff, const step_series *self,
                      const tradeoff_setting *setting, double step) {
   for (size_t i = 0; i < tradeoff->row_count; i++) {
     const strut_tradeoff_row *row = &tradeoff->rows[i];
-    if (row->group != self->group || fabs(row->step / step - 1) > 1e-9) continue;
-    if (!isfinite(setting->tolerance) || row->tolerance == setting->tolerance) return true;
+    if (row->group != self->group || fabs(row->setting.step / step - 1) > 1e-9) continue;
+    if (!isfinite(setting->tolerance) || row->setting.tolerance == setting->tolerance) return true;
   }
   return false;
 }
@@ -378,13 +361,10 @@ static bool is_known(const strut_tradeoff *tradeoff, const step_series *self,
  */
 static double predict(const tradeoff_study *study, const step_series *self,
                       tradeoff_setting setting) {
-  double planned = 0;
   bool adaptive = strut_tradeoff_is_adaptive(setting.method);
   if (adaptive && self->last_cost > 0) return TENTH * self->last_cost;
   if (adaptive) setting.step = study->limit > 0 ? study->limit : study->base.step;
-  for (size_t p = 0; p < study->result->point_count; p++)
-    planned += strut_tradeoff_planned(study, p, setting);
-  return planned;
+  return strut_tradeoff_planned_at_all(study, setting);
 }
 
 /* The series whose next row is the cheapest; NULL: all are over. */
@@ -421,40 +401,33 @@ static void judge_series(tradeoff_study *study, step_series_list *all, step_seri
   all->cheapest = fmin(all->cheapest > 0 ? all->cheapest : HUGE_VAL, self->last_cost);
 }
 
-strut_status strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, double share,
-                                       double from, double to) {
+void strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, double share,
+                               double from, double to) {
   double most = strut_tradeoff_work_left(study, share), cost = 0;
   tradeoff_setting setting;
   step_series *self = NULL;
-  strut_status status = STRUT_OK;
-  while (status == STRUT_OK && (self = find_next(study, all, &setting, &cost))) {
+  while (!study->status && (self = find_next(study, all, &setting, &cost))) {
     double left = strut_tradeoff_work_left(study, share);
     report_progress(study, to - (to - from) * fmax(0, left) / most);
     bool useless = self->kept == 0 && all->cheapest > 0 && cost > all->cheapest;
     bool possible = useless || (cost <= left && strut_tradeoff_has_time(study, cost));
     self->over = useless || !possible;
     study->result->left_out += !possible;
-    strut_tradeoff_row *row = NULL;
-    if (!self->over) status = run_row(study, self, setting, left, &row);
+    strut_tradeoff_row *row = self->over ? NULL : run_row(study, self, setting, left);
     if (row) judge_series(study, all, self, row);
   }
-  return status;
 }
 
-strut_status strut_tradeoff_run_base(tradeoff_study *study, step_series_list *own, double share) {
-  strut_tradeoff *tradeoff = study->result;
+void strut_tradeoff_run_base(tradeoff_study *study, step_series_list *own, double share) {
   step_series alone = {.group = -1, .first = study->base}, *in = &alone;
   strut_tradeoff_row *row = NULL;
-  double cost = 0, most = strut_tradeoff_work_left(study, share);
+  double most = strut_tradeoff_work_left(study, share);
   for (size_t i = own->count; i-- > 0;)
     if (own->at[i].first.method == study->base.method && !isfinite(own->at[i].first.refine))
       in = &own->at[i];
-  if (in == &alone) alone.group = (int)tradeoff->group_count++;
-  for (size_t p = 0; p < tradeoff->point_count; p++)
-    cost += strut_tradeoff_planned(study, p, study->base);
-  strut_status status = STRUT_OK;
-  if (cost <= most && strut_tradeoff_has_time(study, cost))
-    status = run_row(study, in, study->base, most, &row);
-  if (status == STRUT_OK && row) row->base = true;
-  return status;
+  if (in == &alone) alone.group = (int)study->result->group_count++;
+  double cost = strut_tradeoff_planned_at_all(study, study->base);
+  if (!study->status && cost <= most && strut_tradeoff_has_time(study, cost))
+    row = run_row(study, in, study->base, most);
+  if (row) row->base = true;
 }
