@@ -34,7 +34,7 @@ breaches() {
         "engine/output/figures engine/output/page|engine/study/results|" \
         "engine/study/sensitivity|" \
         "engine/study/cluster engine/study/tradeoff engine/study/sweep|" \
-        "engine/study/compare engine/study/search engine/study/follow|engine/study/report|" \
+        "engine/study/compare engine/study/search engine/study/follow|engine/study/fit|engine/study/report|" \
         "engine/study/figures", line, "|")
       for (i = 1; i <= count; i++) {
         n = split(line[i], side, " ")

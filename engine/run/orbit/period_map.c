@@ -23,8 +23,7 @@ strut_status strut_period_map_create(const strut_model *model, const strut_exper
   const strut_integrator_settings settings = strut_integrator_settings_of(experiment);
   strut_status status = strut_state_create(model, &map->state, error);
   if (!status) map->workspace = map->method->create(model, map->state, &settings);
-  if (!status &&
-      (!map->workspace || strut_measure_create(model, experiment, 0, 0, &map->measure)))
+  if (!status && (!map->workspace || strut_measure_create(model, experiment, 0, 0, &map->measure)))
     status = strut_no_memory(error, "");
   if (status) {
     strut_period_map_free(map);

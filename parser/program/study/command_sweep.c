@@ -237,9 +237,10 @@ static strut_status emit_script(const strut_arguments *arguments, const strut_st
 /* A search decides by each point where the next one is. */
 static strut_status check_search(const strut_arguments *arguments, strut_sweep_study *study) {
   if (arguments->retry)
-    return strut_usage_error(arguments,
-                             "--retry cannot be used with a study that searches or fits: each of its "
-                             "points depends on those before it");
+    return strut_usage_error(
+        arguments,
+        "--retry cannot be used with a study that searches or fits: each of its "
+        "points depends on those before it");
   bool several = study->plan.study->search && (arguments->shard || arguments->emit.text);
   return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
 }
@@ -304,7 +305,8 @@ static strut_status run_sweep(const strut_arguments *given) {
     return strut_usage_error(arguments,
                              "--retry cannot be combined with --count, --status or --emit");
   status = strut_sweep_study_open(arguments, &study);
-  if (!status && arguments->plot && (strut_study_has_stages(study.plan.study) || study.plan.study->follow))
+  if (!status && arguments->plot &&
+      (strut_study_has_stages(study.plan.study) || study.plan.study->follow))
     status = strut_usage_error(arguments,
                                "--plot is for studies of single points: searches, fits and "
                                "branches of motions are drawn in DIR");

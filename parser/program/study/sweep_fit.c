@@ -33,9 +33,10 @@ static strut_status complete(const strut_study_job *job, const strut_fit_result 
   status = strut_print_values(job->arguments, &strut_fit_values, result, NULL);
   if (status) return status;
   if (!result->found) {
-    fputs("strut: the model cannot be computed at any start: see 'message' of the table, or 'strut "
-          "run' with values of the ranges\n",
-          stderr);
+    fputs(
+        "strut: the model cannot be computed at any start: see 'message' of the table, or 'strut "
+        "run' with values of the ranges\n",
+        stderr);
     return STRUT_DIVERGED;
   }
   if (strut_fit_is_identified(result)) return STRUT_OK;
@@ -44,13 +45,13 @@ static strut_status complete(const strut_study_job *job, const strut_fit_result 
   return STRUT_INACCURATE;
 }
 
-strut_status strut_sweep_fit_plan(const strut_arguments *arguments, const strut_sweep_study *study) {
+strut_status strut_sweep_fit_plan(const strut_arguments *arguments,
+                                  const strut_sweep_study *study) {
   strut_fit_plan plan = {0};
   strut_error error = {0};
   if (!study->plan.study->fit)
     return strut_usage_error(arguments, "--plan is for studies with 'fit'");
-  strut_status status =
-      strut_fit_plan_find(&study->plan, strut_interrupt_watch(), &plan, &error);
+  strut_status status = strut_fit_plan_find(&study->plan, strut_interrupt_watch(), &plan, &error);
   strut_print_failure(status, &error);
   if (!status) status = strut_print_values(arguments, &strut_fit_plan_values, &plan, NULL);
   strut_arena_free(&plan.arena);
