@@ -18,9 +18,6 @@ enum { SHARES = sizeof shares / sizeof shares[0], STEPS_FIRST = 20, FEW = 2 };
 /* Short motions need not be fitted closer than to this part of the ranges. */
 static const double NEAR_FIRST = 1e-3;
 
-/* So many places are tried where the model cannot be computed at a start. */
-enum { MOST_PLACES = 50 };
-
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
@@ -89,7 +86,7 @@ static strut_status fit_start(strut_fit_case *one, int64_t start, double *parame
                               strut_fit_solution *solution) {
   strut_status status = STRUT_OK;
   int64_t evaluations = 0;
-  for (int k = 0; k < MOST_PLACES && !status && !one->status; k++) {
+  for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
     strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
     status = fit_from(one, parameters, solution);
     evaluations += solution->evaluations;

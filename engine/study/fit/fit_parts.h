@@ -97,6 +97,9 @@ const char *strut_fit_unit(const strut_fit_layout *layout, size_t i);
 
 /* ---- fit.c ---- */
 
+/** So many places are tried where the model cannot be computed at a start. */
+enum { STRUT_FIT_MOST_PLACES = 50 };
+
 /** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
 void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
 

@@ -119,14 +119,18 @@ strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *i
               (status || strut_fit_case_create(&layout, &one));
   if (!status && !fine) status = strut_no_memory(error, "");
   if (!status) {
-    strut_fit_choose_start(&layout, 0, plan->at);
     strut_least_squares problem = strut_fit_problem(&one);
-    fine = strut_least_squares_jacobian(&problem, plan->at, residual, jacobian);
+    fine = false;
+    for (int k = 0; k < STRUT_FIT_MOST_PLACES && !fine && !one.status; k++) {
+      strut_fit_choose_start(&layout, k, plan->at);
+      fine = strut_least_squares_jacobian(&problem, plan->at, residual, jacobian);
+    }
     if (!fine && one.status)
       status = strut_fail(error, one.status, "%s", one.error.message);
     else if (!fine)
-      status =
-          strut_fail(error, STRUT_DIVERGED, "the model cannot be computed about the first start");
+      status = strut_fail(error, STRUT_DIVERGED,
+                          "the model cannot be computed at any of %d places in the ranges",
+                          STRUT_FIT_MOST_PLACES);
     else if (!add_all(&self))
       status = strut_no_memory(error, "");
   }
