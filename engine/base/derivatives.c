@@ -7,12 +7,13 @@
 
 #include "engine/base/memory.h"
 
-/* Relative error of an output that does not know its own, and bounds of those that do. */
-static const double USUAL_NOISE = 1e-12, LEAST_NOISE = 1e-15, MOST_NOISE = 1e-6;
-/* The steps along all parameters, as a part of those along one: different ones, lest kinks cancel. */
-static const double PART = 0.125, SPREAD = 0.3;
+/* Relative errors by which steps are chosen, that of outputs which do not know theirs first; and what is no kink. */
+static const double LEAST_NOISE = 3e-17, MOST_NOISE = 1e-6, USUAL_NOISE = 1e-11;
+/* Steps along all parameters, in parts of those along one; by how much they are varied. */
+static const double PART = 0.125, LEAST_PART = 1.0 / 128.0, SPREAD = 0.3;
 static const double BENT =
     0.1; /* difference of one-sided derivatives, in parts of their mean, to be looked at */
+static const double SLIGHT = 0.01; /* bend of what seems straight, in parts of the change */
 static const double GOLDEN = 0.6180339887498949;
 
 /* Two points along a direction: `central` at 1 and -1, else at 1 and 2 steps. */
@@ -60,12 +61,18 @@ static strut_status evaluate_end(const differences *self, pair *along, int end) 
   return status;
 }
 
+/* What is no more than noise of an output. */
+static double noise_of(const differences *self, size_t j) {
+  double own = self->errors[j];
+  return isfinite(own) ? own : USUAL_NOISE * fabs(self->outputs[j]);
+}
+
 /* The largest relative noise of an output, which all steps are chosen by. */
-static double noise_of(const differences *self) {
+static double largest_noise(const differences *self) {
   double noise = 0.0;
   for (size_t j = 0; j < self->task->output_count; j++) {
     double own = self->errors[j] / fabs(self->outputs[j]);
-    noise = fmax(noise, isfinite(own) ? fmin(fmax(own, LEAST_NOISE), MOST_NOISE) : USUAL_NOISE);
+    noise = fmax(noise, isfinite(own) ? fmin(fmax(own, LEAST_NOISE), MOST_NOISE) : LEAST_NOISE);
   }
   return noise;
 }
@@ -87,9 +94,7 @@ static double choose_step(const strut_derivatives_parameter *by, double noise, b
 static bool prepare(differences *self) {
   const strut_derivatives_task *task = self->task;
   size_t n = task->parameter_count, m = task->output_count;
-  double noise = noise_of(self), part = PART;
-  pair *all = &self->pairs[n];
-  all->central = true;
+  double noise = largest_noise(self);
   for (size_t i = 0; i <= n; i++) {
     self->pairs[i].step = strut_arena_allocate(&self->arena, n, sizeof(double));
     for (int end = 0; end < 2; end++)
@@ -97,28 +102,25 @@ static bool prepare(differences *self) {
     if (!self->pairs[i].step || !self->pairs[i].values[0] || !self->pairs[i].values[1])
       return false;
   }
-  for (size_t i = 0; i < n; i++) {
-    double h = choose_step(&task->parameters[i], noise, &self->pairs[i].central);
-    part = PART * (1.0 + SPREAD * fmod((double)i * GOLDEN, 1.0));
-    self->pairs[i].step[i] = h;
-    all->step[i] = task->parameters[i].value + part * h - task->parameters[i].value;
-    all->central = all->central && self->pairs[i].central;
-  }
+  for (size_t i = 0; i < n; i++)
+    self->pairs[i].step[i] = choose_step(&task->parameters[i], noise, &self->pairs[i].central);
   return true;
 }
 
-static strut_status evaluate_pairs(differences *self, strut_error *error) {
-  const int64_t count = 2 * (int64_t)(self->task->parameter_count + 1);
+/* Evaluates pairs from the first on. */
+static strut_status evaluate_pairs(const differences *self, size_t first, size_t pairs,
+                                   strut_error *error) {
+  const int64_t begin = 2 * (int64_t)first, count = begin + 2 * (int64_t)pairs;
   int threads = self->task->threads;
   (void)threads; /* without OpenMP */
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
 #endif
-  for (int64_t k = 0; k < count; k++) {
+  for (int64_t k = begin; k < count; k++) {
     pair *along = &self->pairs[k / 2];
     along->status[k % 2] = evaluate_end(self, along, (int)(k % 2));
   }
-  for (int64_t k = 0; k < count; k++) {
+  for (int64_t k = begin; k < count; k++) {
     const pair *along = &self->pairs[k / 2];
     if (!along->status[k % 2]) continue;
     if (error) *error = along->error[k % 2];
@@ -134,26 +136,44 @@ static double slope(const differences *self, const pair *along, size_t j, double
   return along->central ? (first - second) / 2.0 : (4.0 * (first - here) - (second - here)) / 2.0;
 }
 
+/* How much an output bends along a parameter: the more, the more its differences are likely to be wrong. */
+static double bend_of(const differences *self, size_t i, size_t j) {
+  double bend, change = slope(self, &self->pairs[i], j, &bend);
+  return fabs(bend) + SLIGHT * fabs(change) + noise_of(self, j);
+}
+
+/*
+ * Chooses the steps along all parameters, as parts of those along each: the smaller, the more it bends the outputs,
+ * lest one hides what the others' differences get wrong; and different ones, lest kinks cancel.
+ */
+static void join_steps(differences *self) {
+  const strut_derivatives_task *task = self->task;
+  size_t n = task->parameter_count;
+  pair *all = &self->pairs[n];
+  all->central = true;
+  for (size_t i = 0; i < n; i++) {
+    double most = 0.0, h = self->pairs[i].step[i], value = task->parameters[i].value;
+    for (size_t j = 0; j < task->output_count; j++) {
+      double own = bend_of(self, i, j), least = own;
+      for (size_t k = 0; k < n; k++) least = fmin(least, bend_of(self, k, j));
+      most = fmax(most, own / least);
+    }
+    double part = fmax(PART / fmax(most, 1.0), LEAST_PART);
+    part *= 1.0 + SPREAD * fmod((double)i * GOLDEN, 1.0);
+    all->step[i] = value + part * h - value;
+    all->central = all->central && self->pairs[i].central;
+  }
+}
+
 /* What is known of all directions together, of one output. */
 typedef struct agreement {
-  double noise;
-  double off; /* by how much the pair along all disagrees with the others, in their steps */
+  double off;            /* by how much the pair along all disagrees with the sum of the others */
   double together, most; /* how much it bends, and what smooth bends along each add up to at most */
 } agreement;
 
-/*
- * Does a bend along one parameter come from a kink at the point? A smooth one shrinks with the square of the steps,
- * and what the differences get wrong with the cube.
- */
-static bool is_kink(double bend, double change, const agreement *of) {
-  bool bent = fabs(bend) > BENT * fabs(change) && fabs(bend) > 32.0 * of->noise;
-  bool lasts = fabs(of->together) > of->most && fabs(of->together) > 8.0 * of->noise;
-  return bent && (lasts || of->off > fabs(bend) / 4.0);
-}
-
 static agreement agree(const differences *self, size_t j) {
-  double own = self->errors[j], size = fabs(self->outputs[j]), roots = 0.0, bends = 0.0, bend;
-  agreement a = {.noise = isfinite(own) ? own : USUAL_NOISE * size};
+  double roots = 0.0, bends = 0.0, bend;
+  agreement a;
   const pair *all = &self->pairs[self->task->parameter_count];
   double change = slope(self, all, j, &a.together);
   for (size_t i = 0; i < self->task->parameter_count; i++) {
@@ -161,7 +181,7 @@ static agreement agree(const differences *self, size_t j) {
     change -= part * slope(self, &self->pairs[i], j, &bend);
     roots += part * sqrt(fabs(bend)), bends += part * fabs(bend);
   }
-  a.off = fabs(change) / PART + 4.0 * DBL_EPSILON * size;
+  a.off = fabs(change) + 2.0 * DBL_EPSILON * fabs(self->outputs[j]);
   a.most = fmin(2.0 * roots * roots, bends / 2.0);
   return a;
 }
@@ -170,16 +190,21 @@ static agreement agree(const differences *self, size_t j) {
 static void conclude(const differences *self, size_t j, strut_derivative *to) {
   const strut_derivatives_task *task = self->task;
   const agreement all = agree(self, j);
-  double own = isfinite(self->errors[j]) ? self->errors[j] : 0.0, bend;
+  double own = isfinite(self->errors[j]) ? self->errors[j] : 0.0, noise = noise_of(self, j), bend;
   for (size_t i = 0; i < task->parameter_count; i++) {
     double h = self->pairs[i].step[i], change = slope(self, &self->pairs[i], j, &bend);
-    double error = 2.0 * all.off;
-    if (task->parameter_count > 1 && fabs(bend) > BENT * fabs(change))
+    double off = fabs(all.off * h / self->pairs[task->parameter_count].step[i]), error = 2.0 * off;
+    bool bent = fabs(bend) > BENT * fabs(change);
+    if (task->parameter_count > 1 && bent)
       error += fabs(bend); /* together with others it is not told apart for certain */
+    /* A kink at the point: a smooth bend shrinks with the square of the steps, and what the differences get wrong with
+       the cube. */
+    bool lasts = fabs(all.together) > all.most && fabs(all.together) > 8.0 * noise;
+    bool kink = bent && fabs(bend) > 32.0 * noise && (lasts || off > fabs(bend) / 4.0);
     to[i].value = change / h;
     to[i].error = error / fabs(h) + own / scale_of(&task->parameters[i]);
     to[i].verdict = !isfinite(to[i].value + to[i].error) ? STRUT_DERIVATIVE_UNKNOWN
-                    : is_kink(bend, change, &all)        ? STRUT_DERIVATIVE_NONE
+                    : kink                               ? STRUT_DERIVATIVE_NONE
                                                          : STRUT_DERIVATIVE_THERE;
     if (to[i].verdict != STRUT_DERIVATIVE_THERE) to[i].value = to[i].error = (double)NAN;
   }
@@ -201,7 +226,11 @@ static strut_status find(differences *self, strut_error *error) {
   }
   if (!task->outputs) status = evaluate(self, at, self->outputs, self->errors, error);
   if (status) return status;
-  return prepare(self) ? evaluate_pairs(self, error) : strut_no_memory(error, "");
+  if (!prepare(self)) return strut_no_memory(error, "");
+  status = evaluate_pairs(self, 0, n, error);
+  if (status) return status;
+  join_steps(self);
+  return evaluate_pairs(self, n, 1, error);
 }
 
 strut_status strut_derivatives_find(const strut_derivatives_task *task,

@@ -97,6 +97,11 @@ typedef struct strut_steady {
 #define STRUT_INTEGRATOR_WORD(row, word, steps) "|" word
 #define STRUT_INTEGRATOR_WORDS (&("" STRUT_INTEGRATORS(STRUT_INTEGRATOR_WORD))[1])
 
+/** A number of `parameters` that results are differentiated by. */
+typedef struct strut_derived_by {
+  const char *name, *unit; /* unit "1": none */
+} strut_derived_by;
+
 /** Start, method, duration and measurements of an experiment. */
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
@@ -126,9 +131,11 @@ typedef struct strut_experiment {
   int32_t measure_node; /* whose velocity (14) is measured; -1: the centre of mass */
   size_t quantity_count;
   strut_quantity_definition *quantities; /* (quantity_count) measured beside that velocity */
-  double output_every;     /* sampling interval [s]; 0: a thousandth of the recorded time */
-  double output_last;      /* record only the last periods or seconds; 0: all */
-  strut_channels channels; /* default position, length, force */
+  size_t derivative_count;
+  strut_derived_by *derivatives; /* (derivative_count) of what is measured; not in written scenes */
+  double output_every;           /* sampling interval [s]; 0: a thousandth of the recorded time */
+  double output_last;            /* record only the last periods or seconds; 0: all */
+  strut_channels channels;       /* default position, length, force */
   /* Ends statics on this experiment with STRUT_INTERRUPTED, soon after it is set; NULL: nothing does.
      Not part of what a file describes; runs and searches for all equilibria have options for it. */
   const strut_flag *interrupt;

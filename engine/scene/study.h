@@ -421,11 +421,14 @@ typedef struct strut_study {
   strut_keep_set keep; /* empty: what is usual, if no quantity is kept either */
   size_t quantity_count;
   const char **quantities; /* (quantity_count) measured quantities that are kept by name */
-  bool trajectories;       /* a directory of results for each run */
-  bool half_step;          /* run each point again with half the step */
-  double check_accuracy;   /* or with this accuracy; 0: not */
-  uint32_t compute;        /* strut_compute */
-  int32_t lowest;          /* energies, barriers, frequencies in a row; 0: STRUT_STUDY_LOWEST */
+  size_t derivative_count;
+  struct strut_derived_by
+      *derivatives;      /* (derivative_count) of what is kept; 0: as the model says */
+  bool trajectories;     /* a directory of results for each run */
+  bool half_step;        /* run each point again with half the step */
+  double check_accuracy; /* or with this accuracy; 0: not */
+  uint32_t compute;      /* strut_compute */
+  int32_t lowest;        /* energies, barriers, frequencies in a row; 0: STRUT_STUDY_LOWEST */
   const char *at; /* equilibrium of modes, rigidity and path, as their commands know it; or NULL */
   struct {        /* as the command's options; NULL, 0: not given */
     const char *load, *over;

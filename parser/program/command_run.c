@@ -12,6 +12,7 @@
 #include "engine/run/simulate.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/run_settings.h"
+#include "parser/program/command/varied_scenes.h"
 #include "parser/program/open_model.h"
 #include "parser/program/progress.h"
 #include "parser/program/run_pictures.h"
@@ -116,11 +117,15 @@ static void print_warnings(const strut_summary *summary) {
 }
 
 static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
-                              const strut_model *model, strut_run_pictures *pictures) {
+                              const strut_model *model, strut_varied_scenes *scenes,
+                              strut_run_pictures *pictures) {
   run_files keep = {.scene_text = NULL};
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
   strut_status status = simulate(model, setup, arguments, &keep, pictures, &summary, &error);
+  if (status == STRUT_OK)
+    status = strut_varied_scenes_derive(arguments, scenes, setup, strut_interrupt_watch(), &summary,
+                                        &error);
   if (status != STRUT_OK) strut_print_error(&error);
   if (strut_run_has_results(status)) {
     print_warnings(&summary);
@@ -146,11 +151,20 @@ static strut_status run_run(const strut_arguments *arguments) {
   strut_model *model = NULL;
   strut_error error = {0};
   strut_run_pictures pictures = {0};
+  char *text = NULL;
+  strut_varied_scenes scenes = {.file = strut_model_name(arguments),
+                                .purpose = strut_run_options_purpose(arguments)};
   strut_status status = strut_run_pictures_read(arguments, &pictures);
-  if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &setup);
-  if (status != STRUT_OK) return status;
+  if (status == STRUT_OK)
+    status = strut_open_model_kept(arguments, STRUT_OPEN_FOR_RUN, &text, &scenes.length, &setup);
+  scenes.text = text;
+  if (status != STRUT_OK) {
+    strut_release(text);
+    return status;
+  }
   status = strut_run_options_apply(arguments, &setup);
   if (status != STRUT_OK) {
+    strut_release(text);
     strut_run_pictures_free(&pictures);
     strut_setup_free(&setup);
     return status;
@@ -161,9 +175,10 @@ static strut_status run_run(const strut_arguments *arguments) {
   if (status == STRUT_OK)
     status = strut_run_pictures_check(&pictures, &setup.experiment, model, &error);
   if (status == STRUT_OK)
-    status = run_model(arguments, &setup, model, &pictures);
+    status = run_model(arguments, &setup, model, &scenes, &pictures);
   else
     strut_print_error(&error);
+  strut_release(text);
   strut_run_pictures_free(&pictures);
   strut_model_free(model);
   strut_setup_free(&setup);

@@ -97,10 +97,20 @@ void strut_open_report_free(strut_open_report *report) {
 
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup) {
+  char *text;
+  size_t length;
+  strut_status status = strut_open_model_kept(arguments, purpose, &text, &length, setup);
+  strut_release(text);
+  return status;
+}
+
+strut_status strut_open_model_kept(const strut_arguments *arguments, strut_open_purpose purpose,
+                                   char **text, size_t *length, strut_setup *setup) {
   source from;
   strut_error error = {0};
   strut_status status = open_text(arguments, scene_purpose(arguments, purpose), &from, setup, NULL);
-  strut_release(from.text);
+  *text = from.text;
+  *length = from.length;
   if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
   status = strut_resolve_start_equilibrium(setup, &error);
   if (status != STRUT_OK) {

@@ -36,6 +36,10 @@ void strut_open_report_free(strut_open_report *report);
 strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
                               strut_setup *setup);
 
+/** The same, which keeps the file's text[0..length), a block of strut_allocate. */
+strut_status strut_open_model_kept(const strut_arguments *arguments, strut_open_purpose purpose,
+                                   char **text, size_t *length, strut_setup *setup);
+
 /**
  * The same, STRUT_OPEN_FOR_ANY, which keeps the file's text[0..length), a block of strut_allocate that is
  * NULL after a failure.

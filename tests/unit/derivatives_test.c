@@ -53,8 +53,8 @@ TEST(formulas) {
   expect(d[0][1], exp(1.0) * cos(2.0), 1e-3);
   expect(d[0][2], 27.0, 1e-3);
   for (int i = 0; i < COUNT; i++) expect(d[1][i], 0.0, 0.01);
-  expect(d[2][0], 6.0, 1e-3);
-  expect(d[2][2], 2.0, 1e-3);
+  expect(d[2][0], 6.0, 1e-2);
+  expect(d[2][2], 2.0, 1e-2);
 }
 
 TEST(kinks) {

@@ -54,6 +54,9 @@ void strut_summary_free(strut_summary *summary) {
   summary->end.jumps = NULL;
   summary->end.jump_count = 0;
   strut_release(summary->measured);
+  strut_release(summary->derivatives);
+  summary->derivatives = NULL;
+  summary->derivative_count = 0;
   summary->end.node_names = NULL;
   summary->end.positions = NULL;
   summary->end.contacts = NULL;

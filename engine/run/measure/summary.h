@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/base/derivatives.h"
 #include "engine/base/status.h"
 #include "engine/scene/channels.h"
 #include "engine/scene/value_rows.h"
@@ -88,6 +89,13 @@ typedef struct strut_measured {
 
 /** "reached", "never" or "not decided"; NULL: no arrival, or the window was not reached. */
 STRUT_API const char *strut_measured_arrival(const strut_measured *measured);
+
+/** Derivative of the velocity or a measured quantity by a parameter. */
+typedef struct strut_summary_derivative {
+  const char *of, *by; /* owned by the scene, or constants */
+  char unit[80];
+  strut_derivative is;
+} strut_summary_derivative;
 
 /** Kind of motion that a run with steady detection found; STRUT_MOTION_NOT_WATCHED without. */
 typedef enum strut_motion {
@@ -190,6 +198,9 @@ typedef struct strut_summary {
   const char *measured_node;         /* node of the measured velocity; NULL: centre of mass */
   size_t measured_count;
   strut_measured *measured; /* (measured_count) in the experiment's order */
+  size_t derivative_count;
+  strut_summary_derivative
+      *derivatives; /* (derivative_count) for each of what is measured in turn */
   strut_energy energy;
   strut_balance balance;
   strut_steady_summary steady;

@@ -98,6 +98,16 @@ static bool is_judged(const strut_measured *m, const strut_summary *s) {
   X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)), "within what was asked for")
 STRUT_VALUES_HERE(measured_values, MEASURED, const strut_measured *m = of->at)
 
+#define DERIVATIVE(X)                                                                              \
+  X("of", "", TEXT(d->of), "what is measured", .label = {""})                                      \
+  X("by", "", TEXT(d->by), "a parameter", .label = {""})                                           \
+  X("value", "", NUMBER(d->is.value), "in the unit below; null: there is none", .label = {""})     \
+  X("error", "", NUMBER(d->is.error), "of the value", .label = {""})                               \
+  X("unit", "", TEXT(d->unit), "SI", .label = {""})                                                \
+  X("verdict", "", TEXT(strut_derivative_words(d->is.verdict)),                                    \
+    "differentiable, not differentiable here, not known", .label = {""})
+STRUT_VALUES_HERE(derivative_values, DERIVATIVE, const strut_summary_derivative *d = of->at)
+
 #define NODE(X) X("position", "m", NUMBERS(of->at, 2), "at the end", .label = {"x", "y"})
 STRUT_VALUES_HERE(node_values, NODE, )
 
@@ -173,6 +183,8 @@ static void write_worth(const strut_result_object *of, char text[STRUT_VALUE_ROO
   X("measured", "",                                                                                \
     IF(s->measured_count, NAMED(s->measured, s->measured_count, name_of_measured)),                \
     "quantities of `measure`", .rows = &measured_values)                                           \
+  X("derivatives", "", IF(s->derivative_count, LIST(s->derivatives, s->derivative_count)),         \
+    "of what is measured by parameters", .rows = &derivative_values, .label = {"derivatives"})     \
   X("parameters", "", PARAMETERS, "of the scene")                                                  \
   X("nodes", "", NAMED((const double(*)[2])s->end.positions, s->end.node_count, name_of_nodes),    \
     "at the end", .rows = &node_values, .label = {"node"})                                         \

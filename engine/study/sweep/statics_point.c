@@ -345,6 +345,7 @@ bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup) {
     bool several = self->shape == NUMBERS || self->shape == WORDS;
     const char *unit = self->unit ? self->unit : factor;
     if (!is_kept(plan, self)) continue;
+    strut_sweep_begin_smooth(plan, self->keep);
     if (!several) fine = strut_sweep_add_column(plan, "", self->name, unit, word);
     for (size_t i = 0; several && i < lowest_of(plan->study) && fine; i++) {
       const char *name = strut_arena_format(&plan->arena, "%s_%zu", self->name, i + 1);

@@ -29,12 +29,14 @@ int strut_sweep_threads(void) {
 #endif
 }
 
-static bool allocate_cells(const strut_sweep_plan *plan, strut_arena *arena,
-                           strut_row_buffer *cells) {
+static bool allocate_cells(const strut_sweep_plan *plan, strut_arena *arena, strut_sweep_job *job) {
+  strut_row_buffer *cells = &job->cells;
   cells->values = strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *cells->values);
   cells->numbers = strut_arena_allocate(arena, plan->column_count + 1, sizeof *cells->numbers);
   cells->words = strut_arena_allocate(arena, plan->column_count + 1, sizeof *cells->words);
-  return cells->values && cells->numbers && cells->words;
+  job->derivatives = strut_arena_allocate(arena, plan->derived_count * plan->by_count + 1,
+                                          sizeof *job->derivatives);
+  return cells->values && cells->numbers && cells->words && job->derivatives;
 }
 
 static bool is_running(strut_points *points) {
@@ -160,7 +162,7 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
                                        size_t count) {
   strut_sweep_job *jobs = strut_arena_allocate(arena, count, sizeof *jobs);
   for (size_t i = 0; i < count && jobs; i++)
-    if (!allocate_cells(plan, arena, &jobs[i].cells)) return NULL;
+    if (!allocate_cells(plan, arena, &jobs[i])) return NULL;
   return jobs;
 }
 

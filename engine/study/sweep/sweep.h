@@ -7,6 +7,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/base/memory.h"
+#include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
 #include "engine/study/results/slots.h"
@@ -19,6 +20,12 @@ typedef struct strut_sweep_scenes {
   /** Both as a text, in a block of strut_allocate; NULL: memory is out. */
   char *(*text)(const strut_setup *setup);
   void *context;
+  /**
+   * The setup where numbers of its parameters are others: the values (count) of `by` [SI]. NULL: there are no
+   * derivatives.
+   */
+  strut_status (*vary)(void *context, const strut_study_value *values, const strut_derived_by *by,
+                       size_t count, const double *numbers, strut_setup *setup, strut_error *error);
 } strut_sweep_scenes;
 
 /** Columns and points of a study's table. Constant once made. */
@@ -39,7 +46,11 @@ typedef struct strut_sweep_plan {
   /* names in the first point's scene; other points may have others, and leave these cells empty */
   size_t contact_count, node_count, member_count;
   const char **contacts, **nodes, **members;
-  bool *names_member; /* (quantity_count) a word beside it: the member of the largest force */
+  bool smooth; /* do the columns that are added follow parameters smoothly? */
+  size_t by_count, derived_count;
+  strut_derived_by *by; /* (by_count) parameters that the derived numbers are differentiated by */
+  size_t *derived;      /* (derived_count) smooth columns among those that are kept */
+  bool *names_member;   /* (quantity_count) a word beside it: the member of the largest force */
 } strut_sweep_plan;
 
 /**
@@ -100,6 +111,15 @@ typedef struct strut_sweep_options {
 STRUT_API strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
                                        const strut_sweep_options *options, strut_sweep_state *state,
                                        strut_error *error);
+
+/**
+ * The derivatives of a run of the setup's experiment, whose scenes these are at no axes: fills those of its summary,
+ * which refer to the setup. As strut_simulate.
+ */
+STRUT_API strut_status strut_sweep_derive_run(const strut_sweep_scenes *scenes,
+                                              const strut_setup *setup,
+                                              const strut_sweep_options *options,
+                                              strut_summary *summary, strut_error *error);
 
 /** OMP_NUM_THREADS; else the processors that this process may use, SLURM_CPUS_PER_TASK at most. */
 STRUT_API int strut_sweep_threads(void);

@@ -78,6 +78,22 @@ static const struct {
     COUNT_TABLE(COUNT)};
 enum { COUNTS = sizeof counts / sizeof counts[0] };
 
+void strut_sweep_begin_smooth(strut_sweep_plan *plan, strut_keep keep) {
+  static const strut_keep smooth[] = {
+      STRUT_KEEP_VELOCITY,       STRUT_KEEP_DISTANCE,       STRUT_KEEP_ENERGY,
+      STRUT_KEEP_WORK,           STRUT_KEEP_LOSSES,         STRUT_KEEP_COST,
+      STRUT_KEEP_TOTAL_MASS,     STRUT_KEEP_ENERGIES,       STRUT_KEEP_BARRIERS,
+      STRUT_KEEP_LOWEST_BARRIER, STRUT_KEEP_FREQUENCIES,    STRUT_KEEP_DAMPING_RATIOS,
+      STRUT_KEEP_STIFFNESS,      STRUT_KEEP_SHAPE,          STRUT_KEEP_CURVE,
+      STRUT_KEEP_LIMIT,          STRUT_KEEP_BIFURCATION,    STRUT_KEEP_CRITICAL,
+      STRUT_KEEP_MOVED,          STRUT_KEEP_DENSITY_CHANGE, STRUT_KEEP_LEAST_TENSION,
+      STRUT_KEEP_LARGEST_FORCE,  STRUT_KEEP_QUANTITIES,     STRUT_KEEP_POSITIONS,
+      STRUT_KEEP_LENGTHS};
+  plan->smooth = false;
+  for (size_t i = 0; i < sizeof smooth / sizeof smooth[0]; i++)
+    plan->smooth = plan->smooth || keep == smooth[i];
+}
+
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) {
   return strut_keep_has(&plan->keep, keep);
 }
@@ -96,6 +112,7 @@ bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const ch
          is_taken(plan, plan->axis_columns, text))
     text = strut_arena_format(&plan->arena, "run_%s", text);
   assert(plan->column_count < plan->column_capacity);
+  if (plan->smooth && !word) plan->derived[plan->derived_count++] = plan->column_count;
   plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
   return text != NULL;
 }
@@ -124,9 +141,11 @@ static bool keep_names(strut_sweep_plan *plan, const strut_scene *scene) {
 
 static bool add_things(strut_sweep_plan *plan) {
   bool fine = true;
+  strut_sweep_begin_smooth(plan, STRUT_KEEP_CONTACTS);
   for (size_t i = 0; i < plan->contact_count; i++)
     fine = fine && strut_sweep_add_column(plan, "duty_", plan->contacts[i], "1", false) &&
            strut_sweep_add_column(plan, "height_", plan->contacts[i], "m", false);
+  strut_sweep_begin_smooth(plan, STRUT_KEEP_POSITIONS);
   for (size_t i = 0; i < plan->node_count; i++)
     fine = fine && strut_sweep_add_column(plan, "x_", plan->nodes[i], "m", false) &&
            strut_sweep_add_column(plan, "y_", plan->nodes[i], "m", false);
@@ -143,6 +162,7 @@ static bool is_kept(const strut_study *study, const char *quantity) {
 
 /* Adds the measured quantities that are kept; one with the name of a column gets a prefix. */
 static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *experiment) {
+  strut_sweep_begin_smooth(plan, STRUT_KEEP_QUANTITIES);
   for (size_t i = 0; i < experiment->quantity_count; i++) {
     const strut_quantity_definition *definition = &experiment->quantities[i];
     if (!keeps(plan, STRUT_KEEP_QUANTITIES) && !is_kept(plan->study, definition->name)) continue;
@@ -165,22 +185,27 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *exper
 /* What a run gives, apart from the structure's things. */
 static bool add_entries(strut_sweep_plan *plan) {
   bool fine = true;
-  for (size_t i = 0; i < ENTRIES && fine; i++)
+  for (size_t i = 0; i < ENTRIES && fine; i++) {
+    strut_sweep_begin_smooth(plan, entries[i].keep);
     if (keeps(plan, entries[i].keep))
       fine = strut_sweep_add_column(plan, "", entries[i].name, unit_of(&entries[i]),
                                     is_word(&entries[i]));
+  }
   return fine;
 }
 
-static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
+/* What is kept of a point. */
+static bool add_kept(strut_sweep_plan *plan, const strut_setup *setup) {
   bool fine = keep_names(plan, &setup->scene), run = plan->study->compute == STRUT_COMPUTE_RUN;
   for (size_t i = 0; i < plan->axis_columns && fine; i++) {
     const strut_study_column *column = strut_grid_column(plan->study, i, NULL);
     fine = strut_sweep_add_column(plan, "", column->name, column->unit, column->word);
   }
-  for (size_t i = 0; i < COUNTS && fine; i++)
+  for (size_t i = 0; i < COUNTS && fine; i++) {
+    strut_sweep_begin_smooth(plan, counts[i].keep);
     if (keeps(plan, counts[i].keep))
       fine = strut_sweep_add_column(plan, "", counts[i].name, counts[i].unit, false);
+  }
   fine = fine && (run ? add_entries(plan) : strut_statics_columns(plan, setup)) && add_things(plan);
   if (!fine || !run) return fine;
   fine = add_quantities(plan, &setup->experiment);
@@ -188,10 +213,17 @@ static bool add_columns(strut_sweep_plan *plan, const strut_setup *setup) {
     fine = strut_sweep_add_column(plan, "", "outcome", "1", true);
   if (fine && keeps(plan, STRUT_KEEP_SHAPE))
     fine = strut_sweep_add_column(plan, "", "shape_distance", "m", false);
+  plan->smooth = false;
   if (fine && plan->start) fine = strut_sweep_add_column(plan, "", "start_unstable", "1", false);
   if (fine && plan->accurate)
     fine = strut_sweep_add_column(plan, "", STRUT_KEPT_COLUMN, "1", false);
-  if (fine && plan->check)
+  return fine;
+}
+
+/* What the second run of a point adds. */
+static bool add_check(strut_sweep_plan *plan) {
+  bool fine = true;
+  if (plan->check)
     fine = strut_sweep_add_column(plan, "check_", "velocity", "m/s", false) &&
            strut_sweep_add_column(plan, "check_", plan->flips ? "outcome" : "motion", "1", true) &&
            strut_sweep_add_column(plan, "", "flips", "1", false);
@@ -231,13 +263,20 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 8 +
                 2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
                 2 * quantities;
+  size_t by =
+      study->derivative_count ? study->derivative_count : setup->experiment.derivative_count;
+  if (plan->scenes.vary) most += 2 * by * most;
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
+  plan->derived = strut_arena_allocate(&plan->arena, most, sizeof *plan->derived);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
   plan->names_member = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->names_member);
-  if (!plan->columns || !plan->quantities || !plan->names_member || !add_columns(plan, setup))
+  if (!plan->columns || !plan->derived || !plan->quantities || !plan->names_member ||
+      !add_kept(plan, setup))
     return strut_no_memory(error, "");
-  return STRUT_OK;
+  plan->smooth = false;
+  strut_status status = strut_sweep_derivative_columns(plan, setup, error);
+  return status || add_check(plan) ? status : strut_no_memory(error, "");
 }
 
 strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_scenes *scenes,

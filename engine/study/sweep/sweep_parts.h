@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
 #define STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
 
+#include "engine/base/derivatives.h"
 #include "engine/base/flag.h"
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/evaluation.h"
@@ -30,6 +31,8 @@ void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *mo
                              strut_row_buffer *cells);
 void strut_sweep_number(strut_row_buffer *cells, double value);
 void strut_sweep_word(strut_row_buffer *cells, const char *word);
+/** Says whether the columns that are added next follow parameters smoothly: no counts, words and settings do. */
+void strut_sweep_begin_smooth(strut_sweep_plan *plan, strut_keep keep);
 
 /** Adds a column to a plan; one with the name of an axis gets the prefix "run_". False: no memory. */
 bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const char *name,
@@ -60,7 +63,8 @@ typedef struct strut_sweep_job {
   strut_run_options options;
   strut_sink *sinks[1];
   struct strut_sweep_record *files;
-  char first[STRUT_SLOT_WORD]; /* outcome of the first run, during the second */
+  strut_derivative *derivatives; /* (derived numbers, parameters) */
+  char first[STRUT_SLOT_WORD];   /* outcome of the first run, during the second */
   bool second;
   size_t warning_count; /* of the first run */
   strut_warning warnings[STRUT_MOST_WARNINGS];
@@ -76,6 +80,18 @@ const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
                                            const strut_sweep_job *job);
 /** Computes a point, with the run for the check where the study wants one. */
 void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job);
+
+/** Runs the scene of the job; the counts of its structure go before the cells of a `first` run. */
+strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                   bool first, strut_summary *summary);
+
+/* sweep_derivatives.c */
+
+/** Adds the columns of derivatives of the smooth numbers so far. STRUT_USAGE: a parameter is missing. */
+strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
+                                            strut_error *error);
+/** Appends the derivatives of the job's row, whose scene is still there. */
+strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job);
 
 /* statics_point.c */
 

@@ -124,6 +124,7 @@ static bool begin_job(const strut_sweep_worker *worker, int64_t point, strut_swe
     status = strut_statics_point(worker, job);
   else
     status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
+  if (!run && !status) status = strut_sweep_derive(worker, job);
   if (run && !status) status = begin_record(worker, job);
   if (run && !status) return true;
   finish_with_scene(worker, job, status);
@@ -176,6 +177,7 @@ static bool finish_first_run(const strut_sweep_worker *worker, strut_sweep_job *
     job->warning_count = summary->warning_count;
     memcpy(job->warnings, summary->warnings, sizeof job->warnings);
     strut_sweep_fill(worker->plan, &job->setup, summary, outcome, &job->cells);
+    status = strut_sweep_derive(worker, job);
   }
   if (status || !worker->plan->check) {
     finish_with_scene(worker, job, status);
@@ -204,9 +206,8 @@ static void finish_second_run(const strut_sweep_worker *worker, strut_sweep_job 
   finish_with_scene(worker, job, stops(status) ? status : STRUT_OK);
 }
 
-/* Runs the scene of the job; its counts go before the cells of a first run. */
-static strut_status run_scene(const strut_sweep_worker *worker, strut_sweep_job *job, bool first,
-                              strut_summary *summary) {
+strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                   bool first, strut_summary *summary) {
   const strut_experiment *experiment = &job->setup.experiment;
   strut_model *model = NULL;
   strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
@@ -220,9 +221,9 @@ static strut_status run_scene(const strut_sweep_worker *worker, strut_sweep_job 
 void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
   strut_summary summary = {0}, second = {0};
   if (!begin_job(worker, point, job)) return;
-  strut_status status = run_scene(worker, job, true, &summary);
+  strut_status status = strut_sweep_run_scene(worker, job, true, &summary);
   if (finish_first_run(worker, job, status, &summary)) {
-    status = run_scene(worker, job, false, &second);
+    status = strut_sweep_run_scene(worker, job, false, &second);
     finish_second_run(worker, job, status, &second);
   }
   strut_summary_free(&summary);

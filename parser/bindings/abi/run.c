@@ -16,6 +16,7 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
 #include "parser/program/command/run_settings.h"
+#include "parser/program/command/varied_scenes.h"
 
 /* No frame is left out: the caller decides how much is recorded. */
 static const size_t ROOM = SIZE_MAX / 64;
@@ -70,8 +71,9 @@ static void show_progress(void *context, double fraction) {
   if (control->progress(control->context, fraction)) control->interrupt = 1;
 }
 
-static strut_status simulate(abi_call *call, const strutlib_result *result, run_detail *run,
-                             strut_sink *sink, strut_error *what) {
+static strut_status simulate(abi_call *call, const strutlib_scene *scene,
+                             const strutlib_result *result, run_detail *run, strut_sink *sink,
+                             strut_error *what) {
   const strut_experiment *experiment = &result->setup.experiment;
   strut_sink *sinks[1] = {sink};
   const strut_run_options options = {
@@ -81,7 +83,14 @@ static strut_status simulate(abi_call *call, const strutlib_result *result, run_
       .progress_context = call->control,
       .sinks = sinks,
       .sink_count = sink ? 1 : 0};
-  return strut_simulate_as_asked(result->model, experiment, &options, &run->summary, what);
+  strut_varied_scenes scenes = {.file = scene->source->name,
+                                .source = scene->source->tree,
+                                .purpose = strut_run_options_purpose(&call->arguments)};
+  strut_status status =
+      strut_simulate_as_asked(result->model, experiment, &options, &run->summary, what);
+  return status ? status
+                : strut_varied_scenes_derive(&call->arguments, &scenes, &result->setup,
+                                             options.interrupt, &run->summary, what);
 }
 
 /* ---- what it shows ---- */
@@ -126,7 +135,8 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
 }
 
 /* Runs what is open, and completes the result; sets the error of a run that ended early, too. */
-static strut_status run_model(abi_call *call, strutlib_result *result) {
+static strut_status run_model(abi_call *call, const strutlib_scene *scene,
+                              strutlib_result *result) {
   run_detail *run = strut_allocate(1, sizeof *run);
   strut_error what = {0};
   strut_sink *sink = NULL;
@@ -140,7 +150,7 @@ static strut_status run_model(abi_call *call, strutlib_result *result) {
     sink = strut_trajectory_sink(&run->motion, &result->setup.scene, channels, ROOM);
     if (!sink) status = strut_no_memory(&what, "");
   }
-  if (status == STRUT_OK) status = simulate(call, result, run, sink, &what);
+  if (status == STRUT_OK) status = simulate(call, scene, result, run, sink, &what);
   strut_trajectory_sink_free(sink);
   result->status = (int)status;
   if (status != STRUT_OK) abi_call_fail(call, status, &what);
@@ -161,7 +171,7 @@ strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const c
                             control, error, &result->messages);
   if (status == STRUT_OK) status = open_setup(&call, scene, result);
   bool begun = status == STRUT_OK;
-  if (begun) status = run_model(&call, result);
+  if (begun) status = run_model(&call, scene, result);
   if (!begun || !strut_run_has_results(status)) {
     strutlib_result_free(result);
     result = NULL;

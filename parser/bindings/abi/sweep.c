@@ -171,15 +171,22 @@ static strut_status check_options(abi_call *call, sweep *self) {
 
 /* ---- scenes of points; called from several threads ---- */
 
-static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
-                             strut_error *error) {
+static strut_status vary(void *context, const strut_study_value *values, const strut_derived_by *by,
+                         size_t count, const double *numbers, strut_setup *setup,
+                         strut_error *error) {
   const sweep *self = context;
-  strut_status status = strut_varied_scenes_read(&self->scenes, values, setup, error);
+  strut_status status =
+      strut_varied_scenes_vary(&self->scenes, values, by, count, numbers, setup, error);
   if (status == STRUT_OK && (status = strut_run_options_apply(&self->options, setup)) != STRUT_OK) {
     strut_fail(error, status, "the options do not fit the scene of this point");
     strut_setup_free(setup);
   }
   return status;
+}
+
+static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
+                             strut_error *error) {
+  return vary(context, values, NULL, 0, NULL, setup, error);
 }
 
 /* ---- rows ---- */
@@ -311,7 +318,7 @@ static strut_status complete(sweep *self, strutlib_result *result, const abi_scr
 
 /* Runs a sweep that is read, and completes the result. */
 static strut_status run_sweep(sweep *self, strutlib_result *result, strut_error *what) {
-  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, self};
+  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, self, vary};
   strut_sweep_state state = {0};
   abi_scratch scratch;
   strut_error late = {0};

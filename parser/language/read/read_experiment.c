@@ -390,6 +390,9 @@ static void read_run(strut_reader *reader) {
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &experiment->measure_last);
     strut_store(reader, &reader->measure, owner, experiment);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));
+    const strut_slot *by = strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_DERIVATIVES);
+    experiment->derivative_count =
+        strut_read_derivatives(reader, by, owner, NULL, &experiment->derivatives);
   }
   if (reader->measure.broken) reader->run.broken = true;
   if (reader->run.broken) experiment->duration = experiment->periods = 0.0;

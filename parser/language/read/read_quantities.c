@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/scene/study.h"
+#include "parser/language/read/read_scene.h"
 #include "parser/language/read/reader.h"
 
 /* Most characters of a name that a message repeats. */
@@ -466,4 +467,58 @@ void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
     definition->unit = "1";
     if (may_be_called(reader, key)) read_quantity(reader, key, definition);
   }
+}
+
+/* The declaration of a parameter of the scene that is read, or of `source`. False: there is none. */
+static bool find_declared(strut_reader *reader, const strut_scene_source *source, const char *name,
+                          strut_declared *declared) {
+  const strut_declared *of_source = source ? strut_scene_source_parameter(source, name) : NULL;
+  const strut_parameter_state *own = source ? NULL : strut_parameter_find(reader, name);
+  if (of_source) *declared = *of_source;
+  if (own)
+    *declared = (strut_declared){own->name, own->text, own->quantity.bare, own->quantity.dimension};
+  return of_source || own;
+}
+
+/* True where a derivative by the item can be made; if not, that is reported. */
+static bool check_derivative(strut_reader *reader, const strut_tree *list, const strut_tree *item,
+                             strut_owner owner, const strut_scene_source *source,
+                             strut_declared *declared) {
+  static const char key[] = "derivatives";
+  if (!strut_read_scalar(reader, item, key, owner, "a parameter of the scene")) return false;
+  for (const strut_tree *other = list->first; other != item; other = other->next)
+    if (other->kind == STRUT_TREE_SCALAR && strcmp(other->text, item->text) == 0)
+      return strut_report_error(reader, item->place, "'%s' appears twice in '%s' of %s",
+                                strut_sanitised_text(reader, item->text), key,
+                                strut_owner_text(reader, owner));
+  bool found = find_declared(reader, source, item->text, declared);
+  if (found && !declared->text) return true;
+  size_t count = reader->parameter_count;
+  if (source) strut_scene_source_parameters(source, &count);
+  const char *hint =
+      found ? "; it is a text"
+            : strut_hint(reader, item->text,
+                         source ? strut_scene_source_parameter_name : strut_parameter_name,
+                         source ? (const void *)source : reader, count);
+  return strut_report_error(
+      reader, item->place,
+      "expected a number of the %s's 'parameters' for '%s' of %s, found '%s'%s",
+      source ? "model" : "scene", key, strut_owner_text(reader, owner),
+      strut_sanitised_text(reader, item->text), hint);
+}
+
+size_t strut_read_derivatives(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                              const strut_scene_source *source, strut_derived_by **list) {
+  size_t count = 0;
+  if (slot->state != STRUT_GIVEN) return 0;
+  *list = strut_reader_allocate(reader, reader->keep, slot->value->count, sizeof **list);
+  for (const strut_tree *item = slot->value->first; item && *list; item = item->next) {
+    strut_declared declared = {0};
+    char unit[STRUT_SUFFIX_TEXT] = "";
+    if (!check_derivative(reader, slot->value, item, owner, source, &declared)) continue;
+    if (!declared.bare) strut_dimension_suffix(declared.dimension, unit, sizeof unit);
+    (*list)[count++] = (strut_derived_by){strut_keep_text(reader, item->text),
+                                          *unit ? strut_keep_text(reader, unit) : "1"};
+  }
+  return count;
 }

@@ -369,6 +369,24 @@ const strut_declared *strut_scene_source_parameter(const strut_scene_source *sou
   return NULL;
 }
 
+bool strut_setting_put(const strut_scene_source *source, const char *name, double value,
+                       char text[STRUT_NUMBER_TEXT], strut_setting *settings, size_t *count) {
+  const strut_declared *declared = strut_scene_source_parameter(source, name);
+  size_t at = 0;
+  if (!declared || declared->text) return false;
+  while (at < *count && strcmp(settings[at].name, name) != 0) at++;
+  if (at == *count) settings[(*count)++] = (strut_setting){.name = name};
+  strut_number_text(value, text);
+  settings[at] = (strut_setting){.name = name,
+                                 .text = text,
+                                 .known = true,
+                                 .bare = declared->bare,
+                                 .value = value,
+                                 .dimension = declared->dimension,
+                                 .place = settings[at].place};
+  return true;
+}
+
 const char *strut_scene_source_parameter_name(const void *context, size_t i) {
   const strut_scene_source *source = context;
   return i < source->count ? source->declared[i].name : NULL;

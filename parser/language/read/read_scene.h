@@ -5,6 +5,7 @@
 #ifndef STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
 #define STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
 
+#include "engine/base/number_text.h"
 #include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/expression/units.h"
@@ -74,6 +75,14 @@ STRUT_API strut_status strut_scene_source_read(const strut_scene_source *source,
                                                const strut_setting *settings, size_t setting_count,
                                                strut_purpose purpose,
                                                strut_diagnostics *diagnostics, strut_setup *setup);
+
+/**
+ * Adds the setting of a number of the source's parameters to `settings`, in place of another of that name; its text
+ * goes to `text`. *count, unless it was there. False: there is no such number.
+ */
+STRUT_API bool strut_setting_put(const strut_scene_source *source, const char *name, double value,
+                                 char text[STRUT_NUMBER_TEXT], strut_setting *settings,
+                                 size_t *count);
 
 /**
  * Reads a whole file into a block of strut_allocate (NUL-terminated; *length without it); "-" is

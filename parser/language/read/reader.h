@@ -438,6 +438,12 @@ void strut_read_initial(strut_reader *reader);
 void strut_read_experiment(strut_reader *reader);
 /** `quantities` of the measurement: read_quantities.c. */
 void strut_read_quantities(strut_reader *reader, const strut_slot *slot);
+/**
+ * `derivatives`, of parameters of the scene that is read, or of those of `source`; *list is in the reader's arena.
+ * Returns how many there are.
+ */
+size_t strut_read_derivatives(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+                              const struct strut_scene_source *source, strut_derived_by **list);
 
 /**
  * A signal or the name of one. `expected`: what its values must measure, or NULL for anything.

@@ -375,6 +375,10 @@ static strut_status read_all(strut_study_reader *study_reader, const strut_overr
   strut_read_data(reader, strut_slot_of(&top, STRUT_KEY_STUDY_DATA));
   file->study.tables = reader->tables, file->study.table_count = reader->table_count;
   read_keep(study_reader, strut_slot_of(&top, STRUT_KEY_STUDY_KEEP));
+  if (file->source_count)
+    file->study.derivative_count =
+        strut_read_derivatives(reader, strut_slot_of(&top, STRUT_KEY_STUDY_DERIVATIVES),
+                               study_owner, file->sources[0], &file->study.derivatives);
   strut_study_read_goals(study_reader, &top);
   if (status == STRUT_OK) read_points(study_reader, &top, overrides, count);
   if (reader->out_of_memory) return STRUT_NO_MEMORY;
@@ -464,15 +468,19 @@ static strut_status read_scene(const strut_study_file *file, const strut_study_v
   return status;
 }
 
-/*
- * Reads a point's scene; its messages go to `diagnostics`, of the model's text. `followed`: the value of
- * the followed parameter, or NULL.
- */
+/* Parameters that have these values beside those of the axes; followed: one, that which is followed. */
+typedef struct others {
+  size_t count;
+  const strut_derived_by *by; /* NULL: followed */
+  const double *numbers;
+} others;
+
+/* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
-                               const double *followed, strut_diagnostics *diagnostics,
-                               strut_setup *setup) {
+                               others more, strut_diagnostics *diagnostics, strut_setup *setup) {
+  const strut_scene_source *source = source_of(file, values);
   size_t first = file->variants, count = file->setting_count;
-  size_t most = count + file->column_count - first + 1;
+  size_t most = count + file->column_count - first + more.count;
   strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return STRUT_NO_MEMORY;
   char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + most);
@@ -486,13 +494,10 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     setting->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
-  if (followed) {
-    strut_setting *s = &settings[count++];
-    *s = file->followed;
-    s->place = strut_overlay_place(s->place);
-    s->value = *followed;
-    s->text = texts[most - 1];
-    strut_number_text(*followed, texts[most - 1]);
+  for (size_t i = 0; i < more.count; i++) {
+    const char *name = more.by ? more.by[i].name : file->followed.name;
+    strut_setting_put(source, name, more.numbers[i], texts[most - 1 - i], settings, &count);
+    if (!more.by) settings[count - 1].place = strut_overlay_place(file->followed.place);
   }
   strut_status status = read_scene(file, values, settings, count, diagnostics, setup);
   strut_release(settings);
@@ -500,9 +505,9 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
 }
 
 static strut_status make_setup(const strut_study_file *file, const strut_study_value *values,
-                               const double *followed, strut_setup *setup, strut_error *error) {
+                               others more, strut_setup *setup, strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = read_point(file, values, followed, &diagnostics, setup);
+  strut_status status = read_point(file, values, more, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
     const strut_diagnostic *first = &diagnostics.items[0];
     for (size_t i = 1; i < diagnostics.count; i++)
@@ -523,12 +528,18 @@ static strut_status make_setup(const strut_study_file *file, const strut_study_v
 
 strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
                                strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, NULL, setup, error);
+  return make_setup(file, values, (others){0}, setup, error);
 }
 
 strut_status strut_study_setup_at(const strut_study_file *file, const strut_study_value *values,
                                   double value, strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, &value, setup, error);
+  return make_setup(file, values, (others){1, NULL, &value}, setup, error);
+}
+
+strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
+                              const strut_derived_by *by, size_t count, const double *numbers,
+                              strut_setup *setup, strut_error *error) {
+  return make_setup(file, values, (others){count, by, numbers}, setup, error);
 }
 
 /* Appends "frequency = 10 Hz" or "start = I" to a text. */
@@ -564,7 +575,8 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
   strut_setup setup;
   char text[300] = "";
   size_t used = 0;
-  strut_status status = read_point(file, values, followed, &file->model_diagnostics, &setup);
+  const others more = {followed ? 1 : 0, NULL, followed};
+  strut_status status = read_point(file, values, more, &file->model_diagnostics, &setup);
   strut_status started = STRUT_OK;
   if (status == STRUT_OK && followed) started = check_starts(file, &setup.scene);
   if (status == STRUT_OK) strut_setup_free(&setup);

@@ -73,6 +73,11 @@ STRUT_API strut_status strut_study_setup(const strut_study_file *file,
 STRUT_API strut_status strut_study_setup_at(const strut_study_file *file,
                                             const strut_study_value *values, double value,
                                             strut_setup *setup, strut_error *error);
+/** strut_study_setup where the parameters `by` have the values numbers (count) [SI]. */
+STRUT_API strut_status strut_study_vary(const strut_study_file *file,
+                                        const strut_study_value *values, const strut_derived_by *by,
+                                        size_t count, const double *numbers, strut_setup *setup,
+                                        strut_error *error);
 /** Like strut_study_setup, for one thread: all findings go to the messages, with the values of the axes. */
 STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
 /** The same for strut_study_setup_at. */

@@ -434,6 +434,7 @@ char *strut_study_identity(const strut_study_file *file) {
     put_number(&w, (double)(study->keep.bits[i] & UINT32_MAX));
   }
   for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
+  for (size_t i = 0; i < study->derivative_count; i++) put_word(&w, study->derivatives[i].name);
   put_number(&w, study->trajectories);
   put_number(&w, study->half_step);
   put_number(&w, study->check_accuracy);

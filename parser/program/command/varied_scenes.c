@@ -6,6 +6,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "parser/program/command/run_settings.h"
 
 const strut_parameter *strut_find_parameter(const strut_scene *scene, const char *name) {
   for (size_t i = 0; i < scene->parameter_count; i++)
@@ -89,14 +90,16 @@ static strut_status report_first(const strut_varied_scenes *scenes, const strut_
                     first->place.column, where, at, between, message);
 }
 
-strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
-                                      const strut_study_value *values, strut_setup *setup,
+strut_status strut_varied_scenes_vary(const strut_varied_scenes *scenes,
+                                      const strut_study_value *values, const strut_derived_by *by,
+                                      size_t more, const double *numbers, strut_setup *setup,
                                       strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  const size_t count = scenes->setting_count, fixed = count - scenes->varied;
-  strut_setting *settings = strut_allocate(count, sizeof *settings + STRUT_NUMBER_TEXT);
+  const size_t fixed = scenes->setting_count - scenes->varied;
+  size_t count = scenes->setting_count, most = count + more;
+  strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return strut_no_memory(error, "");
-  char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + count);
+  char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + most);
   if (count) memcpy(settings, scenes->settings, count * sizeof *settings);
   for (size_t i = fixed; i < count; i++) {
     const strut_study_value *value = &values[i - fixed];
@@ -104,6 +107,9 @@ strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
     settings[i].text = settings[i].known ? texts[i] : value->word;
     settings[i].value = value->number;
   }
+  for (size_t i = 0; i < more; i++)
+    strut_setting_put(scenes->source, by[i].name, numbers[i], texts[most - 1 - i], settings,
+                      &count);
   strut_status status = strut_scene_source_read(scenes->source, settings, count, scenes->purpose,
                                                 &diagnostics, setup);
   if (status == STRUT_BAD_SCENE)
@@ -115,6 +121,12 @@ strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
   return status;
 }
 
+strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
+                                      const strut_study_value *values, strut_setup *setup,
+                                      strut_error *error) {
+  return strut_varied_scenes_vary(scenes, values, NULL, 0, NULL, setup, error);
+}
+
 strut_status strut_varied_scenes_at(void *context, double value, strut_setup *setup,
                                     strut_error *error) {
   return strut_varied_scenes_read(context, &(strut_study_value){.number = value}, setup, error);
@@ -124,4 +136,43 @@ void strut_varied_scenes_free(strut_varied_scenes *scenes) {
   strut_scene_source_free(scenes->own);
   strut_release(scenes->settings);
   *scenes = (strut_varied_scenes){0};
+}
+
+/* A run whose derivatives are taken. */
+typedef struct varied_run {
+  const strut_varied_scenes *scenes;
+  strut_arguments arguments; /* without messages */
+} varied_run;
+
+static strut_status vary_run(void *context, const strut_study_value *values,
+                             const strut_derived_by *by, size_t count, const double *numbers,
+                             strut_setup *setup, strut_error *error) {
+  const varied_run *self = context;
+  strut_status status =
+      strut_varied_scenes_vary(self->scenes, values, by, count, numbers, setup, error);
+  if (status) return status;
+  status = strut_run_options_apply(&self->arguments, setup);
+  if (status) strut_setup_free(setup);
+  return status;
+}
+
+static strut_status setup_run(void *context, const strut_study_value *values, strut_setup *setup,
+                              strut_error *error) {
+  return vary_run(context, values, NULL, 0, NULL, setup, error);
+}
+
+strut_status strut_varied_scenes_derive(const strut_arguments *arguments,
+                                        strut_varied_scenes *scenes, const strut_setup *setup,
+                                        const strut_flag *interrupt, strut_summary *summary,
+                                        strut_error *error) {
+  varied_run self = {scenes, *arguments};
+  const strut_sweep_scenes made = {.setup = setup_run, .vary = vary_run, .context = &self};
+  const strut_sweep_options how = {.threads = (int)arguments->threads.value,
+                                   .interrupt = interrupt};
+  if (!setup->experiment.derivative_count) return STRUT_OK;
+  self.arguments.listener = NULL;
+  strut_status status = strut_varied_scenes_open(arguments, NULL, 0, scenes, NULL);
+  if (!status) status = strut_sweep_derive_run(&made, setup, &how, summary, error);
+  strut_varied_scenes_free(scenes);
+  return status;
 }

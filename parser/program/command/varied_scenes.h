@@ -6,6 +6,7 @@
 #define STRUT_PARSER_PROGRAM_COMMAND_VARIED_SCENES_H
 
 #include "engine/scene/study.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/program/command/arguments.h"
 
 /** Zero-initialise but for what stands before `own`. */
@@ -35,9 +36,22 @@ strut_status strut_varied_scenes_open(const strut_arguments *arguments, const ch
 strut_status strut_varied_scenes_read(const strut_varied_scenes *scenes,
                                       const strut_study_value *values, strut_setup *setup,
                                       strut_error *error);
+/** The same where more parameters have the values numbers (count) [SI]. */
+strut_status strut_varied_scenes_vary(const strut_varied_scenes *scenes,
+                                      const strut_study_value *values, const strut_derived_by *by,
+                                      size_t count, const double *numbers, strut_setup *setup,
+                                      strut_error *error);
 /** The same of a single parameter; `context` is the strut_varied_scenes. */
 strut_status strut_varied_scenes_at(void *context, double value, strut_setup *setup,
                                     strut_error *error);
+/**
+ * The derivatives of a run of the setup that is done, whose scenes these are with the options of `arguments`; opens
+ * and frees them. Fills those of the summary, where the experiment asks for some. As strut_sweep_derive_run.
+ */
+strut_status strut_varied_scenes_derive(const strut_arguments *arguments,
+                                        strut_varied_scenes *scenes, const strut_setup *setup,
+                                        const strut_flag *interrupt, strut_summary *summary,
+                                        strut_error *error);
 void strut_varied_scenes_free(strut_varied_scenes *scenes);
 
 /** The unit to print behind values of a dimension, "" where there is none. */

@@ -74,6 +74,12 @@ static strut_status setup_of(void *context, const strut_study_value *values, str
   return strut_study_setup(context, values, setup, error);
 }
 
+static strut_status vary(void *context, const strut_study_value *values, const strut_derived_by *by,
+                         size_t count, const double *numbers, strut_setup *setup,
+                         strut_error *error) {
+  return strut_study_vary(context, values, by, count, numbers, setup, error);
+}
+
 static strut_status apply_options(const void *context, strut_setup *setup) {
   return strut_run_options_apply(context, setup);
 }
@@ -148,7 +154,7 @@ static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error) {
   strut_study_file *file = &study->file;
-  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file};
+  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file, vary};
   strut_status status = strut_study_open(arguments->model, arguments->overrides,
                                          arguments->override_count, file, error);
   if (!status) status = adjust_scenes(arguments, file);

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Derivatives of runs and of statics by parameters: formulas, the crawler through its contacts, a contact that only just
+# happens, the ends of ranges; and the same bytes whatever the threads.
+#
+#   python3 run_derivatives_test.py STRUT
+import json
+import math
+
+from testing import check, copy_models, finish, read, run, sweep, write
+
+copy_models()
+
+
+def derivatives(model, *words):
+    """Of a run: (of, by) -> row."""
+    done = run("run", model, "--json", *words)
+    return {(row["of"], row["by"]): row for row in json.loads(done.stdout)["derivatives"]}
+
+
+def holds(row, wanted, relative, what):
+    """Is the derivative right within its own error, and that small?"""
+    good = row["value"] is not None and abs(row["value"] - wanted) <= row["error"] <= relative * abs(wanted)
+    check(good, f"{what}: {row}, expected {wanted}")
+
+
+def cell(row, of, by):
+    texts = [row[next(name for name in row if name.split(" ")[0] == f"{of}.d.{by}{end}")] for end in ("", ".error")]
+    return {"value": float(texts[0]) if texts[0] else None, "error": float(texts[1]) if texts[1] else None}
+
+
+# ---- a ball that falls, is in touch with a spring, and flies: one bounce in closed form ----
+
+BALL = """strut: 1
+parameters: {height: 100 mm, mass: 1 kg, stiffness: 1e4 N/m, unused: 1}
+gravity: [0, -9.81 m/s^2]
+nodes: {ball: {position: [0, height], mass: mass}}
+ground: {stiffness: stiffness}
+solver: {step: 0.1 ms}
+run:
+  duration: 0.25 s
+  measure:
+    derivatives: [height, stiffness]
+    quantities: {y: {of: ball.y, take: final}, lands: {of: ball.y, take: arrival, target: 0 m}}
+"""
+write("ball.yaml", BALL)
+g, h, w, end = 9.81, 0.1, 100.0, 0.25
+v = math.sqrt(2 * g * h)
+touch = 2 / w * (math.pi - math.atan(v * w / g))
+flight = end - v / g - touch
+by_speed = flight + (v - g * flight) * (-1 / g + 2 / g / (1 + (v * w / g) ** 2))
+by_w = (v - g * flight) * (touch / w + 2 / w * (v / g) / (1 + (v * w / g) ** 2))
+found = derivatives("ball.yaml")
+holds(found["y", "height"], by_speed * g / v, 1e-5, "height after a bounce by that before")
+holds(found["y", "stiffness"], by_w * w / 2 / 1e4, 1e-4, "height after a bounce by the stiffness of the ground")
+holds(found["lands", "height"], 0.5 * math.sqrt(2 / g / h), 1e-6, "time of arrival")
+check(derivatives("ball.yaml", "--threads", "1") == derivatives("ball.yaml", "--threads", "4"), "threads change bits")
+
+# ---- a mass that swings to the ground and only just touches it: its damper makes a kink ----
+
+write("graze.yaml", """strut: 1
+parameters: {start: 2 m, mass: 1 kg}
+nodes: {top: {position: [0, 3 m], fixed: both}, ball: {position: [0, start], mass: mass, fixed: x}}
+members: {spring: {kind: spring, nodes: [top, ball], stiffness: 40 N/m, rest_length: 2 m}}
+ground: {stiffness: 1e4 N/m, damping: 50 N s/m, nodes: [ball]}
+solver: {integrator: adaptive, tolerance: 1e-10, step: 10 ms}
+run: {duration: 0.8 s, measure: {derivatives: [start], quantities: {y: {of: ball.y, take: final}}}}
+""")
+check(derivatives("graze.yaml")["y", "start"]["verdict"] == "not differentiable here", "grazing is not noticed")
+before = derivatives("graze.yaml", "--set", "start=1.9 m")["y", "start"]
+holds(before, math.cos(math.sqrt(40.0) * 0.8), 1e-6, "without a touch")
+
+# ---- the crawler: 438 touchdowns and changes between stick and slip ----
+
+crawler = read("copied", "crawler", "crawler.yaml").decode().split("\nsolver:")[0]
+crawler = crawler.replace("law: karnopp", "law: coulomb").replace(", stick_velocity: 0.1 mm/s", "")
+write("crawler.yaml", crawler + """
+solver: {integrator: adaptive, tolerance: 1e-9, step: 1 ms}
+run: {duration: 0.5 s, measure: {derivatives: [friction], quantities: {x: {of: n1.x, take: final}}}}
+""")
+found = derivatives("crawler.yaml")["x", "friction"]
+holds(found, 0.045371, 5e-5, "the crawler's way by friction")
+check(abs(found["value"] - 0.045371) < 5e-7, f"five digits: {found}")
+
+# ---- the end of a range: friction of 0 is the least ----
+
+write("slide.yaml", """strut: 1
+parameters: {mu: 0}
+gravity: [0, -10 m/s^2]
+nodes: {block: {position: [0, 0], mass: 1 kg}}
+ground: {stiffness: 1e6 N/m, friction: {law: coulomb, mu: mu}}
+initial: {velocities: {block: [1 m/s, 0]}, settle: false}
+solver: {integrator: adaptive, step: 1 ms, tolerance: 1e-9}
+run: {duration: 0.1 s, measure: {derivatives: [mu], quantities: {x: {of: block.x, take: final}}}}
+""")
+found = derivatives("slide.yaml")["x", "mu"]
+check(found["value"] is not None and abs(found["value"] + 0.05) < 1e-3, f"one-sided derivative: {found}")
+
+# ---- statics: frequencies and the limit load of von Mises' truss ----
+
+write("spring.yaml", """strut: 1
+parameters: {stiffness: 100 N/m, mass: 1 kg}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: mass}}
+members: {s: {kind: spring, nodes: [a, b], stiffness: stiffness, rest_length: 1 m}}
+""")
+for row in sweep("modes", "model: spring.yaml\ncompute: modes\nkeep: [frequencies, at]\nlowest: 1\n"
+                 "axes: [{stiffness: [100 N/m, 400 N/m]}]\nderivatives: [stiffness, mass]\n"):
+    stiffness = float(row["stiffness [N/m]"])
+    frequency = math.sqrt(stiffness) / 2 / math.pi
+    holds(cell(row, "frequency_1", "stiffness"), frequency / 2 / stiffness, 1e-6, "frequency by stiffness")
+    holds(cell(row, "frequency_1", "mass"), -frequency / 2, 1e-6, "frequency by mass")
+
+row, = sweep("limit", "model: copied/basics/von-mises-truss.yaml\ncompute: path\nkeep: [limit_factor, end]\n"
+             "set: {load: 1 N}\naxes: [{span: [1 m]}]\npath: {until: 20}\nderivatives: [height, stiffness]\n")
+rest = math.hypot(1, 0.3)
+length = rest ** (1 / 3)
+apex = math.sqrt(length ** 2 - 1)
+holds(cell(row, "limit_factor", "height"), 2000 * apex / length * 0.3 / rest, 1e-5, "limit load by height")
+holds(cell(row, "limit_factor", "stiffness"), 2 * apex * (rest / length - 1), 1e-5, "limit load by stiffness")
+finish()
