@@ -99,17 +99,25 @@ static void differentiate(solver *self, size_t i, double *derivative, double sid
   side[1] = high - at;
 }
 
+/* How near to a bound parameter i is on it. */
+static double close_to(const solver *self, size_t i) {
+  double near = fmin(CLOSE * self->problem->near, 0.5 * self->problem->step);
+  return near * fmax(fabs(self->at[i]), 1.0);
+}
+
 /* Residuals get smaller where parameter i cannot go: out of the box, or to where there are none. */
 static bool is_stopped(solver *self, size_t i, const double *derivative, const double side[2]) {
-  double at = self->at[i], slope = 0.0;
-  double near = fmin(CLOSE * self->problem->near, 0.5 * self->problem->step) * fmax(fabs(at), 1.0);
+  double at = self->at[i], near = close_to(self, i), slope = 0.0;
   for (size_t j = 0; j < self->problem->count; j++) slope += derivative[j] * self->known[j];
   if (slope == 0.0 || side[slope < 0.0] > near) return false;
   if (at - self->problem->low[i] > near && self->problem->high[i] - at > near) self->lost = true;
   return true;
 }
 
-/* A stopped parameter moves for no residual: it is drawn to its bound, while others go their way. */
+/*
+ * A parameter outside, where residuals do not depend on it, is drawn to its bound; so is one that is stopped, while
+ * others go their way.
+ */
 static int find_jacobian(const gsl_vector *x, void *context, gsl_matrix *jacobian) {
   solver *self = context;
   size_t count = self->problem->count;
@@ -119,14 +127,16 @@ static int find_jacobian(const gsl_vector *x, void *context, gsl_matrix *jacobia
   enter_box(self, x, outside);
   for (size_t i = 0, k = 0; i < self->problem->parameters; i++) {
     if (is_held(self, i)) continue;
-    differentiate(self, i, self->derivative, side);
-    bool stopped = is_stopped(self, i, self->derivative, side);
-    self->changed = self->changed || stopped != self->stopped[k];
-    self->stopped[k] = stopped;
+    bool stopped = fabs(outside[k]) > close_to(self, i);
+    if (!stopped) {
+      differentiate(self, i, self->derivative, side);
+      stopped = is_stopped(self, i, self->derivative, side);
+    }
     for (size_t j = 0; j < count && !stopped; j++)
       gsl_matrix_set(jacobian, j, k, self->derivative[j]);
-    if (stopped || outside[k] != 0.0) gsl_matrix_set(jacobian, count + k, k, self->drawn);
-    k++;
+    if (stopped) gsl_matrix_set(jacobian, count + k, k, self->drawn);
+    self->changed = self->changed || stopped != self->stopped[k];
+    self->stopped[k++] = stopped;
   }
   return GSL_SUCCESS;
 }
@@ -172,7 +182,6 @@ static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *sol
                                      .p = self->free,
                                      .params = self};
   settings.solver = gsl_multifit_nlinear_solver_svd;
-  if (self->problem->exact) settings.trs = gsl_multifit_nlinear_trs_lmaccel;
   self->drawn = DRAWN * sqrt(solution->sum);
   gsl_multifit_nlinear_workspace *workspace =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, system.n, system.p);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Nonlinear least squares: the parameters with the least sum of squared residuals, by GSL's trust-region method
- * (Levenberg and Marquardt, with geodesic acceleration) on central differences; and what the residuals say of them.
+ * (Levenberg and Marquardt) on central differences; and what the residuals say of them.
  *
  * Parameters are scaled by the caller so that a change of 1 is large, and lie in a box. Outside of it residuals are
  * those of the nearest point of the box, and further ones draw back to it. A parameter that would leave the box, or go
@@ -21,9 +21,8 @@ typedef struct strut_least_squares {
   const double *low, *high; /* (parameters) the box; infinite where there is no bound */
   double step;              /* of differences, relative to a parameter where that is above 1 */
   double near;              /* changes of parameters at which the method ends, relative likewise */
-  bool exact;   /* residuals are known to rounding: second differences along a step are of use */
-  int32_t held; /* this parameter stays where it is; -1: none */
-  int32_t most_steps; /* of the method */
+  int32_t held;             /* this parameter stays where it is; -1: none */
+  int32_t most_steps;       /* of the method */
   /**
    * Fills the residuals (count) at the parameters; false where there are none: the point counts as worse than
    * others.
