@@ -31,7 +31,8 @@
   X(SBPLX, "sbplx")                                                                                \
   X(NELDERMEAD, "neldermead")                                                                      \
   X(CMA, "cma")                                                                                    \
-  X(NSGA2, "nsga2")
+  X(NSGA2, "nsga2")                                                                                \
+  X(BFGS, "bfgs")
 
 typedef enum strut_search_method {
 #define STRUT_SEARCH_METHOD_ENUM(name, word) STRUT_SEARCH_##name,
