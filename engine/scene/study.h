@@ -38,7 +38,8 @@ typedef struct strut_study_value {
   X(SBPLX, "sbplx")                                                                                \
   X(NELDERMEAD, "neldermead")                                                                      \
   X(CMA, "cma")                                                                                    \
-  X(NSGA2, "nsga2")
+  X(NSGA2, "nsga2")                                                                                \
+  X(BFGS, "bfgs")
 
 typedef enum strut_search_method {
 #define STRUT_SEARCH_METHOD_ENUM(name, word) STRUT_SEARCH_##name,

@@ -6,7 +6,7 @@
 import json
 import math
 
-from testing import check, copy_models, finish, read, run, sweep, write
+from testing import check, copy_models, finish, read, rows, run, sweep, write
 
 copy_models()
 
@@ -116,4 +116,16 @@ length = rest ** (1 / 3)
 apex = math.sqrt(length ** 2 - 1)
 holds(cell(row, "limit_factor", "height"), 2000 * apex / length * 0.3 / rest, 1e-5, "limit load by height")
 holds(cell(row, "limit_factor", "stiffness"), 2 * apex * (rest / length - 1), 1e-5, "limit load by stiffness")
+
+# ---- a search that follows them: from the middle of the box to the one minimum in a few points ----
+
+SEARCH = ("model: spring.yaml\ncompute: modes\nkeep: [frequencies]\nlowest: 1\n"
+          'search: {minimise: "(frequency_1/(2 Hz) - 1)^2 + (mass/(1 kg) - 0.7)^2", evaluations: 40, method: bfgs,\n'
+          "  over: {stiffness: {from: 10 N/m, to: 1000 N/m, scale: log}, mass: {from: 0.5 kg, to: 2 kg}}}\n")
+sweep("follows", SEARCH)
+best = min(float(row["objective"]) for row in rows("follows", "table.csv"))
+check(best < 1e-15, f"bfgs: {best}")
+sweep("bound", SEARCH.replace("from: 0.5 kg", "from: 0.9 kg"))
+best = min(float(row["objective"]) for row in rows("bound", "table.csv"))
+check(abs(best - 0.04) < 1e-12, f"bfgs at a bound: {best}")
 finish()

@@ -232,6 +232,9 @@ static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   if (!job->status)
     job->status = fit_row(self, &one, kind_of(self->layout->fit, point), parameters, &solution);
   if (!job->status) job->status = one.status, job->error = one.error;
+  if (!job->status && solution.end == STRUT_FIT_FAILED)
+    snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
+             (int)sizeof job->cells.message - 1, one.error.message);
   if (!job->status) fill_row(self, job, point, strut_fit_used(&one), parameters, &solution);
   strut_fit_case_free(&one);
 }

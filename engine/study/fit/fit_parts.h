@@ -68,7 +68,8 @@ typedef struct strut_fit_case {
   bool known;
   double *buffer;      /* (3 count + 3) */
   strut_status status; /* of what must stop all */
-  strut_error error;
+  strut_error
+      error; /* likewise, or why there were no residuals at the latest point that has none */
   strut_arena arena;
 } strut_fit_case;
 

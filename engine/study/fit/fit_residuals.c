@@ -88,7 +88,8 @@ static bool stops(strut_status status) {
 
 /* Notes what must stop everything; else the point just has no residuals. */
 static bool settle_status(strut_fit_case *one, strut_status status, const strut_error *error) {
-  if (stops(status)) one->status = status, one->error = *error;
+  if (stops(status)) one->status = status;
+  if (status) one->error = *error;
   return status == STRUT_OK;
 }
 
@@ -212,7 +213,9 @@ static strut_status predict_motion(const prediction *self, strut_setup *setup,
       .without_balance = true};
   strut_summary summary = {0};
   double end = time[samples.count - 1];
-  if (!choose_quantities(self->match, setup) || !(end > 0.0)) return STRUT_BAD_SCENE;
+  if (!choose_quantities(self->match, setup) || !(end > 0.0))
+    return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s' has no time after the start",
+                      self->match->name);
   prepare_run(model, end, &setup->experiment);
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);
@@ -231,6 +234,10 @@ static strut_status predict_curve(const prediction *self, strut_setup *setup,
   for (size_t i = 0; i < self->match->count && !status; i++)
     self->one->predicted[0][source[0].first + i] = strut_goals_force_at(&path, self->match->at[i]);
   strut_path_free(&path);
+  for (size_t i = 0; i < self->match->count && !status; i++)
+    if (isnan(self->one->predicted[0][source[0].first + i]))
+      status =
+          strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", self->match->at[i]);
   return status;
 }
 
@@ -519,6 +526,10 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     int64_t column =
         match->kind == STRUT_FIT_TABLE ? find_number(&layout->tables[m], match->series[s].of) : 0;
     if (column < 0) return refuse(match, s, "is no column of numbers of that computation", error);
+    bool follows = match->kind != STRUT_FIT_CURVE || setup->experiment.stage_count ||
+                   (layout->plan->study->path.over &&
+                    strut_coordinate_find(&setup->scene, layout->plan->study->path.over) >= 0);
+    if (!follows) return refuse(match, s, "needs a 'path' over a coordinate, such as b.y", error);
     const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
     if (unit && strcmp(unit, match->series[s].unit) != 0)
       return refuse(match, s, "has another unit than its numbers", error);

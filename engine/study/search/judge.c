@@ -51,6 +51,9 @@ strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error
   return STRUT_OK;
 }
 
+/* A way along derivatives, in widths of the box. */
+static const double NEARBY = 1e-6;
+
 static double evaluate(const strut_search_formula *formula, const double *numbers) {
   size_t index[MOST];
   double stack[MOST];
@@ -159,6 +162,41 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
     if (worse || isnan(point->objective)) point->objective = goal, point->worst = first + i;
   }
   if (point->failed || point->valueless) point->objective = (double)NAN;
+  return STRUT_OK;
+}
+
+/* The goal where all numbers of a row have gone on along their derivatives by a variable. */
+static double goal_along(const strut_sweep_plan *plan, const double *numbers, size_t variable,
+                         double way, double *moved) {
+  const strut_study_search *search = plan->study->search;
+  memcpy(moved, numbers, plan->column_count * sizeof *moved);
+  moved[rank_of(plan, search->column + variable)] += way;
+  for (size_t j = 0; j < plan->derived_count; j++) {
+    size_t at = rank_of(plan, plan->first_derivative) + 2 * (j * plan->by_count + variable);
+    moved[rank_of(plan, plan->derived[j])] += way * numbers[at];
+  }
+  return evaluate(&search->goal, moved);
+}
+
+strut_status strut_search_gradient(const strut_sweep_plan *plan, strut_slots *slots,
+                                   const strut_search_point *point, double *gradient,
+                                   strut_error *error) {
+  const strut_study_search *search = plan->study->search;
+  strut_result_slot slot;
+  double *numbers = strut_allocate(2 * plan->column_count, sizeof *numbers);
+  bool there = strut_slots_get(slots, point->worst, &slot) && !slot.status;
+  if (!numbers) return strut_no_memory(error, "");
+  size_t count = rank_of(plan, plan->column_count - 1) + 1; /* the last one is a number */
+  if (there) memcpy(numbers, slot.numbers, count * sizeof *numbers);
+  for (size_t i = 0; i < search->variable_count; i++) {
+    const strut_search_variable *variable = &search->variables[i];
+    double range = variable->to - variable->from, way = NEARBY * range;
+    double forth = goal_along(plan, numbers, i, way, numbers + plan->column_count);
+    double back = goal_along(plan, numbers, i, -way, numbers + plan->column_count);
+    if (variable->logarithmic) range = point->values[i].number * log(variable->to / variable->from);
+    gradient[i] = there ? (forth - back) / (2.0 * way) * range : (double)NAN;
+  }
+  strut_release(numbers);
   return STRUT_OK;
 }
 

@@ -34,7 +34,8 @@ typedef struct nlopt_search {
   bool ended;          /* the asker wants no more */
   double *best, least; /* (dimension) and its value */
   double *last, value; /* the latest point and its value, for the conditions */
-  double *broken;      /* (conditions) there */
+  double *answer; /* (1 + dimension) the value with its derivatives, of methods that follow them */
+  double *broken; /* (conditions) there */
   double *spread,
       *spread_values; /* (spread_count, dimension) evenly spread points; (spread_count) */
   size_t spread_count;
@@ -51,6 +52,7 @@ static const struct method_row {
     [STRUT_SEARCH_BOBYQA] = {NLOPT_LN_BOBYQA, false, false},
     [STRUT_SEARCH_SBPLX] = {NLOPT_LN_SBPLX, false, false},
     [STRUT_SEARCH_NELDERMEAD] = {NLOPT_LN_NELDERMEAD, false, false},
+    [STRUT_SEARCH_BFGS] = {NLOPT_LD_SLSQP, false, false},
     [STRUT_SEARCH_MULTISTART] = {NLOPT_LN_SBPLX, false, false},
 };
 
@@ -70,12 +72,12 @@ static double look_at(nlopt_search *self, const double *point) {
     if (self->opt) nlopt_force_stop(self->opt);
     return self->value;
   }
-  double value = self->value;
-  if (!self->asker->ask(self->asker->context, 1, point, &value, self->broken)) {
+  if (!self->asker->ask(self->asker->context, 1, point, self->answer, self->broken)) {
     self->ended = true;
     if (self->opt) nlopt_force_stop(self->opt);
     return self->value;
   }
+  double value = self->answer[0];
   self->asked++;
   memcpy(self->last, point, n * sizeof *point);
   self->value = value;
@@ -89,8 +91,15 @@ static double look_at(nlopt_search *self, const double *point) {
 }
 
 static double objective(unsigned n, const double *point, double *gradient, void *context) {
-  (void)n, (void)gradient;
-  return look_at(context, point);
+  const nlopt_search *self = context;
+  double value = look_at(context, point);
+  bool flat = true; /* no way down is known */
+  for (unsigned i = 0; gradient && i < n; i++) {
+    gradient[i] = isfinite(self->answer[1 + i]) ? self->answer[1 + i] : 0.0;
+    flat = flat && gradient[i] == 0.0;
+  }
+  if (gradient && flat) nlopt_force_stop(self->opt);
+  return value;
 }
 
 static void conditions(unsigned m, double *result, unsigned n, const double *point,
@@ -258,11 +267,12 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task,
                                     const strut_search_asker *asker) {
   size_t n = task->dimension;
   nlopt_search s = {.task = task, .asker = asker, .least = HUGE_VAL};
-  double *block = strut_allocate(2 * n + task->conditions + 1, sizeof *block);
+  double *block = strut_allocate(3 * n + task->conditions + 2, sizeof *block);
   if (!block) return false;
   s.best = block;
   s.last = block + n;
-  s.broken = block + 2 * n;
+  s.answer = block + 2 * n;
+  s.broken = s.answer + n + 1;
   memcpy(s.best, task->start, n * sizeof *block);
   bool two = task->method == STRUT_SEARCH_CRS2, many = task->method == STRUT_SEARCH_MULTISTART;
   bool fine = true;

@@ -48,6 +48,7 @@ bool strut_search_optimise(const strut_search_task *task, const strut_search_ask
     case STRUT_SEARCH_BOBYQA:
     case STRUT_SEARCH_SBPLX:
     case STRUT_SEARCH_NELDERMEAD:
+    case STRUT_SEARCH_BFGS:
     case STRUT_SEARCH_MULTISTART: return strut_search_optimise_by_nlopt(task, asker);
     case STRUT_SEARCH_METHOD_COUNT: break;
   }

@@ -42,8 +42,8 @@ typedef struct strut_search_asker {
   void *context;
   /**
    * The values of `count` points (count, dimension), the smaller the better and all of them finite, two of
-   * each point (count, 2) where the method is for two goals, and of
-   * each point how far it breaks each condition (count, conditions): at most 0 where it holds. False: the
+   * each point (count, 2) where the method is for two goals, and each with its derivatives by the numbers of the
+   * point (count, 1 + dimension) where it follows them, NAN: there is none; and of each point how far it breaks each condition (count, conditions): at most 0 where it holds. False: the
    * optimiser must end.
    */
   bool (*ask)(void *context, size_t count, const double *points, double *values, double *broken);

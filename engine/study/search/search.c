@@ -15,6 +15,7 @@ enum { MOST_ACTIVE = 64, MOST_REPEATS = 5000 };
 typedef struct known {
   strut_study_value *values; /* (variables) */
   double *broken;            /* (conditions) */
+  double *gradient;          /* (variables) in the box, of a method that follows it; else NULL */
   strut_search_point point;
   int32_t same_hash; /* the one before it with the same hash, or -1 */
 } known;
@@ -137,7 +138,10 @@ static int32_t find_point(const conductor *self, search *s, const strut_study_va
   known *k = &s->list[s->count];
   k->values = strut_arena_allocate(&s->arena, self->layout.variables, sizeof *k->values);
   k->broken = strut_arena_allocate(&s->arena, self->layout.conditions + 1, sizeof *k->broken);
-  if (!k->values || !k->broken) return -2;
+  bool follows = self->what->method == STRUT_SEARCH_BFGS;
+  k->gradient =
+      follows ? strut_arena_allocate(&s->arena, self->layout.variables, sizeof(double)) : NULL;
+  if (!k->values || !k->broken || (follows && !k->gradient)) return -2;
   memcpy(k->values, values, self->layout.variables * sizeof *values);
   k->same_hash = s->heads[hash];
   return s->heads[hash] = s->count++;
@@ -205,6 +209,9 @@ static strut_status judge_point(conductor *self, search *s, int32_t i) {
   k->point.values = k->values;
   strut_status status = strut_search_judge(self->plan, self->batch.points.slots, outcome->outer,
                                            row, &k->point, k->broken, self->batch.points.error);
+  if (!status && k->gradient)
+    status = strut_search_gradient(self->plan, self->batch.points.slots, &k->point, k->gradient,
+                                   self->batch.points.error);
   if (status) return status;
   outcome->evaluations++;
   outcome->failed += k->point.failed;
@@ -288,6 +295,11 @@ static strut_status answer_question(conductor *self, search *s, int64_t all) {
     if (self->result->front_count) {
       question->values[2 * i] = as_asked(self, s, k, false);
       question->values[2 * i + 1] = as_asked(self, s, k, true);
+    } else if (k->gradient) {
+      double *to = question->values + i * (1 + self->layout.variables);
+      double unit = self->what->maximise ? -s->scale : s->scale;
+      to[0] = as_asked(self, s, k, false);
+      for (size_t v = 0; v < self->layout.variables; v++) to[1 + v] = k->gradient[v] / unit;
     } else {
       question->values[i] = as_asked(self, s, k, false);
     }

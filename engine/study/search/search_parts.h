@@ -56,6 +56,11 @@ strut_status strut_search_judge(const strut_sweep_plan *plan, strut_slots *slots
                                 int64_t row, strut_search_point *point, double *broken,
                                 strut_error *error);
 
+/** Derivatives (variables) of the goal by numbers of the box, at a point whose row has those of its columns. */
+strut_status strut_search_gradient(const strut_sweep_plan *plan, strut_slots *slots,
+                                   const strut_search_point *point, double *gradient,
+                                   strut_error *error);
+
 /* judge.c */
 
 /** Takes a feasible point into the front, unless another is as good in both goals. False: no memory. */

@@ -47,7 +47,7 @@ typedef struct strut_sweep_plan {
   size_t contact_count, node_count, member_count;
   const char **contacts, **nodes, **members;
   bool smooth; /* do the columns that are added follow parameters smoothly? */
-  size_t by_count, derived_count;
+  size_t by_count, derived_count, first_derivative; /* column of the first derivative, if any */
   strut_derived_by *by; /* (by_count) parameters that the derived numbers are differentiated by */
   size_t *derived;      /* (derived_count) smooth columns among those that are kept */
   bool *names_member;   /* (quantity_count) a word beside it: the member of the largest force */

@@ -60,6 +60,7 @@ strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_
   if (!plan->by_count) return STRUT_OK;
   plan->by = strut_arena_allocate(&plan->arena, plan->by_count, sizeof *plan->by);
   bool fine = plan->by != NULL;
+  plan->first_derivative = plan->column_count;
   for (size_t i = 0; i < plan->by_count && fine; i++) {
     if (!find_parameter(&setup->scene, from[i].name))
       return strut_fail(error, STRUT_USAGE, "derivatives: the model has no parameter '%.60s'",

@@ -266,6 +266,28 @@ static void read_conditions(strut_study_reader *reader, const strut_slot *slot,
   }
 }
 
+/* A method that follows derivatives takes those by its variables. */
+static void choose_derivatives(strut_study_reader *reader, strut_fields *fields,
+                               const strut_study_search *search) {
+  strut_study *study = &reader->file->study;
+  const strut_place place = strut_slot_of(fields, STRUT_KEY_SEARCH_METHOD)->value->place;
+  bool smooth = !search->condition_count && !search->scenario_axes;
+  study->derivative_count = 0;
+  study->derivatives = strut_reader_allocate(reader->reader, &reader->file->arena,
+                                             search->variable_count, sizeof *study->derivatives);
+  for (size_t i = 0; i < search->variable_count && study->derivatives; i++) {
+    const strut_search_variable *variable = &search->variables[i];
+    smooth = smooth && !variable->integer && !variable->choice_count;
+    study->derivatives[study->derivative_count++] =
+        (strut_derived_by){variable->name, variable->unit};
+  }
+  if (!smooth)
+    strut_report_error(
+        reader->reader, place,
+        "'bfgs' follows derivatives by ranges of numbers, without conditions, choices, "
+        "whole numbers and 'worst_over'; give another method");
+}
+
 /* Keys of a study that a search has no use for. */
 static void refuse_others(strut_study_reader *reader, const strut_slot *slot) {
   const strut_study *study = &reader->file->study;
@@ -305,6 +327,7 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   read_scenarios(reader, strut_slot_of(&fields, STRUT_KEY_SEARCH_WORST_OVER), search);
   strut_study_read_variables(reader, over, "the search", STRUT_SEARCH_MOST_VARIABLES,
                              &search->variables, &search->variable_count, &search->column);
+  if (search->method == STRUT_SEARCH_BFGS) choose_derivatives(reader, &fields, search);
   study->search = search;
 }
 
