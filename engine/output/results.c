@@ -344,69 +344,43 @@ strut_status strut_ownership_claim_path(const char *path, const char *part, stru
 
 /* ---- measured data ---- */
 
-static strut_status copy_stream(FILE *from, const char *path, strut_error *error) {
-  char bytes[1 << 16];
-  strut_file to = {.stream = NULL};
-  strut_status status = strut_file_open_path(&to, path, error);
-  for (size_t got = 1; got > 0 && status == STRUT_OK;) {
-    got = fread(bytes, 1, sizeof bytes, from);
-    if (fwrite(bytes, 1, got, to.stream) < got) status = strut_file_trouble(&to, error);
-  }
-  if (status == STRUT_OK && ferror(from)) status = trouble(error, path, EIO);
-  if (status == STRUT_OK) return strut_file_commit(&to, error);
-  strut_file_abandon(&to);
-  return status;
-}
+enum { MISSING, SAME, DIFFERENT };
 
-/* Is there no such file, or one with the same bytes? */
-static bool may_stand(FILE *from, const char *path) {
+static int compare_file(const char *path, const char *text) {
   FILE *there = fopen(path, "rb");
-  bool same = true;
-  for (int a = 0, b = 0; there && same && a != EOF;) a = getc(from), b = getc(there), same = a == b;
-  if (there) fclose(there);
-  rewind(from);
-  return same;
+  int c = there ? getc(there) : EOF;
+  for (; there && c == (unsigned char)*text && *text; text++) c = getc(there);
+  if (!there) return MISSING;
+  fclose(there);
+  return c == EOF && !*text ? SAME : DIFFERENT;
 }
 
-static strut_status copy_data(const strut_data_table *table, const char *directory,
-                              strut_arena *arena, strut_error *error) {
-  const char *slash = strrchr(table->naming, '/');
-  int folder = slash ? (int)(slash - table->naming) + 1 : 0;
-  const char *source = strut_arena_format(arena, "%.*s%s", folder, table->naming, table->file);
-  char *target = strut_arena_format(arena, "%s/%s", directory, table->file);
-  struct stat from, to;
-  if (!source || !target) return strut_no_memory(error, "");
-  if (stat(source, &from) == 0 && stat(target, &to) == 0 && from.st_dev == to.st_dev &&
-      from.st_ino == to.st_ino)
-    return STRUT_OK;
-  for (size_t i = 0; run_names[i]; i++)
-    if (strcmp(run_names[i], table->file) == 0)
-      return strut_fail(error, STRUT_USAGE,
-                        "the data '%s' are called as a file of results is, and cannot be kept "
-                        "beside them: give the file another name",
-                        source);
-  char *end = strrchr(target, '/');
+/* `path`, in an arena, is that of the copy; its folder is made. */
+static strut_status copy_data(const strut_data_table *table, char *path, strut_error *error) {
+  int found = compare_file(path, table->text);
+  bool taken = found == DIFFERENT;
+  for (size_t i = 0; run_names[i]; i++) taken = taken || strcmp(run_names[i], table->file) == 0;
+  if (taken)
+    return strut_fail(error, STRUT_USAGE,
+                      "the copy of the data '%s' that is kept with the results would overwrite "
+                      "'%s': remove that, or give another directory",
+                      table->path, path);
+  if (found == SAME) return STRUT_OK;
+  char *end = strrchr(path, '/');
   *end = '\0';
-  strut_status status = strut_directory_create(target, error);
+  strut_status status = strut_directory_create(path, error);
   *end = '/';
-  FILE *stream = status == STRUT_OK ? fopen(source, "rb") : NULL;
-  if (status == STRUT_OK && !stream) status = trouble(error, target, errno);
-  if (stream && !may_stand(stream, target))
-    status = strut_fail(error, STRUT_USAGE,
-                        "'%s' is another file than '%s', whose copy is kept with the results: "
-                        "remove it, or give another directory",
-                        target, source);
-  if (stream && status == STRUT_OK) status = copy_stream(stream, target, error);
-  if (stream) fclose(stream);
-  return status;
+  return status ? status : strut_file_write_path(path, table->text, error);
 }
 
 strut_status strut_data_copy(const strut_data_table *tables, size_t count, const char *directory,
                              strut_error *error) {
   strut_arena arena = {0};
   strut_status status = STRUT_OK;
-  for (size_t i = 0; i < count && status == STRUT_OK; i++)
-    status = copy_data(&tables[i], directory, &arena, error);
+  for (size_t i = 0; i < count && status == STRUT_OK; i++) {
+    char *path = strut_arena_format(&arena, "%s/%s", directory, tables[i].file);
+    status = path ? copy_data(&tables[i], path, error) : strut_no_memory(error, "");
+  }
   strut_arena_free(&arena);
   return status;
 }

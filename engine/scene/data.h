@@ -24,17 +24,16 @@ typedef struct strut_data_column {
   size_t gap_count;          /* of the values */
   double least, most;        /* of the values; NAN where all are gaps */
   size_t flaw;               /* without values: the row of the cell that is no number */
-  bool doubled;              /* an earlier column of the table has this name */
 } strut_data_column;
 
 typedef struct strut_data_table {
   const char *name, *file; /* file: as the text names it */
   size_t row_count, column_count;
   const strut_data_column *columns;
-  int32_t time;       /* column of the time: the first with such a unit; -1: none */
-  const char *naming; /* path of the text that names the file */
+  int32_t time;            /* column of the time: the first with such a unit; -1: none */
+  const char *path, *text; /* of the file, as messages name it; its content */
   /* as given, so that they can be written again */
-  int32_t header, skip;   /* lines, -1: as the file shows; rows below them that are left out */
+  int32_t header, skip;   /* lines, 0: as the file shows; rows below them that are left out */
   uint32_t flip;          /* 1 x, 2 y, 3 both */
   double scale;           /* of coordinates */
   const char *scale_unit; /* "m": for each unit of coordinates without one; NULL: a factor */
@@ -47,7 +46,7 @@ typedef struct strut_data_table {
 
 /** Defaults of what is given. */
 #define STRUT_DATA_USUAL                                                                           \
-  { .name = "", .file = "", .weights = "", .header = -1, .scale = 1.0, .time = -1 }
+  { .name = "", .file = "", .weights = "", .scale = 1.0, .time = -1 }
 
 /**
  * The column that "TABLE.COLUMN" names among `count` tables, or NULL; *table, unless NULL, is the table, also

@@ -8,10 +8,10 @@
 
 printf 't [s],x [mm],y [mm]\n0,1,-2\n0.5,1.5,\n1,2.25,-3\n' >strut.csv
 printf '\357\273\277"t";"x";"y"\r\ns;mm;mm\r\n0,0;1,0;-2,0\r\n0,5;1,5;\r\n1,0;2,25;-3,0\r\n' >machine.csv
-printf 'Machine;4711\n\nt (s);x (mm);y (mm);\n0;1;-2;\n,5;1,5;;\n1.;2,25;-3;\n' >header.csv
-printf 'mass_A\nt\tx\ty\n0\t0.001\t-0.002\n0.5\t.0015\tnan\n1\t2.25e-3\t-0.003\n' >tracker.tsv
+printf 'Machine;4711\n\nt (s);x (mm);y (mm);\n0;1;-2;\n0,5;1,5;;\n1,0;2,25;-3;\n' >header.csv
+printf 'mass_A\nt\tx\ty\n0\t0.001\t-0.002\n0.5\t0.0015\tnan\n1.0\t2.25e-3\t-0.003\n' >tracker.tsv
 printf '# of an array\n# t, x, y\n0,10,20\n0.5,15,\n1,22.5,30\n' >pixels.csv
-printf 'scorer,N,N,N\nbodyparts,p,p,p\ncoords,x,y,likelihood\n0,10,20,1\n1,15,,0.5\n2,22.5,30,1\n' >film.csv
+printf 'scorer,N,N,N,N,N,N\nbodyparts,p,p,p,q,q,q\ncoords,x,y,likelihood,x,y,likelihood\n0,10,20,1,1,1,1\n1,15,,0.5,1,1,1\n2,22.5,30,1,1,1,1\n' >film.csv
 printf 'Frame,p,,q,\n,x,y,x,y\n0,10,20,1,1\n1,15,,1,1\n2,22.5,30,1,1\n' >markers.csv
 cat >forms.yaml <<END
 strut: 1
@@ -21,8 +21,8 @@ data:
   header: {file: header.csv, header: 3}
   tracker: {file: tracker.tsv, units: {t: s, x: m, y: m}}
   pixels: {file: pixels.csv, header: 2, units: {t: s}, scale: 0.1 mm, flip: y}
-  film: {file: film.csv, units: {frame: 1/(2 Hz)}, scale: 0.1 mm, flip: y, weights: likelihood}
-  turned: {file: film.csv, units: {frame: 1/(2 Hz)}, scale: 0.1 mm, flip: x, rotate: 180 deg, shift: [0, 1 mm], skip: 1}
+  film: {file: film.csv, units: {coords: 1/(2 Hz)}, scale: 0.1 mm, flip: y, weights: likelihood}
+  turned: {file: film.csv, units: {coords: 1/(2 Hz)}, scale: 0.1 mm, flip: x, rotate: 180 deg, shift: [0, 1 mm], skip: 1}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
 members: {m: {kind: spring, nodes: [a, b], stiffness: 1 N/m}}
 END
@@ -32,7 +32,7 @@ for form in strut machine header tracker pixels; do
   near ".data.$form.columns | [.t.least, .t.most, .x.least, .x.most, .y.least, .y.most, .y.gaps]" \
     '[0, 1, 0.001, 0.00225, -0.003, -0.002, 1]' 1e-18
 done
-near '.data.film.columns | [.frame.most, ."p.x".most, ."p.y".least, ."p.likelihood".least]' '[1, 0.00225, -0.003, 0.5]' 1e-15
+near '.data.film.columns | [.coords.most, ."p.x".most, ."p.y".least, ."p.likelihood".least]' '[1, 0.00225, -0.003, 0.5]' 1e-15
 near '.data.turned | [.rows, (.columns | ."p.x".least, ."p.y".least)]' '[2, 0.00225, -0.002]' 1e-15 # a gap in y is one in x, too
 edit 's/film.csv, units.*likelihood/markers.csv, header: 2, scale: 0.1 mm, flip: y/' forms.yaml expect 0 check --json
 near '.data.film.columns | [."p.x".most, ."p.y".least, ."q.x".most]' '[0.00225, -0.003, 0.0001]' 1e-15
@@ -69,7 +69,7 @@ for scene in lines spline; do
   same kept-$scene/nodes.csv again-$scene/nodes.csv
 done
 echo other >again-lines/sine.csv
-refuses 1 "is another file than" run lines.yaml -o again-lines
+refuses 1 "would overwrite" run lines.yaml -o again-lines
 writes_back spline.yaml
 
 # A tensile test: loading and unloading 2 and 1.6 N/mm; the law is their mean, and is said to be.
@@ -124,7 +124,7 @@ for bytes in '' '\n' ',' '"' '"\n"' ',,,\n,,\n' 't [s],u [mm]' 't [s],u [mm]\n' 
   'a\0b\n1,2\n' '#\n#\n' 't [s],u [mm]\n1e999,1\n2,2\n' '(,)\n[,]\n1,2\n' 'scorer\n' 'scorer,a\nbodyparts\ncoords,x\n' \
   'coords\ncoords\ncoords\n' 't [s];u [mm]\n1;2,3,4\n' '[s],[mm]\n1,2\n'; do
   printf "$bytes" >sine.csv
-  for keys in '' ', header: 0' ', header: 1' ', header: 3' ', skip: 1' ', scale: 1 mm, rotate: 1, weights: u'; do
+  for keys in '' ', header: 2' ', header: 1' ', header: 3' ', skip: 1' ', scale: 1 mm, rotate: 1, weights: u'; do
     sed "s/sine.csv/&$keys/" lines.yaml >hostile.yaml
     "$strut" check hostile.yaml >out 2>err
     code=$?

@@ -125,7 +125,7 @@
 
 #define STRUT_DATA_KEYS(X) \
   X(DATA, FILE, "file", TEXT, NONE, ANY, "", REQUIRED, 0, "", FIELD(strut_data_table, file), "A table as text, below the folder of this file: cells separated by commas, semicolons or tabs, with a point or, unless commas separate, a comma before decimals. Lines that begin with `#` are comments, empty cells gaps.") \
-  X(DATA, HEADER, "header", NUMBER, NONE, WHOLE(0, 1000), "as the file shows", OPTIONAL, 0, "", FIELD(strut_data_table, header), "Number of lines above the first row, with the names on the last of them that has no units; 0: columns are called 1, 2, ...") \
+  X(DATA, HEADER, "header", NUMBER, NONE, WHOLE(1, 1000), "as the file shows", OPTIONAL, 0, "", FIELD(strut_data_table, header), "Number of lines above the first row, with the names on the last of them that has no units. A name that is there twice is preceded by what is above it, up to the next cell: `snout.x`.") \
   X(DATA, UNITS, "units", THINGS, NONE, ANY, "those in the header", OPTIONAL, 0, "a unit such as `mm`, or what one counts, such as `1/(240 Hz)`", NONE, "Units of columns, by their names or by what follows the last dot of these; `1`: none.") \
   X(DATA, FLIP, "flip", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|x|y|both", FIELD(strut_data_table, flip), "Changes the sign of coordinates, such as those of pixels, whose y points downwards. The order is always flip, scale, rotate, shift. Columns are coordinates if x and y alone tell their names apart, such as `n1.x` and `n1.y`, `x1` and `y1`.") \
   X(DATA, SCALE, "scale", NUMBER, CONTEXT, ABOVE_ZERO, "1", OPTIONAL, 0, "", UNIT(strut_data_table, scale, scale_unit), "Length of a pixel, such as `0.21 mm`, for coordinates without unit; or a factor of those that are lengths.") \

@@ -8,6 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "parser/language/expression/expression.h"
 #include "parser/language/yaml/diagnostics.h"
 
 /** A name and the unit in brackets behind it, or on the line below; "" without. */
@@ -20,17 +21,16 @@ typedef struct strut_csv {
   size_t column_count, row_count; /* without the header */
   strut_csv_title *titles;        /* (column_count) */
   char **cell;                    /* (1 + row_count, column_count), the names first */
-  uint32_t *line;                 /* (1 + row_count) where each row begins, from 1 */
   const char *text, *copy;        /* as given; with its cells terminated */
   strut_arena arena;
 } strut_csv;
 
-/** Lines of the header as the file shows: one, or those of the forms that read_header knows. */
-enum { STRUT_CSV_ANY_HEADER = -1 };
+/** As many header lines as the file shows. */
+enum { STRUT_CSV_ANY_HEADER = 0 };
 
 /**
  * Reads a text whose first `header` lines are its header; the names are on the last of them that has no
- * units. Further on, lines that are empty or begin with # are left out. STRUT_BAD_SCENE where it is empty, has
+ * units. Lines below it that are empty or begin with # are left out. STRUT_BAD_SCENE where it is empty, has
  * no rows or lines of different length, as the diagnostics say, whose source it must be; STRUT_NO_MEMORY. The
  * arena must be freed after a failure too.
  */
@@ -45,5 +45,9 @@ STRUT_API strut_place strut_csv_place(const strut_csv *csv, size_t cell);
  * false for any other text.
  */
 STRUT_API bool strut_csv_number(const char *text, int decimal, double *value);
+/** What one of a unit is, of "mm" or "1/(240 Hz)"; false where the text is none. */
+bool strut_csv_unit(const char *text, strut_quantity *one);
+/** "1" or "-" */
+bool strut_csv_is_dimensionless(const char *text);
 
 #endif

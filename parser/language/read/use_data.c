@@ -57,14 +57,15 @@ static size_t find_disorder(const columns *self, double sign) {
   return SIZE_MAX;
 }
 
-/* The rows without gaps; those of the table itself where it has none. False: memory is out. */
-static bool take_rows(strut_reader *reader, const columns *self, const double **x,
+/* The rows without gaps, from the last to the first if x falls; the table's own where those are all. */
+static bool take_rows(strut_reader *reader, const columns *self, bool falls, const double **x,
                       const double **y) {
-  size_t count = count_whole(self), to = 0;
+  size_t count = count_whole(self), rows = self->table->row_count, to = 0;
   *x = self->x->values, *y = self->y->values;
-  if (count == self->table->row_count) return true;
+  if (count == rows && !falls) return true;
   double *copy = strut_reader_allocate(reader, &reader->scene->arena, 2 * count, sizeof *copy);
-  for (size_t k = 0; copy && k < self->table->row_count; k++) {
+  for (size_t i = 0; copy && i < rows; i++) {
+    size_t k = falls ? rows - 1 - i : i;
     if (!is_whole(self, k)) continue;
     copy[to] = self->x->values[k];
     copy[count + to++] = self->y->values[k];
@@ -98,7 +99,7 @@ bool strut_read_data_signal(strut_reader *reader, const strut_tree *value, const
   signal->over = name_column(reader, c.table, c.x);
   signal->point_count = count_whole(&c);
   *found = c.y->dimension;
-  return take_rows(reader, &c, &signal->time, &signal->value);
+  return take_rows(reader, &c, false, &signal->time, &signal->value);
 }
 
 /* ---- laws ---- */
@@ -180,17 +181,6 @@ static bool take_means(strut_reader *reader, const columns *self, const strut_tr
   return true;
 }
 
-/* The points of a law in increasing order of x, which `falls`. */
-static bool turn_round(strut_reader *reader, strut_law *law, size_t count) {
-  double *turned = strut_reader_allocate(reader, &reader->scene->arena, 2 * count, sizeof *turned);
-  for (size_t k = 0; turned && k < count; k++) {
-    turned[k] = law->x[count - 1 - k];
-    turned[count + k] = law->force[count - 1 - k];
-  }
-  law->x = turned, law->force = turned ? turned + count : NULL;
-  return turned != NULL;
-}
-
 bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const strut_tree *over,
                          strut_owner owner, const strut_dimension dimensions[2], strut_law *law) {
   columns c = {.table = NULL};
@@ -201,8 +191,7 @@ bool strut_read_data_law(strut_reader *reader, const strut_tree *value, const st
   size_t count = count_whole(&c);
   bool rises = find_disorder(&c, 1.0) == SIZE_MAX, falls = find_disorder(&c, -1.0) == SIZE_MAX;
   if ((!rises && !falls) || count > MOST_POINTS) return take_means(reader, &c, value, law);
-  bool fine =
-      take_rows(reader, &c, &law->x, &law->force) && (rises || turn_round(reader, law, count));
+  bool fine = take_rows(reader, &c, !rises, &law->x, &law->force);
   law->count = fine ? count : 0;
   return fine;
 }
