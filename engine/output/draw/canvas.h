@@ -9,6 +9,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
 #define STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -135,6 +136,20 @@ typedef struct strut_label {
  * place are left out, and a note on the page counts them.
  */
 STRUT_API void strut_draw_label(strut_canvas *canvas, const strut_label *label);
+
+/** Sum of darkness of all that was drawn inside a box but texts [pt^2]. */
+STRUT_API double strut_canvas_ink(strut_canvas *canvas, strut_box box);
+
+/**
+ * A coordinate [pt] on a grid of 1/64 pt, for decisions of layout: points that differ by rounding get the same one.
+ * What is symmetric lies on multiples of 1/2 pt; the rounding changes far from those.
+ */
+static inline double strut_settle_coordinate(double x) { return floor(64.0 * x + 0.36) / 64.0; }
+
+static inline strut_box strut_settle_box(strut_box b) {
+  return (strut_box){strut_settle_coordinate(b.x), strut_settle_coordinate(b.y),
+                     strut_settle_coordinate(b.width), strut_settle_coordinate(b.height)};
+}
 
 struct strut_file;
 /** The file that a picture is written to, for tests that make writing fail. */

@@ -11,7 +11,6 @@
 #include "engine/model/pose.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/draw/page_ink.h"
 #include "engine/output/draw/structure_parts.h"
 #include "engine/scene/wrap.h"
 
