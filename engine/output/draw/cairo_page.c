@@ -341,8 +341,11 @@ static void trace(cairo_t *cairo, const strut_outline *outline) {
   if (outline->kind >= STRUT_OUTLINE_CLOSED) cairo_close_path(cairo);
 }
 
+/* Nothing is drawn of what has a point that is nowhere. */
 static void draw(strut_cairo_page *page, const strut_outline *outline, const strut_fill *fill,
                  const strut_pen *pen) {
+  for (size_t i = 0; i < outline->count; i++)
+    if (!isfinite(outline->points[i][0] + outline->points[i][1])) return;
   for (int k = 0; k < 2 && outline->count; k++) {
     cairo_t *cairo = k ? page->ink : page->cairo;
     trace(cairo, outline);

@@ -43,7 +43,7 @@ typedef struct strut_table_figure {
   int value, doubt; /* doubt: hatched where it is not empty, 0, false or no */
   strut_colours colours;
   bool spread;                /* cells of a map without a row are as the nearest that have one */
-  const bool *shown, *marked; /* (rows) of points; NULL: all, none */
+  const bool *shown, *marked; /* (rows) shown, NULL: all; of points those with a ring */
 } strut_table_figure;
 
 /** One without any column but the first as x and y. */
