@@ -165,14 +165,12 @@ STRUT_API struct strut_file *strut_canvas_file(strut_canvas *canvas);
 STRUT_API strut_colour strut_palette_signed(double value);
 /** A quantity from 0 to 1, dark to bright: time along a path, height of a field. */
 STRUT_API strut_colour strut_palette_sequence(double value);
-/** A signed quantity that fills areas, -1 to 1: from blue over near white at 0 to brown. */
-STRUT_API strut_colour strut_palette_diverging(double value);
 
 /** Colour scales of maps and of the bars beside drawings. */
 typedef enum strut_colours {
   STRUT_COLOURS_AUTO,       /* of a map: diverging where values have both signs, else sequential */
   STRUT_COLOURS_SEQUENTIAL, /* strut_palette_sequence from low to high */
-  STRUT_COLOURS_DIVERGING,  /* strut_palette_diverging, 0 in the middle */
+  STRUT_COLOURS_DIVERGING,  /* of areas: from blue over near white at 0 in the middle to brown */
   STRUT_COLOURS_GREY,       /* dark to bright from low to high */
   STRUT_COLOURS_SIGNED      /* strut_palette_signed, 0 in the middle */
 } strut_colours;

@@ -338,7 +338,7 @@ static void draw_mark(const strut_chart *chart, const strut_mark *mark) {
   edge.dot = edge.ring = false;
   edge.angle = (above ? -0.5 : 0.5) * STRUT_PI;
   edge.gap = STRUT_BEYOND_SIZE + 1;
-  strut_draw_beyond(chart->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
+  strut_draw_beyond(chart->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM, 0);
   strut_draw_mark(chart->canvas, axes->frame, at, &edge);
 }
 

@@ -70,15 +70,15 @@ const char *strut_beyond_text(const strut_beyond *beyond, const char *what, cons
   return text;
 }
 
-void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side) {
+void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side, double outside) {
   static const double outwards[][2] = {{0, -1}, {0, 1}, {-1, 0}, {1, 0}};
   const double *out = outwards[side], size = STRUT_BEYOND_SIZE;
   double tip[3][2];
   for (int d = 0; d < 2; d++) {
     double across = 0.45 * size * out[1 - d];
-    tip[0][d] = at[d];
-    tip[1][d] = at[d] - size * out[d] + across;
-    tip[2][d] = at[d] - size * out[d] - across;
+    tip[0][d] = at[d] + outside * out[d];
+    tip[1][d] = tip[0][d] - size * out[d] + across;
+    tip[2][d] = tip[0][d] - size * out[d] - across;
   }
   const strut_fill fill = {.colour = strut_grey(0.15)};
   const strut_pen rim = {.colour = strut_grey(1), .width = 0.4};
