@@ -7,7 +7,6 @@
 
 #include "engine/base/vec.h"
 #include "engine/output/draw/painter.h"
-#include "engine/output/draw/view.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
 static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
@@ -45,29 +44,23 @@ static size_t add_item(strut_key_item *items, size_t count, strut_key_item item)
   return count + 1;
 }
 
+static size_t add_area(strut_key_item *items, size_t count, strut_fill fill, const char *text) {
+  return add_item(items, count,
+                  (strut_key_item){.sign = STRUT_KEY_AREA, .fill = fill, .text = text});
+}
+
 static size_t name_cells(const strut_map *map, strut_key_item *items, size_t count) {
-  const strut_fill hatched = {
-      .colour = strut_grey(1), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
-  const strut_fill blank = {.colour = strut_grey(1)};
+  strut_fill fill = {.colour = strut_grey(1), .hatch_colour = strut_grey(0.05)};
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
     doubt = doubt || (map->doubtful && map->doubtful[k]);
     missing = missing || !strut_map_has(map, k);
   }
   for (size_t i = 0; map->category && i < map->category_count; i++)
-    count = add_item(
-        items, count,
-        (strut_key_item){
-            .sign = STRUT_KEY_AREA, .fill = strut_category_fill(i), .text = map->names[i]});
-  if (doubt)
-    count = add_item(
-        items, count,
-        (strut_key_item){
-            .sign = STRUT_KEY_AREA, .fill = hatched, .text = map->doubt ? map->doubt : "doubtful"});
-  if (missing)
-    count = add_item(items, count,
-                     (strut_key_item){.sign = STRUT_KEY_AREA, .fill = blank, .text = "no result"});
-  return count;
+    count = add_area(items, count, strut_category_fill(i), map->names[i]);
+  if (missing) count = add_area(items, count, fill, "no result");
+  fill.hatch = STRUT_HATCH_RISING;
+  return doubt ? add_area(items, count, fill, map->doubt ? map->doubt : "doubtful") : count;
 }
 
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
@@ -83,10 +76,7 @@ size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_
                                       .text = panel->series[i].label});
   }
   for (size_t i = 0; i < panel->band_count; i++)
-    count =
-        add_item(items, count,
-                 (strut_key_item){
-                     .sign = STRUT_KEY_AREA, .fill = band_fill(), .text = panel->bands[i].label});
+    count = add_area(items, count, band_fill(), panel->bands[i].label);
   return panel->map ? name_cells(panel->map, items, count) : count;
 }
 

@@ -7,7 +7,6 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/painter.h"
-#include "engine/output/draw/view.h"
 #include "engine/output/file.h"
 
 static const double EDGE = 5, PAGE = 510.24, GAP = 12, INDENT = 30, WIDE = 330; /* [pt] */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/view.h"
+#include "engine/output/draw/painter.h"
 
 #include <math.h>
 #include <string.h>
