@@ -226,6 +226,8 @@ strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }
 
 /* ---- drawing ---- */
 
+static const double DOT = 2.7, RING = 3.4; /* radii [pt] */
+
 strut_box strut_canvas_box(const strut_canvas *canvas) { return canvas->box; }
 
 void strut_canvas_clear(strut_canvas *canvas, strut_colour colour) {
@@ -307,6 +309,11 @@ void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
 }
 
 void strut_draw_label(strut_canvas *canvas, const strut_label *label) {
+  const strut_pen edge = {.colour = strut_grey(0.1), .width = label->ring ? 0.9 : 0.6};
+  const strut_fill fill = {.colour = label->colour};
+  if (label->dot || label->ring)
+    strut_draw_circle(canvas, label->at[0], label->at[1], label->ring ? RING : DOT,
+                      label->dot ? &fill : NULL, &edge);
   strut_labels_add(&canvas->labels, label);
 }
 

@@ -121,17 +121,19 @@ STRUT_API double strut_text_height(strut_canvas *canvas, const char *text, strut
 /** A text beside what it names. */
 typedef struct strut_label {
   const char *text;
-  strut_font font;  /* its across, down and upwards are not used */
-  double at[2];     /* what is named [pt] */
-  double gap;       /* from there to the text at least [pt] */
-  double angle;     /* preferred direction, counterclockwise from the right */
-  double steady;    /* how much that matters: 0 not at all, 1 usually */
-  strut_box inside; /* the text stays in here; zero: the page */
-  int priority;     /* higher ones are placed first */
-  bool loose;       /* names nothing at its place: no line leads there */
+  strut_font font;     /* its across, down and upwards are not used */
+  double at[2];        /* what is named [pt] */
+  double gap;          /* from there to the text at least [pt] */
+  double angle;        /* preferred direction, counterclockwise from the right */
+  double steady;       /* how much that matters: 0 not at all, 1 usually */
+  strut_box inside;    /* the text stays in here; zero: the page */
+  int priority;        /* higher ones are placed first */
+  bool loose;          /* names nothing at its place: no line leads there */
+  bool dot, ring;      /* a filled circle there; an empty one around what is there */
+  strut_colour colour; /* of the dot */
 } strut_label;
 /**
- * Draws a label near its place when all else is drawn (by strut_canvas_commit or _pixels): where it covers
+ * Draws a label's dot or ring at once, and its text near its place when all else is drawn (by strut_canvas_commit or _pixels): where it covers
  * no other text and least ink, with a thin line from what is named if that is far. Labels that find no
  * place are left out, and a note on the page counts them.
  */

@@ -314,22 +314,20 @@ static void draw_points(const strut_chart *chart, size_t i) {
 /* ---- marks ---- */
 
 /* A mark of the chart, or what stands for it at the frame's upper or lower edge. */
-static void draw_mark(const strut_chart *chart, const strut_mark *mark) {
+static void draw_mark(const strut_chart *chart, const strut_label *mark) {
   const strut_axes *axes = &chart->axes;
   bool above = mark->at[1] > axes->y.high, below = mark->at[1] < axes->y.low;
-  double at[2];
-  strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), at);
-  if (!is_inside(chart, at)) return;
-  if (!above && !below) {
-    strut_draw_mark(chart->canvas, axes->frame, at, mark);
-    return;
+  strut_label label = *mark;
+  strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), label.at);
+  if (!is_inside(chart, label.at)) return;
+  label.inside = axes->frame;
+  if (above || below) {
+    label.dot = label.ring = false;
+    label.angle = (above ? -0.5 : 0.5) * STRUT_PI;
+    label.gap = STRUT_BEYOND_SIZE + 1;
+    strut_draw_beyond(chart->canvas, label.at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM, 0);
   }
-  strut_mark edge = *mark;
-  edge.dot = edge.ring = false;
-  edge.angle = (above ? -0.5 : 0.5) * STRUT_PI;
-  edge.gap = STRUT_BEYOND_SIZE + 1;
-  strut_draw_beyond(chart->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM, 0);
-  strut_draw_mark(chart->canvas, axes->frame, at, &edge);
+  strut_draw_label(chart->canvas, &label);
 }
 
 /* Marks where curves leave the frame above or below, and says how many points are there. */
@@ -348,9 +346,10 @@ static void mark_beyond(const strut_chart *chart) {
       if (!out && farthest != SIZE_MAX) {
         const strut_point *p = &series->points[farthest];
         const strut_rounded_quantity value = strut_drawn_quantity(p->y, 3, axis->unit);
-        draw_mark(chart, &(strut_mark){.at = {p->x, p->y},
-                                       .text = labelled++ < MOST_LABELLED ? value.text : NULL,
-                                       .steady = 0.2});
+        strut_label mark =
+            strut_mark_of(p->x, p->y, labelled++ < MOST_LABELLED ? value.text : NULL);
+        mark.steady = 0.2;
+        draw_mark(chart, &mark);
       }
       if (!out) farthest = SIZE_MAX;
       if (!out) continue;

@@ -50,9 +50,6 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
  */
 double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,
                         const strut_panel *panels, size_t count, bool foot, bool draw);
-/** A mark's dot or ring at a place on the page [pt], and its text, which stays inside. */
-void strut_draw_mark(strut_canvas *canvas, strut_box inside, const double at[2],
-                     const strut_mark *mark);
 /**
  * The figure's scale bar (of a window, if there is one), keys and scale of colours; draws them if `draw`.
  * Returns their height [pt].

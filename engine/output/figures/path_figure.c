@@ -216,11 +216,11 @@ static strut_colour colour_of(const path_picture *picture, size_t stop) {
 
 static void add_mark(path_picture *picture, strut_panel *panel, size_t stop,
                      const double place[2]) {
-  strut_mark *mark =
+  strut_label *mark =
       strut_add_mark(&picture->figure, panel, place[0], place[1], picture->stops[stop].letter);
   mark->dot = true;
   mark->colour = colour_of(picture, stop);
-  mark->font = (strut_font){.size = 8, .bold = true};
+  mark->font.size = 8, mark->font.bold = true;
   mark->angle = 0.25 * STRUT_PI;
   mark->priority = 1;
 }

@@ -64,9 +64,9 @@ static void add_point(picture *self, double x, double y, bool stable) {
 
 static void mark_point(picture *self, strut_follow_kind kind, double x, double y, const char *word,
                        const char *node) {
-  strut_mark *mark = strut_add_mark(&self->figure, self->panel, x, y,
-                                    strut_figure_text(&self->figure, "%s%s%.60s", word,
-                                                      node && *node ? " " : "", node ? node : ""));
+  strut_label *mark = strut_add_mark(&self->figure, self->panel, x, y,
+                                     strut_figure_text(&self->figure, "%s%s%.60s", word,
+                                                       node && *node ? " " : "", node ? node : ""));
   mark->dot = true;
   mark->colour = colour_of(kind);
   mark->angle = 0.25 * STRUT_PI;
