@@ -324,7 +324,7 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
 
 /* The scale of colours beside a drawing. */
 
-enum { SHADES = 48 };
+enum { SHADES = 40 };
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2;
 

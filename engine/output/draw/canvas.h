@@ -148,11 +148,6 @@ STRUT_API double strut_canvas_ink(strut_canvas *canvas, strut_box box);
  */
 static inline double strut_settle_coordinate(double x) { return floor(64.0 * x + 0.36) / 64.0; }
 
-static inline strut_box strut_settle_box(strut_box b) {
-  return (strut_box){strut_settle_coordinate(b.x), strut_settle_coordinate(b.y),
-                     strut_settle_coordinate(b.width), strut_settle_coordinate(b.height)};
-}
-
 struct strut_file;
 /** The file that a picture is written to, for tests that make writing fail. */
 STRUT_API struct strut_file *strut_canvas_file(strut_canvas *canvas);

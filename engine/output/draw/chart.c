@@ -11,6 +11,7 @@
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
 static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
                     SCALE = 52;
+static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
 static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
@@ -99,15 +100,16 @@ static size_t covered(const strut_chart *chart, strut_box box) {
 }
 
 /* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
-static bool find_corner(const strut_chart *chart, const double size[2], double corner[2]) {
+static bool find_corner(const strut_chart *chart, strut_box *key) {
   const strut_box *box = &chart->axes.frame;
-  if (chart->panel->map || size[0] > 0.6 * box->width || size[1] > 0.6 * box->height) return false;
+  if (chart->panel->map || key->width > 0.6 * box->width || key->height > 0.6 * box->height)
+    return false;
   for (int k = 0; k < 6; k++) {
     double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
-    corner[0] = box->x + INSET + across * (box->width - size[0] - 2 * INSET);
-    corner[1] = box->y + INSET + down * (box->height - size[1] - 2 * INSET);
-    const strut_box around = {corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4};
-    if (!covered(chart, around)) return true;
+    key->x = box->x + INSET + across * (box->width - key->width - 2 * INSET);
+    key->y = box->y + INSET + down * (box->height - key->height - 2 * INSET);
+    if (!covered(chart, (strut_box){key->x - 2, key->y - 2, key->width + 4, key->height + 4}))
+      return true;
   }
   return false;
 }
@@ -216,17 +218,28 @@ static void draw_bands(const strut_chart *chart) {
   }
 }
 
+/* A note inside a box, where it is emptiest, near its upper right corner. */
+static void draw_note(const strut_chart *chart, const strut_box *box, const char *text,
+                      double wide) {
+  strut_draw_label(
+      chart->canvas,
+      &(strut_label){.text = text,
+                     .font = {.size = 7,
+                              .colour = strut_grey(0.3),
+                              .halo = strut_grey(1),
+                              .width = wide * box->width},
+                     .at = {box->x + box->width, box->y},
+                     .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
+                                box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
+                     .priority = 3,
+                     .loose = true});
+}
+
 static void draw_strip(const strut_chart *chart) {
   const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  const strut_box *box = &chart->strip;
-  strut_draw_box(chart->canvas, *box, &grey, &frame);
-  strut_draw_label(chart->canvas,
-                   &(strut_label){.text = chart->panel->lost,
-                                  .font = {.size = 7, .colour = strut_grey(0.35)},
-                                  .at = {box->x + box->width, box->y + 0.5 * STRIP},
-                                  .inside = {box->x + 3, box->y + 5, box->width - 6, 9},
-                                  .loose = true});
+  strut_draw_box(chart->canvas, chart->strip, &grey, &frame);
+  draw_note(chart, &chart->strip, chart->panel->lost, 1);
 }
 
 static void stroke(const strut_chart *chart, size_t i, size_t from, size_t to) {
@@ -357,8 +370,8 @@ static void mark_beyond(const strut_chart *chart) {
       if (fabs(y) > fabs(beyond.farthest)) beyond.farthest = y;
     }
   }
-  strut_draw_axis_note(chart->canvas, &chart->axes,
-                       strut_beyond_text(&beyond, "point", axis->unit, text));
+  draw_note(chart, &chart->axes.frame, strut_beyond_text(&beyond, "point", axis->unit, text),
+            NOTE_WIDTH);
 }
 
 static void draw_data(const strut_chart *chart) {
@@ -379,7 +392,7 @@ static void draw_data(const strut_chart *chart) {
   for (size_t i = 0; i < panel->series_count; i++) draw_points(chart, i);
   if (panel->outliers) mark_beyond(chart);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(chart, &panel->marks[i]);
-  if (panel->remark) strut_draw_axis_note(chart->canvas, &chart->axes, panel->remark);
+  if (panel->remark) draw_note(chart, &chart->axes.frame, panel->remark, NOTE_WIDTH);
 }
 
 /* A title, centred above the frame; returns its height. */
@@ -391,45 +404,37 @@ static double draw_title(const strut_chart *chart, strut_box box, bool draw) {
   return strut_text_height(chart->canvas, chart->panel->title, font) + TITLE_GAP;
 }
 
-/* Inside the frame on a white ground. */
-static void draw_legend(const strut_chart *chart, const strut_key_item *items, size_t count,
-                        strut_box at, bool inside) {
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
-  const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
-  if (inside) strut_draw_box(chart->canvas, at, &white, &edge);
-  strut_draw_key(
-      chart->canvas,
-      (strut_box){at.x + PADDING, at.y + PADDING, inside ? 0 : at.width - 2 * PADDING, 0}, items,
-      count);
-}
-
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
+  const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
   strut_chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
   if (!items || !make_room(&c)) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
-  strut_box rest = box, at = {0, 0, 0, 0};
+  strut_box rest = box, key = strut_draw_key(canvas, (strut_box){0, 0, 0, 0}, items, count, false);
   if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
   place_chart(&c, rest);
-  double title = draw_title(&c, box, false), size[2], corner[2];
+  double title = draw_title(&c, box, false);
   rest.y += title, rest.height -= title;
   if (title > 0) place_chart(&c, rest);
-  strut_key_size(canvas, 0, items, count, size);
-  size[0] += 2 * PADDING, size[1] += 2 * PADDING;
-  bool inside = count && find_corner(&c, size, corner);
-  if (inside) {
-    at = (strut_box){corner[0], corner[1], size[0], size[1]};
-  } else if (count) {
-    at = (strut_box){c.axes.frame.x, rest.y, fmax(c.axes.frame.width, 60), 0};
-    double height = strut_key_height(canvas, at.width - 2 * PADDING, items, count) + 2 * PADDING;
+  key.width += 2 * PADDING, key.height += 2 * PADDING;
+  bool inside = count && find_corner(&c, &key);
+  if (count && !inside) {
+    key = (strut_box){c.axes.frame.x + PADDING, rest.y + PADDING,
+                      fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
+    double height = strut_draw_key(canvas, key, items, count, false).height + 2 * PADDING;
     rest.y += height, rest.height -= height;
     place_chart(&c, rest);
   }
   draw_title(&c, box, true);
   draw_data(&c);
-  if (count) draw_legend(&c, items, count, at, inside);
+  if (inside) { /* on a white ground */
+    strut_draw_box(canvas, key, &white, &edge);
+    key = (strut_box){key.x + PADDING, key.y + PADDING, 0, 0};
+  }
+  strut_draw_key(canvas, key, items, count, true);
   if (panel->scale.name)
     strut_draw_colour_scale(canvas,
                             (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,

@@ -111,9 +111,6 @@ typedef enum strut_side {
 STRUT_API void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side,
                                  double outside);
 #define STRUT_BEYOND_SIZE 5.0
-/** A note inside the frame, where it is emptiest near the top. "": none. */
-STRUT_API void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text);
-
 enum { STRUT_TICK_TEXT = 64, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis and their texts. */
 typedef struct strut_tick_set {

@@ -25,6 +25,11 @@ static const double BESIDE = 3.0,
 
 /* ---- what waits, and what is there ---- */
 
+static strut_box settle_box(strut_box b) {
+  return (strut_box){strut_settle_coordinate(b.x), strut_settle_coordinate(b.y),
+                     strut_settle_coordinate(b.width), strut_settle_coordinate(b.height)};
+}
+
 void strut_labels_add(strut_labels *labels, const strut_label *label) {
   if (!label->text || !*label->text || !isfinite(label->at[0] + label->at[1])) return;
   char *text = strut_arena_text(&labels->arena, label->text, strlen(label->text));
@@ -35,14 +40,14 @@ void strut_labels_add(strut_labels *labels, const strut_label *label) {
   *added = *label;
   added->text = text;
   for (int d = 0; d < 2; d++) added->at[d] = strut_settle_coordinate(label->at[d]);
-  added->inside = strut_settle_box(label->inside);
+  added->inside = settle_box(label->inside);
 }
 
 void strut_labels_avoid(strut_labels *labels, strut_box ink) {
   labels->failed = labels->failed || !strut_grow(&labels->texts, &labels->text_room,
                                                  labels->text_count, sizeof *labels->texts);
   if (!labels->failed && isfinite(ink.x + ink.y))
-    labels->texts[labels->text_count++] = strut_settle_box(ink);
+    labels->texts[labels->text_count++] = settle_box(ink);
 }
 
 void strut_labels_free(strut_labels *labels) {
@@ -131,7 +136,7 @@ static void try_place(search *self, double ring, int direction) {
   double angle = label->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = label->gap + ring;
   double x = label->at[0] + (gap + 0.5 * self->width) * cos(angle);
   double y = label->at[1] - (gap + 0.5 * self->height) * sin(angle);
-  const strut_box box = strut_settle_box(
+  const strut_box box = settle_box(
       (strut_box){x - 0.5 * self->width, y - 0.5 * self->height, self->width, self->height});
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
   bool led = ring >= LED;

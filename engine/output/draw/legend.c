@@ -59,11 +59,10 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
   }
 }
 
-/* Lays the items out, draws them if `draw`, and measures the whole. Texts wider than the key wrap. */
-static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                        size_t count, bool draw, double size[2]) {
+strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                         size_t count, bool draw) {
   double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters());
-  size[0] = 0.0;
+  strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
     double sign = sign_width(canvas, &items[i]), width, height;
@@ -79,28 +78,11 @@ static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_ite
       strut_draw_text(canvas, box.x + x + sign, box.y + top, items[i].text, font);
     }
     row = fmax(row, height + LINE - line);
-    size[0] = fmax(size[0], x + sign + width);
+    whole.width = fmax(whole.width, x + sign + width);
     x += sign + width + BETWEEN;
   }
-  size[1] = x > 0.0 ? y + row : 0.0;
-}
-
-void strut_key_size(strut_canvas *canvas, double width, const strut_key_item *items, size_t count,
-                    double size[2]) {
-  lay_out_key(canvas, (strut_box){0, 0, width, 0}, items, count, false, size);
-}
-
-double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
-                        size_t count) {
-  double size[2];
-  strut_key_size(canvas, width, items, count, size);
-  return size[1];
-}
-
-void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                    size_t count) {
-  double size[2];
-  lay_out_key(canvas, box, items, count, true, size);
+  whole.height = x > 0.0 ? y + row : 0.0;
+  return whole;
 }
 
 static bool fits(strut_canvas *canvas, const char *text, strut_font font, double width,

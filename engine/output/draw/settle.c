@@ -9,8 +9,6 @@
 
 /* Values that take more than this part of a scale are left out of it, if they are few: of all values. */
 static const double MOST_OF_RANGE = 0.75, FEW = 0.05;
-static const double NOTE_WIDTH = 0.6; /* of the frame; longer notes wrap */
-static const double INSET = 3.0;      /* of notes from the frame [pt] */
 
 /* Sorts the finite values to the front. Returns how many there are. */
 static size_t sort_finite(double *values, size_t count) {
@@ -83,23 +81,6 @@ void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side
   const strut_fill fill = {.colour = strut_grey(0.15)};
   const strut_pen rim = {.colour = strut_grey(1), .width = 0.4};
   strut_draw_polygon(canvas, (const double(*)[2])tip, 3, &fill, &rim);
-}
-
-void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text) {
-  const strut_box *box = &axes->frame;
-  const strut_box inside = {box->x + INSET, box->y + INSET, box->width - 2 * INSET,
-                            box->height - 2 * INSET};
-  strut_draw_label(canvas, &(strut_label){.text = text,
-                                          .font = {.size = 7,
-                                                   .colour = strut_grey(0.3),
-                                                   .halo = strut_grey(1),
-                                                   .width = NOTE_WIDTH * box->width},
-                                          .at = {box->x + box->width, box->y},
-                                          .gap = 2,
-                                          .angle = 1.25 * STRUT_PI,
-                                          .inside = inside,
-                                          .priority = 3,
-                                          .loose = true});
 }
 
 /* ---- what a figure leaves open ---- */

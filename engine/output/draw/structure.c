@@ -42,12 +42,12 @@ void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const doub
   }
   for (size_t m = 0; m < model->scene->member_count; m++) { /* circles of guides */
     const strut_member *member = &model->scene->members[m];
-    for (size_t k = 1; k <= member->guide_count && member->guide_radius > 0.0; k++)
-      for (int c = 0; c < 2; c++) {
-        double at = positions[2 * strut_member_node(member, k) + c];
-        bounds->low[c] = fmin(bounds->low[c], at - member->guide_radius);
-        bounds->high[c] = fmax(bounds->high[c], at + member->guide_radius);
-      }
+    double radius = member->guide_radius;
+    for (size_t k = 1; k <= member->guide_count && radius > 0.0; k++) {
+      const double *at = positions + 2 * strut_member_node(member, k);
+      strut_bounds_widen(bounds, (const double[2]){at[0] - radius, at[1] - radius},
+                         (const double[2]){at[0] + radius, at[1] + radius});
+    }
   }
 }
 
@@ -80,7 +80,7 @@ void strut_window_point(const strut_window *window, const double position[2], do
   point[1] = window->box.y + (window->top - position[1]) * window->scale;
 }
 
-size_t strut_member_segments(const strut_model *model, size_t member) {
+static size_t count_segments(const strut_model *model, size_t member) {
   return model->scene->members[member].guide_count + 1;
 }
 
@@ -124,7 +124,7 @@ void strut_window_segment(const strut_window *window, const strut_model *model,
 void strut_longest_segment(const strut_window *window, const strut_model *model,
                            const double *positions, size_t member, double longest[2][2]) {
   double most = -1.0, ends[2][2];
-  for (size_t k = 0; k < strut_member_segments(model, member); k++) {
+  for (size_t k = 0; k < count_segments(model, member); k++) {
     strut_window_segment(window, model, positions, member, k, ends);
     double length = strut_settle_coordinate(strut_distance(ends[0], ends[1]));
     if (k && !(length > most)) continue;
@@ -272,7 +272,7 @@ static double thinning(const strut_window *window, const strut_model *model,
   double sum = 0;
   size_t count = model->scene->member_count, finite = 0;
   for (size_t j = 0; j < count; j++)
-    for (size_t k = 0; k < strut_member_segments(model, j); k++) {
+    for (size_t k = 0; k < count_segments(model, j); k++) {
       double ends[2][2];
       strut_window_segment(window, model, positions, j, k, ends);
       double length = strut_distance(ends[0], ends[1]);
@@ -339,7 +339,7 @@ static void add_member(batch *self, const strut_drawing *drawing, size_t j, stru
   bool alike = memcmp(&pen.colour, &self->pen.colour, sizeof pen.colour) == 0;
   if (!alike || pen.width != self->pen.width || pen.dash[0] != self->pen.dash[0]) flush(self);
   self->pen = pen;
-  for (size_t k = 0; k < strut_member_segments(drawing->model, j); k++) {
+  for (size_t k = 0; k < count_segments(drawing->model, j); k++) {
     if (self->count == BATCH) flush(self);
     strut_window_segment(drawing->window, drawing->model, drawing->q, j, k,
                          self->ends + 2 * self->count++);

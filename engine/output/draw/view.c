@@ -264,11 +264,11 @@ double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *
   strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
   bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
   if (above) key.x = box.x, key.width = box.width;
-  double high = strut_key_height(canvas, key.width, figure->keys, figure->key_count);
+  double high = strut_draw_key(canvas, key, figure->keys, figure->key_count, false).height;
   double height = above ? high + row : fmax(high, row);
   if (!draw) return height;
   if (!above) key.y += 0.5 * (height - high);
-  strut_draw_key(canvas, key, figure->keys, figure->key_count);
+  strut_draw_key(canvas, key, figure->keys, figure->key_count, true);
   if (bar)
     strut_draw_colour_scale(
         canvas, (strut_box){box.x + box.width - right, box.y + height - BAR, right, BAR},

@@ -191,6 +191,24 @@ static double way_to(const strut_run_scene *run, const grid *self, size_t i) {
   return strut_run_measured(run, self->frame[i], 0) - strut_run_measured(run, self->frame[0], 0);
 }
 
+/* How far the foot of a shape is above the ground below it; 0 or less: it stands there [m]. */
+static double foot_above(const strut_run_scene *run, const strut_bounds *bounds) {
+  return bounds->low[1] - strut_run_ground_at(run, 0.5 * (bounds->low[0] + bounds->high[0]));
+}
+
+/* Has all shapes on the ground begin as deep in it as the deepest, so that it is drawn at one height. */
+static void level_feet(const strut_run_scene *run, grid *self) {
+  double deepest = 0.0;
+  for (size_t i = 0; i < self->count; i++)
+    deepest = fmin(deepest, foot_above(run, &self->panels[i].bounds));
+  for (size_t i = 0; i < self->count; i++) {
+    strut_bounds *bounds = &self->panels[i].bounds;
+    double above = foot_above(run, bounds);
+    if (above <= 0.0) bounds->low[1] += deepest - above;
+    self->size[1] = fmax(self->size[1], bounds->high[1] - bounds->low[1]);
+  }
+}
+
 /* The range of all cells along each axis: one for all where the shapes are close together. */
 static void find_sizes(const strut_run_scene *run, grid *self) {
   const strut_ground *ground = &run->model->scene->ground;
@@ -205,6 +223,7 @@ static void find_sizes(const strut_run_scene *run, grid *self) {
       self->common[1] = false;
     if (self->common[d]) self->size[d] = together;
   }
+  if (!self->common[1] && ground->present) level_feet(run, self);
 }
 
 /* What a cell shows, as large as all others: about its middle, from its foot or the ground on. */

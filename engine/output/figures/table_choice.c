@@ -6,6 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+int strut_table_column_of(const strut_table *table, const char *name, size_t length) {
+  for (size_t i = 0; name && i < table->column_count; i++)
+    if (strlen(table->columns[i].name) == length &&
+        memcmp(table->columns[i].name, name, length) == 0)
+      return (int)i;
+  return STRUT_NO_COLUMN;
+}
+
 bool strut_table_belongs(const strut_table_rows *rows, int column, const char *name, size_t row) {
   return rows->shown[row] &&
          (column == STRUT_NO_COLUMN || strcmp(rows->table->columns[column].text[row], name) == 0);

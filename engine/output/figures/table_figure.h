@@ -56,6 +56,9 @@ typedef struct strut_table_figure {
     }                                                                                              \
   }
 
+/** Number of the column of that name, of `length` bytes; STRUT_NO_COLUMN where there is none, or no name. */
+STRUT_API int strut_table_column_of(const strut_table *table, const char *name, size_t length);
+
 /**
  * Draws into the plot's file. Rows of a map are in any order; points of its grid without a row have no answer.
  * STRUT_USAGE for a column without numbers where numbers are needed, y of different units, too many panels or

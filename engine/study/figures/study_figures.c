@@ -13,30 +13,15 @@
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static bool of_runs(const strut_study_figure *figure) {
-  return figure->kind >= STRUT_FIGURE_MOTION && figure->kind <= STRUT_FIGURE_SNAPSHOTS;
-}
-
-static bool of_search(const strut_study_figure *figure) {
-  return figure->kind >= STRUT_FIGURE_BEST;
-}
-
 static int column_of(const strut_table *table, const char *name) {
-  for (size_t i = 0; name && i < table->column_count; i++)
-    if (strcmp(table->columns[i].name, name) == 0) return (int)i;
-  return STRUT_NO_COLUMN;
+  return strut_table_column_of(table, name, name ? strlen(name) : 0);
 }
 
 /* COLUMN=TEXT. */
 static int column_of_match(const strut_table *table, const char *match, const char **text) {
   size_t length = match ? strcspn(match, "=") : 0;
-  for (size_t i = 0; match && i < table->column_count; i++) {
-    const char *name = table->columns[i].name;
-    if (strlen(name) != length || memcmp(name, match, length) != 0) continue;
-    *text = match + length + 1;
-    return (int)i;
-  }
-  return STRUT_NO_COLUMN;
+  if (match) *text = match + length + 1;
+  return strut_table_column_of(table, match, length);
 }
 
 static strut_axis_choice axis_of(const char *label, const double limits[2]) {
@@ -95,9 +80,9 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
     status = strut_no_memory(error, "");
   else if (figure->kind == STRUT_FIGURE_MOTION)
     status = draw_motion(plan, directory, figure, file, error);
-  else if (of_search(figure))
+  else if (strut_figure_of_search(figure))
     status = strut_search_figure(plan, figure, file, table, error);
-  else if (of_runs(figure))
+  else if (strut_figure_of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, PAGE, error);
   else
     status = draw_table(figure, file, table, refinement != NULL, error);
