@@ -45,10 +45,8 @@ static const char *column_name_at(const void *context, size_t i) {
 static int find_column(const strut_arguments *arguments, const strut_table *table,
                        const char *option, const char *name, size_t length) {
   char word[200];
-  for (size_t i = 0; i < table->column_count; i++)
-    if (strlen(table->columns[i].name) == length &&
-        memcmp(table->columns[i].name, name, length) == 0)
-      return (int)i;
+  int column = strut_table_column_of(table, name, length);
+  if (column != STRUT_NO_COLUMN) return column;
   snprintf(word, sizeof word, "%.*s", (int)length, name);
   const char *near = strut_did_you_mean(word, column_name_at, table);
   strut_usage_error(arguments, "--%s: the table has no column '%s'%s%s%s", option, word,

@@ -63,12 +63,18 @@ static void write_power(char *text, size_t size, int exponent) {
   static const char *const raised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   char digits[16];
   int used = snprintf(text, size, "10%s", exponent < 0 ? "⁻" : "");
-  snprintf(digits, sizeof digits, "%d", exponent < 0 ? -exponent : exponent);
+  snprintf(digits, sizeof digits, "%d", abs(exponent));
   for (const char *d = digits; *d; d++)
     used += snprintf(text + used, size - (size_t)used, "%s", raised[*d - '0']);
 }
 
-/* With a real minus sign, and powers of ten as print writes them. */
+/* Copies a number with a real minus sign; returns how many bytes it has. */
+static size_t copy_number(char *text, size_t size, const char *plain) {
+  return (size_t)snprintf(text, size, "%s%s", plain[0] == '-' ? "\xe2\x88\x92" : "",
+                          plain + (plain[0] == '-'));
+}
+
+/* Likewise, and powers of ten as print writes them. */
 static void write_number(char *text, size_t size, const char *format, int decimals, double value) {
   char plain[64];
   if (value == 0) value = 0; /* no minus zero */
@@ -76,18 +82,15 @@ static void write_number(char *text, size_t size, const char *format, int decima
   char *power = strchr(plain, 'e');
   int exponent = power ? atoi(power + 1) : 0;
   if (power) *power = '\0';
-  snprintf(text, size, "%s%s", plain[0] == '-' ? "\xe2\x88\x92" : "", plain + (plain[0] == '-'));
+  size_t used = copy_number(text, size, plain);
   if (!power) return;
-  size_t used = strlen(text);
-  snprintf(text + used, size - used, "×");
-  used = strlen(text);
+  used += (size_t)snprintf(text + used, size - used, "×");
   write_power(text + used, size - used, exponent);
 }
 
 strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
-  strut_rounded_quantity plain = strut_quantity_of(value, digits, unit), drawn = {{0}};
-  snprintf(drawn.text, sizeof drawn.text, "%s%s", plain.text[0] == '-' ? "\xe2\x88\x92" : "",
-           plain.text + (plain.text[0] == '-'));
+  strut_rounded_quantity drawn = {{0}};
+  copy_number(drawn.text, sizeof drawn.text, strut_quantity_of(value, digits, unit).text);
   return drawn;
 }
 
@@ -321,84 +324,69 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
 
 /* The scale of colours beside a drawing. */
 
-enum { CELLS = 48 };
+enum { SHADES = 40 };
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2;
 
-static strut_colour colour_at(const strut_colour_scale *scale, double part) {
-  double value = scale->low + part * (scale->high - scale->low);
-  return strut_palette_at(scale->colours, value, scale->low, scale->high);
-}
-
-/* The strip: cells overlap, so that no viewer shows seams. */
-static void draw_strip(strut_canvas *canvas, strut_box strip, bool upright,
-                       const strut_colour_scale *scale) {
-  for (int i = 0; i < CELLS; i++) {
-    const strut_fill fill = {.colour = colour_at(scale, (i + 0.5) / CELLS)};
+void strut_draw_shades(strut_canvas *canvas, strut_box strip, strut_colours colours, double low,
+                       double high) {
+  bool upright = strip.height > strip.width;
+  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
+    double rest = (double)(SHADES - i) / SHADES, part = (i + 0.5) / SHADES;
+    const strut_fill fill = {.colour =
+                                 strut_palette_at(colours, low + part * (high - low), low, high)};
     strut_box cell = strip;
-    if (upright) { /* from the top: each cell covers the rest of the strip */
-      cell.height = strip.height * (CELLS - i) / CELLS;
-      const strut_fill from_top = {.colour = colour_at(scale, 1 - (i + 0.5) / CELLS)};
-      cell.y = strip.y + strip.height - cell.height;
-      strut_draw_box(canvas, cell, &from_top, NULL);
-    } else {
-      cell.width = strip.width * (CELLS - i) / CELLS;
-      cell.x = strip.x + strip.width - cell.width;
-      strut_draw_box(canvas, cell, &fill, NULL);
-    }
+    if (upright)
+      cell.height *= rest;
+    else
+      cell.x += (1 - rest) * strip.width, cell.width *= rest;
+    strut_draw_box(canvas, cell, &fill, NULL);
   }
-  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
-}
-
-/* Arrowheads at the ends of the strip beyond which there are values. */
-static void point_beyond(strut_canvas *canvas, strut_box strip, bool upright,
-                         const strut_beyond *beyond) {
-  double x = strip.x + 0.5 * strip.width, y = strip.y + 0.5 * strip.height;
-  const double low[2] = {upright ? x : strip.x - STRUT_BEYOND_SIZE,
-                         upright ? strip.y + strip.height + STRUT_BEYOND_SIZE : y};
-  const double high[2] = {upright ? x : strip.x + strip.width + STRUT_BEYOND_SIZE,
-                          upright ? strip.y - STRUT_BEYOND_SIZE : y};
-  if (beyond->below) strut_draw_beyond(canvas, low, upright ? STRUT_SIDE_BOTTOM : STRUT_SIDE_LEFT);
-  if (beyond->above) strut_draw_beyond(canvas, high, upright ? STRUT_SIDE_TOP : STRUT_SIDE_RIGHT);
 }
 
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
   bool upright = box.height > box.width;
   const strut_axis axis = {
       .name = scale->name, .unit = scale->unit, .low = scale->low, .high = scale->high};
-  const strut_font font = {.size = BAR_TEXT};
+  const strut_beyond *beyond = &scale->beyond;
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
+  strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
   strut_tick_set set;
-  double width, line;
+  double line = strut_text_height(canvas, "0", font);
   strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
-  strut_text_size(canvas, "0", font, &width, &line);
   strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
                             : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
-  draw_strip(canvas, strip, upright, scale);
-  point_beyond(canvas, strip, upright, &scale->beyond);
-  if (scale->beyond.below + scale->beyond.above) {
-    size_t used = strlen(set.label);
-    snprintf(set.label + used, sizeof set.label - used, ", up to %s",
-             strut_drawn_quantity(scale->beyond.farthest, 3, scale->unit).text);
+  double right = strip.x + strip.width, bottom = strip.y + strip.height;
+  strut_draw_shades(canvas, strip, scale->colours, scale->low, scale->high);
+  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
+  for (int end = 0; end < 2; end++) { /* values beyond the ends */
+    double x = upright ? strip.x + 0.5 * BAR : end ? right : strip.x;
+    double y = !upright ? strip.y + 0.5 * BAR : end ? strip.y : bottom;
+    strut_side side = upright ? end ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM
+                      : end   ? STRUT_SIDE_RIGHT
+                              : STRUT_SIDE_LEFT;
+    if (end ? beyond->above : beyond->below)
+      strut_draw_beyond(canvas, (const double[2]){x, y}, side, STRUT_BEYOND_SIZE);
   }
   for (size_t i = 0; i < set.count; i++) {
     double part = (set.at[i] - scale->low) / (scale->high - scale->low);
-    strut_font own = font;
-    if (upright) {
-      double y = strip.y + strip.height * (1 - part), x = strip.x + BAR;
-      strut_draw_segment(canvas, x, y, x + BAR_TICK, y, pen);
-      own.down = 0.5;
-      strut_draw_text(canvas, x + BAR_TICK + 2, y, set.text[i], own);
-    } else {
-      double x = strip.x + strip.width * part, y = strip.y + BAR;
-      strut_draw_segment(canvas, x, y, x, y + BAR_TICK, pen);
-      own.across = 0.5;
-      strut_draw_text(canvas, x, y + BAR_TICK + 1, set.text[i], own);
-    }
+    double x = upright ? right : strip.x + strip.width * part;
+    double y = upright ? strip.y + strip.height * (1 - part) : bottom;
+    double end[2] = {upright ? x + BAR_TICK : x, upright ? y : y + BAR_TICK};
+    strut_draw_segment(canvas, x, y, end[0], end[1], pen);
+    strut_draw_text(canvas, end[0] + 2 * upright, end[1] + !upright, set.text[i], font);
+  }
+  if (beyond->below + beyond->above) {
+    size_t used = strlen(set.label);
+    snprintf(set.label + used, sizeof set.label - used, ", up to %s",
+             strut_drawn_quantity(beyond->farthest, 3, scale->unit).text);
   }
   /* A long name ends where the box does, rather than beyond the page. */
-  strut_text_size(canvas, set.label, font, &width, &line);
-  double across = !upright ? 0.5 : width > box.width ? 1 : 0;
-  strut_draw_text(canvas, box.x + across * box.width, box.y, set.label,
-                  (strut_font){.size = BAR_TEXT, .across = across, .halo = strut_grey(1)});
+  bool wide = strut_text_width(canvas, set.label, font) > box.width;
+  font = (strut_font){.size = BAR_TEXT,
+                      .across = !upright ? 0.5
+                                : wide   ? 1
+                                         : 0,
+                      .halo = strut_grey(1)};
+  strut_draw_text(canvas, box.x + font.across * box.width, box.y, set.label, font);
 }

@@ -14,21 +14,22 @@
 
 struct strut_cairo_page {
   cairo_t *cairo;
+  cairo_t *ink;        /* the same without texts, a pixel for a point: what labels keep off */
   PangoLayout *layout; /* used for every text in turn */
   strut_page_format format;
   void *context;
   strut_status (*write)(void *context, const void *bytes, size_t count);
 };
 
-/* Limit of Cairo's fixed-point numbers; nothing on a page is as far away [pt]. */
-static const double FARTHEST = 1e6;
+/* Limit of Cairo's fixed-point numbers; nothing on a page is as far away. Largest side with ink [pt]. */
+static const double FARTHEST = 1e6, LARGEST = 20000;
 
 /* Sets the colour of what is drawn next. */
-static void set_ink(strut_cairo_page *page, strut_colour colour) {
+static void set_ink(cairo_t *cairo, strut_colour colour) {
   if (colour.alpha >= 1.0) { /* an opaque source keeps SVG and PDF free of transparency */
-    cairo_set_source_rgb(page->cairo, colour.red, colour.green, colour.blue);
+    cairo_set_source_rgb(cairo, colour.red, colour.green, colour.blue);
   } else {
-    cairo_set_source_rgba(page->cairo, colour.red, colour.green, colour.blue, colour.alpha);
+    cairo_set_source_rgba(cairo, colour.red, colour.green, colour.blue, colour.alpha);
   }
 }
 
@@ -107,29 +108,19 @@ static void set_text(strut_cairo_page *page, const char *text, const strut_font 
   g_free(valid);
 }
 
-/* The layout's size [pt]. */
-static void measure_layout(strut_cairo_page *page, double *width, double *height) {
-  PangoRectangle logical;
-  pango_layout_get_extents(page->layout, NULL, &logical);
-  *width = (double)logical.width / PANGO_SCALE;
-  *height = (double)logical.height / PANGO_SCALE;
+/* The layout's own box, or that of its ink [pt]. */
+static strut_box measure_layout(strut_cairo_page *page, bool ink) {
+  PangoRectangle box;
+  pango_layout_get_extents(page->layout, ink ? &box : NULL, ink ? NULL : &box);
+  return (strut_box){(double)box.x / PANGO_SCALE, (double)box.y / PANGO_SCALE,
+                     (double)box.width / PANGO_SCALE, (double)box.height / PANGO_SCALE};
 }
 
 static void find_text_size(strut_cairo_page *page, const char *text, strut_font font, double *width,
                            double *height) {
   set_text(page, text, &font);
-  measure_layout(page, width, height);
-}
-
-/* The box of the layout's ink on the page; `corner` is where the layout's own origin is, before turning. */
-static strut_box find_ink(PangoLayout *layout, const double at[2], const double corner[2],
-                          bool upwards) {
-  PangoRectangle ink;
-  pango_layout_get_extents(layout, &ink, NULL);
-  double x = corner[0] + (double)ink.x / PANGO_SCALE, y = corner[1] + (double)ink.y / PANGO_SCALE;
-  double width = (double)ink.width / PANGO_SCALE, height = (double)ink.height / PANGO_SCALE;
-  if (upwards) return (strut_box){at[0] + y, at[1] - x - width, height, width};
-  return (strut_box){at[0] + x, at[1] + y, width, height};
+  const strut_box box = measure_layout(page, false);
+  *width = box.width, *height = box.height;
 }
 
 /* True if the box is on the page and inside the clip, but for a hair. */
@@ -143,14 +134,13 @@ static bool is_unclipped(strut_cairo_page *page, strut_box box) {
 
 static strut_drawn_text draw_text(strut_cairo_page *page, const double at[2], const char *text,
                                   strut_font font) {
-  double width, height;
   set_text(page, text, &font);
-  measure_layout(page, &width, &height);
-  PangoRectangle logical;
-  pango_layout_get_extents(page->layout, NULL, &logical);
-  const double corner[2] = {-font.across * width - (double)logical.x / PANGO_SCALE,
-                            -font.down * height};
-  const strut_box ink = find_ink(page->layout, at, corner, font.upwards);
+  const strut_box whole = measure_layout(page, false), own = measure_layout(page, true);
+  /* Where the layout's own origin is, before turning. */
+  const double corner[2] = {-font.across * whole.width - whole.x, -font.down * whole.height};
+  double x = corner[0] + own.x, y = corner[1] + own.y;
+  strut_box ink = {at[0] + x, at[1] + y, own.width, own.height};
+  if (font.upwards) ink = (strut_box){at[0] + y, at[1] - x - own.width, own.height, own.width};
   const strut_drawn_text drawn = {pango_layout_get_text(page->layout), ink,
                                   is_unclipped(page, ink)};
   cairo_save(page->cairo);
@@ -159,7 +149,7 @@ static strut_drawn_text draw_text(strut_cairo_page *page, const double at[2], co
   cairo_move_to(page->cairo, corner[0], corner[1]);
   if (font.halo.alpha > 0) {
     cairo_save(page->cairo);
-    set_ink(page, font.halo);
+    set_ink(page->cairo, font.halo);
     pango_cairo_layout_path(page->cairo, page->layout);
     cairo_set_dash(page->cairo, NULL, 0, 0);
     cairo_set_line_width(page->cairo, HALO);
@@ -167,7 +157,7 @@ static strut_drawn_text draw_text(strut_cairo_page *page, const double at[2], co
     cairo_restore(page->cairo);
     cairo_move_to(page->cairo, corner[0], corner[1]);
   }
-  set_ink(page, font.colour.alpha > 0 ? font.colour : (strut_colour){0, 0, 0, 1});
+  set_ink(page->cairo, font.colour.alpha > 0 ? font.colour : (strut_colour){0, 0, 0, 1});
   pango_cairo_show_layout(page->cairo, page->layout);
   cairo_new_path(page->cairo);
   cairo_restore(page->cairo);
@@ -204,6 +194,7 @@ static void free_page(strut_cairo_page *page) {
   if (page->layout) g_object_unref(page->layout);
   cairo_surface_finish(cairo_get_target(page->cairo));
   cairo_destroy(page->cairo);
+  cairo_destroy(page->ink);
   strut_release(page);
 }
 
@@ -216,10 +207,16 @@ static strut_cairo_page *open_page(const strut_page_request *request) {
   cairo_surface_t *surface = create_surface(page, request);
   page->cairo = cairo_create(surface);
   cairo_surface_destroy(surface); /* the context keeps it */
+  surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(fmin(request->width, LARGEST)),
+                                       (int)ceil(fmin(request->height, LARGEST)));
+  page->ink = cairo_create(surface);
+  cairo_surface_destroy(surface);
   cairo_scale(page->cairo, request->scale, request->scale);
   cairo_set_line_join(page->cairo, CAIRO_LINE_JOIN_ROUND);
   page->layout = create_layout(page->cairo);
-  if (page->layout && cairo_status(page->cairo) == CAIRO_STATUS_SUCCESS) return page;
+  if (page->layout && cairo_status(page->cairo) == CAIRO_STATUS_SUCCESS &&
+      cairo_status(page->ink) == CAIRO_STATUS_SUCCESS)
+    return page;
   free_page(page);
   return NULL;
 }
@@ -249,115 +246,120 @@ static strut_status finish_page(strut_cairo_page *page, const char **reason) {
 }
 
 static void clear_page(strut_cairo_page *page, strut_colour colour) {
-  set_ink(page, colour);
-  cairo_paint(page->cairo);
+  for (int k = 0; k < 2; k++) {
+    cairo_t *cairo = k ? page->ink : page->cairo;
+    set_ink(cairo, colour);
+    cairo_paint(cairo);
+  }
 }
 
 static void clip_to(strut_cairo_page *page, strut_box box) {
-  cairo_save(page->cairo);
-  cairo_rectangle(page->cairo, box.x, box.y, box.width, box.height);
-  cairo_clip(page->cairo);
+  for (int k = 0; k < 2; k++) {
+    cairo_t *cairo = k ? page->ink : page->cairo;
+    cairo_save(cairo);
+    cairo_rectangle(cairo, box.x, box.y, box.width, box.height);
+    cairo_clip(cairo);
+  }
 }
 
-static void unclip(strut_cairo_page *page) { cairo_restore(page->cairo); }
+static void unclip(strut_cairo_page *page) {
+  cairo_restore(page->cairo);
+  cairo_restore(page->ink);
+}
+
+static double sum_ink(strut_cairo_page *page, strut_box box) {
+  cairo_surface_t *surface = cairo_get_target(page->ink);
+  cairo_surface_flush(surface);
+  const unsigned char *bytes = cairo_image_surface_get_data(surface);
+  size_t stride = (size_t)cairo_image_surface_get_stride(surface);
+  int left = (int)fmax(floor(box.x), 0), top = (int)fmax(floor(box.y), 0);
+  int right = (int)fmin(ceil(box.x + box.width), cairo_image_surface_get_width(surface));
+  int bottom = (int)fmin(ceil(box.y + box.height), cairo_image_surface_get_height(surface));
+  long sum = 0; /* hundredths of darkness, from 0 to 255 */
+  for (int y = top; y < bottom; y++)
+    for (int x = left; x < right; x++) {
+      uint32_t rgb;
+      memcpy(&rgb, bytes + (size_t)y * stride + sizeof rgb * (size_t)x, sizeof rgb);
+      sum += 25500 - (long)(30 * (rgb >> 16 & 255) + 59 * (rgb >> 8 & 255) + 11 * (rgb & 255));
+    }
+  return (double)sum / 25500.0;
+}
 
 /* ---- lines, areas and their hatching ---- */
 
 static const double HATCH_DISTANCE = 4.0, HATCH_WIDTH = 0.6;
 
-static void set_pen(strut_cairo_page *page, const strut_pen *pen) {
+static void set_pen(cairo_t *cairo, const strut_pen *pen) {
   int dashes = 0;
   while (dashes < 4 && pen->dash[dashes] > 0) dashes++;
-  set_ink(page, pen->colour);
-  cairo_set_line_width(page->cairo, pen->width);
-  cairo_set_dash(page->cairo, pen->dash, dashes, 0);
-  cairo_set_line_cap(page->cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
-}
-
-static void trace(strut_cairo_page *page, const double (*points)[2], size_t count) {
-  cairo_new_path(page->cairo);
-  for (size_t i = 0; i < count; i++)
-    cairo_line_to(page->cairo, clamp_coordinate(points[i][0]), clamp_coordinate(points[i][1]));
-}
-
-static void draw_line(strut_cairo_page *page, const double (*points)[2], size_t count,
-                      strut_pen pen) {
-  if (!count || !(pen.colour.alpha > 0)) return;
-  trace(page, points, count);
-  set_pen(page, &pen);
-  cairo_stroke(page->cairo);
-}
-
-static void draw_segments(strut_cairo_page *page, const double (*ends)[2], size_t count,
-                          strut_pen pen) {
-  if (!count || !(pen.colour.alpha > 0)) return;
-  cairo_new_path(page->cairo);
-  for (size_t i = 0; i < count; i++) {
-    cairo_move_to(page->cairo, clamp_coordinate(ends[2 * i][0]), clamp_coordinate(ends[2 * i][1]));
-    cairo_line_to(page->cairo, clamp_coordinate(ends[2 * i + 1][0]),
-                  clamp_coordinate(ends[2 * i + 1][1]));
-  }
-  set_pen(page, &pen);
-  cairo_stroke(page->cairo);
+  set_ink(cairo, pen->colour);
+  cairo_set_line_width(cairo, pen->width);
+  cairo_set_dash(cairo, pen->dash, dashes, 0);
+  cairo_set_line_cap(cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
 }
 
 /* One line at every HATCH_DISTANCE across the clip, anchored to the page so that areas side by side
    join; `slant` is the line's rise for each point it runs to the right. */
-static void hatch_lines(strut_cairo_page *page, double slant) {
+static void hatch_lines(cairo_t *cairo, double slant) {
   double x1, y1, x2, y2;
-  cairo_clip_extents(page->cairo, &x1, &y1, &x2, &y2);
+  cairo_clip_extents(cairo, &x1, &y1, &x2, &y2);
   double step = slant == 0 ? HATCH_DISTANCE : HATCH_DISTANCE * sqrt(2.0);
   double low = y1 + fmin(slant * x1, slant * x2), high = y2 + fmax(slant * x1, slant * x2);
   for (double k = floor(low / step); k * step <= high; k++) {
-    cairo_move_to(page->cairo, x1, k * step - slant * x1);
-    cairo_line_to(page->cairo, x2, k * step - slant * x2);
+    cairo_move_to(cairo, x1, k * step - slant * x1);
+    cairo_line_to(cairo, x2, k * step - slant * x2);
   }
-  cairo_stroke(page->cairo);
+  cairo_stroke(cairo);
 }
 
-static void hatch(strut_cairo_page *page, const strut_fill *fill) {
-  cairo_save(page->cairo);
-  cairo_clip_preserve(page->cairo);
-  cairo_path_t *outline = cairo_copy_path(page->cairo);
-  cairo_new_path(page->cairo);
+static void hatch(cairo_t *cairo, const strut_fill *fill) {
+  static const double slants[] = {
+      [STRUT_HATCH_RISING] = 1, [STRUT_HATCH_FALLING] = -1, [STRUT_HATCH_LEVEL] = 0};
   const strut_pen pen = {.colour = fill->hatch_colour, .width = HATCH_WIDTH, .butt = true};
-  set_pen(page, &pen);
-  if (fill->hatch == STRUT_HATCH_RISING) hatch_lines(page, 1);
-  if (fill->hatch == STRUT_HATCH_FALLING) hatch_lines(page, -1);
-  if (fill->hatch == STRUT_HATCH_LEVEL) hatch_lines(page, 0);
-  cairo_restore(page->cairo);
-  cairo_append_path(page->cairo, outline);
+  cairo_save(cairo);
+  cairo_clip_preserve(cairo);
+  cairo_path_t *outline = cairo_copy_path(cairo);
+  cairo_new_path(cairo);
+  set_pen(cairo, &pen);
+  hatch_lines(cairo, slants[fill->hatch]);
+  cairo_restore(cairo);
+  cairo_append_path(cairo, outline);
   cairo_path_destroy(outline);
 }
 
-/* Fills and strokes the current path. */
-static void paint(strut_cairo_page *page, const strut_fill *fill, const strut_pen *pen) {
-  if (fill && fill->colour.alpha > 0) {
-    set_ink(page, fill->colour);
-    cairo_fill_preserve(page->cairo);
+static void trace(cairo_t *cairo, const strut_outline *outline) {
+  cairo_new_path(cairo);
+  for (size_t i = 0; i < outline->count; i++) {
+    double x = clamp_coordinate(outline->points[i][0]), y = clamp_coordinate(outline->points[i][1]);
+    if (outline->kind == STRUT_OUTLINE_CIRCLE)
+      cairo_arc(cairo, x, y, outline->radius, 0, 2 * STRUT_PI);
+    else if (outline->kind == STRUT_OUTLINE_SEGMENTS && i % 2 == 0)
+      cairo_move_to(cairo, x, y);
+    else
+      cairo_line_to(cairo, x, y);
   }
-  if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(page, fill);
-  if (pen && pen->colour.alpha > 0) {
-    set_pen(page, pen);
-    cairo_stroke_preserve(page->cairo);
-  }
-  cairo_new_path(page->cairo);
+  if (outline->kind >= STRUT_OUTLINE_CLOSED) cairo_close_path(cairo);
 }
 
-static void draw_polygon(strut_cairo_page *page, const double (*points)[2], size_t count,
-                         const strut_fill *fill, const strut_pen *pen) {
-  trace(page, points, count);
-  cairo_close_path(page->cairo);
-  paint(page, fill, pen);
-}
-
-static void draw_circle(strut_cairo_page *page, const double centre[2], double radius,
-                        const strut_fill *fill, const strut_pen *pen) {
-  cairo_new_path(page->cairo);
-  cairo_arc(page->cairo, clamp_coordinate(centre[0]), clamp_coordinate(centre[1]), radius, 0,
-            2 * STRUT_PI);
-  cairo_close_path(page->cairo);
-  paint(page, fill, pen);
+/* Nothing is drawn of what has a point that is nowhere. */
+static void draw(strut_cairo_page *page, const strut_outline *outline, const strut_fill *fill,
+                 const strut_pen *pen) {
+  for (size_t i = 0; i < outline->count; i++)
+    if (!isfinite(outline->points[i][0] + outline->points[i][1])) return;
+  for (int k = 0; k < 2 && outline->count; k++) {
+    cairo_t *cairo = k ? page->ink : page->cairo;
+    trace(cairo, outline);
+    if (fill && fill->colour.alpha > 0) {
+      set_ink(cairo, fill->colour);
+      cairo_fill_preserve(cairo);
+    }
+    if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(cairo, fill);
+    if (pen && pen->colour.alpha > 0) {
+      set_pen(cairo, pen);
+      cairo_stroke_preserve(cairo);
+    }
+    cairo_new_path(cairo);
+  }
 }
 
 extern STRUT_API const strut_cairo_library strut_cairo_table;
@@ -370,10 +372,8 @@ const strut_cairo_library strut_cairo_table = {
     .clear = clear_page,
     .clip = clip_to,
     .unclip = unclip,
-    .line = draw_line,
-    .segments = draw_segments,
-    .polygon = draw_polygon,
-    .circle = draw_circle,
+    .draw = draw,
+    .ink = sum_ink,
     .text = draw_text,
     .text_size = find_text_size,
 };

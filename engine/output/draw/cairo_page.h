@@ -29,6 +29,20 @@ typedef struct strut_page_request {
   strut_status (*write)(void *context, const void *bytes, size_t count);
 } strut_page_request;
 
+typedef enum strut_outline_kind {
+  STRUT_OUTLINE_LINE,
+  STRUT_OUTLINE_SEGMENTS, /* points 2 i and 2 i + 1 belong together */
+  STRUT_OUTLINE_CLOSED,
+  STRUT_OUTLINE_CIRCLE /* around its only point */
+} strut_outline_kind;
+
+typedef struct strut_outline {
+  strut_outline_kind kind;
+  size_t count;
+  const double (*points)[2]; /* (count) */
+  double radius;
+} strut_outline;
+
 /** A text as it was drawn. */
 typedef struct strut_drawn_text {
   const char *text; /* valid UTF-8; until the next text is drawn or measured */
@@ -52,13 +66,12 @@ typedef struct strut_cairo_library {
   void (*clear)(strut_cairo_page *page, strut_colour colour);
   void (*clip)(strut_cairo_page *page, strut_box box);
   void (*unclip)(strut_cairo_page *page);
+  /** A fill or a pen may be NULL. */
+  void (*draw)(strut_cairo_page *page, const strut_outline *outline, const strut_fill *fill,
+               const strut_pen *pen);
+  /** See strut_canvas_ink. */
+  double (*ink)(strut_cairo_page *page, strut_box box);
   /** The following as the functions of canvas.h that are named like them. */
-  void (*line)(strut_cairo_page *page, const double (*points)[2], size_t count, strut_pen pen);
-  void (*segments)(strut_cairo_page *page, const double (*ends)[2], size_t count, strut_pen pen);
-  void (*polygon)(strut_cairo_page *page, const double (*points)[2], size_t count,
-                  const strut_fill *fill, const strut_pen *pen);
-  void (*circle)(strut_cairo_page *page, const double centre[2], double radius,
-                 const strut_fill *fill, const strut_pen *pen);
   strut_drawn_text (*text)(strut_cairo_page *page, const double at[2], const char *text,
                            strut_font font);
   void (*text_size)(strut_cairo_page *page, const char *text, strut_font font, double *width,

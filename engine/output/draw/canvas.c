@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/draw/canvas.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,14 +9,10 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/vec.h"
 #include "engine/output/buffer.h"
 #include "engine/output/draw/cairo_page.h"
 #include "engine/output/draw/labels.h"
-#include "engine/output/draw/page_ink.h"
 #include "engine/output/file.h"
-
-enum { MOST_CLIPS = 8, CIRCLE = 12 };
 
 struct strut_canvas {
   const strut_cairo_library *cairo;
@@ -27,43 +22,18 @@ struct strut_canvas {
   strut_buffer svg;   /* gathered; its surfaces are renumbered at the end */
   strut_buffer texts; /* of an SVG: where its texts are, which are drawn as outlines */
   bool is_svg;
-  strut_page_ink ink;
   strut_labels labels;
-  strut_box clips[MOST_CLIPS + 1]; /* the page, and the boxes inside which is drawn */
-  size_t clip_count;
 };
 
 /* ---- numbers in SVG files ---- */
 
-/* Cairo numbers the surfaces of SVG files through the life of the process. Numbering them from 0
+/* Cairo numbers the surfaces of SVG files through the life of the process. Counting them from the first one
    in every picture makes its bytes independent of what was drawn before. */
 
-/* Prefixes of numbered names in Cairo 1.16 and 1.18. Texts are outlines, so no other text
-   matches. */
-static const char *const prefixes[] = {"surface", "source-"};
-
-typedef struct numbers {
-  unsigned long *seen;
-  size_t count, room;
-} numbers;
-
-/* The place of `number` among those seen so far; false when memory is out. */
-static bool find_index(numbers *self, unsigned long number, size_t *place) {
-  for (*place = 0; *place < self->count; ++*place)
-    if (self->seen[*place] == number) return true;
-  if (self->count == self->room) {
-    size_t room = 2 * self->room + 16;
-    unsigned long *more = strut_reallocate(self->seen, room, sizeof *more);
-    if (!more) return false;
-    self->seen = more;
-    self->room = room;
-  }
-  self->seen[self->count++] = number;
-  return true;
-}
-
-/* Length of the prefix of a numbered name at `text`, or 0. */
+/* Length of the prefix of a numbered name at `text`, of Cairo 1.16 or 1.18, or 0. Texts are outlines, so no other
+   text matches. */
 static size_t numbered(const char *text) {
+  static const char *const prefixes[] = {"surface", "source-"};
   for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
     size_t length = strlen(prefixes[i]);
     if (strncmp(text, prefixes[i], length) == 0 && text[length] >= '0' && text[length] <= '9')
@@ -72,30 +42,27 @@ static size_t numbered(const char *text) {
   return 0;
 }
 
-static bool renumber_surfaces(char *svg) {
-  numbers n = {0};
-  bool good = true;
+static void renumber_surfaces(char *svg) {
+  unsigned long first = 0;
   char *out = svg;
-  for (const char *in = svg; *in && good;) {
-    size_t length = *in == 's' ? numbered(in) : 0, place;
+  for (const char *in = svg; *in;) {
+    size_t length = *in == 's' ? numbered(in) : 0;
     if (!length) {
       *out++ = *in++;
       continue;
     }
-    char *end;
+    char *end, digits[24];
     unsigned long number = strtoul(in + length, &end, 10);
-    good = find_index(&n, number, &place);
+    if (!first) first = number;
     memmove(out, in, length);
-    /* The i-th that appears cannot have a number below i: the new one is never longer. */
-    char digits[24];
-    size_t count = (size_t)snprintf(digits, sizeof digits, "%zu", place);
+    /* Not longer than it was. */
+    size_t count =
+        (size_t)snprintf(digits, sizeof digits, "%lu", number >= first ? number - first : number);
     memcpy(out + length, digits, count);
     out += length + count;
     in = end;
   }
-  if (good) *out = '\0';
-  strut_release(n.seen);
-  return good;
+  *out = '\0';
 }
 
 /* ---- files ---- */
@@ -147,9 +114,7 @@ static strut_status open_canvas(strut_page_request *request, const char *path,
                       .is_svg = request->format == STRUT_PAGE_SVG};
   request->context = c;
   if (path) status = strut_file_open_path(&c->file, path, error);
-  c->clips[0] = c->box;
-  if (status == STRUT_OK && (!strut_page_ink_create(&c->ink, c->box.width, c->box.height) ||
-                             !(c->page = cairo->open(request))))
+  if (status == STRUT_OK && !(c->page = cairo->open(request)))
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory for a picture of %g by %g points",
                         c->box.width, c->box.height);
   if (status == STRUT_OK) {
@@ -183,7 +148,7 @@ strut_status strut_canvas_open_pixels(int width, int height, double scale, strut
 }
 
 const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride) {
-  strut_labels_place(&canvas->labels, canvas, &canvas->ink);
+  strut_labels_place(&canvas->labels, canvas);
   return canvas->cairo->pixels(canvas->page, stride);
 }
 
@@ -210,7 +175,8 @@ static void note_text(strut_canvas *canvas, const strut_drawn_text *drawn) {
 static strut_status write_svg(strut_canvas *canvas) {
   static const char last[] = "</svg>", space[] = "urn:strut:texts";
   char *svg = strut_buffer_take(&canvas->svg), *end = NULL;
-  if (svg && renumber_surfaces(svg)) end = strstr(svg, last);
+  if (svg) renumber_surfaces(svg);
+  if (svg) end = strstr(svg, last);
   if (end) {
     strut_buffer whole = {0};
     strut_buffer_add(&whole, "%.*s", (int)(end - svg), svg);
@@ -229,7 +195,7 @@ static strut_status write_svg(strut_canvas *canvas) {
 
 strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error) {
   const char *reason = NULL;
-  strut_labels_place(&canvas->labels, canvas, &canvas->ink);
+  strut_labels_place(&canvas->labels, canvas);
   strut_status status = canvas->cairo->finish(canvas->page, &reason);
   if (status == STRUT_OK && canvas->labels.failed) status = STRUT_NO_MEMORY;
   if (status == STRUT_OK && canvas->is_svg) status = write_svg(canvas);
@@ -252,7 +218,6 @@ void strut_canvas_free(strut_canvas *canvas) {
   strut_release(strut_buffer_take(&canvas->svg));
   strut_release(strut_buffer_take(&canvas->texts));
   strut_labels_free(&canvas->labels);
-  strut_page_ink_free(&canvas->ink);
   strut_file_abandon(&canvas->file);
   strut_release(canvas);
 }
@@ -261,6 +226,8 @@ strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }
 
 /* ---- drawing ---- */
 
+static const double DOT = 2.7, RING = 3.4; /* radii [pt] */
+
 strut_box strut_canvas_box(const strut_canvas *canvas) { return canvas->box; }
 
 void strut_canvas_clear(strut_canvas *canvas, strut_colour colour) {
@@ -268,35 +235,24 @@ void strut_canvas_clear(strut_canvas *canvas, strut_colour colour) {
 }
 
 void strut_canvas_clip(strut_canvas *canvas, strut_box box) {
-  const strut_box *outer = &canvas->clips[canvas->clip_count];
-  assert(canvas->clip_count < MOST_CLIPS);
-  strut_box both = {fmax(outer->x, box.x), fmax(outer->y, box.y), 0, 0};
-  both.width = fmin(outer->x + outer->width, box.x + box.width) - both.x;
-  both.height = fmin(outer->y + outer->height, box.y + box.height) - both.y;
-  canvas->clips[++canvas->clip_count] = both;
   canvas->cairo->clip(canvas->page, box);
 }
 
-void strut_canvas_unclip(strut_canvas *canvas) {
-  assert(canvas->clip_count > 0);
-  canvas->clip_count--;
-  canvas->cairo->unclip(canvas->page);
-}
+void strut_canvas_unclip(strut_canvas *canvas) { canvas->cairo->unclip(canvas->page); }
 
-static void blacken_line(strut_canvas *canvas, const double (*points)[2], size_t count,
-                         strut_pen pen) {
-  strut_page_ink_line(&canvas->ink, canvas->clips[canvas->clip_count], points, count, pen);
+double strut_canvas_ink(strut_canvas *canvas, strut_box box) {
+  return canvas->cairo->ink(canvas->page, box);
 }
 
 void strut_draw_line(strut_canvas *canvas, const double (*points)[2], size_t count, strut_pen pen) {
-  blacken_line(canvas, points, count, pen);
-  canvas->cairo->line(canvas->page, points, count, pen);
+  const strut_outline line = {STRUT_OUTLINE_LINE, count, points, 0};
+  canvas->cairo->draw(canvas->page, &line, NULL, &pen);
 }
 
 void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
                          strut_pen pen) {
-  for (size_t i = 0; i < count; i++) blacken_line(canvas, ends + 2 * i, 2, pen);
-  canvas->cairo->segments(canvas->page, ends, count, pen);
+  const strut_outline segments = {STRUT_OUTLINE_SEGMENTS, 2 * count, ends, 0};
+  canvas->cairo->draw(canvas->page, &segments, NULL, &pen);
 }
 
 void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
@@ -305,21 +261,10 @@ void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, d
   strut_draw_line(canvas, ends, 2, pen);
 }
 
-static void blacken_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
-                            const strut_fill *fill, const strut_pen *pen) {
-  if (fill)
-    strut_page_ink_fill(&canvas->ink, canvas->clips[canvas->clip_count], points, count, fill);
-  if (!pen || !count) return;
-  const double closing[2][2] = {{points[count - 1][0], points[count - 1][1]},
-                                {points[0][0], points[0][1]}};
-  blacken_line(canvas, points, count, *pen);
-  blacken_line(canvas, closing, 2, *pen);
-}
-
 void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
                         const strut_fill *fill, const strut_pen *pen) {
-  blacken_polygon(canvas, points, count, fill, pen);
-  canvas->cairo->polygon(canvas->page, points, count, fill, pen);
+  const strut_outline polygon = {STRUT_OUTLINE_CLOSED, count, points, 0};
+  canvas->cairo->draw(canvas->page, &polygon, fill, pen);
 }
 
 void strut_draw_box(strut_canvas *canvas, strut_box box, const strut_fill *fill,
@@ -333,13 +278,9 @@ void strut_draw_box(strut_canvas *canvas, strut_box box, const strut_fill *fill,
 
 void strut_draw_circle(strut_canvas *canvas, double x, double y, double radius,
                        const strut_fill *fill, const strut_pen *pen) {
-  double points[CIRCLE][2];
-  for (int i = 0; i < CIRCLE; i++) {
-    double angle = STRUT_TAU * i / CIRCLE;
-    points[i][0] = x + radius * cos(angle), points[i][1] = y + radius * sin(angle);
-  }
-  blacken_polygon(canvas, (const double(*)[2])points, CIRCLE, fill, pen);
-  canvas->cairo->circle(canvas->page, (const double[2]){x, y}, radius, fill, pen);
+  const double centre[1][2] = {{x, y}};
+  const strut_outline circle = {STRUT_OUTLINE_CIRCLE, 1, centre, radius};
+  canvas->cairo->draw(canvas->page, &circle, fill, pen);
 }
 
 void strut_text_size(strut_canvas *canvas, const char *text, strut_font font, double *width,
@@ -368,6 +309,11 @@ void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
 }
 
 void strut_draw_label(strut_canvas *canvas, const strut_label *label) {
+  const strut_pen edge = {.colour = strut_grey(0.1), .width = label->ring ? 0.9 : 0.6};
+  const strut_fill fill = {.colour = label->colour};
+  if (label->dot || label->ring)
+    strut_draw_circle(canvas, label->at[0], label->at[1], label->ring ? RING : DOT,
+                      label->dot ? &fill : NULL, &edge);
   strut_labels_add(&canvas->labels, label);
 }
 

@@ -9,6 +9,7 @@
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
 #define STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
 
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -120,21 +121,32 @@ STRUT_API double strut_text_height(strut_canvas *canvas, const char *text, strut
 /** A text beside what it names. */
 typedef struct strut_label {
   const char *text;
-  strut_font font;  /* its across, down and upwards are not used */
-  double at[2];     /* what is named [pt] */
-  double gap;       /* from there to the text at least [pt] */
-  double angle;     /* preferred direction, counterclockwise from the right */
-  double steady;    /* how much that matters: 0 not at all, 1 usually */
-  strut_box inside; /* the text stays in here; zero: the page */
-  int priority;     /* higher ones are placed first */
-  bool loose;       /* names nothing at its place: no line leads there */
+  strut_font font;     /* its across, down and upwards are not used */
+  double at[2];        /* what is named [pt] */
+  double gap;          /* from there to the text at least [pt] */
+  double angle;        /* preferred direction, counterclockwise from the right */
+  double steady;       /* how much that matters: 0 not at all, 1 usually */
+  strut_box inside;    /* the text stays in here; zero: the page */
+  int priority;        /* higher ones are placed first */
+  bool loose;          /* names nothing at its place: no line leads there */
+  bool dot, ring;      /* a filled circle there; an empty one around what is there */
+  strut_colour colour; /* of the dot */
 } strut_label;
 /**
- * Draws a label near its place when all else is drawn (by strut_canvas_commit or _pixels): where it covers
+ * Draws a label's dot or ring at once, and its text near its place when all else is drawn (by strut_canvas_commit or _pixels): where it covers
  * no other text and least ink, with a thin line from what is named if that is far. Labels that find no
  * place are left out, and a note on the page counts them.
  */
 STRUT_API void strut_draw_label(strut_canvas *canvas, const strut_label *label);
+
+/** Sum of darkness of all that was drawn inside a box but texts [pt^2]. */
+STRUT_API double strut_canvas_ink(strut_canvas *canvas, strut_box box);
+
+/**
+ * A coordinate [pt] on a grid of 1/64 pt, for decisions of layout: points that differ by rounding get the same one.
+ * What is symmetric lies on multiples of 1/2 pt; the rounding changes far from those.
+ */
+static inline double strut_settle_coordinate(double x) { return floor(64.0 * x + 0.36) / 64.0; }
 
 struct strut_file;
 /** The file that a picture is written to, for tests that make writing fail. */
@@ -150,14 +162,12 @@ STRUT_API struct strut_file *strut_canvas_file(strut_canvas *canvas);
 STRUT_API strut_colour strut_palette_signed(double value);
 /** A quantity from 0 to 1, dark to bright: time along a path, height of a field. */
 STRUT_API strut_colour strut_palette_sequence(double value);
-/** A signed quantity that fills areas, -1 to 1: from blue over near white at 0 to brown. */
-STRUT_API strut_colour strut_palette_diverging(double value);
 
 /** Colour scales of maps and of the bars beside drawings. */
 typedef enum strut_colours {
   STRUT_COLOURS_AUTO,       /* of a map: diverging where values have both signs, else sequential */
   STRUT_COLOURS_SEQUENTIAL, /* strut_palette_sequence from low to high */
-  STRUT_COLOURS_DIVERGING,  /* strut_palette_diverging, 0 in the middle */
+  STRUT_COLOURS_DIVERGING,  /* of areas: from blue over near white at 0 in the middle to brown */
   STRUT_COLOURS_GREY,       /* dark to bright from low to high */
   STRUT_COLOURS_SIGNED      /* strut_palette_signed, 0 in the middle */
 } strut_colours;

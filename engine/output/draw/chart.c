@@ -7,11 +7,11 @@
 
 #include "engine/base/vec.h"
 #include "engine/output/draw/painter.h"
-#include "engine/output/draw/view.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
 static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
                     SCALE = 52;
+static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
 static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
@@ -45,29 +45,23 @@ static size_t add_item(strut_key_item *items, size_t count, strut_key_item item)
   return count + 1;
 }
 
+static size_t add_area(strut_key_item *items, size_t count, strut_fill fill, const char *text) {
+  return add_item(items, count,
+                  (strut_key_item){.sign = STRUT_KEY_AREA, .fill = fill, .text = text});
+}
+
 static size_t name_cells(const strut_map *map, strut_key_item *items, size_t count) {
-  const strut_fill hatched = {
-      .colour = strut_grey(1), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
-  const strut_fill blank = {.colour = strut_grey(1)};
+  strut_fill fill = {.colour = strut_grey(1), .hatch_colour = strut_grey(0.05)};
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
     doubt = doubt || (map->doubtful && map->doubtful[k]);
     missing = missing || !strut_map_has(map, k);
   }
   for (size_t i = 0; map->category && i < map->category_count; i++)
-    count = add_item(
-        items, count,
-        (strut_key_item){
-            .sign = STRUT_KEY_AREA, .fill = strut_category_fill(i), .text = map->names[i]});
-  if (doubt)
-    count = add_item(
-        items, count,
-        (strut_key_item){
-            .sign = STRUT_KEY_AREA, .fill = hatched, .text = map->doubt ? map->doubt : "doubtful"});
-  if (missing)
-    count = add_item(items, count,
-                     (strut_key_item){.sign = STRUT_KEY_AREA, .fill = blank, .text = "no result"});
-  return count;
+    count = add_area(items, count, strut_category_fill(i), map->names[i]);
+  if (missing) count = add_area(items, count, fill, "no result");
+  fill.hatch = STRUT_HATCH_RISING;
+  return doubt ? add_area(items, count, fill, map->doubt ? map->doubt : "doubtful") : count;
 }
 
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
@@ -83,10 +77,7 @@ size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_
                                       .text = panel->series[i].label});
   }
   for (size_t i = 0; i < panel->band_count; i++)
-    count =
-        add_item(items, count,
-                 (strut_key_item){
-                     .sign = STRUT_KEY_AREA, .fill = band_fill(), .text = panel->bands[i].label});
+    count = add_area(items, count, band_fill(), panel->bands[i].label);
   return panel->map ? name_cells(panel->map, items, count) : count;
 }
 
@@ -109,15 +100,16 @@ static size_t covered(const strut_chart *chart, strut_box box) {
 }
 
 /* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
-static bool find_corner(const strut_chart *chart, const double size[2], double corner[2]) {
+static bool find_corner(const strut_chart *chart, strut_box *key) {
   const strut_box *box = &chart->axes.frame;
-  if (chart->panel->map || size[0] > 0.6 * box->width || size[1] > 0.6 * box->height) return false;
+  if (chart->panel->map || key->width > 0.6 * box->width || key->height > 0.6 * box->height)
+    return false;
   for (int k = 0; k < 6; k++) {
     double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
-    corner[0] = box->x + INSET + across * (box->width - size[0] - 2 * INSET);
-    corner[1] = box->y + INSET + down * (box->height - size[1] - 2 * INSET);
-    const strut_box around = {corner[0] - 2, corner[1] - 2, size[0] + 4, size[1] + 4};
-    if (!covered(chart, around)) return true;
+    key->x = box->x + INSET + across * (box->width - key->width - 2 * INSET);
+    key->y = box->y + INSET + down * (box->height - key->height - 2 * INSET);
+    if (!covered(chart, (strut_box){key->x - 2, key->y - 2, key->width + 4, key->height + 4}))
+      return true;
   }
   return false;
 }
@@ -226,17 +218,28 @@ static void draw_bands(const strut_chart *chart) {
   }
 }
 
+/* A note inside a box, where it is emptiest, near its upper right corner. */
+static void draw_note(const strut_chart *chart, const strut_box *box, const char *text,
+                      double wide) {
+  strut_draw_label(
+      chart->canvas,
+      &(strut_label){.text = text,
+                     .font = {.size = 7,
+                              .colour = strut_grey(0.3),
+                              .halo = strut_grey(1),
+                              .width = wide * box->width},
+                     .at = {box->x + box->width, box->y},
+                     .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
+                                box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
+                     .priority = 3,
+                     .loose = true});
+}
+
 static void draw_strip(const strut_chart *chart) {
   const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  const strut_box *box = &chart->strip;
-  strut_draw_box(chart->canvas, *box, &grey, &frame);
-  strut_draw_label(chart->canvas,
-                   &(strut_label){.text = chart->panel->lost,
-                                  .font = {.size = 7, .colour = strut_grey(0.35)},
-                                  .at = {box->x + box->width, box->y + 0.5 * STRIP},
-                                  .inside = {box->x + 3, box->y + 5, box->width - 6, 9},
-                                  .loose = true});
+  strut_draw_box(chart->canvas, chart->strip, &grey, &frame);
+  draw_note(chart, &chart->strip, chart->panel->lost, 1);
 }
 
 static void stroke(const strut_chart *chart, size_t i, size_t from, size_t to) {
@@ -324,22 +327,20 @@ static void draw_points(const strut_chart *chart, size_t i) {
 /* ---- marks ---- */
 
 /* A mark of the chart, or what stands for it at the frame's upper or lower edge. */
-static void draw_mark(const strut_chart *chart, const strut_mark *mark) {
+static void draw_mark(const strut_chart *chart, const strut_label *mark) {
   const strut_axes *axes = &chart->axes;
   bool above = mark->at[1] > axes->y.high, below = mark->at[1] < axes->y.low;
-  double at[2];
-  strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), at);
-  if (!is_inside(chart, at)) return;
-  if (!above && !below) {
-    strut_draw_mark(chart->canvas, axes->frame, at, mark);
-    return;
+  strut_label label = *mark;
+  strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), label.at);
+  if (!is_inside(chart, label.at)) return;
+  label.inside = axes->frame;
+  if (above || below) {
+    label.dot = label.ring = false;
+    label.angle = (above ? -0.5 : 0.5) * STRUT_PI;
+    label.gap = STRUT_BEYOND_SIZE + 1;
+    strut_draw_beyond(chart->canvas, label.at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM, 0);
   }
-  strut_mark edge = *mark;
-  edge.dot = edge.ring = false;
-  edge.angle = (above ? -0.5 : 0.5) * STRUT_PI;
-  edge.gap = STRUT_BEYOND_SIZE + 1;
-  strut_draw_beyond(chart->canvas, at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM);
-  strut_draw_mark(chart->canvas, axes->frame, at, &edge);
+  strut_draw_label(chart->canvas, &label);
 }
 
 /* Marks where curves leave the frame above or below, and says how many points are there. */
@@ -358,9 +359,10 @@ static void mark_beyond(const strut_chart *chart) {
       if (!out && farthest != SIZE_MAX) {
         const strut_point *p = &series->points[farthest];
         const strut_rounded_quantity value = strut_drawn_quantity(p->y, 3, axis->unit);
-        draw_mark(chart, &(strut_mark){.at = {p->x, p->y},
-                                       .text = labelled++ < MOST_LABELLED ? value.text : NULL,
-                                       .steady = 0.2});
+        strut_label mark =
+            strut_mark_of(p->x, p->y, labelled++ < MOST_LABELLED ? value.text : NULL);
+        mark.steady = 0.2;
+        draw_mark(chart, &mark);
       }
       if (!out) farthest = SIZE_MAX;
       if (!out) continue;
@@ -368,8 +370,8 @@ static void mark_beyond(const strut_chart *chart) {
       if (fabs(y) > fabs(beyond.farthest)) beyond.farthest = y;
     }
   }
-  strut_draw_axis_note(chart->canvas, &chart->axes,
-                       strut_beyond_text(&beyond, "point", axis->unit, text));
+  draw_note(chart, &chart->axes.frame, strut_beyond_text(&beyond, "point", axis->unit, text),
+            NOTE_WIDTH);
 }
 
 static void draw_data(const strut_chart *chart) {
@@ -390,7 +392,7 @@ static void draw_data(const strut_chart *chart) {
   for (size_t i = 0; i < panel->series_count; i++) draw_points(chart, i);
   if (panel->outliers) mark_beyond(chart);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(chart, &panel->marks[i]);
-  if (panel->remark) strut_draw_axis_note(chart->canvas, &chart->axes, panel->remark);
+  if (panel->remark) draw_note(chart, &chart->axes.frame, panel->remark, NOTE_WIDTH);
 }
 
 /* A title, centred above the frame; returns its height. */
@@ -402,45 +404,37 @@ static double draw_title(const strut_chart *chart, strut_box box, bool draw) {
   return strut_text_height(chart->canvas, chart->panel->title, font) + TITLE_GAP;
 }
 
-/* Inside the frame on a white ground. */
-static void draw_legend(const strut_chart *chart, const strut_key_item *items, size_t count,
-                        strut_box at, bool inside) {
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
-  const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
-  if (inside) strut_draw_box(chart->canvas, at, &white, &edge);
-  strut_draw_key(
-      chart->canvas,
-      (strut_box){at.x + PADDING, at.y + PADDING, inside ? 0 : at.width - 2 * PADDING, 0}, items,
-      count);
-}
-
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
+  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
+  const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
   strut_chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
   if (!items || !make_room(&c)) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
-  strut_box rest = box, at = {0, 0, 0, 0};
+  strut_box rest = box, key = strut_draw_key(canvas, (strut_box){0, 0, 0, 0}, items, count, false);
   if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
   place_chart(&c, rest);
-  double title = draw_title(&c, box, false), size[2], corner[2];
+  double title = draw_title(&c, box, false);
   rest.y += title, rest.height -= title;
   if (title > 0) place_chart(&c, rest);
-  strut_key_size(canvas, 0, items, count, size);
-  size[0] += 2 * PADDING, size[1] += 2 * PADDING;
-  bool inside = count && find_corner(&c, size, corner);
-  if (inside) {
-    at = (strut_box){corner[0], corner[1], size[0], size[1]};
-  } else if (count) {
-    at = (strut_box){c.axes.frame.x, rest.y, fmax(c.axes.frame.width, 60), 0};
-    double height = strut_key_height(canvas, at.width - 2 * PADDING, items, count) + 2 * PADDING;
+  key.width += 2 * PADDING, key.height += 2 * PADDING;
+  bool inside = count && find_corner(&c, &key);
+  if (count && !inside) {
+    key = (strut_box){c.axes.frame.x + PADDING, rest.y + PADDING,
+                      fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
+    double height = strut_draw_key(canvas, key, items, count, false).height + 2 * PADDING;
     rest.y += height, rest.height -= height;
     place_chart(&c, rest);
   }
   draw_title(&c, box, true);
   draw_data(&c);
-  if (count) draw_legend(&c, items, count, at, inside);
+  if (inside) { /* on a white ground */
+    strut_draw_box(canvas, key, &white, &edge);
+    key = (strut_box){key.x + PADDING, key.y + PADDING, 0, 0};
+  }
+  strut_draw_key(canvas, key, items, count, true);
   if (panel->scale.name)
     strut_draw_colour_scale(canvas,
                             (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,

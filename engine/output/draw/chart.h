@@ -107,12 +107,10 @@ typedef enum strut_side {
   STRUT_SIDE_LEFT,
   STRUT_SIDE_RIGHT
 } strut_side;
-/** A mark at a frame's edge for what lies beyond that side: a triangle inside, STRUT_BEYOND_SIZE high. */
-STRUT_API void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side);
+/** A mark at a frame's edge for what lies beyond that side: a triangle STRUT_BEYOND_SIZE high, its tip so far outside. */
+STRUT_API void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side,
+                                 double outside);
 #define STRUT_BEYOND_SIZE 5.0
-/** A note inside the frame, where it is emptiest near the top. "": none. */
-STRUT_API void strut_draw_axis_note(strut_canvas *canvas, const strut_axes *axes, const char *text);
-
 enum { STRUT_TICK_TEXT = 64, STRUT_MOST_MINOR = 120 };
 /** The ticks of a settled axis and their texts. */
 typedef struct strut_tick_set {
@@ -132,6 +130,9 @@ typedef struct strut_colour_scale {
   strut_colours colours;
   strut_beyond beyond; /* values that have the colours of the ends */
 } strut_colour_scale;
+/** Its colours alone, without a frame. */
+STRUT_API void strut_draw_shades(strut_canvas *canvas, strut_box strip, strut_colours colours,
+                                 double low, double high);
 STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
                                        const strut_colour_scale *scale);
 

@@ -7,7 +7,6 @@
 
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/painter.h"
-#include "engine/output/draw/view.h"
 #include "engine/output/file.h"
 
 static const double EDGE = 5, PAGE = 510.24, GAP = 12, INDENT = 30, WIDE = 330; /* [pt] */
@@ -115,8 +114,7 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
   box.y += put_heading(canvas, box, figure->note, plain, draw);
   if (box.y > EDGE) box.y += HEADING_GAP - LINE_GAP;
   const strut_box legend = {EDGE + INDENT, box.y, box.width - INDENT, 0};
-  if (draw) strut_draw_key(canvas, legend, self->items, self->item_count);
-  box.y += strut_key_height(canvas, legend.width, self->items, self->item_count);
+  box.y += strut_draw_key(canvas, legend, self->items, self->item_count, draw).height;
   for (size_t i = 0, count; i < figure->panel_count; i += count) {
     const strut_panel *first = &figure->panels[i];
     if (i > 0 && (first->shape_count || first[-1].shape_count)) box.y += GAP;

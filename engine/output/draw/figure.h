@@ -99,19 +99,6 @@ typedef struct strut_trail {
 
 /* ---- both ---- */
 
-/** A point that is named, at a place of the axes or of the plane. */
-typedef struct strut_mark {
-  double at[2];
-  const char *text;    /* beside it; NULL: none */
-  bool dot, ring;      /* a filled circle; an empty one around what is there */
-  strut_colour colour; /* of the dot */
-  strut_font font;     /* of the text; size 0: 7 pt */
-  double gap;          /* from the place to the text [pt]; 0: as a dot needs */
-  double angle;        /* preferred direction of the text, counterclockwise from the right */
-  double steady;       /* how much that matters, as in strut_label */
-  int priority;
-} strut_mark; /* Beyond the y axis it is a triangle at its end. */
-
 typedef struct strut_panel {
   const char *title; /* may be NULL; of a view at its upper left corner */
   const char *note;  /* of a view, in grey below the title; may be NULL */
@@ -133,7 +120,8 @@ typedef struct strut_panel {
   double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
   /* Both. */
   size_t mark_count;
-  strut_mark *marks;
+  strut_label
+      *marks; /* at places of the axes or of the plane; beyond the y axis a triangle at its end */
   const char *remark; /* inside the frame, where it is emptiest; or NULL */
   /* Beside it; limits that are equal come from the values. Name NULL: none. */
   strut_colour_scale scale;
@@ -175,8 +163,10 @@ STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *serie
 STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
 STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
                                      double high, const char *label);
-STRUT_API strut_mark *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
-                                     const char *text);
+/** A text of 7 pt beside a place, as far away as a dot needs; or no text, for a dot or a ring alone. */
+STRUT_API strut_label *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
+                                      const char *text);
+STRUT_API strut_label strut_mark_of(double x, double y, const char *text);
 STRUT_API strut_shape *strut_add_shape(strut_figure *figure, strut_panel *panel,
                                        const strut_model *model, const double *positions);
 /** One of a single colour, without nodes and supports, below others. */

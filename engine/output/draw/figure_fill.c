@@ -9,7 +9,8 @@
 #include "engine/base/c_locale.h"
 #include "engine/output/draw/figure.h"
 
-enum { TEXT = 800 }; /* bytes of a text at most */
+enum { TEXT = 800 };                /* bytes of a text at most */
+static const double MARK_GAP = 4.2; /* [pt] */
 
 /* One more item of a list, whose address that is: zeroed, in the arena, or the spare. Room doubles. */
 static void *add(strut_figure *figure, void *list, size_t *count, size_t size) {
@@ -57,11 +58,17 @@ strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
   return band;
 }
 
-strut_mark *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
-                           const char *text) {
-  strut_mark *mark = ADD(figure, panel->marks, panel->mark_count);
-  mark->at[0] = x, mark->at[1] = y;
-  mark->text = text;
+strut_label strut_mark_of(double x, double y, const char *text) {
+  return (strut_label){.text = text,
+                       .font = {.size = 7, .halo = strut_faded(strut_grey(1), 0.85)},
+                       .at = {x, y},
+                       .gap = MARK_GAP};
+}
+
+strut_label *strut_add_mark(strut_figure *figure, strut_panel *panel, double x, double y,
+                            const char *text) {
+  strut_label *mark = ADD(figure, panel->marks, panel->mark_count);
+  *mark = strut_mark_of(x, y, text);
   return mark;
 }
 

@@ -70,7 +70,7 @@ STRUT_VALUES_HERE(map_values, MAP, const strut_map *m = of->at)
 #define MARK(X)                                                                                    \
   X("at", "", NUMBERS(m->at, 2), "its place")                                                      \
   X("text", "", TEXT(m->text), "beside it")
-STRUT_VALUES_HERE(mark_values, MARK, const strut_mark *m = of->at)
+STRUT_VALUES_HERE(mark_values, MARK, const strut_label *m = of->at)
 
 static strut_value node_name(const strut_result_object *of, size_t i) {
   return STRUT_VALUE_AS_TEXT(((const strut_shape *)of->at)->model->scene->nodes[i].name);

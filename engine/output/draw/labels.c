@@ -25,37 +25,29 @@ static const double BESIDE = 3.0,
 
 /* ---- what waits, and what is there ---- */
 
-static bool make_room(void **list, size_t count, size_t *room, size_t size) {
-  if (count < *room) return true;
-  void *more = strut_reallocate(*list, 2 * *room + 32, size);
-  if (!more) return false;
-  *list = more;
-  *room = 2 * *room + 32;
-  return true;
+static strut_box settle_box(strut_box b) {
+  return (strut_box){strut_settle_coordinate(b.x), strut_settle_coordinate(b.y),
+                     strut_settle_coordinate(b.width), strut_settle_coordinate(b.height)};
 }
 
 void strut_labels_add(strut_labels *labels, const strut_label *label) {
   if (!label->text || !*label->text || !isfinite(label->at[0] + label->at[1])) return;
   char *text = strut_arena_text(&labels->arena, label->text, strlen(label->text));
-  void *list = labels->list;
   labels->failed = labels->failed || !text ||
-                   !make_room(&list, labels->count, &labels->room, sizeof *labels->list);
-  labels->list = list;
+                   !strut_grow(&labels->list, &labels->room, labels->count, sizeof *labels->list);
   if (labels->failed) return;
   strut_label *added = &labels->list[labels->count++];
   *added = *label;
   added->text = text;
   for (int d = 0; d < 2; d++) added->at[d] = strut_settle_coordinate(label->at[d]);
-  added->inside = strut_settle_box(label->inside);
+  added->inside = settle_box(label->inside);
 }
 
 void strut_labels_avoid(strut_labels *labels, strut_box ink) {
-  void *list = labels->texts;
-  labels->failed = labels->failed ||
-                   !make_room(&list, labels->text_count, &labels->text_room, sizeof *labels->texts);
-  labels->texts = list;
+  labels->failed = labels->failed || !strut_grow(&labels->texts, &labels->text_room,
+                                                 labels->text_count, sizeof *labels->texts);
   if (!labels->failed && isfinite(ink.x + ink.y))
-    labels->texts[labels->text_count++] = strut_settle_box(ink);
+    labels->texts[labels->text_count++] = settle_box(ink);
 }
 
 void strut_labels_free(strut_labels *labels) {
@@ -93,7 +85,7 @@ static double nearest_point(const strut_box *box, const double at[2], double poi
 /* A label being placed. */
 typedef struct search {
   const strut_labels *labels;
-  const strut_page_ink *ink;
+  strut_canvas *canvas;
   const strut_label *label;
   strut_box inside; /* and on the page */
   double width, height;
@@ -144,14 +136,14 @@ static void try_place(search *self, double ring, int direction) {
   double angle = label->angle + 2 * STRUT_PI * direction / DIRECTIONS, gap = label->gap + ring;
   double x = label->at[0] + (gap + 0.5 * self->width) * cos(angle);
   double y = label->at[1] - (gap + 0.5 * self->height) * sin(angle);
-  const strut_box box = strut_settle_box(
+  const strut_box box = settle_box(
       (strut_box){x - 0.5 * self->width, y - 0.5 * self->height, self->width, self->height});
   int turn = direction <= DIRECTIONS / 2 ? direction : DIRECTIONS - direction;
   bool led = ring >= LED;
   double cost = DISTANCE * ring + TURN * label->steady * turn + (led ? LINE : 0.0);
   if (cost >= self->cost || !is_free(self, &box)) return;
-  cost += INK * strut_page_ink_sum(self->ink, box) +
-          NEAR_INK * strut_page_ink_sum(self->ink, widened(box, AROUND)) + confusion(self, &box);
+  cost += INK * strut_canvas_ink(self->canvas, box) +
+          NEAR_INK * strut_canvas_ink(self->canvas, widened(box, AROUND)) + confusion(self, &box);
   if (cost >= self->cost - 1e-9 || (led && !has_clear_line(self, &box))) return;
   self->cost = cost;
   self->best = box;
@@ -167,7 +159,7 @@ static bool find_empty_place(search *self) {
       const strut_box box = {x, y, self->width, self->height};
       double point[2], cost = FAR * nearest_point(&box, self->label->at, point);
       if (cost >= self->cost || !is_free(self, &box)) continue;
-      cost += INK * strut_page_ink_sum(self->ink, box);
+      cost += INK * strut_canvas_ink(self->canvas, box);
       if (cost >= self->cost - 1e-9) continue;
       self->cost = cost;
       self->best = box;
@@ -214,9 +206,10 @@ static strut_box find_inside(strut_canvas *canvas, const strut_label *label) {
 /* Height of a text's letters, of that of its lines. */
 static const double LETTERS = 0.86, MOST_WIDTH = 130.0; /* [1], [pt] */
 
-static bool place_label(const strut_labels *labels, const strut_label *label, strut_canvas *canvas,
-                        const strut_page_ink *ink) {
-  search s = {.labels = labels, .ink = ink, .label = label, .inside = find_inside(canvas, label)};
+static bool place_label(const strut_labels *labels, const strut_label *label,
+                        strut_canvas *canvas) {
+  search s = {
+      .labels = labels, .canvas = canvas, .label = label, .inside = find_inside(canvas, label)};
   char fitted[STRUT_FITTED_TEXT];
   const char *text =
       strut_text_fit(canvas, label->text, label->font,
@@ -232,8 +225,7 @@ static bool place_label(const strut_labels *labels, const strut_label *label, st
 /* ---- all labels ---- */
 
 /* Says how many labels found no place, where the page is emptiest. */
-static void note_omitted(strut_labels *labels, strut_canvas *canvas, const strut_page_ink *ink,
-                         size_t count) {
+static void note_omitted(strut_labels *labels, strut_canvas *canvas, size_t count) {
   char text[60];
   snprintf(text, sizeof text, "%zu label%s left out", count, count > 1 ? "s" : "");
   const strut_box page = strut_canvas_box(canvas);
@@ -241,10 +233,10 @@ static void note_omitted(strut_labels *labels, strut_canvas *canvas, const strut
                             .font = {.size = 7, .colour = strut_grey(0.3), .halo = strut_grey(1)},
                             .at = {page.x, page.y + page.height},
                             .loose = true};
-  place_label(labels, &note, canvas, ink);
+  place_label(labels, &note, canvas);
 }
 
-void strut_labels_place(strut_labels *labels, strut_canvas *canvas, const strut_page_ink *ink) {
+void strut_labels_place(strut_labels *labels, strut_canvas *canvas) {
   size_t omitted = 0;
   for (size_t i = 1; i < labels->count; i++) { /* by importance; equal ones keep their order */
     const strut_label moved = labels->list[i];
@@ -254,7 +246,7 @@ void strut_labels_place(strut_labels *labels, strut_canvas *canvas, const strut_
     labels->list[k] = moved;
   }
   for (size_t i = 0; i < labels->count; i++)
-    if (!place_label(labels, &labels->list[i], canvas, ink)) omitted++;
+    if (!place_label(labels, &labels->list[i], canvas)) omitted++;
   labels->count = 0;
-  if (omitted) note_omitted(labels, canvas, ink, omitted);
+  if (omitted) note_omitted(labels, canvas, omitted);
 }

@@ -9,7 +9,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/canvas.h"
-#include "engine/output/draw/page_ink.h"
 
 /** Labels that wait, and the boxes of all texts that are drawn. Zero-initialise. */
 typedef struct strut_labels {
@@ -26,7 +25,7 @@ void strut_labels_add(strut_labels *labels, const strut_label *label);
 /** Notes the ink of a text that was drawn, which labels keep off. */
 void strut_labels_avoid(strut_labels *labels, strut_box ink);
 /** Draws all that wait. Where some find no place, a note on the page says how many. */
-void strut_labels_place(strut_labels *labels, strut_canvas *canvas, const strut_page_ink *ink);
+void strut_labels_place(strut_labels *labels, strut_canvas *canvas);
 void strut_labels_free(strut_labels *labels);
 
 #endif

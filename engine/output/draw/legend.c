@@ -5,12 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/chart.h"
 
 static const double LINE = 11.0, SIGN = 20.0, SCALE = 34.0, SIGN_GAP = 4.0,
                     BETWEEN = 13.0; /* [pt] */
 static const double DOT = 2.6, MARKER = 2.0, BAND = 5.0, AREA = 7.0;
-enum { SHADES = 34 };
 
 static strut_font letters(void) { return (strut_font){.size = 7.5, .down = 0.5}; }
 
@@ -53,22 +52,17 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
     case STRUT_KEY_SIGNED:
       strut_draw_text(canvas, x, y, item->before, font);
       x += text_width(canvas, item->before) + SIGN_GAP;
-      for (int i = 0; i < SHADES; i++) {
-        /* Shades overlap, so that no viewer shows seams. */
-        const strut_fill fill = {.colour = strut_palette_signed(2.0 * i / (SHADES - 1) - 1.0)};
-        double at = SCALE * i / SHADES;
-        strut_draw_box(canvas, (strut_box){x + at, y - BAND / 2, SCALE - at, BAND}, &fill, NULL);
-      }
+      strut_draw_shades(canvas, (strut_box){x, y - BAND / 2, SCALE, BAND}, STRUT_COLOURS_SIGNED, -1,
+                        1);
       break;
     case STRUT_KEY_WORDS: break;
   }
 }
 
-/* Lays the items out, draws them if `draw`, and measures the whole. Texts wider than the key wrap. */
-static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                        size_t count, bool draw, double size[2]) {
+strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                         size_t count, bool draw) {
   double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters());
-  size[0] = 0.0;
+  strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
     double sign = sign_width(canvas, &items[i]), width, height;
@@ -84,28 +78,11 @@ static void lay_out_key(strut_canvas *canvas, strut_box box, const strut_key_ite
       strut_draw_text(canvas, box.x + x + sign, box.y + top, items[i].text, font);
     }
     row = fmax(row, height + LINE - line);
-    size[0] = fmax(size[0], x + sign + width);
+    whole.width = fmax(whole.width, x + sign + width);
     x += sign + width + BETWEEN;
   }
-  size[1] = x > 0.0 ? y + row : 0.0;
-}
-
-void strut_key_size(strut_canvas *canvas, double width, const strut_key_item *items, size_t count,
-                    double size[2]) {
-  lay_out_key(canvas, (strut_box){0, 0, width, 0}, items, count, false, size);
-}
-
-double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
-                        size_t count) {
-  double size[2];
-  strut_key_size(canvas, width, items, count, size);
-  return size[1];
-}
-
-void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                    size_t count) {
-  double size[2];
-  lay_out_key(canvas, box, items, count, true, size);
+  whole.height = x > 0.0 ? y + row : 0.0;
+  return whole;
 }
 
 static bool fits(strut_canvas *canvas, const char *text, strut_font font, double width,
@@ -183,9 +160,10 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
 /* ---- colours ---- */
 
 /* Anchors at equal distances; the lightness of each row grows from left to right. */
-static const unsigned SIGNED[] = {0x0A1F66, 0x2F4A9E, 0x7D8390, 0xC98B45, 0xF5A31A};
-static const unsigned SEQUENCE[] = {0x2A0F54, 0x33508C, 0x1F8A8C, 0x55B567, 0xD3CB2F};
-static const unsigned DIVERGING[] = {0x1B4A9C, 0x7AA3D4, 0xEBEBEB, 0xE59A52, 0x9C430C};
+enum { ANCHORS = 5 };
+static const unsigned SIGNED[ANCHORS] = {0x0A1F66, 0x2F4A9E, 0x7D8390, 0xC98B45, 0xF5A31A};
+static const unsigned SEQUENCE[ANCHORS] = {0x2A0F54, 0x33508C, 0x1F8A8C, 0x55B567, 0xD3CB2F};
+static const unsigned DIVERGING[ANCHORS] = {0x1B4A9C, 0x7AA3D4, 0xEBEBEB, 0xE59A52, 0x9C430C};
 static const unsigned THINGS[STRUT_PALETTE_THINGS] = {0x0060A8, 0xD55E00, 0x009E73, 0xB0508F,
                                                       0xE69F00, 0x4FAEE6, 0x333333};
 
@@ -194,39 +172,33 @@ static strut_colour from(unsigned rgb) {
                         (double)(rgb & 255) / 255.0, 1.0};
 }
 
-/* value from 0 to 1 along (count) anchors. */
-static strut_colour between(const unsigned *anchors, int count, double value) {
-  double place = (value > 0 ? value < 1 ? value : 1.0 : 0.0) * (count - 1);
-  int i = (int)place < count - 1 ? (int)place : count - 2;
+/* value from 0 to 1 along the anchors. */
+static strut_colour between(const unsigned anchors[ANCHORS], double value) {
+  double place = (value > 0 ? value < 1 ? value : 1.0 : 0.0) * (ANCHORS - 1);
+  int i = (int)place < ANCHORS - 1 ? (int)place : ANCHORS - 2;
   double t = place - i;
   strut_colour a = from(anchors[i]), b = from(anchors[i + 1]);
   return (strut_colour){a.red + t * (b.red - a.red), a.green + t * (b.green - a.green),
                         a.blue + t * (b.blue - a.blue), 1.0};
 }
 
+strut_colour strut_palette_at(strut_colours colours, double value, double low, double high) {
+  static const unsigned *const anchors[] = {[STRUT_COLOURS_SEQUENTIAL] = SEQUENCE,
+                                            [STRUT_COLOURS_DIVERGING] = DIVERGING,
+                                            [STRUT_COLOURS_SIGNED] = SIGNED};
+  double part = (value - low) / (high - low), limit = fmax(fabs(low), fabs(high));
+  assert(colours != STRUT_COLOURS_AUTO && "a map decides what AUTO means");
+  if (colours == STRUT_COLOURS_GREY) return strut_grey(0.12 + 0.8 * fmax(0, fmin(1, part)));
+  return between(anchors[colours],
+                 colours == STRUT_COLOURS_SEQUENTIAL ? part : 0.5 + 0.5 * value / limit);
+}
+
 strut_colour strut_palette_signed(double value) {
-  return between(SIGNED, sizeof SIGNED / sizeof *SIGNED, 0.5 + 0.5 * value);
+  return strut_palette_at(STRUT_COLOURS_SIGNED, value, -1, 1);
 }
 
 strut_colour strut_palette_sequence(double value) {
-  return between(SEQUENCE, sizeof SEQUENCE / sizeof *SEQUENCE, value);
-}
-
-strut_colour strut_palette_diverging(double value) {
-  return between(DIVERGING, sizeof DIVERGING / sizeof *DIVERGING, 0.5 + 0.5 * value);
-}
-
-strut_colour strut_palette_at(strut_colours colours, double value, double low, double high) {
-  double part = (value - low) / (high - low), limit = fmax(fabs(low), fabs(high));
-  switch (colours) {
-    case STRUT_COLOURS_SEQUENTIAL: return strut_palette_sequence(part);
-    case STRUT_COLOURS_DIVERGING: return strut_palette_diverging(value / limit);
-    case STRUT_COLOURS_GREY: return strut_grey(0.12 + 0.8 * fmax(0, fmin(1, part)));
-    case STRUT_COLOURS_SIGNED: return strut_palette_signed(value / limit);
-    case STRUT_COLOURS_AUTO: break;
-  }
-  assert(false && "a map decides what AUTO means");
-  return strut_grey(0.5);
+  return strut_palette_at(STRUT_COLOURS_SEQUENTIAL, value, 0, 1);
 }
 
 strut_colour strut_palette_thing(size_t i) { return from(THINGS[i % STRUT_PALETTE_THINGS]); }

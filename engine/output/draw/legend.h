@@ -33,15 +33,12 @@ typedef struct strut_key_item {
   const char *text;   /* NULL: the item is left out */
 } strut_key_item;
 
-/** Size of a key in lines that fill `width`, or as a column of items where that is 0 [pt]. */
-STRUT_API void strut_key_size(strut_canvas *canvas, double width, const strut_key_item *items,
-                              size_t count, double size[2]);
-/** Its height. */
-STRUT_API double strut_key_height(strut_canvas *canvas, double width, const strut_key_item *items,
-                                  size_t count);
-/** Draws it from the upper left corner of `box` on, as wide as that; longer texts wrap. */
-STRUT_API void strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
-                              size_t count);
+/**
+ * Lays a key out in lines that fill the width of `box`, or as a column of items where that is 0, from its upper left
+ * corner on; longer texts wrap. Draws it if `draw`. Returns the box that it takes.
+ */
+STRUT_API strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                                   size_t count, bool draw);
 
 /**
  * Length of the longest prefix of `text` of at most `most` bytes that splits no UTF-8 character.

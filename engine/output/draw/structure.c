@@ -11,7 +11,6 @@
 #include "engine/model/pose.h"
 #include "engine/output/draw/canvas.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/draw/page_ink.h"
 #include "engine/output/draw/structure_parts.h"
 #include "engine/scene/wrap.h"
 
@@ -22,6 +21,7 @@ enum { SHADES = 16, BATCH = 256 }; /* of either sign; segments */
 static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
 static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
+static const double SMALLEST = 0.3;                     /* more that is thinner is not drawn */
 
 strut_bounds strut_bounds_none(void) {
   return (strut_bounds){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
@@ -42,12 +42,12 @@ void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const doub
   }
   for (size_t m = 0; m < model->scene->member_count; m++) { /* circles of guides */
     const strut_member *member = &model->scene->members[m];
-    for (size_t k = 1; k <= member->guide_count && member->guide_radius > 0.0; k++)
-      for (int c = 0; c < 2; c++) {
-        double at = positions[2 * strut_member_node(member, k) + c];
-        bounds->low[c] = fmin(bounds->low[c], at - member->guide_radius);
-        bounds->high[c] = fmax(bounds->high[c], at + member->guide_radius);
-      }
+    double radius = member->guide_radius;
+    for (size_t k = 1; k <= member->guide_count && radius > 0.0; k++) {
+      const double *at = positions + 2 * strut_member_node(member, k);
+      strut_bounds_widen(bounds, (const double[2]){at[0] - radius, at[1] - radius},
+                         (const double[2]){at[0] + radius, at[1] + radius});
+    }
   }
 }
 
@@ -80,7 +80,7 @@ void strut_window_point(const strut_window *window, const double position[2], do
   point[1] = window->box.y + (window->top - position[1]) * window->scale;
 }
 
-size_t strut_member_segments(const strut_model *model, size_t member) {
+static size_t count_segments(const strut_model *model, size_t member) {
   return model->scene->members[member].guide_count + 1;
 }
 
@@ -123,13 +123,13 @@ void strut_window_segment(const strut_window *window, const strut_model *model,
 /* The longest segment of a member, where its name and its stop stand. */
 void strut_longest_segment(const strut_window *window, const strut_model *model,
                            const double *positions, size_t member, double longest[2][2]) {
-  strut_window_segment(window, model, positions, member, 0, longest);
-  for (size_t k = 1; k < strut_member_segments(model, member); k++) {
-    double ends[2][2], x = longest[1][0] - longest[0][0], y = longest[1][1] - longest[0][1];
+  double most = -1.0, ends[2][2];
+  for (size_t k = 0; k < count_segments(model, member); k++) {
     strut_window_segment(window, model, positions, member, k, ends);
-    double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
-    if (strut_settle_coordinate(length) > strut_settle_coordinate(hypot(x, y)))
-      memcpy(longest, ends, sizeof ends);
+    double length = strut_settle_coordinate(strut_distance(ends[0], ends[1]));
+    if (k && !(length > most)) continue;
+    memcpy(longest, ends, sizeof ends);
+    most = length;
   }
 }
 
@@ -138,32 +138,31 @@ void strut_longest_segment(const strut_window *window, const strut_model *model,
 /* A support's triangle, its tip at the node, its base towards `out`; rolling: on two wheels. */
 static void draw_support(strut_canvas *canvas, const double tip[2], const double out[2],
                          bool rolling, double size, double opacity) {
-  const double across[2] = {-out[1], out[0]}, height = 7.0 * size, half = 4.2 * size;
+  const double height = 7.0 * size, half = 4.2 * size, wheel = 1.1 * size;
+  const double base = height + (rolling ? 2 * wheel : 0), below = base + 3.5 * size;
+  const double place[][2] = {{0, 0}, /* outwards, across */
+                             {height, half},
+                             {height, -half},
+                             {base, 1.5 * half},
+                             {base, -1.5 * half},
+                             {below, -1.5 * half},
+                             {below, 1.5 * half},
+                             {height + wheel, 0.55 * half},
+                             {height + wheel, -0.55 * half}};
   const strut_pen pen = {.colour = strut_faded(strut_grey(0.25), opacity), .width = 0.7 * size};
   const strut_fill white = {.colour = strut_faded(strut_grey(1), opacity)};
   const strut_fill hatched = {.hatch = STRUT_HATCH_RISING,
                               .hatch_colour = strut_faded(strut_grey(0.45), opacity)};
-  double corner[4][2];
-  for (int d = 0; d < 2; d++) {
-    corner[0][d] = tip[d];
-    corner[1][d] = tip[d] + height * out[d] + half * across[d];
-    corner[2][d] = tip[d] + height * out[d] - half * across[d];
+  double at[9][2];
+  for (int k = 0; k < 9; k++) {
+    at[k][0] = tip[0] + place[k][0] * out[0] - place[k][1] * out[1];
+    at[k][1] = tip[1] + place[k][0] * out[1] + place[k][1] * out[0];
   }
-  strut_draw_polygon(canvas, (const double(*)[2])corner, 3, &white, &pen);
-  double base = height, wheel = 1.1 * size;
-  for (int side = -1; side <= 1 && rolling; side += 2)
-    strut_draw_circle(canvas, tip[0] + (height + wheel) * out[0] + 0.55 * side * half * across[0],
-                      tip[1] + (height + wheel) * out[1] + 0.55 * side * half * across[1], wheel,
-                      &white, &pen);
-  if (rolling) base += 2 * wheel;
-  for (int d = 0; d < 2; d++) {
-    corner[0][d] = tip[d] + base * out[d] + 1.5 * half * across[d];
-    corner[1][d] = tip[d] + base * out[d] - 1.5 * half * across[d];
-    corner[2][d] = corner[1][d] + 3.5 * size * out[d];
-    corner[3][d] = corner[0][d] + 3.5 * size * out[d];
-  }
-  strut_draw_polygon(canvas, (const double(*)[2])corner, 4, &hatched, NULL);
-  strut_draw_segment(canvas, corner[0][0], corner[0][1], corner[1][0], corner[1][1], pen);
+  strut_draw_polygon(canvas, (const double(*)[2])at, 3, &white, &pen);
+  for (int k = 7; k < 9 && rolling; k++)
+    strut_draw_circle(canvas, at[k][0], at[k][1], wheel, &white, &pen);
+  strut_draw_polygon(canvas, (const double(*)[2])at + 3, 4, &hatched, NULL);
+  strut_draw_line(canvas, (const double(*)[2])at + 3, 2, pen);
 }
 
 /* Triangles below pinned nodes, on wheels where one direction is free. */
@@ -273,10 +272,10 @@ static double thinning(const strut_window *window, const strut_model *model,
   double sum = 0;
   size_t count = model->scene->member_count, finite = 0;
   for (size_t j = 0; j < count; j++)
-    for (size_t k = 0; k < strut_member_segments(model, j); k++) {
+    for (size_t k = 0; k < count_segments(model, j); k++) {
       double ends[2][2];
       strut_window_segment(window, model, positions, j, k, ends);
-      double length = hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]);
+      double length = strut_distance(ends[0], ends[1]);
       if (isfinite(length)) sum += length, finite++;
     }
   return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
@@ -340,7 +339,7 @@ static void add_member(batch *self, const strut_drawing *drawing, size_t j, stru
   bool alike = memcmp(&pen.colour, &self->pen.colour, sizeof pen.colour) == 0;
   if (!alike || pen.width != self->pen.width || pen.dash[0] != self->pen.dash[0]) flush(self);
   self->pen = pen;
-  for (size_t k = 0; k < strut_member_segments(drawing->model, j); k++) {
+  for (size_t k = 0; k < count_segments(drawing->model, j); k++) {
     if (self->count == BATCH) flush(self);
     strut_window_segment(drawing->window, drawing->model, drawing->q, j, k,
                          self->ends + 2 * self->count++);
@@ -369,36 +368,38 @@ static void draw_members(strut_canvas *canvas, const strut_drawing *drawing) {
   flush(&b);
 }
 
+/* Circles around places of the plane. */
+static void draw_circle(strut_canvas *canvas, const strut_drawing *drawing, const double place[2],
+                        double radius, const strut_fill *fill, const strut_pen *pen) {
+  double at[2];
+  strut_window_point(drawing->window, place, at);
+  strut_draw_circle(canvas, at[0], at[1], radius, fill, pen);
+}
+
 /* Masses that slide along members: filled circles on them. */
 static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *drawing) {
   const strut_scene *scene = drawing->model->scene;
-  double thin = drawing->thin / (1.0 + drawing->style->thinness), point[2], at[2];
+  double thin = drawing->thin / (1.0 + drawing->style->thinness), at[2];
   const strut_fill fill = {.colour = strut_thing_colour(drawing, 1)};
   const strut_pen pen = {.colour = strut_faded(strut_grey(1), drawing->opacity),
                          .width = 0.5 * thin};
-  if (drawing->thin < 0.3) return; /* too small to be drawn */
   for (size_t i = 0; i < scene->sliding_count; i++) {
     const int32_t *node = scene->members[scene->sliding_masses[i].member].node;
     double far = strut_sliding_mass_share(scene, i, drawing->style->time);
     for (int c = 0; c < 2; c++)
       at[c] = (1.0 - far) * drawing->q[2 * node[0] + c] + far * drawing->q[2 * node[1] + c];
-    strut_window_point(drawing->window, at, point);
-    if (isfinite(point[0]) && isfinite(point[1]))
-      strut_draw_circle(canvas, point[0], point[1], 3.2 * thin, &fill, &pen);
+    draw_circle(canvas, drawing, at, 3.2 * thin, &fill, &pen);
   }
 }
 
 static void draw_nodes(strut_canvas *canvas, const strut_drawing *drawing) {
-  double thin = drawing->thin / (1.0 + drawing->style->thinness), point[2];
+  double thin = drawing->thin / (1.0 + drawing->style->thinness);
   const strut_fill white = {.colour = strut_faded(strut_grey(1), drawing->opacity)};
   strut_colour edge =
       drawing->style->colouring == STRUT_COLOUR_ONE ? drawing->style->colour : strut_grey(0.1);
   const strut_pen pen = {.colour = strut_faded(edge, drawing->opacity), .width = 0.8 * thin};
-  if (drawing->thin < 0.3) return; /* too small to be drawn */
-  for (int32_t i = 0; i < drawing->model->node_count; i++) {
-    strut_window_point(drawing->window, drawing->q + 2 * i, point);
-    strut_draw_circle(canvas, point[0], point[1], 1.9 * thin, &white, &pen);
-  }
+  for (int32_t i = 0; i < drawing->model->node_count; i++)
+    draw_circle(canvas, drawing, drawing->q + 2 * i, 1.9 * thin, &white, &pen);
 }
 
 void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
@@ -411,12 +412,14 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                            .thin = thinning(window, model, positions),
                            .opacity = style->opacity > 0 ? style->opacity : 1.0};
   if (!style->no_supports)
-    draw_supports(canvas, window, model, positions, fmax(d.thin, 0.3), d.opacity);
+    draw_supports(canvas, window, model, positions, fmax(d.thin, SMALLEST), d.opacity);
   strut_draw_cells(canvas, &d);
   strut_draw_collisions(canvas, &d);
   draw_members(canvas, &d);
-  strut_draw_elements(canvas, &d);
-  if (!style->no_nodes) draw_nodes(canvas, &d);
-  draw_sliding_masses(canvas, &d);
+  if (d.thin >= SMALLEST) {
+    strut_draw_elements(canvas, &d);
+    if (!style->no_nodes) draw_nodes(canvas, &d);
+    draw_sliding_masses(canvas, &d);
+  }
   if (style->node_names) strut_draw_names(canvas, window, model, positions, style->member_names);
 }

@@ -38,9 +38,7 @@ STRUT_API strut_window strut_window_fit(strut_box box, strut_bounds bounds, doub
 STRUT_API void strut_window_point(const strut_window *window, const double position[2],
                                   double point[2]);
 
-/** Segments of a member on the page: one, or one more than a running cable has guides. */
-STRUT_API size_t strut_member_segments(const strut_model *model, size_t member);
-/** Where the ends of a member's segment k are on the page [pt], in the shape q. */
+/** Where the ends of a member's segment k, which is one more than a running cable has guides, are on the page [pt]. */
 STRUT_API void strut_window_segment(const strut_window *window, const strut_model *model,
                                     const double *positions, size_t member, size_t k,
                                     double ends[2][2]);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/view.h"
+#include "engine/output/draw/painter.h"
 
 #include <math.h>
 #include <string.h>
 
 static const double GAP = 12, LEAST = 46, CAPTION = 26; /* [pt] */
 static const double NARROWEST = 98, SMALLEST = 72;      /* panels [pt] */
-static const double MARK = 2.7, RING = 3.4;             /* radii [pt] */
 static const double COVERED = 0.22;                     /* of a view, by names */
 static const double TALLEST = 1.2,
                     LOWEST = 0.6; /* of drawings: height over width at most, at least */
@@ -118,27 +117,6 @@ static void draw_arrows(strut_canvas *canvas, const strut_window *window,
   }
 }
 
-void strut_draw_mark(strut_canvas *canvas, strut_box inside, const double at[2],
-                     const strut_mark *mark) {
-  const strut_pen edge = {.colour = strut_grey(0.1), .width = mark->ring ? 0.9 : 0.6};
-  const strut_fill fill = {.colour = mark->colour};
-  if (mark->dot || mark->ring)
-    strut_draw_circle(canvas, at[0], at[1], mark->ring ? RING : MARK, mark->dot ? &fill : NULL,
-                      &edge);
-  if (!mark->text || !*mark->text) return;
-  strut_label label = {.text = mark->text,
-                       .font = mark->font,
-                       .at = {at[0], at[1]},
-                       .gap = mark->gap > 0 ? mark->gap : MARK + 1.5,
-                       .angle = mark->angle,
-                       .steady = mark->steady,
-                       .inside = inside,
-                       .priority = mark->priority};
-  if (!(label.font.size > 0)) label.font.size = 7;
-  label.font.halo = strut_faded(strut_grey(1), 0.85);
-  strut_draw_label(canvas, &label);
-}
-
 /* More than the margin takes below a view, for the forces of the ground [pt]. */
 static double room_for_arrows(const strut_panel *view) {
   double room = 0.0;
@@ -170,9 +148,10 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
   }
   draw_trails(canvas, &window, view, false);
   for (size_t i = 0; i < view->mark_count; i++) {
-    double at[2];
-    strut_window_point(&window, view->marks[i].at, at);
-    strut_draw_mark(canvas, box, at, &view->marks[i]);
+    strut_label mark = view->marks[i];
+    strut_window_point(&window, view->marks[i].at, mark.at);
+    mark.inside = box;
+    strut_draw_label(canvas, &mark);
   }
   strut_canvas_unclip(canvas);
   for (size_t i = 0; i < view->shape_count; i++) {
@@ -285,11 +264,11 @@ double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *
   strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
   bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
   if (above) key.x = box.x, key.width = box.width;
-  double high = strut_key_height(canvas, key.width, figure->keys, figure->key_count);
+  double high = strut_draw_key(canvas, key, figure->keys, figure->key_count, false).height;
   double height = above ? high + row : fmax(high, row);
   if (!draw) return height;
   if (!above) key.y += 0.5 * (height - high);
-  strut_draw_key(canvas, key, figure->keys, figure->key_count);
+  strut_draw_key(canvas, key, figure->keys, figure->key_count, true);
   if (bar)
     strut_draw_colour_scale(
         canvas, (strut_box){box.x + box.width - right, box.y + height - BAR, right, BAR},

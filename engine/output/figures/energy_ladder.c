@@ -78,7 +78,7 @@ static void name_pass(ladder *self, size_t left, const pass *p) {
     if (isfinite(p->height[back]))
       snprintf(text[back], sizeof text[back], back ? "\xe2\x86\x90 %s" : "%s \xe2\x86\x92",
                strut_drawn_quantity(p->height[back], 3, "J").text);
-  strut_mark *mark =
+  strut_label *mark =
       strut_add_mark(self->figure, self->panel, (double)left + 0.5, p->top,
                      strut_figure_text(self->figure, "%s%s%s", text[0],
                                        text[0][0] && text[1][0] ? "\n" : "", text[1]));
@@ -109,9 +109,9 @@ static void add_level(ladder *self, strut_series *levels, size_t place) {
   strut_add_point(self->figure, levels, x - LEVEL, energy);
   strut_add_point(self->figure, levels, x + LEVEL, energy);
   strut_add_gap(self->figure, levels);
-  strut_mark *mark = strut_add_mark(self->figure, self->panel, x, energy,
-                                    self->all->list[self->chosen[place]].name);
-  mark->font = (strut_font){.size = few ? 8 : 7, .bold = few};
+  strut_label *mark = strut_add_mark(self->figure, self->panel, x, energy,
+                                     self->all->list[self->chosen[place]].name);
+  mark->font.size = few ? 8 : 7, mark->font.bold = few;
   mark->gap = 3;
   mark->angle = -0.5 * STRUT_PI;
   mark->steady = 1;

@@ -91,12 +91,27 @@ static void find_place(const path_picture *picture, const strut_path_state *at, 
                                                      : at->factor;
 }
 
-/* Sets the next point of a curve, whose edge to the one after it is unstable or not. */
-static void add_point(path_picture *picture, strut_series *curve, const strut_path_state *at,
-                      bool unstable) {
+/* Coordinate i with its motion enlarged. */
+static double enlarged(const path_picture *picture, const double *positions, int32_t i) {
+  double from = picture->path->points[0].at.q[i];
+  return from + picture->larger * (positions[i] - from);
+}
+
+/* Where the node whose motion is drawn is in a state. */
+static const double *way_at(const path_picture *picture, const strut_path_state *at,
+                            double place[2]) {
+  int32_t node = picture->coordinate / 2 * 2;
+  for (int32_t d = 0; d < 2; d++) place[d] = enlarged(picture, at->q, node + d);
+  return place;
+}
+
+/* Sets the next point of a curve, whose edge to the one after it is unstable or not, and of the path's way. */
+static void add_point(path_picture *picture, strut_series *curve, strut_trail *way,
+                      const strut_path_state *at, bool unstable) {
   double place[2];
   find_place(picture, at, place);
   strut_add_point(&picture->figure, curve, place[0], place[1])->unstable = unstable;
+  if (way) strut_add_place(&picture->figure, way, way_at(picture, at, place));
 }
 
 static path_stop *add_stop(path_picture *picture, const strut_path_state *at, const char *text) {
@@ -150,20 +165,22 @@ static void add_event(path_picture *picture, const strut_path_event *event, bool
 }
 
 /* The path's points and events in the order of arc length. The start of an edge determines its stability. */
-static void add_path(path_picture *picture, strut_series *curve) {
+static void add_path(path_picture *picture, strut_series *curve, strut_panel *view) {
   const strut_path *path = picture->path;
   double whole = fmax(path->points[path->point_count - 1].at.arc, 1e-300);
   size_t next = 0;
+  strut_trail *way = strut_add_trail(&picture->figure, view, STRUT_TRAIL_LINE,
+                                     (strut_pen){.colour = strut_grey(0.45), .width = 0.7});
   for (size_t k = 0; k < path->point_count; k++) {
     const strut_path_point *point = &path->points[k];
     for (; next < path->event_count && path->events[next].at.arc <= point->at.arc; next++) {
       const strut_path_event *event = &path->events[next];
       bool same = next && event->at.arc - event[-1].at.arc <= SAME * whole;
-      add_point(picture, curve, &event->at, event->after > 0);
+      add_point(picture, curve, way, &event->at, event->after > 0);
       add_event(picture, event, same);
       picture->unstable |= event->after > 0;
     }
-    add_point(picture, curve, &point->at, point->negative > 0);
+    add_point(picture, curve, way, &point->at, point->negative > 0);
     picture->unstable |= point->negative > 0 && k + 1 < path->point_count;
     if (k == 0) add_stop(picture, &point->at, "start");
   }
@@ -174,7 +191,7 @@ static strut_pen line_pen(bool branch) {
   return (strut_pen){.colour = branch ? strut_palette_thing(0) : strut_grey(0.15), .width = 1.2};
 }
 
-static void add_curves(path_picture *picture, strut_panel *panel) {
+static void add_curves(path_picture *picture, strut_panel *panel, strut_panel *view) {
   const strut_path *path = picture->path;
   for (size_t i = 0; i <= path->branch_count; i++) {
     bool branch = i < path->branch_count;
@@ -183,9 +200,9 @@ static void add_curves(path_picture *picture, strut_panel *panel) {
     curve->markers = STRUT_MARKERS_NONE;
     for (size_t k = 0; branch && k < path->branches[i].point_count; k++) {
       const strut_path_point *point = &path->branches[i].points[k];
-      add_point(picture, curve, &point->at, point->negative > 0);
+      add_point(picture, curve, NULL, &point->at, point->negative > 0);
     }
-    if (!branch) add_path(picture, curve);
+    if (!branch) add_path(picture, curve, view);
   }
 }
 
@@ -216,11 +233,11 @@ static strut_colour colour_of(const path_picture *picture, size_t stop) {
 
 static void add_mark(path_picture *picture, strut_panel *panel, size_t stop,
                      const double place[2]) {
-  strut_mark *mark =
+  strut_label *mark =
       strut_add_mark(&picture->figure, panel, place[0], place[1], picture->stops[stop].letter);
   mark->dot = true;
   mark->colour = colour_of(picture, stop);
-  mark->font = (strut_font){.size = 8, .bold = true};
+  mark->font.size = 8, mark->font.bold = true;
   mark->angle = 0.25 * STRUT_PI;
   mark->priority = 1;
 }
@@ -240,12 +257,6 @@ static void choose_enlargement(path_picture *picture) {
   double wanted = LARGE * picture->model->size / most, power = pow(10.0, floor(log10(wanted)));
   for (int i = 0; i < 3; i++)
     if (steps[i] * power <= wanted) picture->larger = fmax(1.0, steps[i] * power);
-}
-
-/* Coordinate i with its motion enlarged. */
-static double enlarged(const path_picture *picture, const double *positions, int32_t i) {
-  double from = picture->path->points[0].at.q[i];
-  return from + picture->larger * (positions[i] - from);
 }
 
 /* The arrow of a load at the beginning [m]: outwards from its node, or from outside onto it. */
@@ -279,26 +290,6 @@ static void add_loads(path_picture *picture, strut_panel *panel) {
     strut_trail *trail = strut_add_trail(&picture->figure, panel, STRUT_TRAIL_ARROW, pen);
     trail->gap = GAP;
     for (int end = 0; end < 2; end++) strut_add_place(&picture->figure, trail, ends[end]);
-  }
-}
-
-/* The way of the node whose motion is drawn: where it is in a state. */
-static const double *way_at(const path_picture *picture, const strut_path_state *at,
-                            double place[2]) {
-  int32_t node = picture->coordinate / 2 * 2;
-  for (int32_t d = 0; d < 2; d++) place[d] = enlarged(picture, at->q, node + d);
-  return place;
-}
-
-static void add_way(path_picture *picture, strut_panel *panel) {
-  const strut_path *path = picture->path;
-  strut_trail *way = strut_add_trail(&picture->figure, panel, STRUT_TRAIL_LINE,
-                                     (strut_pen){.colour = strut_grey(0.45), .width = 0.7});
-  double place[2];
-  for (size_t k = 0, next = 0; k < path->point_count; k++) {
-    for (; next < path->event_count && path->events[next].at.arc <= path->points[k].at.arc; next++)
-      strut_add_place(&picture->figure, way, way_at(picture, &path->events[next].at, place));
-    strut_add_place(&picture->figure, way, way_at(picture, &path->points[k].at, place));
   }
 }
 
@@ -369,8 +360,9 @@ strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
       .figure = {.title = model->scene->name, .aspect = CURVE}};
   choose_coordinate(&p);
   choose_enlargement(&p);
-  strut_panel *chart = strut_add_panel(&p.figure);
-  add_curves(&p, chart);
+  strut_panel *chart = strut_add_panel(&p.figure), *view = strut_add_panel(&p.figure);
+  if (!p.figure.failed) chart = view - 1;
+  add_curves(&p, chart, view);
   name_axes(&p, chart);
   chart->room = 0.05;
   for (size_t i = 0; i < p.stop_count; i++) {
@@ -378,10 +370,8 @@ strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
     find_place(&p, p.stops[i].at, place);
     add_mark(&p, chart, i, place);
   }
-  strut_panel *view = strut_add_panel(&p.figure);
   view->margin = MARGIN;
   view->beside = true;
-  add_way(&p, view);
   add_loads(&p, view);
   add_shapes(&p, view);
   add_keys(&p);

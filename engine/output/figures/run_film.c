@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/output/draw/canvas.h"
-#include "engine/output/draw/view.h"
+#include "engine/output/draw/painter.h"
 #include "engine/output/figures/run_parts.h"
 #include "engine/output/file.h"
 

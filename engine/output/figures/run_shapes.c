@@ -132,7 +132,6 @@ typedef struct grid {
   bool moves;          /* the measured point moves visibly */
   bool common[2];      /* all panels show the same range along that axis */
   strut_bounds all;
-  double base;    /* of the deepest point in the ground, 0 at most [m] */
   double size[2]; /* of that range, or of the largest shape [m] */
 } grid;
 
@@ -157,11 +156,6 @@ static size_t count_cells(const strut_run_scene *run) {
   double end = time[last] + (last > 0 ? time[last] - time[last - 1] : STRUT_RUN_MOMENT);
   while (count < figure->time_count && figure->times[count] <= end) count++;
   return count > 0 ? count : 1;
-}
-
-/* Height of the ground below the middle of bounds. */
-static double ground_below(const strut_run_scene *run, const strut_bounds *bounds) {
-  return strut_run_ground_at(run, 0.5 * (bounds->low[0] + bounds->high[0]));
 }
 
 /* Finds the frames and what they show: both motions, and the ground where it is near. */
@@ -197,9 +191,22 @@ static double way_to(const strut_run_scene *run, const grid *self, size_t i) {
   return strut_run_measured(run, self->frame[i], 0) - strut_run_measured(run, self->frame[0], 0);
 }
 
-/* A shape near the ground, whose bounds reach it. */
-static bool is_grounded(const strut_run_scene *run, const strut_bounds *bounds) {
-  return run->model->scene->ground.present && bounds->low[1] <= ground_below(run, bounds);
+/* How far the foot of a shape is above the ground below it; 0 or less: it stands there [m]. */
+static double foot_above(const strut_run_scene *run, const strut_bounds *bounds) {
+  return bounds->low[1] - strut_run_ground_at(run, 0.5 * (bounds->low[0] + bounds->high[0]));
+}
+
+/* Has all shapes on the ground begin as deep in it as the deepest, so that it is drawn at one height. */
+static void level_feet(const strut_run_scene *run, grid *self) {
+  double deepest = 0.0;
+  for (size_t i = 0; i < self->count; i++)
+    deepest = fmin(deepest, foot_above(run, &self->panels[i].bounds));
+  for (size_t i = 0; i < self->count; i++) {
+    strut_bounds *bounds = &self->panels[i].bounds;
+    double above = foot_above(run, bounds);
+    if (above <= 0.0) bounds->low[1] += deepest - above;
+    self->size[1] = fmax(self->size[1], bounds->high[1] - bounds->low[1]);
+  }
 }
 
 /* The range of all cells along each axis: one for all where the shapes are close together. */
@@ -216,29 +223,15 @@ static void find_sizes(const strut_run_scene *run, grid *self) {
       self->common[1] = false;
     if (self->common[d]) self->size[d] = together;
   }
-  for (int pass = 0; pass < 2 && !self->common[1]; pass++)
-    for (size_t i = 0; i < self->count; i++) {
-      const strut_bounds *bounds = &self->panels[i].bounds;
-      if (!is_grounded(run, bounds)) continue;
-      if (pass == 0) self->base = fmin(self->base, bounds->low[1] - ground_below(run, bounds));
-      if (pass == 1)
-        self->size[1] =
-            fmax(self->size[1], bounds->high[1] - ground_below(run, bounds) - self->base);
-    }
+  if (!self->common[1] && ground->present) level_feet(run, self);
 }
 
-/* What a cell shows, as large as all others: shapes on the ground are drawn at one height. */
-static strut_bounds bounds_of(const strut_run_scene *run, const grid *self,
-                              const strut_bounds *own) {
-  strut_bounds b = self->all;
-  for (int d = 0; d < 2; d++) {
-    double middle = 0.5 * (own->low[d] + own->high[d]);
-    if (self->common[d]) continue;
-    b.low[d] = middle - 0.5 * self->size[d];
-    if (d == 1 && is_grounded(run, own)) b.low[1] = ground_below(run, own) + self->base;
-    b.high[d] = b.low[d] + self->size[d];
-  }
-  return b;
+/* What a cell shows, as large as all others: about its middle, from its foot or the ground on. */
+static strut_bounds bounds_of(const grid *self, strut_bounds own) {
+  strut_bounds_share(&own, self->size);
+  for (int d = 0; d < 2; d++)
+    if (self->common[d]) own.low[d] = self->all.low[d], own.high[d] = self->all.high[d];
+  return own;
 }
 
 /* One digit more than the times need to differ. */
@@ -264,7 +257,7 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
                                    far ? ", x " : "", far && way > 0 ? "+" : "",
                                    far ? strut_drawn_quantity(way, 3, "m").text : "");
   strut_run_add_shape(run, panel, self->frame[i])->names = true;
-  panel->bounds = bounds_of(run, self, &panel->bounds);
+  panel->bounds = bounds_of(self, panel->bounds);
   panel->margin = MARGIN;
   if (!self->common[0] || !self->moves) return;
   strut_trail *trail = strut_add_trail(run->page, panel, STRUT_TRAIL_LINE,

@@ -16,7 +16,7 @@ enum { MOST_CELLS = 4000000 };
 /* A figure being filled in. */
 typedef struct maker {
   const strut_table_figure *figure;
-  const strut_table *table;
+  strut_table_rows rows;
   strut_table_groups panels, curves; /* curves, or categories of a map */
   double *at[2];                     /* of a map: the grid's positions */
   size_t count[2];
@@ -25,16 +25,23 @@ typedef struct maker {
 } maker;
 
 static const strut_table_column *column_of(const maker *self, int column) {
-  return column == STRUT_NO_COLUMN ? NULL : &self->table->columns[column];
+  return column == STRUT_NO_COLUMN ? NULL : &self->rows.table->columns[column];
 }
 
 static double value_of(const maker *self, int column, size_t row) {
+  return strut_table_number(&self->rows, column, row);
+}
+
+/* "velocity", or "velocity, b less a". */
+static const char *name_of(maker *self, int column) {
   const strut_table_column *of = column_of(self, column);
-  return of && of->value ? of->value[row] : (double)NAN;
+  if (!of->value || !strut_table_compares(&self->rows, column)) return of->name;
+  return strut_figure_text(&self->page, "%s, %s less %s", of->name, self->rows.side[1],
+                           self->rows.side[0]);
 }
 
 static bool is_in_panel(const maker *self, size_t panel, size_t row) {
-  return strut_table_belongs(self->table, self->figure->panels, self->panels.name[panel], row);
+  return strut_table_belongs(&self->rows, self->figure->panels, self->panels.name[panel], row);
 }
 
 /* ---- curves ---- */
@@ -42,9 +49,9 @@ static bool is_in_panel(const maker *self, size_t panel, size_t row) {
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *rows) {
   size_t count = 0;
-  for (size_t i = 0; i < self->table->row_count; i++)
+  for (size_t i = 0; i < self->rows.table->row_count; i++)
     if (is_in_panel(self, panel, i) &&
-        strut_table_belongs(self->table, self->figure->by, self->curves.name[curve], i))
+        strut_table_belongs(&self->rows, self->figure->by, self->curves.name[curve], i))
       rows[count++] = i;
   return count;
 }
@@ -70,7 +77,7 @@ static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel
 /* What the legend says of y column k of a curve; NULL: there is one curve only. */
 static const char *curve_name(maker *self, size_t curve, int k) {
   const strut_table_figure *figure = self->figure;
-  const char *column = column_of(self, figure->y[k])->name, *group = self->curves.name[curve];
+  const char *column = name_of(self, figure->y[k]), *group = self->curves.name[curve];
   const strut_table_column *by = column_of(self, figure->by);
   bool several = figure->y_count > 1;
   if (self->curves.count * (size_t)figure->y_count < 2) return NULL;
@@ -82,7 +89,8 @@ static const char *curve_name(maker *self, size_t curve, int k) {
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
   const strut_table_figure *figure = self->figure;
-  size_t *row = strut_arena_allocate(&self->page.arena, self->table->row_count + 1, sizeof *row);
+  size_t *row =
+      strut_arena_allocate(&self->page.arena, self->rows.table->row_count + 1, sizeof *row);
   panel->outliers = true;
   self->page.failed = self->page.failed || !row;
   for (size_t c = 0; c < self->curves.count && row; c++) {
@@ -106,9 +114,8 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
     strut_series *cloud = strut_add_series(&self->page, panel, NULL);
     cloud->cloud = true;
     cloud->look = 0;
-    for (size_t i = 0; i < self->table->row_count; i++) {
-      if (!is_in_panel(self, number, i) || !figure->shown[i] || figure->marked[i] != marked)
-        continue;
+    for (size_t i = 0; i < self->rows.table->row_count; i++) {
+      if (!is_in_panel(self, number, i) || figure->marked[i] != marked) continue;
       double x = value_of(self, figure->x, i), y = value_of(self, figure->y[0], i);
       strut_add_point(&self->page, cloud, x, y)->value = value_of(self, figure->value, i);
       if (marked) strut_add_mark(&self->page, panel, x, y, NULL)->ring = true;
@@ -121,10 +128,11 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
 
 /* The different finite values of a column, ascending. False: out of memory. */
 static bool find_positions(maker *self, int column, int d) {
-  double *all = strut_figure_numbers(&self->page, self->table->row_count);
+  double *all = strut_figure_numbers(&self->page, self->rows.table->row_count);
   size_t used = 0, *kept = &self->count[d];
-  for (size_t i = 0; all && i < self->table->row_count; i++)
-    if (isfinite(value_of(self, column, i))) all[used++] = value_of(self, column, i);
+  for (size_t i = 0; all && i < self->rows.table->row_count; i++)
+    if (self->rows.shown[i] && isfinite(value_of(self, column, i)))
+      all[used++] = value_of(self, column, i);
   if (all && used) gsl_sort(all, 1, used);
   double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
@@ -163,7 +171,7 @@ static strut_status prepare_grid(maker *self) {
   strut_status status = STRUT_OK;
   names->count = 0;
   if (!column_of(self, figure->value)->value)
-    status = strut_table_groups_find(self->table, figure->value, STRUT_MOST_TABLE_GROUPS,
+    status = strut_table_groups_find(&self->rows, figure->value, STRUT_MOST_TABLE_GROUPS,
                                      "categories", names, self->error);
   if (status) return status;
   qsort(names->name, names->count, sizeof *names->name, by_text);
@@ -199,7 +207,7 @@ static void spread(const maker *self, uint32_t *row, uint32_t *before) {
 static uint32_t *find_rows(maker *self, size_t number) {
   size_t cells = self->count[0] * self->count[1];
   uint32_t *row = strut_arena_allocate(&self->page.arena, cells, sizeof *row);
-  for (size_t i = 0; row && i < self->table->row_count; i++) {
+  for (size_t i = 0; row && i < self->rows.table->row_count; i++) {
     double x = value_of(self, self->figure->x, i), y = value_of(self, self->figure->y[0], i);
     if (!is_in_panel(self, number, i) || !isfinite(x) || !isfinite(y)) continue;
     row[nearest_index(self->at[1], self->count[1], y) * self->count[0] +
@@ -214,6 +222,7 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
   const strut_table_column *of = column_of(self, self->figure->value),
                            *doubt = column_of(self, self->figure->doubt);
   size_t count = self->count[0] * self->count[1];
+  bool other = self->rows.partner && !of->value; /* of categories */
   strut_arena *arena = &self->page.arena;
   strut_map *map = strut_arena_allocate(arena, 1, sizeof *map);
   int *category = strut_arena_allocate(arena, count, sizeof *category);
@@ -229,7 +238,9 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
     value[k] = value_of(self, self->figure->value, row[k] - 1);
     for (size_t g = 0; g < self->curves.count; g++)
       if (strcmp(self->curves.name[g], of->text[row[k] - 1]) == 0) category[k] = (int)g;
-    doubtful[k] = doubt && is_doubtful(doubt->text[row[k] - 1]);
+    doubtful[k] = other   ? strut_table_differs(&self->rows, self->figure->value, row[k] - 1)
+                  : doubt ? is_doubtful(doubt->text[row[k] - 1])
+                          : false;
   }
   *map = (strut_map){.columns = self->count[0],
                      .rows = self->count[1],
@@ -239,8 +250,9 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
                      .category_count = self->curves.count,
                      .names = self->curves.name,
                      .value = value,
-                     .doubtful = doubt ? doubtful : NULL,
+                     .doubtful = doubt || other ? doubtful : NULL,
                      .doubt = doubt ? doubt->name : NULL};
+  if (other) map->doubt = strut_figure_text(&self->page, "%s: other", self->rows.side[0]);
 }
 
 /* ---- the whole ---- */
@@ -248,10 +260,10 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *self) {
   const strut_table_figure *figure = self->figure;
-  const char *text = column_of(self, figure->y[0])->name;
+  const char *text = name_of(self, figure->y[0]);
   if (figure->y_count > MOST_NAMES) return "";
   for (int k = 1; k < figure->y_count; k++)
-    text = strut_figure_text(&self->page, "%s, %s", text, column_of(self, figure->y[k])->name);
+    text = strut_figure_text(&self->page, "%s, %s", text, name_of(self, figure->y[k]));
   return figure->y_count > 1 && strlen(text) > NAME ? "" : text;
 }
 
@@ -278,10 +290,10 @@ static strut_status prepare(maker *self) {
       !column_of(self, figure->value)->value)
     status = strut_fail(self->error, STRUT_USAGE, "points are drawn over columns of numbers");
   if (!status)
-    status = strut_table_groups_find(self->table, figure->panels, STRUT_MOST_PANELS, "panels",
+    status = strut_table_groups_find(&self->rows, figure->panels, STRUT_MOST_PANELS, "panels",
                                      &self->panels, self->error);
   if (!status && figure->kind == STRUT_TABLE_CURVES)
-    status = strut_table_groups_find(self->table, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
+    status = strut_table_groups_find(&self->rows, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
                                      &self->curves, self->error);
   if (!status && figure->kind == STRUT_TABLE_MAP) status = prepare_grid(self);
   return status;
@@ -298,8 +310,8 @@ static void add_panel(maker *self, size_t i) {
   panel->y = strut_axis_of(name_y_axis(self), y->unit);
   panel->x.logarithmic = figure->log_x, panel->y.logarithmic = figure->log_y;
   if (value && value->value)
-    panel->scale =
-        (strut_colour_scale){.name = value->name, .unit = value->unit, .colours = figure->colours};
+    panel->scale = (strut_colour_scale){
+        .name = name_of(self, figure->value), .unit = value->unit, .colours = figure->colours};
   if (of) /* "a) friction = 0.1" */
     panel->title =
         strut_figure_text(&self->page, "%c) %s = %s%s%s", (char)('a' + (int)(i % 26)), of->name,
@@ -319,8 +331,8 @@ static strut_table_pairing pair_rows(const strut_table_figure *figure) {
 
 strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,
                               const strut_table *table, strut_error *error) {
-  strut_table_chosen chosen = {0};
   strut_table_figure drawn = *figure;
+  const strut_table_pairing pairing = pair_rows(&drawn);
   bool map = figure->kind == STRUT_TABLE_MAP;
   maker m = {.figure = &drawn,
              .error = error,
@@ -330,16 +342,14 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *
                       .one_legend = true}};
   assert(figure->y_count > 0 && figure->y_count <= STRUT_MOST_Y);
   strut_status status =
-      strut_table_choose(table, &figure->choice, pair_rows(figure), &chosen, error);
-  m.table = chosen.table;
-  if (map && figure->choice.difference != STRUT_NO_COLUMN && !status) {
-    if (!table->columns[figure->value].value) drawn.doubt = (int)chosen.table->column_count - 1;
-    if (drawn.colours == STRUT_COLOURS_AUTO) drawn.colours = STRUT_COLOURS_DIVERGING;
-  }
+      strut_table_rows_choose(table, &figure->choice, &pairing, &m.page.arena, &m.rows, error);
+  for (size_t i = 0; i < table->row_count && figure->shown && !status; i++)
+    m.rows.shown[i] = m.rows.shown[i] && figure->shown[i];
+  if (map && m.rows.partner && drawn.colours == STRUT_COLOURS_AUTO)
+    drawn.colours = STRUT_COLOURS_DIVERGING;
   if (!status) status = prepare(&m);
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);
-  strut_table_chosen_free(&chosen);
   return status;
 }

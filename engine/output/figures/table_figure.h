@@ -43,7 +43,7 @@ typedef struct strut_table_figure {
   int value, doubt; /* doubt: hatched where it is not empty, 0, false or no */
   strut_colours colours;
   bool spread;                /* cells of a map without a row are as the nearest that have one */
-  const bool *shown, *marked; /* (rows) of points; NULL: all, none */
+  const bool *shown, *marked; /* (rows) shown, NULL: all; of points those with a ring */
 } strut_table_figure;
 
 /** One without any column but the first as x and y. */
@@ -55,6 +55,9 @@ typedef struct strut_table_figure {
       .difference = STRUT_NO_COLUMN                                                                \
     }                                                                                              \
   }
+
+/** Number of the column of that name, of `length` bytes; STRUT_NO_COLUMN where there is none, or no name. */
+STRUT_API int strut_table_column_of(const strut_table *table, const char *name, size_t length);
 
 /**
  * Draws into the plot's file. Rows of a map are in any order; points of its grid without a row have no answer.

@@ -66,8 +66,8 @@ static void add_front(strut_figure *figure, const strut_work_precision *precisio
     strut_add_point(figure, stairs, next->cost, next->error);
     last = next;
     if (!next->label) continue;
-    strut_mark *mark = strut_add_mark(figure, panel, next->cost, next->error,
-                                      label_of(figure, precision, next, front));
+    strut_label *mark = strut_add_mark(figure, panel, next->cost, next->error,
+                                       label_of(figure, precision, next, front));
     mark->angle = 1.25 * STRUT_PI; /* no better point can be there */
     mark->steady = 0.5;
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/follow/follow_study.h"
 
@@ -64,9 +65,9 @@ static void add_point(picture *self, double x, double y, bool stable) {
 
 static void mark_point(picture *self, strut_follow_kind kind, double x, double y, const char *word,
                        const char *node) {
-  strut_mark *mark = strut_add_mark(&self->figure, self->panel, x, y,
-                                    strut_figure_text(&self->figure, "%s%s%.60s", word,
-                                                      node && *node ? " " : "", node ? node : ""));
+  strut_label *mark = strut_add_mark(&self->figure, self->panel, x, y,
+                                     strut_figure_text(&self->figure, "%s%s%.60s", word,
+                                                       node && *node ? " " : "", node ? node : ""));
   mark->dot = true;
   mark->colour = colour_of(kind);
   mark->angle = 0.25 * STRUT_PI;
@@ -163,12 +164,6 @@ typedef struct source {
   const strut_table_column *column[DRAWN];
 } source;
 
-static const strut_table_column *find_column(const strut_table *table, const char *name) {
-  for (size_t i = 0; i < table->column_count; i++)
-    if (strcmp(table->columns[i].name, name) == 0) return &table->columns[i];
-  return NULL;
-}
-
 static const char *text_of(const strut_table_column *column, size_t row) {
   return column->text && column->text[row] ? column->text[row] : "";
 }
@@ -236,9 +231,13 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
                                            "point",  "node",     "changes_stability"};
   const strut_study_follow *follow = plan->study->follow;
   source s = {.table = table, .axes = plan->axis_columns};
-  for (int i = 0; i < DRAWN; i++)
-    if (!(s.column[i] = find_column(table, i == VALUE ? follow->over : names[i])))
+  for (int i = 0; i < DRAWN; i++) {
+    const char *name = i == VALUE ? follow->over : names[i];
+    int column = strut_table_column_of(table, name, strlen(name));
+    if (column == STRUT_NO_COLUMN)
       return strut_fail(error, STRUT_FILE_TROUBLE, "branches.csv lacks a column");
+    s.column[i] = &table->columns[column];
+  }
   picture p;
   begin_picture(&p, plan->study->name, strut_axis_of(follow->over, follow->unit),
                 height_axis(!table->row_count || !isfinite(number_of(s.column[AMPLITUDE], 0))));

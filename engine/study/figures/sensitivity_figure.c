@@ -3,12 +3,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/output/figures/table_figure.h"
+#include "engine/output/draw/figure.h"
 #include "engine/study/sensitivity/sensitivity.h"
 
 static const double ROW = 26.0, FRAME = 40.0; /* of a parameter; around the frame [pt] */
 static const double BAR = 0.32, CAP = 0.08;   /* a bar, half a whisker's end, of a row */
 static const double LEAST = -0.1, MOST = 1.2;
+static const double NARROWEST = 165; /* panel over an axis [pt] */
 
 /* The next result with indices at or after row i, in *first; how many parameters it has. */
 static size_t find_result(const strut_sensitivity_result *result, size_t i, size_t *first) {
@@ -83,8 +84,6 @@ static strut_status draw_bars(const strut_plot *plot, const strut_sensitivity_re
 
 /* ---- over an axis ---- */
 
-enum { X, OF, PARAMETER, VALUE, COLUMNS };
-
 /* The numbers of the axis that changes fastest, of those before the analysis; NULL: it has texts. */
 static const strut_study_column *last_numbers(const strut_study *study, size_t *column) {
   size_t count = 0, last = study->sensitivity.axis;
@@ -102,46 +101,35 @@ static double axis_value(strut_slots *slots, int64_t point, size_t column) {
   return strut_slots_get(slots, point, &row) ? row.numbers[at] : (double)NAN;
 }
 
+/* The curve of a row's parameter in the panel of its result. */
+static strut_series *find_curve(strut_figure *figure, const strut_study_column *over,
+                                const strut_sensitivity_row *row) {
+  const char *label = row->parameter ? row->parameter : "share";
+  size_t i = 0, k = 0;
+  while (i < figure->panel_count && strcmp(figure->panels[i].title, row->of) != 0) i++;
+  strut_panel *panel = i < figure->panel_count ? &figure->panels[i] : strut_add_panel(figure);
+  panel->title = row->of;
+  panel->x = strut_axis_of(over->name, strcmp(over->unit, "1") ? over->unit : "");
+  panel->y = strut_axis_of("total index", "");
+  panel->outliers = true;
+  while (k < panel->series_count && strcmp(panel->series[k].label, label) != 0) k++;
+  return k < panel->series_count ? &panel->series[k] : strut_add_series(figure, panel, label);
+}
+
 static strut_status draw_over(const strut_plot *plot, const strut_study *study, strut_slots *slots,
                               const strut_sensitivity_result *result, bool *drawn,
                               strut_error *error) {
-  strut_table t = {.column_count = COLUMNS};
+  strut_figure figure = {.least_width = NARROWEST, .shared_axes = true, .one_legend = true};
   size_t column = 0;
-  const strut_study_column *study_column = last_numbers(study, &column);
-  *drawn = false;
-  if (!study_column) return STRUT_OK;
-  double *value[2];
-  const char **text[2];
-  bool fine = true;
-  for (int i = 0; i < 2; i++) {
-    value[i] = strut_arena_allocate(&t.arena, result->count + 1, sizeof **value);
-    text[i] = strut_arena_allocate(&t.arena, result->count + 1, sizeof **text);
-    fine = fine && value[i] && text[i];
-  }
-  strut_table_column columns[COLUMNS] = {
-      [X] = {.name = study_column->name,
-             .unit = strcmp(study_column->unit, "1") ? study_column->unit : "",
-             .value = value[0]},
-      [OF] = {.name = "of", .unit = "", .text = text[0]},
-      [PARAMETER] = {.name = "parameter", .unit = "", .text = text[1]},
-      [VALUE] = {.name = "total index", .unit = "", .value = value[1]}};
-  for (size_t i = 0; i < result->count && fine; i++) {
+  const strut_study_column *over = last_numbers(study, &column);
+  for (size_t i = 0; over && i < result->count; i++) {
     const strut_sensitivity_row *row = &result->rows[i];
-    if (row->measure != STRUT_SENSITIVITY_TOTAL && row->measure != STRUT_SENSITIVITY_SHARE)
-      continue;
-    value[0][t.row_count] = axis_value(slots, row->point, column);
-    value[1][t.row_count] = row->estimate.value;
-    text[0][t.row_count] = row->of;
-    text[1][t.row_count++] = row->parameter ? row->parameter : "share";
+    if (row->measure == STRUT_SENSITIVITY_TOTAL || row->measure == STRUT_SENSITIVITY_SHARE)
+      strut_add_point(&figure, find_curve(&figure, over, row),
+                      axis_value(slots, row->point, column), row->estimate.value);
   }
-  *drawn = t.row_count > 0;
-  t.columns = columns;
-  strut_table_figure figure = STRUT_TABLE_FIGURE;
-  figure.x = X, figure.y[0] = VALUE, figure.by = PARAMETER, figure.panels = OF;
-  strut_status status = fine ? STRUT_OK : strut_no_memory(error, "while drawing");
-  if (!status && *drawn) status = strut_table_draw(plot, &figure, &t, error);
-  strut_arena_free(&t.arena);
-  return status;
+  *drawn = figure.panel_count > 0;
+  return *drawn || figure.failed ? strut_figure_draw(plot, &figure, error) : STRUT_OK;
 }
 
 strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study *study,

@@ -13,30 +13,15 @@
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static bool of_runs(const strut_study_figure *figure) {
-  return figure->kind >= STRUT_FIGURE_MOTION && figure->kind <= STRUT_FIGURE_SNAPSHOTS;
-}
-
-static bool of_search(const strut_study_figure *figure) {
-  return figure->kind >= STRUT_FIGURE_BEST;
-}
-
 static int column_of(const strut_table *table, const char *name) {
-  for (size_t i = 0; name && i < table->column_count; i++)
-    if (strcmp(table->columns[i].name, name) == 0) return (int)i;
-  return STRUT_NO_COLUMN;
+  return strut_table_column_of(table, name, name ? strlen(name) : 0);
 }
 
 /* COLUMN=TEXT. */
 static int column_of_match(const strut_table *table, const char *match, const char **text) {
   size_t length = match ? strcspn(match, "=") : 0;
-  for (size_t i = 0; match && i < table->column_count; i++) {
-    const char *name = table->columns[i].name;
-    if (strlen(name) != length || memcmp(name, match, length) != 0) continue;
-    *text = match + length + 1;
-    return (int)i;
-  }
-  return STRUT_NO_COLUMN;
+  if (match) *text = match + length + 1;
+  return strut_table_column_of(table, match, length);
 }
 
 static strut_axis_choice axis_of(const char *label, const double limits[2]) {
@@ -95,9 +80,9 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
     status = strut_no_memory(error, "");
   else if (figure->kind == STRUT_FIGURE_MOTION)
     status = draw_motion(plan, directory, figure, file, error);
-  else if (of_search(figure))
+  else if (strut_figure_of_search(figure))
     status = strut_search_figure(plan, figure, file, table, error);
-  else if (of_runs(figure))
+  else if (strut_figure_of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, PAGE, error);
   else
     status = draw_table(figure, file, table, refinement != NULL, error);
@@ -211,31 +196,17 @@ static bool mark_front(const tracker *self, const bool *shown, bool *marked, str
   return goal != NULL;
 }
 
-/* The rows that are shown, with a further column. */
-static strut_status extend(const strut_table *from, const double *best, const bool *shown,
-                           const char *unit, strut_table *to, strut_error *error) {
-  size_t count = 0, *rows = strut_allocate(from->row_count + 1, sizeof *rows);
-  if (!rows) return strut_no_memory(error, "while drawing");
-  for (size_t i = 0; i < from->row_count; i++)
-    if (shown[i]) rows[count++] = i;
-  strut_status status = strut_table_rows(from, rows, count, to, error);
-  double *value = strut_arena_allocate(&to->arena, count, sizeof *value);
-  if (!status && !value) status = strut_no_memory(error, "while drawing");
-  for (size_t i = 0; i < count && !status; i++) value[i] = best[rows[i]];
-  if (!status)
-    to->columns[to->column_count++] =
-        (strut_table_column){.name = "best so far", .unit = unit, .value = value};
-  strut_release(rows);
-  return status;
-}
-
-/* Hides rows that `only`, COLUMN=TEXT, does not choose. */
-static int choose(const strut_table *table, const char *only, const char **text, bool *shown) {
-  int column = column_of_match(table, only, text);
-  const char *const *cells = column >= 0 ? table->columns[column].text : NULL;
-  for (size_t i = 0; cells && i < table->row_count; i++)
-    shown[i] = shown[i] && cells[i] && strcmp(cells[i], *text) == 0;
-  return column;
+/* The table with a further column. */
+static strut_status extend(const strut_table *from, const double *best, const char *unit,
+                           strut_table *to, strut_error *error) {
+  to->row_count = from->row_count;
+  to->column_count = from->column_count + 1;
+  to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
+  if (!to->columns) return strut_no_memory(error, "while drawing");
+  memcpy(to->columns, from->columns, from->column_count * sizeof *to->columns);
+  to->columns[from->column_count] =
+      (strut_table_column){.name = "best so far", .unit = unit, .value = best};
+  return STRUT_OK;
 }
 
 /* The best objective over the evaluations of each search. */
@@ -260,7 +231,6 @@ static strut_status draw_points(const strut_study_figure *f, const strut_plot *p
   figure->y[0] = column_of(table, f->y);
   figure->value = column_of(table, f->color ? f->color : "objective");
   figure->colours = (strut_colours)f->colours;
-  figure->choice.only = STRUT_NO_COLUMN; /* `shown` has chosen */
   return strut_table_draw(plot, figure, table, error);
 }
 
@@ -279,10 +249,10 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
   if (fine) follow(&t, best, shown, marked);
   if (fine && t.second >= 0) fine = mark_front(&t, shown, marked, &own.arena);
   strut_status status = fine ? STRUT_OK : strut_no_memory(error, "while drawing");
-  if (fine) figure.choice.only = choose(table, f->only, &figure.choice.only_value, shown);
+  figure.choice.only = column_of_match(table, f->only, &figure.choice.only_value);
   figure.shown = shown, figure.marked = marked;
   if (!status && f->kind == STRUT_FIGURE_BEST)
-    status = extend(table, best, shown, strcmp(unit, "1") == 0 ? "" : unit, &own, error);
+    status = extend(table, best, strcmp(unit, "1") == 0 ? "" : unit, &own, error);
   if (!status)
     status = f->kind == STRUT_FIGURE_BEST ? draw_best(&t, f, &plot, &own, &figure, error)
                                           : draw_points(f, &plot, table, &figure, error);

@@ -68,6 +68,14 @@ typedef struct strut_search_report {
 } strut_search_report;
 STRUT_API extern const strut_value_rows strut_search_report_values;
 
+/** Figures of recorded runs, and of a search. */
+static inline bool strut_figure_of_runs(const strut_study_figure *figure) {
+  return figure->kind >= STRUT_FIGURE_MOTION && figure->kind <= STRUT_FIGURE_SNAPSHOTS;
+}
+static inline bool strut_figure_of_search(const strut_study_figure *figure) {
+  return figure->kind >= STRUT_FIGURE_BEST;
+}
+
 /**
  * Draws a figure of the study as directory/NAME.svg, of its table or of the runs recorded beside it. Of a refined
  * study, maps of the refined axes show the finest grid; refinement may be NULL.

@@ -14,14 +14,6 @@
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
-static bool of_runs(const strut_study_figure *figure) {
-  return figure->kind >= STRUT_FIGURE_MOTION && figure->kind <= STRUT_FIGURE_SNAPSHOTS;
-}
-
-static bool of_search(const strut_study_figure *figure) {
-  return figure->kind >= STRUT_FIGURE_BEST;
-}
-
 /* The source of a figure: the table, or the recorded runs. */
 typedef struct source {
   const strut_sweep_plan *plan;
@@ -87,7 +79,7 @@ static strut_status check_figure(const source *self, const strut_study_figure *f
                       "figure '%.60s' of the study needs recorded runs: add "
                       "'trajectories: yes' to the study",
                       figure->name);
-  if (of_search(figure) && !self->plan->study->search)
+  if (strut_figure_of_search(figure) && !self->plan->study->search)
     return strut_fail(error, STRUT_BAD_SCENE,
                       "figure '%.60s' of the study is of a search, which the study has not",
                       figure->name);
@@ -104,7 +96,7 @@ static strut_status check_figure(const source *self, const strut_study_figure *f
 strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error) {
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < plan->study->figure_count && !status; i++) {
-    const source s = {.plan = plan, .runs = of_runs(&plan->study->figures[i])};
+    const source s = {.plan = plan, .runs = strut_figure_of_runs(&plan->study->figures[i])};
     status = check_figure(&s, &plan->study->figures[i], error);
   }
   return status;
