@@ -7,14 +7,13 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/file.h"
-#include "engine/output/results.h"
 #include "engine/study/compare/compare.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/varied_scenes.h"
 #include "parser/program/options.h"
+#include "parser/program/outputs.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
@@ -241,7 +240,7 @@ static strut_status open_compared(const strut_arguments *arguments, compared_mod
   return status;
 }
 
-enum { FIXED_FILES = 3, FILE_NAME = 24, PATH = 4096 };
+enum { FIXED_FILES = 3, FILE_NAME = 24 };
 static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
 
 static const strut_option options[] = {
@@ -261,55 +260,34 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-/* Names of all files that a comparison may write. */
-typedef struct file_names {
+static strut_status draw(const strut_plot *plot, const void *result, size_t index,
+                         strut_error *error) {
+  return strut_compare_figure(plot, result, index, ((const strut_compare *)result)->count, error);
+}
+
+static strut_status draw_one(const strut_plot *plot, const void *result, size_t index,
+                             strut_error *error) {
+  return strut_compare_figure(plot, result, index, 1, error);
+}
+
+/* All files that a comparison may write. */
+typedef struct compare_files {
   char pictures[STRUT_COMPARE_MOST][FILE_NAME];
-  const char *list[STRUT_COMPARE_MOST + FIXED_FILES + 1];
-} file_names;
+  strut_output_file list[STRUT_COMPARE_MOST + FIXED_FILES + 1];
+} compare_files;
 
-static void fill_names(file_names *names) {
-  names->list[0] = "compare.csv";
-  names->list[1] = "compare.json";
-  names->list[2] = "compare.svg";
-  for (int i = 0; i < STRUT_COMPARE_MOST; i++) {
-    snprintf(names->pictures[i], FILE_NAME, "model-%d.svg", i + 1);
-    names->list[FIXED_FILES + i] = names->pictures[i];
+static void list_files(compare_files *files, size_t count) {
+  *files = (compare_files){.list = {{.name = "compare.csv", .list = "models"},
+                                    {.name = "compare.json"},
+                                    {.name = "compare.svg", .draw = draw, .width = PAGE}}};
+  for (size_t i = 0; i < STRUT_COMPARE_MOST; i++) {
+    snprintf(files->pictures[i], FILE_NAME, "model-%zu.svg", i + 1);
+    files->list[FIXED_FILES + i] = (strut_output_file){.name = files->pictures[i],
+                                                       .draw = draw_one,
+                                                       .index = i,
+                                                       .width = ONE,
+                                                       .absent = i >= count};
   }
-  names->list[STRUT_COMPARE_MOST + FIXED_FILES] = NULL;
-}
-
-static strut_status draw_comparison(const char *stage, const char *name, double width,
-                                    const strut_compare *result, size_t first, size_t count,
-                                    strut_error *error) {
-  char path[PATH];
-  if (snprintf(path, sizeof path, "%s/%s", stage, name) >= (int)sizeof path)
-    return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", name);
-  return strut_compare_figure(&(strut_plot){.path = path, .width = width}, result, first, count,
-                              error);
-}
-
-/* Writes all files, or none. */
-static strut_status write_files(strut_results *files, const file_names *names,
-                                const strut_compare *result) {
-  strut_error error = {0};
-  if (!files->stage) return STRUT_OK;
-  strut_status status =
-      strut_file_write_block(files->stage, "compare.csv", strut_compare_csv(result), &error);
-  if (status == STRUT_OK)
-    status =
-        strut_file_write_block(files->stage, "compare.json", strut_compare_json(result), &error);
-  if (status == STRUT_OK)
-    status = draw_comparison(files->stage, "compare.svg", PAGE, result, 0, result->count, &error);
-  for (size_t i = 0; i < result->count && status == STRUT_OK; i++)
-    status = draw_comparison(files->stage, names->pictures[i], ONE, result, i, 1, &error);
-  if (status == STRUT_OK) status = strut_results_commit(files, &error);
-  return strut_print_failure(status, &error);
-}
-
-static strut_status print_comparison(const strut_arguments *arguments,
-                                     const strut_compare *result) {
-  return arguments->csv ? strut_print_block(strut_compare_csv(result))
-                        : strut_print_values(arguments, &strut_compare_values, result, NULL);
 }
 
 /* Repeats on stderr what could not be computed, or not as accurately as requested. */
@@ -332,51 +310,43 @@ static strut_status report_failures(const strut_compare *result) {
 }
 
 static strut_status compare_models(const strut_arguments *arguments, const strut_plot *plot,
-                                   strut_compare_options *wanted, const compared_models *models) {
-  strut_results files = {0};
+                                   const strut_output_file *files, const compared_models *models) {
   strut_compare result = {0};
   strut_error error = {0};
-  file_names names;
-  fill_names(&names);
-  wanted->interrupt = strut_interrupt_watch(); /* before there are files */
-  strut_status status = STRUT_OK;
-  if (arguments->output)
-    status = strut_results_begin_named(&files, arguments->output, names.list, &error);
-  if (status == STRUT_OK) {
-    strut_progress progress = strut_progress_begin(arguments->quiet);
-    wanted->progress = progress.wanted ? strut_progress_show : NULL;
-    wanted->progress_context = &progress;
-    status = strut_compare_make(models->inputs, models->count, wanted, &result, &error);
-    strut_progress_end(&progress);
-  }
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-  } else {
-    status = write_files(&files, &names, &result);
-    if (status == STRUT_OK) status = print_comparison(arguments, &result);
-    if (status == STRUT_OK && plot->path) {
-      status = strut_compare_figure(plot, &result, 0, result.count, &error);
-      if (status != STRUT_OK) strut_print_error(&error);
-    }
-    if (status == STRUT_OK) status = report_failures(&result);
-  }
+  strut_progress progress = strut_progress_begin(arguments->quiet);
+  const strut_compare_options wanted = {.accuracy = arguments->accuracy.value,
+                                        .no_motion = arguments->no_motion,
+                                        .no_states = arguments->no_states,
+                                        .interrupt = strut_interrupt_watch(),
+                                        .progress = progress.wanted ? strut_progress_show : NULL,
+                                        .progress_context = &progress};
+  strut_status status = strut_compare_make(models->inputs, models->count, &wanted, &result, &error);
+  strut_progress_end(&progress);
+  strut_print_failure(status, &error);
+  if (!status)
+    status = strut_outputs_make(arguments, plot,
+                                &(strut_outputs){.rows = &strut_compare_values,
+                                                 .result = &result,
+                                                 .files = files,
+                                                 .draw = draw,
+                                                 .printed = "models"});
+  if (!status) status = report_failures(&result);
   strut_compare_free(&result);
-  strut_results_abandon(&files); /* does nothing once they are complete */
   return status;
 }
 
 static strut_status run_compare(const strut_arguments *arguments) {
-  strut_compare_options wanted = {.accuracy = arguments->accuracy.value,
-                                  .no_motion = arguments->no_motion,
-                                  .no_states = arguments->no_states};
   compared_models models;
+  compare_files files;
   strut_plot plot;
   strut_status status = strut_plot_read(arguments, 0, &plot);
   if (status == STRUT_OK && arguments->json && arguments->csv)
     status = strut_usage_error(arguments, "give either --json or --csv, not both");
+  list_files(&files, arguments->model_count);
+  if (status == STRUT_OK) status = strut_outputs_check(arguments, files.list);
   if (status == STRUT_OK) status = open_compared(arguments, &models);
   if (status != STRUT_OK) return status;
-  status = compare_models(arguments, &plot, &wanted, &models);
+  status = compare_models(arguments, &plot, files.list, &models);
   free_compared(&models);
   return status;
 }

@@ -8,11 +8,10 @@
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/file.h"
-#include "engine/output/results.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
+#include "parser/program/outputs.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
@@ -132,7 +131,7 @@ static strut_status open_points(const strut_arguments *arguments, size_t count, 
 enum { MOST_METHODS = 64 };
 #define USUAL_POINTS 40
 #define USUAL_SEED 1
-static const double PAGE = 510.24; /* 180 mm [pt] */
+#define PAGE 510.24 /* 180 mm [pt] */
 
 static const strut_option options[] = {
     {STRUT_FILLS(accuracy), "accuracy", "X",
@@ -170,7 +169,16 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static const char *const file_names[] = {"tradeoff.csv", "tradeoff.json", "tradeoff.svg", NULL};
+static strut_status draw(const strut_plot *plot, const void *result, size_t index,
+                         strut_error *error) {
+  (void)index;
+  return strut_tradeoff_figure(plot, result, error);
+}
+
+static const strut_output_file files[] = {{.name = "tradeoff.csv", .list = "settings"},
+                                          {.name = "tradeoff.json"},
+                                          {.name = "tradeoff.svg", .draw = draw, .width = PAGE},
+                                          {.name = NULL}};
 
 /* Options as read. */
 typedef struct tradeoff_request {
@@ -219,70 +227,26 @@ static strut_status read_options(const strut_arguments *arguments, tradeoff_requ
   return read_methods(arguments, self);
 }
 
-/* Writes all three files, or none. */
-static strut_status write_files(const char *stage, const strut_tradeoff *result, const char *json,
-                                strut_error *error) {
-  char path[4096];
-  strut_status status =
-      strut_file_write_block(stage, "tradeoff.csv", strut_tradeoff_csv(result), error);
-  if (status == STRUT_OK) status = strut_file_write_text(stage, "tradeoff.json", json, error);
-  int used = snprintf(path, sizeof path, "%s/tradeoff.svg", stage);
-  if (status == STRUT_OK && used >= (int)sizeof path)
-    status =
-        strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", stage);
-  if (status != STRUT_OK) return status;
-  return strut_tradeoff_figure(&(strut_plot){.path = path, .width = PAGE}, result, error);
-}
-
-static strut_status print_study(const strut_arguments *arguments, const strut_tradeoff *result,
-                                const char *json) {
-  return arguments->json ? strut_print(json)
-                         : strut_print_values(arguments, &strut_tradeoff_values, result,
-                                              &result->setups[0]->scene);
-}
-
-static strut_status report_study(const strut_arguments *arguments, strut_results *files,
-                                 const strut_plot *plot, const strut_tradeoff *result) {
-  strut_error error = {0};
-  char *json = strut_tradeoff_json(result);
-  if (!json) return strut_print_out_of_memory();
-  strut_status status = STRUT_OK;
-  if (files->stage) {
-    status = write_files(files->stage, result, json, &error);
-    if (status == STRUT_OK) status = strut_results_commit(files, &error);
-    if (status != STRUT_OK) strut_print_error(&error);
-  }
-  if (status == STRUT_OK && plot->path) {
-    status = strut_tradeoff_figure(plot, result, &error);
-    if (status != STRUT_OK) strut_print_error(&error);
-  }
-  if (status == STRUT_OK) status = print_study(arguments, result, json);
-  strut_release(json);
-  return status;
-}
-
 static strut_status run_study(const strut_arguments *arguments, const strut_plot *plot,
                               tradeoff_request *self, const operating_points *points) {
-  strut_results files = {0};
   strut_tradeoff result = {.name = ""};
   strut_error error = {0};
-  self->study.interrupt = strut_interrupt_watch(); /* before there are files */
-  strut_status status = STRUT_OK;
-  if (arguments->output)
-    status = strut_results_begin_named(&files, arguments->output, file_names, &error);
-  if (status == STRUT_OK) {
-    strut_progress progress = strut_progress_begin(arguments->quiet);
-    self->study.progress = progress.wanted ? strut_progress_show : NULL;
-    self->study.progress_context = &progress;
-    status = strut_tradeoff_make(points->list, points->count, &self->study, &result, &error);
-    strut_progress_end(&progress);
-  }
-  if (status == STRUT_OK)
-    status = report_study(arguments, &files, plot, &result);
-  else
-    strut_print_error(&error);
+  strut_progress progress = strut_progress_begin(arguments->quiet);
+  self->study.interrupt = strut_interrupt_watch();
+  self->study.progress = progress.wanted ? strut_progress_show : NULL;
+  self->study.progress_context = &progress;
+  strut_status status =
+      strut_tradeoff_make(points->list, points->count, &self->study, &result, &error);
+  strut_progress_end(&progress);
+  strut_print_failure(status, &error);
+  if (!status)
+    status = strut_outputs_make(arguments, plot,
+                                &(strut_outputs){.rows = &strut_tradeoff_values,
+                                                 .result = &result,
+                                                 .scene = &result.setups[0]->scene,
+                                                 .files = files,
+                                                 .draw = draw});
   strut_tradeoff_free(&result);
-  strut_results_abandon(&files); /* does nothing once they are complete */
   return status;
 }
 
@@ -292,6 +256,7 @@ static strut_status run_tradeoff(const strut_arguments *arguments) {
   strut_plot plot;
   strut_status status = read_options(arguments, &w);
   if (status == STRUT_OK) status = strut_plot_read(arguments, PAGE, &plot);
+  if (status == STRUT_OK) status = strut_outputs_check(arguments, files);
   if (status == STRUT_OK) status = open_points(arguments, w.points, w.seed, &points);
   if (status != STRUT_OK) return status;
   status = run_study(arguments, &plot, &w, &points);

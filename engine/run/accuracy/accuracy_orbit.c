@@ -73,59 +73,64 @@ static bool uses_finer_steps(const strut_accuracy *accuracy) {
   return accuracy->stiff && accuracy->target >= FINE;
 }
 
-static strut_status allocate_arrays(strut_orbit_solve *solve, const strut_model *model) {
-  solve->both = 2 * (size_t)model->length + 1;
+static void allocate_arrays(strut_orbit_solve *solve) {
+  solve->both = 2 * (size_t)solve->a->model->length + 1;
   double **const arrays[] = {&solve->end.y, &solve->known.y, &solve->fixed_point};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    if (!(*arrays[i] = strut_arena_allocate(&solve->arena, solve->both, sizeof(double))))
-      return strut_no_memory(solve->a->error, "");
+    *arrays[i] = strut_orbit_solve_array(solve);
   solve->orbit.y = solve->known.y;
-  return STRUT_OK;
+}
+
+/* Is there an answer, or what stops the search? */
+static bool is_over(const strut_orbit_solve *solve) { return solve->status || solve->answer; }
+
+static bool is_periodic(const strut_summary *run) {
+  return run->steady.kind == STRUT_MOTION_PERIODIC;
 }
 
 /*
  * The step is chosen for the start; where the structure becomes so stiff that the step is too large, the run is
  * repeated with a step for the stiffest shape so far.
  */
-static strut_status run_coarse_from_start(strut_orbit_solve *solve, double periods) {
+static void run_coarse_from_start(strut_orbit_solve *solve, double periods) {
   strut_accuracy *accuracy = solve->a;
+  strut_summary *run = &solve->coarse_run;
   for (int k = 0; k < MOST_STEPS; k++) {
-    strut_status status = strut_orbit_solve_run_until_steady(solve, accuracy->coarse,
-                                                             fmax(0.1, 16.0 * accuracy->target), 3,
-                                                             periods, false, &solve->coarse_run);
-    double limit = solve->coarse_run.limit_fell.limit;
+    strut_orbit_solve_run_until_steady(solve, accuracy->coarse, fmax(0.1, 16.0 * accuracy->target),
+                                       3, periods, false, run);
+    double limit = run->limit_fell.limit;
     bool fell = limit > 0.0 && limit < accuracy->coarse.step;
-    if (status ? status != STRUT_DIVERGED : !fell) return status;
-    accuracy->check_evaluations += solve->coarse_run.spent.evaluations;
-    strut_summary_free(&solve->coarse_run);
-    solve->coarse_run = (strut_summary){0};
+    if (solve->status ? solve->status != STRUT_DIVERGED : !fell) return;
+    solve->status = STRUT_OK;
+    accuracy->check_evaluations += run->spent.evaluations;
+    strut_summary_free(run);
+    *run = (strut_summary){0};
     accuracy->coarse.step = fell ? STRUT_COARSE_STEP * limit : 0.5 * accuracy->coarse.step;
   }
-  solve->coarse_run.status = STRUT_DIVERGED;
-  return STRUT_DIVERGED;
+  solve->coarse_run.status = solve->status = STRUT_DIVERGED;
 }
 
 /*
  * Runs the coarse method until the motion repeats itself. Its fixed steps meet the events
  * differently in each period, which limits how closely the motion repeats: the first tolerance is
- * therefore loose. *steady is false where even that is not reached.
+ * therefore loose. False where even that is not reached.
  */
-static strut_status run_coarse(strut_orbit_solve *solve, bool *steady) {
+static bool run_coarse(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
+  strut_summary *run = &solve->coarse_run;
   double periods = strut_accuracy_transient_periods(accuracy), first = fmin(FIRST, periods);
-  strut_status status = allocate_arrays(solve, accuracy->model);
   /* without ground transients may be slow; with it motions may be irregular */
   bool may_be_slow = accuracy->model->contacts.count == 0;
-  if (status) return status;
+  if (solve->status) return false;
   strut_accuracy_begin_phase(accuracy, "waiting for steady motion");
-  status = run_coarse_from_start(solve, first);
-  if (!status && solve->coarse_run.steady.kind != STRUT_MOTION_PERIODIC && may_be_slow &&
-      periods > first)
-    status = strut_orbit_solve_run_on(solve, accuracy->coarse, fmin(0.005, 0.5 * accuracy->target),
-                                      5, periods - first, true, &solve->coarse_run);
-  *steady = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC &&
-            strut_accuracy_orbit_covers_window(accuracy, &solve->coarse_run.steady);
-  return status == STRUT_DIVERGED ? STRUT_OK : status;
+  run_coarse_from_start(solve, first);
+  if (!solve->status && !is_periodic(run) && may_be_slow && periods > first)
+    strut_orbit_solve_run_on(solve, accuracy->coarse, fmin(0.005, 0.5 * accuracy->target), 5,
+                             periods - first, true, run);
+  bool steady = !solve->status && is_periodic(run) &&
+                strut_accuracy_orbit_covers_window(accuracy, &run->steady);
+  if (solve->status == STRUT_DIVERGED) solve->status = STRUT_OK;
+  return steady;
 }
 
 /* Takes the end of the coarse run as fixed point of the coarse map. */
@@ -145,8 +150,9 @@ static double longest_reference_step(const strut_orbit_solve *solve) {
   return accuracy->stiff ? fmin(longest, solve->finer * accuracy->coarse.step) : longest;
 }
 
-static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
+static void create_maps(strut_orbit_solve *solve, int32_t repeats) {
   strut_accuracy *accuracy = solve->a;
+  if (solve->status) return;
   accuracy->check_evaluations += solve->coarse_map.evaluations + solve->reference_map.evaluations;
   strut_orbit_solve_count_evaluations(solve);
   assert(repeats >= 1);
@@ -161,43 +167,41 @@ static strut_status create_maps(strut_orbit_solve *solve, int32_t repeats) {
   solve->tightened = solve->finer > 1.0; /* an orbit that needs finer steps is sensitive */
   if (solve->tightened) solve->reference.tolerance /= STRUT_TIGHTENED;
   solve->reference.step = longest_reference_step(solve);
-  strut_status status = strut_period_map_create(accuracy->model, &accuracy->coarse, repeats,
-                                                &solve->coarse_map, accuracy->error);
-  if (!status)
-    status = strut_period_map_create(accuracy->model, &solve->reference, repeats,
-                                     &solve->reference_map, accuracy->error);
-  if (status) return status;
+  solve->status = strut_period_map_create(accuracy->model, &accuracy->coarse, repeats,
+                                          &solve->coarse_map, accuracy->error);
+  if (!solve->status)
+    solve->status = strut_period_map_create(accuracy->model, &solve->reference, repeats,
+                                            &solve->reference_map, accuracy->error);
+  if (solve->status) return;
   solve->coarse_map.interrupt = solve->reference_map.interrupt = accuracy->options->interrupt;
   solve->coarse_map.most_evaluations = solve->reference_map.most_evaluations =
       strut_accuracy_evaluations_left(accuracy);
   solve->coarse_map.time = solve->reference_map.time = solve->end.time;
   take_end_as_fixed_point(solve);
-  return STRUT_OK;
 }
 
 /*
  * Corrects until the next correction is expected to be small enough. Each defect should be much
  * smaller than the one before, and the velocity follows it in proportion.
  */
-static strut_status correct_orbit(strut_orbit_solve *solve, double enough, int least) {
+static void correct_orbit(strut_orbit_solve *solve, double enough, int least) {
   double little = (uses_finer_steps(solve->a) ? SMALL_CONFIRMED : SMALL) * enough;
   double defect = HUGE_VAL;
+  const strut_orbit *orbit = &solve->orbit;
   solve->error = HUGE_VAL;
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
     strut_status status =
         strut_orbit_correct(&solve->coarse_map, &solve->reference_map, solve->fixed_point,
                             solve->travel, 0.1 * enough * solve->coarse_map.period, &solve->orbit);
-    status = strut_orbit_solve_check_maps(solve, status);
-    if (status) return status;
-    if (!solve->orbit.converged || solve->orbit.defect > 0.7 * defect) return STRUT_OK;
+    if (!strut_orbit_solve_check_maps(solve, status)) return;
+    if (!orbit->converged || orbit->defect > 0.7 * defect) return;
     /* assume that the first correction is right to a half; later ones by their own reduction */
-    double better = k == 0 ? 0.5 : fmax(0.1, solve->orbit.defect / defect);
-    defect = solve->orbit.defect;
-    solve->error = better * fabs(solve->orbit.correction);
-    bool small = fabs(solve->orbit.correction) <= little;
-    if ((k + 1 >= least || small) && solve->error <= enough) return STRUT_OK;
+    double better = k == 0 ? 0.5 : fmax(0.1, orbit->defect / defect);
+    defect = orbit->defect;
+    solve->error = better * fabs(orbit->correction);
+    bool small = fabs(orbit->correction) <= little;
+    if ((k + 1 >= least || small) && solve->error <= enough) return;
   }
-  return STRUT_OK;
 }
 
 /* Drive periods in which the orbit repeats itself. */
@@ -210,8 +214,8 @@ static double orbit_periods(const strut_orbit_solve *solve) {
  * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output`
  * names.
  */
-static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
-                              strut_summary *summary) {
+static void run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
+                      strut_summary *summary) {
   strut_accuracy *accuracy = solve->a;
   double period = solve->coarse_map.period;
   e.measure_last = 0.0;
@@ -230,7 +234,7 @@ static strut_status run_orbit(strut_orbit_solve *solve, strut_experiment e, bool
   const strut_snapshot from = strut_orbit_place_snapshot(solve, &solve->end);
   options.from = &from;
   options.progress = NULL;
-  return strut_accuracy_run(accuracy, &e, &options, summary);
+  solve->status = strut_accuracy_run(accuracy, &e, &options, summary);
 }
 
 /* Charges the cost of a failed orbit search to the checks of the next strategy. */
@@ -264,7 +268,7 @@ static bool is_as_steady_as_sought(const strut_orbit_solve *solve) {
 }
 
 /* Extrapolates to the fixed point of the coarse map; fills `to`. */
-static strut_status extrapolate_to_fixed_point(strut_orbit_solve *solve, strut_extrapolation *to) {
+static void extrapolate_to_fixed_point(strut_orbit_solve *solve, strut_extrapolation *to) {
   const strut_accuracy *accuracy = solve->a;
   double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
   double enough = STRUT_FIXED_POINT_PART * accuracy->target * size * solve->coarse_map.period;
@@ -274,14 +278,13 @@ static strut_status extrapolate_to_fixed_point(strut_orbit_solve *solve, strut_e
       .enough = enough * solve->coarse_map.repeats,
       .fall = is_as_steady_as_sought(solve) || (finer && slow) ? FALL : HUGE_VAL,
       .cycles = finer ? slow ? CREEPING_CYCLES : FINER_CYCLES : MOST_CYCLES};
+  if (solve->status) return;
   strut_status status =
       strut_orbit_limit(&solve->coarse_map, to, solve->fixed_point, &solve->travel);
-  status = strut_orbit_solve_check_maps(solve, status);
-  if (status || !to->found) return status;
+  if (!strut_orbit_solve_check_maps(solve, status) || !to->found) return;
   accept_fixed_point(solve);
   solve->coarse_run.steady.kind = STRUT_MOTION_PERIODIC;
   solve->coarse_run.steady.repeats = solve->coarse_map.repeats;
-  return STRUT_OK;
 }
 
 /* The coarse method with a finer step than the first. */
@@ -294,166 +297,158 @@ static strut_experiment finer_experiment(const strut_orbit_solve *solve) {
 
 /*
  * A finer step may be what an orbit needs: finds the fixed point of its map, from the one of the coarse map
- * or where the coarse run ended. *found is false, and the maps are the coarse ones again, where there is
- * none.
+ * or where the coarse run ended. Where there is none the maps are the coarse ones again.
  */
-static strut_status find_finer_fixed_point(strut_orbit_solve *solve, bool from_orbit, bool *found) {
+static bool find_finer_fixed_point(strut_orbit_solve *solve, bool from_orbit) {
   strut_accuracy *accuracy = solve->a;
   int32_t repeats = solve->coarse_map.repeats;
   double step = accuracy->coarse.step;
-  *found = false;
-  if (!uses_finer_steps(accuracy) || solve->finer > 1.0) return STRUT_OK;
+  strut_extrapolation to;
+  if (solve->status || !uses_finer_steps(accuracy) || solve->finer > 1.0) return false;
   if (from_orbit) {
     memcpy(solve->orbit.y, solve->fixed_point, solve->both * sizeof(double));
     strut_orbit_place_copy(solve, &solve->known, &solve->end);
   }
   strut_accuracy_begin_phase(accuracy, "finding the orbit by finer steps");
   accuracy->coarse.step = step / FINER, solve->finer = FINER;
-  strut_status status = create_maps(solve, repeats);
-  strut_extrapolation to = {.found = false};
-  if (!status) status = extrapolate_to_fixed_point(solve, &to);
-  *found = to.found;
-  if (status || *found) return status;
+  create_maps(solve, repeats);
+  extrapolate_to_fixed_point(solve, &to);
+  if (solve->status || to.found) return to.found;
   accuracy->coarse.step = step, solve->finer = 1.0;
-  return create_maps(solve, repeats);
+  create_maps(solve, repeats);
+  return false;
 }
 
 /* Corrects the coarse orbit; sets solve->answer if it is accurate enough then. */
-static strut_status correct_to_answer(strut_orbit_solve *solve) {
+static void correct_to_answer(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
   strut_accuracy_begin_phase(accuracy, "correcting the orbit");
   /* the reference method runs on from the orbit, so that a rough one suffices */
   bool last_word = accuracy->target < FINE;
   double enough = (last_word ? 3.0 : 0.3) * accuracy->target * size;
-  strut_status status =
-      correct_orbit(solve, enough, accuracy->target >= COARSE || last_word ? 1 : 2);
-  if (status) return status;
+  correct_orbit(solve, enough, accuracy->target >= COARSE || last_word ? 1 : 2);
+  if (solve->status) return;
   double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity) + solve->error;
   if (accuracy->target >= COARSE && moved <= 0.8 * accuracy->target * size)
     solve->answer = STRUT_ORBIT_COARSE;
   else if (!last_word && strut_orbit_solve_error_share(solve) <= 0.8)
     solve->answer = STRUT_ORBIT_CORRECTED;
-  return STRUT_OK;
 }
 
 /*
  * Fixed steps may keep the differences of periods from falling, though the run is as steady as its fixed point is
  * sought. Its end serves then, if a correction leads to the answer.
  */
-static strut_status correct_end_of_run(strut_orbit_solve *solve) {
+static void correct_end_of_run(strut_orbit_solve *solve) {
   take_end_as_fixed_point(solve);
   accept_fixed_point(solve);
-  strut_status status = correct_to_answer(solve);
+  correct_to_answer(solve);
   if (!solve->answer) solve->error = HUGE_VAL;
-  return status;
 }
 
 /*
  * Finds the fixed point of the coarse map from a nearly steady state, by extrapolation or, where that fails
- * for a single period, by running on, too briefly for several. *steady is false where there is none. May set
+ * for a single period, by running on, too briefly for several. False where there is none. May set
  * solve->answer.
  */
-static strut_status find_coarse_fixed_point(strut_orbit_solve *solve, bool *steady) {
+static bool find_coarse_fixed_point(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
+  const strut_summary *run = &solve->coarse_run;
   strut_extrapolation to;
-  strut_status status = extrapolate_to_fixed_point(solve, &to);
+  extrapolate_to_fixed_point(solve, &to);
   bool end_serves = is_as_steady_as_sought(solve) && !strut_orbit_solve_is_stuck(solve);
-  if (!status && !to.found && !to.unsteady && end_serves) status = correct_end_of_run(solve);
-  *steady = to.found;
-  if (status || solve->answer) return status;
-  if (!to.found && solve->coarse_map.repeats == 1) {
-    const strut_steady_summary *found = &solve->coarse_run.steady;
-    status = strut_orbit_solve_run_on(solve, accuracy->coarse,
-                                      fmin(0.002, STRUT_FIXED_POINT_PART * accuracy->target), 5,
-                                      CHANCE, true, &solve->coarse_run);
-    *steady = !status && found->kind == STRUT_MOTION_PERIODIC && found->repeats == 1;
-    take_end_as_fixed_point(solve);
-    accept_fixed_point(solve);
-  }
-  return status;
+  if (!solve->status && !to.found && !to.unsteady && end_serves) correct_end_of_run(solve);
+  if (is_over(solve) || to.found || solve->coarse_map.repeats > 1) return to.found;
+  strut_orbit_solve_run_on(solve, accuracy->coarse,
+                           fmin(0.002, STRUT_FIXED_POINT_PART * accuracy->target), 5, CHANCE, true,
+                           &solve->coarse_run);
+  bool steady = !solve->status && is_periodic(run) && run->steady.repeats == 1;
+  take_end_as_fixed_point(solve);
+  accept_fixed_point(solve);
+  return steady;
 }
 
 /* Corrects the coarse orbit; where that is not enough, runs the reference method from it. */
-static strut_status correct_or_rerun(strut_orbit_solve *solve) {
+static void correct_or_rerun(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   double all = fmax(20.0, strut_accuracy_transient_periods(accuracy));
-  strut_status status = STRUT_OK;
   solve->error = HUGE_VAL;
+  if (solve->status) return;
   if (strut_orbit_solve_is_stuck(solve)) {
-    status = strut_orbit_solve_confirm_stuck(solve);
-    return status || solve->answer ? status : strut_orbit_solve_run_reference(solve, false, all);
+    strut_orbit_solve_confirm_stuck(solve);
+    if (!is_over(solve)) strut_orbit_solve_run_reference(solve, false, all);
+    return;
   }
-  bool finer = false, last_word = accuracy->target < FINE;
-  status = correct_to_answer(solve);
-  if (!status && !solve->answer) status = find_finer_fixed_point(solve, true, &finer);
-  if (!status && finer) status = correct_to_answer(solve);
-  if (status || solve->answer) return status;
-  status = strut_orbit_solve_run_reference(solve, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
-  if (status) return status;
-  if (!solve->answer) return strut_orbit_solve_average_disputed(solve);
-  return strut_orbit_solve_check_tolerance(solve);
+  bool last_word = accuracy->target < FINE;
+  correct_to_answer(solve);
+  if (!is_over(solve) && find_finer_fixed_point(solve, true)) correct_to_answer(solve);
+  if (is_over(solve)) return;
+  strut_orbit_solve_run_reference(solve, true, fmin(all, last_word ? LONG_TRIAL : TRIAL));
+  if (solve->answer)
+    strut_orbit_solve_check_tolerance(solve);
+  else
+    strut_orbit_solve_average_disputed(solve);
 }
 
 /*
  * The coarse run found no period. Averages an irregular motion, or corrects an orbit that appears
  * after all; otherwise the reference method runs on.
  */
-static strut_status find_without_fixed_point(strut_orbit_solve *solve) {
-  bool periodic = false;
-  strut_status status = strut_orbit_solve_average_irregular(solve, &periodic);
-  if (status || solve->answer) return status;
-  if (!periodic || !strut_accuracy_orbit_covers_window(solve->a, &solve->coarse_run.steady))
-    return strut_orbit_solve_run_reference(solve, true,
-                                           fmax(20.0, strut_accuracy_transient_periods(solve->a)));
-  status = create_maps(solve, solve->coarse_run.steady.repeats);
-  return status ? status : correct_or_rerun(solve);
+static void find_without_fixed_point(strut_orbit_solve *solve) {
+  const strut_steady_summary *found = &solve->coarse_run.steady;
+  bool periodic = strut_orbit_solve_average_irregular(solve);
+  if (is_over(solve)) return;
+  if (!periodic || !strut_accuracy_orbit_covers_window(solve->a, found)) {
+    strut_orbit_solve_run_reference(solve, true,
+                                    fmax(20.0, strut_accuracy_transient_periods(solve->a)));
+    return;
+  }
+  create_maps(solve, found->repeats);
+  correct_or_rerun(solve);
 }
 
-/*
- * The coarse method nearly repeats itself: fixed steps may be what prevents it, and the reference
- * method has none.
- */
-static strut_status find_by_reference(strut_orbit_solve *solve) {
-  strut_status status = strut_orbit_solve_run_reference(solve, true, CHANCE);
-  return status || solve->answer ? status : find_without_fixed_point(solve);
-}
-
-/* Confirms a creeping motion, or runs on as if it did not matter. */
-static strut_status find_creep(strut_orbit_solve *solve, bool *steady) {
+/* Confirms a creeping motion, or runs on as if it did not matter, which may be steady. */
+static bool find_creep(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
-  strut_status status = create_maps(solve, 1);
-  if (!status) status = strut_orbit_solve_confirm_creep(solve);
-  if (status || solve->answer) return status;
+  create_maps(solve, 1);
+  strut_orbit_solve_confirm_creep(solve);
+  if (is_over(solve)) return false;
   accuracy->coarse.steady.creep = 0.0;
   accuracy->check_evaluations +=
       solve->coarse_run.spent.evaluations + solve->last_run.spent.evaluations;
   strut_summary_free(&solve->coarse_run);
   strut_summary_free(&solve->last_run);
   solve->coarse_run = solve->last_run = (strut_summary){0};
-  return run_coarse(solve, steady);
+  return run_coarse(solve);
 }
 
 /* Finds the orbit to the wanted accuracy. */
-static strut_status find_orbit(strut_orbit_solve *solve, bool steady) {
-  const strut_accuracy *accuracy = solve->a;
-  strut_status status = create_maps(solve, steady ? solve->coarse_run.steady.repeats : 1);
+static void find_orbit(strut_orbit_solve *solve, bool steady) {
+  create_maps(solve, steady ? solve->coarse_run.steady.repeats : 1);
   solve->error = HUGE_VAL;
-  if (status) return status;
-  if (!steady) return find_without_fixed_point(solve);
-  status = find_coarse_fixed_point(solve, &steady);
-  if (status || solve->answer) return status;
-  bool several = solve->coarse_map.repeats > 1;
+  if (solve->status) return;
+  bool several = steady && solve->coarse_map.repeats > 1;
+  if (!steady) {
+    find_without_fixed_point(solve);
+    return;
+  }
+  steady = find_coarse_fixed_point(solve);
+  if (is_over(solve)) return;
   if (!steady && several) {
-    status = create_maps(solve, 1);
+    create_maps(solve, 1);
     solve->until_steady = 0;
   }
-  if (status || steady) return status ? status : correct_or_rerun(solve);
-  if (!uses_finer_steps(accuracy)) return find_by_reference(solve);
+  bool finer = uses_finer_steps(solve->a);
   /* for several periods, running on costs less than finer steps */
-  if (!several) status = find_finer_fixed_point(solve, false, &steady);
-  if (status) return status;
-  return steady ? correct_or_rerun(solve) : find_without_fixed_point(solve);
+  if (!steady && finer && !several) steady = find_finer_fixed_point(solve, false);
+  /* the coarse method nearly repeats itself: fixed steps may be what prevents it, and the reference method has none */
+  if (!steady && !finer) strut_orbit_solve_run_reference(solve, true, CHANCE);
+  if (is_over(solve)) return;
+  if (steady)
+    correct_or_rerun(solve);
+  else
+    find_without_fixed_point(solve);
 }
 
 /*
@@ -476,13 +471,13 @@ static bool window_is_steady(const strut_orbit_solve *solve) {
  * family of them, more slowly than the steady detector notices. Where the whole run is affordable
  * it is made, and its velocity must agree with that of the orbit.
  */
-static strut_status check_window(strut_orbit_solve *solve) {
+static void check_window(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   bool of_orbit = solve->answer >= STRUT_ORBIT_COARSE && solve->answer <= STRUT_ORBIT_STUCK;
   double periods = accuracy->experiment.periods, before = (double)solve->coarse_run.steady.periods;
   double work = (double)solve->coarse_run.spent.evaluations / fmax(1.0, before) * periods;
   if (!of_orbit || accuracy->experiment.steady.wanted || work > WHOLE_RUN * (double)accuracy->used)
-    return STRUT_OK;
+    return;
   strut_experiment whole = accuracy->coarse;
   strut_summary run = {0};
   strut_run_options options = {.without_balance = true,
@@ -492,14 +487,13 @@ static strut_status check_window(strut_orbit_solve *solve) {
                                .from = accuracy->options->from};
   whole.step = solve->coarse_map.dt;
   strut_accuracy_begin_phase(accuracy, "checking by the whole run");
-  strut_status status = strut_accuracy_run(accuracy, &whole, &options, &run);
+  solve->status = strut_accuracy_run(accuracy, &whole, &options, &run);
   accuracy->check_evaluations += run.spent.evaluations;
   double away = fabs(run.velocity - solve->coarse_run.velocity);
-  if (!status &&
+  if (!solve->status &&
       !(away <= 0.3 * accuracy->target * strut_accuracy_velocity_scale(accuracy, run.velocity)))
     solve->answer = STRUT_ORBIT_NONE;
   strut_summary_free(&run);
-  return status;
 }
 
 /* A run that does not agree counts as a check. */
@@ -510,62 +504,56 @@ static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
 }
 
 /*
- * Runs the orbit once. *confirmed: its velocity agrees within `part` of the wanted error. Where it is
+ * Runs the orbit once: does its velocity agree within `part` of the wanted error? Where it is
  * recorded it is then run again, of which nothing is reported, so that the answer does not depend on
  * recordings.
  */
-static strut_status confirm_by(strut_orbit_solve *solve, strut_experiment e, double part,
-                               strut_summary *orbit, bool *confirmed) {
+static bool confirm_by(strut_orbit_solve *solve, strut_experiment e, double part,
+                       strut_summary *orbit) {
   strut_accuracy *accuracy = solve->a;
   discard_run(solve, orbit);
-  strut_status status = run_orbit(solve, e, false, orbit);
+  run_orbit(solve, e, false, orbit);
   double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
   solve->apart = fabs(orbit->velocity - solve->orbit.velocity);
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  *confirmed = !status && (ran_on || solve->apart <= part * accuracy->target * size);
-  if (!*confirmed || !accuracy->options->sink_count) return status;
+  if (solve->status || !(ran_on || solve->apart <= part * accuracy->target * size)) return false;
+  if (!accuracy->options->sink_count) return true;
   strut_summary recorded = {0};
   int64_t allowed = accuracy->allowed;
   accuracy->allowed = INT64_MAX; /* what is recorded does not decide whether the work suffices */
-  status = run_orbit(solve, e, true, &recorded);
+  run_orbit(solve, e, true, &recorded);
   accuracy->allowed = allowed;
   strut_summary_free(&recorded);
-  return status;
+  return true;
 }
 
 /*
  * Where a finer step of the coarse method does not confirm a corrected orbit, it is corrected once more, and the
  * reference method has the word.
  */
-static strut_status confirm_by_finer(strut_orbit_solve *solve, strut_summary *orbit,
-                                     bool *confirmed) {
+static bool confirm_by_finer(strut_orbit_solve *solve, strut_summary *orbit) {
   bool corrected = solve->answer == STRUT_ORBIT_CORRECTED;
-  if (!uses_finer_steps(solve->a)) return STRUT_OK;
-  strut_status status =
-      confirm_by(solve, finer_experiment(solve), CONFIRMED_BY_FINER, orbit, confirmed);
-  if (status || *confirmed || !corrected) return status;
+  if (!uses_finer_steps(solve->a)) return false;
+  if (confirm_by(solve, finer_experiment(solve), CONFIRMED_BY_FINER, orbit)) return true;
+  if (solve->status || !corrected) return false;
   solve->answer = STRUT_ORBIT_NONE;
-  return correct_to_answer(solve);
+  correct_to_answer(solve);
+  return false;
 }
 
 /* Runs the orbit once more; its velocity must agree with that of the orbit. */
-static strut_status confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit) {
-  strut_accuracy *accuracy = solve->a;
+static void confirm_orbit(strut_orbit_solve *solve, strut_summary *orbit) {
   if (solve->answer > STRUT_ORBIT_CORRECTED && !window_is_steady(solve))
     solve->answer = STRUT_ORBIT_NONE;
-  strut_status status = check_window(solve);
-  if (status || !solve->answer) return status;
-  bool confirmed = false;
-  status = confirm_by_finer(solve, orbit, &confirmed);
-  if (!status && !confirmed && solve->answer)
-    status = confirm_by(solve, solve->reference, CONFIRMED, orbit, &confirmed);
-  if (status || confirmed) return status;
+  check_window(solve);
+  if (solve->status || !solve->answer || confirm_by_finer(solve, orbit) || solve->status) return;
+  if (solve->answer && confirm_by(solve, solve->reference, CONFIRMED, orbit)) return;
+  if (solve->status) return;
   solve->answer = STRUT_ORBIT_NONE;
   discard_run(solve, orbit);
-  status =
-      strut_orbit_solve_run_reference(solve, true, accuracy->target < FINE ? LONG_TRIAL : TRIAL);
-  if (!status && !solve->answer) status = strut_orbit_solve_average_disputed(solve);
-  return status ? status : confirm_by(solve, solve->reference, CONFIRMED, orbit, &confirmed);
+  strut_orbit_solve_run_reference(solve, true, solve->a->target < FINE ? LONG_TRIAL : TRIAL);
+  if (!is_over(solve)) strut_orbit_solve_average_disputed(solve);
+  if (!solve->status) confirm_by(solve, solve->reference, CONFIRMED, orbit);
 }
 
 strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
@@ -574,7 +562,6 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   bool steady_wanted = accuracy->experiment.steady.wanted;
   if (strut_accuracy_transient_periods(accuracy) < (steady_wanted ? LEAST : LEAST_OF_RUN))
     return STRUT_OK;
-  bool steady = false;
   strut_summary orbit = {0};
   strut_experiment given = accuracy->coarse;
   accuracy->allowed = (int64_t)(PART_OF_BUDGET * (double)accuracy->budget);
@@ -583,15 +570,16 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   accuracy->coarse.refine_memory = 3.0;
   accuracy->coarse.steady.mean_tolerance = MEAN * accuracy->target;
   if (accuracy->target >= FINE) accuracy->coarse.steady.creep = CREEP * accuracy->scale;
-  strut_status status = run_coarse(&solve, &steady);
-  bool ran = !status && solve.coarse_run.status == STRUT_OK;
-  if (ran && solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING)
-    status = find_creep(&solve, &steady);
-  if (ran && !status && !solve.answer) status = find_orbit(&solve, steady);
-  if (ran && !status) status = confirm_orbit(&solve, &orbit);
+  allocate_arrays(&solve);
+  bool steady = run_coarse(&solve);
+  if (!solve.status && solve.coarse_run.status == STRUT_OK) {
+    if (solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING) steady = find_creep(&solve);
+    if (!is_over(&solve)) find_orbit(&solve, steady);
+    if (!solve.status) confirm_orbit(&solve, &orbit);
+  }
   bool followed =
       orbit.spent.forced + solve.last_run.spent.forced + solve.reference_map.forced == 0;
-  *done = !status && solve.answer && followed;
+  *done = !solve.status && solve.answer && followed;
   if (*done)
     strut_orbit_solve_report(&solve, &orbit);
   else
@@ -600,5 +588,6 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   accuracy->coarse = given;
   accuracy->allowed = accuracy->budget;
   free_solve(&solve);
-  return status == STRUT_DIVERGED || status == STRUT_WORK_LIMIT ? STRUT_OK : status;
+  bool failed = solve.status == STRUT_DIVERGED || solve.status == STRUT_WORK_LIMIT;
+  return failed ? STRUT_OK : solve.status;
 }

@@ -23,9 +23,9 @@ static const double PERIODIC = 1e-4;
 /* Eight batches of half a run are not quite independent: their interval is widened by this. */
 static const double WIDER = 1.25;
 
-static strut_status continue_coarse_run(strut_orbit_solve *solve, double periods) {
-  return strut_orbit_solve_run_on(solve, solve->a->coarse, solve->a->target, 5, periods, true,
-                                  &solve->coarse_run);
+static void continue_coarse_run(strut_orbit_solve *solve, double periods) {
+  strut_orbit_solve_run_on(solve, solve->a->coarse, solve->a->target, 5, periods, true,
+                           &solve->coarse_run);
 }
 
 /* The mean of a run that has ended, and the interval within which it is known. */
@@ -37,17 +37,16 @@ static strut_orbit_mean mean_of(const strut_summary *run) {
       .periods = run->steady.periods};
 }
 
-/* Runs from solve->end, which becomes the run's end. */
-static strut_status run_for_mean(strut_orbit_solve *solve, strut_experiment e, double periods,
-                                 strut_summary *run, strut_orbit_mean *mean) {
+/* Runs from solve->end, which becomes the run's end. What the run was counts as a check. */
+static strut_orbit_mean run_for_mean(strut_orbit_solve *solve, strut_experiment e, double periods,
+                                     strut_summary *run) {
+  solve->a->check_evaluations += run->spent.evaluations;
   strut_summary_free(run);
   *run = (strut_summary){0};
   e.steady.creep = 0.0;
   e.measure_last = ceil(0.5 * fmin(periods, e.periods));
-  strut_status status =
-      strut_orbit_solve_run_until_steady(solve, e, PERIODIC, 8, periods, true, run);
-  *mean = mean_of(run);
-  return status;
+  strut_orbit_solve_run_until_steady(solve, e, PERIODIC, 8, periods, true, run);
+  return mean_of(run);
 }
 
 /* Do two means differ by no more than their scatter? Neither is known of runs that were too short. */
@@ -81,24 +80,23 @@ static void accept_mean(strut_orbit_solve *solve, strut_orbit_answer answer, str
 
 /* Ever longer runs from solve->orbit by the coarse step and by half of it, until the mean of the latter, whose end is
    solve->end, is known well enough. */
-static strut_status run_by_two_steps(strut_orbit_solve *solve, strut_orbit_place *end,
-                                     strut_summary run[2], strut_orbit_mean mean[2]) {
+static void run_by_two_steps(strut_orbit_solve *solve, strut_orbit_place *end, strut_summary run[2],
+                             strut_orbit_mean mean[2]) {
   strut_accuracy *accuracy = solve->a;
   const strut_experiment by[2] = {accuracy->coarse, strut_orbit_solve_halve_step(solve)};
   double most = most_periods(solve, 3.0 * cost_of_period(&solve->coarse_run));
   for (double periods = fmin(PERIODS, most);;) {
     for (int k = 0; k < 2; k++) {
       strut_orbit_place_copy(solve, &solve->known, &solve->end);
-      accuracy->check_evaluations += run[k].spent.evaluations;
-      strut_status status = run_for_mean(solve, by[k], periods, &run[k], &mean[k]);
-      if (status) return status;
+      mean[k] = run_for_mean(solve, by[k], periods, &run[k]);
+      if (solve->status) return;
       if (k == 0) strut_orbit_place_copy(solve, &solve->end, end);
     }
     double size = strut_accuracy_velocity_scale(accuracy, mean[1].velocity);
     double wanted = ENOUGH * accuracy->target * size;
     mean[1].apart = fabs(mean[1].velocity - mean[0].velocity);
     bool enough = mean[1].interval <= wanted && mean[1].apart <= wanted;
-    if (!(periods < most) || !agree(&mean[0], &mean[1]) || enough) return STRUT_OK;
+    if (!(periods < most) || !agree(&mean[0], &mean[1]) || enough) return;
     double missing =
         fmax(mean[1].interval, mean[1].apart) / wanted; /* it falls with the square root */
     periods = fmin(periods * fmax(LONGER, missing * missing), most);
@@ -110,54 +108,50 @@ static strut_status run_by_two_steps(strut_orbit_solve *solve, strut_orbit_place
  * whole step: over as many periods as the wanted accuracy takes, the scene has and the budget allows. Where both
  * differ by more than their scatter, a third run from where the second has ended decides. Sets solve->answer.
  */
-static strut_status average(strut_orbit_solve *solve) {
-  strut_orbit_place end = {.y = strut_arena_allocate(&solve->arena, solve->both, sizeof(double))};
+static void average(strut_orbit_solve *solve) {
+  strut_orbit_place end = {.y = strut_orbit_solve_array(solve)};
   strut_summary run[2] = {{0}, {0}};
   strut_orbit_mean mean[2] = {{.periods = 0}, {.periods = 0}};
-  if (!end.y) return strut_no_memory(solve->a->error, "");
+  if (solve->status) return;
   strut_accuracy_begin_phase(solve->a, "averaging over many periods");
   strut_orbit_place_copy(solve, &solve->end, &solve->known);
-  strut_status status = run_by_two_steps(solve, &end, run, mean);
+  run_by_two_steps(solve, &end, run, mean);
   solve->a->check_evaluations += run[0].spent.evaluations;
-  if (!status && !agree(&mean[0], &mean[1])) { /* does the half step leave the other motion? */
+  if (!solve->status &&
+      !agree(&mean[0], &mean[1])) { /* does the half step leave the other motion? */
     strut_orbit_mean before = mean[1];
     strut_orbit_place_copy(solve, &end, &solve->end);
-    solve->a->check_evaluations += run[1].spent.evaluations;
-    status = run_for_mean(solve, strut_orbit_solve_halve_step(solve), (double)before.periods,
-                          &run[1], &mean[1]);
+    mean[1] =
+        run_for_mean(solve, strut_orbit_solve_halve_step(solve), (double)before.periods, &run[1]);
     mean[1].apart = fabs(mean[1].velocity - before.velocity);
     mean[1].disputed = !agree(&mean[1], &before);
   }
-  if (!status) accept_mean(solve, STRUT_ORBIT_IRREGULAR, &run[1], mean[1]);
+  if (!solve->status) accept_mean(solve, STRUT_ORBIT_IRREGULAR, &run[1], mean[1]);
   for (int k = 0; k < 2; k++) strut_summary_free(&run[k]);
-  return status;
 }
 
-strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic) {
-  strut_accuracy *accuracy = solve->a;
-  strut_status status = STRUT_OK;
+bool strut_orbit_solve_average_irregular(strut_orbit_solve *solve) {
+  const strut_steady_summary *found = &solve->coarse_run.steady;
   solve->answer = STRUT_ORBIT_NONE;
-  if (solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR)
-    status = continue_coarse_run(solve, PERIODS);
-  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_CREEPING) {
-    status = strut_orbit_solve_confirm_creep(solve);
-    if (status || solve->answer) return status;
-    accuracy->coarse.steady.creep = 0.0;
-    status = continue_coarse_run(solve, PERIODS);
+  if (found->kind != STRUT_MOTION_IRREGULAR) continue_coarse_run(solve, PERIODS);
+  if (!solve->status && found->kind == STRUT_MOTION_CREEPING) {
+    strut_orbit_solve_confirm_creep(solve);
+    if (solve->answer) return false;
+    solve->a->coarse.steady.creep = 0.0;
+    continue_coarse_run(solve, PERIODS);
   }
-  if (!status && solve->coarse_run.steady.kind == STRUT_MOTION_TRANSIENT)
-    status = continue_coarse_run(solve, MORE_PERIODS);
-  *periodic = !status && solve->coarse_run.steady.kind == STRUT_MOTION_PERIODIC;
-  if (status || solve->coarse_run.steady.kind != STRUT_MOTION_IRREGULAR) return status;
-  return average(solve);
+  if (found->kind == STRUT_MOTION_TRANSIENT) continue_coarse_run(solve, MORE_PERIODS);
+  if (!solve->status && found->kind == STRUT_MOTION_IRREGULAR) average(solve);
+  return !solve->status && found->kind == STRUT_MOTION_PERIODIC;
 }
 
-strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
+void strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
   strut_summary run = {0};
-  strut_orbit_mean orbit = {.velocity = solve->coarse_run.velocity}, mean;
+  strut_orbit_mean orbit = {.velocity = solve->coarse_run.velocity};
+  if (solve->status) return;
   double most = most_periods(solve, cost_of_period(&solve->last_run));
-  strut_status status = run_for_mean(solve, solve->reference, fmax(PERIODS, most), &run, &mean);
-  if (!status) {
+  strut_orbit_mean mean = run_for_mean(solve, solve->reference, fmax(PERIODS, most), &run);
+  if (!solve->status) {
     mean.apart = fabs(mean.velocity - orbit.velocity);
     bool left =
         run.steady.kind == STRUT_MOTION_PERIODIC; /* an orbit of its own, from the coarse one */
@@ -166,7 +160,6 @@ strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
     accept_mean(solve, STRUT_ORBIT_DISPUTED, &run, mean);
   }
   strut_summary_free(&run);
-  return status;
 }
 
 void strut_orbit_solve_explain_mean(const strut_orbit_solve *solve, char *text, size_t size) {

@@ -37,11 +37,11 @@ void strut_summary_append(strut_summary *whole, strut_summary *part) {
 /* Periods within which a slow motion may yet repeat itself. */
 enum { CREEP_AFTER = 48 };
 
-strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_experiment e,
-                                                double tolerance, int32_t successive,
-                                                double periods, bool from_end,
-                                                strut_summary *summary) {
+void strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_experiment e,
+                                        double tolerance, int32_t successive, double periods,
+                                        bool from_end, strut_summary *summary) {
   strut_accuracy *accuracy = solve->a;
+  if (solve->status) return;
   strut_orbit_place *end = &solve->end;
   const strut_snapshot from = strut_orbit_place_snapshot(solve, end);
   strut_snapshot to = from;
@@ -61,23 +61,27 @@ strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_
                                .from = from_end ? &from : accuracy->options->from,
                                .to = &to};
   if (!from_end) end->energy = (strut_energy){0}, end->steps = end->events = 0;
-  strut_status status = strut_accuracy_run(accuracy, &e, &options, summary);
+  solve->status = strut_accuracy_run(accuracy, &e, &options, summary);
   end->time = to.time, end->y[solve->both - 1] = to.refined;
   end->energy = summary->energy; /* it continues that of the runs before */
   end->steps += summary->spent.steps;
   end->events += summary->spent.events;
-  return status;
 }
 
-strut_status strut_orbit_solve_run_on(strut_orbit_solve *solve, strut_experiment experiment,
-                                      double tolerance, int32_t successive, double periods,
-                                      bool from_end, strut_summary *run) {
+void strut_orbit_solve_run_on(strut_orbit_solve *solve, strut_experiment experiment,
+                              double tolerance, int32_t successive, double periods, bool from_end,
+                              strut_summary *run) {
   strut_summary more = {0};
-  strut_status status = strut_orbit_solve_run_until_steady(solve, experiment, tolerance, successive,
-                                                           periods, from_end, &more);
-  if (!status) strut_summary_append(run, &more);
+  strut_orbit_solve_run_until_steady(solve, experiment, tolerance, successive, periods, from_end,
+                                     &more);
+  if (!solve->status) strut_summary_append(run, &more);
   strut_summary_free(&more);
-  return status;
+}
+
+double *strut_orbit_solve_array(strut_orbit_solve *solve) {
+  double *array = strut_arena_allocate(&solve->arena, solve->both, sizeof *array);
+  if (!array) solve->status = strut_no_memory(solve->a->error, "");
+  return array;
 }
 
 void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_place *from,
@@ -103,16 +107,19 @@ strut_snapshot strut_orbit_place_snapshot(const strut_orbit_solve *solve,
 static const double TRIAL = 40.0;
 enum { MOST_CHECKS = 4 };
 
-strut_status strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status) {
-  if (status) return strut_fail(solve->a->error, status, "out of memory");
+bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status) {
+  strut_error *error = solve->a->error;
+  if (status) solve->status = strut_fail(error, status, "out of memory");
+  if (status) return false;
   strut_orbit_solve_count_evaluations(solve);
   if (strut_period_map_spent(&solve->coarse_map) || strut_period_map_spent(&solve->reference_map))
-    return strut_fail(solve->a->error, STRUT_WORK_LIMIT,
-                      "the work budget was used up while the orbit was corrected");
-  if (!strut_period_map_interrupted(&solve->coarse_map)) return STRUT_OK;
-  return strut_fail(solve->a->error, STRUT_INTERRUPTED,
-                    "interrupted at t = %.9g s, while the orbit was corrected",
-                    solve->coarse_map.time);
+    solve->status = strut_fail(error, STRUT_WORK_LIMIT,
+                               "the work budget was used up while the orbit was corrected");
+  else if (strut_period_map_interrupted(&solve->coarse_map))
+    solve->status = strut_fail(error, STRUT_INTERRUPTED,
+                               "interrupted at t = %.9g s, while the orbit was corrected",
+                               solve->coarse_map.time);
+  return !solve->status;
 }
 
 double strut_orbit_solve_error_share(const strut_orbit_solve *solve) {
@@ -127,39 +134,38 @@ static void accept_reference_run(strut_orbit_solve *solve) {
   solve->answer = STRUT_ORBIT_REFERENCE;
 }
 
-strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
-                                             double periods) {
-  strut_accuracy *accuracy = solve->a;
-  strut_accuracy_begin_phase(accuracy, "until steady by adaptive");
+void strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit, double periods) {
+  if (solve->status) return;
+  strut_accuracy_begin_phase(solve->a, "until steady by adaptive");
   strut_orbit_place_copy(solve, &solve->known, &solve->end);
   /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
   if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
     solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / STRUT_TIGHTENED);
     solve->tightened = true;
   }
-  strut_status status =
-      strut_orbit_solve_run_on(solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4,
-                               periods, from_orbit, &solve->last_run);
-  if (!status && solve->last_run.steady.kind == STRUT_MOTION_PERIODIC) accept_reference_run(solve);
-  return status;
+  strut_orbit_solve_run_on(solve, solve->reference, fmin(0.001, 0.2 * solve->a->target), 4, periods,
+                           from_orbit, &solve->last_run);
+  if (!solve->status && solve->last_run.steady.kind == STRUT_MOTION_PERIODIC)
+    accept_reference_run(solve);
 }
 
 /*
  * Repeats a sensitive orbit with a tenth of the tolerance. It is accepted if both agree to half of
  * the wanted error; otherwise the finer result replaces it and is checked likewise.
  */
-static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
+static void repeat_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
-  for (int k = 0; k < MOST_CHECKS; k++) {
+  bool stands = false, periodic = true;
+  for (int k = 0; k < MOST_CHECKS && !solve->status && !stands && periodic; k++) {
     strut_summary finer = {0};
     strut_orbit_place_copy(solve, &solve->known, &solve->end);
     solve->reference.tolerance = fmax(1e-12, 0.1 * solve->reference.tolerance);
-    strut_status status = strut_orbit_solve_run_until_steady(
-        solve, solve->reference, fmin(0.001, 0.2 * accuracy->target), 4, TRIAL, true, &finer);
-    bool periodic = !status && finer.steady.kind == STRUT_MOTION_PERIODIC;
+    strut_orbit_solve_run_until_steady(solve, solve->reference, fmin(0.001, 0.2 * accuracy->target),
+                                       4, TRIAL, true, &finer);
+    periodic = !solve->status && finer.steady.kind == STRUT_MOTION_PERIODIC;
     double apart = periodic ? fabs(finer.velocity - solve->orbit.velocity) : HUGE_VAL;
-    bool stands = apart <= 0.5 * accuracy->target *
-                               strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity);
+    stands = apart <= 0.5 * accuracy->target *
+                          strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity);
     if (stands || !periodic) {
       accuracy->check_evaluations += finer.spent.evaluations;
       solve->error = fmax(solve->error, stands ? apart : 0.0);
@@ -170,47 +176,49 @@ static strut_status repeat_with_finer_tolerance(strut_orbit_solve *solve) {
       solve->error = fmax(solve->error, 0.5 * apart);
     }
     strut_summary_free(&finer);
-    if (status || stands || !periodic) return status;
   }
-  return STRUT_OK;
 }
 
 /*
  * Corrects the orbit once by a period with a tenth of the tolerance; where that changes it too
  * much, runs on with that tolerance.
  */
-static strut_status correct_with_finer_tolerance(strut_orbit_solve *solve) {
+static void correct_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
+  strut_period_map *coarse = &solve->coarse_map, map = {.model = NULL};
   strut_experiment finer = solve->reference;
-  strut_period_map map = {.model = NULL};
-  strut_orbit there = {.y = strut_arena_allocate(&solve->arena, solve->both, sizeof(double))};
-  if (!there.y) return strut_no_memory(accuracy->error, "");
+  strut_orbit there = {.y = strut_orbit_solve_array(solve)};
+  if (solve->status) return;
   memcpy(there.y, solve->orbit.y, solve->both * sizeof(double));
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
   double size = strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity),
          half = 0.5 * accuracy->target * size;
-  int64_t before = solve->coarse_map.evaluations;
-  strut_status status = strut_period_map_create(accuracy->model, &finer, solve->coarse_map.repeats,
-                                                &map, accuracy->error);
-  if (status) return status;
-  map.interrupt = solve->coarse_map.interrupt, map.time = solve->coarse_map.time;
+  int64_t before = coarse->evaluations;
+  solve->status =
+      strut_period_map_create(accuracy->model, &finer, coarse->repeats, &map, accuracy->error);
+  if (solve->status) return;
+  map.interrupt = coarse->interrupt, map.time = coarse->time;
   map.most_evaluations = strut_accuracy_evaluations_left(accuracy);
-  status = strut_orbit_correct(&solve->coarse_map, &map, solve->fixed_point, solve->travel,
-                               0.1 * half * solve->coarse_map.period, &there);
-  accuracy->check_evaluations += solve->coarse_map.evaluations - before + map.evaluations;
-  accuracy->used += solve->coarse_map.evaluations - before + map.evaluations;
-  solve->coarse_map.evaluations = before;
+  strut_status status = strut_orbit_correct(coarse, &map, solve->fixed_point, solve->travel,
+                                            0.1 * half * coarse->period, &there);
+  int64_t made = coarse->evaluations - before + map.evaluations;
+  accuracy->check_evaluations += made;
+  accuracy->used += made;
+  coarse->evaluations = before;
   strut_period_map_free(&map);
-  status = strut_orbit_solve_check_maps(solve, status);
+  if (!strut_orbit_solve_check_maps(solve, status)) return;
   double apart = there.converged ? fabs(there.velocity - solve->orbit.velocity) : HUGE_VAL;
-  if (status || apart > half) return status ? status : repeat_with_finer_tolerance(solve);
-  solve->error = fmax(solve->error, apart);
-  return STRUT_OK;
+  if (apart > half)
+    repeat_with_finer_tolerance(solve);
+  else
+    solve->error = fmax(solve->error, apart);
 }
 
-strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
-  return solve->tightened ? repeat_with_finer_tolerance(solve)
-                          : correct_with_finer_tolerance(solve);
+void strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
+  if (solve->tightened)
+    repeat_with_finer_tolerance(solve);
+  else
+    correct_with_finer_tolerance(solve);
 }
 
 /* ---- motions without an orbit to correct: stuck or creeping; irregular ones are in orbit_means.c ---- */
@@ -244,29 +252,26 @@ bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve) {
          fabs(solve->coarse_run.velocity) <= 1.01 * band;
 }
 
-strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
+void strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *run = &solve->last_run;
   solve->answer = STRUT_ORBIT_NONE;
-  strut_status status = strut_orbit_solve_run_on(
-      solve, strut_orbit_solve_halve_step(solve), fmin(0.001, 0.2 * accuracy->target), 4,
-      fmax(20.0, strut_accuracy_transient_periods(accuracy)), false, run);
-  if (status) return status;
+  strut_orbit_solve_run_on(solve, strut_orbit_solve_halve_step(solve),
+                           fmin(0.001, 0.2 * accuracy->target), 4,
+                           fmax(20.0, strut_accuracy_transient_periods(accuracy)), false, run);
   double apart = fabs(run->velocity - solve->coarse_run.velocity);
-  if (run->steady.kind == STRUT_MOTION_PERIODIC &&
+  if (!solve->status && run->steady.kind == STRUT_MOTION_PERIODIC &&
       apart <= AGREE * accuracy->target * strut_accuracy_velocity_scale(accuracy, run->velocity))
     strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK, apart + run->steady.interval);
-  return STRUT_OK;
 }
 
-strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
+void strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *run = &solve->last_run;
   strut_experiment finer = strut_orbit_solve_halve_step(solve);
   finer.steady.creep = accuracy->coarse.steady.creep;
-  strut_status status =
-      strut_orbit_solve_run_on(solve, finer, accuracy->target, 5, CREEPING, true, run);
-  if (status) return status;
+  strut_orbit_solve_run_on(solve, finer, accuracy->target, 5, CREEPING, true, run);
+  if (solve->status) return;
   const strut_steady_summary found = run->steady;
   double apart = fabs(run->velocity - solve->coarse_run.velocity);
   bool steady = found.kind == STRUT_MOTION_CREEPING || found.kind == STRUT_MOTION_PERIODIC;
@@ -276,7 +281,6 @@ strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
     strut_orbit_solve_accept_last_run(
         solve, STRUT_ORBIT_CREEPING,
         apart + fmax(found.interval, solve->coarse_run.steady.interval));
-  return STRUT_OK;
 }
 
 /* The summary of a periodic orbit to a wanted accuracy: what it cost, how it was found, its error. */

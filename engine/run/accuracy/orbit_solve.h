@@ -48,6 +48,7 @@ typedef struct strut_orbit_mean {
 
 typedef struct strut_orbit_solve {
   strut_accuracy *a;
+  strut_status status;        /* what stops the search, after which nothing more is run */
   strut_experiment reference; /* with error control */
   strut_period_map coarse_map, reference_map;
   strut_summary coarse_run;     /* up to the steady state */
@@ -78,14 +79,13 @@ void strut_summary_append(strut_summary *whole, strut_summary *part);
  * Runs `experiment` for at most `periods`, from solve->end or the start of the scene, until
  * it is steady within `tolerance` [1] over `successive` periods. The end becomes solve->end.
  */
-strut_status strut_orbit_solve_run_until_steady(strut_orbit_solve *solve,
-                                                strut_experiment experiment, double tolerance,
-                                                int32_t successive, double periods, bool from_end,
-                                                strut_summary *summary);
+void strut_orbit_solve_run_until_steady(strut_orbit_solve *solve, strut_experiment experiment,
+                                        double tolerance, int32_t successive, double periods,
+                                        bool from_end, strut_summary *summary);
 /** The same, appended to the run so far, which stays as it is after a failure. */
-strut_status strut_orbit_solve_run_on(strut_orbit_solve *solve, strut_experiment experiment,
-                                      double tolerance, int32_t successive, double periods,
-                                      bool from_end, strut_summary *run);
+void strut_orbit_solve_run_on(strut_orbit_solve *solve, strut_experiment experiment,
+                              double tolerance, int32_t successive, double periods, bool from_end,
+                              strut_summary *run);
 /** Copies a place to another one. */
 void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_place *from,
                             strut_orbit_place *to);
@@ -93,9 +93,12 @@ void strut_orbit_place_copy(const strut_orbit_solve *solve, const strut_orbit_pl
 strut_snapshot strut_orbit_place_snapshot(const strut_orbit_solve *solve,
                                           const strut_orbit_place *place);
 /**
- * Turns the status of map evaluations into an error: out of memory, over budget, or interrupted.
+ * Turns the status of map evaluations into that of the search: out of memory, over budget, or interrupted. False: it
+ * is over.
  */
-strut_status strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status);
+bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status);
+/** A state (both) in the arena; NULL: out of memory, which the status says. */
+double *strut_orbit_solve_array(strut_orbit_solve *solve);
 
 /** Error of the orbit velocity over the wanted error [1]. */
 double strut_orbit_solve_error_share(const strut_orbit_solve *solve);
@@ -104,10 +107,9 @@ double strut_orbit_solve_error_share(const strut_orbit_solve *solve);
  * answer depends on history, from the start of the scene. Fills solve->last_run; sets solve->answer
  * if the motion became periodic.
  */
-strut_status strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit,
-                                             double periods);
+void strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit, double periods);
 /** Repeats the reference orbit with a tenth of the tolerance; replaces it where they disagree. */
-strut_status strut_orbit_solve_check_tolerance(strut_orbit_solve *solve);
+void strut_orbit_solve_check_tolerance(strut_orbit_solve *solve);
 /** The coarse method with half its step. */
 strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve);
 /** solve->last_run is the answer, with that error [m/s]. */
@@ -117,15 +119,15 @@ void strut_orbit_solve_accept_last_run(strut_orbit_solve *solve, strut_orbit_ans
 /* orbit_means.c: motions that do not repeat themselves. */
 
 /**
- * Runs the coarse method on until its motion is periodic or not; *periodic: it became so after all, and
+ * Runs the coarse method on until its motion is periodic or not. True: it became so after all, and
  * solve->end is on its orbit. An irregular motion is averaged.
  */
-strut_status strut_orbit_solve_average_irregular(strut_orbit_solve *solve, bool *periodic);
+bool strut_orbit_solve_average_irregular(strut_orbit_solve *solve);
 /**
  * The reference method (solve->last_run) did not become periodic, the coarse one did: the mean velocity by the
  * reference method over many periods from there must agree with the orbit's. Sets solve->answer.
  */
-strut_status strut_orbit_solve_average_disputed(strut_orbit_solve *solve);
+void strut_orbit_solve_average_disputed(strut_orbit_solve *solve);
 /** Writes how the mean is known. */
 void strut_orbit_solve_explain_mean(const strut_orbit_solve *solve, char *text, size_t size);
 
@@ -136,11 +138,11 @@ bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve);
  * orbit to correct. Runs the coarse method with half the step from the start of the scene; sets
  * solve->answer if both agree.
  */
-strut_status strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve);
+void strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve);
 /**
  * The coarse run creeps. Runs it on with half the step; sets solve->answer if that is as slow.
  */
-strut_status strut_orbit_solve_confirm_creep(strut_orbit_solve *solve);
+void strut_orbit_solve_confirm_creep(strut_orbit_solve *solve);
 /** Fills the request's summary from the answer; orbit: the run of its periods. */
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit);
 

@@ -51,41 +51,29 @@ static bool same_signature(strut_follow_signature a, strut_follow_signature b) {
   return a.plus == b.plus && a.minus == b.minus && a.pairs == b.pairs && a.turn == b.turn;
 }
 
-/* Narrows the first change of the word after `from`. False: no orbit there, or a status. */
-static bool bracket_event(const span *self, double least, bracket *k) {
-  while (k->to->distance - k->from->distance > least) {
-    strut_follow_orbit *orbit =
-        orbit_between(self, k->from, k->to, 0.5 * (k->from->distance + k->to->distance));
-    if (!orbit) return false;
-    if (strut_follow_words_equal(&k->from->word, &orbit->word))
-      k->from = orbit;
-    else
-      k->to = orbit;
-  }
-  return true;
-}
-
-/* The same for signatures; both ends are complete. */
-static bool bracket_signature(const span *self, double least, bracket *k) {
+/*
+ * Narrows the first change after `from`: of the word or, between complete orbits, of the signature. False: no orbit
+ * there, or a status.
+ */
+static bool narrow(const span *self, double least, bool signatures, bracket *k) {
   for (int i = 0; i < MOST_HALVINGS && k->to->distance - k->from->distance > least; i++) {
     strut_follow_orbit *orbit =
         orbit_between(self, k->from, k->to, 0.5 * (k->from->distance + k->to->distance));
-    if (!orbit || !strut_follow_complete(self->w->s, orbit, self->a->tangent[0])) return false;
-    if (same_signature(k->from->signature, orbit->signature))
-      k->from = orbit;
-    else
-      k->to = orbit;
+    if (!orbit || (signatures && !strut_follow_complete(self->w->s, orbit, self->a->tangent[0])))
+      return false;
+    bool same = signatures ? same_signature(k->from->signature, orbit->signature)
+                           : strut_follow_words_equal(&k->from->word, &orbit->word);
+    *(same ? &k->from : &k->to) = orbit;
   }
   return true;
 }
 
 static int32_t unstable_count(strut_follow_signature g) { return g.plus + g.minus + 2 * g.pairs; }
 
-static bool note_stability(strut_follow_point *point, const bracket *self) {
+static void note_stability(strut_follow_point *point, const bracket *self) {
   point->unstable[0] = unstable_count(self->from->signature);
   point->unstable[1] = unstable_count(self->to->signature);
   point->changes = (point->unstable[0] == 0) != (point->unstable[1] == 0);
-  return true;
 }
 
 static bool add_event(const span *self, const bracket *k) {
@@ -161,16 +149,17 @@ static bool add_signature(const span *self, const bracket *k) {
                           ? "leaves"
                           : "enters";
   strut_arena *arena = &walk->branch->arena;
-  if (kind == STRUT_FOLLOW_FOLD)
-    point->detail = strut_arena_format(arena, "the branch turns; a multiplier passes 1");
-  else if (kind == STRUT_FOLLOW_DOUBLING)
-    point->detail = strut_arena_format(arena, "a multiplier %s the unit circle at -1", sense);
-  else if (kind == STRUT_FOLLOW_TORUS)
-    point->detail =
-        strut_arena_format(arena, "a pair of multipliers %s the unit circle at +-%.4g deg", sense,
-                           fabs(atan2(value[1], value[0])) * 57.29577951308232);
-  else
-    point->detail = strut_arena_format(arena, "a multiplier %s the unit circle at 1", sense);
+  double angle = fabs(atan2(value[1], value[0])) * 57.29577951308232;
+  const bool torus = kind == STRUT_FOLLOW_TORUS;
+  point->detail = kind == STRUT_FOLLOW_FOLD
+                      ? strut_arena_format(arena, "the branch turns; a multiplier passes 1")
+                      : strut_arena_format(arena,
+                                           torus ? "%s %s the unit circle at +-%.4g deg"
+                                                 : "%s %s the unit circle at %.0f",
+                                           torus ? "a pair of multipliers" : "a multiplier", sense,
+                                           torus                           ? angle
+                                           : kind == STRUT_FOLLOW_DOUBLING ? -1.0
+                                                                           : 1.0);
   if (!point->detail) walk->s->status = strut_no_memory(walk->s->error, "");
   if (!point->detail) return false;
   if (kind == STRUT_FOLLOW_DOUBLING) {
@@ -187,7 +176,7 @@ static bool locate_signatures(const span *self, strut_follow_orbit *from, strut_
   double least = LOCATED * fmax(to->distance - from->distance, 1e-6);
   for (int i = 0; i < MOST_CHANGES && !same_signature(from->signature, to->signature); i++) {
     bracket k = {from, to};
-    if (!bracket_signature(self, least, &k)) return self->w->s->status == STRUT_OK;
+    if (!narrow(self, least, true, &k)) return self->w->s->status == STRUT_OK;
     if (!add_signature(self, &k)) return false;
     from = k.to;
   }
@@ -208,10 +197,10 @@ bool strut_follow_locate(strut_follow_walk *walk, const strut_follow_orbit *firs
     if (strut_follow_words_equal(&here->word, &to.word)) break;
     bracket k = {here, &to};
     walk->s->precision = STRUT_FOLLOW_ROUGH;
-    bool narrow = bracket_event(&p, least, &k);
+    bool found = narrow(&p, least, false, &k);
     walk->s->precision = STRUT_FOLLOW_CLOSE;
     if (walk->s->status) return false;
-    if (!narrow) break;
+    if (!found) break;
     if (signatures) {
       if (!strut_follow_complete(walk->s, k.from, first->tangent[0]) ||
           !strut_follow_complete(walk->s, k.to, first->tangent[0]))

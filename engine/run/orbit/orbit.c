@@ -79,22 +79,21 @@ static bool find_extrapolation_weights(const strut_period_map *map, double *cons
 
 /* ---- the correction of an orbit ---- */
 
+/* `count` states of a period map, in the arena; the first is NULL: out of memory. */
+static void allocate_states(const strut_period_map *map, size_t count, strut_arena *arena,
+                            double *states[]) {
+  size_t both = 2 * (size_t)map->model->length + 1;
+  double *all = strut_arena_allocate(arena, count * both, sizeof *all);
+  for (size_t k = 0; k < count; k++) states[k] = all ? all + k * both : NULL;
+}
+
 /* A disturbance and its development over the latest periods; entry k % KEPT is after period k. */
 typedef struct disturbance {
-  double *d[KEPT], *sum[KEPT]; /* (2 length + 1) the disturbance; its sum so far */
-  double gone[KEPT];           /* travel that the sum so far causes [m] */
+  double **d, **sum; /* (KEPT) each (2 length + 1): the disturbance; its sum so far */
+  double gone[KEPT]; /* travel that the sum so far causes [m] */
   double *limit, *work;
   double travel; /* extrapolated [m]; NAN where there is none */
 } disturbance;
-
-static bool allocate_disturbance(size_t both, strut_arena *arena, disturbance *self) {
-  bool ready = (self->limit = strut_arena_allocate(arena, both, sizeof(double)));
-  ready = ready && (self->work = strut_arena_allocate(arena, both, sizeof(double)));
-  for (int k = 0; k < KEPT && ready; k++)
-    ready = (self->d[k] = strut_arena_allocate(arena, both, sizeof(double))) &&
-            (self->sum[k] = strut_arena_allocate(arena, both, sizeof(double)));
-  return ready;
-}
 
 /*
  * Extrapolates the sums after m periods into t->limit and t->travel. Returns the size of the
@@ -162,14 +161,15 @@ strut_status strut_orbit_correct(strut_period_map *coarse, strut_period_map *ref
                                  strut_orbit *orbit) {
   size_t both = 2 * (size_t)coarse->model->length + 1;
   strut_arena arena = {0};
-  disturbance t = {.limit = NULL};
-  double *end = strut_arena_allocate(&arena, both, sizeof(double));
+  double *states[2 * KEPT + 3], *end = NULL;
   assert(orbit->y != base && coarse->model == reference->model);
   orbit->converged = false;
-  if (!end || !allocate_disturbance(both, &arena, &t)) {
-    strut_arena_free(&arena);
-    return STRUT_NO_MEMORY;
-  }
+  allocate_states(coarse, 2 * KEPT + 3, &arena, states);
+  if (!(end = states[2 * KEPT])) return STRUT_NO_MEMORY;
+  disturbance t = {.d = states,
+                   .sum = states + KEPT,
+                   .limit = states[2 * KEPT + 1],
+                   .work = states[2 * KEPT + 2]};
   memcpy(end, orbit->y, both * sizeof *end);
   double gone = strut_period_map_apply(reference, end);
   strut_period_map_subtract(coarse, orbit->y, end, t.d[0]);
@@ -194,15 +194,6 @@ typedef struct window {
   double *y[WINDOW + 1], *d[WINDOW], *best;
   double travel[WINDOW], size[WINDOW];
 } window;
-
-static bool allocate_window(size_t both, strut_arena *arena, window *self) {
-  bool ready = true;
-  for (int k = 0; k <= WINDOW && ready; k++)
-    ready = (self->y[k] = strut_arena_allocate(arena, both, sizeof(double)));
-  for (int k = 0; k < WINDOW && ready; k++)
-    ready = (self->d[k] = strut_arena_allocate(arena, both, sizeof(double)));
-  return ready && (self->best = strut_arena_allocate(arena, both, sizeof(double)));
-}
 
 /* Extrapolates into w->best; takes the end of the latest period where that fails. */
 static void extrapolate_periods(const strut_period_map *map, window *self) {
@@ -264,9 +255,12 @@ strut_status strut_orbit_limit(strut_period_map *map, strut_extrapolation *to, d
                                double *travel) {
   size_t both = 2 * (size_t)map->model->length + 1, bytes = both * sizeof(double);
   strut_arena arena = {0};
-  window w = {.best = NULL};
+  window w;
   to->found = to->unsteady = false;
-  if (!allocate_window(both, &arena, &w)) {
+  allocate_states(map, WINDOW + 1, &arena, w.y);
+  allocate_states(map, WINDOW, &arena, w.d);
+  allocate_states(map, 1, &arena, &w.best);
+  if (!w.y[0] || !w.d[0] || !w.best) {
     strut_arena_free(&arena);
     return STRUT_NO_MEMORY;
   }

@@ -136,10 +136,6 @@ STRUT_VALUES_HERE(curve_values, CURVE, const strut_follow_branch *c = of->at)
     .label = {"curve"})
 STRUT_VALUES(strut_follow_curves_values, CURVES, const strut_follow_result *r = of->at)
 
-char *strut_follow_curves_csv(const strut_follow_result *result) {
-  return strut_values_csv(&strut_follow_curves_values, "curves.points", NULL, result, NULL);
-}
-
 /*
  * How far a stable motion may be pushed: kicks of the whole structure at the start of a period, after each
  * of which the motion must come back. The smallest that it does not come back from is found by bisection

@@ -28,11 +28,11 @@ __attribute__((format(printf, 2, 3))) void strut_follow_note(strut_follow_result
 strut_status strut_follow_find_curves(const strut_follow_options *options,
                                       strut_follow_result *result, const strut_follow_system *like,
                                       strut_error *error);
-/** What results tell of curves, and tables of a multiplier. */
-extern const strut_value_rows strut_follow_curves_values, strut_follow_multiplier_values;
-/** Header and cell of a column of the axes, as CSV, in the arena. False: out of memory. */
-bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,
-                            strut_arena *arena, char **name, char **cell);
+/** Of a multiplier. */
+extern const strut_value_rows strut_follow_multiplier_values;
+/** Headers and cells of the axes at their values as CSV, each with a comma behind it, in the arena. */
+bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
+                       strut_arena *arena, const char **names, const char **cells);
 
 /* A study that follows motions: all branches over a parameter at every point of its axes.
  *

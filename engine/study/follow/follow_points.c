@@ -182,25 +182,12 @@ static counts count_branches(const strut_follow_result *result) {
   return c;
 }
 
-/* Cells of the axes as the tables have them, and their headers, each followed by a comma. */
-static bool format_axes(const point_work *self, const char **names, const char **cells) {
-  const strut_sweep_plan *plan = self->plan;
-  *names = *cells = "";
-  for (size_t i = 0; i < plan->axis_columns && *names && *cells; i++) {
-    char *name, *cell;
-    if (!strut_follow_axis_cell(&plan->columns[i], self->values[i], self->arena, &name, &cell))
-      return false;
-    *names = strut_arena_format(self->arena, "%s%s,", *names, name);
-    *cells = strut_arena_format(self->arena, "%s%s,", *cells, cell);
-  }
-  return *names && *cells;
-}
-
 static strut_status write_branches(point_work *self, bool partial) {
   const char *names, *cells;
   char csv[64], json[64];
   const char *folder = strut_arena_format(self->arena, "%s/branches", self->options->directory);
-  if (!folder || !format_axes(self, &names, &cells)) return strut_no_memory(&self->error, "");
+  if (!folder || !strut_follow_axes(self->plan, self->values, self->arena, &names, &cells))
+    return strut_no_memory(&self->error, "");
   snprintf(csv, sizeof csv, "%09lld%s.csv", (long long)self->point, partial ? "-partial" : "");
   snprintf(json, sizeof json, "%09lld.json", (long long)self->point);
   strut_status status = strut_directory_create(folder, &self->error);

@@ -22,16 +22,23 @@ static char *quote_cell(const char *text, strut_arena *arena) {
   return cell;
 }
 
-bool strut_follow_axis_cell(const strut_slot_column *column, strut_study_value value,
-                            strut_arena *arena, char **name, char **cell) {
-  char number[STRUT_NUMBER_TEXT] = "";
-  bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
-  const char *header =
-      strut_arena_format(arena, plain ? "%s" : "%s [%s]", column->name, plain ? "" : column->unit);
-  if (!value.word && isfinite(value.number)) strut_number_text(value.number, number);
-  *name = header ? quote_cell(header, arena) : NULL;
-  *cell = quote_cell(value.word ? value.word : number, arena);
-  return *name && *cell;
+bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
+                       strut_arena *arena, const char **names, const char **cells) {
+  *names = *cells = "";
+  for (size_t i = 0; i < plan->axis_columns && *names && *cells; i++) {
+    const strut_slot_column *column = &plan->columns[i];
+    char number[STRUT_NUMBER_TEXT] = "";
+    bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
+    const char *header = strut_arena_format(arena, plain ? "%s" : "%s [%s]", column->name,
+                                            plain ? "" : column->unit);
+    if (!values[i].word && isfinite(values[i].number)) strut_number_text(values[i].number, number);
+    const char *name = header ? quote_cell(header, arena) : NULL;
+    const char *cell = quote_cell(values[i].word ? values[i].word : number, arena);
+    if (!name || !cell) return false;
+    *names = strut_arena_format(arena, "%s%s,", *names, name);
+    *cells = strut_arena_format(arena, "%s%s,", *cells, cell);
+  }
+  return *names && *cells;
 }
 
 /* The text of a point's file, in the arena; NULL where there is none, or no memory. */
@@ -65,15 +72,11 @@ static strut_status write_header(FILE *to, const strut_sweep_plan *plan, bool pa
                                  strut_arena *arena, strut_error *error) {
   const strut_study_follow *follow = plan->study->follow;
   strut_follow_result *none = strut_arena_allocate(arena, 1, sizeof *none);
-  const char *names = "";
-  for (size_t i = 0; i < plan->axis_columns && names; i++) {
-    char *name, *cell;
-    const strut_study_value value = {.number = 0.0};
-    if (!strut_follow_axis_cell(&plan->columns[i], value, arena, &name, &cell))
-      return strut_no_memory(error, "");
-    names = strut_arena_format(arena, "%s%s,", names, name);
-  }
-  if (!none || !names) return strut_no_memory(error, "");
+  const strut_study_value *values =
+      strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *values);
+  const char *names, *cells;
+  if (!none || !values || !strut_follow_axes(plan, values, arena, &names, &cells))
+    return strut_no_memory(error, "");
   none->name = strut_arena_format(arena, "%s", follow->over);
   none->unit = strut_arena_format(arena, "%s", follow->unit);
   char *header = none->name && none->unit ? strut_follow_csv_beside(none, names, "") : NULL;

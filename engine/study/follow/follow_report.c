@@ -126,10 +126,6 @@ char *strut_follow_csv_beside(const strut_follow_result *result, const char *nam
   return strut_values_csv(&strut_follow_values, "branches.points", before, result, NULL);
 }
 
-char *strut_follow_csv(const strut_follow_result *result) {
-  return strut_follow_csv_beside(result, "", "");
-}
-
 char *strut_follow_json(const strut_follow_result *result) {
   return strut_values_json(&strut_follow_values, result, NULL);
 }

@@ -164,13 +164,10 @@ typedef struct strut_tradeoff_advice {
 STRUT_API strut_tradeoff_advice strut_tradeoff_advise(const strut_tradeoff *result, double error);
 
 /**
- * Texts in blocks of strut_allocate; NULL: memory was out. CPU times in them are measurements: they
- * differ from run to run, everything else does not unless the study was cut.
+ * Rows of a strut_tradeoff, one of `settings` per setting. CPU times in them are measurements: they differ from run to
+ * run, everything else does not unless the study was cut.
  */
-STRUT_API char *strut_tradeoff_json(const strut_tradeoff *result);
 STRUT_API extern const strut_value_rows strut_tradeoff_values;
-/** One row per setting, the spreads over the operating points; diverged: "inf". */
-STRUT_API char *strut_tradeoff_csv(const strut_tradeoff *result);
 
 /** Draws it. Over several operating points a marker is the median and a bar leads to the worst. */
 STRUT_API strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *result,

@@ -210,11 +210,3 @@ static void write_base(const strut_result_object *of, char text[STRUT_VALUE_ROOM
   X("advice", "", TIMES(strut_tradeoff_level_count(r)), "for each error", .rows = &advice_values,  \
     .label = {""})
 STRUT_VALUES(strut_tradeoff_values, TRADEOFF, const strut_tradeoff *r = of->at)
-
-char *strut_tradeoff_csv(const strut_tradeoff *tradeoff) {
-  return strut_values_csv(&strut_tradeoff_values, "settings", NULL, tradeoff, NULL);
-}
-
-char *strut_tradeoff_json(const strut_tradeoff *tradeoff) {
-  return strut_values_json(&strut_tradeoff_values, tradeoff, &tradeoff->setups[0]->scene);
-}

@@ -1,22 +1,36 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/commands.h"
 
-#include <stdio.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
-#include "engine/output/file.h"
-#include "engine/output/results.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/program/command/follow_options.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
+#include "parser/program/outputs.h"
 #include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
-static const char *const file_names[] = {"branches.csv", "branches.json", "branches.svg",
-                                         "curves.csv",   "curves.svg",    NULL};
+enum { BRANCHES, CURVES };
+
+static strut_status draw(const strut_plot *plot, const void *result, size_t index,
+                         strut_error *error) {
+  return index == CURVES ? strut_follow_curves_figure(plot, result, error)
+                         : strut_follow_figure(plot, result, error);
+}
+
+/* With those of curves the last two. */
+static const strut_output_file all_files[] = {
+    {.name = "branches.csv", .list = "branches.points"},
+    {.name = "branches.json"},
+    {.name = "branches.svg", .draw = draw},
+    {.name = "curves.csv", .list = "curves.points", .rows = &strut_follow_curves_values},
+    {.name = "curves.svg", .draw = draw, .index = CURVES},
+    {.name = NULL}};
+enum { FILES = sizeof all_files / sizeof *all_files, CURVES_CSV = 3, CURVES_SVG };
 
 #define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
 
@@ -53,54 +67,19 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-/* The curves over both parameters. */
-static strut_status write_curves(const char *directory, const strut_follow_result *result,
-                                 const strut_plot *plot, strut_error *error) {
-  char path[4096];
-  strut_plot own = *plot;
-  strut_status status =
-      strut_file_write_block(directory, "curves.csv", strut_follow_curves_csv(result), error);
-  if (status || !result->curve_count) return status;
-  if (snprintf(path, sizeof path, "%s/curves.svg", directory) >= (int)sizeof path)
-    return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long",
-                      directory);
-  own.path = path;
-  return strut_follow_curves_figure(&own, result, error);
-}
-
-/* Writes all files, or none. */
-static strut_status write_files(const char *directory, const strut_follow_result *result,
-                                const strut_plot *plot, strut_error *error) {
-  strut_results files = {0};
-  char path[4096];
-  strut_plot own = *plot;
-  strut_status status = strut_results_begin_named(&files, directory, file_names, error);
-  if (!status)
-    status = strut_file_write_block(files.stage, "branches.csv", strut_follow_csv(result), error);
-  if (!status)
-    status = strut_file_write_block(files.stage, "branches.json", strut_follow_json(result), error);
-  if (!status && snprintf(path, sizeof path, "%s/branches.svg", files.stage) >= (int)sizeof path)
-    status =
-        strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': the path is too long", directory);
-  own.path = path;
-  if (!status) status = strut_follow_figure(&own, result, error);
-  if (!status && result->second.name) status = write_curves(files.stage, result, plot, error);
-  if (!status) status = strut_results_commit(&files, error);
-  strut_results_abandon(&files);
-  return status;
-}
-
 static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
                            const strut_follow_result *result) {
-  strut_error error = {0};
-  strut_status status = STRUT_OK;
-  if (arguments->output) status = write_files(arguments->output, result, plot, &error);
   bool curves = result->second.name && result->curve_count;
-  if (!status && plot->path)
-    status = curves ? strut_follow_curves_figure(plot, result, &error)
-                    : strut_follow_figure(plot, result, &error);
-  if (status) return strut_print_failure(status, &error);
-  return strut_print_values(arguments, &strut_follow_values, result, NULL);
+  strut_output_file files[FILES];
+  memcpy(files, all_files, sizeof files);
+  files[CURVES_CSV].absent = !result->second.name;
+  files[CURVES_SVG].absent = !curves;
+  return strut_outputs_make(arguments, plot,
+                            &(strut_outputs){.rows = &strut_follow_values,
+                                             .result = result,
+                                             .files = files,
+                                             .draw = draw,
+                                             .index = curves ? CURVES : BRANCHES});
 }
 
 static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
@@ -115,7 +94,7 @@ static strut_status follow(const strut_arguments *arguments, const strut_plot *p
   wanted->threads = strut_sweep_threads();
   strut_status status = strut_follow_make(wanted, result, &error);
   strut_progress_end(&progress);
-  if (status) strut_print_error(&error);
+  strut_print_failure(status, &error);
   if (!status)
     status = report(arguments, plot, result);
   else if (status == STRUT_INTERRUPTED && result->count > 0)
@@ -132,7 +111,7 @@ static strut_status run_follow(const strut_arguments *arguments) {
   strut_follow_options wanted = {0};
   char *text = NULL;
   strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (!status) status = strut_check_output_writable(arguments, file_names);
+  if (!status) status = strut_outputs_check(arguments, all_files);
   if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
   if (status) return status;
   source.scenes.text = text;
