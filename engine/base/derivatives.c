@@ -11,10 +11,8 @@
 static const double LEAST_NOISE = 3e-17, MOST_NOISE = 1e-6, USUAL_NOISE = 1e-11;
 /* Steps along all parameters, in parts of those along one; by how much they are varied. */
 static const double PART = 0.125, LEAST_PART = 1.0 / 128.0, SPREAD = 0.3;
-static const double BENT =
-    0.1; /* difference of one-sided derivatives, in parts of their mean, to be looked at */
-static const double SLIGHT = 0.01; /* bend of what seems straight, in parts of the change */
-static const double GOLDEN = 0.6180339887498949;
+/* In parts of the change: a bend to be looked at, and that of what seems straight. */
+static const double BENT = 0.1, SLIGHT = 0.01, GOLDEN = 0.6180339887498949;
 
 /* Two points along a direction: `central` at 1 and -1, else at 1 and 2 steps. */
 typedef struct pair {
@@ -165,47 +163,33 @@ static void join_steps(differences *self) {
   }
 }
 
-/* What is known of all directions together, of one output. */
-typedef struct agreement {
-  double off;            /* by how much the pair along all disagrees with the sum of the others */
-  double together, most; /* how much it bends, and what smooth bends along each add up to at most */
-} agreement;
-
-static agreement agree(const differences *self, size_t j) {
-  double roots = 0.0, bends = 0.0, bend;
-  agreement a;
-  const pair *all = &self->pairs[self->task->parameter_count];
-  double change = slope(self, all, j, &a.together);
-  for (size_t i = 0; i < self->task->parameter_count; i++) {
+/*
+ * The derivatives of one output. A bend comes from a kink at the point where it lasts: a smooth one shrinks with the
+ * square of the steps, those along all parameters adding up to `most`, and what the differences get wrong with the cube.
+ */
+static void conclude(const differences *self, size_t j, strut_derivative *to) {
+  const size_t n = self->task->parameter_count;
+  const pair *all = &self->pairs[n];
+  double together, bend, roots = 0.0, bends = 0.0, off = slope(self, all, j, &together);
+  double own = isfinite(self->errors[j]) ? self->errors[j] : 0.0, noise = noise_of(self, j);
+  for (size_t i = 0; i < n; i++) {
     double part = all->step[i] / self->pairs[i].step[i];
-    change -= part * slope(self, &self->pairs[i], j, &bend);
+    off -= part * slope(self, &self->pairs[i], j, &bend);
     roots += part * sqrt(fabs(bend)), bends += part * fabs(bend);
   }
-  a.off = fabs(change) + 2.0 * DBL_EPSILON * fabs(self->outputs[j]);
-  a.most = fmin(2.0 * roots * roots, bends / 2.0);
-  return a;
-}
-
-/* The derivatives of one output. */
-static void conclude(const differences *self, size_t j, strut_derivative *to) {
-  const strut_derivatives_task *task = self->task;
-  const agreement all = agree(self, j);
-  double own = isfinite(self->errors[j]) ? self->errors[j] : 0.0, noise = noise_of(self, j), bend;
-  for (size_t i = 0; i < task->parameter_count; i++) {
+  off = fabs(off) + 2.0 * DBL_EPSILON * fabs(self->outputs[j]);
+  double most = fmax(fmin(2.0 * roots * roots, bends / 2.0), 8.0 * noise);
+  for (size_t i = 0; i < n; i++) {
     double h = self->pairs[i].step[i], change = slope(self, &self->pairs[i], j, &bend);
-    double off = fabs(all.off * h / self->pairs[task->parameter_count].step[i]), error = 2.0 * off;
+    double error = 2.0 * off / fabs(all->step[i]); /* whose it is, is not known */
     bool bent = fabs(bend) > BENT * fabs(change);
-    if (task->parameter_count > 1 && bent)
-      error += fabs(bend); /* together with others it is not told apart for certain */
-    /* A kink at the point: a smooth bend shrinks with the square of the steps, and what the differences get wrong with
-       the cube. */
-    bool lasts = fabs(all.together) > all.most && fabs(all.together) > 8.0 * noise;
-    bool kink = bent && fabs(bend) > 32.0 * noise && (lasts || off > fabs(bend) / 4.0);
+    bool lasts = fabs(together) > most || error * fabs(h) > fabs(bend) / 2.0;
+    if (n > 1 && bent) error += fabs(bend / h); /* not told apart for certain */
     to[i].value = change / h;
-    to[i].error = error / fabs(h) + own / scale_of(&task->parameters[i]);
-    to[i].verdict = !isfinite(to[i].value + to[i].error) ? STRUT_DERIVATIVE_UNKNOWN
-                    : kink                               ? STRUT_DERIVATIVE_NONE
-                                                         : STRUT_DERIVATIVE_THERE;
+    to[i].error = error + own / scale_of(&self->task->parameters[i]);
+    to[i].verdict = STRUT_DERIVATIVE_THERE;
+    if (bent && lasts && fabs(bend) > 32.0 * noise) to[i].verdict = STRUT_DERIVATIVE_NONE;
+    if (!isfinite(to[i].value + to[i].error)) to[i].verdict = STRUT_DERIVATIVE_UNKNOWN;
     if (to[i].verdict != STRUT_DERIVATIVE_THERE) to[i].value = to[i].error = (double)NAN;
   }
 }

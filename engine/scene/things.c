@@ -102,6 +102,12 @@ strut_thing strut_thing_of_owner(strut_channel_owner owner) {
   return things[owner];
 }
 
+const strut_parameter *strut_parameter_named(const strut_scene *scene, const char *name) {
+  for (size_t i = 0; i < scene->parameter_count; i++)
+    if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
+  return NULL;
+}
+
 const strut_configuration *strut_configuration_named(const strut_scene *scene, const char *name) {
   int32_t i = strut_thing_find(scene, STRUT_THING_CONFIGURATION, name);
   return i >= 0 ? &scene->configurations[i] : NULL;

@@ -40,6 +40,8 @@ STRUT_API int32_t strut_coordinate_find(const strut_scene *scene, const char *na
 /** The configuration of that name, NULL: none. */
 STRUT_API const strut_configuration *strut_configuration_named(const strut_scene *scene,
                                                                const char *name);
+/** The parameter of that name, or NULL. */
+STRUT_API const strut_parameter *strut_parameter_named(const strut_scene *scene, const char *name);
 
 /** The kind of things whose observables an owner has; STRUT_THING_COUNT: they are of no kind of thing. */
 STRUT_API strut_thing strut_thing_of_owner(strut_channel_owner owner);

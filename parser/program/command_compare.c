@@ -119,7 +119,7 @@ static strut_status split_settings(const strut_arguments *arguments, const strut
   for (size_t i = 0; i < count; i++) {
     size_t owner = arguments->override_model[i]; /* 0: all models */
     if (owner != 0 && owner != number + 1) continue;
-    if (strut_find_parameter(scene, arguments->overrides[i].name))
+    if (strut_parameter_named(scene, arguments->overrides[i].name))
       from->known[from->known_count++] = arguments->overrides[i];
     else
       without[input->without_count++] = arguments->overrides[i].name;
@@ -172,7 +172,7 @@ static strut_status check_settings(const strut_arguments *arguments,
     bool known = false;
     for (size_t k = 0; k < compared->count; k++)
       known = known || ((owner == 0 || owner == k + 1) &&
-                        strut_find_parameter(&compared->setups[k].scene, name));
+                        strut_parameter_named(&compared->setups[k].scene, name));
     if (known) continue;
     const char *near = strut_did_you_mean(name, parameter_at, compared);
     return strut_usage_error(arguments, "--set %s: %s%s%s has %s parameter%s%s%s", name,

@@ -81,6 +81,14 @@ found = derivatives("crawler.yaml")["x", "friction"]
 holds(found, 0.045371, 5e-5, "the crawler's way by friction")
 check(abs(found["value"] - 0.045371) < 5e-7, f"five digits: {found}")
 
+# ---- its steady velocity, by periodic orbits that are solved for ----
+
+write("steady.yaml", crawler + """
+solver: {accuracy: 1 %}
+run: {periods: 400, of: drive, measure: {steady: true, last: 1, derivatives: [friction]}}
+""")
+holds(derivatives("steady.yaml")["velocity", "friction"], -0.02281, 2e-3, "the crawler's steady velocity by friction")
+
 # ---- the end of a range: friction of 0 is the least ----
 
 write("slide.yaml", """strut: 1

@@ -84,13 +84,9 @@ static strut_status setup_at(void *context, const double value[2], strut_setup *
 }
 
 static double own_value(const strut_study_follow *follow, const strut_scene *scene) {
-  for (size_t i = 0; i < scene->parameter_count; i++) {
-    double value = scene->parameters[i].value;
-    if (strcmp(scene->parameters[i].name, follow->over) == 0 && value >= follow->from &&
-        value <= follow->to)
-      return value;
-  }
-  return 0.5 * (follow->from + follow->to);
+  const strut_parameter *own = strut_parameter_named(scene, follow->over);
+  bool within = own && own->value >= follow->from && own->value <= follow->to;
+  return within ? own->value : 0.5 * (follow->from + follow->to);
 }
 
 /* Every value of `at` from every configuration. */

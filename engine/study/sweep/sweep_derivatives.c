@@ -4,24 +4,20 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/scene/things.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/* Of the runs whose results are differentiated, at most. */
-static const double TIGHT = 1e-9;
-/* Relative error of what is solved at rest. */
-static const double SOLVED = 1e-12;
+/* Of the runs whose results are differentiated, at most; of their orbits, where they stop once they are steady. */
+static const double TIGHT = 1e-9, ORBIT = 1e-6;
+/* Relative noise of what is solved: at rest, orbits. */
+static const double REST_NOISE = 1e-12, ORBIT_NOISE = 1e-10;
 
 /* A point under way. */
 typedef struct derivation {
   const strut_sweep_worker *worker;
   const strut_sweep_job *job;
+  double noise; /* relative; NAN: not known */
 } derivation;
-
-static const strut_parameter *find_parameter(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->parameter_count; i++)
-    if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-  return NULL;
-}
 
 /* "m/s" by "N/m": "m/s/(N/m)" */
 static const char *unit_of(strut_arena *arena, const char *of, const char *by) {
@@ -30,11 +26,15 @@ static const char *unit_of(strut_arena *arena, const char *of, const char *by) {
   return strut_arena_format(arena, "%s/%s%s%s", of, simple ? "" : "(", by, simple ? "" : ")");
 }
 
-/* A row's number in the j-th column that is derived. */
-static double number_of(const strut_sweep_plan *plan, const strut_row_buffer *cells, size_t j) {
-  size_t at = 0;
-  for (size_t c = 0; c < plan->derived[j]; c++) at += !plan->columns[c].word;
-  return cells->numbers[at];
+/* The derived numbers of a row. */
+static void take_numbers(const derivation *self, const strut_sweep_job *job, double *outputs,
+                         double *errors) {
+  const strut_sweep_plan *plan = self->worker->plan;
+  for (size_t j = 0, c = 0, at = 0; j < plan->derived_count; j++) {
+    for (; c < plan->derived[j]; c++) at += !plan->columns[c].word;
+    outputs[j] = job->cells.numbers[at];
+    errors[j] = self->noise * fabs(outputs[j]);
+  }
 }
 
 static bool add_columns(strut_sweep_plan *plan, const strut_slot_column *of) {
@@ -62,7 +62,7 @@ strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_
   bool fine = plan->by != NULL;
   plan->first_derivative = plan->column_count;
   for (size_t i = 0; i < plan->by_count && fine; i++) {
-    if (!find_parameter(&setup->scene, from[i].name))
+    if (!strut_parameter_named(&setup->scene, from[i].name))
       return strut_fail(error, STRUT_USAGE, "derivatives: the model has no parameter '%.60s'",
                         from[i].name);
     plan->by[i].name = strut_arena_text(&plan->arena, from[i].name, strlen(from[i].name));
@@ -75,19 +75,22 @@ strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_
 }
 
 /*
- * Makes a run as exact as its derivatives need: with error control and without a search for the method. True where it
- * was.
+ * Makes a run as exact as its derivatives need: with error control and without a search for the method, or on the orbit
+ * that it is to find. True where it was.
  */
 static bool make_exact(strut_experiment *experiment, const strut_scene *scene) {
   bool adaptive = strut_experiment_is_adaptive(experiment->integrator);
-  bool exact = adaptive && experiment->tolerance <= TIGHT && experiment->accuracy == 0.0;
-  experiment->accuracy = 0.0;
+  bool steady = experiment->steady.wanted, asked = experiment->accuracy > 0.0;
+  bool exact = steady ? asked && experiment->accuracy <= ORBIT
+                      : adaptive && experiment->tolerance <= TIGHT && !asked;
+  if (!exact) experiment->accuracy = steady ? ORBIT : 0.0;
+  if (steady) return exact;
   if (!adaptive) {
     experiment->integrator = "adaptive";
     experiment->step = 0.0;
     strut_experiment_choose_step(experiment, scene);
   }
-  if (!adaptive || experiment->tolerance > TIGHT) experiment->tolerance = TIGHT;
+  experiment->tolerance = adaptive ? fmin(experiment->tolerance, TIGHT) : TIGHT;
   return exact;
 }
 
@@ -115,7 +118,6 @@ static strut_status evaluate(void *context, const double *parameters, double *ou
   strut_sweep_worker worker = *self->worker;
   strut_arena arena = {0};
   strut_sweep_job *job = strut_sweep_make_jobs(plan, &arena, 1);
-  (void)errors; /* not known */
   strut_status status = job ? STRUT_OK : strut_no_memory(error, "");
   worker.watch = NULL;
   if (!status)
@@ -126,8 +128,7 @@ static strut_status evaluate(void *context, const double *parameters, double *ou
                                        .most_evaluations = plan->study->limit.evaluations};
     status = fill_kept(&worker, job);
     if (error) *error = job->error;
-    for (size_t j = 0; j < plan->derived_count && !status; j++)
-      outputs[j] = number_of(plan, &job->cells, j);
+    if (!status) take_numbers(self, job, outputs, errors);
     strut_setup_free(&job->setup);
   }
   strut_arena_free(&arena);
@@ -137,7 +138,8 @@ static strut_status evaluate(void *context, const double *parameters, double *ou
 /* A parameter of the job's scene; where a scene cannot have a little less or more of it, that is its range. */
 static strut_derivatives_parameter parameter_of(const derivation *self, size_t i) {
   const strut_sweep_plan *plan = self->worker->plan;
-  const strut_parameter *parameter = find_parameter(&self->job->setup.scene, plan->by[i].name);
+  const strut_parameter *parameter =
+      strut_parameter_named(&self->job->setup.scene, plan->by[i].name);
   const double value = parameter ? parameter->value : (double)NAN;
   double limit[2] = {-INFINITY, INFINITY};
   for (int side = 0; side < 2; side++) {
@@ -155,21 +157,18 @@ static strut_derivatives_parameter parameter_of(const derivation *self, size_t i
 
 strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job) {
   const strut_sweep_plan *plan = worker->plan;
-  derivation self = {worker, job};
   strut_arena arena = {0};
   if (!plan->by_count) return STRUT_OK;
   strut_experiment experiment = job->setup.experiment;
-  bool known =
-      make_exact(&experiment, &job->setup.scene) || plan->study->compute != STRUT_COMPUTE_RUN;
+  bool rest = plan->study->compute != STRUT_COMPUTE_RUN, steady = experiment.steady.wanted;
+  bool known = make_exact(&experiment, &job->setup.scene) || rest;
+  derivation self = {worker, job, rest ? REST_NOISE : steady ? ORBIT_NOISE : (double)NAN};
   strut_derivatives_parameter *by = strut_arena_allocate(&arena, plan->by_count, sizeof *by);
   double *outputs = strut_arena_allocate(&arena, plan->derived_count, sizeof *outputs);
   double *errors = strut_arena_allocate(&arena, plan->derived_count, sizeof *errors);
   strut_status status = by && outputs && errors ? STRUT_OK : strut_no_memory(&job->error, "");
   for (size_t i = 0; i < plan->by_count && !status; i++) by[i] = parameter_of(&self, i);
-  for (size_t j = 0; j < plan->derived_count && !status; j++) {
-    outputs[j] = number_of(plan, &job->cells, j);
-    errors[j] = plan->study->compute != STRUT_COMPUTE_RUN ? SOLVED * fabs(outputs[j]) : (double)NAN;
-  }
+  if (!status) take_numbers(&self, job, outputs, errors);
   const strut_derivatives_task task = {
       .parameter_count = plan->by_count,
       .output_count = plan->derived_count,
@@ -189,20 +188,21 @@ strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_jo
 }
 
 /* What a run measures, in the order of the columns: the velocity and the quantities. */
-static strut_status store(strut_sweep_plan *plan, const strut_setup *setup,
+static strut_status store(const strut_sweep_plan *plan, const strut_setup *setup,
                           const strut_sweep_job *job, strut_summary *summary, strut_error *error) {
   size_t count = plan->derived_count * plan->by_count;
   summary->derivatives = strut_allocate(count, sizeof *summary->derivatives);
   if (!summary->derivatives) return strut_no_memory(error, "");
   for (size_t k = 0; k < count; k++) {
-    size_t j = k / plan->by_count, i = k % plan->by_count;
-    const char *of = plan->columns[plan->derived[j]].unit;
-    const char *unit = unit_of(&plan->arena, of, plan->by[i].unit);
+    size_t j = k / plan->by_count;
     strut_summary_derivative *to = &summary->derivatives[summary->derivative_count++];
-    to->of = j ? setup->experiment.quantities[j - 1].name : "velocity";
-    to->by = setup->experiment.derivatives[i].name;
-    to->is = job->derivatives[k];
-    snprintf(to->unit, sizeof to->unit, "%s", unit ? unit : "");
+    *to =
+        (strut_summary_derivative){.of = j ? setup->experiment.quantities[j - 1].name : "velocity",
+                                   .by = setup->experiment.derivatives[k % plan->by_count].name,
+                                   .is = job->derivatives[k]};
+    snprintf(to->unit, sizeof to->unit, "%s", plan->columns[plan->first_derivative + 2 * k].unit);
+    bool zero = j ? summary->measured[j - 1].zero : summary->velocity_zero;
+    if (zero && to->is.verdict == STRUT_DERIVATIVE_NONE) to->is.verdict = STRUT_DERIVATIVE_UNKNOWN;
   }
   if (job->error.message[0])
     strut_summary_warn(summary, "derivatives", "there are no derivatives: %.500s",

@@ -118,7 +118,7 @@ static strut_status reject_name(const strut_arguments *arguments, const strut_sc
 static strut_status choose_followed(const strut_arguments *arguments, const strut_scene *scene,
                                     const char *name, strut_varied_scenes *scenes,
                                     strut_path_options *wanted, strut_dimension *dimension) {
-  const strut_parameter *parameter = strut_find_parameter(scene, name);
+  const strut_parameter *parameter = strut_parameter_named(scene, name);
   *dimension = STRUT_DIM_LENGTH;
   if (parameter && !isfinite(parameter->value))
     return strut_usage_error(arguments, "--over: parameter '%s' is a text, expected a number",

@@ -35,7 +35,7 @@ static strut_status check_range(const strut_arguments *arguments, const strut_sc
     return strut_usage_error(
         arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", self->option,
         self->option, apart ? ", or --over NAME, --from and --until" : "");
-  const strut_parameter *parameter = strut_find_parameter(scene, name);
+  const strut_parameter *parameter = strut_parameter_named(scene, name);
   const char *near = parameter ? NULL : strut_did_you_mean(name, parameter_at, scene);
   if (!parameter)
     return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", self->option,
@@ -67,7 +67,7 @@ static strut_status setup_at(void *context, const double values[2], strut_setup 
 
 /* The scene's own value where it is within the range, or the middle. */
 static double own_value(const strut_scene *scene, const char *name, double low, double high) {
-  double own = strut_find_parameter(scene, name)->value;
+  double own = strut_parameter_named(scene, name)->value;
   return own >= low && own <= high ? own : 0.5 * (low + high);
 }
 

@@ -6,13 +6,8 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/scene/things.h"
 #include "parser/program/command/run_settings.h"
-
-const strut_parameter *strut_find_parameter(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->parameter_count; i++)
-    if (strcmp(scene->parameters[i].name, name) == 0) return &scene->parameters[i];
-  return NULL;
-}
 
 const char *strut_unit_of(strut_dimension dimension) {
   const char *unit = strut_dimension_unit(dimension);

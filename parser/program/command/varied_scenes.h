@@ -20,8 +20,6 @@ typedef struct strut_varied_scenes {
   size_t setting_count, varied;
 } strut_varied_scenes;
 
-/** The parameter of the scene with that name, or NULL. */
-const strut_parameter *strut_find_parameter(const strut_scene *scene, const char *name);
 /**
  * Varies the parameters `names`, which the scene has; the names are kept. Their dimensions go to
  * `dimensions`, unless it is NULL. STRUT_NO_MEMORY; the listener hears it. Free `scenes` in any case.
