@@ -178,9 +178,10 @@ static size_t place_samples(const prediction *self, size_t each, double *time) {
       double t = match->at[i] - delay + ((double)k - (each > 1 ? 1.0 : 0.0)) * beside(match);
       time[i * each + k] = fmax(t, 0.0);
     }
-  if (count * each > 1) return count * each;
-  time[1] = time[0];
-  return 2;
+  size_t placed = count * each;
+  if (placed == 1) time[placed++] = time[0];
+  time[placed - 1] = fmax(time[placed - 1], AT_ONCE);
+  return placed;
 }
 
 /* Takes the samples of a run, in the order: number, then each, then series. */
@@ -213,9 +214,9 @@ static strut_status predict_motion(const prediction *self, strut_setup *setup,
       .without_balance = true};
   strut_summary summary = {0};
   double end = time[samples.count - 1];
-  if (!choose_quantities(self->match, setup) || !(end > 0.0))
-    return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s' has no time after the start",
-                      self->match->name);
+  if (!choose_quantities(self->match, setup))
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "the model measures a quantity of match '%.60s' no more", self->match->name);
   prepare_run(model, end, &setup->experiment);
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);

@@ -244,6 +244,11 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
   if (to->kind == STRUT_FIT_MOTION)
     to->at = read_at(reader, &self, STRUT_KEY_MATCH_TIME, STRUT_DIM_TIME, true);
   if (to->kind == STRUT_FIT_MOTION && !to->at) return;
+  if (to->kind == STRUT_FIT_MOTION && to->at[0] < 0.0 && !to->align.delay)
+    strut_report_error(r, strut_slot_of(&self.fields, STRUT_KEY_MATCH_TIME)->value->place,
+                       "the times of match '%s' begin before 0, where the run starts: let 'align' "
+                       "have 'delay: free'",
+                       to->name);
   const strut_tree *first = self.rest.first;
   if (to->kind == STRUT_FIT_CURVE && first)
     strut_report_error(r, first->place,

@@ -415,6 +415,7 @@ static void put_tables(strut_writer *writer, const strut_data_table *tables, siz
 }
 
 char *strut_study_identity(const strut_study_file *file) {
+  static const char *const goals[] = {"stiffness_at", "shape", "like", "curve"};
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
   for (size_t i = 0; i < file->source_count; i++) {
@@ -446,7 +447,11 @@ char *strut_study_identity(const strut_study_file *file) {
   }
   if (study->search) put_search(&w, study->search);
   if (study->follow) put_follow(&w, study->follow);
-  if (study->fit) put_tree(&w, strut_tree_find(file->document.root, "fit", NULL));
+  if (study->fit) put_tree(&w, file->document.root); /* its matches use whatever stands there */
+  for (size_t i = 0; i < sizeof goals / sizeof goals[0]; i++) {
+    const strut_tree *goal = strut_tree_find(file->document.root, goals[i], NULL);
+    if (goal) put_tree(&w, goal);
+  }
   if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
   return strut_buffer_take(&w.out);
 }
