@@ -77,7 +77,8 @@ static strut_status make(const strut_compare_options *options, bool tell) {
   if (status != STRUT_OK) assert_int_equal(error.status, status);
   if (status == STRUT_OK && tell) {
     char *texts[] = {strut_values_text(&strut_compare_values, &result, NULL, 60, STRUT_REPORT_ROWS),
-                     strut_compare_csv(&result), strut_compare_json(&result)};
+                     strut_values_csv(&strut_compare_values, "models", NULL, &result, NULL),
+                     strut_values_json(&strut_compare_values, &result, NULL)};
     for (int i = 0; i < 3; i++) {
       if (!texts[i]) status = STRUT_NO_MEMORY;
       strut_release(texts[i]);
@@ -122,7 +123,7 @@ TEST(what_is_reported) {
   const strut_compare_input input = {.label = "one", .setup = &setup};
   const strut_compare_options options = {.accuracy = 0.01};
   assert_ok(strut_compare_make(&input, 1, &options, &result, NULL));
-  char *csv = strut_compare_csv(&result);
+  char *csv = strut_values_csv(&strut_compare_values, "models", NULL, &result, NULL);
   assert_non_null(csv);
   assert_non_null(strstr(csv, "\none,\"hopper, of \"\"one\"\" leg\",2,1,0,1,0,2,1,2,4,"));
   strut_release(csv);

@@ -339,9 +339,10 @@ static const double SAME = 1e-4, NEAR = 0.3;
 bool strut_follow_is_on(strut_follow_system *system, const strut_follow_branch *branch,
                         const double *unknowns) {
   double *here = strut_follow_allocate(system, &system->arena, 2 * system->both, sizeof *here);
-  double *mine = here + system->both, *f = system->buffers.f, value = system->value[0];
+  double *f = system->buffers.f, value = system->value[0];
   char reason[200];
   if (!here) return false;
+  double *mine = here + system->both;
   memcpy(mine, unknowns, system->both * sizeof(double));
   strut_follow_centre(system, mine);
   for (size_t i = 0; i + 1 < branch->count && !system->status; i++) {

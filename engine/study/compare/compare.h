@@ -183,15 +183,10 @@ STRUT_API strut_status strut_compare_make(const strut_compare_input *inputs, siz
 STRUT_API void strut_compare_free(strut_compare *result);
 
 /**
- * Texts in blocks of strut_allocate; NULL: memory was out. The CPU time in them is a measurement and
- * differs from run to run; nothing else does.
+ * Rows of a strut_compare, with a CSV of `models`. The CPU time in them is a measurement and differs from run to run;
+ * nothing else does.
  */
-/** Units in the header; empty where there is no value. */
-STRUT_API char *strut_compare_csv(const strut_compare *result);
-/** Rows of a strut_compare. */
 STRUT_API extern const strut_value_rows strut_compare_values;
-/** With the reasons of what is empty, all states, barriers, contacts, nodes and differences. */
-STRUT_API char *strut_compare_json(const strut_compare *result);
 
 /**
  * Draws the structures [first, first + count) of a comparison: each in the shape in which it stands,

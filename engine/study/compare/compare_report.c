@@ -133,11 +133,3 @@ static strut_value models_of(const strut_compare *compare) {
   X("units", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_unit), "of the rows")       \
   X("models", "", BY(models_of(r)), "in their order", .rows = &model_values, .label = {""})
 STRUT_VALUES(strut_compare_values, COMPARISON, const strut_compare *r = of->at)
-
-char *strut_compare_csv(const strut_compare *compare) {
-  return strut_values_csv(&strut_compare_values, "models", NULL, compare, NULL);
-}
-
-char *strut_compare_json(const strut_compare *compare) {
-  return strut_values_json(&strut_compare_values, compare, NULL);
-}

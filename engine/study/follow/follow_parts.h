@@ -32,7 +32,7 @@ strut_status strut_follow_find_curves(const strut_follow_options *options,
 extern const strut_value_rows strut_follow_multiplier_values;
 /** Headers and cells of the axes at their values as CSV, each with a comma behind it, in the arena. */
 bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
-                       strut_arena *arena, const char **names, const char **cells);
+                       strut_arena *arena, const char *before[2]);
 
 /* A study that follows motions: all branches over a parameter at every point of its axes.
  *

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/output/file.h"
+#include "engine/output/result_values.h"
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
@@ -179,19 +180,22 @@ static counts count_branches(const strut_follow_result *result) {
 }
 
 static strut_status write_branches(point_work *self, bool partial) {
-  const char *names, *cells;
+  const char *before[2]; /* headers and cells of the axes */
   char csv[64], json[64];
   const char *folder = strut_arena_format(self->arena, "%s/branches", self->options->directory);
-  if (!folder || !strut_follow_axes(self->plan, self->values, self->arena, &names, &cells))
+  if (!folder || !strut_follow_axes(self->plan, self->values, self->arena, before))
     return strut_no_memory(&self->error, "");
   snprintf(csv, sizeof csv, "%09lld%s.csv", (long long)self->point, partial ? "-partial" : "");
   snprintf(json, sizeof json, "%09lld.json", (long long)self->point);
   strut_status status = strut_directory_create(folder, &self->error);
   if (!status)
     status = strut_file_write_block(
-        folder, csv, strut_follow_csv_beside(self->result, names, cells), &self->error);
+        folder, csv,
+        strut_values_csv(&strut_follow_values, "branches.points", before, self->result, NULL),
+        &self->error);
   if (status || partial) return status;
-  status = strut_file_write_block(folder, json, strut_follow_json(self->result), &self->error);
+  status = strut_file_write_block(
+      folder, json, strut_values_json(&strut_follow_values, self->result, NULL), &self->error);
   snprintf(csv, sizeof csv, "%09lld-partial.csv", (long long)self->point);
   if (!status) strut_file_remove(folder, csv);
   return status;

@@ -23,9 +23,9 @@ static char *quote_cell(const char *text, strut_arena *arena) {
 }
 
 bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
-                       strut_arena *arena, const char **names, const char **cells) {
-  *names = *cells = "";
-  for (size_t i = 0; i < plan->axis_columns && *names && *cells; i++) {
+                       strut_arena *arena, const char *before[2]) {
+  before[0] = before[1] = "";
+  for (size_t i = 0; i < plan->axis_columns && before[0] && before[1]; i++) {
     const strut_slot_column *column = &plan->columns[i];
     char number[STRUT_NUMBER_TEXT] = "";
     bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
@@ -35,10 +35,10 @@ bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *va
     const char *name = header ? quote_cell(header, arena) : NULL;
     const char *cell = quote_cell(values[i].word ? values[i].word : number, arena);
     if (!name || !cell) return false;
-    *names = strut_arena_format(arena, "%s%s,", *names, name);
-    *cells = strut_arena_format(arena, "%s%s,", *cells, cell);
+    before[0] = strut_arena_format(arena, "%s%s,", before[0], name);
+    before[1] = strut_arena_format(arena, "%s%s,", before[1], cell);
   }
-  return *names && *cells;
+  return before[0] && before[1];
 }
 
 /* The text of a point's file, in the arena; NULL where there is none, or no memory. */
@@ -74,12 +74,15 @@ static strut_status write_header(FILE *to, const strut_sweep_plan *plan, bool pa
   strut_follow_result *none = strut_arena_allocate(arena, 1, sizeof *none);
   const strut_study_value *values =
       strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *values);
-  const char *names, *cells;
-  if (!none || !values || !strut_follow_axes(plan, values, arena, &names, &cells))
+  const char *before[2];
+  if (!none || !values || !strut_follow_axes(plan, values, arena, before))
     return strut_no_memory(error, "");
+  before[1] = "";
   none->name = strut_arena_format(arena, "%s", follow->over);
   none->unit = strut_arena_format(arena, "%s", follow->unit);
-  char *header = none->name && none->unit ? strut_follow_csv_beside(none, names, "") : NULL;
+  char *header = none->name && none->unit
+                     ? strut_values_csv(&strut_follow_values, "branches.points", before, none, NULL)
+                     : NULL;
   if (!header) return strut_no_memory(error, "");
   fprintf(to, "%.*s%s\n", (int)strcspn(header, "\n"), header, partial ? ",finished" : "");
   strut_release(header);

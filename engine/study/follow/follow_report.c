@@ -119,13 +119,3 @@ STRUT_VALUES_HERE(note_values, NOTE, )
   X("notes", "", ARRAY(r->note_count, note_of), "sentences")                                       \
   X(NULL, "", LIST(r->notes, r->note_count), "", .rows = &note_values, .label = {"notes"})
 STRUT_VALUES(strut_follow_values, FOLLOWED, const strut_follow_result *r = of->at)
-
-char *strut_follow_csv_beside(const strut_follow_result *result, const char *names,
-                              const char *values) {
-  const char *const before[] = {names, values};
-  return strut_values_csv(&strut_follow_values, "branches.points", before, result, NULL);
-}
-
-char *strut_follow_json(const strut_follow_result *result) {
-  return strut_values_json(&strut_follow_values, result, NULL);
-}

@@ -91,15 +91,9 @@ STRUT_API strut_status strut_follow_possible(const strut_follow_options *options
                                              strut_error *error);
 STRUT_API void strut_follow_free(strut_follow_result *result);
 
-/* follow_report.c: texts are blocks of strut_allocate; NULL: out of memory */
-/** With columns before its own: their headers, and their cells in every row, each followed by a comma. */
-STRUT_API char *strut_follow_csv_beside(const strut_follow_result *result, const char *names,
-                                        const char *values);
-STRUT_API char *strut_follow_json(const strut_follow_result *result);
-STRUT_API extern const strut_value_rows strut_follow_values;
+/** Of a result; those of curves of one with a second parameter. */
+STRUT_API extern const strut_value_rows strut_follow_values, strut_follow_curves_values;
 
-/* follow_curves.c, of a result with a second parameter */
-STRUT_API extern const strut_value_rows strut_follow_curves_values;
 /** The curves in the plane of both parameters, with their cusps. */
 STRUT_API strut_status strut_follow_curves_figure(const strut_plot *plot,
                                                   const strut_follow_result *result,

@@ -151,9 +151,9 @@ STRUT_API double strut_tradeoff_promise(const strut_tradeoff *result, int row);
 typedef struct strut_tradeoff_advice {
   double error;
   bool known; /* the reference's floor is at most a tenth of half the error */
-  /** The cheapest row of the unchanged model whose worst total error stays within `error`, and that of all smaller steps
-      or tolerances of its group too, of which there is one at least: a single small error at a large step is luck. Its
-      step is stable. -1: none. */
+  /** The cheapest row of the unchanged model whose worst total error stays within `error`, and that of
+      all smaller steps or tolerances of its group too, of which there is one at least: a single small
+      error at a large step is luck. Its step is stable. -1: none. */
   int row;
   int half; /* the same for half the error */
   double
