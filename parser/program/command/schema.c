@@ -99,6 +99,7 @@ static void open_unless_removed(schema *self) {
  */
 #define SIGNAL "O(<signal>|s)"
 #define ALONG "A([00s]|<range>)"
+#define PLACE "A([22n]|<row of data>)"
 
 static const char *put_shape(schema *self, const strut_key *key, const char *shape);
 static void put_thing(schema *self, const strut_key *key);
@@ -260,10 +261,11 @@ static const named_shape free_shapes[] = {{"mu", SIGNAL},
 
 /* The things of a mapping: its name decides, wherever it stands. */
 static const named_shape thing_shapes[] = {
-    {"groups", "<group>"},  {"parameters", "s"},     {"set", "s"},
-    {"derive", "s"},        {"ports", "s"},          {"onto", "s"},
-    {"merge", "s"},         {"coupling", "n"},       {"shape", "[22n]"},
-    {"positions", "[22n]"}, {"velocities", "[22n]"}, {NULL, NULL}};
+    {"groups", "<group>"}, {"parameters", "s"},     {"set", "s"},
+    {"derive", "s"},       {"ports", "s"},          {"onto", "s"},
+    {"merge", "s"},        {"coupling", "n"},       {"shape", PLACE},
+    {"positions", PLACE},  {"velocities", "[22n]"}, {"units", "s"},
+    {NULL, NULL}};
 
 static const named_shape section_shapes[] = {{"node", "A([22n]|<node>)"},
                                              {"signal", SIGNAL},
@@ -430,7 +432,8 @@ static void put_keys(schema *self, strut_section section) {
   if (section == STRUT_SECTION_CONFIGURATION) { /* else a node and its position */
     open_object(self, "additionalProperties");
     open_unless_removed(self);
-    put_shape(self, NULL, "[22n]");
+    put_member(self, "minProperties", "2");
+    put_shape(self, NULL, PLACE);
     close_object(self);
     close_object(self);
   } else {
