@@ -164,8 +164,8 @@ static void join_steps(differences *self) {
 }
 
 /*
- * The derivatives of one output. A bend comes from a kink at the point where it lasts: a smooth one shrinks with the
- * square of the steps, those along all parameters adding up to `most`, and what the differences get wrong with the cube.
+ * The derivatives of one output. A bend comes from a kink at the point where it shrinks with the steps: a smooth one
+ * shrinks with their square, those along all parameters adding up to `most`, and noise does not.
  */
 static void conclude(const differences *self, size_t j, strut_derivative *to) {
   const size_t n = self->task->parameter_count;
@@ -183,8 +183,9 @@ static void conclude(const differences *self, size_t j, strut_derivative *to) {
     double h = self->pairs[i].step[i], change = slope(self, &self->pairs[i], j, &bend);
     double error = 2.0 * off / fabs(all->step[i]); /* whose it is, is not known */
     bool bent = fabs(bend) > BENT * fabs(change);
-    bool lasts = fabs(together) > most || error * fabs(h) > fabs(bend) / 2.0;
-    if (n > 1 && bent) error += fabs(bend / h); /* not told apart for certain */
+    bool lasts = fabs(together) > most && fabs(together) < 1.5 * bends;
+    if (!all->central) lasts = error * fabs(h) > fabs(bend) / 2.0; /* which differ in all steps */
+    if (n > 1 && bent) error += fabs(bend / h);                    /* not told apart for certain */
     to[i].value = change / h;
     to[i].error = error + own / scale_of(&self->task->parameters[i]);
     to[i].verdict = STRUT_DERIVATIVE_THERE;

@@ -136,7 +136,8 @@ static strut_status evaluate(void *context, const double *parameters, double *ou
 }
 
 /* A parameter of the job's scene; where a scene cannot have a little less or more of it, that is its range. */
-static strut_derivatives_parameter parameter_of(const derivation *self, size_t i) {
+static strut_derivatives_parameter parameter_of(const derivation *self, size_t i,
+                                                strut_error *error) {
   const strut_sweep_plan *plan = self->worker->plan;
   const strut_parameter *parameter =
       strut_parameter_named(&self->job->setup.scene, plan->by[i].name);
@@ -146,10 +147,11 @@ static strut_derivatives_parameter parameter_of(const derivation *self, size_t i
     const double away = (side ? 1e-4 : -1e-4) * (value != 0.0 ? fabs(value) : 1.0);
     const double beside = value + away;
     strut_setup setup;
-    strut_error error = {0};
+    strut_error why = {0};
     strut_status status = plan->scenes.vary(plan->scenes.context, self->job->cells.values,
-                                            &plan->by[i], 1, &beside, &setup, &error);
+                                            &plan->by[i], 1, &beside, &setup, &why);
     if (status) limit[side] = value;
+    if (limit[0] == limit[1]) *error = why; /* neither */
     if (!status) strut_setup_free(&setup);
   }
   return (strut_derivatives_parameter){.value = value, .low = limit[0], .high = limit[1]};
@@ -167,7 +169,8 @@ strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_jo
   double *outputs = strut_arena_allocate(&arena, plan->derived_count, sizeof *outputs);
   double *errors = strut_arena_allocate(&arena, plan->derived_count, sizeof *errors);
   strut_status status = by && outputs && errors ? STRUT_OK : strut_no_memory(&job->error, "");
-  for (size_t i = 0; i < plan->by_count && !status; i++) by[i] = parameter_of(&self, i);
+  for (size_t i = 0; i < plan->by_count && !status; i++)
+    by[i] = parameter_of(&self, i, &job->error);
   if (!status) take_numbers(&self, job, outputs, errors);
   const strut_derivatives_task task = {
       .parameter_count = plan->by_count,
