@@ -14,6 +14,17 @@ static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP =
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
+/** A chart being drawn. */
+typedef struct strut_chart {
+  strut_canvas *canvas;
+  const strut_panel *panel; /* axes and scale settled */
+  strut_axes axes;
+  strut_box strip;      /* above the frame, for lost points; height 0: none */
+  double (**points)[2]; /* (series) on the page, broken lines with NAN between; thinned */
+  size_t *counts;       /* (series) */
+  strut_arena *arena;
+} strut_chart;
+
 static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
 
 static size_t look_of(const strut_panel *panel, size_t i) {
@@ -28,6 +39,37 @@ static strut_pen pen_of(const strut_panel *panel, size_t i) {
 static bool has_markers(const strut_panel *panel, const strut_series *series) {
   if (series->markers != STRUT_MARKERS_AUTO) return series->markers == STRUT_MARKERS_ALL;
   return panel->series_count > 1 && !(series->pen.width > 0) && !series->cloud;
+}
+
+/* ---- the cells of a map ---- */
+
+static strut_fill category_fill(size_t i) {
+  /* Distinguishable in grey: light and dark alternate, and repeated colours are hatched. */
+  static const unsigned order[] = {0xF2C14E, 0x2F6DB5, 0x8C2D62, 0xBFD8EA, 0x4C9F70, 0xE7E7E7};
+  static const strut_hatch hatches[] = {STRUT_HATCH_NONE, STRUT_HATCH_RISING, STRUT_HATCH_FALLING,
+                                        STRUT_HATCH_LEVEL};
+  size_t count = sizeof order / sizeof *order;
+  unsigned rgb = order[i % count];
+  return (strut_fill){
+      .colour = {(rgb >> 16) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0, 1},
+      .hatch = hatches[i / count % 4],
+      .hatch_colour = strut_grey(0.3)};
+}
+
+/* The lower edge of cell i of (count) ascending positions: midway to the previous one. */
+static double edge(const double *at, size_t count, size_t i) {
+  if (count == 1) return at[0] + (i ? 0.5 : -0.5) * (at[0] != 0 ? fabs(at[0]) : 1);
+  if (i == 0) return at[0] - 0.5 * (at[1] - at[0]);
+  if (i == count) return at[count - 1] + 0.5 * (at[count - 1] - at[count - 2]);
+  return 0.5 * (at[i - 1] + at[i]);
+}
+
+void strut_map_limits(const double *at, size_t count, double limits[2]) {
+  limits[0] = edge(at, count, 0), limits[1] = edge(at, count, count);
+}
+
+static bool has_result(const strut_map *map, size_t k) {
+  return map->category ? map->category[k] >= 0 : isfinite(map->value[k]);
 }
 
 /* ---- the legend ---- */
@@ -55,10 +97,10 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
   bool doubt = false, missing = false;
   for (size_t k = 0; k < map->columns * map->rows; k++) {
     doubt = doubt || (map->doubtful && map->doubtful[k]);
-    missing = missing || !strut_map_has(map, k);
+    missing = missing || !has_result(map, k);
   }
   for (size_t i = 0; map->category && i < map->category_count; i++)
-    count = add_area(items, count, strut_category_fill(i), map->names[i]);
+    count = add_area(items, count, category_fill(i), map->names[i]);
   if (missing) count = add_area(items, count, fill, "no result");
   fill.hatch = STRUT_HATCH_RISING;
   return doubt ? add_area(items, count, fill, map->doubt ? map->doubt : "doubtful") : count;
@@ -324,6 +366,63 @@ static void draw_points(const strut_chart *chart, size_t i) {
   for (size_t k = first; k < series->count; k += every) draw_point(chart, i, k);
 }
 
+static strut_fill cell_fill(const strut_panel *panel, size_t k) {
+  const strut_map *map = panel->map;
+  const strut_colour_scale *scale = &panel->scale;
+  if (!has_result(map, k)) return (strut_fill){.colour = strut_grey(1)};
+  if (map->category) return category_fill((size_t)map->category[k]);
+  return (strut_fill){.colour =
+                          strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
+}
+
+/* The box of (count) cells of a row from `column` on. */
+static strut_box cell_box(const strut_chart *chart, size_t row, size_t column, size_t count) {
+  const strut_map *map = chart->panel->map;
+  double a[2], b[2];
+  strut_axes_point(&chart->axes, edge(map->xs, map->columns, column), edge(map->ys, map->rows, row),
+                   a);
+  strut_axes_point(&chart->axes, edge(map->xs, map->columns, column + count),
+                   edge(map->ys, map->rows, row + 1), b);
+  return (strut_box){a[0], b[1], b[0] - a[0], a[1] - b[1]};
+}
+
+/* Cells of a map from which on neighbours in a row that look alike are drawn as one. */
+enum { MANY_CELLS = 10000 };
+
+static bool look_alike(const strut_map *map, size_t a, size_t b) {
+  bool has = has_result(map, a);
+  if (has != has_result(map, b)) return false;
+  if (!has) return true;
+  return map->category ? map->category[a] == map->category[b] : map->value[a] == map->value[b];
+}
+
+/* Hatching on a doubtful cell, a dot on one without a result. */
+static void mark_cell(const strut_chart *chart, size_t k) {
+  const strut_map *map = chart->panel->map;
+  const strut_fill doubt = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
+  const strut_fill dot = {.colour = strut_grey(0.5)};
+  strut_box box = cell_box(chart, k / map->columns, k % map->columns, 1);
+  if (map->doubtful && map->doubtful[k]) strut_draw_box(chart->canvas, box, &doubt, NULL);
+  if (!has_result(map, k))
+    strut_draw_circle(chart->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height,
+                      fmin(1.0, 0.25 * fmin(box.width, box.height)), &dot, NULL);
+}
+
+static void draw_map(const strut_chart *chart) {
+  const strut_map *map = chart->panel->map;
+  size_t cells = map->columns * map->rows, joined;
+  for (size_t k = 0; k < cells; k += joined) {
+    size_t row = k / map->columns, column = k % map->columns;
+    for (joined = 1; cells >= MANY_CELLS && column + joined < map->columns; joined++)
+      if (!look_alike(map, k, k + joined)) break;
+    strut_fill fill = cell_fill(chart->panel, k);
+    strut_box box = cell_box(chart, row, column, joined);
+    box.width += 0.4, box.y -= 0.4, box.height += 0.4;
+    strut_draw_box(chart->canvas, box, &fill, NULL);
+  }
+  for (size_t k = 0; k < cells; k++) mark_cell(chart, k);
+}
+
 /* ---- marks ---- */
 
 /* A mark of the chart, or what stands for it at the frame's upper or lower edge. */
@@ -382,7 +481,7 @@ static void draw_data(const strut_chart *chart) {
   strut_draw_axes(chart->canvas, &chart->axes);
   if (chart->strip.height > 0) draw_strip(chart);
   strut_canvas_clip(chart->canvas, chart->axes.frame);
-  if (panel->map) strut_draw_map(chart);
+  if (panel->map) draw_map(chart);
   for (size_t i = 0; i < panel->series_count; i++)
     if (!panel->series[i].cloud) draw_line(chart, i);
   strut_canvas_unclip(chart->canvas);

@@ -17,46 +17,38 @@ static double text_width(strut_canvas *canvas, const char *text) {
   return text && *text ? strut_text_width(canvas, text, letters()) : 0;
 }
 
-/* Width of the sign left of the text. */
-static double sign_width(strut_canvas *canvas, const strut_key_item *item) {
-  switch (item->sign) {
-    case STRUT_KEY_LINE:
-    case STRUT_KEY_ARROW:
-    case STRUT_KEY_AREA: return SIGN + SIGN_GAP;
-    case STRUT_KEY_DOT:
-      return 2 * DOT + SIGN_GAP +
-             (item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0.0);
-    case STRUT_KEY_SIGNED: return text_width(canvas, item->before) + SCALE + 2 * SIGN_GAP;
-    case STRUT_KEY_WORDS: break;
-  }
-  return 0.0;
-}
-
-static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
+/* The sign left of the text, which is drawn if `draw`. Returns how far right of it the text begins. */
+static double put_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y,
+                       bool draw) {
+  const strut_pen rim = {.colour = strut_grey(0.4), .width = 0.4};
+  double before = text_width(canvas, item->before) + SIGN_GAP;
   strut_font font = letters();
   switch (item->sign) {
-    case STRUT_KEY_LINE:
-      strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
-      if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
-      break;
-    case STRUT_KEY_ARROW: strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen); break;
-    case STRUT_KEY_AREA:
-      strut_draw_box(canvas, (strut_box){x, y - 0.5 * AREA, SIGN, AREA}, &item->fill,
-                     &(strut_pen){.colour = strut_grey(0.4), .width = 0.4});
-      break;
+    case STRUT_KEY_WORDS: return 0.0;
     case STRUT_KEY_DOT:
-      strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
       font.bold = true;
-      if (item->letter) strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, font);
-      break;
+      if (draw) strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
+      if (draw) strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, font);
+      return 2 * DOT + SIGN_GAP +
+             (item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0.0);
     case STRUT_KEY_SIGNED:
-      strut_draw_text(canvas, x, y, item->before, font);
-      x += text_width(canvas, item->before) + SIGN_GAP;
-      strut_draw_shades(canvas, (strut_box){x, y - BAND / 2, SCALE, BAND}, STRUT_COLOURS_SIGNED, -1,
-                        1);
+      if (draw) strut_draw_text(canvas, x, y, item->before, font);
+      if (draw)
+        strut_draw_shades(canvas, (strut_box){x + before, y - BAND / 2, SCALE, BAND},
+                          STRUT_COLOURS_SIGNED, -1, 1);
+      return before + SCALE + SIGN_GAP;
+    case STRUT_KEY_LINE:
+      if (draw) strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
+      if (draw && item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
       break;
-    case STRUT_KEY_WORDS: break;
+    case STRUT_KEY_ARROW:
+      if (draw) strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen);
+      break;
+    case STRUT_KEY_AREA:
+      if (draw)
+        strut_draw_box(canvas, (strut_box){x, y - 0.5 * AREA, SIGN, AREA}, &item->fill, &rim);
   }
+  return SIGN + SIGN_GAP;
 }
 
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
@@ -65,7 +57,7 @@ strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_it
   strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
-    double sign = sign_width(canvas, &items[i]), width, height;
+    double sign = put_sign(canvas, &items[i], 0, 0, false), width, height;
     strut_font font = letters();
     font.down = 0.0;
     if (box.width > 0 && sign + text_width(canvas, items[i].text) > box.width)
@@ -74,7 +66,7 @@ strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_it
     if (x > 0 && x + sign + width > box.width) x = 0.0, y += row, row = LINE;
     double top = y + 0.5 * (LINE - line);
     if (draw) {
-      draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
+      put_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE, true);
       strut_draw_text(canvas, box.x + x + sign, box.y + top, items[i].text, font);
     }
     row = fmax(row, height + LINE - line);

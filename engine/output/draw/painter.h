@@ -6,17 +6,6 @@
 #include "engine/base/memory.h"
 #include "engine/output/draw/figure.h"
 
-/** A chart being drawn. */
-typedef struct strut_chart {
-  strut_canvas *canvas;
-  const strut_panel *panel; /* axes and scale settled */
-  strut_axes axes;
-  strut_box strip;      /* above the frame, for lost points; height 0: none */
-  double (**points)[2]; /* (series) on the page, broken lines with NAN between; thinned */
-  size_t *counts;       /* (series) */
-  strut_arena *arena;
-} strut_chart;
-
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
 /**
@@ -28,13 +17,8 @@ size_t strut_panel_legend_room(const strut_panel *panel);
 /** Draws a chart with settled axes in a box, with its legend or without. False: out of memory. */
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena);
-/** Draws the cells of a chart's map, inside its frame. */
-void strut_draw_map(const strut_chart *chart);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
-strut_fill strut_category_fill(size_t category);
-/** True if cell k has a value or a category. */
-bool strut_map_has(const strut_map *map, size_t k);
 
 /**
  * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves

@@ -322,55 +322,41 @@ static strut_pen pen_of(const strut_drawing *drawing, size_t j, bool slack) {
   return pen;
 }
 
-/* Segments that wait for the next one with another pen, since one piece makes a small file. */
-typedef struct batch {
-  strut_canvas *canvas;
-  strut_pen pen;
-  size_t count;
-  double ends[2 * BATCH][2];
-} batch;
-
-static void flush(batch *self) {
-  strut_draw_segments(self->canvas, (const double(*)[2])self->ends, self->count, self->pen);
-  self->count = 0;
+static bool is_same_pen(const strut_pen *one, const strut_pen *two) {
+  return memcmp(&one->colour, &two->colour, sizeof one->colour) == 0 && one->width == two->width &&
+         one->dash[0] == two->dash[0];
 }
 
-static void add_member(batch *self, const strut_drawing *drawing, size_t j, strut_pen pen) {
-  bool alike = memcmp(&pen.colour, &self->pen.colour, sizeof pen.colour) == 0;
-  if (!alike || pen.width != self->pen.width || pen.dash[0] != self->pen.dash[0]) flush(self);
-  self->pen = pen;
-  for (size_t k = 0; k < count_segments(drawing->model, j); k++) {
-    if (self->count == BATCH) flush(self);
-    strut_window_segment(drawing->window, drawing->model, drawing->q, j, k,
-                         self->ends + 2 * self->count++);
-  }
-}
-
-/* Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. */
-static void draw_kind(batch *self, const strut_drawing *drawing, strut_member_kind kind,
+/*
+ * Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. Segments wait for
+ * the next one with another pen, since one piece makes a small file.
+ */
+static void draw_kind(strut_canvas *canvas, const strut_drawing *drawing, strut_member_kind kind,
                       bool slack) {
+  const strut_member *members = drawing->model->scene->members;
   const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), drawing->opacity),
                             .width = width_of(drawing, kind) + CASING * drawing->thin};
-  bool cased = is_shaded(drawing->style) && kind != STRUT_CABLE;
-  for (int pass = cased ? 0 : 1; pass < 2; pass++)
-    for (size_t j = 0; j < drawing->model->scene->member_count; j++)
-      if (drawing->model->scene->members[j].kind == kind && is_slack(drawing, j) == slack)
-        add_member(self, drawing, j, pass ? pen_of(drawing, j, slack) : casing);
+  double ends[2 * BATCH][2];
+  strut_pen last = casing;
+  size_t count = 0;
+  for (int pass = is_shaded(drawing->style) && kind != STRUT_CABLE ? 0 : 1; pass < 2; pass++)
+    for (size_t j = 0; j < drawing->model->scene->member_count; j++) {
+      if (members[j].kind != kind || is_slack(drawing, j) != slack) continue;
+      const strut_pen pen = pass ? pen_of(drawing, j, slack) : casing;
+      for (size_t k = 0; k < count_segments(drawing->model, j); k++) {
+        if (count == BATCH || !is_same_pen(&pen, &last)) {
+          strut_draw_segments(canvas, (const double(*)[2])ends, count, last);
+          count = 0;
+        }
+        last = pen;
+        strut_window_segment(drawing->window, drawing->model, drawing->q, j, k, ends + 2 * count++);
+      }
+    }
+  strut_draw_segments(canvas, (const double(*)[2])ends, count, last);
 }
 
-/* Thin members are drawn above thick ones, so that a cable along a bar is visible. */
-static void draw_members(strut_canvas *canvas, const strut_drawing *drawing) {
-  batch b = {.canvas = canvas};
-  draw_kind(&b, drawing, STRUT_BAR, false);
-  draw_kind(&b, drawing, STRUT_SPRING, false);
-  draw_kind(&b, drawing, STRUT_CABLE, true);
-  draw_kind(&b, drawing, STRUT_CABLE, false);
-  flush(&b);
-}
-
-/* Circles around places of the plane. */
-static void draw_circle(strut_canvas *canvas, const strut_drawing *drawing, const double place[2],
-                        double radius, const strut_fill *fill, const strut_pen *pen) {
+void strut_draw_round(strut_canvas *canvas, const strut_drawing *drawing, const double place[2],
+                      double radius, const strut_fill *fill, const strut_pen *pen) {
   double at[2];
   strut_window_point(drawing->window, place, at);
   strut_draw_circle(canvas, at[0], at[1], radius, fill, pen);
@@ -388,7 +374,7 @@ static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *drawi
     double far = strut_sliding_mass_share(scene, i, drawing->style->time);
     for (int c = 0; c < 2; c++)
       at[c] = (1.0 - far) * drawing->q[2 * node[0] + c] + far * drawing->q[2 * node[1] + c];
-    draw_circle(canvas, drawing, at, 3.2 * thin, &fill, &pen);
+    strut_draw_round(canvas, drawing, at, 3.2 * thin, &fill, &pen);
   }
 }
 
@@ -399,7 +385,7 @@ static void draw_nodes(strut_canvas *canvas, const strut_drawing *drawing) {
       drawing->style->colouring == STRUT_COLOUR_ONE ? drawing->style->colour : strut_grey(0.1);
   const strut_pen pen = {.colour = strut_faded(edge, drawing->opacity), .width = 0.8 * thin};
   for (int32_t i = 0; i < drawing->model->node_count; i++)
-    draw_circle(canvas, drawing, drawing->q + 2 * i, 1.9 * thin, &white, &pen);
+    strut_draw_round(canvas, drawing, drawing->q + 2 * i, 1.9 * thin, &white, &pen);
 }
 
 void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
@@ -415,7 +401,10 @@ void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
     draw_supports(canvas, window, model, positions, fmax(d.thin, SMALLEST), d.opacity);
   strut_draw_cells(canvas, &d);
   strut_draw_collisions(canvas, &d);
-  draw_members(canvas, &d);
+  draw_kind(canvas, &d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
+  draw_kind(canvas, &d, STRUT_SPRING, false);
+  draw_kind(canvas, &d, STRUT_CABLE, true);
+  draw_kind(canvas, &d, STRUT_CABLE, false);
   if (d.thin >= SMALLEST) {
     strut_draw_elements(canvas, &d);
     if (!style->no_nodes) draw_nodes(canvas, &d);

@@ -76,10 +76,8 @@ void strut_draw_collisions(strut_canvas *canvas, const strut_drawing *drawing) {
     const strut_collision *collision = &scene->collisions[i / 2];
     int32_t node = collision->node[i % 2], member = collision->member[i % 2];
     double width = collision->thickness * drawing->window->scale;
-    if (node >= 0) {
-      strut_window_point(drawing->window, drawing->q + 2 * node, ends[0]);
-      strut_draw_circle(canvas, ends[0][0], ends[0][1], 0.5 * width, &fill, NULL);
-    }
+    if (node >= 0)
+      strut_draw_round(canvas, drawing, drawing->q + 2 * node, 0.5 * width, &fill, NULL);
     if (member < 0) continue;
     strut_window_segment(drawing->window, drawing->model, drawing->q, (size_t)member, 0, ends);
     strut_draw_line(canvas, (const double(*)[2])ends, 2,
@@ -122,17 +120,14 @@ static void draw_foot(strut_canvas *canvas, const strut_drawing *drawing, int32_
 
 /* Circles of a cable's guides. */
 static void draw_guides(strut_canvas *canvas, const strut_drawing *drawing, int32_t element) {
-  const strut_element *e = &drawing->model->elements.element[element];
-  double middle[2];
+  const strut_element_table *elements = &drawing->model->elements;
+  const strut_element *e = &elements->element[element];
   const strut_fill fill = {.colour = strut_faded(strut_grey(0.93), drawing->opacity)};
   const strut_pen pen = {.colour = strut_faded(strut_grey(0.5), drawing->opacity),
                          .width = 0.6 * drawing->thin};
-  for (int32_t k = 1; k + 1 < e->nodes; k++) {
-    strut_window_point(drawing->window, drawing->q + drawing->model->elements.at[e->first + k],
-                       middle);
-    strut_draw_circle(canvas, middle[0], middle[1], e->radius * drawing->window->scale, &fill,
-                      &pen);
-  }
+  for (int32_t k = 1; k + 1 < e->nodes; k++)
+    strut_draw_round(canvas, drawing, drawing->q + elements->at[e->first + k],
+                     e->radius * drawing->window->scale, &fill, &pen);
 }
 
 void strut_draw_elements(strut_canvas *canvas, const strut_drawing *drawing) {

@@ -18,6 +18,9 @@ typedef struct strut_drawing {
 void strut_longest_segment(const strut_window *window, const strut_model *model,
                            const double *positions, size_t member, double longest[2][2]);
 
+/** A circle around a place of the plane, its radius in points. */
+void strut_draw_round(strut_canvas *canvas, const strut_drawing *drawing, const double place[2],
+                      double radius, const strut_fill *fill, const strut_pen *pen);
 /** The colour of all but members and nodes, so opaque. */
 strut_colour strut_thing_colour(const strut_drawing *drawing, double alpha);
 /** Filled polygons. */

@@ -227,12 +227,6 @@ static const double SEEN = 2e-3;             /* of the drawing: shorter paths ar
 static const double REACH =
     0.6; /* paths are shown within this distance of the shape, in its sizes */
 
-/* The first frame of so many periods, or of a part of what is not periodic. */
-static size_t first_of(const strut_run_scene *run, double periods, double part) {
-  double all = strut_run_time_from(run, 0);
-  return strut_run_since(run, run->period > 0 ? fmin(periods * run->period, all) : part * all);
-}
-
 /* Bounds of the last shape and of the paths near it. */
 static strut_bounds bounds_of(const strut_run_scene *run, size_t first) {
   strut_bounds shape = strut_run_frame_bounds(run, run->frames - 1), all = shape;
@@ -268,7 +262,7 @@ static bool add_paths(const strut_run_scene *run, size_t first, strut_panel *pan
 
 const char *strut_run_overview(strut_run_scene *run, strut_figure *figure) {
   static const kind order[] = {DISPLACEMENT, NORMALS, DRIVE, HEIGHTS, ANGLES, FORCES};
-  size_t last = run->frames - 1, first = first_of(run, 1, PART);
+  size_t last = run->frames - 1, first = strut_run_first(run, 1, PART);
   size_t most = run->figure->width >= WIDE ? MOST_PANELS : MOST_STACKED;
   strut_run_expect_frame(run, last);
   strut_panel *panel = strut_add_panel(figure);
@@ -278,7 +272,8 @@ const char *strut_run_overview(strut_run_scene *run, strut_figure *figure) {
   panel->whole = true;
   bool paths = add_paths(run, first, panel);
   for (size_t i = 0; last > 0 && i < sizeof order / sizeof *order; i++)
-    if (figure->panel_count <= most) add_panel(run, order[i], first_of(run, PERIODS, 1), CHART);
+    if (figure->panel_count <= most)
+      add_panel(run, order[i], strut_run_first(run, PERIODS, 1), CHART);
   /* Two charts in a row where there is room; an odd one takes a whole row. */
   if (figure->panel_count > 1) figure->panels[1].whole = figure->panel_count % 2 == 0;
   strut_run_add_scales(run);

@@ -105,7 +105,9 @@ size_t strut_run_nearest(const strut_run_scene *run, double time) {
   return time - times[low] <= times[high] - time ? low : high;
 }
 
-size_t strut_run_since(const strut_run_scene *run, double duration) {
+size_t strut_run_first(const strut_run_scene *run, double periods, double part) {
+  double all = strut_run_time_from(run, 0);
+  double duration = run->period > 0 ? fmin(periods * run->period, all) : part * all;
   size_t first = run->frames - 1;
   while (first > 0 && strut_run_time_from(run, first - 1) <= duration * (1 + 1e-9)) first--;
   return run->frames > 1 && first == run->frames - 1 ? run->frames - 2 : first;

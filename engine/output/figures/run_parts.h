@@ -40,8 +40,8 @@ const double *strut_run_positions(const strut_run_scene *run, size_t frame);
 double *strut_run_coordinates(const strut_run_scene *run, size_t frame);
 /** The frame nearest to a time [s]; the earlier one of two. */
 size_t strut_run_nearest(const strut_run_scene *run, double time);
-/** First frame of the last `duration` seconds; there are two frames at least if there are two. */
-size_t strut_run_since(const strut_run_scene *run, double duration);
+/** First frame of the last periods, or of a part of what is not periodic; there are two frames at least if there are two. */
+size_t strut_run_first(const strut_run_scene *run, double periods, double part);
 /** Time from one frame to the last [s]. */
 double strut_run_time_from(const strut_run_scene *run, size_t frame);
 /** Coordinate of the measured point along an axis, 0 or 1, in a frame [m]. */

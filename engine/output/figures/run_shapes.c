@@ -17,12 +17,6 @@ static bool is_enlarged(const strut_run_scene *run) {
   return enlargement(run, 0) != 1 || enlargement(run, 1) != 1;
 }
 
-/* The last period, or the whole record where nothing is periodic. */
-static size_t first_frame(const strut_run_scene *run) {
-  double all = strut_run_time_from(run, 0);
-  return strut_run_since(run, run->period > 0 ? fmin(run->period, all) : all);
-}
-
 static bool can_touch(const strut_run_scene *run, size_t node) {
   for (int32_t i = 0; i < run->model->contacts.count; i++)
     if ((size_t)run->model->contacts.entry[i].node == node) return true;
@@ -32,9 +26,9 @@ static bool can_touch(const strut_run_scene *run, size_t node) {
 /* The centre of a node's enlargement: its mean position or, true, of a node that touches the ground,
    the point of the ground below, so that contact is drawn as contact. */
 static bool find_anchor(const strut_run_scene *run, size_t node, double at[2]) {
-  double lowest = HUGE_VAL, count = (double)(run->frames - first_frame(run));
+  double lowest = HUGE_VAL, count = (double)(run->frames - strut_run_first(run, 1, 1));
   at[0] = at[1] = 0;
-  for (size_t f = first_frame(run); f < run->frames; f++) {
+  for (size_t f = strut_run_first(run, 1, 1); f < run->frames; f++) {
     const double *p = strut_run_positions(run, f) + 2 * node;
     for (int d = 0; d < 2; d++) at[d] += p[d] / count;
     if (run->model->scene->ground.present)
@@ -60,7 +54,7 @@ static void add_paths(const strut_run_scene *run, const double *own, const doubl
   for (size_t i = 0; own && centres && i < run->motion->node_count; i++) {
     strut_trail *trail =
         strut_add_trail(run->page, panel, other ? STRUT_TRAIL_LINE : STRUT_TRAIL_SEQUENCE, pen);
-    for (size_t f = first_frame(run); f < run->frames; f++) {
+    for (size_t f = strut_run_first(run, 1, 1); f < run->frames; f++) {
       double at[2];
       for (int d = 0; d < 2; d++) {
         size_t k = 2 * i + (size_t)d;
@@ -74,7 +68,8 @@ static void add_paths(const strut_run_scene *run, const double *own, const doubl
 
 static const char *describe_period(const strut_run_scene *run, bool grounded) {
   /* The period itself: the frames drawn of it span a whole number of samples. */
-  double span = run->period > 0 ? run->period : strut_run_time_from(run, first_frame(run));
+  double span =
+      run->period > 0 ? run->period : strut_run_time_from(run, strut_run_first(run, 1, 1));
   const char *note = strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s",
                                        run->period > 0 ? "one period (" : "",
                                        strut_drawn_quantity(span, 4, "s").text,
@@ -108,11 +103,11 @@ const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
   strut_run_add_ground(run, &panel->bounds);
   figure->aspect = 0.75;
   figure->yardstick = true;
-  figure->scale =
-      (strut_colour_scale){.name = periodic ? "phase" : "time",
-                           .unit = periodic ? "" : "s",
-                           .high = periodic ? 1 : strut_run_time_from(run, first_frame(run)),
-                           .colours = STRUT_COLOURS_SEQUENTIAL};
+  figure->scale = (strut_colour_scale){
+      .name = periodic ? "phase" : "time",
+      .unit = periodic ? "" : "s",
+      .high = periodic ? 1 : strut_run_time_from(run, strut_run_first(run, 1, 1)),
+      .colours = STRUT_COLOURS_SEQUENTIAL};
   return describe_period(run, grounded);
 }
 

@@ -50,8 +50,6 @@ strut_status strut_run_figure_draw(const char *path, const strut_run_figure *fig
 strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
   return no_figures(error);
 }
-strut_bounds strut_bounds_none(void) { return (strut_bounds){{0.0}, {0.0}}; }
-void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *positions) {}
 
 /* ---- pages, sparse algebra, optimisers ---- */
 
