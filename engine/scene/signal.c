@@ -32,8 +32,7 @@ static void evaluate_ramp(const strut_signal *signal, double t, double *value, d
   }
 }
 
-/* Number of a table's points at or before t. */
-static size_t count_points(const strut_signal *signal, double t) {
+size_t strut_signal_points_until(const strut_signal *signal, double t) {
   size_t low = 0, high = signal->point_count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
@@ -46,7 +45,7 @@ static size_t count_points(const strut_signal *signal, double t) {
 }
 
 static void evaluate_table(const strut_signal *signal, double t, double *value, double *rate) {
-  size_t low = count_points(signal, t);
+  size_t low = strut_signal_points_until(signal, t);
   *rate = 0.0;
   *value = signal->value[low ? low - 1 : 0];
   if (low == 0 || low == signal->point_count) return;
@@ -70,8 +69,7 @@ static double cycles_before(const strut_signal *signal, double t) {
   return first + k * span > t ? k - 1.0 : k;
 }
 
-/* t within the points of repeated data, before the last. */
-static double time_within(const strut_signal *signal, double t) {
+double strut_signal_data_time(const strut_signal *signal, double t) {
   if (signal->outside != STRUT_OUTSIDE_REPEAT) return t;
   double within = t - cycles_before(signal, t) * span_of(signal);
   double last = signal->time[signal->point_count - 1];
@@ -96,7 +94,7 @@ static double slope_at(const strut_signal *signal, size_t i) {
 
 /* Value, rate and second derivative of the spline. */
 static void evaluate_spline(const strut_signal *signal, double t, double result[3]) {
-  size_t low = count_points(signal, t);
+  size_t low = strut_signal_points_until(signal, t);
   bool outside = low == 0 || low == signal->point_count;
   result[0] = signal->value[low ? low - 1 : 0];
   result[1] = result[2] = 0.0;
@@ -111,7 +109,7 @@ static void evaluate_spline(const strut_signal *signal, double t, double result[
 }
 
 static void evaluate_data(const strut_signal *signal, double t, double *value, double *rate) {
-  double spline[3], within = time_within(signal, t);
+  double spline[3], within = strut_signal_data_time(signal, t);
   if (!signal->smooth) {
     evaluate_table(signal, within, value, rate);
     return;
@@ -120,18 +118,15 @@ static void evaluate_data(const strut_signal *signal, double t, double *value, d
   *value = spline[0], *rate = spline[1];
 }
 
-/* The rate of lines jumps at their points, that of splines at their ends. */
+/* At the points, where rates jump or, of splines, their changes; repeated data end where they begin. */
 static double next_break_of_data(const strut_signal *signal, double t) {
-  size_t last = signal->point_count - 1;
   bool repeats = signal->outside == STRUT_OUTSIDE_REPEAT;
-  double before = cycles_before(signal, t) * span_of(signal);
-  for (size_t i = count_points(signal, t - before); i <= last; i++) {
-    if (signal->smooth && i > 0) i = last;
-    if (i == 0 && repeats) continue;
-    double at = repeats && i == last
-                    ? signal->time[0] + (cycles_before(signal, t) + 1.0) * span_of(signal)
-                    : signal->time[i] + before;
-    if (at > t) return at;
+  double cycles = cycles_before(signal, t), before = cycles * span_of(signal);
+  for (size_t i = strut_signal_points_until(signal, t - before); i < signal->point_count; i++) {
+    bool ends = repeats && i + 1 == signal->point_count;
+    double at =
+        ends ? signal->time[0] + (cycles + 1.0) * span_of(signal) : signal->time[i] + before;
+    if (at > t && (i > 0 || !repeats)) return at;
   }
   return (double)INFINITY;
 }
@@ -261,7 +256,7 @@ static double next_break_inside(const strut_signal *signals, const double *start
     case STRUT_SQUARE: return next_half_period(signal, t);
     case STRUT_HALF_SINE: return signal->start + 0.5 / signal->frequency;
     case STRUT_TABLE:
-      past = count_points(signal, t);
+      past = strut_signal_points_until(signal, t);
       return past < signal->point_count ? signal->time[past] : first;
     case STRUT_DATA: return next_break_of_data(signal, t);
     case STRUT_SUM:
@@ -426,7 +421,7 @@ double strut_signal_acceleration(const strut_signal *signals, int32_t index, dou
       return sum;
     case STRUT_DATA:
       if (!signal->smooth) break;
-      evaluate_spline(signal, time_within(signal, t), spline);
+      evaluate_spline(signal, strut_signal_data_time(signal, t), spline);
       return spline[2];
     case STRUT_CONSTANT:
     case STRUT_SQUARE:

@@ -310,18 +310,20 @@ static strut_signal_bounds bound_pieces(const bounder *self, int32_t index, doub
 static strut_signal_bounds bound_spline(const bounder *self, int32_t index, double from,
                                         double to) {
   const strut_signal *signal = &self->signals[index];
-  double ends[2], rate;
-  strut_signal_evaluate(self->signals, index, from, &ends[0], &rate);
-  strut_signal_evaluate(self->signals, index, to, &ends[1], &rate);
-  strut_signal_bounds result = {hull(exactly(ends[0]), exactly(ends[1])), ZERO, false};
-  bool repeats = signal->outside == STRUT_OUTSIDE_REPEAT; /* then of all points */
-  for (size_t i = 1; i < signal->point_count; i++) {
-    const double *t = &signal->time[i - 1], *value = &signal->value[i - 1];
-    if (!repeats && (t[1] < from || t[0] > to)) continue;
-    result.rate = hull(result.rate, exactly(2.0 * (value[1] - value[0]) / (t[1] - t[0])));
-    for (int k = 0; k < 2; k++)
-      if (repeats || (t[k] >= from && t[k] <= to))
-        result.value = hull(result.value, exactly(value[k]));
+  double value, rate, begin = strut_signal_data_time(signal, from), end = begin + (to - from);
+  size_t i = strut_signal_points_until(signal, begin), last = signal->point_count - 1;
+  bool wraps = signal->outside == STRUT_OUTSIDE_REPEAT && end >= signal->time[last];
+  strut_signal_evaluate(self->signals, index, from, &value, &rate);
+  strut_signal_bounds result = {exactly(value), exactly(rate), false};
+  strut_signal_evaluate(self->signals, index, to, &value, &rate);
+  result.value = hull(result.value, exactly(value));
+  for (i = wraps || i == 0 ? 1 : i; i <= last && (wraps || signal->time[i - 1] <= end); i++) {
+    double rise = signal->value[i] - signal->value[i - 1];
+    result.rate = hull(result.rate, exactly(2.0 * rise / (signal->time[i] - signal->time[i - 1])));
+    result.rate = hull(result.rate, ZERO);
+    if (wraps || signal->time[i] <= end)
+      result.value = hull(result.value, exactly(signal->value[i]));
+    if (wraps && i == 1) result.value = hull(result.value, exactly(signal->value[0]));
   }
   return result;
 }

@@ -2,6 +2,7 @@
 /* Waveforms against their closed forms, and their rates against differences. */
 #include "engine/scene/signal.h"
 #include "engine/forces/drives/signal_vector.h"
+#include "engine/scene/signal_bounds.h"
 #include "engine/scene/signal_motion.h"
 #include "tests/support/check.h"
 
@@ -269,8 +270,22 @@ TEST(smooth_data_stay_between_their_points) {
   /* Steffen's slopes: of the first piece at its begin, the smaller of two secants inside */
   near(rate_of(&s, 0, 0.0), 10.0, 1e-12);
   near(rate_of(&s, 0, 0.1), 0.0, 1e-12);
-  assert_true(strut_signal_next_break(&s, 0, 0.05) == 0.5);
-  assert_true(isinf(strut_signal_next_break(&s, 0, 0.5)));
+}
+
+TEST(bounds_of_smooth_data_hold) {
+  for (int k = 0; k < 4000; k++) {
+    strut_signal s = measured(true, k % 2 ? STRUT_OUTSIDE_REPEAT : STRUT_OUTSIDE_HOLD);
+    double from = 0.0003 * k - 0.1, to = from + 0.0007 * (k % 97);
+    const strut_instruction of = {.operation = STRUT_OPERATION_COLUMN,
+                                  .column = {.kind = STRUT_COLUMN_SIGNAL, .item = 0}};
+    const strut_program program = {1, 1, &of};
+    strut_signal_bounds b = strut_program_bound(&program, &s, NULL, from, to);
+    for (int i = 0; i <= 40; i++) {
+      double t = from + (to - from) * i / 40, value = value_of(&s, 0, t), rate = rate_of(&s, 0, t);
+      assert_true(value >= b.value.low - 1e-12 && value <= b.value.high + 1e-12);
+      assert_true(rate >= b.rate.low - 1e-9 && rate <= b.rate.high + 1e-9);
+    }
+  }
 }
 
 TEST(repeated_data_are_periodic) {
@@ -281,13 +296,12 @@ TEST(repeated_data_are_periodic) {
     for (int i = 0; i < 400; i++)
       near(value_of(&s, 0, 0.00125 * i + 7.5), value_of(&s, 0, 0.00125 * i), 1e-12);
     assert_true(strut_signal_value_jumps(&s, 0, 1.0, &when) && when == 0.5);
-    for (int k = 1; k <= 1000; k++) { /* of lines at each point, none twice */
+    for (int k = 1; k <= 1000; k++) { /* each point, none twice */
       double next = strut_signal_next_break(&s, 0, t);
-      int n = smooth ? 1 : 4;
-      near(next, 0.5 * ((k - 1) / n) + measured_times[smooth ? 4 : (k - 1) % n + 1], 1e-10);
+      near(next, 0.5 * ((k - 1) / 4) + measured_times[(k - 1) % 4 + 1], 1e-10);
       assert_true(next > t);
       t = next;
-      if (k % n == 0) near(value_of(&s, 0, t), 1.0, 1e-9); /* from the right */
+      if (k % 4 == 0) near(value_of(&s, 0, t), 1.0, 1e-9); /* from the right */
     }
   }
 }
