@@ -61,12 +61,12 @@ breaches() {
       name = substr(text, RSTART + 1, RLENGTH - 2)
       quoted = substr(text, RSTART, 1) == "\""
       from = folder(file); to = folder(name)
-      sub("^parser/program/(check|study)$", "parser/program", from); sub("^parser/program/(check|study)$", "parser/program", to)
+      sub("^parser/program/check$", "parser/program", from); sub("^parser/program/check$", "parser/program", to)
       ours = name ~ "^(engine|parser|tests)/"
       if (!ours) {
         base = name; sub("^suitesparse/", "", base)
         if (quoted) breach("not spelled from the repository root")
-        else if (base in home && from != home[base] && from !~ "^parser/(program|program/command|bindings/abi|bindings/web)$") breach("belongs to " home[base])
+        else if (base in home && from != home[base] && from !~ "^parser/(program|program/command|program/study|bindings/abi|bindings/web)$") breach("belongs to " home[base])
         else if (base in room_of && index(" " room_of[base] " ", " " stem(file) " ") == 0)
           breach("belongs to " room_of[base])
         next
@@ -75,14 +75,17 @@ breaches() {
       if (system("test -f \"" root "/" name "\"") != 0) { breach("no such header"); next }
       if (to ~ "^tests") { breach("the product includes a test"); next }
       if (from == to) next
-      # On top of everything: the program and the shared library, and below both their options.
+      # On top of everything: the program and the shared library, and below both studies and their options.
       if (from == "parser/program" || from ~ "^parser/bindings/(abi|web)$") {
         if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up")
         next
       }
-      if (from == "parser/program/command") { if (to == "parser/program" || to == "parser/bindings/abi") breach("runs up"); next }
+      if (from ~ "^parser/program/(command|study)$") {
+        if (to == "parser/program" || to == "parser/bindings/abi" || to == "parser/program/study") breach("runs up")
+        next
+      }
       # The front door of the libraries names them all, but never the program.
-      if (file == "parser/strut.h") { if (to ~ "^parser/(program|program/command|bindings/abi|bindings/web)$") breach("runs up"); next }
+      if (file == "parser/strut.h") { if (to ~ "^parser/(program|program/command|program/study|bindings/abi|bindings/web)$") breach("runs up"); next }
       if (from ~ "^parser") {
         if (to == "engine/base" || to ~ "^engine/scene") next
         if (!(from in parser_floor)) breach("a folder without a floor")
@@ -129,7 +132,8 @@ expect 1 parser/language/yaml/b.c '#include "parser/language/read/a.h"'
 expect 0 parser/b.c '#include "engine/scene/a.h"'
 expect 0 parser/program/b.c '#include "engine/study/sweep/a.h"'
 expect 0 parser/program/b.c '#include "parser/program/command/a.h"'
-expect 0 parser/program/study/b.c '#include "parser/program/a.h"'
+expect 0 parser/program/study/b.c '#include "parser/program/command/a.h"'
+expect 1 parser/program/study/b.c '#include "parser/program/a.h"'
 expect 0 parser/bindings/abi/b.c '#include "parser/program/command/a.h"'
 expect 1 parser/program/command/b.c '#include "parser/program/a.h"'
 expect 1 parser/bindings/abi/b.c '#include "parser/program/a.h"'

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "parser/program/command/table_file.h"
 #include "parser/program/commands.h"
 
 #include <stdio.h>
@@ -144,7 +145,7 @@ static strut_status run_plot(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   if (!plot.path) return strut_usage_error(arguments, "missing --plot FILE");
-  status = strut_table_read(arguments->model, &table);
+  status = strut_table_read(arguments->listener, arguments->model, &table);
   if (status != STRUT_OK) return status;
   status = read_figure(arguments, &table, &figure);
   if (!status) status = strut_axes_read(arguments, figure.log_x, figure.log_y, &plot.x, &plot.y);

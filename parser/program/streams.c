@@ -164,6 +164,7 @@ static void show_message(void *context, strut_message_kind kind, const char *com
     case STRUT_MESSAGE_WARNING: fprintf(stderr, "strut: warning: %s\n", text); break;
     case STRUT_MESSAGE_NOTE: fprintf(stderr, "strut %s: note: %s\n", command, text); break;
     case STRUT_MESSAGE_REMARK: fprintf(stderr, "strut: %s\n", text); break;
+    case STRUT_MESSAGE_LINES: fputs(text, stderr); break;
   }
 }
 

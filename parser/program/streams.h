@@ -9,7 +9,6 @@
 
 #include "engine/base/flag.h"
 #include "engine/base/status.h"
-#include "engine/output/record_files.h"
 #include "parser/program/options.h"
 
 /**
@@ -40,13 +39,5 @@ const strut_listener *strut_stderr_listener(void);
 
 /** From now on SIGINT and SIGTERM set the flag that is returned; a moment later they kill. */
 const strut_flag *strut_interrupt_watch(void);
-
-/* ---- table_file.c: a table of numbers and texts, from a file or the standard input ---- */
-
-/**
- * Reads the file, "-" being the standard input. Messages go to stderr with file, line and column;
- * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).
- */
-strut_status strut_table_read(const char *path, strut_table *table);
 
 #endif

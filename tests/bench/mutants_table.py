@@ -50,7 +50,7 @@ MUTANTS = [
            "a file is renamed before its bytes are on the disk", "file|csv"),
     Mutant("csv-writer-leaks", "engine/output/csv.c", "  if (!self->directory) {\n    strut_release(self);\n",
            "  if (!self->directory) {\n", "a CSV writer that is refused memory for its folder's name leaks", "csv"),
-    Mutant("csv-reader-leaks", "parser/program/table_file.c",
+    Mutant("csv-reader-leaks", "parser/program/command/table_file.c",
            "  if (status != STRUT_OK) strut_arena_free(&table->arena);\n", "",
            "what was read of a table with an error is not released", "table_file|table_select|csv"),
     Mutant("conic-without-rounding", "engine/statics/rigidity/stiffness.c", "value[0] <= ROUNDING * value[2]",

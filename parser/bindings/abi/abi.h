@@ -69,7 +69,7 @@ extern "C" {
 #define STRUTLIB_FILE_TROUBLE 8   /* a file could not be read or written */
 #define STRUTLIB_NO_MEMORY 9      /* memory is out */
 #define STRUTLIB_INTERRUPTED 10   /* by strutlib_interrupt; partial results are returned */
-#define STRUTLIB_INACCURATE 11    /* of the program alone: less accurate than requested */
+#define STRUTLIB_INACCURATE 11    /* of studies: less accurate than wanted, or not identified */
 
 /** A scene as it was opened, with its settings: constant. */
 typedef struct strutlib_scene strutlib_scene;
@@ -90,7 +90,7 @@ typedef struct strutlib_control strutlib_control;
  * Counts additions to this interface: a program that needs a function may ask whether it is
  * there.
  */
-#define STRUTLIB_ABI_VERSION 2
+#define STRUTLIB_ABI_VERSION 3
 /** STRUTLIB_ABI_VERSION of the library that is loaded. */
 STRUTLIB_API int strutlib_abi_version(void);
 /** Version of the program that the library belongs to, such as "0.1.0". */
@@ -181,7 +181,7 @@ STRUTLIB_API void strutlib_control_reset(strutlib_control *control);
 /** Was it interrupted? */
 STRUTLIB_API int strutlib_control_interrupted(const strutlib_control *control);
 /**
- * Sets a function for calls that tell their progress: strutlib_run, strutlib_sweep. NULL: none.
+ * Sets a function for calls that tell their progress: strutlib_run, strutlib_sweep, strutlib_study. NULL: none.
  */
 STRUTLIB_API void strutlib_control_on_progress(strutlib_control *control,
                                                strutlib_progress progress, void *context);
@@ -392,6 +392,21 @@ STRUTLIB_API strutlib_result *strutlib_sweep(
     const double *points, const char *const *words, size_t keep_count, const char *const *keep,
     size_t count, const char *const *names, const char *const *values, strutlib_row row,
     void *context, strutlib_control *control, strutlib_error **error);
+
+/**
+ * `strut sweep` of a study's file, of any form: sweep, search, fit, follow, sensitivity analysis. `directory` gets
+ * the program's files; a study that was interrupted resumes there. Settings are those of --set, settings[i] =
+ * set[i]. Options: "threads", "retry", and those of method and model as of strutlib_sweep.
+ * Values are those of --json, such as "parameters.0.value" of a fit or "best.0.objective" of a search. Arrays,
+ * cells and table: those of table.csv, as of strutlib_sweep. strutlib_result_status: STRUTLIB_DIVERGED where points
+ * failed or nothing was found, STRUTLIB_INACCURATE where a number is less accurate than requested, or not all
+ * parameters of a fit are identified; these are no errors. Where a study is interrupted there is no result.
+ */
+STRUTLIB_API strutlib_result *strutlib_study(const char *path, const char *directory,
+                                             size_t setting_count, const char *const *settings,
+                                             const char *const *set, size_t count,
+                                             const char *const *names, const char *const *values,
+                                             strutlib_control *control, strutlib_error **error);
 
 /* ---- results ---- */
 

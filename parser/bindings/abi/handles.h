@@ -80,8 +80,9 @@ int abi_fail(strutlib_error **error, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /** The same from the error of a library call. */
 int abi_fail_with(strutlib_error **error, strut_status status, const strut_error *what);
-/** The same from everything that was found in a text. */
-int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *found);
+/** The same from everything that was found in `count` texts, found[i] in each. */
+int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *const *found,
+                     size_t count);
 int abi_no_memory(strutlib_error **error);
 /** Is an argument that a call needs NULL? Then *error says which. */
 bool abi_lacks(strutlib_error **error, const void *argument, const char *name);
@@ -103,6 +104,7 @@ typedef struct abi_messages {
 /** A listener that keeps what it hears; both stay where they are. */
 strut_listener abi_listen(abi_messages *messages);
 void abi_add_warning(abi_messages *messages, const char *text);
+void abi_add_notes(abi_messages *messages, const strut_diagnostics *found);
 void abi_messages_free(abi_messages *messages);
 
 /* ---- scenes ---- */
@@ -174,6 +176,10 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
                             const strut_command *command, const abi_pairs *options,
                             strutlib_control *control, strutlib_error **error,
                             abi_messages *messages);
+/** The same of a call that names a model or study: `begun` has command, model and settings. */
+strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
+                                 const abi_pairs *options, strutlib_control *control,
+                                 strutlib_error **error, abi_messages *messages);
 /** Fills *error of a call that failed, by what its listener heard or by `what`. */
 void abi_call_fail(abi_call *call, strut_status status, const strut_error *what);
 
@@ -181,7 +187,7 @@ void abi_call_fail(abi_call *call, strut_status status, const strut_error *what)
 const strut_command *abi_command_at(size_t i);
 extern const strut_command abi_run_command, abi_equilibria_command, abi_modes_command,
     abi_rigidity_command, abi_form_command, abi_path_command, abi_matrices_command,
-    abi_sweep_command, abi_simulation_command, abi_svg_command;
+    abi_sweep_command, abi_study_command, abi_simulation_command, abi_svg_command;
 
 /* ---- results ---- */
 

@@ -206,19 +206,30 @@ static strut_document reread(const strut_diagnostics *found) {
   return document;
 }
 
-int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *found) {
-  if (!error) return (int)status;
+/* Adds the report and the items of a text. */
+static bool add_located(strutlib_error *self, strut_diagnostics *found) {
   const char *report = strut_diagnostics_render(found, MOST_MESSAGES); /* sorts them */
-  strutlib_error *self = report ? create((int)status) : NULL;
-  if (!self) return abi_no_memory(error), (int)status;
-  self->report = strut_arena_text(&self->arena, report, strlen(report));
-  self->items = strut_arena_allocate(&self->arena, found->count, sizeof *self->items);
+  bool good = report;
+  if (good) self->report = strut_arena_format(&self->arena, "%s%s", self->report, report);
   strut_document document = reread(found);
-  bool good = self->items && self->report;
-  for (; good && self->count < found->count; self->count++)
-    good = fill_item(found, &document, &found->items[self->count], &self->arena,
-                     &self->items[self->count]);
+  for (size_t i = 0; good && i < found->count; i++)
+    good = fill_item(found, &document, &found->items[i], &self->arena, &self->items[self->count++]);
   strut_document_free(&document);
+  return good && self->report;
+}
+
+int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *const *found,
+                     size_t count) {
+  if (!error) return (int)status;
+  size_t most = 0;
+  strutlib_error *self = create((int)status);
+  if (!self) return abi_no_memory(error), (int)status;
+  for (size_t i = 0; i < count; i++) most += found[i]->count;
+  self->report = "";
+  self->items = strut_arena_allocate(&self->arena, most, sizeof *self->items);
+  bool good = self->items;
+  for (size_t i = 0; good && i < count; i++)
+    if (found[i]->count) good = add_located(self, found[i]);
   if (good && self->count > 0 && self->items[0].line > 0)
     self->message =
         strut_arena_format(&self->arena, "%s:%zu:%zu: %s", self->items[0].file, self->items[0].line,
@@ -276,11 +287,16 @@ void abi_add_warning(abi_messages *m, const char *text) {
   if (kept) m->warnings[m->count++] = kept;
 }
 
+void abi_add_notes(abi_messages *m, const strut_diagnostics *found) {
+  for (size_t i = 0; i < found->note_count; i++) abi_add_warning(m, found->notes[i].message);
+}
+
 static void hear(void *context, strut_message_kind kind, const char *command, const char *text) {
   abi_messages *self = context;
   (void)command;
   switch (kind) {
     case STRUT_MESSAGE_USAGE: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
+    case STRUT_MESSAGE_LINES: break; /* abi_fail_located has them */
     case STRUT_MESSAGE_ERROR: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
     case STRUT_MESSAGE_WARNING:
     case STRUT_MESSAGE_NOTE:
@@ -341,7 +357,7 @@ char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **
   strut_status status = strut_document_read(&document, &found);
   if (!status) places = put_places(&json, json.root, document.root);
   if (status == STRUT_BAD_SCENE)
-    abi_fail_located(error, status, &found);
+    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
   else
     answer = abi_give(status || json.failed ? NULL : strut_json_print(places), error);
   strut_release(strut_json_end(&json));
@@ -478,16 +494,21 @@ strut_status abi_call_begin(abi_call *call, const strutlib_scene *scene,
                             const strut_command *command, const abi_pairs *options,
                             strutlib_control *control, strutlib_error **error,
                             abi_messages *messages) {
-  *call = (abi_call){.error = error, .control = control, .messages = messages};
-  if (abi_lacks(error, scene, "scene") ||
-      abi_lacks_pairs(error, options->count, options->names, options->values))
-    return STRUT_USAGE;
+  if (abi_lacks(error, scene, "scene")) return STRUT_USAGE;
+  const strut_arguments begun = {.command = command,
+                                 .model = scene->source->name,
+                                 .overrides = scene->overrides,
+                                 .override_count = scene->setting_count};
+  return abi_call_begin_file(call, &begun, options, control, error, messages);
+}
+
+strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
+                                 const abi_pairs *options, strutlib_control *control,
+                                 strutlib_error **error, abi_messages *messages) {
+  *call = (abi_call){.error = error, .control = control, .messages = messages, .arguments = *begun};
+  if (abi_lacks_pairs(error, options->count, options->names, options->values)) return STRUT_USAGE;
   call->listener = abi_listen(messages);
-  call->arguments = (strut_arguments){.command = command,
-                                      .model = scene->source->name,
-                                      .overrides = scene->overrides,
-                                      .override_count = scene->setting_count,
-                                      .listener = &call->listener};
+  call->arguments.listener = &call->listener;
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < options->count && status == STRUT_OK; i++)
     status = strut_argument_set(options->names[i], options->values[i], &call->arguments);
@@ -527,10 +548,18 @@ static const strut_option sweep_options[] = {
     {.table = strut_experiment_options},
     {.name = NULL}};
 
+static const strut_option study_options[] = {
+    {STRUT_FILLS(threads), "threads", "N", "number of threads (default automatic)", .least = 1,
+     .most = 4096},
+    {STRUT_FILLS(retry), "retry", NULL, "recompute points that failed"},
+    {.table = strut_run_setting_options},
+    {.name = NULL}};
+
 const strut_command abi_run_command = {.name = "run", .options = run_options},
                     abi_matrices_command = {.name = "matrices",
                                             .options = strut_rigidity_analysis_options},
                     abi_sweep_command = {.name = "sweep", .options = sweep_options},
+                    abi_study_command = {.name = "study", .options = study_options},
                     abi_simulation_command = {.name = "simulation_open",
                                               .options = simulation_options};
 
@@ -542,9 +571,9 @@ STRUT_ANALYSES(ANALYSIS)
 
 const strut_command *abi_command_at(size_t i) {
 #define COMMAND(NAME) &abi_##NAME##_command,
-  static const strut_command *const all[] = {&abi_run_command,   &abi_matrices_command,
-                                             &abi_sweep_command, &abi_simulation_command,
-                                             &abi_svg_command,   STRUT_ANALYSES(COMMAND)};
+  static const strut_command *const all[] = {
+      &abi_run_command,        &abi_matrices_command, &abi_sweep_command,     &abi_study_command,
+      &abi_simulation_command, &abi_svg_command,      STRUT_ANALYSES(COMMAND)};
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
 

@@ -308,7 +308,7 @@ static abi_source *read_source(const char *name, char *text, size_t length,
   if (status == STRUT_NO_MEMORY)
     abi_no_memory(error);
   else if (status != STRUT_OK)
-    abi_fail_located(error, status, &found);
+    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
   strut_diagnostics_free(&found);
   if (status == STRUT_OK) return source;
   release_source(source);
@@ -325,7 +325,7 @@ strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut
   if (status == STRUT_NO_MEMORY)
     abi_no_memory(error);
   else if (status != STRUT_OK)
-    abi_fail_located(error, status, &found);
+    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
   strut_diagnostics_free(&found);
   return status;
 }
@@ -356,8 +356,7 @@ static bool add_settings(strutlib_scene *scene, const strutlib_scene *before, si
 static strut_status add_warnings(strutlib_scene *scene, strut_diagnostics *found) {
   strut_findings warnings = {0};
   strut_status status = strut_setup_warn(&scene->setup, &warnings);
-  for (size_t i = 0; i < found->note_count; i++)
-    abi_add_warning(&scene->messages, found->notes[i].message);
+  abi_add_notes(&scene->messages, found);
   for (size_t i = 0; i < warnings.count; i++)
     abi_add_warning(&scene->messages, warnings.items[i].message);
   strut_findings_free(&warnings);
@@ -370,7 +369,7 @@ static strut_status read_scene(strutlib_scene *scene, strutlib_error **error) {
       strut_scene_source_read(scene->source->tree, scene->settings, scene->setting_count,
                               STRUT_FOR_ANY, &found, &scene->setup);
   if (status == STRUT_NO_MEMORY) abi_no_memory(error);
-  if (status == STRUT_BAD_SCENE) abi_fail_located(error, status, &found);
+  if (status == STRUT_BAD_SCENE) abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
   if (status == STRUT_OK) {
     status = add_warnings(scene, &found);
     if (status == STRUT_OK && !fill_arrays(scene)) status = STRUT_NO_MEMORY;

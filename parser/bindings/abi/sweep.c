@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* strutlib_sweep: the points of `strut sweep`, given as numbers, with the table as arrays. */
+/*
+ * strutlib_sweep: the points of `strut sweep`, given as numbers, with the table as arrays; strutlib_study: `strut
+ * sweep` of a file.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/number_text.h"
+#include "engine/output/file.h"
+#include "engine/output/result_values.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/bindings/abi/handles.h"
@@ -12,6 +17,7 @@
 #include "parser/program/command/arguments.h"
 #include "parser/program/command/run_settings.h"
 #include "parser/program/command/varied_scenes.h"
+#include "parser/program/study/sweep.h"
 
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";
 static const char *const files[] = {slots_name, table_name, NULL};
@@ -232,18 +238,18 @@ static strut_status run_points(sweep *self, const abi_scratch *scratch, strut_sw
 
 /* ---- the result ---- */
 
-static bool add_columns(sweep *self, strutlib_result *result, sweep_detail *d, double **data) {
-  size_t n = (size_t)self->plan.points;
+static bool add_columns(const strut_sweep_plan *plan, strutlib_result *result, sweep_detail *d,
+                        double **data) {
+  size_t n = d->points;
   strut_slot_column *columns =
-      strut_arena_allocate(&result->arena, self->plan.column_count, sizeof *columns);
+      strut_arena_allocate(&result->arena, plan->column_count, sizeof *columns);
   d->columns = columns;
-  d->column_count = self->plan.column_count;
-  d->points = n;
+  d->column_count = plan->column_count;
   d->words = strut_arena_allocate(&result->arena, d->column_count, sizeof *d->words);
   d->messages = strut_arena_allocate(&result->arena, n, sizeof *d->messages);
   if (!columns || !d->words || !d->messages) return false;
   for (size_t c = 0; c < d->column_count; c++) {
-    columns[c] = self->plan.columns[c];
+    columns[c] = plan->columns[c];
     columns[c].name = strut_arena_text(&result->arena, columns[c].name, strlen(columns[c].name));
     if (!columns[c].name) return false;
     if (columns[c].word) {
@@ -276,18 +282,33 @@ static bool copy_row(strutlib_result *result, sweep_detail *self, const strut_re
   return self->messages[point] != NULL;
 }
 
-static bool fill_table(sweep *self, strutlib_result *result, sweep_detail *d) {
-  size_t n = (size_t)self->plan.points;
-  double **data = strut_arena_allocate(&self->arena, self->plan.column_count, sizeof *data);
+static bool fill_table(const strut_sweep_plan *plan, strut_slots *slots, const int64_t *points,
+                       strutlib_result *result, sweep_detail *d) {
+  size_t n = d->points;
+  double **data = strut_arena_allocate(&result->arena, plan->column_count, sizeof *data);
   double *status = strut_arena_allocate(&result->arena, n, sizeof *status);
-  bool good = data && status && add_columns(self, result, d, data);
+  bool good = data && status && add_columns(plan, result, d, data);
   for (size_t i = 0; good && i < n; i++) {
     strut_result_slot row;
-    bool there = strut_slots_get(self->slots, (int64_t)i, &row);
+    bool there = strut_slots_get(slots, points[i], &row);
     status[i] = there ? (double)row.status : (double)STRUT_INTERRUPTED;
     if (there) good = copy_row(result, d, &row, i, data);
   }
   return good && abi_result_add_array(result, "status", "1", status, 1, &n);
+}
+
+/* Adds the rows of all points, or of those that are done. */
+static strut_status add_table(const strut_sweep_plan *plan, strut_slots *slots, bool all,
+                              strutlib_result *result, strut_error *what) {
+  sweep_detail *d = strut_allocate(1, sizeof *d);
+  int64_t *points = strut_allocate((size_t)plan->points, sizeof *points);
+  if (d) d->base.release = release;
+  result->detail = d;
+  for (int64_t i = 0; d && points && i < plan->points; i++)
+    if (all || strut_slots_done(slots, i)) points[d->points++] = i;
+  bool good = d && points && fill_table(plan, slots, points, result, d);
+  strut_release(points);
+  return good ? STRUT_OK : strut_no_memory(what, "");
 }
 
 static void add_warnings(strutlib_result *result, const strut_sweep_state *state) {
@@ -303,14 +324,10 @@ static void add_warnings(strutlib_result *result, const strut_sweep_state *state
 static strut_status complete(sweep *self, strutlib_result *result, const abi_scratch *scratch,
                              const strut_sweep_state *state, strut_error *what) {
   strut_slots *const sources[] = {self->slots};
-  sweep_detail *d = strut_allocate(1, sizeof *d);
-  if (!d) return strut_no_memory(what, "");
-  d->base.release = release;
-  result->detail = d;
-  if (!fill_table(self, result, d)) return strut_no_memory(what, "");
+  strut_status status = add_table(&self->plan, self->slots, true, result, what);
+  if (status) return status;
   add_warnings(result, state);
-  strut_status status =
-      strut_study_table_write_partial(scratch->folder, table_name, sources, 1, NULL, what);
+  status = strut_study_table_write_partial(scratch->folder, table_name, sources, 1, NULL, what);
   if (status != STRUT_OK) return status;
   result->table = abi_scratch_read(scratch, table_name, what);
   return result->table ? STRUT_OK : what->status;
@@ -394,18 +411,136 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
   return result;
 }
 
+/* ---- studies by file ---- */
+
+/* A study under way. */
+typedef struct study {
+  strut_sweep_study open;
+  strut_study_job job;
+  strutlib_result *result;
+  strutlib_control *control, own;
+  strut_override *overrides; /* in the arena of the result */
+} study;
+
+static void show_study(const strut_study_job *job, const strut_sweep_state *state) {
+  study *self = job->context;
+  strutlib_control *control = self->control;
+  if (!state || !control->progress || state->points <= 0) return;
+  if (control->progress(control->context, (double)state->done / (double)state->points))
+    control->interrupt = 1;
+}
+
+static strut_status keep_report(const strut_study_job *job, const strut_value_rows *rows,
+                                const void *of, const char *json) {
+  strutlib_result *result = ((const study *)job->context)->result;
+  char *copy = json ? strut_allocate(strlen(json) + 1, 1) : strut_values_json(rows, of, NULL);
+  if (copy && json) strcpy(copy, json);
+  result->json = copy;
+  return strut_tell_failure(job->arguments->listener, copy ? STRUT_OK : STRUT_NO_MEMORY, NULL);
+}
+
+/* Opens the study; sets the error. */
+static strut_status open_study(abi_call *call, study *self) {
+  strut_study_file *file = &self->open.file;
+  strut_error what = {0};
+  strut_status status = strut_sweep_study_try(&call->arguments, &self->open, &what);
+  abi_add_notes(&self->result->messages, &file->diagnostics);
+  abi_add_notes(&self->result->messages, &file->model_diagnostics);
+  if (!status) return STRUT_OK;
+  if (status != STRUT_BAD_SCENE || what.message[0])
+    return abi_call_fail(call, status, &what), status;
+  size_t count = 0;
+  strut_diagnostics **found =
+      strut_arena_allocate(&file->arena, file->table_count + 2, sizeof *found);
+  if (!found) return (strut_status)abi_no_memory(call->error);
+  found[count++] = &file->diagnostics;
+  for (size_t i = 0; i < file->table_count; i++) found[count++] = &file->tables[i].diagnostics;
+  found[count++] = &file->model_diagnostics;
+  return (strut_status)abi_fail_located(call->error, status, found, count);
+}
+
+/* Computes the study; sets the error where there is no result. */
+static strut_status run_study(abi_call *call, study *self) {
+  strutlib_result *result = self->result;
+  const strut_sweep_plan *plan = &self->open.plan;
+  strut_error what = {0};
+  size_t length;
+  self->job = (strut_study_job){.arguments = &call->arguments,
+                                .study = &self->open,
+                                .interrupt = &self->control->interrupt,
+                                .context = self,
+                                .progress = show_study,
+                                .report = keep_report};
+  strut_status status = strut_study_job_compute(&self->job), added = STRUT_OK;
+  bool there = result->json &&
+               (status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INACCURATE);
+  const char *path =
+      strut_arena_format(&result->arena, "%s/%s", call->arguments.output, table_name);
+  if (there) added = add_table(plan, self->job.slots, false, result, &what);
+  if (there && !added)
+    added = path ? strut_file_read(path, &result->table, &length, &what) : STRUT_NO_MEMORY;
+  strut_slots_close(self->job.slots);
+  if (!there || added) abi_call_fail(call, there ? added : status, &what);
+  return added ? added : status;
+}
+
+strutlib_result *strutlib_study(const char *path, const char *directory, size_t setting_count,
+                                const char *const *settings, const char *const *set, size_t count,
+                                const char *const *names, const char *const *values,
+                                strutlib_control *control, strutlib_error **error) {
+  abi_call call;
+  study s = {0};
+  if (abi_lacks(error, path, "path") || abi_lacks(error, directory, "directory") ||
+      abi_lacks_pairs(error, setting_count, settings, set))
+    return NULL;
+  abi_enter(error);
+  s.control = control ? control : &s.own;
+  s.result = abi_result_create(&abi_study_command, error);
+  strut_status status = s.result ? STRUT_OK : STRUT_NO_MEMORY;
+  if (!status) {
+    s.overrides = strut_arena_allocate(&s.result->arena, setting_count, sizeof *s.overrides);
+    if (!s.overrides) status = (strut_status)abi_no_memory(error);
+  }
+  for (size_t i = 0; !status && i < setting_count; i++)
+    s.overrides[i] = (strut_override){settings[i], set[i]};
+  const strut_arguments begun = {.command = &abi_study_command,
+                                 .model = path,
+                                 .output = directory,
+                                 .overrides = s.overrides,
+                                 .override_count = setting_count,
+                                 .json = true};
+  if (!status)
+    status = abi_call_begin_file(&call, &begun, &(abi_pairs){count, names, values}, control, error,
+                                 &s.result->messages);
+  if (!status) status = open_study(&call, &s);
+  if (!status) status = run_study(&call, &s);
+  strut_sweep_study_close(&s.open);
+  if (s.result) s.result->status = (int)status;
+  if (s.result && !s.result->table) {
+    strutlib_result_free(s.result);
+    s.result = NULL;
+  }
+  abi_leave();
+  return s.result;
+}
+
 /* ---- columns of words ---- */
 
+/* What has a table, or NULL. */
+static const sweep_detail *table_of(const strutlib_result *result) {
+  bool has =
+      result && (result->command == &abi_sweep_command || result->command == &abi_study_command);
+  return has ? result->detail : NULL;
+}
+
 const char *strutlib_result_column(const strutlib_result *result, size_t i) {
-  if (!result || result->command != &abi_sweep_command) return NULL;
-  const sweep_detail *self = result->detail;
-  return i < self->column_count ? self->columns[i].name : NULL;
+  const sweep_detail *self = table_of(result);
+  return self && i < self->column_count ? self->columns[i].name : NULL;
 }
 
 const char *strutlib_result_cell(const strutlib_result *result, const char *column, size_t point) {
-  if (!result || !column || result->command != &abi_sweep_command) return NULL;
-  const sweep_detail *self = result->detail;
-  if (point >= self->points) return NULL;
+  const sweep_detail *self = table_of(result);
+  if (!self || !column || point >= self->points) return NULL;
   if (strcmp(column, "message") == 0) return self->messages[point];
   for (size_t c = 0; c < self->column_count; c++)
     if (self->words[c] && strcmp(self->columns[c].name, column) == 0) return self->words[c][point];

@@ -220,7 +220,7 @@ strut_status strut_check_study(const strut_arguments *arguments) {
     strut_status printed = print_json(&study, status, &error);
     if (printed != STRUT_OK) status = printed;
   } else if (status != STRUT_OK) {
-    strut_sweep_study_report(&study, status, &error);
+    strut_sweep_study_report(arguments->listener, &study, status, &error);
   } else if (!arguments->quiet) {
     printf("%s: valid\n  points             %" PRId64 "\n", study.file.study.name,
            study.plan.points);

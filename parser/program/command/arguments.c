@@ -21,6 +21,19 @@ void strut_tell(const strut_listener *listener, strut_message_kind kind, const c
   listener->hear(listener->context, kind, command, text);
 }
 
+strut_status strut_tell_failure(const strut_listener *listener, strut_status status,
+                                const strut_error *error) {
+  const char *text = error && error->message[0] ? error->message : strut_status_text(status);
+  if (status) strut_tell(listener, STRUT_MESSAGE_ERROR, NULL, "%s", text);
+  return status;
+}
+
+strut_status strut_tell_lines(const strut_listener *listener, const char *lines) {
+  if (!lines) return strut_tell_failure(listener, STRUT_NO_MEMORY, NULL);
+  if (listener) listener->hear(listener->context, STRUT_MESSAGE_LINES, NULL, lines);
+  return STRUT_OK;
+}
+
 strut_status strut_usage_error(const strut_arguments *arguments, const char *format, ...) {
   char text[STRUT_MESSAGE_MOST];
   va_list values;

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/output/file.h"
@@ -9,9 +8,7 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/study_runs.h"
 #include "parser/language/yaml/diagnostics.h"
-#include "parser/program/commands.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
+#include "parser/program/command/table_file.h"
 #include "parser/program/study/sweep.h"
 
 /* The source of a figure: the table, or the recorded runs. */
@@ -132,24 +129,23 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
 }
 
 /* A figure of a winner is not of the table: sweep_search.c draws it. */
-static strut_status draw_figure(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *figure, const strut_table *table,
-                                const strut_refinement *refinement) {
+static strut_status draw_figure(const strut_study_job *job, const strut_study_figure *figure,
+                                const strut_table *table, const strut_refinement *refinement) {
   strut_error error = {0};
   if (figure->kind == STRUT_FIGURE_WINNER) return STRUT_OK;
-  strut_status status = strut_sweep_figure(plan, directory, figure, table, refinement, &error);
-  if (error.message[0]) strut_print_error(&error);
-  return status;
+  strut_status status = strut_sweep_figure(&job->study->plan, job->arguments->output, figure, table,
+                                           refinement, &error);
+  return strut_tell_failure(job->arguments->listener, status, &error);
 }
 
-strut_status strut_sweep_figures_draw(const strut_sweep_plan *plan, const char *directory,
-                                      const char *path, const strut_refinement *refinement) {
-  const strut_study *study = plan->study;
+strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path,
+                                      const strut_refinement *refinement) {
+  const strut_study *study = job->study->plan.study;
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
-  strut_status status = strut_table_read(path, &table);
+  strut_status status = strut_table_read(job->arguments->listener, path, &table);
   for (size_t i = 0; i < study->figure_count && !status; i++)
-    status = draw_figure(plan, directory, &study->figures[i], &table, refinement);
+    status = draw_figure(job, &study->figures[i], &table, refinement);
   strut_arena_free(&table.arena);
   return status;
 }
@@ -176,12 +172,13 @@ strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *err
 static void write_partial(const strut_study_job *job) {
   int64_t rows = 0;
   strut_error error = {0};
-  if (strut_follow_points_combine(&job->study->plan, job->slots, job->arguments->output,
-                                  partial_branches_name, true, &rows, &error))
-    strut_print_error(&error);
-  else
-    fprintf(stderr, "strut: %s/%s has what was followed so far, %lld points of branches\n",
-            job->arguments->output, partial_branches_name, (long long)rows);
+  const strut_arguments *arguments = job->arguments;
+  strut_status status = strut_follow_points_combine(
+      &job->study->plan, job->slots, arguments->output, partial_branches_name, true, &rows, &error);
+  if (!strut_tell_failure(arguments->listener, status, &error))
+    strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "%s/%s has what was followed so far, %lld points of branches", arguments->output,
+               partial_branches_name, (long long)rows);
 }
 
 static strut_status run_points(strut_study_job *job, const strut_sweep_options *options,
@@ -189,6 +186,7 @@ static strut_status run_points(strut_study_job *job, const strut_sweep_options *
   const strut_follow_points_options how = {.setup = setup_at,
                                            .context = &job->study->file,
                                            .directory = options->directory,
+                                           .threads = options->threads,
                                            .interrupt = options->interrupt,
                                            .progress = options->progress,
                                            .progress_context = options->progress_context};
@@ -207,7 +205,7 @@ static strut_status draw_branches(const strut_arguments *arguments, strut_sweep_
       .path = strut_arena_format(&plan->arena, "%s/branches.svg", arguments->output),
       .width = PAGE};
   if (!from || !plot.path) return strut_no_memory(error, "");
-  strut_status status = strut_table_read(from, &table);
+  strut_status status = strut_table_read(arguments->listener, from, &table);
   if (!status) status = strut_follow_points_figure(&plot, plan, &table, error);
   strut_arena_free(&table.arena);
   return status;
@@ -231,36 +229,28 @@ static strut_status write_results(const strut_arguments *arguments, strut_sweep_
   return STRUT_OK;
 }
 
-static strut_status print_report(const strut_arguments *arguments, const strut_sweep_plan *plan,
-                                 strut_slots *slots, const char *report) {
-  if (arguments->json) return strut_print(report);
-  if (arguments->quiet) return STRUT_OK;
-  const strut_follow_points_rows rows = {plan, slots};
-  strut_status status = strut_print_values(arguments, &strut_follow_points_values, &rows, NULL);
-  if (!status) printf("%s/%s\n", arguments->output, branches_name);
-  return status;
-}
-
-static strut_status complete(const strut_arguments *arguments, strut_sweep_study *study,
-                             strut_slots *slots) {
+static strut_status complete(const strut_study_job *job) {
   strut_error error = {0};
   char *report = NULL;
-  strut_sweep_plan *plan = &study->plan;
-  strut_status status = write_results(arguments, plan, slots, &report, &error);
-  if (status) strut_print_failure(status, &error);
+  strut_sweep_plan *plan = &job->study->plan;
+  const strut_arguments *arguments = job->arguments;
+  const strut_follow_points_rows rows = {plan, job->slots};
+  strut_status status = write_results(arguments, plan, job->slots, &report, &error);
   const char *table = strut_arena_format(&plan->arena, "%s/%s", arguments->output, table_name);
-  if (!status && !table) status = strut_print_out_of_memory();
-  if (!status) status = strut_sweep_figures_draw(plan, arguments->output, table, NULL);
-  if (!status) status = print_report(arguments, plan, slots, report);
+  if (!status && !table) status = STRUT_NO_MEMORY;
+  strut_tell_failure(arguments->listener, status, &error);
+  if (!status) status = strut_sweep_figures_draw(job, table, NULL);
+  if (!status) status = job->report(job, &strut_follow_points_values, &rows, report);
   strut_release(report);
-  return status ? status
-                : strut_sweep_judge(plan->points, strut_slots_failed(slots),
-                                    strut_slots_inaccurate(slots));
+  return status
+             ? status
+             : strut_sweep_judge(arguments->listener, plan->points, strut_slots_failed(job->slots),
+                                 strut_slots_inaccurate(job->slots));
 }
 
 strut_status strut_sweep_follow(strut_study_job *job) {
   strut_error error = {0};
   strut_status status = strut_study_job_run(job, run_points, NULL, &error);
-  strut_print_failure(status, &error);
-  return status ? status : complete(job->arguments, job->study, job->slots);
+  strut_tell_failure(job->arguments->listener, status, &error);
+  return status ? status : complete(job);
 }

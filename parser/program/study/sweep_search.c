@@ -10,9 +10,6 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sensitivity/sensitivity.h"
 #include "parser/language/yaml/diagnostics.h"
-#include "parser/program/commands.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
 static const char table_name[] = "table.csv";
@@ -125,21 +122,20 @@ static strut_status write_best_scenes(const strut_arguments *arguments,
 }
 
 /* The figures of the best of all. A search that found none has none. */
-static strut_status draw_winner(const strut_arguments *arguments, strut_sweep_plan *plan,
-                                const strut_search_point *best) {
+static strut_status draw_winner(const strut_study_job *job, const strut_search_point *best) {
+  strut_sweep_plan *plan = &job->study->plan;
   strut_error error = {0};
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < plan->study->figure_count && best && !status; i++) {
     const strut_study_figure *figure = &plan->study->figures[i];
     if (figure->kind != STRUT_FIGURE_WINNER) continue;
     const char *path =
-        strut_arena_format(&plan->arena, "%s/%s.svg", arguments->output, figure->name);
-    if (!path) return strut_print_out_of_memory();
+        strut_arena_format(&plan->arena, "%s/%s.svg", job->arguments->output, figure->name);
     status =
-        strut_search_winner_figure(plan, figure, path, best, PAGE, strut_interrupt_watch(), &error);
-    if (status) strut_print_failure(status, &error);
+        path ? strut_search_winner_figure(plan, figure, path, best, PAGE, job->interrupt, &error)
+             : STRUT_NO_MEMORY;
   }
-  return status;
+  return strut_tell_failure(job->arguments->listener, status, &error);
 }
 
 static strut_status complete(const strut_study_job *job, const strut_search_result *result) {
@@ -150,29 +146,31 @@ static strut_status complete(const strut_study_job *job, const strut_search_resu
   const strut_search_point *best = NULL;
   strut_slots *const sources[] = {slots};
   const char *table = strut_arena_format(&plan->arena, "%s/%s", arguments->output, table_name);
-  if (!table) return strut_print_out_of_memory();
+  if (!table) return strut_tell_failure(arguments->listener, STRUT_NO_MEMORY, NULL);
   strut_status status = write_best_rows(arguments, slots, result, &error);
   if (!status) status = write_best_scenes(arguments, plan, result, &best, &error);
   if (!status) /* last, as a sign that the searches are finished */
     status =
         strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  if (status) return strut_print_failure(status, &error);
+  if (status) return strut_tell_failure(arguments->listener, status, &error);
   strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
-  status = strut_sweep_figures_draw(plan, arguments->output, table, NULL);
-  if (!status) status = draw_winner(arguments, plan, best);
+  status = strut_sweep_figures_draw(job, table, NULL);
+  if (!status) status = draw_winner(job, best);
   const strut_search_report report = {plan, plan->study->search, result, {&job->state, table}};
-  if (!status) status = strut_print_values(arguments, &strut_search_report_values, &report, NULL);
+  if (!status) status = job->report(job, &strut_search_report_values, &report, NULL);
   if (status) return status;
   bool found = false;
   for (size_t i = 0; i < result->worth_count; i++)
     found = found || result->outcomes[result->worths[i].best].best.violation <= 0.0;
   for (size_t i = 0; i < result->front_count; i++) found = found || result->fronts[i].count > 0;
   if (!found) {
-    fputs("strut: no point was found that is computed and meets all conditions\n", stderr);
+    strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "no point was found that is computed and meets all conditions");
     return STRUT_DIVERGED;
   }
   if (!best || !strut_slots_is_inaccurate(slots, best->worst)) return STRUT_OK;
-  fputs("strut: the best point is less accurate than requested\n", stderr);
+  strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+             "the best point is less accurate than requested");
   return STRUT_INACCURATE;
 }
 
@@ -185,7 +183,8 @@ bool strut_sweep_search_is_finished(const char *directory) {
   return finished;
 }
 
-strut_status strut_sweep_search_check_workers(strut_sweep_study *study) {
+strut_status strut_sweep_search_check_workers(const strut_arguments *arguments,
+                                              strut_sweep_study *study) {
   static const char *const words[] = {
 #define STRUT_SEARCH_METHOD_WORD(name, word) word,
       STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_WORD)
@@ -199,15 +198,15 @@ strut_status strut_sweep_search_check_workers(strut_sweep_study *study) {
                  "workers cannot share a search by '%s', which computes one point after another: "
                  "give 'starts' for several searches side by side, or the method 'cma'",
                  words[file->study.search->method]);
-  return strut_sweep_study_report(study, STRUT_BAD_SCENE, &(strut_error){0});
+  return strut_sweep_study_report(arguments->listener, study, STRUT_BAD_SCENE, &(strut_error){0});
 }
 
 strut_status strut_sweep_search(strut_study_job *job) {
   strut_search_result result = {0};
   strut_error error = {0};
   strut_status status = strut_study_job_run(job, run_search, &result, &error);
-  strut_sweep_print_warnings(&job->state);
-  strut_print_failure(status, &error);
+  strut_sweep_tell_warnings(job);
+  strut_tell_failure(job->arguments->listener, status, &error);
   if (!status) status = complete(job, &result);
   strut_search_result_free(&result);
   return status;
@@ -253,79 +252,6 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
   return STRUT_OK;
 }
 
-/* ---- shards ---- */
-
-/* `context`: the study. */
-static strut_status check_refined(void *context, strut_slots *const *sources, size_t count,
-                                  strut_error *error) {
-  const strut_sweep_study *study = context;
-  strut_refinement *refinement = NULL;
-  strut_status status = strut_refinement_create(&study->plan, &refinement, error);
-  for (size_t k = 0; k < count && !status; k++) {
-    if (!sources[k])
-      status = strut_fail(error, STRUT_FILE_TROUBLE, "shard %zu of %zu is missing", k, count);
-    else if (strut_slots_description_of(sources[k])->points != study->plan.points)
-      status = strut_fail(error, STRUT_USAGE, "shard %zu of %zu is of another study", k, count);
-    else
-      strut_refinement_learn(refinement, sources[k]);
-  }
-  int64_t unknown = status ? 0 : strut_refinement_choose(refinement);
-  if (unknown)
-    status = strut_fail(error, STRUT_FILE_TROUBLE,
-                        "%lld points of the refinement are missing: run all shards again",
-                        (long long)unknown);
-  strut_refinement_free(refinement);
-  return status;
-}
-
-/* Each worker of a search writes all files itself. Has one? */
-static strut_status check_searches(const char *directory, bool quiet) {
-  strut_error error = {0};
-  if (!strut_sweep_search_is_finished(directory))
-    return strut_print_failure(
-        strut_fail(&error, STRUT_FILE_TROUBLE,
-                   "'%s': the searches are not finished: run the study again to resume them",
-                   directory),
-        &error);
-  if (!quiet) printf("%s/%s: the searches are finished\n", directory, table_name);
-  return STRUT_OK;
-}
-
-strut_status strut_sweep_refine_merge(const strut_arguments *arguments, bool *merged) {
-  strut_sweep_study study = {0};
-  strut_arena arena = {0};
-  strut_error error = {0};
-  strut_arguments inner = *arguments;
-  strut_merged table;
-  const char *directory = arguments->model;
-  inner.model = strut_arena_format(&arena, "%s/study.yaml", directory);
-  strut_status status = STRUT_OK;
-  bool search = false, refined = false;
-  if (inner.model && access(inner.model, R_OK) == 0) {
-    status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
-    search = !status && strut_study_has_stages(&study.file.study);
-    refined = !status && !search && study.file.study.refine.depth > 0;
-    strut_study_close(&study.file);
-    error = (strut_error){0};
-  }
-  *merged = search || refined;
-  if (search) status = check_searches(directory, arguments->quiet);
-  if (refined) {
-    study = (strut_sweep_study){0};
-    status = strut_sweep_study_open(&inner, &study);
-    if (!status) {
-      status = strut_merge_if(directory, check_refined, &study, &table, &error);
-      strut_print_failure(status, &error);
-    }
-    if (!status && !arguments->quiet)
-      printf("%s/table.csv: %lld points\n", directory, (long long)table.points);
-    if (!status) status = strut_sweep_judge(table.points, table.failed, table.inaccurate);
-    strut_sweep_study_close(&study);
-  }
-  strut_arena_free(&arena);
-  return status;
-}
-
 /* What a sensitivity analysis adds to a sweep: its table, its figure and its report. */
 
 static const char *column_name(const void *context, size_t i) {
@@ -345,8 +271,10 @@ strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_e
                     missing, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-strut_status strut_sweep_sensitivity_complete(const strut_arguments *arguments,
-                                              const strut_sweep_plan *plan, strut_slots *slots) {
+strut_status strut_sweep_sensitivity_complete(const strut_study_job *job) {
+  const strut_arguments *arguments = job->arguments;
+  const strut_sweep_plan *plan = &job->study->plan;
+  strut_slots *slots = job->slots;
   const char *directory = arguments->output;
   strut_sensitivity_result result = {0};
   strut_arena arena = {0};
@@ -360,9 +288,9 @@ strut_status strut_sweep_sensitivity_complete(const strut_arguments *arguments,
   if (!status)
     status = strut_sensitivity_figure(&(strut_plot){.path = path}, plan->study, slots, &result,
                                       &drawn, &error);
-  if (status) strut_print_failure(status, &error);
+  strut_tell_failure(arguments->listener, status, &error);
   if (!status && !arguments->json)
-    status = strut_print_values(arguments, &strut_sensitivity_values, &result, NULL);
+    status = job->report(job, &strut_sensitivity_values, &result, NULL);
   strut_arena_free(&result.arena);
   strut_arena_free(&arena);
   return status;

@@ -20,25 +20,16 @@
 #include "parser/language/study/read_study.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/run_settings.h"
-#include "parser/program/commands.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
 enum { MOST_MESSAGES = 50 };
 
-strut_status strut_sweep_study_report(strut_sweep_study *study, strut_status status,
-                                      strut_error *error) {
-  strut_study_file *file = &study->file;
-  if (status == STRUT_BAD_SCENE && !error->message[0]) {
-    const char *messages = strut_study_messages(file, MOST_MESSAGES);
-    if (!messages) return strut_print_out_of_memory();
-    fputs(messages, stderr);
-  } else if (status != STRUT_OK) {
-    if (!error->message[0]) strut_fail(error, status, "%s", strut_status_text(status));
-    strut_print_error(error);
-  }
-  return status;
+strut_status strut_sweep_study_report(const strut_listener *listener, strut_sweep_study *study,
+                                      strut_status status, const strut_error *error) {
+  if (status != STRUT_BAD_SCENE || error->message[0])
+    return strut_tell_failure(listener, status, error);
+  const char *messages = strut_study_messages(&study->file, MOST_MESSAGES);
+  return strut_tell_lines(listener, messages) ? STRUT_NO_MEMORY : status;
 }
 
 /* Tries a point; of motions that are followed, at both ends of the parameter. */
@@ -95,8 +86,7 @@ static strut_status adjust_scenes(const strut_arguments *arguments, strut_study_
   return STRUT_OK;
 }
 
-/* The settings and options of the command line, each before its value. */
-static const char *const *list_words(const strut_arguments *arguments, strut_arena *arena,
+const char *const *strut_sweep_words(const strut_arguments *arguments, strut_arena *arena,
                                      size_t *count) {
   size_t options = 0, n = 0;
   while (strut_run_option_given(arguments, options)) options++;
@@ -165,24 +155,21 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status && file->study.fit) status = strut_fit_add_columns(&study->plan, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
   if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
-  return status;
-}
-
-strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study) {
-  strut_error error = {0};
-  strut_study_file *file = &study->file;
-  strut_status status = strut_sweep_study_try(arguments, study, &error);
-  if (!status && !identify(arguments, file, study->slots.hash)) status = STRUT_NO_MEMORY;
-  if (status) return strut_sweep_study_report(study, status, &error);
-  const char *notes = strut_study_notes(file);
-  if (!notes) return strut_print_out_of_memory();
-  fputs(notes, stderr);
+  if (status) return status;
+  if (!identify(arguments, file, study->slots.hash)) return strut_no_memory(error, "");
   study->slots.version = STRUT_VERSION;
   study->slots.name = file->study.name;
   study->slots.points = study->slots.count = study->plan.points;
   study->slots.columns = study->plan.columns;
   study->slots.column_count = study->plan.column_count;
   return STRUT_OK;
+}
+
+strut_status strut_sweep_study_open(const strut_arguments *arguments, strut_sweep_study *study) {
+  strut_error error = {0};
+  strut_status status = strut_sweep_study_try(arguments, study, &error);
+  return status ? strut_sweep_study_report(arguments->listener, study, status, &error)
+                : strut_tell_lines(arguments->listener, strut_study_notes(&study->file));
 }
 
 void strut_sweep_study_close(strut_sweep_study *study) {
@@ -258,7 +245,7 @@ static strut_status for_each(const strut_arguments *arguments, const strut_sweep
   strut_arena arena = {0};
   const strut_study_file *file = &study->file;
   size_t word_count = 0;
-  const char *const *words = list_words(arguments, &arena, &word_count);
+  const char *const *words = strut_sweep_words(arguments, &arena, &word_count);
   char *text = words ? strut_study_copy(file, model_name, words, word_count) : NULL;
   const char *study_path = file->path, *model_path = file->model_path;
   const char *model = file->model_copy ? file->model_copy : file->model_text;
@@ -296,146 +283,39 @@ strut_status strut_sweep_texts_write(const strut_arguments *arguments,
   return status;
 }
 
-/* The paths of this program and of the current directory. */
-static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
-  ssize_t length = readlink("/proc/self/exe", program, PATH_MAX - 1);
-  if (length > 0)
-    program[length] = '\0';
-  else
-    strcpy(program, "strut");
-  if (getcwd(folder, PATH_MAX)) return STRUT_OK;
-  strut_error error = {0};
-  strut_fail(&error, STRUT_FILE_TROUBLE, "the current directory has no name: %s", strerror(errno));
-  strut_print_error(&error);
-  return STRUT_FILE_TROUBLE;
-}
-
-static strut_status print_script(const strut_arguments *arguments, strut_cluster_script *script,
-                                 strut_arena *arena) {
-  strut_error error = {0};
-  char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
-  strut_status status = find_places(program, folder);
-  if (status != STRUT_OK) return status;
-  script->program = program;
-  script->folder = folder;
-  script->words = list_words(arguments, arena, &script->word_count);
-  if (!script->words) return strut_print_out_of_memory();
-  status = strut_cluster_script_write(script, &text, &error);
-  if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
-  if (status == STRUT_NO_MEMORY) strut_print_error(&error);
-  if (status == STRUT_OK) status = strut_print(text);
-  strut_release(text);
-  return status;
-}
-
-strut_status strut_sweep_emit(const strut_arguments *arguments, const char *name) {
-  strut_cluster_script script = {.name = name,
-                                 .study = arguments->model,
-                                 .output = arguments->output,
-                                 .time = arguments->time,
-                                 .memory = arguments->memory,
-                                 .shards = arguments->shards.value,
-                                 .cpus = arguments->cpus.text ? arguments->cpus.value : 1};
-  if (strcmp(arguments->model, "-") == 0)
-    return strut_usage_error(arguments,
-                             "--emit needs a file that the tasks can read, not standard input");
-  if (!arguments->shards.text)
-    return strut_usage_error(arguments, "--emit needs --shards N, the number of tasks");
-  strut_arena arena = {0};
-  strut_status status = print_script(arguments, &script, &arena);
-  strut_arena_free(&arena);
-  return status;
-}
-
-enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300 };
-
-/* Between two lines without a terminal, and before the first bar [s]. */
-static const double REPORT_INTERVAL = 30.0, PATIENCE = 0.5;
-
-/* What a running sweep or search shows: progress, and now and then the table of the rows that there are. */
-typedef struct display {
-  const strut_study_job *job;
-  strut_progress bar;
-  double reported;       /* time of the latest line [s] */
-  double next, interval; /* of partial tables [s] since it began */
-} display;
-
-/* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
-static void format_row(const strut_sweep_plan *plan, const strut_result_slot *row, char *text,
-                       size_t size) {
-  size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
-  *text = '\0';
-  for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
-    const strut_slot_column *column = &plan->columns[i];
-    const char *unit = strcmp(column->unit, "1") == 0 ? "" : column->unit;
-    int n = column->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "",
-                                    column->name, row->words[word++])
-                         : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "",
-                                    column->name, row->numbers[number++], *unit ? " " : "", unit);
-    used += n > 0 ? (size_t)n : 0;
-  }
-  if (row->status != STRUT_OK && used < size)
-    snprintf(text + used, size - used, ": %s", strut_status_text(row->status));
-}
-
-/* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
-static void format_state(const strut_sweep_state *state, char *text, size_t size) {
-  char left[STRUT_DURATION_TEXT], failed[40] = "";
-  double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
-  strut_duration_text(rate > 0.0 ? (double)(state->points - state->done) / rate : HUGE_VAL, left);
-  if (state->failed) snprintf(failed, sizeof failed, " (%lld failed)", (long long)state->failed);
-  snprintf(text, size, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
-           (long long)state->points, failed, rate, left);
-}
-
-static void show_state(display *shown, const strut_sweep_state *state) {
-  strut_progress *bar = &shown->bar;
-  char text[TEXT], row[TEXT], all[2 * TEXT + 40], blocks[BAR_ROOM];
-  if (shown->job->arguments->quiet || state->seconds < PATIENCE) return;
-  if (!bar->wanted && state->seconds - shown->reported < REPORT_INTERVAL) return;
-  shown->reported = state->seconds;
-  format_state(state, text, sizeof text);
-  format_row(&shown->job->study->plan, state->row, row, sizeof row);
-  if (state->has_best)
-    snprintf(all, sizeof all, "%s; best %.5g; %s", text, state->best, row);
-  else
-    snprintf(all, sizeof all, "%s; %s", text, row);
-  if (!bar->wanted) {
-    fprintf(stderr, "strut: %s\n", all);
-    return;
-  }
-  int size = bar->columns - 1, width = size > 3 * WIDTH ? WIDTH : 0;
-  strut_progress_bar(blocks, width, (double)state->done / (double)state->points);
-  const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
-  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, size - width - 1, size - width - 1, all);
-  fflush(stderr);
-  bar->shown = true;
-}
-
 /* The partial table is written anew after these times, ever less often [s]. */
 static const double FIRST_PARTIAL = 2.0, RAREST_PARTIAL = 60.0;
 
+/* When a running study's table of the rows that there are is written next. */
+typedef struct partial {
+  const strut_study_job *job;
+  double next, interval; /* [s] since it began */
+} partial;
+
 static void show(void *context, const strut_sweep_state *state) {
-  display *shown = context;
-  show_state(shown, state);
-  if (shown->job->shard.count || state->seconds < shown->next) return;
-  strut_slots *const sources[] = {shown->job->slots};
-  strut_study_table_write_partial(shown->job->arguments->output, STRUT_PARTIAL_TABLE, sources, 1,
-                                  NULL, NULL);
-  if (shown->interval < RAREST_PARTIAL) shown->interval *= 2.0;
-  shown->next = state->seconds + shown->interval;
+  partial *self = context;
+  const strut_study_job *job = self->job;
+  job->progress(job, state);
+  if (job->shard.count || state->seconds < self->next) return;
+  strut_slots *const sources[] = {job->slots};
+  strut_study_table_write_partial(job->arguments->output, STRUT_PARTIAL_TABLE, sources, 1, NULL,
+                                  NULL);
+  if (self->interval < RAREST_PARTIAL) self->interval *= 2.0;
+  self->next = state->seconds + self->interval;
 }
 
 /* Writes and reports the rows of a study that has ended before its last point. */
-static void write_partial(const char *directory, strut_slots *slots) {
+static void write_partial(const strut_study_job *job) {
   int64_t rows = 0;
   strut_error error = {0};
-  strut_slots *const sources[] = {slots};
-  if (strut_study_table_write_partial(directory, STRUT_PARTIAL_TABLE, sources, 1, &rows, &error))
-    strut_print_error(&error);
-  else
-    fprintf(stderr, "strut: %s/%s has the %lld rows that are done\n", directory,
-            STRUT_PARTIAL_TABLE, (long long)rows);
+  const char *directory = job->arguments->output;
+  strut_slots *const sources[] = {job->slots};
+  strut_status status =
+      strut_study_table_write_partial(directory, STRUT_PARTIAL_TABLE, sources, 1, &rows, &error);
+  if (!strut_tell_failure(job->arguments->listener, status, &error))
+    strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "%s/%s has the %lld rows that are done", directory, STRUT_PARTIAL_TABLE,
+               (long long)rows);
 }
 
 strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_error *error) {
@@ -460,23 +340,20 @@ strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_
 
 strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *compute, void *context,
                                  strut_error *error) {
-  const char *directory = job->arguments->output;
   const strut_sweep_state *state = &job->state;
-  display shown = {.job = job,
-                   .bar = strut_progress_begin(job->arguments->quiet),
-                   .next = FIRST_PARTIAL,
-                   .interval = FIRST_PARTIAL};
-  const strut_sweep_options options = {.interrupt = strut_interrupt_watch(),
-                                       .directory = directory,
+  partial table = {.job = job, .next = FIRST_PARTIAL, .interval = FIRST_PARTIAL};
+  const strut_sweep_options options = {.threads = (int)job->arguments->threads.value,
+                                       .interrupt = job->interrupt,
+                                       .directory = job->arguments->output,
                                        .progress = show,
-                                       .progress_context = &shown};
+                                       .progress_context = &table};
   strut_status status = strut_sweep_texts_write(job->arguments, job->study, error);
   if (!status) status = compute(job, &options, context, error);
-  strut_progress_end(&shown.bar);
+  job->progress(job, NULL);
   strut_error late = {0};
   strut_status synced = strut_slots_sync(job->slots, &late);
   if (!status && synced) status = strut_fail(error, synced, "%s", late.message);
-  if (status && !job->shard.count && state->done > 0) write_partial(directory, job->slots);
+  if (status && !job->shard.count && state->done > 0) write_partial(job);
   if (status == STRUT_INTERRUPTED && strut_study_has_stages(job->study->plan.study))
     strut_fail(error, status, "interrupted after %lld points; the same command resumes",
                (long long)state->done);
@@ -486,24 +363,26 @@ strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *comp
   return status;
 }
 
-void strut_sweep_print_warnings(const strut_sweep_state *state) {
+void strut_sweep_tell_warnings(const strut_study_job *job) {
+  const strut_sweep_state *state = &job->state;
   for (size_t i = 0; i < state->warning_count; i++) {
     const strut_sweep_warning *warning = &state->warnings[i];
-    fprintf(stderr, "strut: warning: %lld of %lld runs, first point %lld: %s\n",
-            (long long)warning->runs, (long long)state->computed, (long long)warning->point,
-            warning->text);
+    strut_tell(job->arguments->listener, STRUT_MESSAGE_WARNING, NULL,
+               "%lld of %lld runs, first point %lld: %s", (long long)warning->runs,
+               (long long)state->computed, (long long)warning->point, warning->text);
   }
 }
 
-strut_status strut_sweep_judge(int64_t points, int64_t failed, int64_t inaccurate) {
+strut_status strut_sweep_judge(const strut_listener *listener, int64_t points, int64_t failed,
+                               int64_t inaccurate) {
   if (failed)
-    fprintf(stderr,
-            "strut: %lld of %lld points failed: see the table's columns status and message\n",
-            (long long)failed, (long long)points);
+    strut_tell(listener, STRUT_MESSAGE_REMARK, NULL,
+               "%lld of %lld points failed: see the table's columns status and message",
+               (long long)failed, (long long)points);
   if (inaccurate)
-    fprintf(stderr,
-            "strut: %lld of %lld points are less accurate than requested: see the table's "
-            "column " STRUT_KEPT_COLUMN "\n",
-            (long long)inaccurate, (long long)points);
+    strut_tell(listener, STRUT_MESSAGE_REMARK, NULL,
+               "%lld of %lld points are less accurate than requested: see the table's "
+               "column " STRUT_KEPT_COLUMN,
+               (long long)inaccurate, (long long)points);
   return failed ? STRUT_DIVERGED : inaccurate ? STRUT_INACCURATE : STRUT_OK;
 }

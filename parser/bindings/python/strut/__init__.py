@@ -35,6 +35,7 @@ from ._results import (
 from ._scene import Scene, load, loads
 from ._simulation import Simulation
 from ._strut import version as __version__
+from ._studies import Fit, Study, fit, sweep
 from ._sweep import Table
 from ._values import Named, Words
 
@@ -43,6 +44,7 @@ __all__ = [
     "Equilibrium",
     "Error",
     "FileError",
+    "Fit",
     "Form",
     "Matrices",
     "MemoryError",
@@ -58,12 +60,15 @@ __all__ = [
     "Scene",
     "SceneError",
     "Simulation",
+    "Study",
     "Table",
     "UsageError",
     "Words",
+    "fit",
     "load",
     "loads",
     "models",
+    "sweep",
 ]
 
 for _name in set(__all__) - {"models"}:  # messages say strut.SceneError, whichever file it is in

@@ -361,6 +361,21 @@ class Simulation(_Handle):
         _api.ask("simulation_restore", self._idle(), snapshot._handle)
 
 
+def _fill(result: Result, function: Any, given: tuple[Any, ...], progress: Progress | None) -> None:
+    """Puts what the call returns into `result`, also where it failed or was interrupted; then raises."""
+    control, error = _Control(), c_void_p()
+
+    def call() -> None:
+        result._handle = function(*given, control._handle, byref(error))
+
+    raised = control.wait(call, progress)
+    if raised is not None:
+        _api.error_free(error)
+        raise raised
+    if error or not result:
+        raise _exception(error.value)
+
+
 # ---- scenes ----
 
 
@@ -419,20 +434,6 @@ class Scene(_Handle):
             raise raised
         return answer[0]
 
-    def _fill(self, result: Result, function: Any, given: tuple[Any, ...], progress: Progress | None) -> None:
-        """Puts what the call returns into `result`, also where it failed or was interrupted; then raises."""
-        control, error = _Control(), c_void_p()
-
-        def call() -> None:
-            result._handle = function(self._handle, *given, control._handle, byref(error))
-
-        raised = control.wait(call, progress)
-        if raised is not None:
-            _api.error_free(error)
-            raise raised
-        if error or not result:
-            raise _exception(error.value)
-
     def call(
         self,
         result: Result,
@@ -443,7 +444,7 @@ class Scene(_Handle):
     ) -> None:
         if command not in _api.calls:
             raise ValueError(f"no such command: {command}")
-        self._fill(result, getattr(_api, command), _pairs(names, values), progress)
+        _fill(result, getattr(_api, command), (self._handle, *_pairs(names, values)), progress)
 
     def sweep(
         self,
@@ -463,8 +464,8 @@ class Scene(_Handle):
         if words is not None and len(words) != count * len(axes):
             raise ValueError("a word or None is needed for each point and axis")
         spelled = None if words is None else _texts(words)
-        table = (len(axes), _texts(axes), count, numbers.tobytes(), spelled, len(keep), _texts(keep))
-        self._fill(result, _api.sweep, (*table, *_pairs(names, values), None, None), progress)
+        table = (self._handle, len(axes), _texts(axes), count, numbers.tobytes(), spelled, len(keep), _texts(keep))
+        _fill(result, _api.sweep, (*table, *_pairs(names, values), None, None), progress)
 
 
 def open(path: str | os.PathLike[str], names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
@@ -478,6 +479,12 @@ def open_text(name: str, text: str, names: tuple[str, ...], values: tuple[str, .
 
 def with_(scene: Scene, names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
     return Scene(_api.ask("scene_with", scene._handle, *_pairs(names, values)))
+
+
+def study(result: Result, path: Any, folder: Any, given: Any, pairs: Any, progress: Progress | None) -> None:
+    """Computes a study's file with settings `given` and options."""
+    files = (_whole(os.fsencode(path)), _whole(os.fsencode(folder)))
+    _fill(result, _api.study, (*files, *_pairs(*given), *_pairs(*pairs)), progress)
 
 
 # ---- the library as a whole ----
@@ -516,5 +523,5 @@ def yaml_places(name: str, text: str) -> str:
     return _api.ask("yaml_places", _bytes(name), _bytes(text))  # type: ignore[no-any-return]
 
 
-for _call in _api.calls:
+for _call in (*_api.calls, "study"):
     _errors.switches.update(name for (name, _), (kind, _) in zip(options(_call), option_types(_call)) if kind == "flag")

@@ -1,18 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/file.h"
+#include "engine/base/number_text.h"
+#include "engine/study/cluster/cluster_script.h"
+#include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/command/run_settings.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
+#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
@@ -45,33 +50,6 @@ static const strut_option options[] = {
 
 static const char table_name[] = "table.csv";
 
-/* DIR/name in the study's arena, or NULL. */
-static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
-  return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
-}
-
-/* Finds the shard that --shard names, and the file of its slots, which the workers of a search share. */
-static strut_status find_shard(const strut_arguments *arguments, strut_sweep_study *study,
-                               strut_shard *shard, const char **path) {
-  const strut_array_task task = {
-      .id = getenv("SLURM_ARRAY_TASK_ID"),
-      .min = getenv("SLURM_ARRAY_TASK_MIN"),
-      .max = getenv("SLURM_ARRAY_TASK_MAX"),
-      .step = getenv("SLURM_ARRAY_TASK_STEP"),
-      .count = getenv("SLURM_ARRAY_TASK_COUNT"),
-      .variable = getenv,
-  };
-  const char *text = arguments->shard;
-  strut_error error = {0};
-  *shard = (strut_shard){0};
-  strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
-  if (status) return strut_print_failure(status, &error);
-  const strut_shard part = strut_study_has_stages(study->plan.study) ? (strut_shard){0} : *shard;
-  if (part.count) strut_shard_points(part, &study->slots);
-  *path = strut_shard_path(arguments->output, part, &study->plan.arena);
-  return *path ? STRUT_OK : strut_print_out_of_memory();
-}
-
 static strut_status show_status(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_slots *slots = NULL;
   strut_slots_description there;
@@ -80,7 +58,7 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   const char *path;
   strut_shards_found found;
   strut_arena *arena = &study->plan.arena;
-  strut_status status = find_shard(arguments, study, &shard, &path);
+  strut_status status = strut_sweep_find_shard(arguments, study, &shard, &path);
   if (status) return status;
   status = strut_shards_find(arguments->output, &found, arena, &error);
   if (status) return strut_print_failure(status, &error);
@@ -103,129 +81,60 @@ static strut_status show_status(const strut_arguments *arguments, strut_sweep_st
   return strut_print_values(arguments, &strut_slots_progress_values, &progress, NULL);
 }
 
-/* `context`: the refinement, or NULL. */
-static strut_status run_points(strut_study_job *job, const strut_sweep_options *given,
-                               void *context, strut_error *error) {
-  strut_sweep_options how = *given;
-  if (context) {
-    how.wants = strut_refinement_wants;
-    how.wants_context = context;
-    strut_refinement_count(context, job->slots, &how.wanted, &how.wanted_done);
-  }
-  return strut_sweep_run(&job->study->plan, job->slots, &how, &job->state, error);
+/* The paths of this program and of the current directory. */
+static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
+  ssize_t length = readlink("/proc/self/exe", program, PATH_MAX - 1);
+  if (length > 0)
+    program[length] = '\0';
+  else
+    strcpy(program, "strut");
+  if (getcwd(folder, PATH_MAX)) return STRUT_OK;
+  strut_error error = {0};
+  strut_fail(&error, STRUT_FILE_TROUBLE, "the current directory has no name: %s", strerror(errno));
+  strut_print_error(&error);
+  return STRUT_FILE_TROUBLE;
 }
 
-/* Adds the warnings of a round to those before. */
-static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round) {
-  for (size_t i = 0; i < round->warning_count; i++) {
-    const strut_sweep_warning *warning = &round->warnings[i];
-    size_t at = 0;
-    while (at < all->warning_count && strcmp(all->warnings[at].code, warning->code) != 0) at++;
-    if (at == STRUT_SWEEP_MOST_WARNINGS) continue;
-    int64_t runs = at < all->warning_count ? all->warnings[at].runs : 0;
-    bool first = at == all->warning_count || warning->point < all->warnings[at].point;
-    if (at == all->warning_count) all->warning_count++;
-    if (first) all->warnings[at] = *warning;
-    all->warnings[at].runs = runs + warning->runs;
-  }
-}
-
-/*
- * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
- * known before more can be.
- */
-static strut_status run_refined(strut_study_job *job, strut_refinement *refinement, int64_t *others,
-                                strut_error *error) {
-  int64_t wanted, done;
-  strut_sweep_state all = {0}, *state = &job->state;
-  strut_status status = STRUT_OK;
-  for (bool first = true; !status; first = false) {
-    strut_sweep_refine_learn(refinement, job->arguments->output, job->shard, job->slots);
-    *others = strut_refinement_choose(refinement);
-    strut_refinement_count(refinement, job->slots, &wanted, &done);
-    if (wanted == done && !first) break;
-    status = strut_study_job_run(job, run_points, refinement, error);
-    all.computed += state->computed;
-    all.seconds += state->seconds;
-    add_warnings(&all, state);
-  }
-  state->computed = all.computed;
-  state->seconds = all.seconds;
-  state->warning_count = all.warning_count;
-  memcpy(state->warnings, all.warnings, sizeof all.warnings);
+static strut_status print_script(const strut_arguments *arguments, strut_cluster_script *script,
+                                 strut_arena *arena) {
+  strut_error error = {0};
+  char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
+  strut_status status = find_places(program, folder);
+  if (status != STRUT_OK) return status;
+  script->program = program;
+  script->folder = folder;
+  script->words = strut_sweep_words(arguments, arena, &script->word_count);
+  if (!script->words) return strut_print_out_of_memory();
+  status = strut_cluster_script_write(script, &text, &error);
+  if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
+  if (status == STRUT_NO_MEMORY) strut_print_error(&error);
+  if (status == STRUT_OK) status = strut_print(text);
+  strut_release(text);
   return status;
 }
 
-/* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
-static strut_status complete_sweep(const strut_study_job *job, const strut_refinement *refinement) {
-  const strut_arguments *arguments = job->arguments;
-  const bool whole = !job->shard.count;
-  strut_error error = {0};
-  strut_slots *const sources[] = {job->slots};
-  const char *table = whole ? inside(job->study, arguments->output, table_name)
-                            : "one shard: 'strut sweep --merge' writes the table of all";
-  if (!table) return strut_print_out_of_memory();
-  strut_status status = STRUT_OK;
-  if (whole && refinement)
-    status =
-        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  else if (whole)
-    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
-  if (status) return strut_print_failure(status, &error);
-  if (whole) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
-  if (whole)
-    status = strut_sweep_figures_draw(&job->study->plan, arguments->output, table, refinement);
-  if (status) return status;
-  status = strut_print_values(arguments, &strut_sweep_end_values,
-                              &(strut_sweep_end){&job->state, table}, NULL);
-  if (!status && whole)
-    status = strut_sweep_sensitivity_complete(arguments, &job->study->plan, job->slots);
-  return status ? status
-                : strut_sweep_judge(job->state.points, job->state.failed,
-                                    strut_slots_inaccurate(job->slots));
-}
-
-static strut_status sweep(strut_study_job *job) {
-  strut_error error = {0};
-  strut_refinement *refinement = NULL;
-  int64_t others = 0;
-  strut_status status = STRUT_OK;
-  if (job->study->plan.study->refine.depth)
-    status = strut_refinement_create(&job->study->plan, &refinement, &error);
-  if (!status)
-    status = refinement ? run_refined(job, refinement, &others, &error)
-                        : strut_study_job_run(job, run_points, NULL, &error);
-  strut_sweep_print_warnings(&job->state);
-  strut_print_failure(status, &error);
-  if (!status) status = complete_sweep(job, refinement);
-  if (others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
-    fprintf(stderr,
-            "strut: %lld points of other shards decide what is refined next: run this shard again "
-            "when they are done\n",
-            (long long)others);
-  strut_refinement_free(refinement);
-  return status;
-}
-
-static strut_status compute_study(const strut_arguments *arguments, strut_sweep_study *study) {
-  strut_study_job job = {.arguments = arguments, .study = study};
-  strut_error error = {0};
-  const char *path;
-  strut_status status = find_shard(arguments, study, &job.shard, &path);
-  if (status) return status;
-  status = strut_print_failure(strut_study_job_open(&job, path, &error), &error);
-  if (!status)
-    status = study->plan.study->search   ? strut_sweep_search(&job)
-             : study->plan.study->follow ? strut_sweep_follow(&job)
-             : study->plan.study->fit    ? strut_sweep_fit(&job)
-                                         : sweep(&job);
-  strut_slots_close(job.slots);
+static strut_status write_script(const strut_arguments *arguments, const char *name) {
+  strut_cluster_script script = {.name = name,
+                                 .study = arguments->model,
+                                 .output = arguments->output,
+                                 .time = arguments->time,
+                                 .memory = arguments->memory,
+                                 .shards = arguments->shards.value,
+                                 .cpus = arguments->cpus.text ? arguments->cpus.value : 1};
+  if (strcmp(arguments->model, "-") == 0)
+    return strut_usage_error(arguments,
+                             "--emit needs a file that the tasks can read, not standard input");
+  if (!arguments->shards.text)
+    return strut_usage_error(arguments, "--emit needs --shards N, the number of tasks");
+  strut_arena arena = {0};
+  strut_status status = print_script(arguments, &script, &arena);
+  strut_arena_free(&arena);
   return status;
 }
 
 /* Prints the script for a cluster. */
 static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
-  strut_status status = strut_sweep_emit(arguments, study->name);
+  strut_status status = write_script(arguments, study->name);
   if (!status && study->refine.depth)
     fputs(
         "strut: a refined study needs its shards in rounds: submit the script again until no shard "
@@ -234,15 +143,10 @@ static strut_status emit_script(const strut_arguments *arguments, const strut_st
   return status;
 }
 
-/* A search decides by each point where the next one is. */
+/* Several processes may not be able to share a search. */
 static strut_status check_search(const strut_arguments *arguments, strut_sweep_study *study) {
-  if (arguments->retry)
-    return strut_usage_error(
-        arguments,
-        "--retry cannot be used with a study that searches or fits: each of its "
-        "points depends on those before it");
   bool several = study->plan.study->search && (arguments->shard || arguments->emit.text);
-  return several ? strut_sweep_search_check_workers(study) : STRUT_OK;
+  return several ? strut_sweep_search_check_workers(arguments, study) : STRUT_OK;
 }
 
 /* The branches of all points go into one folder. */
@@ -263,6 +167,107 @@ static bool name_results(const char *study, char name[PATH_MAX]) {
   int length = dot ? (int)(dot - base) : (int)strlen(base);
   return strcmp(study, "-") != 0 && length > 0 &&
          snprintf(name, PATH_MAX, "%.*s%s", length, base, dot ? "" : ".results") < PATH_MAX;
+}
+
+enum { WIDTH = 20, BAR_ROOM = 3 * WIDTH + 1, TEXT = 300 };
+
+/* Between two lines without a terminal, and before the first bar [s]. */
+static const double REPORT_INTERVAL = 30.0, PATIENCE = 0.5;
+
+/* What a running study shows. */
+typedef struct display {
+  strut_progress bar;
+  double reported; /* time of the latest line [s] */
+} display;
+
+/* "frequency 3.2 Hz, velocity 0.0098 m/s": the first few cells of a row. */
+static void format_row(const strut_sweep_plan *plan, const strut_result_slot *row, char *text,
+                       size_t size) {
+  size_t used = 0, number = 0, word = 0, most = plan->axis_columns + 1;
+  *text = '\0';
+  for (size_t i = 0; i < plan->column_count && i < most && used < size; i++) {
+    const strut_slot_column *column = &plan->columns[i];
+    const char *unit = strcmp(column->unit, "1") == 0 ? "" : column->unit;
+    int n = column->word ? snprintf(text + used, size - used, "%s%s %s", i ? ", " : "",
+                                    column->name, row->words[word++])
+                         : snprintf(text + used, size - used, "%s%s %.4g%s%s", i ? ", " : "",
+                                    column->name, row->numbers[number++], *unit ? " " : "", unit);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  if (row->status != STRUT_OK && used < size)
+    snprintf(text + used, size - used, ": %s", strut_status_text(row->status));
+}
+
+/* "123 of 1146 points (2 failed), 45 a second, 2 min 03 s left" */
+static void format_state(const strut_sweep_state *state, char *text, size_t size) {
+  char left[STRUT_DURATION_TEXT], failed[40] = "";
+  double rate = state->seconds > 0.0 ? (double)state->computed / state->seconds : 0.0;
+  strut_duration_text(rate > 0.0 ? (double)(state->points - state->done) / rate : HUGE_VAL, left);
+  if (state->failed) snprintf(failed, sizeof failed, " (%lld failed)", (long long)state->failed);
+  snprintf(text, size, "%lld of %lld points%s, %.3g a second, %s left", (long long)state->done,
+           (long long)state->points, failed, rate, left);
+}
+
+static void show_state(const strut_study_job *job, const strut_sweep_state *state) {
+  display *shown = job->context;
+  strut_progress *bar = &shown->bar;
+  char text[TEXT], row[TEXT], all[2 * TEXT + 40], blocks[BAR_ROOM];
+  if (!state) strut_progress_end(bar);
+  if (!state) return;
+  if (job->arguments->quiet || state->seconds < PATIENCE) return;
+  if (!bar->wanted && state->seconds - shown->reported < REPORT_INTERVAL) return;
+  shown->reported = state->seconds;
+  format_state(state, text, sizeof text);
+  format_row(&job->study->plan, state->row, row, sizeof row);
+  if (state->has_best)
+    snprintf(all, sizeof all, "%s; best %.5g; %s", text, state->best, row);
+  else
+    snprintf(all, sizeof all, "%s; %s", text, row);
+  if (!bar->wanted) {
+    fprintf(stderr, "strut: %s\n", all);
+    return;
+  }
+  int size = bar->columns - 1, width = size > 3 * WIDTH ? WIDTH : 0;
+  strut_progress_bar(blocks, width, (double)state->done / (double)state->points);
+  const char *on = bar->colour ? "\033[36m" : "", *off = bar->colour ? "\033[0m" : "";
+  fprintf(stderr, "\r%s%s%s %-*.*s", on, blocks, off, size - width - 1, size - width - 1, all);
+  fflush(stderr);
+  bar->shown = true;
+}
+
+static strut_status print_result(const strut_study_job *job, const strut_value_rows *rows,
+                                 const void *of, const char *json) {
+  const strut_arguments *arguments = job->arguments;
+  if (json && arguments->json) return strut_print(json);
+  strut_status status = strut_print_values(arguments, rows, of, NULL);
+  if (json && !arguments->quiet) printf("%s/branches.csv\n", arguments->output);
+  return status;
+}
+
+static strut_status compute_study(const strut_arguments *arguments, strut_sweep_study *study) {
+  display shown = {.bar = strut_progress_begin(arguments->quiet)};
+  strut_study_job job = {.arguments = arguments,
+                         .study = study,
+                         .interrupt = strut_interrupt_watch(),
+                         .context = &shown,
+                         .progress = show_state,
+                         .report = print_result};
+  strut_status status = strut_study_job_compute(&job);
+  strut_slots_close(job.slots);
+  return status;
+}
+
+/* Which measurements would determine the parameters of a study that fits best. */
+static strut_status show_plan(const strut_arguments *arguments, const strut_sweep_study *study) {
+  strut_fit_plan plan = {0};
+  strut_error error = {0};
+  if (!study->plan.study->fit)
+    return strut_usage_error(arguments, "--plan is for studies with 'fit'");
+  strut_status status = strut_fit_plan_find(&study->plan, strut_interrupt_watch(), &plan, &error);
+  strut_print_failure(status, &error);
+  if (!status) status = strut_print_values(arguments, &strut_fit_plan_values, &plan, NULL);
+  strut_arena_free(&plan.arena);
+  return status;
 }
 
 /* --plot: the first result over the first axis, as `strut plot` draws it. */
@@ -314,10 +319,10 @@ static strut_status run_sweep(const strut_arguments *given) {
     status = strut_usage_error(arguments,
                                "a sensitivity analysis needs all points in one file: run it "
                                "without --shard and --emit");
-  if (!status && strut_study_has_stages(study.plan.study)) status = check_search(arguments, &study);
+  if (!status) status = check_search(arguments, &study);
   if (!status && study.plan.study->follow) status = check_follow(arguments);
   if (!status && arguments->plan)
-    status = strut_sweep_fit_plan(arguments, &study);
+    status = show_plan(arguments, &study);
   else if (!status && arguments->count_points)
     status = strut_print_values(arguments, &strut_sweep_count_values, &study.plan, NULL);
   else if (!status && arguments->emit.text)
@@ -367,12 +372,88 @@ static void allow_many_files(void) {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/* `context`: the study. */
+static strut_status check_refined(void *context, strut_slots *const *sources, size_t count,
+                                  strut_error *error) {
+  const strut_sweep_study *study = context;
+  strut_refinement *refinement = NULL;
+  strut_status status = strut_refinement_create(&study->plan, &refinement, error);
+  for (size_t k = 0; k < count && !status; k++) {
+    if (!sources[k])
+      status = strut_fail(error, STRUT_FILE_TROUBLE, "shard %zu of %zu is missing", k, count);
+    else if (strut_slots_description_of(sources[k])->points != study->plan.points)
+      status = strut_fail(error, STRUT_USAGE, "shard %zu of %zu is of another study", k, count);
+    else
+      strut_refinement_learn(refinement, sources[k]);
+  }
+  int64_t unknown = status ? 0 : strut_refinement_choose(refinement);
+  if (unknown)
+    status = strut_fail(error, STRUT_FILE_TROUBLE,
+                        "%lld points of the refinement are missing: run all shards again",
+                        (long long)unknown);
+  strut_refinement_free(refinement);
+  return status;
+}
+
+/* Each worker of a search writes all files itself. Has one? */
+static strut_status check_searches(const char *directory, bool quiet) {
+  strut_error error = {0};
+  if (!strut_sweep_search_is_finished(directory))
+    return strut_print_failure(
+        strut_fail(&error, STRUT_FILE_TROUBLE,
+                   "'%s': the searches are not finished: run the study again to resume them",
+                   directory),
+        &error);
+  if (!quiet) printf("%s/%s: the searches are finished\n", directory, table_name);
+  return STRUT_OK;
+}
+
+/*
+ * Writes directory/table.csv of the shards of a refined study, in place of strut_merge. *merged is true if
+ * the study in the directory is a refined one; otherwise nothing is done.
+ */
+static strut_status merge_refined(const strut_arguments *arguments, bool *merged) {
+  strut_sweep_study study = {0};
+  strut_arena arena = {0};
+  strut_error error = {0};
+  strut_arguments inner = *arguments;
+  strut_merged table;
+  const char *directory = arguments->model;
+  inner.model = strut_arena_format(&arena, "%s/study.yaml", directory);
+  strut_status status = STRUT_OK;
+  bool search = false, refined = false;
+  if (inner.model && access(inner.model, R_OK) == 0) {
+    status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
+    search = !status && strut_study_has_stages(&study.file.study);
+    refined = !status && !search && study.file.study.refine.depth > 0;
+    strut_study_close(&study.file);
+    error = (strut_error){0};
+  }
+  *merged = search || refined;
+  if (search) status = check_searches(directory, arguments->quiet);
+  if (refined) {
+    study = (strut_sweep_study){0};
+    status = strut_sweep_study_open(&inner, &study);
+    if (!status) {
+      status = strut_merge_if(directory, check_refined, &study, &table, &error);
+      strut_print_failure(status, &error);
+    }
+    if (!status && !arguments->quiet)
+      printf("%s/table.csv: %lld points\n", directory, (long long)table.points);
+    if (!status)
+      status = strut_sweep_judge(arguments->listener, table.points, table.failed, table.inaccurate);
+    strut_sweep_study_close(&study);
+  }
+  strut_arena_free(&arena);
+  return status;
+}
+
 static strut_status run_merge(const strut_arguments *arguments) {
   strut_merged merged;
   strut_error error = {0};
   bool refined = false;
   allow_many_files();
-  strut_status early = strut_sweep_refine_merge(arguments, &refined);
+  strut_status early = merge_refined(arguments, &refined);
   if (refined) return early;
   strut_status status = strut_merge(arguments->model, &merged, &error);
   if (status != STRUT_OK) return strut_print_failure(status, &error);
@@ -381,7 +462,7 @@ static strut_status run_merge(const strut_arguments *arguments) {
     if (merged.shards) printf(" of %lld shards", (long long)merged.shards);
     printf("\n");
   }
-  return strut_sweep_judge(merged.points, merged.failed, merged.inaccurate);
+  return strut_sweep_judge(arguments->listener, merged.points, merged.failed, merged.inaccurate);
 }
 
 static const strut_option merge_options[] = {

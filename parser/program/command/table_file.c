@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/program/streams.h"
+#include "parser/program/command/table_file.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
@@ -40,14 +39,8 @@ static bool make_columns(strut_csv *csv, strut_table *table) {
   return good;
 }
 
-static strut_status print_messages(strut_diagnostics *diagnostics) {
-  const char *messages = strut_diagnostics_render(diagnostics, MOST_MESSAGES);
-  if (!messages) return strut_print_out_of_memory();
-  fputs(messages, stderr);
-  return STRUT_BAD_SCENE;
-}
-
-strut_status strut_table_read(const char *path, strut_table *table) {
+strut_status strut_table_read(const strut_listener *listener, const char *path,
+                              strut_table *table) {
   char *text;
   size_t length;
   strut_error error = {0};
@@ -55,17 +48,16 @@ strut_status strut_table_read(const char *path, strut_table *table) {
   strut_csv csv;
   *table = (strut_table){0};
   strut_status status = strut_file_read(path, &text, &length, &error);
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-    return status;
-  }
+  if (status) return strut_tell_failure(listener, status, &error);
   strut_diagnostics_source(&diagnostics, strcmp(path, "-") == 0 ? "<stdin>" : path, text, length);
   status = strut_csv_read(text, length, STRUT_CSV_ANY_HEADER, &diagnostics, &csv);
   if (status == STRUT_OK && !make_columns(&csv, table)) status = STRUT_NO_MEMORY;
-  if (status == STRUT_BAD_SCENE)
-    status = print_messages(&diagnostics);
-  else if (status != STRUT_OK)
-    strut_print_out_of_memory();
+  if (status == STRUT_BAD_SCENE) {
+    const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
+    if (strut_tell_lines(listener, messages)) status = STRUT_NO_MEMORY;
+  } else {
+    strut_tell_failure(listener, status, NULL);
+  }
   strut_diagnostics_free(&diagnostics);
   strut_arena_free(&csv.arena);
   strut_release(text);

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Computes a study that is open, and writes its results; those of single points and of refinements are here. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/output/file.h"
+#include "engine/study/report/study_report.h"
+#include "engine/study/results/study_table.h"
+#include "parser/program/study/sweep.h"
+
+static const char table_name[] = "table.csv";
+
+/* DIR/name in the study's arena, or NULL. */
+static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
+  return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
+}
+
+strut_status strut_sweep_find_shard(const strut_arguments *arguments, strut_sweep_study *study,
+                                    strut_shard *shard, const char **path) {
+  const strut_array_task task = {
+      .id = getenv("SLURM_ARRAY_TASK_ID"),
+      .min = getenv("SLURM_ARRAY_TASK_MIN"),
+      .max = getenv("SLURM_ARRAY_TASK_MAX"),
+      .step = getenv("SLURM_ARRAY_TASK_STEP"),
+      .count = getenv("SLURM_ARRAY_TASK_COUNT"),
+      .variable = getenv,
+  };
+  const char *text = arguments->shard;
+  strut_error error = {0};
+  *shard = (strut_shard){0};
+  strut_status status = text ? strut_shard_read(text, &task, shard, &error) : STRUT_OK;
+  if (status) return strut_tell_failure(arguments->listener, status, &error);
+  const strut_shard part = strut_study_has_stages(study->plan.study) ? (strut_shard){0} : *shard;
+  if (part.count) strut_shard_points(part, &study->slots);
+  *path = strut_shard_path(arguments->output, part, &study->plan.arena);
+  return strut_tell_failure(arguments->listener, *path ? STRUT_OK : STRUT_NO_MEMORY, NULL);
+}
+
+/* `context`: the refinement, or NULL. */
+static strut_status run_points(strut_study_job *job, const strut_sweep_options *given,
+                               void *context, strut_error *error) {
+  strut_sweep_options how = *given;
+  if (context) {
+    how.wants = strut_refinement_wants;
+    how.wants_context = context;
+    strut_refinement_count(context, job->slots, &how.wanted, &how.wanted_done);
+  }
+  return strut_sweep_run(&job->study->plan, job->slots, &how, &job->state, error);
+}
+
+/* Adds the warnings of a round to those before. */
+static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round) {
+  for (size_t i = 0; i < round->warning_count; i++) {
+    const strut_sweep_warning *warning = &round->warnings[i];
+    size_t at = 0;
+    while (at < all->warning_count && strcmp(all->warnings[at].code, warning->code) != 0) at++;
+    if (at == STRUT_SWEEP_MOST_WARNINGS) continue;
+    int64_t runs = at < all->warning_count ? all->warnings[at].runs : 0;
+    bool first = at == all->warning_count || warning->point < all->warnings[at].point;
+    if (at == all->warning_count) all->warning_count++;
+    if (first) all->warnings[at] = *warning;
+    all->warnings[at].runs = runs + warning->runs;
+  }
+}
+
+/*
+ * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
+ * known before more can be.
+ */
+static strut_status run_refined(strut_study_job *job, strut_refinement *refinement, int64_t *others,
+                                strut_error *error) {
+  int64_t wanted, done;
+  strut_sweep_state all = {0}, *state = &job->state;
+  strut_status status = STRUT_OK;
+  for (bool first = true; !status; first = false) {
+    strut_sweep_refine_learn(refinement, job->arguments->output, job->shard, job->slots);
+    *others = strut_refinement_choose(refinement);
+    strut_refinement_count(refinement, job->slots, &wanted, &done);
+    if (wanted == done && !first) break;
+    status = strut_study_job_run(job, run_points, refinement, error);
+    all.computed += state->computed;
+    all.seconds += state->seconds;
+    add_warnings(&all, state);
+  }
+  state->computed = all.computed;
+  state->seconds = all.seconds;
+  state->warning_count = all.warning_count;
+  memcpy(state->warnings, all.warnings, sizeof all.warnings);
+  return status;
+}
+
+/* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
+static strut_status complete_sweep(const strut_study_job *job, const strut_refinement *refinement) {
+  const strut_arguments *arguments = job->arguments;
+  const bool whole = !job->shard.count;
+  strut_error error = {0};
+  strut_slots *const sources[] = {job->slots};
+  const char *table = whole ? inside(job->study, arguments->output, table_name)
+                            : "one shard: 'strut sweep --merge' writes the table of all";
+  if (!table) return strut_tell_failure(arguments->listener, STRUT_NO_MEMORY, NULL);
+  strut_status status = STRUT_OK;
+  if (whole && refinement)
+    status =
+        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
+  else if (whole)
+    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
+  if (status) return strut_tell_failure(arguments->listener, status, &error);
+  if (whole) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
+  if (whole) status = strut_sweep_figures_draw(job, table, refinement);
+  if (status) return status;
+  status = job->report(job, &strut_sweep_end_values, &(strut_sweep_end){&job->state, table}, NULL);
+  if (!status && whole) status = strut_sweep_sensitivity_complete(job);
+  return status ? status
+                : strut_sweep_judge(arguments->listener, job->state.points, job->state.failed,
+                                    strut_slots_inaccurate(job->slots));
+}
+
+static strut_status sweep(strut_study_job *job) {
+  strut_error error = {0};
+  strut_refinement *refinement = NULL;
+  int64_t others = 0;
+  strut_status status = STRUT_OK;
+  if (job->study->plan.study->refine.depth)
+    status = strut_refinement_create(&job->study->plan, &refinement, &error);
+  if (!status)
+    status = refinement ? run_refined(job, refinement, &others, &error)
+                        : strut_study_job_run(job, run_points, NULL, &error);
+  strut_sweep_tell_warnings(job);
+  strut_tell_failure(job->arguments->listener, status, &error);
+  if (!status) status = complete_sweep(job, refinement);
+  if (others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
+    strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "%lld points of other shards decide what is refined next: run this shard again when "
+               "they are done",
+               (long long)others);
+  strut_refinement_free(refinement);
+  return status;
+}
+
+strut_status strut_study_job_compute(strut_study_job *job) {
+  const strut_study *study = job->study->plan.study;
+  strut_error error = {0};
+  const char *path;
+  if (job->arguments->retry && strut_study_has_stages(study))
+    return strut_usage_error(job->arguments,
+                             "--retry cannot be used with a study that searches or fits: each of "
+                             "its points depends on those before it");
+  strut_status status = strut_sweep_find_shard(job->arguments, job->study, &job->shard, &path);
+  if (status) return status;
+  status = strut_study_job_open(job, path, &error);
+  if (status) return strut_tell_failure(job->arguments->listener, status, &error);
+  return study->search   ? strut_sweep_search(job)
+         : study->follow ? strut_sweep_follow(job)
+         : study->fit    ? strut_sweep_fit(job)
+                         : sweep(job);
+}
