@@ -5,7 +5,6 @@
 
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
-#include "engine/run/measure/quantities.h"
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"

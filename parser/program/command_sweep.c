@@ -113,8 +113,9 @@ static strut_status print_script(const strut_arguments *arguments, strut_cluster
   return status;
 }
 
-static strut_status write_script(const strut_arguments *arguments, const char *name) {
-  strut_cluster_script script = {.name = name,
+/* Prints the script for a cluster. */
+static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
+  strut_cluster_script script = {.name = study->name,
                                  .study = arguments->model,
                                  .output = arguments->output,
                                  .time = arguments->time,
@@ -129,17 +130,10 @@ static strut_status write_script(const strut_arguments *arguments, const char *n
   strut_arena arena = {0};
   strut_status status = print_script(arguments, &script, &arena);
   strut_arena_free(&arena);
-  return status;
-}
-
-/* Prints the script for a cluster. */
-static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
-  strut_status status = write_script(arguments, study->name);
   if (!status && study->refine.depth)
-    fputs(
-        "strut: a refined study needs its shards in rounds: submit the script again until no shard "
-        "asks for another\n",
-        stderr);
+    strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "a refined study needs its shards in rounds: submit the script again until no shard "
+               "asks for another");
   return status;
 }
 

@@ -4,6 +4,8 @@
  * until a call succeeds. Sees the library from inside, where tests can make allocations fail.
  */
 #include <stdbool.h>
+#include <stdlib.h>
+#include <unistd.h>
 
 #include "engine/base/memory.h"
 #include "parser/bindings/abi/abi.h"
@@ -95,6 +97,44 @@ static bool sweep(strutlib_scene *scene, strutlib_error **error) {
   return result != NULL;
 }
 
+/* A study of two points by file; what is computed stays in its folder. */
+static char folder[] = "/tmp/strut-memory-XXXXXX";
+
+static bool study(strutlib_scene *scene, strutlib_error **error) {
+  const char *names[] = {"threads"}, *values[] = {"1"};
+  char path[60], output[60];
+  (void)scene;
+  snprintf(path, sizeof path, "%s/study.yaml", folder);
+  snprintf(output, sizeof output, "%s/out", folder);
+  OWN_POINTER(strutlib_result) result =
+      strutlib_study(path, output, 0, NULL, NULL, 1, names, values, NULL, error);
+  return result && strutlib_result_status(result) == STRUTLIB_OK &&
+         strutlib_result_cell(result, "status", 1) == NULL && strutlib_result_column(result, 1);
+}
+
+static void write_file(const char *name, const char *content) {
+  char path[60];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  fputs(content, file);
+  fclose(file);
+}
+
+BEFORE_ALL {
+  assert_non_null(mkdtemp(folder));
+  write_file("model.yaml", text);
+  write_file("study.yaml",
+             "strut: 1\nstudy: two\nmodel: model.yaml\naxes: [{drop: [10 mm, 20 mm]}]\n"
+             "keep: [velocity, method]\n");
+}
+
+AFTER_ALL {
+  char command[60];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
 /* Returns how many allocations could fail. */
 static int64_t fail_each(strutlib_scene *scene, attempt call) {
   for (int64_t k = 0;; k++) {
@@ -121,8 +161,9 @@ TEST(memory_that_is_out_is_an_error) {
   static const struct {
     const char *name;
     attempt call;
-  } calls[] = {{"open", open_text},  {"wrong text", open_wrong}, {"show", show_scene}, {"run", run},
-               {"statics", analyse}, {"simulation", simulate},   {"sweep", sweep}};
+  } calls[] = {
+      {"open", open_text},  {"wrong text", open_wrong}, {"show", show_scene}, {"run", run},
+      {"statics", analyse}, {"simulation", simulate},   {"sweep", sweep},     {"study", study}};
   OWN_POINTER(strutlib_scene) scene =
       strutlib_open_text("memory", text, sizeof text - 1, 0, NULL, NULL, NULL);
   assert_non_null(scene);

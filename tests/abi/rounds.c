@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <strut/abi.h>
+#include <unistd.h>
 
 #include "tests/abi/triangle.h"
 
@@ -33,6 +34,32 @@ static int simulate(const strutlib_scene *scene) {
   return wrong;
 }
 
+static int write_file(const char *name, const char *content) {
+  FILE *file = fopen(name, "w");
+  if (!file || fputs(content, file) < 0) return 1;
+  return fclose(file) != 0;
+}
+
+/* A study by file, and one that is refused; both in a folder of their own, which is the current one. */
+static int compute_study(void) {
+  static const char head[] = "strut: 1\nstudy: two\nmodel: model.yaml\n";
+  char folder[] = "/tmp/strut-rounds-XXXXXX", study[200], command[80];
+  strutlib_error *error;
+  if (!mkdtemp(folder) || chdir(folder) || write_file("model.yaml", text)) return 1;
+  snprintf(study, sizeof study, "%saxes: [{drop: [10 mm, 20 mm]}]\n", head);
+  if (write_file("study.yaml", study)) return 1;
+  snprintf(study, sizeof study, "%saxes: [{drip: [10 mm]}]\nkeep: [odd]\n", head);
+  if (write_file("wrong.yaml", study)) return 1;
+  strutlib_result *result =
+      strutlib_study("study.yaml", "out", 0, NULL, NULL, 0, NULL, NULL, NULL, &error);
+  if (!result) return failed(error);
+  strutlib_result_free(result);
+  if (strutlib_study("wrong.yaml", "out", 0, NULL, NULL, 0, NULL, NULL, NULL, &error)) return 1;
+  strutlib_error_free(error);
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  return chdir("/") || system(command);
+}
+
 /* One scene with everything that is quick, and a text that is refused. */
 static int go_round(void) {
   static const char wrong[] = "strut: 1\nnodes: {a: [0, 0], a: [1, 0]}\n";
@@ -56,7 +83,7 @@ static int go_round(void) {
   strutlib_result_free(result);
   if (strutlib_open_text("wrong", wrong, sizeof wrong - 1, 0, NULL, NULL, &error)) return 1;
   strutlib_error_free(error);
-  int bad = simulate(scene);
+  int bad = simulate(scene) || compute_study();
   strutlib_close(scene);
   return bad;
 }

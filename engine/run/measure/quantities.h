@@ -93,13 +93,6 @@ typedef struct strut_marks {
   double *value; /* (count, quantities) filled with the values there; NULL: nobody wants them */
 } strut_marks;
 
-/** Times at which a run shall tell the values of its experiment's quantities, whatever its steps. */
-typedef struct strut_run_samples {
-  size_t count;       /* >= 2 */
-  const double *time; /* (count) ascending, from the start of the run, the last its end [s] */
-  double *value;      /* (count, quantities) those that are not reached stay as they are */
-} strut_run_samples;
-
 /** Allocates for the quantities of the scene in the arena; NULL: out of memory. */
 strut_quantities *strut_quantities_create(const strut_model *model,
                                           const strut_experiment *experiment, strut_arena *arena);

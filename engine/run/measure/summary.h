@@ -253,4 +253,11 @@ STRUT_API void strut_summary_warn_of_start(strut_summary *summary);
  */
 STRUT_API bool strut_settle_warning(const strut_settle_summary *how, char *text, size_t size);
 
+/** Times at which a run shall tell the values of its experiment's quantities, whatever its steps. */
+typedef struct strut_run_samples {
+  size_t count;       /* >= 2 */
+  const double *time; /* (count) ascending, from the start of the run, the last its end [s] */
+  double *value;      /* (count, quantities) those that are not reached stay as they are */
+} strut_run_samples;
+
 #endif
