@@ -103,9 +103,9 @@ static inline bool strut_signal_has_program(const strut_signal *signal) {
 }
 
 /** Number of its points at or before t. */
-size_t strut_signal_points_until(const strut_signal *signal, double t);
+STRUT_API size_t strut_signal_points_until(const strut_signal *signal, double t);
 /** t within the points of repeated data, before the last; else t. */
-double strut_signal_data_time(const strut_signal *signal, double t);
+STRUT_API double strut_signal_data_time(const strut_signal *signal, double t);
 
 /** A signal of the given kind with the defaults above. */
 STRUT_API strut_signal strut_signal_default(strut_signal_kind kind);
