@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every Python block of README.md and docs/python.md runs, in order, in a folder that holds models/, but those
-with no-run, which need files of the reader. A text block directly behind a Python block is what it prints."""
+"""Every Python block of README.md and docs/python.md runs, in order, in a folder that holds models/. A text block
+directly behind a Python block is what it prints."""
 
 import contextlib
 import io
