@@ -31,9 +31,9 @@ COMMANDS = {  # name: (words, folders and files to remove before, libraries that
     "sweep": (["sweep", "study.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),
     "export": (["export", PENTAGON], ABORTING),
     "view": (["view", "kept", "-o", "out.html", "--quiet"], WITH_HDF5),
-    "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"], ABORTING),
+    "path": (["path", f"{MODELS}/basics/von-mises-truss.yaml", "--set", "load=12", "-o", "out"], ABORTING + ":libgsl"),
     "modes": (["modes", PENTAGON, "-o", "out"], ABORTING),
-    "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING + ":libgsl"),  # GSL checks none of its own
+    "rigidity": (["rigidity", PENTAGON, "-o", "out"], ABORTING + ":libgsl"),  # GSL checks none of its own: LU crashes
     "form": (["form", PENTAGON, "-o", "out.html", "--quiet"], ABORTING),
     "check": (["check", HOPPER], ABORTING),
     "search": (["sweep", "search.yaml", "-o", "out", "--threads", "1", "--quiet"], WITH_HDF5),

@@ -11,6 +11,7 @@
 static const char *const said_anyway[] = {
     "settle: false",
     "limit_things", /* a limit of the reader */
+    "derivatives",  /* by parameters, which what is written has no more */
     "nodes: all",
     "law: none",
     "law: karnopp",

@@ -257,6 +257,7 @@ static const named_shape free_shapes[] = {{"mu", SIGNAL},
                                           {"stop", "{1}"},
                                           {"lattice", "[12[22n]]"},
                                           {"step", "[22A([22n]|n)]"},
+                                          {"correlation", "[10[10n]]"},
                                           {NULL, "n"}};
 
 /* The things of a mapping: its name decides, wherever it stands. */
@@ -436,6 +437,10 @@ static void put_keys(schema *self, strut_section section) {
     put_shape(self, NULL, PLACE);
     close_object(self);
     close_object(self);
+  } else if (section == STRUT_SECTION_MATCH) { /* else what is compared, and with what */
+    open_object(self, "additionalProperties");
+    put_shape(self, NULL, "n");
+    close_object(self);
   } else {
     put_member(self, "additionalProperties", "false");
   }
@@ -496,7 +501,8 @@ char *strut_schema_write(bool study) {
   if (study)
     put_member(&s, "anyOf",
                "[{\"required\": [\"axes\"]}, {\"required\": [\"search\"]}, "
-               "{\"required\": [\"sensitivity\"]}, {\"required\": [\"follow\"]}]");
+               "{\"required\": [\"sensitivity\"]}, {\"required\": [\"follow\"]}, "
+               "{\"required\": [\"fit\"]}]");
   put_definitions(&s);
   return strut_json_end(&s.json);
 }
