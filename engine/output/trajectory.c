@@ -4,6 +4,7 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -216,4 +217,38 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
 strut_status strut_trajectory_trouble(const char *path, const char *reason, strut_error *error) {
   return strut_fail(error, STRUT_FILE_TROUBLE, "cannot read '%s': %s; run the model again with -o",
                     path, reason);
+}
+
+/* ---- data beside it ---- */
+
+static bool is_beside(const strut_data_column *data, const strut_scene *scene,
+                      const strut_channel_row *row, size_t k) {
+  const strut_observable *of = strut_observable_at(row->first);
+  const strut_dimension own = {(float)of->kg, (float)of->m, (float)of->s, (float)of->angle};
+  const char *name = data->name;
+  if (!data->unit || memcmp(&own, &data->dimension, sizeof own) != 0) return false;
+  if (!strut_channel_is_whole(row)) {
+    const char *thing = strut_channel_item(row, scene, k / row->components);
+    size_t length = strlen(thing);
+    if (strncmp(name, thing, length) != 0 || name[length] != '.') return false;
+    name += length + 1;
+  }
+  return strcmp(name, row->column_names[k % row->components]) == 0;
+}
+
+size_t strut_data_dots(const strut_scene *scene, const strut_channel_row *row, size_t k,
+                       const double span[2], double (*dots)[2]) {
+  size_t count = 0, c;
+  for (const strut_data_table *t = scene->tables; t < scene->tables + scene->table_count; t++) {
+    for (c = 0; c < t->column_count && !is_beside(&t->columns[c], scene, row, k);) c++;
+    if (c == t->column_count || t->time < 0) continue;
+    const double *time = t->columns[t->time].values, *value = t->columns[c].values;
+    size_t every = t->row_count * scene->table_count / STRUT_DATA_DOTS + 1;
+    for (size_t i = 0; time && value && i < t->row_count && count < STRUT_DATA_DOTS; i += every) {
+      if (!(time[i] >= span[0] && time[i] <= span[1]) || isnan(value[i])) continue;
+      if (dots) dots[count][0] = time[i], dots[count][1] = value[i];
+      count++;
+    }
+  }
+  return count;
 }

@@ -53,4 +53,14 @@ STRUT_API strut_status strut_trajectory_read(const char *directory, const strut_
                                              strut_error *error);
 STRUT_API void strut_trajectory_free(strut_trajectory *trajectory);
 
+/** Dots of measured data at most. */
+enum { STRUT_DATA_DOTS = 1000 };
+/**
+ * Measured data beside column k of a channel: those that are named like it in the run's files, "n1.x", and of its
+ * dimension. `dots` [s, SI], which may be NULL, are rows from span[0] to span[1], evenly chosen where a table has many.
+ * Returns how many there are.
+ */
+STRUT_API size_t strut_data_dots(const strut_scene *scene, const strut_channel_row *row, size_t k,
+                                 const double span[2], double (*dots)[2]);
+
 #endif

@@ -54,7 +54,9 @@ strut_sink *strut_run_pictures_sink(strut_run_pictures *pictures, const strut_sc
                                     strut_status *status) {
   *status = STRUT_OK;
   if (!pictures->plot.path && !pictures->film.path) return NULL;
-  unsigned channels = pictures->plot.path ? strut_run_figure_channels(pictures->figure.view) : 0;
+  strut_channels channels =
+      pictures->plot.path ? strut_run_figure_channels(pictures->figure.view) : 0;
+  if (scene->table_count) channels |= pictures->figure.experiment->channels; /* beside data */
   if (pictures->film.path) channels |= strut_run_figure_channels(STRUT_RUN_SNAPSHOTS);
   pictures->sink = strut_trajectory_sink(&pictures->motion, scene, channels, STRUT_TRAJECTORY_ROOM);
   if (!pictures->sink) *status = STRUT_NO_MEMORY;

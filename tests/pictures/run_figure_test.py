@@ -4,6 +4,7 @@
 usage: run_figure_test.py STRUT
 """
 import csv
+import json
 import math
 import os
 import re
@@ -189,6 +190,47 @@ def check_overview(here, model):
             return fail(f"overview: the displacement of {v} m is drawn at {y}")
 
 
+SPRING = """strut: 1
+data: {film: {file: film.csv}, gauge: {file: gauge.csv}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100 N/m, rest_length: 1}}
+initial: {positions: {b: [1.01, 0]}}
+solver: {step: 1 ms}
+run: {duration: 1 s}
+output: {channels: [position, force, com.x]}
+"""
+
+
+def check_data(here):
+    """Columns of data named as those of a run are dots beside its curves, in a run of its results, too."""
+    film = [(0.02 * i, 1 + 0.01 * math.cos(0.2 * i)) for i in range(61)]
+    with open(os.path.join(here, "film.csv"), "w") as file:
+        file.write("t [s],b.x [mm],b.y [s],com.x [m],a.height [m],c.x [m]\n")
+        file.writelines(f"{t!r},{1e3 * x!r},1,{2 * x!r},1,1\n" for t, x in film)
+    with open(os.path.join(here, "gauge.csv"), "w") as file:
+        file.write("t [ms],m.force [kN]\n")
+        file.writelines(f"{0.5 * i},{'' if i == 8 else i * 1e-6}\n" for i in range(4000))
+    model, file, out = (os.path.join(here, name) for name in ("spring.yaml", "spring.json", "spring"))
+    open(model, "w").write(SPRING)
+    for source in (model, os.path.join(out, "scene.yaml")):
+        run(source, "-q", *(["-o", out] if source == model else []), "--plot", file, "--draw", "curves")
+        panels = json.load(open(file))["panels"]
+        curves = {(p["y"]["name"], s["label"]): s for p in panels for s in p["series"] if not s.get("dots")}
+        dots = {(p["y"]["name"], s["label"]): s for p in panels for s in p["series"] if s.get("dots")}
+        wanted = {("position", "b.x"): film, ("com.x", "com.x"): [(t, 2 * x) for t, x in film],
+                  ("member force", "m"): [(5e-4 * i, 1e-3 * i) for i in range(0, 4000, 9)]}
+        check({(y, label.removesuffix(" measured")) for y, label in dots} == set(wanted), f"dots of {set(dots)}")
+        for (y, label), rows in wanted.items():
+            series = dots[y, label + " measured"]
+            found = list(zip(series["x"], series["y"]))
+            rows = [(t, value) for t, value in rows if t <= 1]
+            check(len(found) == len(rows) and all(math.dist(a, b) < 1e-9 for a, b in zip(found, rows)),
+                  f"data of {label}: {len(found)} dots from {found[:2]}, expected {len(rows)} from {rows[:2]}")
+            check((y, label) in curves, f"no curve of {label} beside its data")
+    check(max(abs(a - x) for a, (_, x) in zip(curves["position", "b.x"]["y"][::20], film)) < 1e-5,
+          "the curve beside data is not that of the node")
+
+
 def check_same_bytes(here, model):
     for view in ("overview", "period", "snapshots", "curves"):
         for ending in ("svg", "pdf", "png"):
@@ -267,6 +309,7 @@ check_ground(work)
 check_period(work, short, (1, 1))
 check_period(work, short, (10, 2))
 check_overview(work, short)
+check_data(work)
 check_same_bytes(work, short)
 check_refusals(work, short)
 check_stopped(work, short)

@@ -109,9 +109,10 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
-    bool broad = pen.width > 4; /* bars */
+    strut_key_sign sign = pen.width > 4 ? STRUT_KEY_AREA : STRUT_KEY_LINE; /* bars */
+    if (panel->series[i].cloud) sign = STRUT_KEY_CLOUD;
     count = add_item(items, count,
-                     (strut_key_item){.sign = broad ? STRUT_KEY_AREA : STRUT_KEY_LINE,
+                     (strut_key_item){.sign = sign,
                                       .pen = pen,
                                       .fill = {.colour = pen.colour},
                                       .marked = has_markers(panel, &panel->series[i]),
@@ -482,13 +483,18 @@ static void draw_data(const strut_chart *chart) {
   if (chart->strip.height > 0) draw_strip(chart);
   strut_canvas_clip(chart->canvas, chart->axes.frame);
   if (panel->map) draw_map(chart);
+  strut_canvas_unclip(chart->canvas);
+  for (size_t i = 0; i < panel->series_count; i++)
+    if (panel->series[i].cloud) draw_points(chart, i);
+  strut_canvas_clip(chart->canvas, chart->axes.frame);
   for (size_t i = 0; i < panel->series_count; i++)
     if (!panel->series[i].cloud) draw_line(chart, i);
   strut_canvas_unclip(chart->canvas);
   if (panel->map)
     strut_draw_box(chart->canvas, chart->axes.frame, NULL,
                    &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
-  for (size_t i = 0; i < panel->series_count; i++) draw_points(chart, i);
+  for (size_t i = 0; i < panel->series_count; i++)
+    if (!panel->series[i].cloud) draw_points(chart, i);
   if (panel->outliers) mark_beyond(chart);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(chart, &panel->marks[i]);
   if (panel->remark) draw_note(chart, &chart->axes.frame, panel->remark, NOTE_WIDTH);

@@ -36,6 +36,7 @@ static const strut_point none;
   X("label", "", TEXT(s->label), "in the legend")                                                  \
   X("x", "", OF_POINTS(x), "in the axis's unit")                                                   \
   X("y", "", OF_POINTS(y), "null: a gap")                                                          \
+  X("dots", "", IF(s->cloud, FLAG(true)), "not joined by lines")                                   \
   X("low", "", IF(any(s, 1), OF_POINTS(low)), "ends of whiskers")                                  \
   X("high", "", IF(any(s, 1), OF_POINTS(high)), "ends of whiskers")                                \
   X("stable", "", IF(any(s, 0), ARRAY(s->count, stable)), "else the line is dashed")               \

@@ -41,6 +41,9 @@ static double put_sign(strut_canvas *canvas, const strut_key_item *item, double 
       if (draw) strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
       if (draw && item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
       break;
+    case STRUT_KEY_CLOUD:
+      if (draw) strut_draw_circle(canvas, x + 0.5 * SIGN, y, DOT, &item->fill, NULL);
+      break;
     case STRUT_KEY_ARROW:
       if (draw) strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen);
       break;

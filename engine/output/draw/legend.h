@@ -16,6 +16,7 @@ typedef enum strut_key_sign {
   STRUT_KEY_LINE,   /* a short line by `pen`, with the marker of a look if `marked` */
   STRUT_KEY_ARROW,  /* an arrow by `pen` */
   STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_CLOUD,  /* a dot by `fill`, in the middle of where lines are */
   STRUT_KEY_AREA,   /* a box by `fill` */
   STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
   STRUT_KEY_WORDS   /* no sign */

@@ -29,34 +29,56 @@ typedef enum kind {
   PRESSURES,
   AREAS,
   ENERGIES, /* that are stored */
-  KINDS
+  KINDS     /* then each channel, for what is measured and in no panel above */
 } kind;
 
-static const struct {
+typedef struct kind_row {
   strut_channels channel; /* 0: none */
   const char *name, *unit;
   double factor;
   bool change;  /* from the first frame */
   double least; /* of the model's size: smaller ranges are rounding */
-} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1, true, STANDING},
-             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, false, 0},
-             [DRIVE] = {0, "change", "m", 1, true, STANDING},
-             [HEIGHTS] = {STRUT_CHANNEL_CONTACT, "height", "m", 1, false, STANDING},
-             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, false, 0},
-             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, false, 0},
-             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, false, 0},
-             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, false, 0},
-             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, false, 0},
-             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, true, 0}};
+} kind_row;
+
+static const kind_row kinds[] = {
+    [DISPLACEMENT] = {0, "displacement", "m", 1, true, STANDING},
+    [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, false, 0},
+    [DRIVE] = {0, "change", "m", 1, true, STANDING},
+    [HEIGHTS] = {STRUT_CHANNEL_CONTACT, "height", "m", 1, false, STANDING},
+    [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, false, 0},
+    [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, false, 0},
+    [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, false, 0},
+    [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, false, 0},
+    [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, false, 0},
+    [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, true, 0}};
+
+static kind_row row_of(kind of) {
+  const strut_channel_row *row = of < KINDS ? NULL : strut_channel_at((size_t)of - KINDS);
+  return row ? (kind_row){row->id, row->name, row->unit, 1, false, 0} : kinds[of];
+}
 
 static size_t count_items(const strut_run_scene *run, kind of) {
   static const size_t energies = 4;
   const strut_scene *scene = run->model->scene;
   if (of == DISPLACEMENT) return scene->ground.present ? 1 : 2;
   if (of == HEIGHTS) return scene->ground.present ? run->motion->contact_count : 0;
-  if (of == DRIVE || !strut_trajectory_channel(run->motion, kinds[of].channel)) return 0;
+  if (of == DRIVE || !strut_trajectory_channel(run->motion, row_of(of).channel)) return 0;
   if (of == ENERGIES) return energies;
-  return strut_channel_items(strut_channel_row_of(kinds[of].channel), scene);
+  const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
+  return strut_channel_items(row, scene) * (of < KINDS ? 1 : row->components);
+}
+
+/* Data beside the curve of an item from frame `first` on; `dots` may be NULL. Returns how many. */
+static size_t measured(const strut_run_scene *run, kind of, size_t item, size_t first,
+                       double (*dots)[2]) {
+  const double span[] = {run->motion->time[first], run->motion->time[run->frames - 1]};
+  strut_channels channel = row_of(of).channel;
+  if (!channel || of == HEIGHTS || row_of(of).change) return 0;
+  const strut_channel_row *row = strut_channel_row_of(channel);
+  for (int k = 0; k < KINDS && of >= KINDS && item % row->components == 0; k++)
+    if (kinds[k].channel == channel && !kinds[k].change) return 0;
+  return strut_data_dots(run->model->scene, row, of < KINDS ? item * row->components : item, span,
+                         dots);
 }
 
 /* The actuated change of a member's rest length at a time [m]. */
@@ -71,7 +93,7 @@ static double driven_by(const strut_run_scene *run, int32_t member, double time)
   return sum;
 }
 
-/* One value of a kind at a frame: of a channel the first component. */
+/* One value of a kind at a frame: of a channel that has a panel the first component. */
 static double value_at(const strut_run_scene *run, kind of, size_t item, size_t f) {
   const strut_trajectory *trajectory = run->motion;
   if (of == DISPLACEMENT) return strut_run_measured(run, f, (int)item);
@@ -82,10 +104,10 @@ static double value_at(const strut_run_scene *run, kind of, size_t item, size_t 
     const double *at = strut_run_positions(run, f) + 2 * trajectory->contact_node[item];
     return (at[1] - strut_run_ground_at(run, at[0])) * cos(run->model->scene->ground.slope);
   }
-  const strut_channel_row *row = strut_channel_row_of(kinds[of].channel);
-  size_t step = of == ENERGIES ? 1 : row->components;
+  const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
+  size_t step = of >= ENERGIES ? 1 : row->components;
   size_t columns = row->components * strut_channel_items(row, run->model->scene);
-  return kinds[of].factor *
+  return row_of(of).factor *
          strut_trajectory_channel(trajectory, row->id)[f * columns + step * item];
 }
 
@@ -98,12 +120,19 @@ static const char *label_of(const strut_run_scene *run, kind of, size_t item) {
   if (of == DRIVE)
     return strut_figure_text(run->page, item % 2 ? "length of %s" : "rest length of %s",
                              scene->members[item / 2].name);
-  return strut_channel_item(strut_channel_row_of(kinds[of].channel), scene, item);
+  const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
+  if (of < KINDS) return strut_channel_item(row, scene, item);
+  bool whole = strut_channel_is_whole(row);
+  return strut_figure_text(run->page, "%s%s%s",
+                           whole ? "" : strut_channel_item(row, scene, item / row->components),
+                           whole ? "" : ".", row->column_names[item % row->components]);
 }
 
-/* Range of a curve; contact forces include zero, and heights of what never comes down are omitted. */
+/* Range of a curve, endless where it is measured; contact forces include zero, and heights of what never comes down are omitted. */
 static double variation(const strut_run_scene *run, kind of, size_t item, size_t first) {
   double low = HUGE_VAL, high = -HUGE_VAL, lowest = HUGE_VAL;
+  if (measured(run, of, item, first, NULL)) return HUGE_VAL;
+  if (of >= KINDS) return 0;
   for (size_t f = of == HEIGHTS ? 0 : first; f < run->frames; f++) {
     double value = value_at(run, of, item, f);
     lowest = fmin(lowest, value);
@@ -122,7 +151,7 @@ static double least_range(const strut_run_scene *run, kind of) {
   if (of == ANGLES) return STANDING * kinds[of].factor;
   for (size_t i = 0; i < count_items(run, of) && of == ENERGIES; i++)
     most = fmax(most, fabs(value_at(run, of, i, 0)));
-  return kinds[of].least * run->model->size + ROUNDING * most;
+  return row_of(of).least * run->model->size + ROUNDING * most;
 }
 
 /* The first driven members whose change follows from the time alone; a driven hinge shows in its angle. */
@@ -182,6 +211,20 @@ static void find_range(const strut_panel *panel, double least, bool zero, strut_
   strut_axis_settle(axis, ROOM);
 }
 
+/* Adds the data beside a curve, in its colour, paler. */
+static void add_dots(strut_run_scene *run, strut_panel *panel, kind of, size_t item, size_t first,
+                     size_t look) {
+  double dots[STRUT_DATA_DOTS][2];
+  size_t count = measured(run, of, item, first, dots);
+  if (!count) return;
+  strut_series *series = strut_add_series(
+      run->page, panel, strut_figure_text(run->page, "%s measured", label_of(run, of, item)));
+  series->cloud = true;
+  series->pen = (strut_pen){.colour = strut_faded(strut_series_pen(look).colour, 0.4), .width = 1};
+  for (size_t k = 0; k < count; k++)
+    strut_add_point(run->page, series, dots[k][0], row_of(of).factor * dots[k][1]);
+}
+
 /* Adds the panel of a kind from frame `first` on, if it is wanted. */
 static void add_panel(strut_run_scene *run, kind of, size_t first, double height) {
   size_t chosen[MOST_CURVES], last = run->frames - 1;
@@ -190,30 +233,33 @@ static void add_panel(strut_run_scene *run, kind of, size_t first, double height
   strut_panel *panel = strut_add_panel(run->page);
   double most = 0;
   for (size_t i = 0; i < count; i++) {
-    bool change = kinds[of].change && (of != DRIVE || chosen[i] % 2);
+    bool change = row_of(of).change && (of != DRIVE || chosen[i] % 2);
     double start = change ? value_at(run, of, chosen[i], first) : 0;
     strut_series *series = strut_add_series(run->page, panel, label_of(run, of, chosen[i]));
+    if (measured(run, of, chosen[i], first, NULL)) series->markers = STRUT_MARKERS_NONE;
     for (size_t f = first; f <= last; f++) {
       double value = value_at(run, of, chosen[i], f) - start;
       strut_add_point(run->page, series, run->motion->time[f], value);
       most = fmax(most, fabs(value));
     }
   }
+  for (size_t i = 0; i < count; i++) add_dots(run, panel, of, chosen[i], first, i);
   bool one = of == DISPLACEMENT && count == 1;
   if (one && count_items(run, of) > 1 && !run->page->failed) panel->series[0].label = NULL;
   panel->x = (strut_axis){.name = "time",
                           .unit = "s",
                           .low = run->motion->time[first],
                           .high = run->motion->time[last]};
-  panel->y = strut_axis_of(one ? "x displacement" : kinds[of].name, kinds[of].unit);
+  panel->y = strut_axis_of(one ? "x displacement" : row_of(of).name, row_of(of).unit);
   panel->height = height;
   if (!run->page->failed)
-    find_range(panel, fmax(least_range(run, of), kinds[of].change ? 0 : LEVEL * most),
+    find_range(panel, fmax(least_range(run, of), row_of(of).change ? 0 : LEVEL * most),
                of == NORMALS, &panel->y);
 }
 
 const char *strut_run_curves(strut_run_scene *run, strut_figure *figure) {
-  for (int of = 0; of < KINDS; of++) add_panel(run, (kind)of, 0, CURVES_HEIGHT);
+  for (int of = 0; of < KINDS + STRUT_CHANNEL_COUNT; of++)
+    add_panel(run, (kind)of, 0, CURVES_HEIGHT);
   return figure->panel_count ? "everything recorded" : "nothing changed";
 }
 
