@@ -474,6 +474,22 @@ def check_empty(driver):
     check_silence(driver, "empty.html")
 
 
+def check_data(driver):
+    """Data that are named like columns of the run: dots in its charts, columns of its table."""
+    open_page(driver, "spring.html")
+    check([c["series"] for c in run(driver, "strut.charts()")] == [3, 2], f"data: {run(driver, 'strut.charts()')}")
+    check("b x (dots: measured)" in driver.find_element(By.ID, "charts").text, "data: no word of them")
+    head, *rows = csv.reader(press_save(driver, "csv").decode("utf-8").splitlines())
+    for name, wanted in (("displacement: b x measured [m]", {0.25: -0.015, 0.9005: -0.002}),
+                         ("member force: m measured [N]", {0.25: 0.3, 0.5: 0.4, 0.9005: 0.5})):
+        column = head.index(name)
+        found = {float(row[0]): float(row[column]) for row in rows if row[column] not in ("", "null")}
+        check(found.keys() == wanted.keys() and all(abs(found[t] - v) < 1e-9 for t, v in wanted.items()),
+              f"data: {name} is {found}")
+    check(len(rows) == len(recorded("spring")) + 1, f"data: {len(rows)} rows")
+    check_silence(driver, "spring.html")
+
+
 def check_narrow(driver, width):
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
         "width": width, "height": 780, "deviceScaleFactor": 2, "mobile": True})
@@ -526,6 +542,7 @@ def main():
                 check_empty(driver)
                 check_hostile(driver)
                 check_damaged(driver)
+                check_data(driver)
             else:
                 check_narrow(driver, 400)
         finally:

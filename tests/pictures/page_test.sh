@@ -54,4 +54,15 @@ output: {every: 10 ms, channels: [position, force]}
 END
 "$strut" run hostile.yaml --quiet -o hostile
 "$strut" view hostile --quiet -o hostile.html
+cat >spring.yaml <<'END'
+strut: 1
+data: {film: {file: film.csv}}
+nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}}
+members: {m: {kind: spring, nodes: [a, b], stiffness: 100 N/m, rest_length: 0.99}}
+solver: {step: 1 ms}
+run: {duration: 1}
+END
+printf 't [s],b.x [mm],m.force [N],m.length [s]\n0.9005,998,0.5,1\n0.5,,0.4,1\n0.25,985,0.3,1\n2,990,0.3,1\n' >film.csv
+"$strut" run spring.yaml --quiet -o spring
+"$strut" view spring --quiet -o spring.html
 "$python" "$root/tests/pictures/page_test.py" "$work"

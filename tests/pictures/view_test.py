@@ -230,6 +230,21 @@ def hostile():
     check("alert(1)" in page.data["yaml"], "the scene's text")
 
 
+def measured():
+    """Columns of data named as those of the run, at times of the run."""
+    with open("film.csv", "w", encoding="utf-8") as file:
+        file.write("t [s],b.x [mm],m.force [N],b.y [s],a.y [m]\n0,1010,,1,2\n0.5,1003,2,1,\n3,1,1,1,1\n")
+    with open("spring.yaml", "w", encoding="utf-8") as file:
+        file.write("strut: 1\ndata: {film: {file: film.csv}}\nrun: {duration: 1}\nsolver: {step: 1 ms}\n"
+                   "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}}\n"
+                   "members: {m: {kind: spring, nodes: [a, b], stiffness: 100, rest_length: 0.99}}\n")
+    run("run", "spring.yaml", "-o", "spring", "-q")
+    run("view", "spring", "-o", "spring.html")
+    motion = Page("spring.html").data["motion"]
+    check(motion["position"]["data"] == [[], [[0, 2]], [[0, 1.01], [0.5, 1.003]], []], f"{motion['position']['data']}")
+    check(motion["force"]["data"] == [[[0.5, 2]]], f"{motion['force']['data']}")
+
+
 def diverged():
     """A step too large: frames end where the structure leaves all bounds, and the page says so."""
     everything("wild.yaml")
@@ -260,6 +275,7 @@ crawler()
 short_run()
 paper_run()
 hostile()
+measured()
 diverged()
 alone()
 finish()

@@ -32,29 +32,26 @@ typedef enum kind {
   KINDS     /* then each channel, for what is measured and in no panel above */
 } kind;
 
-typedef struct kind_row {
+static const struct kind_row {
   strut_channels channel; /* 0: none */
   const char *name, *unit;
   double factor;
   bool change;  /* from the first frame */
   double least; /* of the model's size: smaller ranges are rounding */
-} kind_row;
+} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1, true, STANDING},
+             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, false, 0},
+             [DRIVE] = {0, "change", "m", 1, true, STANDING},
+             [HEIGHTS] = {STRUT_CHANNEL_CONTACT, "height", "m", 1, false, STANDING},
+             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, false, 0},
+             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, false, 0},
+             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, false, 0},
+             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, false, 0},
+             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, false, 0},
+             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, true, 0}};
 
-static const kind_row kinds[] = {
-    [DISPLACEMENT] = {0, "displacement", "m", 1, true, STANDING},
-    [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, false, 0},
-    [DRIVE] = {0, "change", "m", 1, true, STANDING},
-    [HEIGHTS] = {STRUT_CHANNEL_CONTACT, "height", "m", 1, false, STANDING},
-    [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, false, 0},
-    [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, false, 0},
-    [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, false, 0},
-    [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, false, 0},
-    [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, false, 0},
-    [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, true, 0}};
-
-static kind_row row_of(kind of) {
+static struct kind_row row_of(kind of) {
   const strut_channel_row *row = of < KINDS ? NULL : strut_channel_at((size_t)of - KINDS);
-  return row ? (kind_row){row->id, row->name, row->unit, 1, false, 0} : kinds[of];
+  return row ? (struct kind_row){row->id, row->name, row->unit, 1, false, 0} : kinds[of];
 }
 
 static size_t count_items(const strut_run_scene *run, kind of) {
@@ -72,11 +69,11 @@ static size_t count_items(const strut_run_scene *run, kind of) {
 static size_t measured(const strut_run_scene *run, kind of, size_t item, size_t first,
                        double (*dots)[2]) {
   const double span[] = {run->motion->time[first], run->motion->time[run->frames - 1]};
-  strut_channels channel = row_of(of).channel;
-  if (!channel || of == HEIGHTS || row_of(of).change) return 0;
-  const strut_channel_row *row = strut_channel_row_of(channel);
+  const struct kind_row own = row_of(of);
+  if (!own.channel || of == HEIGHTS || own.change) return 0;
+  const strut_channel_row *row = strut_channel_row_of(own.channel);
   for (int k = 0; k < KINDS && of >= KINDS && item % row->components == 0; k++)
-    if (kinds[k].channel == channel && !kinds[k].change) return 0;
+    if (kinds[k].channel == own.channel && !kinds[k].change) return 0;
   return strut_data_dots(run->model->scene, row, of < KINDS ? item * row->components : item, span,
                          dots);
 }
@@ -122,13 +119,12 @@ static const char *label_of(const strut_run_scene *run, kind of, size_t item) {
                              scene->members[item / 2].name);
   const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
   if (of < KINDS) return strut_channel_item(row, scene, item);
-  bool whole = strut_channel_is_whole(row);
-  return strut_figure_text(run->page, "%s%s%s",
-                           whole ? "" : strut_channel_item(row, scene, item / row->components),
-                           whole ? "" : ".", row->column_names[item % row->components]);
+  const char *word = row->column_names[item % row->components];
+  const char *thing = strut_channel_item(row, scene, item / row->components);
+  return strut_channel_is_whole(row) ? word : strut_figure_text(run->page, "%s.%s", thing, word);
 }
 
-/* Range of a curve, endless where it is measured; contact forces include zero, and heights of what never comes down are omitted. */
+/* Range of a curve, endless beside data; contact forces include zero, heights of what never comes down are omitted. */
 static double variation(const strut_run_scene *run, kind of, size_t item, size_t first) {
   double low = HUGE_VAL, high = -HUGE_VAL, lowest = HUGE_VAL;
   if (measured(run, of, item, first, NULL)) return HUGE_VAL;

@@ -22,12 +22,18 @@
     return high > low ? high - low : 0;
   }
 
-  /* Chooses the curves that vary most. */
+  /* Chooses the curves that vary most, but first those with data. */
   function liveliest(curves, frames) {
-    const ranges = curves.map((curve, index) => ({ index, range: rangeOf(curve, frames) }));
-    ranges.sort((a, b) => b.range - a.range);
+    const ranges = curves.map((curve, index) => ({ index, range: curve.dots ? Infinity : rangeOf(curve, frames) }));
+    ranges.sort((a, b) => (b.range > a.range) - (a.range > b.range));
     const chosen = ranges.slice(0, MOST_CURVES).filter((r) => r.range > 0).map((r) => r.index);
     return chosen.sort((a, b) => a - b).map((index) => curves[index]);
+  }
+
+  /* What is measured of a column of a channel, [[time, number], ...] in the unit of its curve; null: nothing. */
+  function dotsOf(block, index, convert) {
+    const rows = block.data ? block.data[index] : [];
+    return rows.length ? rows.map(([t, v]) => [t, convert(v)]).sort((a, b) => a[0] - b[0]) : null;
   }
 
   /* Displacements of the measured point along x and of all nodes. */
@@ -37,12 +43,15 @@
       at: (frame) => track(frame) - first };
     return [point, ...data.nodes.flatMap((n, i) => ["x", "y"].map((axis, d) => {
       const at = column(motion.position, 2 * count, 2 * i + d), start = at(0);
-      return { name: n.name + " " + axis, at: (frame) => at(frame) - start };
+      return { name: n.name + " " + axis, at: (frame) => at(frame) - start,
+        dots: dotsOf(data.motion.position, 2 * i + d, (v) => v - start) };
     }))];
   }
 
-  /* The measured point, unless nodes move much more: then the coordinates that move most. */
+  /* The measured point, unless nodes move much more: then the coordinates that move most; and those with data. */
   function mostMoved([point, ...others], frames) {
+    const dotted = others.filter((curve) => curve.dots).slice(0, MOST_CURVES - 1);
+    if (dotted.length) return [point, ...dotted];
     const all = others.map((curve) => ({ curve, range: rangeOf(curve, frames) }))
       .sort((a, b) => b.range - a.range);
     if (rangeOf(point, frames) >= LARGE * all[0].range) return [point];
@@ -61,7 +70,8 @@
     const curves = Array.from({ length: block.columns }, (_, i) => {
       const at = column(values, block.columns, i), part = first ? "" : parts[i % parts.length];
       return { name: (names[Math.floor(i / parts.length)] + " " + part).trim(),
-        at: factor === 1 ? at : (frame) => factor * at(frame) };
+        at: factor === 1 ? at : (frame) => factor * at(frame),
+        dots: dotsOf(block, i, (v) => factor * v) };
     });
     return { name: said, unit: unit || block.unit,
       curves: first ? curves.filter((_, i) => i % parts.length === 0) : curves };
@@ -147,6 +157,11 @@
     return rows;
   }
 
+  /* Rows with columns of dots behind the others. */
+  function addDots(rows, all) {
+    return all.reduce((sum, dots) => merge(sum, dots, [sum[0].length - 1, 1]), rows);
+  }
+
   /* Without a prefix: units that take none. */
   function prefixOf(kind, frames) {
     if (/^kg|\^2$|deg/.test(kind.unit)) return { text: "", factor: 1 };
@@ -183,7 +198,9 @@
     }
     function shownRows(chart) {
       const [low, high] = window_ || [time[0], time[time.length - 1]];
-      return rowsOf(...scaled(chart.kind), low, high, thin);
+      const seen = chart.kind.curves.filter((c) => c.dots).map(({ dots }) => dots.filter(([t]) =>
+        t >= low && t <= high).map(([t, v]) => [t, v / chart.kind.prefix.factor]));
+      return addDots(rowsOf(...scaled(chart.kind), low, high, thin), seen);
     }
 
     function zoomTo(range) { /* all charts alike */
@@ -247,7 +264,7 @@
         const span = document.createElement("span"), swatch = document.createElement("i");
         const name = document.createElement("bdi");
         swatch.style.background = COLOURS[i % COLOURS.length];
-        name.textContent = curve.name;
+        name.textContent = curve.name + (curve.dots ? " (dots: measured)" : "");
         span.append(swatch, name);
         chart.title.append(span);
       });
@@ -257,9 +274,10 @@
     function fill(chart) {
       const { kind, plot } = chart, line = page.theme().line, series = {};
       const beside = kind.curves.map((_, i) => i).filter((i) => kind.beside[i]);
+      const dotted = kind.curves.map((_, i) => i).filter((i) => kind.curves[i].dots);
       const colour = (i) => COLOURS[i % COLOURS.length];
       const labels = ["time", ...kind.curves.map((_, i) => String(i)),
-        ...beside.map((i) => "beside " + i)];
+        ...beside.map((i) => "beside " + i), ...dotted.map((i) => "dots " + i)];
       const data = { file: shownRows(chart), dateWindow: window_ };
       fillTitle(chart);
       if (chart.graph && chart.graph.getLabels().join() === labels.join()) {
@@ -268,11 +286,12 @@
         return;
       }
       for (const i of beside) series["beside " + i] = { strokePattern: [6, 3] };
+      for (const i of dotted) series["dots " + i] = { strokeWidth: 0, drawPoints: true, pointSize: 2.4 };
       if (chart.graph) chart.graph.destroy();
       chart.graph = null;
       chart.graph = new Dygraph(plot, data.file, {
         labels, series, connectSeparatedPoints: true,
-        colors: [...kind.curves.map((_, i) => colour(i)), ...beside.map(colour)],
+        colors: [...kind.curves.map((_, i) => colour(i)), ...[...beside, ...dotted].map(colour)],
         strokePattern: null, strokeWidth: 1.3, highlightCircleSize: 0, legend: "never",
         axes: { y: { axisLabelWidth: 52 }, x: { drawGrid: true } },
         axisLineColor: line, gridLineColor: line, gridLineWidth: 0.6,
@@ -346,11 +365,13 @@
         kind.name + ": " + c.name + more + " [" + kind.unit + "]");
       const own = all.flatMap((kind) => kind.curves);
       const beside = all.flatMap((kind) => kind.beside.filter(Boolean));
+      const dotted = (curves) => curves.filter((c) => c.dots);
       const frames = (times, curves) =>
         Array.from(times, (t, f) => [t, ...curves.map((c) => c.at(f))]);
       return [["time [s]", ...all.flatMap((kind) => heads(kind, kind.curves, "")),
-        ...all.flatMap((kind) => heads(kind, kind.beside.filter(Boolean), " of " + label))],
-      ...rowsOf(own, beside, 0, 0, frames)];
+        ...all.flatMap((kind) => heads(kind, kind.beside.filter(Boolean), " of " + label)),
+        ...all.flatMap((kind) => heads(kind, dotted(kind.curves), " measured"))],
+      ...addDots(rowsOf(own, beside, 0, 0, frames), dotted(own).map((c) => c.dots))];
     }
 
     return { load, table,

@@ -18,8 +18,9 @@
  * result are those of its structure, on which a page may draw them: as a motion with `made`:
  * {note: text, clock: [text of each frame]}, which has no charts and a camera that rests.
  *
- * A block is {columns, quantum, unit, names, components, bytes}: of a channel of things their names, the last of which
- * may be the total, and those of what each has. Bytes are integers n of `frames` rows, (frames, columns); a
+ * A block is {columns, quantum, unit, names, components, data, bytes}: of a channel of things their names, the last of
+ * which may be the total, and those of what each has; data, where the scene has some, are those beside each column, by
+ * strut_data_dots. Bytes are integers n of `frames` rows, (frames, columns); a
  * value is n * quantum. Column after column, the first number as it is, the second as its difference to the
  * first, from then on the second difference; each as zigzag (2 n, or -2 n - 1 where n < 0) in
  * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay

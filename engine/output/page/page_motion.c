@@ -14,7 +14,7 @@
 #include "engine/output/buffer.h"
 #include "engine/output/result_values.h"
 
-enum { LEVEL = 9, RAW = -15, MEMORY = 9 };
+enum { LEVEL = 9, RAW = -15, MEMORY = 9, DIGITS = 9 };
 /* Values of a block at most: zlib counts its bytes in 32 bits. */
 static const size_t MOST_VALUES = (size_t)1 << 28;
 
@@ -161,6 +161,7 @@ typedef struct motion {
   double quantum[BLOCKS];
   strut_block block[BLOCKS];
   char *text[BLOCKS]; /* those in base64 */
+  double (*dots)[2];  /* (STRUT_DATA_DOTS) room for data */
 } motion;
 
 static bool all_finite(const double *values, size_t count) {
@@ -304,12 +305,22 @@ static strut_value name_of(const strut_result_object *of, size_t i) {
       strut_channel_item(channel_of(block_of(of)), self->page->model->scene, i));
 }
 
+/* Data beside a column of a channel. */
+static strut_value dots_of(const strut_result_object *of, size_t k) {
+  const motion *self = strut_result_whole(of);
+  const double *time = self->rows[TIME].values, span[] = {time[0], time[self->frames - 1]};
+  size_t count =
+      strut_data_dots(self->page->model->scene, channel_of(block_of(of)), k, span, self->dots);
+  return STRUT_VALUE_AS_ROUNDED(DIGITS, TABLE(self->dots, count, 2));
+}
+
 #define BLOCK(X)                                                                                   \
   X("columns", "", COUNT(m->block[b].columns), "numbers of a frame")                               \
   X("quantum", "", NUMBER(m->block[b].quantum), "what a whole number stands for")                  \
   X("unit", "", TEXT(row ? row->unit : "s"), "of it")                                              \
   X("names", "", IF(named, ARRAY(strut_channel_items(row, scene), name_of)), "whose it is")        \
   X("components", "", IF(row, ARRAY(row->components, component_of)), "of each thing")              \
+  X("data", "", IF(row && scene->table_count, ARRAY(m->block[b].columns, dots_of)), "beside each") \
   X("bytes", "", TEXT(m->text[b]), "see page.h")
 STRUT_VALUES_HERE(block_values, BLOCK, const motion *m = strut_result_whole(of);
                   size_t b = block_of(of); const strut_scene *scene = m->page->model->scene;
@@ -348,7 +359,8 @@ STRUT_VALUES_HERE(motion_values, MOTION, const motion *m = of->at;
 /* The motion as JSON; NULL: out of memory. */
 static char *write_motion(motion *self) {
   char *json = NULL;
-  bool good = true;
+  self->dots = strut_allocate(STRUT_DATA_DOTS, sizeof *self->dots);
+  bool good = self->dots;
   for (int b = 0; b < BLOCKS && good; b++) {
     strut_buffer text = {0};
     if (!self->block[b].bytes) continue;
@@ -358,6 +370,7 @@ static char *write_motion(motion *self) {
   }
   if (good) json = strut_values_json(&motion_values, self, NULL);
   for (int b = 0; b < BLOCKS; b++) strut_release(self->text[b]);
+  strut_release(self->dots);
   return json;
 }
 
