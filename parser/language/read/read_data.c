@@ -8,7 +8,6 @@
 #include "engine/base/vec.h"
 #include "parser/language/read/csv.h"
 #include "parser/language/read/reader.h"
-#include "parser/language/read/reuse/used_files.h"
 
 enum { MOST_BYTES = 1 << 28 };
 
@@ -329,24 +328,29 @@ static bool make_columns(loader *self) {
   return find_weights(self);
 }
 
+bool strut_read_file_of(strut_reader *reader, const strut_tree *name, size_t most,
+                        strut_safe_text *text) {
+  const char *folder = strut_folder_of(reader->diagnostics->file, &reader->scratch);
+  strut_error error = {0};
+  strut_status status =
+      folder ? strut_safe_read(folder, strut_diagnostics_file(reader->diagnostics, name->place),
+                               name->text, most, text, &error)
+             : STRUT_NO_MEMORY;
+  if (status == STRUT_NO_MEMORY) reader->out_of_memory = true;
+  return !status || strut_report_error(reader, name->place, "%s", error.message);
+}
+
 /* Reads the file, which the table keeps. */
 static bool read_file(loader *self) {
   strut_reader *reader = self->reader;
   strut_data_table *table = self->table;
   const strut_tree *name = value_of(self, STRUT_KEY_DATA_FILE);
-  const char *folder = strut_folder_of(reader->diagnostics->file, &reader->scratch);
   strut_safe_text text = {0};
-  strut_error error = {0};
-  strut_status status =
-      folder ? strut_safe_read(folder, strut_diagnostics_file(reader->diagnostics, name->place),
-                               name->text, MOST_BYTES, &text, &error)
-             : STRUT_NO_MEMORY;
-  if (status == STRUT_NO_MEMORY) reader->out_of_memory = true;
-  if (status) return strut_report_error(reader, name->place, "%s", error.message);
+  if (!strut_read_file_of(reader, name, MOST_BYTES, &text)) return false;
   table->path = strut_keep_text(reader, text.path);
   table->text = strut_arena_text(reader->keep, text.text, text.length);
   strut_diagnostics own = {0};
-  status = strut_csv_read(text.text, text.length, table->header, &own, &self->csv);
+  strut_status status = strut_csv_read(text.text, text.length, table->header, &own, &self->csv);
   if (status == STRUT_NO_MEMORY || !table->text) reader->out_of_memory = true;
   bool fine = status == STRUT_OK && table->text && make_columns(self);
   unsigned file = own.count && table->text ? show_file(reader, table) : 0;

@@ -215,28 +215,19 @@ static void read_columns(table *self, strut_study_axis *axis) {
 
 static void read_file(table *self, const strut_tree *name, strut_study_axis *axis) {
   strut_study_reader *reader = self->r;
-  strut_error error = {0};
-  char *root = strut_folder_of(reader->file->path, &reader->file->arena);
   self->points = &reader->file->tables[reader->file->table_count];
   self->points->node = name;
   self->points->copy =
       strut_arena_format(&reader->file->arena, "points-%zu.csv", reader->file->table_count + 1);
-  if (!root || !self->points->copy) {
-    reader->reader->out_of_memory = true;
+  if (!self->points->copy) reader->reader->out_of_memory = true;
+  if (!self->points->copy ||
+      !strut_read_file_of(reader->reader, name, STRUT_TEXT_MOST, &self->points->file))
     return;
-  }
-  strut_status status = strut_safe_read(root, reader->file->path, name->text, STRUT_TEXT_MOST,
-                                        &self->points->file, &error);
-  if (status) {
-    if (status == STRUT_NO_MEMORY) reader->reader->out_of_memory = true;
-    strut_report_error(reader->reader, name->place, "%s", error.message);
-    return;
-  }
   reader->file->table_count++;
   strut_diagnostics_source(messages(self), self->points->file.path, self->points->file.text,
                            self->points->file.length);
-  status = strut_csv_read(self->points->file.text, self->points->file.length, STRUT_CSV_ANY_HEADER,
-                          messages(self), &self->csv);
+  strut_status status = strut_csv_read(self->points->file.text, self->points->file.length,
+                                       STRUT_CSV_ANY_HEADER, messages(self), &self->csv);
   if (status == STRUT_OK) read_columns(self, axis);
   if (status == STRUT_NO_MEMORY || messages(self)->out_of_memory)
     reader->reader->out_of_memory = true;
