@@ -104,12 +104,7 @@ static bool add(strutlib_scene *scene, size_t *at, const char *name, const char 
                 size_t components, double **data) {
   abi_array *self = &scene->arrays[(*at)++];
   *data = strut_arena_allocate(&scene->arena, count * components, sizeof **data);
-  *self = (abi_array){.name = name, .unit = unit, .data = *data};
-  self->dimensions = components > 1 ? 2 : 1;
-  self->shape[0] = count;
-  self->shape[1] = components;
-  self->stride[0] = components;
-  self->stride[1] = 1;
+  *self = abi_array_of(name, unit, *data, components > 1 ? 2 : 1, (size_t[]){count, components});
   return *data != NULL;
 }
 
@@ -248,18 +243,15 @@ static const abi_tree *tree_of(const strutlib_scene *constant) {
 }
 
 int strutlib_scene_number(const strutlib_scene *scene, const char *name, double *value) {
-  const abi_tree *tree = tree_of(scene);
-  return tree && abi_tree_number(tree, name, value) ? 1 : 0;
+  return abi_tree_number(tree_of(scene), name, value);
 }
 
 int strutlib_scene_flag(const strutlib_scene *scene, const char *name, int *value) {
-  const abi_tree *tree = tree_of(scene);
-  return tree && abi_tree_flag(tree, name, value) ? 1 : 0;
+  return abi_tree_flag(tree_of(scene), name, value);
 }
 
 const char *strutlib_scene_text(const strutlib_scene *scene, const char *name) {
-  const abi_tree *tree = tree_of(scene);
-  return tree ? abi_tree_text(tree, name) : NULL;
+  return abi_tree_text(tree_of(scene), name);
 }
 
 char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
