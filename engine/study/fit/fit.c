@@ -49,6 +49,43 @@ static size_t omission_rows(const strut_study_fit *fit) {
   return fit->match_count > 1 ? fit->match_count : 0;
 }
 
+/* ---- parameters ---- */
+
+static bool is_aligned(const strut_fit_layout *layout, size_t i) {
+  return i < layout->aligned_count;
+}
+
+static const strut_search_variable *variable_of(const strut_fit_layout *layout, size_t i) {
+  return &layout->fit->variables[i - layout->aligned_count];
+}
+
+double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
+  if (!is_aligned(layout, i))
+    return strut_search_value(variable_of(layout, i), parameter - 1.0).number;
+  return (parameter - 1.0) * layout->aligned[i].scale;
+}
+
+double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
+  if (!is_aligned(layout, i))
+    return 1.0 + strut_search_number(variable_of(layout, i), (strut_study_value){.number = value});
+  return 1.0 + value / layout->aligned[i].scale;
+}
+
+double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
+  if (is_aligned(layout, i)) return layout->aligned[i].scale;
+  const strut_search_variable *variable = variable_of(layout, i);
+  if (!variable->logarithmic) return variable->to - variable->from;
+  return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
+}
+
+void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
+                           strut_study_value *values) {
+  strut_grid_values(layout->plan->study, row, values);
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    values[layout->fit->column + i - layout->aligned_count].number =
+        strut_fit_value(layout, i, parameters[i]);
+}
+
 /* ---- one fit ---- */
 
 /* Where a start begins: the first one where the study says, the others spread evenly. */
@@ -190,11 +227,7 @@ static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
   const strut_sweep_plan *plan = layout->plan;
   strut_row_buffer *cells = &job->cells;
   row_kind what = kind_of(layout->fit, point);
-  strut_grid_values(plan->study, point, cells->values);
-  for (size_t k = 0; k < layout->fit->variable_count; k++) {
-    size_t i = layout->aligned_count + k;
-    cells->values[layout->fit->column + k].number = strut_fit_value(layout, i, parameters[i]);
-  }
+  strut_fit_fill_values(layout, point, parameters, cells->values);
   for (size_t i = 0; i < plan->axis_columns; i++) {
     if (plan->columns[i].word)
       strut_sweep_word(cells, cells->values[i].word);
@@ -391,7 +424,9 @@ static bool fill_estimates(fitting *self) {
     double slope = fabs(strut_fit_slope(layout, i, self->best[i]));
     double error = sqrt(covariance[i * n + i]), value = strut_fit_value(layout, i, self->best[i]);
     strut_fit_estimate *estimate = &result->estimates[i];
-    const char *name = strut_fit_name(layout, i), *unit = strut_fit_unit(layout, i);
+    const strut_search_variable *variables = layout->fit->variables;
+    const char *name = i < first ? layout->aligned[i].name : variables[i - first].name;
+    const char *unit = i < first ? layout->aligned[i].unit : variables[i - first].unit;
     *estimate = (strut_fit_estimate){.name = strut_arena_text(&result->arena, name, strlen(name)),
                                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
                                      .value = value,

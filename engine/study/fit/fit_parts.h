@@ -97,15 +97,15 @@ void strut_fit_align_all(const strut_fit_case *one, const double *parameters, do
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
 
+/* ---- fit.c ---- */
+
 /** From a parameter of the problem to its value in SI, and back; and by how much one changes with the other. */
 double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter);
 double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value);
 double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter);
-/** Its name and unit; "1": none. */
-const char *strut_fit_name(const strut_fit_layout *layout, size_t i);
-const char *strut_fit_unit(const strut_fit_layout *layout, size_t i);
-
-/* ---- fit.c ---- */
+/** The values of all columns of the axes in a row, with those of the parameters. */
+void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
+                           strut_study_value *values);
 
 /** So many places are tried where the model cannot be computed at a start. */
 enum { STRUT_FIT_MOST_PLACES = 50 };

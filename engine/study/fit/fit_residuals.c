@@ -6,7 +6,6 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/simulate.h"
 #include "engine/study/fit/fit_parts.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/sweep/grid.h"
 
 /* Runs are made by a method that controls its error, within this tolerance; derivatives need that. */
@@ -20,43 +19,6 @@ static const double BESIDE = 0.01;
 
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
-
-/* ---- parameters ---- */
-
-static bool is_aligned(const strut_fit_layout *layout, size_t i) {
-  return i < layout->aligned_count;
-}
-
-static const strut_search_variable *variable_of(const strut_fit_layout *layout, size_t i) {
-  return &layout->fit->variables[i - layout->aligned_count];
-}
-
-double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
-  if (!is_aligned(layout, i))
-    return strut_search_value(variable_of(layout, i), parameter - 1.0).number;
-  return (parameter - 1.0) * layout->aligned[i].scale;
-}
-
-double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
-  if (!is_aligned(layout, i))
-    return 1.0 + strut_search_number(variable_of(layout, i), (strut_study_value){.number = value});
-  return 1.0 + value / layout->aligned[i].scale;
-}
-
-double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
-  if (is_aligned(layout, i)) return layout->aligned[i].scale;
-  const strut_search_variable *variable = variable_of(layout, i);
-  if (!variable->logarithmic) return variable->to - variable->from;
-  return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
-}
-
-const char *strut_fit_name(const strut_fit_layout *layout, size_t i) {
-  return is_aligned(layout, i) ? layout->aligned[i].name : variable_of(layout, i)->name;
-}
-
-const char *strut_fit_unit(const strut_fit_layout *layout, size_t i) {
-  return is_aligned(layout, i) ? layout->aligned[i].unit : variable_of(layout, i)->unit;
-}
 
 /* The alignments of a match at the parameters. */
 typedef struct alignment {
@@ -83,28 +45,13 @@ typedef struct prediction {
   strut_study_value *values; /* of all columns of the axes */
 } prediction;
 
-static bool stops(strut_status status) {
-  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
-}
-
 /* Notes what must stop everything; else the point just has no residuals. */
 static bool settle_status(strut_fit_case *one, strut_status status, const strut_error *error) {
-  if (stops(status)) one->status = status;
+  bool stops =
+      status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
+  if (stops) one->status = status;
   if (status) one->error = *error;
   return status == STRUT_OK;
-}
-
-/* The values of all columns: those of the parameters, and what the match sets. */
-static void fill_values(const prediction *self, const double *parameters) {
-  const strut_fit_layout *layout = self->one->layout;
-  const strut_study_fit *fit = layout->fit;
-  strut_grid_values(layout->plan->study, 0, self->values);
-  for (size_t k = 0; k < fit->variable_count; k++) {
-    size_t i = layout->aligned_count + k;
-    self->values[fit->column + k].number = strut_fit_value(layout, i, parameters[i]);
-  }
-  for (size_t k = 0; k < fit->set_count; k++)
-    self->values[fit->column + fit->variable_count + k] = self->match->values[k];
 }
 
 /* The time that the numbers of a match take [s]. */
@@ -304,7 +251,9 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
     prediction p = {one, &fit->matches[m], m, align(layout, m, parameters), values};
     if ((int32_t)m == one->left_out) continue;
-    fill_values(&p, parameters);
+    strut_fit_fill_values(layout, 0, parameters, values);
+    for (size_t k = 0; k < fit->set_count; k++)
+      values[fit->column + fit->variable_count + k] = p.match->values[k];
     one->known = p.match->kind == STRUT_FIT_TABLE ? predict_table(&p) : predict_scene(&p);
   }
   strut_release(values);
@@ -384,7 +333,7 @@ static bool find_derivative(void *context, const double *parameters, size_t i, d
   strut_fit_case *one = context;
   const strut_fit_layout *layout = one->layout;
   const strut_fit_aligned *by = &layout->aligned[i];
-  if (!is_aligned(layout, i) || one->status || !predict(one, parameters)) return false;
+  if (i >= layout->aligned_count || one->status || !predict(one, parameters)) return false;
   bool turns = by->what == STRUT_FIT_ROTATE, delays = by->what == STRUT_FIT_DELAY;
   alignment a = align(layout, by->match, parameters);
   a.number[STRUT_FIT_SHIFT_X] = a.number[STRUT_FIT_SHIFT_Y] = 0.0;
@@ -525,14 +474,18 @@ static double range_of(const strut_fit_match *match) {
   return most > least ? most - least : fmax(fabs(most), 1e-12);
 }
 
+/* Turns and delays have a range, as parameters do: a delay is no longer than the motion. */
 static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
                         double scale) {
   static const char *const names[] = {"shift_x", "shift_y", "rotate", "delay"};
   static const char *const units[] = {"m", "m", "rad", "s"};
+  const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
   const char *name =
       strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
-  layout->aligned[layout->aligned_count++] =
-      (strut_fit_aligned){m, what, name, units[what], start, scale};
+  size_t i = layout->aligned_count++;
+  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale};
+  layout->low[i] = 1.0 + (start - range[what]) / scale;
+  layout->high[i] = 1.0 + (start + range[what]) / scale;
   return name != NULL;
 }
 
@@ -550,24 +503,6 @@ static bool add_alignments(strut_fit_layout *layout, size_t m) {
   if (match->align.delay)
     fine = add_aligned(layout, m, STRUT_FIT_DELAY, match->at[0], span_of(match)) && fine;
   return fine;
-}
-
-/* The box: ranges of parameters; turns, and delays so long as the motion. */
-static bool make_box(strut_fit_layout *layout) {
-  layout->parameters = layout->aligned_count + layout->fit->variable_count;
-  layout->low = strut_arena_allocate(&layout->arena, layout->parameters, sizeof(double));
-  layout->high = strut_arena_allocate(&layout->arena, layout->parameters, sizeof(double));
-  for (size_t i = 0; layout->low && layout->high && i < layout->parameters; i++) {
-    const strut_fit_aligned *aligned = &layout->aligned[i];
-    bool of_match = is_aligned(layout, i);
-    double most = !of_match                           ? 0.0
-                  : aligned->what == STRUT_FIT_DELAY  ? aligned->scale
-                  : aligned->what == STRUT_FIT_ROTATE ? MOST_TURN
-                                                      : HUGE_VAL;
-    layout->low[i] = of_match ? 1.0 + (aligned->start - most) / aligned->scale : 1.0;
-    layout->high[i] = of_match ? 1.0 + (aligned->start + most) / aligned->scale : 2.0;
-  }
-  return layout->low && layout->high;
 }
 
 /* Keeps all columns that the study can have. */
@@ -625,14 +560,20 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
       (strut_fit_layout){.plan = plan, .fit = fit, .interrupt = interrupt, .noise_known = true};
   for (size_t m = 0; m < fit->match_count; m++)
     count += fit->matches[m].count * fit->matches[m].series_count;
-  layout->aligned = strut_arena_allocate(arena, 4 * fit->match_count, sizeof *layout->aligned);
+  size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
+  layout->aligned = strut_arena_allocate(arena, most, sizeof *layout->aligned);
   layout->parts = strut_arena_allocate(arena, fit->match_count, sizeof *layout->parts);
   layout->measured = strut_arena_allocate(arena, count, sizeof *layout->measured);
+  layout->low = strut_arena_allocate(arena, all, sizeof *layout->low);
+  layout->high = strut_arena_allocate(arena, all, sizeof *layout->high);
   layout->standing = strut_equilibrium_cache_create();
-  if (!layout->aligned || !layout->parts || !layout->measured || !layout->standing)
+  if (!layout->aligned || !layout->parts || !layout->measured || !layout->low || !layout->high ||
+      !layout->standing)
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);
-  if (!status && !make_box(layout)) status = strut_no_memory(error, "");
+  layout->parameters = layout->aligned_count + fit->variable_count;
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    layout->low[i] = 1.0, layout->high[i] = 2.0;
   return status;
 }
 

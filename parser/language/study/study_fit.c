@@ -68,18 +68,15 @@ static const double *read_at(strut_study_reader *reader, reading *self, int key,
   const strut_data_column *column =
       strut_read_data_column(r, slot->value, slot->key->text, self->owner, &dimension, &table);
   if (!column) return NULL;
-  for (size_t i = 0; i < table->row_count; i++) {
-    if (isfinite(column->values[i]) &&
-        (!ascending || !i || column->values[i] > column->values[i - 1]))
-      continue;
-    strut_refuse_data(r, slot->value, table, column, i,
-                      isfinite(column->values[i]) ? "times must ascend" : "a number is missing");
-    return NULL;
-  }
-  if (ascending && table->row_count < 2) {
-    strut_refuse_data(r, slot->value, table, column, 0, "a motion needs two times or more");
-    return NULL;
-  }
+  const char *flaw = NULL;
+  size_t rows = table->row_count, i = 0;
+  for (const double *at = column->values; i < rows && !flaw; i++)
+    flaw = !isfinite(at[i])                         ? "a number is missing"
+           : ascending && i && !(at[i] > at[i - 1]) ? "times must ascend"
+           : ascending && rows < 2                  ? "a motion needs two times or more"
+                                                    : NULL;
+  if (flaw) strut_refuse_data(r, slot->value, table, column, i - 1, flaw);
+  if (flaw) return NULL;
   self->table = table;
   self->to->count = table->row_count;
   return column->values;
@@ -266,18 +263,9 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
 
 /* ---- what matches set ---- */
 
-/* The `set` of match m, or NULL. */
-static const strut_tree *set_of(const strut_tree *matches, size_t m) {
-  const strut_tree *key = matches->first;
-  while (m-- > 0) key = key->next->next;
-  const strut_tree *set =
-      key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "set", NULL) : NULL;
-  return set && set->kind == STRUT_TREE_MAP ? set : NULL;
-}
-
 /* A column of a parameter that each match sets, which the first of them names. */
-static void add_set(strut_study_reader *reader, const strut_tree *matches, const strut_tree *key,
-                    strut_study_axis *axis, strut_study_fit *fit) {
+static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
+                    const strut_tree *key, strut_study_axis *axis, strut_study_fit *fit) {
   double *number = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *number);
   const char **word = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *word);
   strut_study_along a = {
@@ -287,8 +275,7 @@ static void add_set(strut_study_reader *reader, const strut_tree *matches, const
   if (!number || !word || !a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
   axis->column_count++, reader->file->column_count++;
   for (size_t m = 0; m < fit->match_count; m++) {
-    const strut_tree *set = set_of(matches, m),
-                     *value = set ? strut_tree_find(set, key->text, NULL) : NULL;
+    const strut_tree *value = sets[m] ? strut_tree_find(sets[m], key->text, NULL) : NULL;
     strut_study_value *to = &fit->matches[m].values[fit->set_count];
     if (!value)
       strut_report_error(reader->reader, key->place, "every match must set '%s': '%s' does not",
@@ -307,27 +294,26 @@ static void add_set(strut_study_reader *reader, const strut_tree *matches, const
   fit->set_count++;
 }
 
-static void read_sets(strut_study_reader *reader, const strut_tree *matches, strut_study_fit *fit) {
+/* `sets`: of each match, or NULL. */
+static void read_sets(strut_study_reader *reader, const strut_tree *const *sets,
+                      strut_study_fit *fit) {
   strut_study *study = &reader->file->study;
   size_t most = reader->declared_count;
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
   axis->columns =
       strut_reader_allocate(reader->reader, &reader->file->arena, most + 1, sizeof *axis->columns);
-  for (size_t m = 0; m < fit->match_count && axis->columns; m++) {
-    fit->matches[m].values = strut_reader_allocate(reader->reader, &reader->file->arena, most + 1,
-                                                   sizeof *fit->matches[m].values);
-    if (!fit->matches[m].values) return;
-  }
-  for (size_t m = 0; m < fit->match_count && axis->columns; m++) {
-    const strut_tree *set = set_of(matches, m);
-    for (const strut_tree *key = set ? set->first : NULL; key; key = key->next->next) {
+  strut_study_value *values = strut_reader_allocate(reader->reader, &reader->file->arena,
+                                                    fit->match_count * (most + 1), sizeof *values);
+  if (!axis->columns || !values) return;
+  for (size_t m = 0; m < fit->match_count; m++) fit->matches[m].values = values + m * (most + 1);
+  for (size_t m = 0; m < fit->match_count; m++)
+    for (const strut_tree *key = sets[m] ? sets[m]->first : NULL; key; key = key->next->next) {
       bool known = false;
       for (size_t k = 0; k < axis->column_count; k++)
         known = known || strcmp(axis->columns[k].name, key->text) == 0;
-      if (!known) add_set(reader, matches, key, axis, fit);
+      if (!known) add_set(reader, sets, key, axis, fit);
     }
-  }
   if (axis->column_count) study->axis_count++;
 }
 
@@ -422,13 +408,18 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   fit->matches =
       strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *fit->matches);
   if (!fit->matches) return;
-  for (const strut_tree *key = matches->value->first; key; key = key->next->next)
+  const strut_tree *sets[STRUT_FIT_MOST_MATCHES];
+  for (const strut_tree *key = matches->value->first; key; key = key->next->next) {
+    bool map = key->next->kind == STRUT_TREE_MAP;
+    const strut_tree *set = map ? strut_tree_find(key->next, "set", NULL) : NULL;
+    sets[fit->match_count] = set && set->kind == STRUT_TREE_MAP ? set : NULL;
     read_match(reader, key, &fit->matches[fit->match_count++]);
+  }
   require_noise(reader, matches->value, fit);
   refuse_unused(reader, top, fit);
   strut_study_axis *rows = &study->axes[study->axis_count++];
   add_rows(reader, fit, over->value->count, rows);
   read_over(reader, over, fit);
-  read_sets(reader, matches->value, fit);
+  read_sets(reader, sets, fit);
   if (!reader->reader->failed) study->fit = fit;
 }
