@@ -220,6 +220,8 @@ struct strutlib_result {
 
 /** A result without content, or NULL with the error. */
 strutlib_result *abi_result_create(const strut_command *command, strutlib_error **error);
+/** abi_leave at the end of a call that returns the result, which is released unless it is to be kept. */
+strutlib_result *abi_result_leave(strutlib_result *result, bool kept);
 /** Adds an array that is not in the JSON; its name is copied. False: memory is out. */
 bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
                           const double *data, int dimensions, const size_t *shape);

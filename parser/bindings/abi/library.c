@@ -274,17 +274,11 @@ LOCATED(size_t, length, 0)
 /* ---- messages ---- */
 
 void abi_add_warning(abi_messages *m, const char *text) {
-  if (m->count == m->capacity) {
-    size_t wider = m->capacity ? 2 * m->capacity : 8;
-    const char **list = strut_reallocate((void *)m->warnings, wider, sizeof *list);
-    if (!list) m->out_of_memory = true;
-    if (!list) return;
-    m->warnings = list;
-    m->capacity = wider;
-  }
   const char *kept = strut_arena_text(&m->arena, text, strlen(text));
-  if (!kept) m->out_of_memory = true;
-  if (kept) m->warnings[m->count++] = kept;
+  if (!kept || !strut_grow(&m->warnings, &m->capacity, m->count, sizeof *m->warnings))
+    m->out_of_memory = true;
+  else
+    m->warnings[m->count++] = kept;
 }
 
 void abi_add_notes(abi_messages *m, const strut_diagnostics *found) {

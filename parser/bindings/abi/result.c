@@ -261,6 +261,12 @@ void strutlib_result_free(strutlib_result *result) {
   strut_release(result);
 }
 
+strutlib_result *abi_result_leave(strutlib_result *result, bool kept) {
+  if (!kept) strutlib_result_free(result);
+  abi_leave();
+  return kept ? result : NULL;
+}
+
 /* ---- texts ---- */
 
 int strutlib_result_status(const strutlib_result *result) {

@@ -172,12 +172,7 @@ strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const c
   if (status == STRUT_OK) status = open_setup(&call, scene, result);
   bool begun = status == STRUT_OK;
   if (begun) status = run_model(&call, scene, result);
-  if (!begun || !strut_run_has_results(status)) {
-    strutlib_result_free(result);
-    result = NULL;
-  }
-  abi_leave();
-  return result;
+  return abi_result_leave(result, begun && strut_run_has_results(status));
 }
 
 /* A run that is advanced from outside. */
