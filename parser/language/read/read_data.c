@@ -459,6 +459,7 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
                                                 const strut_dimension *expected,
                                                 const strut_data_table **table) {
   char message[500], wanted[200], found[80];
+  size_t row = SIZE_MAX;
   if (!strut_read_scalar(reader, value, key, owner, "a column such as film.x")) return NULL;
   const strut_data_column *column =
       strut_data_find(reader->tables, reader->table_count, value->text, table);
@@ -466,21 +467,21 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
   if (!column) return NULL;
   const char *name = strut_sanitised_text(reader, column->name);
   if (!column->values) {
-    strut_refuse_data(reader, value, *table, column, column->flaw, "expected a finite number");
+    row = column->flaw;
+    snprintf(message, sizeof message, "expected a finite number");
   } else if (!column->unit) {
     snprintf(message, sizeof message,
              "column '%s' has no unit that is known; write it in the header, '%s [mm]', or under "
              "'units' of the data, {%s: mm}; 1: none",
              name, name, name);
-    strut_refuse_data(reader, value, *table, column, SIZE_MAX, message);
   } else if (expected && !strut_dimension_equal(column->dimension, *expected)) {
     strut_expected_quantity(key, *expected, wanted, sizeof wanted);
     snprintf(message, sizeof message, "expected %s for '%s' of %s, found the unit '%s' of %s",
              wanted, key, strut_owner_text(reader, owner), column->unit,
              strut_dimension_name(column->dimension, found, sizeof found));
-    strut_refuse_data(reader, value, *table, column, SIZE_MAX, message);
   } else {
     return column;
   }
+  strut_refuse_data(reader, value, *table, column, row, message);
   return NULL;
 }
