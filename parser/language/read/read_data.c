@@ -418,26 +418,20 @@ void strut_read_scene_data(strut_reader *reader) {
 
 /* ---- columns where they are used ---- */
 
-/* Structs of that size, each with its name first. */
-typedef struct names {
-  const void *first;
-  size_t count, size;
-} names;
+static const char *table_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->table_count ? reader->tables[i].name : NULL;
+}
 
-static const char *name_at(const void *context, size_t i) {
-  const names *self = context;
-  const char *name = NULL;
-  if (i < self->count) memcpy(&name, (const char *)self->first + i * self->size, sizeof name);
-  return name;
+static const char *column_name(const void *context, size_t i) {
+  const strut_data_table *table = context;
+  return i < table->column_count ? table->columns[i].name : NULL;
 }
 
 /* Reports a name that is none. */
 static void refuse_name(strut_reader *reader, const strut_tree *value, strut_owner owner,
                         const strut_data_table *table) {
   const char *dot = strchr(value->text, '.');
-  const names columns = {table ? table->columns : NULL, table ? table->column_count : 0,
-                         sizeof *table->columns};
-  const names tables = {reader->tables, reader->table_count, sizeof *reader->tables};
   const char *name = strut_arena_text(&reader->scratch, value->text, strcspn(value->text, "."));
   if (!name || (reader->tables_unknown && !table))
     reader->failed = true;
@@ -447,11 +441,11 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
   else if (table)
     strut_report_error(reader, value->place, "data '%s' have no column '%s'%s", table->name,
                        strut_sanitised_text(reader, dot + 1),
-                       strut_hint(reader, dot + 1, name_at, &columns, columns.count));
+                       strut_hint(reader, dot + 1, column_name, table, table->column_count));
   else
     strut_report_error(reader, value->place, "unknown data '%s' for %s%s",
                        strut_sanitised_text(reader, name), strut_owner_text(reader, owner),
-                       strut_hint(reader, name, name_at, &tables, tables.count));
+                       strut_hint(reader, name, table_name, reader, reader->table_count));
 }
 
 const strut_data_column *strut_read_data_column(strut_reader *reader, const strut_tree *value,

@@ -114,7 +114,7 @@ static bool read_numbers(strut_study_reader *reader, reading *self, const strut_
   bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted &&
                strpbrk(value->text, "0123456789+-") == value->text;
   if (plain && !self->to->at) {
-    double *number = strut_reader_allocate(r, &reader->file->arena, 1, sizeof *number);
+    double *number = strut_study_allocate(reader, 1, sizeof *number);
     if (!number || !strut_read_quantity(r, value, series->of, self->owner, &q)) return false;
     if (self->table)
       return strut_report_error(r, value->place,
@@ -177,8 +177,7 @@ static void add_partner(strut_study_reader *reader, reading *self, const strut_t
 }
 
 static void add_partners(strut_study_reader *reader, reading *self) {
-  double *gaps =
-      strut_reader_allocate(reader->reader, &reader->file->arena, self->to->count, sizeof *gaps);
+  double *gaps = strut_study_allocate(reader, self->to->count, sizeof *gaps);
   for (size_t i = 0; gaps && i < self->to->count; i++) gaps[i] = (double)NAN;
   for (const strut_tree *key = self->rest.first; key && gaps; key = key->next->next)
     add_partner(reader, self, key, gaps);
@@ -234,8 +233,7 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
   if (!divide(reader, key->next, &self)) return;
   strut_read_object(r, STRUT_SECTION_MATCH, &self.own, self.owner, &self.fields, to);
   choose_kind(reader, &self);
-  to->series = strut_reader_allocate(r, &reader->file->arena, 2 * (size_t)self.rest.count + 1,
-                                     sizeof *to->series);
+  to->series = strut_study_allocate(reader, 2 * (size_t)self.rest.count + 1, sizeof *to->series);
   if (!to->series) return;
   if (to->kind == STRUT_FIT_CURVE) read_curve(reader, &self);
   if (to->kind == STRUT_FIT_MOTION)
@@ -266,8 +264,8 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
 /* A column of a parameter that each match sets, which the first of them names. */
 static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
                     const strut_tree *key, strut_study_axis *axis, strut_study_fit *fit) {
-  double *number = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *number);
-  const char **word = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *word);
+  double *number = strut_study_allocate(reader, 1, sizeof *number);
+  const char **word = strut_study_allocate(reader, 1, sizeof *word);
   strut_study_along a = {
       .key = key, .value = key->next, .parameter = strut_study_parameter(reader, key)};
   a.column = &axis->columns[axis->column_count];
@@ -301,10 +299,9 @@ static void read_sets(strut_study_reader *reader, const strut_tree *const *sets,
   size_t most = reader->declared_count;
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  axis->columns =
-      strut_reader_allocate(reader->reader, &reader->file->arena, most + 1, sizeof *axis->columns);
-  strut_study_value *values = strut_reader_allocate(reader->reader, &reader->file->arena,
-                                                    fit->match_count * (most + 1), sizeof *values);
+  axis->columns = strut_study_allocate(reader, most + 1, sizeof *axis->columns);
+  strut_study_value *values =
+      strut_study_allocate(reader, fit->match_count * (most + 1), sizeof *values);
   if (!axis->columns || !values) return;
   for (size_t m = 0; m < fit->match_count; m++) fit->matches[m].values = values + m * (most + 1);
   for (size_t m = 0; m < fit->match_count; m++)
@@ -324,11 +321,9 @@ static void add_rows(strut_study_reader *reader, const strut_study_fit *fit, siz
                      strut_study_axis *axis) {
   size_t count =
       (size_t)fit->starts + 2 * variables + (fit->match_count > 1 ? fit->match_count : 0);
-  double *numbers =
-      strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *numbers);
+  double *numbers = strut_study_allocate(reader, count, sizeof *numbers);
   *axis = (strut_study_axis){.count = numbers ? (int64_t)count : 1, .column_count = 1};
-  axis->columns =
-      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *axis->columns);
+  axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
   for (size_t i = 0; i < count && numbers; i++) numbers[i] = (double)(i + 1);
   if (axis->columns)
     axis->columns[0] = (strut_study_column){.name = "fit", .unit = "1", .number = numbers};
@@ -390,8 +385,7 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
-  strut_study_fit *fit =
-      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *fit);
+  strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
   if (!study->axes) strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   if (!fit || !study->axes || reader->reader->failed) return;
   *fit = (strut_study_fit){.starts = 1, .seed = 1};
@@ -405,8 +399,7 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
                        "a fit has 1 to %d matches, found %zu", STRUT_FIT_MOST_MATCHES, count);
     return;
   }
-  fit->matches =
-      strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *fit->matches);
+  fit->matches = strut_study_allocate(reader, count, sizeof *fit->matches);
   if (!fit->matches) return;
   const strut_tree *sets[STRUT_FIT_MOST_MATCHES];
   for (const strut_tree *key = matches->value->first; key; key = key->next->next) {
