@@ -76,6 +76,8 @@ int abi_fail_with(strutlib_error **error, strut_status status, const strut_error
 /** The same from everything that was found in `count` texts, found[i] in each. */
 int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *const *found,
                      size_t count);
+/** The end of reading a text: the same of a failure, and frees what was found. Returns the status. */
+strut_status abi_settle(strutlib_error **error, strut_status status, strut_diagnostics *found);
 int abi_no_memory(strutlib_error **error);
 /** Is an argument that a call needs NULL? Then *error says which. */
 bool abi_lacks(strutlib_error **error, const void *argument, const char *name);

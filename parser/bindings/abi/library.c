@@ -218,6 +218,15 @@ static bool add_located(strutlib_error *self, strut_diagnostics *found) {
   return good && self->report;
 }
 
+strut_status abi_settle(strutlib_error **error, strut_status status, strut_diagnostics *found) {
+  if (status == STRUT_NO_MEMORY)
+    abi_no_memory(error);
+  else if (status != STRUT_OK)
+    abi_fail_located(error, status, &found, 1);
+  strut_diagnostics_free(found);
+  return status;
+}
+
 int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *const *found,
                      size_t count) {
   if (!error) return (int)status;
