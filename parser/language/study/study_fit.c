@@ -43,11 +43,7 @@ static bool divide(strut_study_reader *reader, const strut_tree *map, reading *s
   self->own.first = self->rest.first = NULL;
   self->own.count = self->rest.count = 0;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    bool own = false;
-    int first = strut_section_first(STRUT_SECTION_MATCH),
-        n = strut_section_size(STRUT_SECTION_MATCH);
-    for (int k = first; k < first + n; k++)
-      own = own || strcmp(strut_key_at(k)->name, key->text) == 0;
+    bool own = strut_key_find(STRUT_SECTION_MATCH, key->text) >= 0;
     items[0] = *key, items[1] = *key->next;
     items[0].next = &items[1], items[1].next = NULL;
     *ends[!own] = items;
@@ -264,13 +260,12 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
 /* A column of a parameter that each match sets, which the first of them names. */
 static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
                     const strut_tree *key, strut_study_axis *axis, strut_study_fit *fit) {
-  double *number = strut_study_allocate(reader, 1, sizeof *number);
-  const char **word = strut_study_allocate(reader, 1, sizeof *word);
+  const strut_study_value *first = &fit->matches[0].values[fit->set_count];
   strut_study_along a = {
       .key = key, .value = key->next, .parameter = strut_study_parameter(reader, key)};
   a.column = &axis->columns[axis->column_count];
   a.setting = &reader->file->columns[reader->file->column_count];
-  if (!number || !word || !a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
+  if (!a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
   axis->column_count++, reader->file->column_count++;
   for (size_t m = 0; m < fit->match_count; m++) {
     const strut_tree *value = sets[m] ? strut_tree_find(sets[m], key->text, NULL) : NULL;
@@ -284,9 +279,7 @@ static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
       strut_study_read_value(reader, &a, value, key->text, m == 0, &to->number);
   }
   a.column->kind = STRUT_RANGE_LIST;
-  *number = fit->matches[0].values[fit->set_count].number;
-  *word = fit->matches[0].values[fit->set_count].word;
-  a.column->number = number, a.column->words = a.parameter->text ? word : NULL;
+  a.column->number = &first->number, a.column->words = a.parameter->text ? &first->word : NULL;
   a.column->unit =
       a.parameter->text || a.setting->bare ? "1" : strut_dimension_unit(a.setting->dimension);
   fit->set_count++;
