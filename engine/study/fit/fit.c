@@ -224,16 +224,10 @@ static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
                      const strut_fit_case *one, const double *parameters,
                      const strut_fit_solution *solution) {
   const strut_fit_layout *layout = self->layout;
-  const strut_sweep_plan *plan = layout->plan;
   strut_row_buffer *cells = &job->cells;
   row_kind what = kind_of(layout->fit, point);
   strut_fit_fill_values(layout, point, parameters, cells->values);
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    if (plan->columns[i].word)
-      strut_sweep_word(cells, cells->values[i].word);
-    else
-      strut_sweep_number(cells, cells->values[i].number);
-  }
+  strut_sweep_axes(layout->plan, cells->values, cells);
   strut_sweep_word(cells, kinds[what.kind]);
   strut_sweep_word(cells, item_name(layout->fit, what));
   strut_sweep_word(cells, strut_fit_ends[solution->end]);
@@ -242,9 +236,7 @@ static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
   strut_sweep_number(cells, (double)one->evaluations);
   for (size_t i = 0; i < layout->aligned_count; i++)
     strut_sweep_number(cells, strut_fit_value(layout, i, parameters[i]));
-  cells->row = (strut_result_slot){.numbers = cells->numbers,
-                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
-                                   .message = cells->message};
+  strut_sweep_end_row(cells, STRUT_OK, solution->end == STRUT_FIT_FAILED ? &one->error : NULL);
 }
 
 static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
@@ -260,9 +252,6 @@ static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   if (!job->status)
     job->status = fit_row(self, &one, kind_of(self->layout->fit, point), parameters, &solution);
   if (!job->status) job->status = one.status, job->error = one.error;
-  if (!job->status && solution.end == STRUT_FIT_FAILED)
-    snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
-             (int)sizeof job->cells.message - 1, one.error.message);
   if (!job->status) fill_row(self, job, point, &one, parameters, &solution);
   strut_fit_case_free(&one);
 }
@@ -311,11 +300,8 @@ strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_error *error) {
   }
   for (size_t i = 0; i < WORDS + NUMBERS && fine; i++)
     fine = strut_sweep_add_column(plan, "", columns[i].name, "1", columns[i].word);
-  for (size_t i = 0; i < layout.aligned_count && fine; i++) {
-    const char *unit =
-        strut_arena_text(&plan->arena, layout.aligned[i].unit, strlen(layout.aligned[i].unit));
-    fine = unit && strut_sweep_add_column(plan, "", layout.aligned[i].name, unit, false);
-  }
+  for (size_t i = 0; i < layout.aligned_count && fine; i++)
+    fine = strut_sweep_add_column(plan, "", layout.aligned[i].name, layout.aligned[i].unit, false);
   if (!status && !fine) status = strut_no_memory(error, "");
   strut_fit_layout_free(&layout);
   return status;

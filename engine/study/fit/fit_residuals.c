@@ -47,9 +47,7 @@ typedef struct prediction {
 
 /* Notes what must stop everything; else the point just has no residuals. */
 static bool settle_status(strut_fit_case *one, strut_status status, const strut_error *error) {
-  bool stops =
-      status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
-  if (stops) one->status = status;
+  if (strut_sweep_stops(status)) one->status = status;
   if (status) one->error = *error;
   return status == STRUT_OK;
 }
