@@ -94,11 +94,10 @@ static bool prepare(differences *self) {
   size_t n = task->parameter_count, m = task->output_count;
   double noise = largest_noise(self);
   for (size_t i = 0; i <= n; i++) {
-    self->pairs[i].step = strut_arena_allocate(&self->arena, n, sizeof(double));
-    for (int end = 0; end < 2; end++)
-      self->pairs[i].values[end] = strut_arena_allocate(&self->arena, m, sizeof(double));
-    if (!self->pairs[i].step || !self->pairs[i].values[0] || !self->pairs[i].values[1])
-      return false;
+    double *block = strut_arena_allocate(&self->arena, n + 2 * m, sizeof *block);
+    if (!block) return false;
+    self->pairs[i].step = block;
+    self->pairs[i].values[0] = block + n, self->pairs[i].values[1] = block + n + m;
   }
   for (size_t i = 0; i < n; i++)
     self->pairs[i].step[i] = choose_step(&task->parameters[i], noise, &self->pairs[i].central);

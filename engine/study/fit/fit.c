@@ -28,7 +28,11 @@ static const double OUTSIDE = 0.05;
 /* Columns of the table behind those of the axes, before the alignments. */
 enum { KIND, OF, END, WORDS, SUM = 0, USED, EVALUATIONS, NUMBERS };
 static const char *const kinds[] = {"start", "low", "high", "without"};
-static const char *const ends[] = {"converged", "stuck", "failed"};
+static const struct {
+  const char *name;
+  bool word;
+} columns[] = {{"kind", true}, {"of", true},    {"end", true},
+               {"sum", false}, {"used", false}, {"evaluations", false}};
 
 /* A fit of a study while it is made. */
 typedef struct fitting {
@@ -41,10 +45,45 @@ typedef struct fitting {
   double rise;                 /* of the sum to an end of an interval */
 } fitting;
 
-static size_t profile_rows(const strut_study_fit *fit) { return 2 * fit->variable_count; }
-
 static size_t omission_rows(const strut_study_fit *fit) {
   return fit->match_count > 1 ? fit->match_count : 0;
+}
+
+/* ---- parameters ---- */
+
+static bool is_aligned(const strut_fit_layout *layout, size_t i) {
+  return i < layout->aligned_count;
+}
+
+static const strut_search_variable *variable_of(const strut_fit_layout *layout, size_t i) {
+  return &layout->fit->variables[i - layout->aligned_count];
+}
+
+double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
+  if (!is_aligned(layout, i))
+    return strut_search_value(variable_of(layout, i), parameter - 1.0).number;
+  return (parameter - 1.0) * layout->aligned[i].scale;
+}
+
+double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
+  if (!is_aligned(layout, i))
+    return 1.0 + strut_search_number(variable_of(layout, i), (strut_study_value){.number = value});
+  return 1.0 + value / layout->aligned[i].scale;
+}
+
+double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
+  if (is_aligned(layout, i)) return layout->aligned[i].scale;
+  const strut_search_variable *variable = variable_of(layout, i);
+  if (!variable->logarithmic) return variable->to - variable->from;
+  return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
+}
+
+void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
+                           strut_study_value *values) {
+  strut_grid_values(layout->plan->study, row, values);
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    values[layout->fit->column + i - layout->aligned_count].number =
+        strut_fit_value(layout, i, parameters[i]);
 }
 
 /* ---- one fit ---- */
@@ -65,19 +104,16 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
 /* Fits short motions first, so that long ones begin near. */
 static strut_status fit_from(strut_fit_case *one, double *parameters,
                              strut_fit_solution *solution) {
-  int64_t evaluations = 0;
   strut_status status = STRUT_OK;
   for (int k = 0; k < SHARES && !status; k++) {
     bool last = k + 1 == SHARES;
-    one->share = shares[k], one->known = false;
-    if (!last && strut_fit_used(one) < FEW * one->layout->parameters) continue;
+    strut_fit_choose(one, shares[k], -1);
+    if (!last && one->used < FEW * one->layout->parameters) continue;
     strut_least_squares problem = strut_fit_problem(one);
     if (!last) problem.most_steps = STEPS_FIRST, problem.near = NEAR_FIRST;
     status = strut_least_squares_solve(&problem, parameters, solution);
-    evaluations += solution->evaluations;
     if (solution->end == STRUT_FIT_FAILED) break;
   }
-  solution->evaluations = evaluations;
   return status;
 }
 
@@ -85,14 +121,11 @@ static strut_status fit_from(strut_fit_case *one, double *parameters,
 static strut_status fit_start(strut_fit_case *one, int64_t start, double *parameters,
                               strut_fit_solution *solution) {
   strut_status status = STRUT_OK;
-  int64_t evaluations = 0;
   for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
     strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
     status = fit_from(one, parameters, solution);
-    evaluations += solution->evaluations;
     if (solution->end != STRUT_FIT_FAILED) break;
   }
-  solution->evaluations = evaluations;
   return status;
 }
 
@@ -124,12 +157,10 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
   double bound = side < 0.0 ? self->layout->low[i] : self->layout->high[i];
   double most = fabs(bound - self->best[i]), inside = 0.0, outside = HUGE_VAL, height_inside = 0.0;
   double distance = sqrt(self->rise * self->spectrum.covariance[i * n + i]);
-  int64_t evaluations = 0;
   strut_status status = STRUT_OK;
   for (int k = 0; k < MOST_FITS && !status; k++) {
     distance = fmin(distance, most);
     status = fit_held(self, one, i, self->best[i] + side * distance, parameters, solution);
-    evaluations += solution->evaluations;
     double height = sqrt(fmax(0.0, (solution->sum - best) / self->rise)); /* 1: enough */
     if (fabs(height - 1.0) < FOUND || (distance >= most && height < 1.0)) break;
     if (height > 1.0)
@@ -142,7 +173,6 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
     distance = between ? next : 0.5 * (inside + outside);
     if (!isfinite(distance)) distance = most;
   }
-  solution->evaluations = evaluations;
   solution->end = solution->sum - best < self->rise * (1.0 - 3.0 * FOUND) ? STRUT_FIT_STUCK
                                                                           : STRUT_FIT_CONVERGED;
   return status;
@@ -157,8 +187,9 @@ typedef struct row_kind {
 static row_kind kind_of(const strut_study_fit *fit, int64_t row) {
   if (row < fit->starts) return (row_kind){0, (size_t)row};
   row -= fit->starts;
-  if (row < (int64_t)profile_rows(fit)) return (row_kind){1 + (int)(row % 2), (size_t)row / 2};
-  return (row_kind){3, (size_t)row - profile_rows(fit)};
+  int64_t profiles = 2 * (int64_t)fit->variable_count;
+  if (row < profiles) return (row_kind){1 + (int)(row % 2), (size_t)row / 2};
+  return (row_kind){3, (size_t)(row - profiles)};
 }
 
 static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind what,
@@ -173,10 +204,10 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
   if (what.kind < 3)
     return find_profile_end(self, one, layout->aligned_count + what.item,
                             what.kind == 1 ? -1.0 : 1.0, parameters, solution);
-  one->left_out = (int32_t)what.item;
+  strut_fit_choose(one, 1.0, (int32_t)what.item);
   memcpy(parameters, self->best, layout->parameters * sizeof *parameters);
   strut_least_squares problem = strut_fit_problem(one);
-  if (strut_fit_used(one) < layout->parameters) return STRUT_OK;
+  if (one->used < layout->parameters) return STRUT_OK;
   return strut_least_squares_solve(&problem, parameters, solution);
 }
 
@@ -189,34 +220,23 @@ static const char *item_name(const strut_study_fit *fit, row_kind what) {
 }
 
 /* The cells of a row: axes, words, numbers, alignments. */
-static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point, size_t used,
-                     const double *parameters, const strut_fit_solution *solution) {
+static void fill_row(const fitting *self, strut_sweep_job *job, int64_t point,
+                     const strut_fit_case *one, const double *parameters,
+                     const strut_fit_solution *solution) {
   const strut_fit_layout *layout = self->layout;
-  const strut_sweep_plan *plan = layout->plan;
   strut_row_buffer *cells = &job->cells;
   row_kind what = kind_of(layout->fit, point);
-  strut_grid_values(plan->study, point, cells->values);
-  for (size_t k = 0; k < layout->fit->variable_count; k++) {
-    size_t i = layout->aligned_count + k;
-    cells->values[layout->fit->column + k].number = strut_fit_value(layout, i, parameters[i]);
-  }
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    if (plan->columns[i].word)
-      strut_sweep_word(cells, cells->values[i].word);
-    else
-      strut_sweep_number(cells, cells->values[i].number);
-  }
+  strut_fit_fill_values(layout, point, parameters, cells->values);
+  strut_sweep_axes(layout->plan, cells->values, cells);
   strut_sweep_word(cells, kinds[what.kind]);
   strut_sweep_word(cells, item_name(layout->fit, what));
-  strut_sweep_word(cells, ends[solution->end]);
+  strut_sweep_word(cells, strut_fit_ends[solution->end]);
   strut_sweep_number(cells, solution->sum);
-  strut_sweep_number(cells, (double)used);
-  strut_sweep_number(cells, (double)solution->evaluations);
+  strut_sweep_number(cells, (double)one->used);
+  strut_sweep_number(cells, (double)one->evaluations);
   for (size_t i = 0; i < layout->aligned_count; i++)
     strut_sweep_number(cells, strut_fit_value(layout, i, parameters[i]));
-  cells->row = (strut_result_slot){.numbers = cells->numbers,
-                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
-                                   .message = cells->message};
+  strut_sweep_end_row(cells, STRUT_OK, solution->end == STRUT_FIT_FAILED ? &one->error : NULL);
 }
 
 static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
@@ -232,10 +252,7 @@ static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   if (!job->status)
     job->status = fit_row(self, &one, kind_of(self->layout->fit, point), parameters, &solution);
   if (!job->status) job->status = one.status, job->error = one.error;
-  if (!job->status && solution.end == STRUT_FIT_FAILED)
-    snprintf(job->cells.message, sizeof job->cells.message, "%.*s",
-             (int)sizeof job->cells.message - 1, one.error.message);
-  if (!job->status) fill_row(self, job, point, strut_fit_used(&one), parameters, &solution);
+  if (!job->status) fill_row(self, job, point, &one, parameters, &solution);
   strut_fit_case_free(&one);
 }
 
@@ -258,7 +275,7 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
   }
   const double *numbers = slot.numbers + plan->axis_columns - words;
   for (int k = 0; k < STRUT_FIT_END_COUNT; k++)
-    if (strcmp(slot.words[words + END], ends[k]) == 0) row->end = (strut_fit_end)k;
+    if (strcmp(slot.words[words + END], strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
   memcpy(row->values, slot.numbers + own, variables * sizeof(double));
@@ -274,24 +291,17 @@ strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_error *error) {
   strut_fit_layout layout = {0};
   strut_status status = strut_fit_layout_make(plan, NULL, &layout, error);
   size_t most = plan->axis_columns + WORDS + NUMBERS + layout.aligned_count;
-  strut_slot_column *columns =
-      status ? NULL : strut_arena_allocate(&plan->arena, most, sizeof *columns);
-  if (columns) {
-    memcpy(columns, plan->columns, plan->axis_columns * sizeof *columns);
-    plan->columns = columns;
+  strut_slot_column *all = status ? NULL : strut_arena_allocate(&plan->arena, most, sizeof *all);
+  bool fine = all != NULL;
+  if (fine) {
+    memcpy(all, plan->columns, plan->axis_columns * sizeof *all);
+    plan->columns = all;
     plan->column_count = plan->axis_columns, plan->column_capacity = most;
   }
-  bool fine = columns && strut_sweep_add_column(plan, "", "kind", "1", true) &&
-              strut_sweep_add_column(plan, "", "of", "1", true) &&
-              strut_sweep_add_column(plan, "", "end", "1", true) &&
-              strut_sweep_add_column(plan, "", "sum", "1", false) &&
-              strut_sweep_add_column(plan, "", "used", "1", false) &&
-              strut_sweep_add_column(plan, "", "evaluations", "1", false);
-  for (size_t i = 0; i < layout.aligned_count && fine; i++) {
-    const char *unit =
-        strut_arena_text(&plan->arena, layout.aligned[i].unit, strlen(layout.aligned[i].unit));
-    fine = unit && strut_sweep_add_column(plan, "", layout.aligned[i].name, unit, false);
-  }
+  for (size_t i = 0; i < WORDS + NUMBERS && fine; i++)
+    fine = strut_sweep_add_column(plan, "", columns[i].name, "1", columns[i].word);
+  for (size_t i = 0; i < layout.aligned_count && fine; i++)
+    fine = strut_sweep_add_column(plan, "", layout.aligned[i].name, layout.aligned[i].unit, false);
   if (!status && !fine) status = strut_no_memory(error, "");
   strut_fit_layout_free(&layout);
   return status;
@@ -340,20 +350,17 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_result *result = self->result;
   size_t n = layout->parameters;
-  double *jacobian = strut_allocate(layout->count * n + 1, sizeof *jacobian);
+  double *jacobian = strut_arena_allocate(&one->arena, layout->count * n + 1, sizeof *jacobian);
   result->residual = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
   result->predicted = strut_arena_allocate(&result->arena, layout->count, sizeof(double));
-  if (!jacobian || !result->residual || !result->predicted) {
-    strut_release(jacobian);
+  if (!jacobian || !result->residual || !result->predicted)
     return strut_no_memory(self->points.error, "");
-  }
   strut_least_squares problem = strut_fit_problem(one);
   bool fine =
       strut_least_squares_jacobian(&problem, self->best, result->residual, jacobian) &&
       strut_fit_spectrum_find(jacobian, layout->count, n, &result->arena, &self->spectrum) &&
       problem.residuals(one, self->best, result->residual);
   if (fine) strut_fit_align_all(one, self->best, result->predicted);
-  strut_release(jacobian);
   if (one->status) return strut_fail(self->points.error, one->status, "%s", one->error.message);
   return fine ? STRUT_OK
               : strut_fail(self->points.error, STRUT_DIVERGED,
@@ -403,7 +410,9 @@ static bool fill_estimates(fitting *self) {
     double slope = fabs(strut_fit_slope(layout, i, self->best[i]));
     double error = sqrt(covariance[i * n + i]), value = strut_fit_value(layout, i, self->best[i]);
     strut_fit_estimate *estimate = &result->estimates[i];
-    const char *name = strut_fit_name(layout, i), *unit = strut_fit_unit(layout, i);
+    const strut_search_variable *variables = layout->fit->variables;
+    const char *name = i < first ? layout->aligned[i].name : variables[i - first].name;
+    const char *unit = i < first ? layout->aligned[i].unit : variables[i - first].unit;
     *estimate = (strut_fit_estimate){.name = strut_arena_text(&result->arena, name, strlen(name)),
                                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
                                      .value = value,
@@ -431,7 +440,7 @@ static bool fill_estimates(fitting *self) {
 static strut_status run_stages(fitting *self) {
   const strut_study_fit *fit = self->layout->fit;
   strut_fit_result *result = self->result;
-  int64_t starts = fit->starts, profiles = (int64_t)profile_rows(fit),
+  int64_t starts = fit->starts, profiles = 2 * (int64_t)fit->variable_count,
           omissions = (int64_t)omission_rows(fit);
   strut_status status = run_stage(self, 0, starts);
   if (!status) status = read_rows(self, 0, (size_t)starts, &result->starts);

@@ -40,6 +40,14 @@ typedef struct strut_fit_source {
   size_t column;   /* of a TABLE: its number among those of numbers */
 } strut_fit_source;
 
+/** What is known of a match. */
+typedef struct strut_fit_part {
+  strut_fit_source *sources; /* (series) */
+  strut_study study;         /* as given, with the match's `compute` */
+  strut_sweep_plan table;    /* of a TABLE */
+  double noise;              /* by which residuals are divided */
+} strut_fit_part;
+
 /** What all evaluations have in common. Constant once made, but for its cache. */
 typedef struct strut_fit_layout {
   const strut_sweep_plan *plan;
@@ -47,10 +55,8 @@ typedef struct strut_fit_layout {
   size_t count; /* of residuals */
   size_t aligned_count, parameters;
   strut_fit_aligned *aligned;
-  strut_fit_source **sources; /* (matches)(series) */
-  strut_study *studies;       /* (matches) as of the study, with the match's `compute` */
-  strut_sweep_plan *tables;   /* (matches) of a TABLE */
-  double *noise;              /* (matches) by which residuals are divided */
+  strut_fit_part *parts; /* (matches) */
+  double *measured;      /* (count) */
   bool noise_known;
   double *low, *high; /* (parameters) the box */
   strut_equilibrium_cache *standing;
@@ -58,11 +64,14 @@ typedef struct strut_fit_layout {
   strut_arena arena;
 } strut_fit_layout;
 
-/** An evaluation: of one thread at a time. Zero-initialise but for what the user fills in. */
+/** An evaluation: of one thread at a time. */
 typedef struct strut_fit_case {
   const strut_fit_layout *layout;
   double share;         /* of the time of motions that counts */
   int32_t left_out;     /* this match does not count; -1: all do */
+  double *weight;       /* (count) factors of residuals; 0: a gap, or it does not count */
+  size_t used;          /* residuals that count */
+  int64_t evaluations;  /* of the residuals, so far */
   double *predicted[3]; /* (count) by the model, before and after by a short time, not aligned */
   double *latest;       /* (parameters) of that */
   bool known;
@@ -78,25 +87,25 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
                                    strut_fit_layout *layout, strut_error *error);
 void strut_fit_layout_free(strut_fit_layout *layout);
 
-/** False: memory is out. */
+/** All residuals count. False: memory is out. */
 bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one);
 void strut_fit_case_free(strut_fit_case *one);
 /** The problem of the case; `near` and most_steps are the caller's to change. */
 strut_least_squares strut_fit_problem(strut_fit_case *one);
 /** The numbers of all series as the case has predicted them at the parameters, aligned: (count). */
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to);
-/** How many residuals count. */
-size_t strut_fit_used(const strut_fit_case *one);
+/** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
+void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
+
+/* ---- fit.c ---- */
 
 /** From a parameter of the problem to its value in SI, and back; and by how much one changes with the other. */
 double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter);
 double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value);
 double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter);
-/** Its name and unit; "1": none. */
-const char *strut_fit_name(const strut_fit_layout *layout, size_t i);
-const char *strut_fit_unit(const strut_fit_layout *layout, size_t i);
-
-/* ---- fit.c ---- */
+/** The values of all columns of the axes in a row, with those of the parameters. */
+void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
+                           strut_study_value *values);
 
 /** So many places are tried where the model cannot be computed at a start. */
 enum { STRUT_FIT_MOST_PLACES = 50 };

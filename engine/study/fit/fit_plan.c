@@ -18,7 +18,7 @@ typedef struct planning {
 /* Puts the rows of a series into the part; returns how many. */
 static size_t take_series(const planning *self, size_t m, size_t s, size_t used) {
   const strut_fit_match *match = &self->layout->fit->matches[m];
-  size_t n = self->layout->parameters, first = self->layout->sources[m][s].first;
+  size_t n = self->layout->parameters, first = self->layout->parts[m].sources[s].first;
   for (size_t i = 0; i < match->count; i++) {
     if (isnan(match->series[s].measured[i])) continue;
     memcpy(self->part + used * n, self->jacobian + (first + i) * n, n * sizeof(double));
@@ -64,7 +64,7 @@ static bool add_candidate(planning *self, const char *name, size_t used) {
 static const char *name_place(planning *self, size_t m, size_t s) {
   const strut_fit_match *match = &self->layout->fit->matches[m];
   const char *of = match->series[s].of, *dot = strrchr(of, '.');
-  bool whole = self->layout->sources[m][s].partner < 0 || !dot;
+  bool whole = self->layout->parts[m].sources[s].partner < 0 || !dot;
   return strut_arena_format(&self->plan->arena, "%s: %.*s", match->name,
                             whole ? (int)strlen(of) : (int)(dot - of), of);
 }
@@ -76,7 +76,7 @@ static bool add_all(planning *self) {
   for (size_t m = 0; m < fit->match_count && fine; m++) {
     size_t used = 0, parts = 0;
     for (size_t s = 0; s < fit->matches[m].series_count && fine; s++) {
-      int32_t partner = self->layout->sources[m][s].partner;
+      int32_t partner = self->layout->parts[m].sources[s].partner;
       if (partner >= 0 && partner < (int32_t)s) continue;
       size_t own = take_series(self, m, s, 0);
       if (partner >= 0) own = take_series(self, m, (size_t)partner, own);
@@ -103,16 +103,16 @@ strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *i
                                  strut_fit_plan *plan, strut_error *error) {
   strut_fit_layout layout = {0};
   strut_fit_case one = {0};
-  strut_arena arena = {0};
+  strut_arena *arena = &layout.arena;
   *plan = (strut_fit_plan){.fit = of->study->fit, .variable_count = of->study->fit->variable_count};
   strut_status status = strut_fit_layout_make(of, interrupt, &layout, error);
   size_t n = layout.parameters, most = 2;
   for (size_t m = 0; m < plan->fit->match_count; m++)
     most += 1 + plan->fit->matches[m].series_count;
-  double *jacobian = strut_arena_allocate(&arena, layout.count * n + 1, sizeof *jacobian);
-  double *residual = strut_arena_allocate(&arena, layout.count + 1, sizeof *residual);
+  double *jacobian = strut_arena_allocate(arena, layout.count * n + 1, sizeof *jacobian);
+  double *residual = strut_arena_allocate(arena, layout.count + 1, sizeof *residual);
   planning self = {&layout, plan, jacobian,
-                   strut_arena_allocate(&arena, layout.count * n + 1, sizeof(double))};
+                   strut_arena_allocate(arena, layout.count * n + 1, sizeof(double))};
   plan->candidates = strut_arena_allocate(&plan->arena, most, sizeof *plan->candidates);
   plan->at = strut_arena_allocate(&plan->arena, n + 1, sizeof *plan->at);
   bool fine = jacobian && residual && self.part && plan->candidates && plan->at &&
@@ -137,6 +137,5 @@ strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *i
   if (!status) qsort(plan->candidates, plan->count, sizeof *plan->candidates, by_worth);
   strut_fit_case_free(&one);
   strut_fit_layout_free(&layout);
-  strut_arena_free(&arena);
   return status;
 }

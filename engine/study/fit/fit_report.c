@@ -10,7 +10,6 @@
 static const char *const verdicts[] = {
 #define STRUT_FIT_VERDICT_WORDS(NAME, words) words,
     STRUT_FIT_VERDICTS(STRUT_FIT_VERDICT_WORDS)};
-static const char *const ends[] = {"converged", "stuck", "failed"};
 
 /* A number in the unit of an estimate. */
 #define STRUT_VALUE_AS_IN(UNIT, NUMBER) STRUT_VALUE_AS_CALLED(NULL, UNIT, NUMBER)
@@ -78,7 +77,7 @@ static strut_value value_of_row(const strut_result_object *of, size_t i) {
 }
 
 #define ROW(X)                                                                                     \
-  X("end", "", TEXT(ends[r->end]), "how it ended", .label = {""})                                  \
+  X("end", "", TEXT(strut_fit_ends[r->end]), "how it ended", .label = {""})                        \
   X("sum", "1", NUMBER(r->sum), "of squared residuals", .label = {"sum of squares"})               \
   X("evaluations", "", COUNT(r->evaluations), "of the residuals", .label = {""})                   \
   X("values", "", MAP(result_of(of)->variable_count, variable_name, value_of_row),                 \
@@ -172,6 +171,14 @@ static void add_quantity(strut_buffer *text, double value, const char *unit) {
   strut_buffer_add(text, "%s%s", plain ? "" : " ", plain ? "" : unit);
 }
 
+/* Numbers, each behind a comma; empty for NAN. */
+static void add_cells(strut_buffer *csv, const double *numbers, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    strut_buffer_add(csv, ",");
+    strut_csv_add_number(csv, numbers[i]);
+  }
+}
+
 static char *estimates_csv(const strut_fit_result *result) {
   strut_buffer csv = {0};
   strut_buffer_add(&csv, "parameter,value,standard_error,low,high,verdict\n");
@@ -180,10 +187,7 @@ static char *estimates_csv(const strut_fit_result *result) {
     const double numbers[] = {e->value, isfinite(e->error) ? e->error : (double)NAN, e->low,
                               e->high};
     strut_buffer_add(&csv, "%s", e->name);
-    for (int k = 0; k < 4; k++) {
-      strut_buffer_add(&csv, ",");
-      strut_csv_add_number(&csv, numbers[k]);
-    }
+    add_cells(&csv, numbers, 4);
     strut_buffer_add(&csv, ",%s\n", verdicts[e->verdict]);
   }
   return strut_buffer_take(&csv);
@@ -199,9 +203,8 @@ static char *covariance_csv(const strut_fit_result *result) {
   for (size_t i = 0; i < n; i++) {
     strut_buffer_add(&csv, "\n%s", estimates[i].name);
     for (size_t j = 0; j < n; j++) {
-      strut_buffer_add(&csv, ",");
-      strut_csv_add_number(
-          &csv, result->correlation[i * n + j] * estimates[i].error * estimates[j].error);
+      double common = result->correlation[i * n + j] * estimates[i].error * estimates[j].error;
+      add_cells(&csv, &common, 1);
     }
   }
   strut_buffer_add(&csv, "\n");
@@ -222,10 +225,7 @@ static char *residuals_csv(const strut_fit_result *result) {
         if (isnan(numbers[1])) continue;
         strut_buffer_add(&csv, "%s,", match->name);
         strut_csv_add_text(&csv, "%s", match->series[s].of);
-        for (int k = 0; k < 4; k++) {
-          strut_buffer_add(&csv, ",");
-          strut_csv_add_number(&csv, numbers[k]);
-        }
+        add_cells(&csv, numbers, 4);
         strut_buffer_add(&csv, "\n");
       }
     }

@@ -6,7 +6,6 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/simulate.h"
 #include "engine/study/fit/fit_parts.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/sweep/grid.h"
 
 /* Runs are made by a method that controls its error, within this tolerance; derivatives need that. */
@@ -21,50 +20,14 @@ static const double BESIDE = 0.01;
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
 
-/* ---- parameters ---- */
-
-static bool is_aligned(const strut_fit_layout *layout, size_t i) {
-  return i < layout->aligned_count;
-}
-
-static const strut_search_variable *variable_of(const strut_fit_layout *layout, size_t i) {
-  return &layout->fit->variables[i - layout->aligned_count];
-}
-
-double strut_fit_value(const strut_fit_layout *layout, size_t i, double parameter) {
-  if (!is_aligned(layout, i))
-    return strut_search_value(variable_of(layout, i), parameter - 1.0).number;
-  return (parameter - 1.0) * layout->aligned[i].scale;
-}
-
-double strut_fit_parameter(const strut_fit_layout *layout, size_t i, double value) {
-  if (!is_aligned(layout, i))
-    return 1.0 + strut_search_number(variable_of(layout, i), (strut_study_value){.number = value});
-  return 1.0 + value / layout->aligned[i].scale;
-}
-
-double strut_fit_slope(const strut_fit_layout *layout, size_t i, double parameter) {
-  if (is_aligned(layout, i)) return layout->aligned[i].scale;
-  const strut_search_variable *variable = variable_of(layout, i);
-  if (!variable->logarithmic) return variable->to - variable->from;
-  return strut_fit_value(layout, i, parameter) * log(variable->to / variable->from);
-}
-
-const char *strut_fit_name(const strut_fit_layout *layout, size_t i) {
-  return is_aligned(layout, i) ? layout->aligned[i].name : variable_of(layout, i)->name;
-}
-
-const char *strut_fit_unit(const strut_fit_layout *layout, size_t i) {
-  return is_aligned(layout, i) ? layout->aligned[i].unit : variable_of(layout, i)->unit;
-}
-
 /* The alignments of a match at the parameters. */
 typedef struct alignment {
   double number[STRUT_FIT_ALIGNS_COUNT];
+  double others; /* factor of numbers that are no coordinates */
 } alignment;
 
 static alignment align(const strut_fit_layout *layout, size_t match, const double *parameters) {
-  alignment a = {{0.0}};
+  alignment a = {.others = 1.0};
   for (size_t i = 0; i < layout->aligned_count; i++)
     if (layout->aligned[i].match == match)
       a.number[layout->aligned[i].what] = strut_fit_value(layout, i, parameters[i]);
@@ -82,28 +45,11 @@ typedef struct prediction {
   strut_study_value *values; /* of all columns of the axes */
 } prediction;
 
-static bool stops(strut_status status) {
-  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
-}
-
 /* Notes what must stop everything; else the point just has no residuals. */
 static bool settle_status(strut_fit_case *one, strut_status status, const strut_error *error) {
-  if (stops(status)) one->status = status;
+  if (strut_sweep_stops(status)) one->status = status;
   if (status) one->error = *error;
   return status == STRUT_OK;
-}
-
-/* The values of all columns: those of the parameters, and what the match sets. */
-static void fill_values(const prediction *self, const double *parameters) {
-  const strut_fit_layout *layout = self->one->layout;
-  const strut_study_fit *fit = layout->fit;
-  strut_grid_values(layout->plan->study, 0, self->values);
-  for (size_t k = 0; k < fit->variable_count; k++) {
-    size_t i = layout->aligned_count + k;
-    self->values[fit->column + k].number = strut_fit_value(layout, i, parameters[i]);
-  }
-  for (size_t k = 0; k < fit->set_count; k++)
-    self->values[fit->column + fit->variable_count + k] = self->match->values[k];
 }
 
 /* The time that the numbers of a match take [s]. */
@@ -128,18 +74,22 @@ static double beside(const strut_fit_match *match) {
   return BESIDE * span_of(match) / (double)match->count;
 }
 
+static const strut_quantity_definition *find_quantity(const strut_experiment *experiment,
+                                                      const char *name) {
+  for (size_t i = 0; i < experiment->quantity_count; i++)
+    if (strcmp(experiment->quantities[i].name, name) == 0) return &experiment->quantities[i];
+  return NULL;
+}
+
 /* Only the quantities of the match, in its order; false: the model measures one of them no more. */
 static bool choose_quantities(const strut_fit_match *match, strut_setup *setup) {
   strut_experiment *experiment = &setup->experiment;
   strut_quantity_definition *chosen =
       strut_arena_allocate(&setup->scene.arena, match->series_count, sizeof *chosen);
   for (size_t s = 0; s < match->series_count && chosen; s++) {
-    size_t i = 0;
-    while (i < experiment->quantity_count &&
-           strcmp(experiment->quantities[i].name, match->series[s].of) != 0)
-      i++;
-    if (i == experiment->quantity_count) return false;
-    chosen[s] = experiment->quantities[i];
+    const strut_quantity_definition *found = find_quantity(experiment, match->series[s].of);
+    if (!found) return false;
+    chosen[s] = *found;
   }
   experiment->quantities = chosen;
   experiment->quantity_count = match->series_count;
@@ -188,7 +138,7 @@ static size_t place_samples(const prediction *self, size_t each, double *time) {
 static void take_samples(const prediction *self, size_t each, const double *sampled) {
   static const int places[] = {1, 0, 2}; /* before, at, after */
   const strut_fit_match *match = self->match;
-  const strut_fit_source *source = self->one->layout->sources[self->index];
+  const strut_fit_source *source = self->one->layout->parts[self->index].sources;
   size_t count = match->at ? count_early(self->one, match) : 1;
   for (size_t i = 0; i < count; i++)
     for (size_t s = 0; s < match->series_count; s++)
@@ -227,11 +177,11 @@ static strut_status predict_motion(const prediction *self, strut_setup *setup,
 static strut_status predict_curve(const prediction *self, strut_setup *setup,
                                   const strut_model *model, strut_error *error) {
   const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *source = layout->sources[self->index];
+  const strut_fit_source *source = layout->parts[self->index].sources;
   strut_path path = {0};
   setup->experiment.interrupt = layout->interrupt;
   strut_status status =
-      strut_statics_path(&layout->studies[self->index], setup, model, &path, error);
+      strut_statics_path(&layout->parts[self->index].study, setup, model, &path, error);
   for (size_t i = 0; i < self->match->count && !status; i++)
     self->one->predicted[0][source[0].first + i] = strut_goals_force_at(&path, self->match->at[i]);
   strut_path_free(&path);
@@ -270,11 +220,11 @@ static void give_values(const void *context, int64_t point, strut_study_value *v
 /* What a study with the match's `compute` keeps. */
 static bool predict_table(const prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *source = layout->sources[self->index];
+  const strut_fit_source *source = layout->parts[self->index].sources;
   const strut_sweep_options options = {
       .interrupt = layout->interrupt, .values = give_values, .point_context = self};
   strut_arena arena = {0};
-  const strut_sweep_worker worker = {&layout->tables[self->index], &options, layout->standing,
+  const strut_sweep_worker worker = {&layout->parts[self->index].table, &options, layout->standing,
                                      NULL};
   strut_sweep_job *job = strut_sweep_make_jobs(worker.plan, &arena, 1);
   if (job) strut_sweep_compute(&worker, 0, job);
@@ -299,7 +249,9 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
     prediction p = {one, &fit->matches[m], m, align(layout, m, parameters), values};
     if ((int32_t)m == one->left_out) continue;
-    fill_values(&p, parameters);
+    strut_fit_fill_values(layout, 0, parameters, values);
+    for (size_t k = 0; k < fit->set_count; k++)
+      values[fit->column + fit->variable_count + k] = p.match->values[k];
     one->known = p.match->kind == STRUT_FIT_TABLE ? predict_table(&p) : predict_scene(&p);
   }
   strut_release(values);
@@ -309,126 +261,88 @@ static bool predict(strut_fit_case *one, const double *parameters) {
 
 /* ---- residuals ---- */
 
-/* A number of a series, turned and shifted as its match is: of `from`, which may hold rates. */
+/* A number of a series, turned and shifted as its match is. */
 static double align_number(const strut_fit_source *sources, size_t s, const double *from, size_t i,
-                           const alignment *a, bool rate) {
+                           const alignment *a) {
   const strut_fit_source *source = &sources[s];
   double turn = a->number[STRUT_FIT_ROTATE], own = from[source->first + i];
-  if (source->axis < 0) return own;
-  double shift = rate ? 0.0 : a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
+  if (source->axis < 0) return a->others * own;
+  double shift = a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
   if (source->partner < 0) return own + shift;
   double other = from[sources[source->partner].first + i];
   return own * cos(turn) + (source->axis ? other : -other) * sin(turn) + shift;
 }
 
-/* The factor of a residual's number; 0: a gap, or it does not count. */
-static double weight_of(const strut_fit_case *one, size_t match, size_t s, size_t i) {
-  const strut_fit_match *of = &one->layout->fit->matches[match];
-  const strut_fit_series *series = &of->series[s];
-  double weight = series->weights ? sqrt(series->weights[i]) : 1.0;
-  bool counts = (int32_t)match != one->left_out && !isnan(series->measured[i]);
-  return counts && is_early(one, of, i) ? weight / one->layout->noise[match] : 0.0;
-}
-
-/* Calls for each number that counts, with its weight. */
-typedef void see_number(void *context, size_t match, size_t s, size_t i, double weight);
-
-static void see_all(const strut_fit_case *one, see_number *see, void *context) {
-  const strut_study_fit *fit = one->layout->fit;
-  for (size_t m = 0; m < fit->match_count; m++)
-    for (size_t s = 0; s < fit->matches[m].series_count; s++)
-      for (size_t i = 0; i < fit->matches[m].count; i++) {
-        double weight = weight_of(one, m, s, i);
-        if (weight > 0.0) see(context, m, s, i, weight);
-      }
-}
-
-static void count_number(void *context, size_t match, size_t s, size_t i, double weight) {
-  (void)match, (void)s, (void)i, (void)weight;
-  ++*(size_t *)context;
-}
-
-size_t strut_fit_used(const strut_fit_case *one) {
-  size_t count = 0;
-  see_all(one, count_number, &count);
-  return count;
-}
-
-/* Residuals, or their derivatives by a number of an alignment, being filled. */
-typedef struct filling {
-  const strut_fit_case *one;
-  const double *parameters;
-  const strut_fit_aligned *by; /* NULL: the residuals */
-  double *to;
-} filling;
-
-static void fill_residual(void *context, size_t m, size_t s, size_t i, double weight) {
-  const filling *self = context;
-  const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *sources = layout->sources[m];
-  alignment a = align(layout, m, self->parameters);
-  double model = align_number(sources, s, self->one->predicted[0], i, &a, false);
-  self->to[sources[s].first + i] = weight * (model - layout->fit->matches[m].series[s].measured[i]);
-}
-
-/* The rates of the motion of a match at its samples, not aligned. */
-static void fill_rates(const strut_fit_case *one, size_t m, double *rate) {
-  const strut_fit_match *match = &one->layout->fit->matches[m];
-  size_t first = one->layout->sources[m][0].first;
-  for (size_t i = first; i < first + match->series_count * match->count; i++)
-    rate[i] = (one->predicted[2][i] - one->predicted[1][i]) / (2.0 * beside(match));
-}
-
-static void fill_derivative(void *context, size_t m, size_t s, size_t i, double weight) {
-  const filling *self = context;
-  const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *sources = layout->sources[m];
-  alignment a = align(layout, m, self->parameters);
-  double change = 0.0;
-  if (self->by->match != m || sources[s].axis + (self->by->what == STRUT_FIT_DELAY) < 0) return;
-  switch (self->by->what) {
-    case STRUT_FIT_SHIFT_X: change = sources[s].axis == 0; break;
-    case STRUT_FIT_SHIFT_Y: change = sources[s].axis == 1; break;
-    case STRUT_FIT_ROTATE: /* a quarter of a turn further */
-      a.number[STRUT_FIT_ROTATE] += 1.5707963267948966;
-      change = align_number(sources, s, self->one->predicted[0], i, &a, true);
-      break;
-    case STRUT_FIT_DELAY: change = -align_number(sources, s, self->one->buffer, i, &a, true); break;
-    case STRUT_FIT_ALIGNS_COUNT: break;
-  }
-  self->to[sources[s].first + i] = weight * change * self->by->scale;
+static void align_match(const strut_fit_layout *layout, size_t m, const double *from,
+                        const alignment *a, double *to) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  const strut_fit_source *sources = layout->parts[m].sources;
+  for (size_t s = 0; s < match->series_count; s++)
+    for (size_t i = 0; i < match->count; i++)
+      to[sources[s].first + i] = align_number(sources, s, from, i, a);
 }
 
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to) {
+  for (size_t m = 0; m < one->layout->fit->match_count; m++) {
+    alignment a = align(one->layout, m, parameters);
+    align_match(one->layout, m, one->predicted[0], &a, to);
+  }
+}
+
+void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out) {
   const strut_fit_layout *layout = one->layout;
+  double *weight = one->weight;
+  one->share = share, one->left_out = left_out;
+  one->known = false, one->used = 0;
   for (size_t m = 0; m < layout->fit->match_count; m++) {
     const strut_fit_match *match = &layout->fit->matches[m];
-    alignment a = align(layout, m, parameters);
     for (size_t s = 0; s < match->series_count; s++)
-      for (size_t i = 0; i < match->count; i++)
-        to[layout->sources[m][s].first + i] =
-            align_number(layout->sources[m], s, one->predicted[0], i, &a, false);
+      for (size_t i = 0; i < match->count; i++, weight++) {
+        const double *of = match->series[s].weights;
+        bool counts = (int32_t)m != left_out && !isnan(match->series[s].measured[i]);
+        *weight = (of ? sqrt(of[i]) : 1.0) / layout->parts[m].noise;
+        if (!counts || !is_early(one, match, i)) *weight = 0.0;
+        one->used += *weight > 0.0;
+      }
   }
 }
 
 static bool find_residuals(void *context, const double *parameters, double *residual) {
   strut_fit_case *one = context;
-  filling f = {one, parameters, NULL, residual};
+  one->evaluations++;
   if (one->status || !predict(one, parameters)) return false;
-  memset(residual, 0, one->layout->count * sizeof *residual);
-  see_all(one, fill_residual, &f);
+  strut_fit_align_all(one, parameters, residual);
+  for (size_t k = 0; k < one->layout->count; k++)
+    residual[k] =
+        one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - one->layout->measured[k]) : 0.0;
   return true;
 }
 
-/* Alignments need no further runs. */
+/* How fast the numbers of a match change with its delay, not aligned. */
+static void fill_rates(const strut_fit_case *one, size_t m, double *rate) {
+  const strut_fit_match *match = &one->layout->fit->matches[m];
+  size_t first = one->layout->parts[m].sources[0].first;
+  for (size_t k = first; k < first + match->series_count * match->count; k++)
+    rate[k] = (one->predicted[1][k] - one->predicted[2][k]) / (2.0 * beside(match));
+}
+
+/* Alignments need no further runs: a turn's derivative is the motion a quarter of a turn further. */
 static bool find_derivative(void *context, const double *parameters, size_t i, double *derivative) {
   strut_fit_case *one = context;
-  if (!is_aligned(one->layout, i)) return false;
-  filling f = {one, parameters, &one->layout->aligned[i], derivative};
-  if (one->status || !predict(one, parameters)) return false;
-  memset(derivative, 0, one->layout->count * sizeof *derivative);
-  if (f.by->what == STRUT_FIT_DELAY) fill_rates(one, f.by->match, one->buffer);
-  see_all(one, fill_derivative, &f);
+  const strut_fit_layout *layout = one->layout;
+  const strut_fit_aligned *by = &layout->aligned[i];
+  if (i >= layout->aligned_count || one->status || !predict(one, parameters)) return false;
+  bool turns = by->what == STRUT_FIT_ROTATE, delays = by->what == STRUT_FIT_DELAY;
+  alignment a = align(layout, by->match, parameters);
+  a.number[STRUT_FIT_SHIFT_X] = a.number[STRUT_FIT_SHIFT_Y] = 0.0;
+  a.number[by->what] += turns ? 1.5707963267948966 : 1.0;
+  a.others = delays;
+  memset(derivative, 0, layout->count * sizeof *derivative);
+  memset(one->buffer, 0, layout->count * sizeof *one->buffer);
+  if (delays) fill_rates(one, by->match, one->buffer);
+  align_match(layout, by->match, turns ? one->predicted[0] : one->buffer, &a, derivative);
+  for (size_t k = 0; k < layout->count; k++)
+    derivative[k] = one->weight[k] > 0.0 ? one->weight[k] * derivative[k] * by->scale : 0.0;
   return true;
 }
 
@@ -448,21 +362,22 @@ strut_least_squares strut_fit_problem(strut_fit_case *one) {
 }
 
 bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) {
-  size_t most = 0;
-  *one = (strut_fit_case){.layout = layout, .share = 1.0, .left_out = -1};
+  strut_arena *arena = &one->arena;
+  size_t most = layout->count;
+  *one = (strut_fit_case){.layout = layout};
   for (size_t m = 0; m < layout->fit->match_count; m++) {
     size_t count = layout->fit->matches[m].count;
     size_t room = 3 * (count + 1) * (1 + layout->fit->matches[m].series_count);
     if (room > most) most = room;
   }
-  one->buffer = strut_arena_allocate(&one->arena, most > layout->count ? most : layout->count,
-                                     sizeof(double));
-  one->latest = strut_arena_allocate(&one->arena, layout->parameters, sizeof(double));
-  bool fine = one->buffer && one->latest;
-  for (int k = 0; k < 3 && fine; k++) {
-    one->predicted[k] = strut_arena_allocate(&one->arena, layout->count, sizeof(double));
-    fine = one->predicted[k] != NULL;
-  }
+  one->buffer = strut_arena_allocate(arena, most, sizeof(double));
+  one->latest = strut_arena_allocate(arena, layout->parameters, sizeof(double));
+  one->weight = strut_arena_allocate(arena, layout->count, sizeof(double));
+  for (int k = 0; k < 3; k++)
+    one->predicted[k] = strut_arena_allocate(arena, layout->count, sizeof(double));
+  bool fine = one->buffer && one->latest && one->weight && one->predicted[0] && one->predicted[1] &&
+              one->predicted[2];
+  if (fine) strut_fit_choose(one, 1.0, -1);
   return fine;
 }
 
@@ -481,13 +396,6 @@ static int64_t find_number(const strut_sweep_plan *plan, const char *name) {
     number++;
   }
   return -1;
-}
-
-static const strut_quantity_definition *find_quantity(const strut_experiment *experiment,
-                                                      const char *name) {
-  for (size_t i = 0; i < experiment->quantity_count; i++)
-    if (strcmp(experiment->quantities[i].name, name) == 0) return &experiment->quantities[i];
-  return NULL;
 }
 
 /* The place whose coordinate a quantity is, if it is one, and which. */
@@ -516,7 +424,7 @@ static strut_status refuse(const strut_fit_match *match, size_t s, const char *w
 static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut_setup *setup,
                                  strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  strut_fit_source *sources = layout->sources[m] =
+  strut_fit_source *sources = layout->parts[m].sources =
       strut_arena_allocate(&layout->arena, match->series_count, sizeof *sources);
   strut_column *places = strut_arena_allocate(&layout->arena, match->series_count, sizeof *places);
   if (!sources || !places) return strut_no_memory(error, "");
@@ -524,8 +432,9 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     const strut_quantity_definition *quantity =
         find_quantity(&setup->experiment, match->series[s].of);
     bool moves = match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST;
-    int64_t column =
-        match->kind == STRUT_FIT_TABLE ? find_number(&layout->tables[m], match->series[s].of) : 0;
+    int64_t column = match->kind == STRUT_FIT_TABLE
+                         ? find_number(&layout->parts[m].table, match->series[s].of)
+                         : 0;
     if (column < 0) return refuse(match, s, "is no column of numbers of that computation", error);
     bool follows = match->kind != STRUT_FIT_CURVE || setup->experiment.stage_count ||
                    (layout->plan->study->path.over &&
@@ -541,6 +450,8 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
       if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
           places[k].item == places[s].item)
         sources[s].partner = (int32_t)k, sources[k].partner = (int32_t)s;
+    memcpy(layout->measured + layout->count, match->series[s].measured,
+           match->count * sizeof(double));
     layout->count += match->count;
   }
   for (size_t s = 0; s < match->series_count && match->align.rotate; s++)
@@ -561,14 +472,18 @@ static double range_of(const strut_fit_match *match) {
   return most > least ? most - least : fmax(fabs(most), 1e-12);
 }
 
+/* Turns and delays have a range, as parameters do: a delay is no longer than the motion. */
 static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
                         double scale) {
   static const char *const names[] = {"shift_x", "shift_y", "rotate", "delay"};
   static const char *const units[] = {"m", "m", "rad", "s"};
+  const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
   const char *name =
       strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
-  layout->aligned[layout->aligned_count++] =
-      (strut_fit_aligned){m, what, name, units[what], start, scale};
+  size_t i = layout->aligned_count++;
+  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale};
+  layout->low[i] = 1.0 + (start - range[what]) / scale;
+  layout->high[i] = 1.0 + (start + range[what]) / scale;
   return name != NULL;
 }
 
@@ -579,31 +494,13 @@ static bool add_alignments(strut_fit_layout *layout, size_t m) {
   for (int axis = 0; axis < 2 && match->align.shift; axis++) {
     bool there = false;
     for (size_t s = 0; s < match->series_count; s++)
-      there = there || layout->sources[m][s].axis == axis;
+      there = there || layout->parts[m].sources[s].axis == axis;
     if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, 0.0, range) && fine;
   }
   if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
   if (match->align.delay)
     fine = add_aligned(layout, m, STRUT_FIT_DELAY, match->at[0], span_of(match)) && fine;
   return fine;
-}
-
-/* The box: ranges of parameters; turns, and delays so long as the motion. */
-static bool make_box(strut_fit_layout *layout) {
-  layout->parameters = layout->aligned_count + layout->fit->variable_count;
-  layout->low = strut_arena_allocate(&layout->arena, layout->parameters, sizeof(double));
-  layout->high = strut_arena_allocate(&layout->arena, layout->parameters, sizeof(double));
-  for (size_t i = 0; layout->low && layout->high && i < layout->parameters; i++) {
-    const strut_fit_aligned *aligned = &layout->aligned[i];
-    bool of_match = is_aligned(layout, i);
-    double most = !of_match                           ? 0.0
-                  : aligned->what == STRUT_FIT_DELAY  ? aligned->scale
-                  : aligned->what == STRUT_FIT_ROTATE ? MOST_TURN
-                                                      : HUGE_VAL;
-    layout->low[i] = of_match ? 1.0 + (aligned->start - most) / aligned->scale : 1.0;
-    layout->high[i] = of_match ? 1.0 + (aligned->start + most) / aligned->scale : 2.0;
-  }
-  return layout->low && layout->high;
 }
 
 /* Keeps all columns that the study can have. */
@@ -622,13 +519,13 @@ static void keep_all(strut_study *study) {
 /* The study that computes the columns of a match, or its path. */
 static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *error) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  layout->studies[m] = *layout->plan->study;
-  layout->studies[m].compute =
+  layout->parts[m].study = *layout->plan->study;
+  layout->parts[m].study.compute =
       match->kind == STRUT_FIT_CURVE ? (uint32_t)STRUT_COMPUTE_PATH : match->compute;
   if (match->kind != STRUT_FIT_TABLE) return STRUT_OK;
-  keep_all(&layout->studies[m]);
-  return strut_sweep_plan_make(&layout->studies[m], &layout->plan->scenes, &layout->tables[m],
-                               error);
+  keep_all(&layout->parts[m].study);
+  return strut_sweep_plan_make(&layout->parts[m].study, &layout->plan->scenes,
+                               &layout->parts[m].table, error);
 }
 
 static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
@@ -645,7 +542,7 @@ static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
     status = make_table(layout, m, error);
     if (!status) status = find_sources(layout, m, &setup, error);
     if (!status && !add_alignments(layout, m)) status = strut_no_memory(error, "");
-    layout->noise[m] = match->noise > 0.0 ? match->noise : range_of(match);
+    layout->parts[m].noise = match->noise > 0.0 ? match->noise : range_of(match);
     layout->noise_known = layout->noise_known && match->noise > 0.0;
   }
   strut_setup_free(&setup);
@@ -656,25 +553,31 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
                                    strut_fit_layout *layout, strut_error *error) {
   const strut_study_fit *fit = plan->study->fit;
   strut_arena *arena = &layout->arena;
+  size_t count = 0;
   *layout =
       (strut_fit_layout){.plan = plan, .fit = fit, .interrupt = interrupt, .noise_known = true};
-  layout->aligned = strut_arena_allocate(arena, 4 * fit->match_count, sizeof *layout->aligned);
-  layout->sources = strut_arena_allocate(arena, fit->match_count, sizeof *layout->sources);
-  layout->studies = strut_arena_allocate(arena, fit->match_count, sizeof *layout->studies);
-  layout->tables = strut_arena_allocate(arena, fit->match_count, sizeof *layout->tables);
-  layout->noise = strut_arena_allocate(arena, fit->match_count, sizeof *layout->noise);
+  for (size_t m = 0; m < fit->match_count; m++)
+    count += fit->matches[m].count * fit->matches[m].series_count;
+  size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
+  layout->aligned = strut_arena_allocate(arena, most, sizeof *layout->aligned);
+  layout->parts = strut_arena_allocate(arena, fit->match_count, sizeof *layout->parts);
+  layout->measured = strut_arena_allocate(arena, count, sizeof *layout->measured);
+  layout->low = strut_arena_allocate(arena, all, sizeof *layout->low);
+  layout->high = strut_arena_allocate(arena, all, sizeof *layout->high);
   layout->standing = strut_equilibrium_cache_create();
-  if (!layout->aligned || !layout->sources || !layout->studies || !layout->tables ||
-      !layout->noise || !layout->standing)
+  if (!layout->aligned || !layout->parts || !layout->measured || !layout->low || !layout->high ||
+      !layout->standing)
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);
-  if (!status && !make_box(layout)) status = strut_no_memory(error, "");
+  layout->parameters = layout->aligned_count + fit->variable_count;
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    layout->low[i] = 1.0, layout->high[i] = 2.0;
   return status;
 }
 
 void strut_fit_layout_free(strut_fit_layout *layout) {
-  for (size_t m = 0; layout->fit && layout->tables && m < layout->fit->match_count; m++)
-    strut_sweep_plan_free(&layout->tables[m]);
+  for (size_t m = 0; layout->fit && layout->parts && m < layout->fit->match_count; m++)
+    strut_sweep_plan_free(&layout->parts[m].table);
   strut_equilibrium_cache_free(layout->standing);
   strut_arena_free(&layout->arena);
   *layout = (strut_fit_layout){0};

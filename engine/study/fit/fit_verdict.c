@@ -47,7 +47,7 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   double square = 0.0, lags = 0.0, series = 0.0;
   *of = (strut_fit_residuals){.match = match, .lag = (double)NAN};
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + layout->sources[m][s].first;
+    const double *residual = result->residual + layout->parts[m].sources[s].first;
     double lag = match->kind == STRUT_FIT_MOTION ? find_lag(residual, match->count) : (double)NAN;
     if (!isnan(lag)) lags += lag, series += 1.0;
     for (size_t i = 0; i < match->count; i++) {
@@ -56,7 +56,7 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
     }
   }
   if (series > 0.0) of->lag = lags / sqrt(series);
-  of->rms = layout->noise[m] * sqrt(square / fmax(1.0, (double)of->used));
+  of->rms = layout->parts[m].noise * sqrt(square / fmax(1.0, (double)of->used));
   of->chi_square = layout->noise_known ? square : (double)NAN;
 }
 

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <string.h>
 
+const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed"};
+
 /* Gradients, and changes of the sum, at which the method ends, relative. */
 static const double FLAT = 1e-15;
 
@@ -37,7 +39,6 @@ typedef struct solver {
   bool lost;     /* residuals end there while they get smaller */
   bool changed;  /* others are stopped than at the matrix before */
   bool stopped[STRUT_LEAST_SQUARES_MOST]; /* (free) */
-  int64_t evaluations;
 } solver;
 
 static bool is_held(const solver *self, size_t i) { return (int32_t)i == self->problem->held; }
@@ -53,7 +54,6 @@ static void enter_box(solver *self, const gsl_vector *x, double *outside) {
 }
 
 static bool evaluate(solver *self, double *residual) {
-  self->evaluations++;
   if (!self->problem->residuals(self->problem->context, self->at, residual)) return false;
   for (size_t i = 0; i < self->problem->count; i++)
     if (!isfinite(residual[i])) return false;
@@ -219,7 +219,6 @@ strut_status strut_least_squares_solve(const strut_least_squares *problem, doubl
     gsl_vector_free(x);
     memcpy(parameters, self.at, problem->parameters * sizeof *parameters);
   }
-  solution->evaluations = self.evaluations;
   strut_arena_free(&arena);
   return status;
 }

@@ -40,11 +40,13 @@ typedef enum strut_fit_end {
   STRUT_FIT_END_COUNT
 } strut_fit_end;
 
+/** "converged", ... */
+extern const char *const strut_fit_ends[STRUT_FIT_END_COUNT];
+
 typedef struct strut_fit_solution {
   strut_fit_end end;
   double sum; /* of squared residuals */
   int64_t steps;
-  int64_t evaluations; /* of residuals */
 } strut_fit_solution;
 
 /** Moves the parameters to the least sum nearby. STRUT_OK, whatever the end; STRUT_NO_MEMORY. */

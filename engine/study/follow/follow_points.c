@@ -202,33 +202,17 @@ static strut_status write_branches(point_work *self, bool partial) {
 }
 
 static void fill_row(const point_work *self, strut_status status, strut_row_buffer *cells) {
-  const strut_sweep_plan *plan = self->plan;
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    if (plan->columns[i].word)
-      strut_sweep_word(cells, self->values[i].word);
-    else
-      strut_sweep_number(cells, self->values[i].number);
-  }
+  strut_sweep_axes(self->plan, self->values, cells);
   const counts all = count_branches(self->result), *c = &all;
   const double values[] = {
 #define ROW_VALUE(name, unit, value) value,
       ROW_TABLE(ROW_VALUE)};
   for (size_t i = 0; i < ROW_COLUMNS; i++)
     strut_sweep_number(cells, status ? (double)NAN : values[i]);
-  snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
-           status ? self->error.message : "");
-  cells->row = (strut_result_slot){.status = status,
-                                   .numbers = cells->numbers,
-                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
-                                   .message = cells->message};
+  strut_sweep_end_row(cells, status, status ? &self->error : &(strut_error){0});
 }
 
 /* ---- all points ---- */
-
-/* Does this end the study, instead of the point alone? */
-static bool stops(strut_status status) {
-  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
-}
 
 static strut_status follow_into(point_work *self, strut_row_buffer *cells, int threads) {
   strut_status status = follow_point(self, threads);
@@ -241,7 +225,7 @@ static strut_status follow_into(point_work *self, strut_row_buffer *cells, int t
     written = write_branches(self, partial);
     if (written) return written;
   }
-  if (stops(status)) return status;
+  if (strut_sweep_stops(status)) return status;
   fill_row(self, status, cells);
   return STRUT_OK;
 }

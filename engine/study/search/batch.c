@@ -101,13 +101,8 @@ void strut_search_batch_free(strut_search_batch *batch) {
 }
 
 static bool add_point(strut_search_batch *batch, int64_t point, const strut_study_value *values) {
-  if (batch->count == batch->capacity) {
-    size_t capacity = batch->capacity ? 2 * batch->capacity : 64;
-    strut_batch_point_wanted *more = strut_reallocate(batch->wanted, capacity, sizeof *more);
-    if (!more) return false;
-    batch->wanted = more;
-    batch->capacity = capacity;
-  }
+  if (!strut_grow(&batch->wanted, &batch->capacity, batch->count, sizeof *batch->wanted))
+    return false;
   batch->wanted[batch->count++] = (strut_batch_point_wanted){point, values};
   return true;
 }

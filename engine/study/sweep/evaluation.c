@@ -149,16 +149,10 @@ struct strut_equilibrium_cache {
 
 static void add(void *context, double value) {
   structure *self = context;
-  if (self->length == self->capacity && !self->failed) {
-    size_t capacity = self->capacity ? 2 * self->capacity : 256;
-    double *key = strut_reallocate(self->key, capacity, sizeof *key);
-    if (key) {
-      self->key = key;
-      self->capacity = capacity;
-    }
-    self->failed = !key;
-  }
-  if (!self->failed) self->key[self->length++] = value;
+  if (self->failed || !strut_grow(&self->key, &self->capacity, self->length, sizeof value))
+    self->failed = true;
+  else
+    self->key[self->length++] = value;
 }
 
 static void free_structure(structure *self) {

@@ -313,6 +313,30 @@ void strut_sweep_word(strut_row_buffer *cells, const char *word) {
   for (size_t i = 0; i + 1 < STRUT_SLOT_WORD && word[i]; i++) to[i] = word[i];
 }
 
+void strut_sweep_axes(const strut_sweep_plan *plan, const strut_study_value *values,
+                      strut_row_buffer *cells) {
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    if (plan->columns[i].word)
+      strut_sweep_word(cells, values[i].word);
+    else
+      strut_sweep_number(cells, values[i].number);
+  }
+}
+
+void strut_sweep_end_row(strut_row_buffer *cells, strut_status status, const strut_error *error) {
+  if (error)
+    snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
+             error->message);
+  cells->row = (strut_result_slot){.status = status,
+                                   .numbers = cells->numbers,
+                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
+                                   .message = cells->message};
+}
+
+bool strut_sweep_stops(strut_status status) {
+  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
+}
+
 /* The value of an entry without a result of its own. */
 static double combine(const strut_summary *summary, const strut_setup *setup, strut_keep keep) {
   double period = strut_experiment_span(&setup->experiment, &setup->scene).period;

@@ -31,6 +31,13 @@ void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *mo
                              strut_row_buffer *cells);
 void strut_sweep_number(strut_row_buffer *cells, double value);
 void strut_sweep_word(strut_row_buffer *cells, const char *word);
+/** The cells of the axes, with which a row begins. */
+void strut_sweep_axes(const strut_sweep_plan *plan, const strut_study_value *values,
+                      strut_row_buffer *cells);
+/** Makes a row of the cells, with the message of the error unless that is NULL. */
+void strut_sweep_end_row(strut_row_buffer *cells, strut_status status, const strut_error *error);
+/** Does this end the study, instead of the point alone? */
+bool strut_sweep_stops(strut_status status);
 /** Says whether the columns that are added next follow parameters smoothly: no counts, words and settings do. */
 void strut_sweep_begin_smooth(strut_sweep_plan *plan, strut_keep keep);
 

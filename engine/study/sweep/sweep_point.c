@@ -17,11 +17,6 @@
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/* Does this end the sweep, instead of the point alone? */
-static bool stops(strut_status status) {
-  return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
-}
-
 /* The columns that a failed point leaves empty. */
 static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   size_t words = 0;
@@ -51,17 +46,10 @@ static void finish_point(const strut_sweep_worker *worker, strut_sweep_job *job,
                          strut_status status) {
   strut_row_buffer *cells = &job->cells;
   status = explain_interrupt(worker, job, status);
-  job->status = stops(status) ? status : STRUT_OK;
+  job->status = strut_sweep_stops(status) ? status : STRUT_OK;
   if (job->status) return;
-  if (status) {
-    pad_cells(worker->plan, cells);
-    snprintf(cells->message, sizeof cells->message, "%.*s", (int)sizeof cells->message - 1,
-             job->error.message);
-  }
-  cells->row = (strut_result_slot){.status = status,
-                                   .numbers = cells->numbers,
-                                   .words = (const char(*)[STRUT_SLOT_WORD])cells->words,
-                                   .message = cells->message};
+  if (status) pad_cells(worker->plan, cells);
+  strut_sweep_end_row(cells, status, status ? &job->error : NULL);
 }
 
 /* The same where the point has a scene. */
@@ -106,12 +94,7 @@ static bool begin_job(const strut_sweep_worker *worker, int64_t point, strut_swe
   const strut_sweep_options *options = worker->options;
   strut_grid_values(plan->study, point, cells->values);
   if (options->values) options->values(options->point_context, point, cells->values);
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    if (plan->columns[i].word)
-      strut_sweep_word(cells, cells->values[i].word);
-    else
-      strut_sweep_number(cells, cells->values[i].number);
-  }
+  strut_sweep_axes(plan, cells->values, cells);
   strut_status status =
       plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
   if (status) {
@@ -202,8 +185,8 @@ static void finish_second_run(const strut_sweep_worker *worker, strut_sweep_job 
   strut_sweep_number(cells, status ? (double)NAN : summary->velocity);
   strut_sweep_word(cells, word);
   strut_sweep_number(cells, same ? 0.0 : 1.0);
-  if (stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
-  finish_with_scene(worker, job, stops(status) ? status : STRUT_OK);
+  if (strut_sweep_stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
+  finish_with_scene(worker, job, strut_sweep_stops(status) ? status : STRUT_OK);
 }
 
 strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep_job *job,

@@ -53,13 +53,6 @@ const char *abi_tree_key(const abi_tree *tree, const char *name, size_t i);
 bool abi_tree_set(abi_tree *tree, const char *name, const char *key, double number,
                   const char *text);
 
-/**
- * The numbers behind a name as an array, row by row: each list on the way is a dimension, and so is what lies
- * behind. NULL where there is none, or more than `most` dimensions; *no_memory says whether memory was out.
- */
-double *abi_tree_array(const abi_tree *tree, const char *name, int most, strut_arena *arena,
-                       int *dimensions, size_t *shape, bool *no_memory);
-
 /* ---- control ---- */
 
 struct strutlib_control {
@@ -83,6 +76,8 @@ int abi_fail_with(strutlib_error **error, strut_status status, const strut_error
 /** The same from everything that was found in `count` texts, found[i] in each. */
 int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *const *found,
                      size_t count);
+/** The end of reading a text: the same of a failure, and frees what was found. Returns the status. */
+strut_status abi_settle(strutlib_error **error, strut_status status, strut_diagnostics *found);
 int abi_no_memory(strutlib_error **error);
 /** Is an argument that a call needs NULL? Then *error says which. */
 bool abi_lacks(strutlib_error **error, const void *argument, const char *name);
@@ -124,6 +119,15 @@ typedef struct abi_array {
   int dimensions;
   size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
 } abi_array;
+
+/** Row by row: the last index runs first. */
+abi_array abi_array_of(const char *name, const char *unit, const double *data, int dimensions,
+                       const size_t *shape);
+
+typedef struct abi_arrays {
+  abi_array *items; /* (count) of strut_allocate */
+  size_t count, capacity;
+} abi_arrays;
 
 enum { ABI_SCENE_ARRAYS = 9, ABI_KINDS = 18 };
 
@@ -204,8 +208,7 @@ struct strutlib_result {
   bool opened; /* there is a setup */
   strut_setup setup;
   strut_model *model;
-  abi_array *arrays; /* (array_count) that are not in the JSON, in the arena */
-  size_t array_count;
+  abi_arrays arrays; /* that are not in the JSON */
   strut_arena arena;
   /** Draws a figure into the file; NULL: there is none. */
   strut_status (*draw)(const strutlib_result *result, const strut_arguments *arguments,
@@ -213,13 +216,14 @@ struct strutlib_result {
   void *detail;         /* of the kind, begins with an abi_detail; or NULL */
   pthread_mutex_t lock; /* of what follows, made when it is first asked for */
   abi_tree *tree;
-  abi_array *made; /* (made_count) arrays of the JSON */
-  size_t made_count, made_capacity;
+  abi_arrays made; /* of the JSON */
   strut_arena made_arena;
 };
 
 /** A result without content, or NULL with the error. */
 strutlib_result *abi_result_create(const strut_command *command, strutlib_error **error);
+/** abi_leave at the end of a call that returns the result, which is released unless it is to be kept. */
+strutlib_result *abi_result_leave(strutlib_result *result, bool kept);
 /** Adds an array that is not in the JSON; its name is copied. False: memory is out. */
 bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
                           const double *data, int dimensions, const size_t *shape);

@@ -218,6 +218,15 @@ static bool add_located(strutlib_error *self, strut_diagnostics *found) {
   return good && self->report;
 }
 
+strut_status abi_settle(strutlib_error **error, strut_status status, strut_diagnostics *found) {
+  if (status == STRUT_NO_MEMORY)
+    abi_no_memory(error);
+  else if (status != STRUT_OK)
+    abi_fail_located(error, status, &found, 1);
+  strut_diagnostics_free(found);
+  return status;
+}
+
 int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnostics *const *found,
                      size_t count) {
   if (!error) return (int)status;
@@ -274,17 +283,11 @@ LOCATED(size_t, length, 0)
 /* ---- messages ---- */
 
 void abi_add_warning(abi_messages *m, const char *text) {
-  if (m->count == m->capacity) {
-    size_t wider = m->capacity ? 2 * m->capacity : 8;
-    const char **list = strut_reallocate((void *)m->warnings, wider, sizeof *list);
-    if (!list) m->out_of_memory = true;
-    if (!list) return;
-    m->warnings = list;
-    m->capacity = wider;
-  }
   const char *kept = strut_arena_text(&m->arena, text, strlen(text));
-  if (!kept) m->out_of_memory = true;
-  if (kept) m->warnings[m->count++] = kept;
+  if (!kept || !strut_grow(&m->warnings, &m->capacity, m->count, sizeof *m->warnings))
+    m->out_of_memory = true;
+  else
+    m->warnings[m->count++] = kept;
 }
 
 void abi_add_notes(abi_messages *m, const strut_diagnostics *found) {

@@ -164,11 +164,9 @@ const char *abi_tree_key(const abi_tree *tree, const char *name, size_t i) {
 /* ---- arrays ---- */
 
 typedef struct extent {
-  int most, dimensions; /* dimensions: of the numbers found so far; -1 before the first */
-  size_t shape[8];
-  bool wrong;   /* texts, or numbers at different depths */
-  double *data; /* NULL while measuring */
-  size_t stride[8];
+  abi_array array; /* of dimension -1 before the first number */
+  bool wrong;      /* texts, or numbers at different depths */
+  double *data;    /* NULL while measuring */
 } extent;
 
 static void visit(const cJSON *at, const char *name, int depth, size_t offset, extent *self);
@@ -176,18 +174,18 @@ static void visit(const cJSON *at, const char *name, int depth, size_t offset, e
 static void visit_children(const cJSON *at, const char *name, int depth, size_t offset,
                            extent *self) {
   size_t i = 0;
-  if (depth >= self->most) {
+  if (depth >= STRUTLIB_DIMENSIONS) {
     self->wrong = true;
     return;
   }
   for (const cJSON *child = at->child; child && !self->wrong; child = child->next, i++)
-    visit(child, name, depth + 1, offset + (self->data ? i * self->stride[depth] : 0), self);
-  if (!self->data && i > self->shape[depth]) self->shape[depth] = i;
+    visit(child, name, depth + 1, offset + (self->data ? i * self->array.stride[depth] : 0), self);
+  if (!self->data && i > self->array.shape[depth]) self->array.shape[depth] = i;
 }
 
 static void take_number(double value, int depth, size_t offset, extent *self) {
-  if (self->dimensions < 0) self->dimensions = depth;
-  if (self->dimensions != depth) self->wrong = true;
+  if (self->array.dimensions < 0) self->array.dimensions = depth;
+  if (self->array.dimensions != depth) self->wrong = true;
   if (self->data && !self->wrong) self->data[offset] = value;
 }
 
@@ -215,24 +213,22 @@ static void visit(const cJSON *at, const char *name, int depth, size_t offset, e
   }
 }
 
-double *abi_tree_array(const abi_tree *tree, const char *name, int most, strut_arena *arena,
-                       int *dimensions, size_t *shape, bool *no_memory) {
-  extent e = {.most = most, .dimensions = -1};
-  *no_memory = false;
+/*
+ * The numbers behind a name as an array, row by row: each list on the way is a dimension, and so is what lies
+ * behind. False where there is none, or more than STRUTLIB_DIMENSIONS, and where memory is out.
+ */
+static bool read_array(const abi_tree *tree, const char *name, strut_arena *arena,
+                       abi_array *array) {
+  extent e = {.array = {.dimensions = -1}};
   visit(tree, name, 0, 0, &e);
-  if (e.wrong || e.dimensions < 0) return NULL;
-  size_t count = 1;
-  for (int d = e.dimensions - 1; d >= 0; d--) {
-    e.stride[d] = count;
-    count *= e.shape[d];
-    shape[d] = e.shape[d];
-  }
-  *dimensions = e.dimensions;
+  if (e.wrong || e.array.dimensions < 0) return false;
+  e.array = abi_array_of(name, "", NULL, e.array.dimensions, e.array.shape);
+  size_t count = e.array.dimensions ? e.array.shape[0] * e.array.stride[0] : 1;
   e.data = strut_arena_allocate(arena, count, sizeof *e.data);
-  *no_memory = !e.data;
   for (size_t i = 0; e.data && i < count; i++) e.data[i] = (double)NAN;
   if (e.data) visit(tree, name, 0, 0, &e);
-  return e.data;
+  *array = e.array, array->data = e.data;
+  return e.data != NULL;
 }
 
 /* Results: what all kinds of them show alike. */
@@ -256,12 +252,19 @@ void strutlib_result_free(strutlib_result *result) {
   abi_tree_free(result->tree);
   strut_release(result->json);
   strut_release(result->table);
-  strut_release(result->made);
+  strut_release(result->made.items);
+  strut_release(result->arrays.items);
   abi_messages_free(&result->messages);
   strut_arena_free(&result->arena);
   strut_arena_free(&result->made_arena);
   pthread_mutex_destroy(&result->lock);
   strut_release(result);
+}
+
+strutlib_result *abi_result_leave(strutlib_result *result, bool kept) {
+  if (!kept) strutlib_result_free(result);
+  abi_leave();
+  return kept ? result : NULL;
 }
 
 /* ---- texts ---- */
@@ -322,60 +325,60 @@ static const abi_tree *tree_of(const strutlib_result *constant) {
 }
 
 int strutlib_result_number(const strutlib_result *result, const char *name, double *value) {
-  const abi_tree *tree = tree_of(result);
-  return tree && abi_tree_number(tree, name, value) ? 1 : 0;
+  return abi_tree_number(tree_of(result), name, value);
 }
 
 int strutlib_result_flag(const strutlib_result *result, const char *name, int *value) {
-  const abi_tree *tree = tree_of(result);
-  return tree && abi_tree_flag(tree, name, value) ? 1 : 0;
+  return abi_tree_flag(tree_of(result), name, value);
 }
 
 const char *strutlib_result_text(const strutlib_result *result, const char *name) {
-  const abi_tree *tree = tree_of(result);
-  return tree ? abi_tree_text(tree, name) : NULL;
+  return abi_tree_text(tree_of(result), name);
 }
 
 size_t strutlib_result_count(const strutlib_result *result, const char *name) {
-  const abi_tree *tree = tree_of(result);
-  return tree ? abi_tree_count(tree, name) : 0;
+  return abi_tree_count(tree_of(result), name);
 }
 
 const char *strutlib_result_key(const strutlib_result *result, const char *name, size_t i) {
-  const abi_tree *tree = tree_of(result);
-  return tree ? abi_tree_key(tree, name, i) : NULL;
+  return abi_tree_key(tree_of(result), name, i);
 }
 
 /* ---- arrays ---- */
 
-bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
-                          const double *data, int dimensions, const size_t *shape) {
-  size_t count = result->array_count;
-  if ((count & (count - 1)) == 0) { /* a power of two, or none: it is full */
-    abi_array *wider = strut_arena_allocate(&result->arena, count ? 2 * count : 1, sizeof *wider);
-    if (!wider) return false;
-    if (count) memcpy(wider, result->arrays, count * sizeof *wider);
-    result->arrays = wider;
-  }
-  abi_array *self = &result->arrays[count];
-  *self = (abi_array){.name = strut_arena_text(&result->arena, name, strlen(name)),
-                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
-                      .data = data,
-                      .dimensions = dimensions};
+abi_array abi_array_of(const char *name, const char *unit, const double *data, int dimensions,
+                       const size_t *shape) {
+  abi_array array = {.name = name, .unit = unit, .data = data, .dimensions = dimensions};
   size_t stride = 1;
   for (int d = dimensions - 1; d >= 0; d--) {
-    self->shape[d] = shape[d];
-    self->stride[d] = stride;
+    array.shape[d] = shape[d];
+    array.stride[d] = stride;
     stride *= shape[d];
   }
-  if (!self->name || !self->unit) return false;
-  result->array_count++;
-  return true;
+  return array;
 }
 
-static const abi_array *find_array(const abi_array *arrays, size_t count, const char *name) {
-  for (size_t i = 0; i < count; i++)
-    if (strcmp(arrays[i].name, name) == 0) return &arrays[i];
+/* With copies of its texts in the arena. NULL: memory is out. */
+static const abi_array *add_array(abi_arrays *list, strut_arena *arena, const abi_array *array) {
+  abi_array copy = *array;
+  copy.name = strut_arena_text(arena, array->name, strlen(array->name));
+  copy.unit = strut_arena_text(arena, array->unit, strlen(array->unit));
+  if (!copy.name || !copy.unit ||
+      !strut_grow(&list->items, &list->capacity, list->count, sizeof copy))
+    return NULL;
+  list->items[list->count] = copy;
+  return &list->items[list->count++];
+}
+
+bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
+                          const double *data, int dimensions, const size_t *shape) {
+  const abi_array array = abi_array_of(name, unit, data, dimensions, shape);
+  return add_array(&result->arrays, &result->arena, &array) != NULL;
+}
+
+static const abi_array *find_array(const abi_arrays *list, const char *name) {
+  for (size_t i = 0; i < list->count; i++)
+    if (strcmp(list->items[i].name, name) == 0) return &list->items[i];
   return NULL;
 }
 
@@ -409,45 +412,31 @@ static bool slice(const strutlib_result *result, const abi_array *whole, const c
   return false;
 }
 
+/* An array that is not in the JSON, or a part of one, which `part` has room for; or NULL. */
+static const abi_array *given_array(const strutlib_result *result, const char *name,
+                                    abi_array *part) {
+  const abi_array *found = find_array(&result->arrays, name);
+  for (size_t i = 0; !found && i < result->arrays.count; i++)
+    if (slice(result, &result->arrays.items[i], name, part)) found = part;
+  return found;
+}
+
 /* An array of the JSON, made when it is first asked for. With the lock. */
 static const abi_array *made_array(strutlib_result *result, const char *name) {
-  const abi_array *made = find_array(result->made, result->made_count, name);
+  const abi_array *made = find_array(&result->made, name);
   if (made) return made;
-  const abi_tree *tree = locked_tree(result);
-  bool no_memory;
-  abi_array a = {.unit = ""};
-  if (!tree) return NULL;
-  double *data = abi_tree_array(tree, name, STRUTLIB_DIMENSIONS, &result->made_arena, &a.dimensions,
-                                a.shape, &no_memory);
-  if (!data) return NULL;
-  if (result->made_count == result->made_capacity) {
-    size_t wider = result->made_capacity ? 2 * result->made_capacity : 8;
-    abi_array *list = strut_reallocate(result->made, wider, sizeof *list);
-    if (!list) return NULL;
-    result->made = list;
-    result->made_capacity = wider;
-  }
-  a.data = data;
-  a.name = strut_arena_text(&result->made_arena, name, strlen(name));
-  if (!a.name) return NULL;
-  size_t stride = 1;
-  for (int d = a.dimensions - 1; d >= 0; d--) {
-    a.stride[d] = stride;
-    stride *= a.shape[d];
-  }
-  result->made[result->made_count] = a;
-  return &result->made[result->made_count++];
+  abi_array array;
+  return read_array(locked_tree(result), name, &result->made_arena, &array)
+             ? add_array(&result->made, &result->made_arena, &array)
+             : NULL;
 }
 
 int strutlib_result_array(const strutlib_result *constant, const char *name, const double **data,
                           int *dimensions, size_t *shape, size_t *stride) {
-  if (!constant || !name) return 0;
-  const abi_array *found = find_array(constant->arrays, constant->array_count, name);
-  if (found) return abi_show_array(found, data, dimensions, shape, stride);
   abi_array part;
-  for (size_t i = 0; i < constant->array_count; i++)
-    if (slice(constant, &constant->arrays[i], name, &part))
-      return abi_show_array(&part, data, dimensions, shape, stride);
+  if (!constant || !name) return 0;
+  const abi_array *found = given_array(constant, name, &part);
+  if (found) return abi_show_array(found, data, dimensions, shape, stride);
   strutlib_result *result = lock(constant);
   found = made_array(result, name);
   int shown = found ? abi_show_array(found, data, dimensions, shape, stride) : 0;
@@ -456,14 +445,11 @@ int strutlib_result_array(const strutlib_result *constant, const char *name, con
 }
 
 const char *strutlib_result_array_name(const strutlib_result *result, size_t i) {
-  return result && i < result->array_count ? result->arrays[i].name : NULL;
+  return result && i < result->arrays.count ? result->arrays.items[i].name : NULL;
 }
 
 const char *strutlib_result_array_unit(const strutlib_result *result, const char *name) {
-  if (!result || !name) return NULL;
-  const abi_array *found = find_array(result->arrays, result->array_count, name);
   abi_array part;
-  for (size_t i = 0; !found && i < result->array_count; i++)
-    if (slice(result, &result->arrays[i], name, &part)) return result->arrays[i].unit;
+  const abi_array *found = result && name ? given_array(result, name, &part) : NULL;
   return found ? found->unit : NULL;
 }

@@ -172,12 +172,7 @@ strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const c
   if (status == STRUT_OK) status = open_setup(&call, scene, result);
   bool begun = status == STRUT_OK;
   if (begun) status = run_model(&call, scene, result);
-  if (!begun || !strut_run_has_results(status)) {
-    strutlib_result_free(result);
-    result = NULL;
-  }
-  abi_leave();
-  return result;
+  return abi_result_leave(result, begun && strut_run_has_results(status));
 }
 
 /* A run that is advanced from outside. */
@@ -264,14 +259,10 @@ double strutlib_simulation_input_work(const strutlib_simulation *simulation) {
 /* ---- arrays ---- */
 
 static int show(size_t items, size_t components, int *dimensions, size_t *shape, size_t *stride) {
-  *dimensions = components > 1 ? 2 : 1;
-  shape[0] = items;
-  stride[0] = components;
-  if (components > 1) {
-    shape[1] = components;
-    stride[1] = 1;
-  }
-  return 1;
+  const double *unused;
+  const size_t both[] = {items, components};
+  const abi_array array = abi_array_of("", "", NULL, components > 1 ? 2 : 1, both);
+  return abi_show_array(&array, &unused, dimensions, shape, stride);
 }
 
 int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,

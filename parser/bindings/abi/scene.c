@@ -104,12 +104,7 @@ static bool add(strutlib_scene *scene, size_t *at, const char *name, const char 
                 size_t components, double **data) {
   abi_array *self = &scene->arrays[(*at)++];
   *data = strut_arena_allocate(&scene->arena, count * components, sizeof **data);
-  *self = (abi_array){.name = name, .unit = unit, .data = *data};
-  self->dimensions = components > 1 ? 2 : 1;
-  self->shape[0] = count;
-  self->shape[1] = components;
-  self->stride[0] = components;
-  self->stride[1] = 1;
+  *self = abi_array_of(name, unit, *data, components > 1 ? 2 : 1, (size_t[]){count, components});
   return *data != NULL;
 }
 
@@ -248,18 +243,15 @@ static const abi_tree *tree_of(const strutlib_scene *constant) {
 }
 
 int strutlib_scene_number(const strutlib_scene *scene, const char *name, double *value) {
-  const abi_tree *tree = tree_of(scene);
-  return tree && abi_tree_number(tree, name, value) ? 1 : 0;
+  return abi_tree_number(tree_of(scene), name, value);
 }
 
 int strutlib_scene_flag(const strutlib_scene *scene, const char *name, int *value) {
-  const abi_tree *tree = tree_of(scene);
-  return tree && abi_tree_flag(tree, name, value) ? 1 : 0;
+  return abi_tree_flag(tree_of(scene), name, value);
 }
 
 const char *strutlib_scene_text(const strutlib_scene *scene, const char *name) {
-  const abi_tree *tree = tree_of(scene);
-  return tree ? abi_tree_text(tree, name) : NULL;
+  return abi_tree_text(tree_of(scene), name);
 }
 
 char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
@@ -305,12 +297,7 @@ static abi_source *read_source(const char *name, char *text, size_t length,
   strut_status status = STRUT_NO_MEMORY;
   if (source->name)
     status = strut_scene_source_open(source->name, text, length, &found, &source->tree);
-  if (status == STRUT_NO_MEMORY)
-    abi_no_memory(error);
-  else if (status != STRUT_OK)
-    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
-  strut_diagnostics_free(&found);
-  if (status == STRUT_OK) return source;
+  if (abi_settle(error, status, &found) == STRUT_OK) return source;
   release_source(source);
   return NULL;
 }
@@ -322,12 +309,7 @@ strut_status abi_setup(const strutlib_scene *scene, strut_purpose purpose, strut
   strut_diagnostics found = {0};
   strut_status status = strut_scene_source_read(scene->source->tree, scene->settings,
                                                 scene->setting_count, purpose, &found, setup);
-  if (status == STRUT_NO_MEMORY)
-    abi_no_memory(error);
-  else if (status != STRUT_OK)
-    abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
-  strut_diagnostics_free(&found);
-  return status;
+  return abi_settle(error, status, &found);
 }
 
 static bool add_setting(strutlib_scene *scene, const char *name, const char *value) {
@@ -353,10 +335,9 @@ static bool add_settings(strutlib_scene *scene, const strutlib_scene *before, si
   return good;
 }
 
-static strut_status add_warnings(strutlib_scene *scene, strut_diagnostics *found) {
+static strut_status add_warnings(strutlib_scene *scene) {
   strut_findings warnings = {0};
   strut_status status = strut_setup_warn(&scene->setup, &warnings);
-  abi_add_notes(&scene->messages, found);
   for (size_t i = 0; i < warnings.count; i++)
     abi_add_warning(&scene->messages, warnings.items[i].message);
   strut_findings_free(&warnings);
@@ -368,14 +349,11 @@ static strut_status read_scene(strutlib_scene *scene, strutlib_error **error) {
   strut_status status =
       strut_scene_source_read(scene->source->tree, scene->settings, scene->setting_count,
                               STRUT_FOR_ANY, &found, &scene->setup);
-  if (status == STRUT_NO_MEMORY) abi_no_memory(error);
-  if (status == STRUT_BAD_SCENE) abi_fail_located(error, status, &(strut_diagnostics *){&found}, 1);
-  if (status == STRUT_OK) {
-    status = add_warnings(scene, &found);
-    if (status == STRUT_OK && !fill_arrays(scene)) status = STRUT_NO_MEMORY;
-    if (status != STRUT_OK) abi_no_memory(error);
-  }
-  strut_diagnostics_free(&found);
+  abi_add_notes(&scene->messages, &found);
+  if (abi_settle(error, status, &found) != STRUT_OK) return status;
+  status = add_warnings(scene);
+  if (status == STRUT_OK && !fill_arrays(scene)) status = STRUT_NO_MEMORY;
+  if (status != STRUT_OK) abi_no_memory(error);
   return status;
 }
 

@@ -4,7 +4,6 @@
  * files.
  */
 #include <stdio.h>
-#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
@@ -166,15 +165,13 @@ static bool add_shape(strutlib_result *result, const strut_model *model, const d
   const strut_scene *scene = model->scene;
   const size_t n = scene->node_count, m = scene->member_count, by_node[] = {n, 2};
   strut_arena *arena = &result->arena;
-  double *position = strut_arena_allocate(arena, 2 * n, sizeof *position);
-  double *weight = strut_arena_allocate(arena, n, sizeof *weight);
+  double *position = strut_arena_copy(arena, positions, 2 * n, sizeof *position);
+  double *weight = strut_arena_copy(arena, model->weight, n, sizeof *weight);
   double *length = strut_arena_allocate(arena, m, sizeof *length);
   double *rest = strut_arena_allocate(arena, m, sizeof *rest);
   double *tension = strut_arena_allocate(arena, m, sizeof *tension);
   double *damping = strut_arena_allocate(arena, m, sizeof *damping);
   if (!position || !weight || !length || !rest || !tension || !damping) return false;
-  memcpy(position, positions, 2 * n * sizeof *position);
-  memcpy(weight, model->weight, n * sizeof *weight);
   for (size_t i = 0; i < m; i++) {
     bool running = scene->members[i].guide_count > 0;
     length[i] = strut_member_path_length(model, (int32_t)i, positions);
@@ -246,12 +243,7 @@ static strutlib_result *analyse(const strutlib_scene *scene, const strut_command
                   : build_matrices(&call, result, &what);
     if (status != STRUT_OK) abi_call_fail(&call, status, &what);
   }
-  if (status != STRUT_OK) {
-    strutlib_result_free(result);
-    result = NULL;
-  }
-  abi_leave();
-  return result;
+  return abi_result_leave(result, status == STRUT_OK);
 }
 
 #define CALL(NAME)                                                                                 \

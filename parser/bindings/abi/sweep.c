@@ -403,12 +403,8 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
   strut_varied_scenes_free(&s.scenes);
   strut_arena_free(&s.arena);
   if (result) result->status = (int)status;
-  if (status != STRUT_OK && !(status == STRUT_INTERRUPTED && result->table)) {
-    strutlib_result_free(result);
-    result = NULL;
-  }
-  abi_leave();
-  return result;
+  bool there = status == STRUT_INTERRUPTED && result->table;
+  return abi_result_leave(result, status == STRUT_OK || there);
 }
 
 /* ---- studies by file ---- */
@@ -516,12 +512,7 @@ strutlib_result *strutlib_study(const char *path, const char *directory, size_t 
   if (!status) status = run_study(&call, &s);
   strut_sweep_study_close(&s.open);
   if (s.result) s.result->status = (int)status;
-  if (s.result && !s.result->table) {
-    strutlib_result_free(s.result);
-    s.result = NULL;
-  }
-  abi_leave();
-  return s.result;
+  return abi_result_leave(s.result, s.result && s.result->table);
 }
 
 /* ---- columns of words ---- */

@@ -316,15 +316,6 @@ static void read_rows(reader *self) {
   }
 }
 
-/* Hands the cells over to the table. */
-static bool finish(reader *self) {
-  strut_csv *csv = self->csv;
-  size_t count = (1 + csv->row_count) * csv->column_count;
-  csv->cell = strut_arena_allocate(&csv->arena, count, sizeof *csv->cell);
-  if (csv->cell) memcpy(csv->cell, self->cell, count * sizeof *csv->cell);
-  return csv->cell;
-}
-
 strut_status strut_csv_read(const char *text, size_t length, int header,
                             strut_diagnostics *diagnostics, strut_csv *csv) {
   reader r = {.diagnostics = diagnostics, .csv = csv};
@@ -345,7 +336,11 @@ strut_status strut_csv_read(const char *text, size_t length, int header,
   }
   if (!r.failed && !diagnostics->count && !csv->row_count)
     strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the table has a header but no rows");
-  if (!r.failed && !diagnostics->count && !finish(&r)) r.failed = true;
+  if (!r.failed && !diagnostics->count) {
+    size_t count = (1 + csv->row_count) * csv->column_count;
+    csv->cell = strut_arena_copy(&csv->arena, r.cell, count, sizeof *csv->cell);
+    r.failed = !csv->cell;
+  }
   strut_release(r.cell);
   if (r.failed || diagnostics->out_of_memory) return STRUT_NO_MEMORY;
   return diagnostics->count ? STRUT_BAD_SCENE : STRUT_OK;

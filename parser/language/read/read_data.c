@@ -8,7 +8,6 @@
 #include "engine/base/vec.h"
 #include "parser/language/read/csv.h"
 #include "parser/language/read/reader.h"
-#include "parser/language/read/reuse/used_files.h"
 
 enum { MOST_BYTES = 1 << 28 };
 
@@ -329,24 +328,29 @@ static bool make_columns(loader *self) {
   return find_weights(self);
 }
 
+bool strut_read_file_of(strut_reader *reader, const strut_tree *name, size_t most,
+                        strut_safe_text *text) {
+  const char *folder = strut_folder_of(reader->diagnostics->file, &reader->scratch);
+  strut_error error = {0};
+  strut_status status =
+      folder ? strut_safe_read(folder, strut_diagnostics_file(reader->diagnostics, name->place),
+                               name->text, most, text, &error)
+             : STRUT_NO_MEMORY;
+  if (status == STRUT_NO_MEMORY) reader->out_of_memory = true;
+  return !status || strut_report_error(reader, name->place, "%s", error.message);
+}
+
 /* Reads the file, which the table keeps. */
 static bool read_file(loader *self) {
   strut_reader *reader = self->reader;
   strut_data_table *table = self->table;
   const strut_tree *name = value_of(self, STRUT_KEY_DATA_FILE);
-  const char *folder = strut_folder_of(reader->diagnostics->file, &reader->scratch);
   strut_safe_text text = {0};
-  strut_error error = {0};
-  strut_status status =
-      folder ? strut_safe_read(folder, strut_diagnostics_file(reader->diagnostics, name->place),
-                               name->text, MOST_BYTES, &text, &error)
-             : STRUT_NO_MEMORY;
-  if (status == STRUT_NO_MEMORY) reader->out_of_memory = true;
-  if (status) return strut_report_error(reader, name->place, "%s", error.message);
+  if (!strut_read_file_of(reader, name, MOST_BYTES, &text)) return false;
   table->path = strut_keep_text(reader, text.path);
   table->text = strut_arena_text(reader->keep, text.text, text.length);
   strut_diagnostics own = {0};
-  status = strut_csv_read(text.text, text.length, table->header, &own, &self->csv);
+  strut_status status = strut_csv_read(text.text, text.length, table->header, &own, &self->csv);
   if (status == STRUT_NO_MEMORY || !table->text) reader->out_of_memory = true;
   bool fine = status == STRUT_OK && table->text && make_columns(self);
   unsigned file = own.count && table->text ? show_file(reader, table) : 0;
@@ -414,26 +418,20 @@ void strut_read_scene_data(strut_reader *reader) {
 
 /* ---- columns where they are used ---- */
 
-/* Structs of that size, each with its name first. */
-typedef struct names {
-  const void *first;
-  size_t count, size;
-} names;
+static const char *table_name(const void *context, size_t i) {
+  const strut_reader *reader = context;
+  return i < reader->table_count ? reader->tables[i].name : NULL;
+}
 
-static const char *name_at(const void *context, size_t i) {
-  const names *self = context;
-  const char *name = NULL;
-  if (i < self->count) memcpy(&name, (const char *)self->first + i * self->size, sizeof name);
-  return name;
+static const char *column_name(const void *context, size_t i) {
+  const strut_data_table *table = context;
+  return i < table->column_count ? table->columns[i].name : NULL;
 }
 
 /* Reports a name that is none. */
 static void refuse_name(strut_reader *reader, const strut_tree *value, strut_owner owner,
                         const strut_data_table *table) {
   const char *dot = strchr(value->text, '.');
-  const names columns = {table ? table->columns : NULL, table ? table->column_count : 0,
-                         sizeof *table->columns};
-  const names tables = {reader->tables, reader->table_count, sizeof *reader->tables};
   const char *name = strut_arena_text(&reader->scratch, value->text, strcspn(value->text, "."));
   if (!name || (reader->tables_unknown && !table))
     reader->failed = true;
@@ -443,11 +441,11 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
   else if (table)
     strut_report_error(reader, value->place, "data '%s' have no column '%s'%s", table->name,
                        strut_sanitised_text(reader, dot + 1),
-                       strut_hint(reader, dot + 1, name_at, &columns, columns.count));
+                       strut_hint(reader, dot + 1, column_name, table, table->column_count));
   else
     strut_report_error(reader, value->place, "unknown data '%s' for %s%s",
                        strut_sanitised_text(reader, name), strut_owner_text(reader, owner),
-                       strut_hint(reader, name, name_at, &tables, tables.count));
+                       strut_hint(reader, name, table_name, reader, reader->table_count));
 }
 
 const strut_data_column *strut_read_data_column(strut_reader *reader, const strut_tree *value,
@@ -455,6 +453,7 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
                                                 const strut_dimension *expected,
                                                 const strut_data_table **table) {
   char message[500], wanted[200], found[80];
+  size_t row = SIZE_MAX;
   if (!strut_read_scalar(reader, value, key, owner, "a column such as film.x")) return NULL;
   const strut_data_column *column =
       strut_data_find(reader->tables, reader->table_count, value->text, table);
@@ -462,21 +461,21 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
   if (!column) return NULL;
   const char *name = strut_sanitised_text(reader, column->name);
   if (!column->values) {
-    strut_refuse_data(reader, value, *table, column, column->flaw, "expected a finite number");
+    row = column->flaw;
+    snprintf(message, sizeof message, "expected a finite number");
   } else if (!column->unit) {
     snprintf(message, sizeof message,
              "column '%s' has no unit that is known; write it in the header, '%s [mm]', or under "
              "'units' of the data, {%s: mm}; 1: none",
              name, name, name);
-    strut_refuse_data(reader, value, *table, column, SIZE_MAX, message);
   } else if (expected && !strut_dimension_equal(column->dimension, *expected)) {
     strut_expected_quantity(key, *expected, wanted, sizeof wanted);
     snprintf(message, sizeof message, "expected %s for '%s' of %s, found the unit '%s' of %s",
              wanted, key, strut_owner_text(reader, owner), column->unit,
              strut_dimension_name(column->dimension, found, sizeof found));
-    strut_refuse_data(reader, value, *table, column, SIZE_MAX, message);
   } else {
     return column;
   }
+  strut_refuse_data(reader, value, *table, column, row, message);
   return NULL;
 }

@@ -210,22 +210,6 @@ static int32_t add_output(network *self, strut_owner owner) {
                                      scale.bare ? value : NULL);
 }
 
-/* The text of the file that `value` names, relative to the file that says so. */
-static bool open_network(network *self, const strut_tree *value, strut_safe_text *text) {
-  const strut_diagnostics *diagnostics = self->reader->diagnostics;
-  const char *from =
-      value->place.file ? diagnostics->used[value->place.file - 1].file : diagnostics->file;
-  const char *folder = strut_folder_of(diagnostics->file, &self->reader->scratch);
-  strut_error error = {0};
-  if (!folder) self->reader->out_of_memory = true;
-  if (!folder) return false;
-  strut_status status = strut_safe_read(folder, from, value->text, LARGEST_FILE, text, &error);
-  if (status == STRUT_NO_MEMORY) self->reader->out_of_memory = true;
-  if (status != STRUT_OK && status != STRUT_NO_MEMORY)
-    strut_report_error(self->reader, value->place, "%s", error.message);
-  return status == STRUT_OK;
-}
-
 int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   strut_owner owner = {"controller", key->text};
   strut_fields fields;
@@ -236,7 +220,8 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   const strut_slot *file = strut_slot_of(&fields, STRUT_KEY_NETWORK_FILE);
   if (fields.broken || file->state != STRUT_GIVEN) return -1;
   strut_store(reader, &fields, owner, &n.keys);
-  if (!read_inputs(&n, owner) || !open_network(&n, file->value, &text)) return -1;
+  if (!read_inputs(&n, owner) || !strut_read_file_of(reader, file->value, LARGEST_FILE, &text))
+    return -1;
   n.passes = (double)n.before;
   n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,
                                    sizeof *n.weight);

@@ -16,6 +16,7 @@
 #include "parser/language/expression/expression.h"
 #include "parser/language/keys/keys.h"
 #include "parser/language/read/read_scene.h"
+#include "parser/language/read/reuse/used_files.h"
 #include "parser/language/yaml/diagnostics.h"
 #include "parser/language/yaml/document.h"
 
@@ -467,6 +468,9 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
 
 /* read_data.c: measured data */
 
+/** Reads the file of at most `most` bytes that a value names, as strut_safe_read does. False: reported. */
+bool strut_read_file_of(strut_reader *reader, const strut_tree *name, size_t most,
+                        strut_safe_text *text);
 /** Reads the tables behind the key into the reader's memory for what it keeps; nothing where it has some. */
 void strut_read_data(strut_reader *reader, const strut_slot *slot);
 /** Those of a scene. */

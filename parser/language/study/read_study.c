@@ -20,6 +20,10 @@ const char *strut_study_declared_name(const void *context, size_t i) {
   return i < reader->declared_count ? reader->declared[i].name : NULL;
 }
 
+void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size) {
+  return strut_reader_allocate(reader->reader, &reader->file->arena, count, size);
+}
+
 const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name) {
   for (size_t i = 0; i < reader->declared_count; i++)
     if (strcmp(reader->declared[i].name, name) == 0) return &reader->declared[i];
@@ -167,8 +171,8 @@ static void read_keep(strut_study_reader *reader, const strut_slot *slot) {
   bool run = study->compute == STRUT_COMPUTE_RUN;
   const strut_tree *quantities =
       run && reader->file->source_count ? quantities_of(reader->file->sources[0]) : NULL;
-  study->quantities = strut_reader_allocate(reader->reader, &reader->file->arena,
-                                            slot->value->count + 1, sizeof *study->quantities);
+  study->quantities =
+      strut_study_allocate(reader, slot->value->count + 1, sizeof *study->quantities);
   if (!study->quantities) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     bool scalar = item->kind == STRUT_TREE_SCALAR;
@@ -234,8 +238,7 @@ static void read_figure(strut_study_reader *reader, const strut_tree *key,
 static void read_figures(strut_study_reader *reader, const strut_slot *slot) {
   strut_study *study = &reader->file->study;
   if (slot->state != STRUT_GIVEN) return;
-  study->figures = strut_reader_allocate(reader->reader, &reader->file->arena, slot->value->count,
-                                         sizeof *study->figures);
+  study->figures = strut_study_allocate(reader, slot->value->count, sizeof *study->figures);
   for (const strut_tree *key = slot->value->first; key && study->figures; key = key->next->next)
     read_figure(reader, key, &study->figures[study->figure_count++]);
 }
@@ -310,8 +313,8 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   const strut_slot *set = strut_slot_of(top, STRUT_KEY_STUDY_SET);
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
   const strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
-  file->settings = strut_reader_allocate(
-      reader->reader, &file->arena, count + size_of(set) + size_of(derive), sizeof *file->settings);
+  file->settings =
+      strut_study_allocate(reader, count + size_of(set) + size_of(derive), sizeof *file->settings);
   if (!file->settings) return;
   for (size_t i = 0; i < count; i++)
     file->settings[file->setting_count++] =

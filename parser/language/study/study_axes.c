@@ -42,10 +42,9 @@ bool strut_study_store_value(strut_study_reader *reader, along *self, strut_fiel
 }
 
 static bool read_list(strut_study_reader *reader, along *self) {
-  strut_arena *arena = &reader->file->arena;
   size_t count = self->value->count, i = 0;
-  double *numbers = strut_reader_allocate(reader->reader, arena, count, sizeof *numbers);
-  const char **words = strut_reader_allocate(reader->reader, arena, count, sizeof *words);
+  double *numbers = strut_study_allocate(reader, count, sizeof *numbers);
+  const char **words = strut_study_allocate(reader, count, sizeof *words);
   bool fine = numbers && words;
   self->count = (int64_t)count;
   if (!count)
@@ -223,7 +222,7 @@ static void read_axis(strut_study_reader *reader, const strut_tree *item, strut_
   const strut_tree *map = parameters_of(reader, item);
   if (!map) return;
   strut_study_column *columns = axis->columns =
-      strut_reader_allocate(reader->reader, &reader->file->arena, map->count, sizeof *columns);
+      strut_study_allocate(reader, map->count, sizeof *columns);
   if (!columns) return;
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
@@ -253,8 +252,7 @@ static size_t count_columns(const strut_tree *list) {
 /* The axis of the variants, before all others. */
 static void add_variants(strut_study_reader *reader) {
   strut_study_file *file = reader->file;
-  strut_study_column *column =
-      strut_reader_allocate(reader->reader, &file->arena, 1, sizeof *column);
+  strut_study_column *column = strut_study_allocate(reader, 1, sizeof *column);
   if (!column) return;
   *column = (strut_study_column){
       .name = "variant", .unit = "1", .word = true, .words = reader->variant_names};
@@ -271,17 +269,13 @@ bool strut_study_read_along(strut_study_reader *reader, strut_study_along *a) {
 void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
                            const strut_slot *search) {
   strut_study *study = &reader->file->study;
-  strut_arena *arena = &reader->file->arena;
   size_t listed = list ? list->count : 0, names = list ? count_columns(list) : 0;
   size_t more = strut_study_search_columns(search);
   reader->searching = more > 0;
-  study->axes =
-      strut_reader_allocate(reader->reader, arena, listed + more + 3, sizeof *study->axes);
-  reader->file->columns =
-      strut_reader_allocate(reader->reader, arena, names + reader->declared_count + more + 1,
-                            sizeof *reader->file->columns);
-  reader->file->tables =
-      strut_reader_allocate(reader->reader, arena, listed + 1, sizeof *reader->file->tables);
+  study->axes = strut_study_allocate(reader, listed + more + 3, sizeof *study->axes);
+  reader->file->columns = strut_study_allocate(reader, names + reader->declared_count + more + 1,
+                                               sizeof *reader->file->columns);
+  reader->file->tables = strut_study_allocate(reader, listed + 1, sizeof *reader->file->tables);
   if (!study->axes || !reader->file->columns || !reader->file->tables) return;
   if (reader->variant_count > 0) add_variants(reader);
   for (const strut_tree *item = list ? list->first : NULL; item; item = item->next)
@@ -395,10 +389,9 @@ static const strut_owner curve_owner = {"the curve", NULL};
 static void read_shape(strut_study_reader *reader, const strut_slot *slot) {
   strut_study *study = &reader->file->study;
   size_t count = slot->value->count, i = 0;
-  study->goal.shape_nodes = strut_reader_allocate(reader->reader, &reader->file->arena, count + 1,
-                                                  sizeof *study->goal.shape_nodes);
-  study->goal.shape = strut_reader_allocate(reader->reader, &reader->file->arena, count + 1,
-                                            sizeof *study->goal.shape);
+  study->goal.shape_nodes =
+      strut_study_allocate(reader, count + 1, sizeof *study->goal.shape_nodes);
+  study->goal.shape = strut_study_allocate(reader, count + 1, sizeof *study->goal.shape);
   if (!study->goal.shape_nodes || !study->goal.shape) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next, i++) {
     study->goal.shape_nodes[i] = key->text;
@@ -410,8 +403,8 @@ static void read_shape(strut_study_reader *reader, const strut_slot *slot) {
 
 static void read_curve(strut_study_reader *reader, const strut_slot *slot) {
   strut_study *study = &reader->file->study;
-  study->goal.curve = strut_reader_allocate(reader->reader, &reader->file->arena,
-                                            slot->value->count + 1, sizeof *study->goal.curve);
+  study->goal.curve =
+      strut_study_allocate(reader, slot->value->count + 1, sizeof *study->goal.curve);
   if (!study->goal.curve) return;
   for (const strut_tree *item = slot->value->first; item; item = item->next) {
     double *pair = study->goal.curve[study->goal.curve_count];
@@ -530,8 +523,7 @@ static void read_values(strut_study_reader *reader, strut_fields *fields, strut_
                        STRUT_STUDY_FOLLOW_MOST_AT, (size_t)at->value->count);
     return;
   }
-  double *values =
-      strut_reader_allocate(reader->reader, &reader->file->arena, at->value->count, sizeof *values);
+  double *values = strut_study_allocate(reader, at->value->count, sizeof *values);
   follow->at = values;
   for (const strut_tree *item = at->value->first; item && values; item = item->next) {
     double *value = &values[follow->at_count++];
@@ -571,8 +563,7 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   if (slot->state != STRUT_GIVEN) return;
   refuse_others(reader, top, slot);
   if (!study->axes) strut_study_read_axes(reader, NULL, search); /* the study has none */
-  strut_study_follow *follow =
-      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *follow);
+  strut_study_follow *follow = strut_study_allocate(reader, 1, sizeof *follow);
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,
                     follow);

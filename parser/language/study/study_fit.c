@@ -43,11 +43,7 @@ static bool divide(strut_study_reader *reader, const strut_tree *map, reading *s
   self->own.first = self->rest.first = NULL;
   self->own.count = self->rest.count = 0;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    bool own = false;
-    int first = strut_section_first(STRUT_SECTION_MATCH),
-        n = strut_section_size(STRUT_SECTION_MATCH);
-    for (int k = first; k < first + n; k++)
-      own = own || strcmp(strut_key_at(k)->name, key->text) == 0;
+    bool own = strut_key_find(STRUT_SECTION_MATCH, key->text) >= 0;
     items[0] = *key, items[1] = *key->next;
     items[0].next = &items[1], items[1].next = NULL;
     *ends[!own] = items;
@@ -68,18 +64,15 @@ static const double *read_at(strut_study_reader *reader, reading *self, int key,
   const strut_data_column *column =
       strut_read_data_column(r, slot->value, slot->key->text, self->owner, &dimension, &table);
   if (!column) return NULL;
-  for (size_t i = 0; i < table->row_count; i++) {
-    if (isfinite(column->values[i]) &&
-        (!ascending || !i || column->values[i] > column->values[i - 1]))
-      continue;
-    strut_refuse_data(r, slot->value, table, column, i,
-                      isfinite(column->values[i]) ? "times must ascend" : "a number is missing");
-    return NULL;
-  }
-  if (ascending && table->row_count < 2) {
-    strut_refuse_data(r, slot->value, table, column, 0, "a motion needs two times or more");
-    return NULL;
-  }
+  const char *flaw = NULL;
+  size_t rows = table->row_count, i = 0;
+  for (const double *at = column->values; i < rows && !flaw; i++)
+    flaw = !isfinite(at[i])                         ? "a number is missing"
+           : ascending && i && !(at[i] > at[i - 1]) ? "times must ascend"
+           : ascending && rows < 2                  ? "a motion needs two times or more"
+                                                    : NULL;
+  if (flaw) strut_refuse_data(r, slot->value, table, column, i - 1, flaw);
+  if (flaw) return NULL;
   self->table = table;
   self->to->count = table->row_count;
   return column->values;
@@ -117,7 +110,7 @@ static bool read_numbers(strut_study_reader *reader, reading *self, const strut_
   bool plain = value->kind == STRUT_TREE_SCALAR && !value->quoted &&
                strpbrk(value->text, "0123456789+-") == value->text;
   if (plain && !self->to->at) {
-    double *number = strut_reader_allocate(r, &reader->file->arena, 1, sizeof *number);
+    double *number = strut_study_allocate(reader, 1, sizeof *number);
     if (!number || !strut_read_quantity(r, value, series->of, self->owner, &q)) return false;
     if (self->table)
       return strut_report_error(r, value->place,
@@ -180,8 +173,7 @@ static void add_partner(strut_study_reader *reader, reading *self, const strut_t
 }
 
 static void add_partners(strut_study_reader *reader, reading *self) {
-  double *gaps =
-      strut_reader_allocate(reader->reader, &reader->file->arena, self->to->count, sizeof *gaps);
+  double *gaps = strut_study_allocate(reader, self->to->count, sizeof *gaps);
   for (size_t i = 0; gaps && i < self->to->count; i++) gaps[i] = (double)NAN;
   for (const strut_tree *key = self->rest.first; key && gaps; key = key->next->next)
     add_partner(reader, self, key, gaps);
@@ -237,8 +229,7 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
   if (!divide(reader, key->next, &self)) return;
   strut_read_object(r, STRUT_SECTION_MATCH, &self.own, self.owner, &self.fields, to);
   choose_kind(reader, &self);
-  to->series = strut_reader_allocate(r, &reader->file->arena, 2 * (size_t)self.rest.count + 1,
-                                     sizeof *to->series);
+  to->series = strut_study_allocate(reader, 2 * (size_t)self.rest.count + 1, sizeof *to->series);
   if (!to->series) return;
   if (to->kind == STRUT_FIT_CURVE) read_curve(reader, &self);
   if (to->kind == STRUT_FIT_MOTION)
@@ -266,29 +257,18 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
 
 /* ---- what matches set ---- */
 
-/* The `set` of match m, or NULL. */
-static const strut_tree *set_of(const strut_tree *matches, size_t m) {
-  const strut_tree *key = matches->first;
-  while (m-- > 0) key = key->next->next;
-  const strut_tree *set =
-      key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "set", NULL) : NULL;
-  return set && set->kind == STRUT_TREE_MAP ? set : NULL;
-}
-
 /* A column of a parameter that each match sets, which the first of them names. */
-static void add_set(strut_study_reader *reader, const strut_tree *matches, const strut_tree *key,
-                    strut_study_axis *axis, strut_study_fit *fit) {
-  double *number = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *number);
-  const char **word = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *word);
+static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
+                    const strut_tree *key, strut_study_axis *axis, strut_study_fit *fit) {
+  const strut_study_value *first = &fit->matches[0].values[fit->set_count];
   strut_study_along a = {
       .key = key, .value = key->next, .parameter = strut_study_parameter(reader, key)};
   a.column = &axis->columns[axis->column_count];
   a.setting = &reader->file->columns[reader->file->column_count];
-  if (!number || !word || !a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
+  if (!a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
   axis->column_count++, reader->file->column_count++;
   for (size_t m = 0; m < fit->match_count; m++) {
-    const strut_tree *set = set_of(matches, m),
-                     *value = set ? strut_tree_find(set, key->text, NULL) : NULL;
+    const strut_tree *value = sets[m] ? strut_tree_find(sets[m], key->text, NULL) : NULL;
     strut_study_value *to = &fit->matches[m].values[fit->set_count];
     if (!value)
       strut_report_error(reader->reader, key->place, "every match must set '%s': '%s' does not",
@@ -299,35 +279,31 @@ static void add_set(strut_study_reader *reader, const strut_tree *matches, const
       strut_study_read_value(reader, &a, value, key->text, m == 0, &to->number);
   }
   a.column->kind = STRUT_RANGE_LIST;
-  *number = fit->matches[0].values[fit->set_count].number;
-  *word = fit->matches[0].values[fit->set_count].word;
-  a.column->number = number, a.column->words = a.parameter->text ? word : NULL;
+  a.column->number = &first->number, a.column->words = a.parameter->text ? &first->word : NULL;
   a.column->unit =
       a.parameter->text || a.setting->bare ? "1" : strut_dimension_unit(a.setting->dimension);
   fit->set_count++;
 }
 
-static void read_sets(strut_study_reader *reader, const strut_tree *matches, strut_study_fit *fit) {
+/* `sets`: of each match, or NULL. */
+static void read_sets(strut_study_reader *reader, const strut_tree *const *sets,
+                      strut_study_fit *fit) {
   strut_study *study = &reader->file->study;
   size_t most = reader->declared_count;
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  axis->columns =
-      strut_reader_allocate(reader->reader, &reader->file->arena, most + 1, sizeof *axis->columns);
-  for (size_t m = 0; m < fit->match_count && axis->columns; m++) {
-    fit->matches[m].values = strut_reader_allocate(reader->reader, &reader->file->arena, most + 1,
-                                                   sizeof *fit->matches[m].values);
-    if (!fit->matches[m].values) return;
-  }
-  for (size_t m = 0; m < fit->match_count && axis->columns; m++) {
-    const strut_tree *set = set_of(matches, m);
-    for (const strut_tree *key = set ? set->first : NULL; key; key = key->next->next) {
+  axis->columns = strut_study_allocate(reader, most + 1, sizeof *axis->columns);
+  strut_study_value *values =
+      strut_study_allocate(reader, fit->match_count * (most + 1), sizeof *values);
+  if (!axis->columns || !values) return;
+  for (size_t m = 0; m < fit->match_count; m++) fit->matches[m].values = values + m * (most + 1);
+  for (size_t m = 0; m < fit->match_count; m++)
+    for (const strut_tree *key = sets[m] ? sets[m]->first : NULL; key; key = key->next->next) {
       bool known = false;
       for (size_t k = 0; k < axis->column_count; k++)
         known = known || strcmp(axis->columns[k].name, key->text) == 0;
-      if (!known) add_set(reader, matches, key, axis, fit);
+      if (!known) add_set(reader, sets, key, axis, fit);
     }
-  }
   if (axis->column_count) study->axis_count++;
 }
 
@@ -338,11 +314,9 @@ static void add_rows(strut_study_reader *reader, const strut_study_fit *fit, siz
                      strut_study_axis *axis) {
   size_t count =
       (size_t)fit->starts + 2 * variables + (fit->match_count > 1 ? fit->match_count : 0);
-  double *numbers =
-      strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *numbers);
+  double *numbers = strut_study_allocate(reader, count, sizeof *numbers);
   *axis = (strut_study_axis){.count = numbers ? (int64_t)count : 1, .column_count = 1};
-  axis->columns =
-      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *axis->columns);
+  axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
   for (size_t i = 0; i < count && numbers; i++) numbers[i] = (double)(i + 1);
   if (axis->columns)
     axis->columns[0] = (strut_study_column){.name = "fit", .unit = "1", .number = numbers};
@@ -404,8 +378,7 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
-  strut_study_fit *fit =
-      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *fit);
+  strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
   if (!study->axes) strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   if (!fit || !study->axes || reader->reader->failed) return;
   *fit = (strut_study_fit){.starts = 1, .seed = 1};
@@ -419,16 +392,20 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
                        "a fit has 1 to %d matches, found %zu", STRUT_FIT_MOST_MATCHES, count);
     return;
   }
-  fit->matches =
-      strut_reader_allocate(reader->reader, &reader->file->arena, count, sizeof *fit->matches);
+  fit->matches = strut_study_allocate(reader, count, sizeof *fit->matches);
   if (!fit->matches) return;
-  for (const strut_tree *key = matches->value->first; key; key = key->next->next)
+  const strut_tree *sets[STRUT_FIT_MOST_MATCHES];
+  for (const strut_tree *key = matches->value->first; key; key = key->next->next) {
+    bool map = key->next->kind == STRUT_TREE_MAP;
+    const strut_tree *set = map ? strut_tree_find(key->next, "set", NULL) : NULL;
+    sets[fit->match_count] = set && set->kind == STRUT_TREE_MAP ? set : NULL;
     read_match(reader, key, &fit->matches[fit->match_count++]);
+  }
   require_noise(reader, matches->value, fit);
   refuse_unused(reader, top, fit);
   strut_study_axis *rows = &study->axes[study->axis_count++];
   add_rows(reader, fit, over->value->count, rows);
   read_over(reader, over, fit);
-  read_sets(reader, matches->value, fit);
+  read_sets(reader, sets, fit);
   if (!reader->reader->failed) study->fit = fit;
 }

@@ -155,10 +155,8 @@ static void read_cells(table *self, size_t i, const strut_study_along *along, co
   strut_arena *arena = &self->r->file->arena;
   size_t rows = self->csv.row_count;
   bool text = along->parameter->text;
-  double *numbers =
-      text ? NULL : strut_reader_allocate(self->r->reader, arena, rows, sizeof *numbers);
-  const char **words =
-      text ? strut_reader_allocate(self->r->reader, arena, rows, sizeof *words) : NULL;
+  double *numbers = text ? NULL : strut_study_allocate(self->r, rows, sizeof *numbers);
+  const char **words = text ? strut_study_allocate(self->r, rows, sizeof *words) : NULL;
   if (!numbers && !words) return;
   for (size_t k = 0; k < rows && !strut_diagnostics_full(messages(self)); k++) {
     size_t cell = (k + 1) * self->csv.column_count + i, length = strlen(self->csv.cell[cell]);
@@ -201,8 +199,7 @@ static void read_columns(table *self, strut_study_axis *axis) {
         strut_sanitised_text(reader->reader, self->points->node->text), self->csv.row_count);
     return;
   }
-  axis->columns = strut_reader_allocate(reader->reader, &reader->file->arena,
-                                        reader->declared_count + 1, sizeof *axis->columns);
+  axis->columns = strut_study_allocate(reader, reader->declared_count + 1, sizeof *axis->columns);
   if (!axis->columns) return;
   axis->count = (int64_t)self->csv.row_count;
   for (size_t i = 0; i < self->csv.column_count; i++)
@@ -215,28 +212,19 @@ static void read_columns(table *self, strut_study_axis *axis) {
 
 static void read_file(table *self, const strut_tree *name, strut_study_axis *axis) {
   strut_study_reader *reader = self->r;
-  strut_error error = {0};
-  char *root = strut_folder_of(reader->file->path, &reader->file->arena);
   self->points = &reader->file->tables[reader->file->table_count];
   self->points->node = name;
   self->points->copy =
       strut_arena_format(&reader->file->arena, "points-%zu.csv", reader->file->table_count + 1);
-  if (!root || !self->points->copy) {
-    reader->reader->out_of_memory = true;
+  if (!self->points->copy) reader->reader->out_of_memory = true;
+  if (!self->points->copy ||
+      !strut_read_file_of(reader->reader, name, STRUT_TEXT_MOST, &self->points->file))
     return;
-  }
-  strut_status status = strut_safe_read(root, reader->file->path, name->text, STRUT_TEXT_MOST,
-                                        &self->points->file, &error);
-  if (status) {
-    if (status == STRUT_NO_MEMORY) reader->reader->out_of_memory = true;
-    strut_report_error(reader->reader, name->place, "%s", error.message);
-    return;
-  }
   reader->file->table_count++;
   strut_diagnostics_source(messages(self), self->points->file.path, self->points->file.text,
                            self->points->file.length);
-  status = strut_csv_read(self->points->file.text, self->points->file.length, STRUT_CSV_ANY_HEADER,
-                          messages(self), &self->csv);
+  strut_status status = strut_csv_read(self->points->file.text, self->points->file.length,
+                                       STRUT_CSV_ANY_HEADER, messages(self), &self->csv);
   if (status == STRUT_OK) read_columns(self, axis);
   if (status == STRUT_NO_MEMORY || messages(self)->out_of_memory)
     reader->reader->out_of_memory = true;
@@ -362,8 +350,7 @@ static bool read_factor(strut_study_reader *reader, const strut_slot *slot, size
     return strut_report_error(reader->reader, rows->place,
                               "expected a list of %zu rows, one for each parameter, found %s",
                               count, strut_found(reader->reader, rows));
-  double *matrix =
-      strut_reader_allocate(reader->reader, &reader->file->arena, count * count, sizeof *matrix);
+  double *matrix = strut_study_allocate(reader, count * count, sizeof *matrix);
   if (!matrix) return false;
   size_t i = 0;
   for (const strut_tree *row = rows->first; row; row = row->next)
@@ -385,8 +372,7 @@ static void make_values(strut_study_reader *reader, const strut_sample_keys *key
                         const strut_distribution *distributions) {
   double *values[STRUT_SAMPLE_MOST_NUMBERS];
   for (size_t i = 0; i < axis->column_count; i++) {
-    values[i] = strut_reader_allocate(reader->reader, &reader->file->arena, (size_t)axis->count,
-                                      sizeof *values[i]);
+    values[i] = strut_study_allocate(reader, (size_t)axis->count, sizeof *values[i]);
     if (!values[i]) return;
     axis->columns[i].number = values[i];
   }
@@ -403,8 +389,7 @@ bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree
     return strut_report_error(reader->reader, over->place,
                               "expected 1 to %zu parameters for 'over' of %s, found %zu", most,
                               strut_owner_text(reader->reader, owner), (size_t)over->count);
-  axis->columns = strut_reader_allocate(reader->reader, &reader->file->arena, over->count,
-                                        sizeof *axis->columns);
+  axis->columns = strut_study_allocate(reader, over->count, sizeof *axis->columns);
   if (!axis->columns) return false;
   for (const strut_tree *key = over->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next};
@@ -486,8 +471,7 @@ static void make_points(strut_study_reader *reader, const strut_slot *slot, stru
     return;
   }
   for (size_t i = 0; i < axis->column_count; i++) {
-    values[i] = strut_reader_allocate(reader->reader, &reader->file->arena, (size_t)axis->count,
-                                      sizeof *values[i]);
+    values[i] = strut_study_allocate(reader, (size_t)axis->count, sizeof *values[i]);
     if (!values[i]) return;
     values[i][0] = strut_distribution_value(&distributions[i], 0.5);
     axis->columns[i].number = values[i];

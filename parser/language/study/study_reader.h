@@ -22,6 +22,8 @@ typedef struct strut_study_reader {
   bool following; /* the tables have those of branches */
 } strut_study_reader;
 
+/** count * size zeroed bytes of the study; NULL: memory is out, which the reader remembers. */
+void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size);
 /** The parameter of the model that a key names; NULL where that was reported. */
 const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key);
 /**

@@ -99,7 +99,7 @@ static bool read_range(strut_study_reader *reader, strut_study_along *along,
 static bool read_variable(strut_study_reader *reader, strut_study_along *along,
                           strut_search_variable *variable) {
   bool list = along->value->kind == STRUT_TREE_LIST, fine;
-  double *start = strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *start);
+  double *start = strut_study_allocate(reader, 1, sizeof *start);
   if (!start) return false;
   if (list) {
     fine = strut_study_read_along(reader, along) && read_choices(reader, along, variable);
@@ -126,7 +126,6 @@ void strut_study_read_variables(strut_study_reader *reader, const strut_slot *ov
                                 size_t most, strut_search_variable **variables,
                                 size_t *variable_count, size_t *column) {
   strut_study *study = &reader->file->study;
-  strut_arena *arena = &reader->file->arena;
   size_t count = over->value->count;
   if (count == 0 || count > most) {
     strut_report_error(reader->reader, over->value->place,
@@ -135,8 +134,8 @@ void strut_study_read_variables(strut_study_reader *reader, const strut_slot *ov
   }
   strut_study_axis *axis = &study->axes[study->axis_count++];
   *axis = (strut_study_axis){.count = 1};
-  axis->columns = strut_reader_allocate(reader->reader, arena, count, sizeof *axis->columns);
-  *variables = strut_reader_allocate(reader->reader, arena, count, sizeof **variables);
+  axis->columns = strut_study_allocate(reader, count, sizeof *axis->columns);
+  *variables = strut_study_allocate(reader, count, sizeof **variables);
   *column = reader->file->column_count;
   if (!axis->columns || !*variables) return;
   for (const strut_tree *key = over->value->first; key; key = key->next->next) {
@@ -156,8 +155,7 @@ static void read_scenarios(strut_study_reader *reader, const strut_slot *slot,
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
     strut_study_axis *axis = &study->axes[study->axis_count++];
     *axis = (strut_study_axis){.count = 1, .column_count = 1};
-    axis->columns =
-        strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *axis->columns);
+    axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
     strut_study_along a = {.key = key, .value = key->next, .column = axis->columns};
     a.setting = &reader->file->columns[reader->file->column_count++];
     if (axis->columns && strut_study_read_along(reader, &a)) axis->count = a.count;
@@ -180,9 +178,8 @@ static void add_evaluations(strut_study_reader *reader, const strut_study_search
   axis->count = search->starts * search->evaluations + checks;
   axis->column_count = 2;
   size_t count = (size_t)axis->count;
-  strut_arena *arena = &reader->file->arena;
-  double *numbers = strut_reader_allocate(reader->reader, arena, 2 * count, sizeof *numbers);
-  axis->columns = strut_reader_allocate(reader->reader, arena, 2, sizeof *axis->columns);
+  double *numbers = strut_study_allocate(reader, 2 * count, sizeof *numbers);
+  axis->columns = strut_study_allocate(reader, 2, sizeof *axis->columns);
   if (!numbers || !axis->columns) {
     axis->count = 1;
     return;
@@ -252,8 +249,8 @@ static void read_conditions(strut_study_reader *reader, const strut_slot *slot,
     strut_report_error(reader->reader, slot->value->place,
                        "'subject_to' may have %d conditions, found %zu",
                        STRUT_SEARCH_MOST_CONDITIONS, (size_t)slot->value->count);
-  search->conditions = strut_reader_allocate(reader->reader, &reader->file->arena,
-                                             slot->value->count + 1, sizeof *search->conditions);
+  search->conditions =
+      strut_study_allocate(reader, slot->value->count + 1, sizeof *search->conditions);
   for (const strut_tree *item = slot->value->first; item && search->conditions; item = item->next) {
     strut_search_condition *condition = &search->conditions[search->condition_count];
     if (!strut_read_scalar(reader->reader, item, "subject_to", search_owner,
@@ -273,8 +270,8 @@ static void choose_derivatives(strut_study_reader *reader, strut_fields *fields,
   const strut_place place = strut_slot_of(fields, STRUT_KEY_SEARCH_METHOD)->value->place;
   bool smooth = !search->condition_count && !search->scenario_axes;
   study->derivative_count = 0;
-  study->derivatives = strut_reader_allocate(reader->reader, &reader->file->arena,
-                                             search->variable_count, sizeof *study->derivatives);
+  study->derivatives =
+      strut_study_allocate(reader, search->variable_count, sizeof *study->derivatives);
   for (size_t i = 0; i < search->variable_count && study->derivatives; i++) {
     const strut_search_variable *variable = &search->variables[i];
     smooth = smooth && !variable->integer && !variable->choice_count;
@@ -305,8 +302,7 @@ void strut_study_read_search(strut_study_reader *reader, const strut_slot *slot)
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
-  strut_study_search *search =
-      strut_reader_allocate(reader->reader, &reader->file->arena, 1, sizeof *search);
+  strut_study_search *search = strut_study_allocate(reader, 1, sizeof *search);
   if (!search) return;
   *search = (strut_study_search){.starts = 1, .evaluations = 200, .seed = 1};
   strut_read_object(reader->reader, STRUT_SECTION_SEARCH, slot->value, search_owner, &fields,

@@ -204,10 +204,8 @@ strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *
   if (model->state != STRUT_GIVEN) return STRUT_BAD_SCENE;
   strut_status status = read_model(reader, model->value, error);
   if (status != STRUT_OK) return status;
-  file->sources =
-      strut_reader_allocate(reader->reader, &file->arena, count + 1, sizeof *file->sources);
-  reader->variant_names =
-      strut_reader_allocate(reader->reader, &file->arena, count + 1, sizeof *reader->variant_names);
+  file->sources = strut_study_allocate(reader, count + 1, sizeof *file->sources);
+  reader->variant_names = strut_study_allocate(reader, count + 1, sizeof *reader->variant_names);
   if (!file->sources || !reader->variant_names) return STRUT_NO_MEMORY;
   status = count ? open_variants(reader, top, variants->value) : open_source(reader, top, NULL);
   if (status == STRUT_OK)
