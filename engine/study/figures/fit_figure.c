@@ -100,7 +100,7 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
       double part = i / (CURVE - 1.0);
       strut_add_point(figure, profile, e->value + part * way, part * part * rise);
     }
-    strut_add_mark(figure, panel, ends[side].values[k], rise, NULL)->dot = true;
+    if (isfinite(rise)) strut_add_mark(figure, panel, ends[side].values[k], rise, NULL)->dot = true;
   }
 }
 

@@ -43,6 +43,7 @@ typedef struct fitting {
   strut_fit_spectrum spectrum; /* at the best, once it is known */
   const double *best;          /* (parameters) */
   double rise;                 /* of the sum to an end of an interval */
+  bool unexplained;            /* no interval is given */
 } fitting;
 
 static size_t omission_rows(const strut_study_fit *fit) {
@@ -145,6 +146,7 @@ static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i,
   parameters[i] = value;
   strut_least_squares problem = strut_fit_problem(one);
   problem.held = (int32_t)i;
+  problem.most_steps = STEPS_FIRST;
   return strut_least_squares_solve(&problem, parameters, solution);
 }
 
@@ -200,7 +202,8 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
     return fit_start(one, (int64_t)what.item, parameters, solution);
   }
   strut_fit_choose_start(layout, 0, parameters);
-  if (!self->best) return STRUT_OK; /* no start has residuals */
+  if (!self->best || (self->unexplained && what.kind < 3))
+    return STRUT_OK; /* no start has residuals, or they are too large */
   if (what.kind < 3)
     return find_profile_end(self, one, layout->aligned_count + what.item,
                             what.kind == 1 ? -1.0 : 1.0, parameters, solution);
@@ -389,6 +392,8 @@ static strut_status find_best(fitting *self) {
   }
   result->scale = self->layout->noise_known ? 1.0 : sqrt(variance);
   self->rise = self->layout->noise_known ? of_normal : of_student;
+  self->unexplained =
+      self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
   strut_status status = find_spectrum(self, &one);
   strut_fit_case_free(&one);

@@ -115,6 +115,9 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
 
 /* ---- fit_verdict.c ---- */
 
+/** Is the sum of squares of a right model, in units of the noise, hardly ever so large? */
+bool strut_fit_is_unexplained(double sum, double freedom);
+
 /**
  * Fills what the residuals and the spectrum at the best fit say, and the verdict of each estimate. False: memory is
  * out.

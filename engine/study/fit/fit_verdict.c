@@ -25,6 +25,10 @@ static const double WIDE = 0.25;
 /* A parameter takes part in a direction from this part on. */
 static const double PART = 0.2;
 
+bool strut_fit_is_unexplained(double sum, double freedom) {
+  return freedom > 0.0 && gsl_cdf_chisq_Q(sum, freedom) < RARE;
+}
+
 /* ---- residuals ---- */
 
 /* Correlation of successive residuals of a series, in its standard errors; NAN: too few. */
@@ -63,7 +67,7 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
 /* Why the model does not explain the data; "" if it does, or NULL: memory is out. */
 static const char *find_flaw(strut_fit_result *result) {
   const char *flaw = "";
-  if (!isnan(result->probability) && result->probability < RARE)
+  if (!isnan(result->probability) && strut_fit_is_unexplained(result->chi_square, result->freedom))
     flaw = strut_arena_format(&result->arena,
                               "the residuals are %.3g times the noise: chi square %.4g with %.0f "
                               "degrees of freedom",
