@@ -22,6 +22,9 @@ static const double NEAR_FIRST = 1e-3;
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
 
+/* A value this near to an end of its range, in parts of that, is at the end. */
+static const double AT_BOUND = 1e-5;
+
 /* Part of a distribution outside of an interval. */
 static const double OUTSIDE = 0.05;
 
@@ -130,27 +133,51 @@ static strut_status fit_start(strut_fit_case *one, int64_t start, double *parame
   return status;
 }
 
-/* The least sum where one parameter is held at a value; the others begin on the line that the covariance gives. */
-static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i, double value,
-                             double *parameters, strut_fit_solution *solution) {
-  size_t n = self->layout->parameters;
-  const double *covariance = self->spectrum.covariance;
-  double moved = value - self->best[i];
-  for (size_t j = 0; j < n; j++) {
-    double slope = covariance[j * n + i] / covariance[i * n + i];
-    parameters[j] = self->best[j] + slope * moved;
-    bool inside = parameters[j] > self->layout->low[j] && parameters[j] < self->layout->high[j];
-    if (!inside)
-      parameters[j] = self->best[j]; /* where it is not determined the line leads anywhere */
+/* By how much parameter j changes with i along the least sums, if all are known to be within about their ranges. */
+static double slope_of_least(const fitting *self, size_t j, size_t i) {
+  const strut_fit_spectrum *spectrum = &self->spectrum;
+  double scale = fmin(fmax(self->result->scale, 1e-12), 1e12), common = 0.0, own = 0.0;
+  for (size_t k = 0; k < spectrum->parameters; k++) {
+    const double *direction = spectrum->direction + k * spectrum->parameters;
+    double variance = 1.0 / (spectrum->singular[k] * spectrum->singular[k] + scale * scale);
+    common += direction[j] * direction[i] * variance;
+    own += direction[i] * direction[i] * variance;
   }
-  parameters[i] = value;
-  strut_least_squares problem = strut_fit_problem(one);
-  problem.held = (int32_t)i;
-  problem.most_steps = STEPS_FIRST;
-  return strut_least_squares_solve(&problem, parameters, solution);
+  return common / own;
 }
 
-/* An end of the profile of a parameter, on side -1 or 1: where the least sum has risen enough. */
+/*
+ * The least sum where one parameter is held at a value. The others begin on the line of least sums; where that does not
+ * converge at the best fit, too, and again where the sum is least so far.
+ */
+static strut_status fit_held(const fitting *self, strut_fit_case *one, size_t i, double value,
+                             double *parameters, strut_fit_solution *solution) {
+  const strut_fit_layout *layout = self->layout;
+  size_t n = layout->parameters;
+  strut_fit_solution latest;
+  strut_least_squares problem = strut_fit_problem(one);
+  double at[STRUT_LEAST_SQUARES_MOST];
+  strut_status status = STRUT_OK;
+  problem.held = (int32_t)i;
+  for (int try = 0; try < 3 && !status && (!try || solution->end != STRUT_FIT_CONVERGED); try++) {
+    for (size_t j = 0; j < n; j++) {
+      double along = try == 0 ? (value - self->best[i]) * slope_of_least(self, j, i) : 0.0;
+      double from = try == 2 ? parameters[j] : self->best[j] + along;
+      at[j] = fmin(fmax(from, layout->low[j]), layout->high[j]);
+    }
+    at[i] = value;
+    status = strut_least_squares_solve(&problem, at, &latest);
+    if (try && !(latest.sum <= solution->sum)) continue;
+    *solution = latest;
+    memcpy(parameters, at, n * sizeof *parameters);
+  }
+  return status;
+}
+
+/*
+ * An end of the profile of a parameter, on side -1 or 1: where the least sum has risen enough. Where it has not, or is
+ * not known to be the least, there is no end.
+ */
 static strut_status find_profile_end(const fitting *self, strut_fit_case *one, size_t i,
                                      double side, double *parameters,
                                      strut_fit_solution *solution) {
@@ -175,8 +202,7 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
     distance = between ? next : 0.5 * (inside + outside);
     if (!isfinite(distance)) distance = most;
   }
-  solution->end = solution->sum - best < self->rise * (1.0 - 3.0 * FOUND) ? STRUT_FIT_STUCK
-                                                                          : STRUT_FIT_CONVERGED;
+  if (solution->sum - best < self->rise * (1.0 - 3.0 * FOUND)) solution->end = STRUT_FIT_STUCK;
   return status;
 }
 
@@ -290,9 +316,11 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
   return STRUT_OK;
 }
 
-strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_error *error) {
+strut_status strut_fit_add_columns(strut_sweep_plan *plan, const strut_fit_series **at,
+                                   strut_error *error) {
   strut_fit_layout layout = {0};
   strut_status status = strut_fit_layout_make(plan, NULL, &layout, error);
+  *at = layout.refused;
   size_t most = plan->axis_columns + WORDS + NUMBERS + layout.aligned_count;
   strut_slot_column *all = status ? NULL : strut_arena_allocate(&plan->arena, most, sizeof *all);
   bool fine = all != NULL;
@@ -436,6 +464,8 @@ static bool fill_estimates(fitting *self) {
     estimate->high = strut_fit_value(layout, i, ends_of[1].parameters[i]);
     estimate->open_low = ends_of[0].end != STRUT_FIT_CONVERGED;
     estimate->open_high = ends_of[1].end != STRUT_FIT_CONVERGED;
+    estimate->at_bound =
+        fmin(self->best[i] - layout->low[i], layout->high[i] - self->best[i]) < AT_BOUND;
   }
   return true;
 }

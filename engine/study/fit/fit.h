@@ -22,6 +22,7 @@
   X(UNEXPLAINED, "the model does not explain the data")                                            \
   X(DISAGREE, "starts disagree")                                                                   \
   X(UNDETERMINED, "not determined by these data")                                                  \
+  X(BOUND, "ends at a bound of its range")                                                         \
   X(IDENTIFIED, "identified")
 
 typedef enum strut_fit_verdict {
@@ -38,7 +39,8 @@ typedef struct strut_fit_estimate {
   double error;     /* standard error, by the derivatives; HUGE_VAL: there is none */
   double low, high; /* 95 %, by the profile; NAN: not given. Of an alignment by the error */
   double linear_low, linear_high; /* 95 %, by the error */
-  bool open_low, open_high;       /* the profile reaches the end of the range there */
+  bool open_low, open_high;       /* the profile has no end there, or none is known */
+  bool at_bound;                  /* the value is an end of its range */
   double from, to;                /* its range */
   strut_fit_verdict verdict;
 } strut_fit_estimate;
@@ -95,8 +97,12 @@ typedef struct strut_fit_result {
   strut_arena arena;
 } strut_fit_result;
 
-/** Replaces the columns that are kept by those of a fit. STRUT_BAD_SCENE with what does not fit the model. */
-STRUT_API strut_status strut_fit_add_columns(strut_sweep_plan *plan, strut_error *error);
+/**
+ * Replaces the columns that are kept by those of a fit. STRUT_BAD_SCENE with what does not fit the model; *at is the
+ * series that does not, or NULL.
+ */
+STRUT_API strut_status strut_fit_add_columns(strut_sweep_plan *plan, const strut_fit_series **at,
+                                             strut_error *error);
 /** As strut_sweep_run. The result is complete on STRUT_OK; release it with strut_fit_result_free in any case. */
 STRUT_API strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
                                      const strut_sweep_options *options, strut_sweep_state *state,

@@ -413,11 +413,12 @@ static int axis_of(const strut_quantity_definition *quantity, strut_column *plac
   }
 }
 
-static strut_status refuse(const strut_fit_match *match, size_t s, const char *why,
+static strut_status refuse(strut_fit_layout *layout, size_t m, size_t s, const char *why,
                            strut_error *error) {
-  const strut_fit_series *series = &match->series[s];
-  return strut_fail(error, STRUT_BAD_SCENE, "line %u: match '%.60s': '%.80s' %s",
-                    series->place.line, match->name, series->of, why);
+  const strut_fit_match *match = &layout->fit->matches[m];
+  layout->refused = &match->series[s];
+  return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s': '%.80s' %s", match->name,
+                    layout->refused->of, why);
 }
 
 /* What the series of a match are in the model. */
@@ -435,14 +436,16 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     int64_t column = match->kind == STRUT_FIT_TABLE
                          ? find_number(&layout->parts[m].table, match->series[s].of)
                          : 0;
-    if (column < 0) return refuse(match, s, "is no column of numbers of that computation", error);
+    if (column < 0)
+      return refuse(layout, m, s, "is no column of numbers of that computation", error);
     bool follows = match->kind != STRUT_FIT_CURVE || setup->experiment.stage_count ||
                    (layout->plan->study->path.over &&
                     strut_coordinate_find(&setup->scene, layout->plan->study->path.over) >= 0);
-    if (!follows) return refuse(match, s, "needs a 'path' over a coordinate, such as b.y", error);
+    if (!follows)
+      return refuse(layout, m, s, "needs a 'path' over a coordinate, such as b.y", error);
     const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
     if (unit && strcmp(unit, match->series[s].unit) != 0)
-      return refuse(match, s, "has another unit than its numbers", error);
+      return refuse(layout, m, s, "has another unit than its numbers", error);
     sources[s] =
         (strut_fit_source){.first = layout->count, .partner = -1, .column = (size_t)column};
     sources[s].axis = moves ? axis_of(quantity, &places[s]) : -1;
@@ -456,7 +459,7 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
   }
   for (size_t s = 0; s < match->series_count && match->align.rotate; s++)
     if (sources[s].axis >= 0 && sources[s].partner < 0)
-      return refuse(match, s, "cannot be rotated without the other coordinate of the same node",
+      return refuse(layout, m, s, "cannot be rotated without the other coordinate of the same node",
                     error);
   return STRUT_OK;
 }
@@ -487,6 +490,13 @@ static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns wha
   return name != NULL;
 }
 
+/* Has a series numbers? A coordinate beside a measured one may have none. */
+static bool is_measured(const strut_fit_match *match, size_t s) {
+  size_t i = 0;
+  while (i < match->count && isnan(match->series[s].measured[i])) i++;
+  return i < match->count;
+}
+
 static bool add_alignments(strut_fit_layout *layout, size_t m) {
   const strut_fit_match *match = &layout->fit->matches[m];
   bool fine = true;
@@ -494,7 +504,7 @@ static bool add_alignments(strut_fit_layout *layout, size_t m) {
   for (int axis = 0; axis < 2 && match->align.shift; axis++) {
     bool there = false;
     for (size_t s = 0; s < match->series_count; s++)
-      there = there || layout->parts[m].sources[s].axis == axis;
+      there = there || (layout->parts[m].sources[s].axis == axis && is_measured(match, s));
     if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, 0.0, range) && fine;
   }
   if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
@@ -570,6 +580,14 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
     return strut_no_memory(error, "");
   strut_status status = find_all(layout, error);
   layout->parameters = layout->aligned_count + fit->variable_count;
+  for (size_t k = count; k-- > 0;)
+    if (isnan(layout->measured[k])) count--;
+  if (!status && count < layout->parameters) {
+    layout->refused = fit->matches[0].series;
+    status = strut_fail(error, STRUT_BAD_SCENE,
+                        "%zu parameters and alignments need as many numbers, found %zu",
+                        layout->parameters, count);
+  }
   for (size_t i = layout->aligned_count; i < layout->parameters; i++)
     layout->low[i] = 1.0, layout->high[i] = 2.0;
   return status;

@@ -22,11 +22,14 @@ static const double AWAY = 2.0;
 /* Along a direction with this standard deviation, in parts of ranges, nothing is determined. */
 static const double WIDE = 0.25;
 
-/* A parameter takes part in a direction from this part on. */
-static const double PART = 0.2;
+/*
+ * A parameter takes part in a direction from this part on, if a move along it over the ranges changes the parameter by
+ * this many of the errors that it would have without the direction.
+ */
+static const double PART = 0.02, ERRORS = 2.0;
 
 bool strut_fit_is_unexplained(double sum, double freedom) {
-  return freedom > 0.0 && gsl_cdf_chisq_Q(sum, freedom) < RARE;
+  return gsl_cdf_chisq_Q(sum, fmax(freedom, 1.0)) < RARE;
 }
 
 /* ---- residuals ---- */
@@ -84,13 +87,26 @@ static const char *find_flaw(strut_fit_result *result) {
 
 /* ---- directions ---- */
 
+/* Does parameter i take part in direction k, of which the fitted ones have the part `size`? */
+static bool takes_part(const strut_fit_spectrum *spectrum, double scale, size_t k, size_t i,
+                       double size) {
+  size_t n = spectrum->parameters;
+  double part = fabs(spectrum->direction[k * n + i]) / size, rest = 0.0;
+  for (size_t other = 0; other < n; other++) {
+    double error = fmin(1.0, scale / spectrum->singular[other]);
+    if (other != k) rest = hypot(rest, spectrum->direction[other * n + i] * error);
+  }
+  return part > PART && part > ERRORS * rest;
+}
+
 /* "friction and damping together", and what of two is determined. False: memory is out. */
-static bool describe_direction(strut_fit_result *result, strut_fit_direction *direction) {
+static bool describe_direction(strut_fit_result *result, const bool *takes,
+                               strut_fit_direction *direction) {
   char text[300] = "";
   size_t used = 0, taken = 0, pair[2] = {0, 0};
   const strut_search_variable *variables = result->fit->variables;
   for (size_t k = 0; k < result->variable_count; k++) {
-    if (fabs(direction->part[k]) < PART) continue;
+    if (!takes[k]) continue;
     if (taken < 2) pair[taken] = k;
     taken++;
     if (used < sizeof text - 60)
@@ -111,6 +127,7 @@ static bool describe_direction(strut_fit_result *result, strut_fit_direction *di
 static bool find_directions(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                             strut_fit_result *result) {
   size_t n = spectrum->parameters, first = layout->aligned_count;
+  bool takes[STRUT_LEAST_SQUARES_MOST];
   result->directions = strut_arena_allocate(&result->arena, n, sizeof *result->directions);
   for (size_t k = 0; result->directions && k < n; k++) {
     double error = spectrum->singular[k] > 0.0 ? result->scale / spectrum->singular[k] : HUGE_VAL;
@@ -118,12 +135,14 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
     if (!part) return false;
     for (size_t i = first; i < n; i++) size = hypot(size, spectrum->direction[k * n + i]);
     if (!(error * size > WIDE) || !(size > PART)) continue;
-    for (size_t i = first; i < n; i++) part[i - first] = spectrum->direction[k * n + i] / size;
+    for (size_t i = first; i < n; i++) {
+      part[i - first] = spectrum->direction[k * n + i] / size;
+      takes[i - first] = takes_part(spectrum, result->scale, k, i, size);
+      if (takes[i - first]) result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
+    }
     strut_fit_direction *direction = &result->directions[result->direction_count++];
     *direction = (strut_fit_direction){.error = error, .part = part};
-    if (!describe_direction(result, direction)) return false;
-    for (size_t i = first; i < n; i++)
-      if (fabs(part[i - first]) > PART) result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
+    if (!describe_direction(result, takes, direction)) return false;
   }
   return result->directions != NULL;
 }
@@ -170,12 +189,15 @@ static const char *compare_starts(const strut_fit_layout *layout, const double *
 
 static strut_fit_verdict first_verdict(const strut_fit_estimate *estimate) {
   bool open = estimate->open_low || estimate->open_high || !isfinite(estimate->error);
-  return open ? STRUT_FIT_UNDETERMINED : STRUT_FIT_IDENTIFIED;
+  return estimate->at_bound ? STRUT_FIT_BOUND
+         : open             ? STRUT_FIT_UNDETERMINED
+                            : STRUT_FIT_IDENTIFIED;
 }
 
 /* What is not known is not given. */
 static void withdraw(strut_fit_estimate *estimate) {
-  bool none = estimate->verdict == STRUT_FIT_UNEXPLAINED || estimate->verdict == STRUT_FIT_DISAGREE;
+  bool none = estimate->verdict == STRUT_FIT_UNEXPLAINED ||
+              estimate->verdict == STRUT_FIT_DISAGREE || !isfinite(estimate->error);
   if (none || estimate->open_low) estimate->low = (double)NAN;
   if (none || estimate->open_high) estimate->high = (double)NAN;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/fit/least_squares.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_multifit_nlinear.h>
@@ -23,6 +24,9 @@ static const double CLOSE = 100.0;
 
 /* Each residual where there are none: worse than any that is one, and its square is still a number. */
 static const double NONE = 1e150;
+
+/* Where steps end otherwise, the sum should fall by less than this part of its mean, unless it is EXACT of what it was. */
+static const double MUCH = 1e-2, EXACT = 1e-12;
 
 /* Singular values below this part of the largest are 0. */
 static const double SINGULAR = 1e-12;
@@ -157,11 +161,37 @@ static double sum_of_squares(const double *residual, size_t count) {
   return sum;
 }
 
+/* Could the sum be much smaller, as the derivatives say, than it is? `first`: where the method began. */
+static bool could_fall(const solver *self, const gsl_multifit_nlinear_workspace *workspace,
+                       double first) {
+  const gsl_matrix *jacobian = gsl_multifit_nlinear_jac(workspace);
+  const gsl_vector *residual = gsl_multifit_nlinear_residual(workspace);
+  size_t n = self->free;
+  double sum = 0.0, fall = 0.0;
+  gsl_matrix *copy = gsl_matrix_alloc(jacobian->size1, n), *turn = gsl_matrix_alloc(n, n);
+  gsl_vector *work = gsl_vector_alloc(3 * n);
+  if (!copy || !turn || !work) return true;
+  gsl_vector_view singular = gsl_vector_subvector(work, 0, n);
+  gsl_vector_view along = gsl_vector_subvector(work, n, n);
+  gsl_vector_view scratch = gsl_vector_subvector(work, 2 * n, n);
+  gsl_matrix_memcpy(copy, jacobian);
+  gsl_linalg_SV_decomp(copy, turn, &singular.vector, &scratch.vector);
+  gsl_blas_dgemv(CblasTrans, 1.0, copy, residual, 0.0, &along.vector);
+  gsl_blas_ddot(residual, residual, &sum);
+  for (size_t k = 0; k < n; k++) {
+    double part = fabs(gsl_vector_get(&along.vector, k)),
+           size = gsl_vector_get(&singular.vector, k);
+    fall += part < size ? part * part : size * (2.0 * part - size); /* by a step of at most 1 */
+  }
+  gsl_matrix_free(copy), gsl_matrix_free(turn), gsl_vector_free(work);
+  return fall > MUCH * sum / (double)self->problem->count && sum > EXACT * first;
+}
+
 /*
  * Goes on until steps are short, or none makes the sum smaller; and on where parameters were stopped or let go since.
- * False: there were too many steps.
+ * False: these ended, or there were too many, while the sum should still fall.
  */
-static bool converge(solver *self, gsl_multifit_nlinear_workspace *workspace) {
+static bool converge(solver *self, gsl_multifit_nlinear_workspace *workspace, double first) {
   size_t most = (size_t)self->problem->most_steps, steps = 0;
   int status = GSL_EMAXITER, info = 0;
   do {
@@ -170,7 +200,7 @@ static bool converge(solver *self, gsl_multifit_nlinear_workspace *workspace) {
                                          &info, workspace);
     steps = gsl_multifit_nlinear_niter(workspace);
   } while (self->changed && steps < most);
-  return !status || info == GSL_ENOPROG;
+  return !status || !could_fall(self, workspace, first);
 }
 
 /* Solves for the free parameters in x. */
@@ -186,7 +216,8 @@ static strut_status iterate(solver *self, gsl_vector *x, strut_fit_solution *sol
   gsl_multifit_nlinear_workspace *workspace =
       gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &settings, system.n, system.p);
   if (!workspace) return STRUT_NO_MEMORY;
-  bool fine = !gsl_multifit_nlinear_init(x, &system, workspace) && converge(self, workspace);
+  bool fine =
+      !gsl_multifit_nlinear_init(x, &system, workspace) && converge(self, workspace, solution->sum);
   gsl_vector_memcpy(x, gsl_multifit_nlinear_position(workspace));
   solution->steps = (int64_t)gsl_multifit_nlinear_niter(workspace);
   solution->sum =

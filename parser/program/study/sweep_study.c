@@ -19,6 +19,7 @@
 #include "engine/study/sweep/grid.h"
 #include "parser/language/study/read_study.h"
 #include "parser/language/write/write_scene.h"
+#include "parser/language/yaml/diagnostics.h"
 #include "parser/program/command/run_settings.h"
 #include "parser/program/study/sweep.h"
 
@@ -141,6 +142,18 @@ static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
   return status ? status : strut_search_add_columns(plan, error);
 }
 
+/* Columns of a fit; what does not fit the model is reported where the study says it. */
+static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
+  const strut_fit_series *at;
+  strut_status status = strut_fit_add_columns(&study->plan, &at, error);
+  if (status != STRUT_BAD_SCENE || !at) return status;
+  strut_diagnose(&study->file.diagnostics,
+                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s",
+                 error->message);
+  *error = (strut_error){0};
+  return status;
+}
+
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error) {
   strut_study_file *file = &study->file;
@@ -152,7 +165,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status) status = strut_sweep_plan_make(&file->study, &scenes, &study->plan, error);
   if (!status && file->study.search) status = bind_search(study, error);
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
-  if (!status && file->study.fit) status = strut_fit_add_columns(&study->plan, error);
+  if (!status && file->study.fit) status = bind_fit(study, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
   if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
   if (status) return status;
