@@ -351,7 +351,8 @@ def coverage(count, align=""):
         decay(100 + seed)
         found, _ = fit(f"noise-{seed}-{len(align)}", study)
         for name, truth in (("one", 1.0), ("k", 100.0)):
-            held[name] += found[name]["low"] <= truth <= found[name]["high"]
+            p = found[name]
+            held[name] += p["verdict"] == "identified" and p["low"] <= truth <= p["high"]
     return {name: n / count for name, n in held.items()}
 
 

@@ -25,7 +25,10 @@ static const double CLOSE = 100.0;
 /* Each residual where there are none: worse than any that is one, and its square is still a number. */
 static const double NONE = 1e150;
 
-/* Where steps end otherwise, the sum should fall by less than this part of its mean, unless it is EXACT of what it was. */
+/*
+ * Where steps become short the sum should fall by less than its mean, where they end otherwise by less than this part of
+ * it; unless it is EXACT of what it was.
+ */
 static const double MUCH = 1e-2, EXACT = 1e-12;
 
 /* Singular values below this part of the largest are 0. */
@@ -161,30 +164,32 @@ static double sum_of_squares(const double *residual, size_t count) {
   return sum;
 }
 
-/* Could the sum be much smaller, as the derivatives say, than it is? `first`: where the method began. */
-static bool could_fall(const solver *self, const gsl_multifit_nlinear_workspace *workspace,
-                       double first) {
-  const gsl_matrix *jacobian = gsl_multifit_nlinear_jac(workspace);
-  const gsl_vector *residual = gsl_multifit_nlinear_residual(workspace);
-  size_t n = self->free;
-  double sum = 0.0, fall = 0.0;
-  gsl_matrix *copy = gsl_matrix_alloc(jacobian->size1, n), *turn = gsl_matrix_alloc(n, n);
-  gsl_vector *work = gsl_vector_alloc(3 * n);
-  if (!copy || !turn || !work) return true;
-  gsl_vector_view singular = gsl_vector_subvector(work, 0, n);
-  gsl_vector_view along = gsl_vector_subvector(work, n, n);
-  gsl_vector_view scratch = gsl_vector_subvector(work, 2 * n, n);
-  gsl_matrix_memcpy(copy, jacobian);
-  gsl_linalg_SV_decomp(copy, turn, &singular.vector, &scratch.vector);
-  gsl_blas_dgemv(CblasTrans, 1.0, copy, residual, 0.0, &along.vector);
-  gsl_blas_ddot(residual, residual, &sum);
-  for (size_t k = 0; k < n; k++) {
-    double part = fabs(gsl_vector_get(&along.vector, k)),
-           size = gsl_vector_get(&singular.vector, k);
-    fall += part < size ? part * part : size * (2.0 * part - size); /* by a step of at most 1 */
+/* By how much the sum of squares would fall by a step of at most 1 along each singular direction; -1: memory is out. */
+static double find_fall(const gsl_matrix *jacobian, const gsl_vector *residual) {
+  size_t n = jacobian->size2;
+  gsl_matrix *left = gsl_matrix_alloc(jacobian->size1, n), *right = gsl_matrix_alloc(n, n);
+  gsl_vector *size = gsl_vector_alloc(n), *along = gsl_vector_alloc(n);
+  double fall = left && right && size && along ? 0.0 : -1.0;
+  if (fall == 0.0) {
+    gsl_matrix_memcpy(left, jacobian);
+    gsl_linalg_SV_decomp(left, right, size, along);
+    gsl_blas_dgemv(CblasTrans, 1.0, left, residual, 0.0, along);
+    for (size_t k = 0; k < n; k++) {
+      double part = fabs(along->data[k]), s = size->data[k];
+      fall += part < s ? part * part : s * (2.0 * part - s);
+    }
   }
-  gsl_matrix_free(copy), gsl_matrix_free(turn), gsl_vector_free(work);
-  return fall > MUCH * sum / (double)self->problem->count && sum > EXACT * first;
+  gsl_matrix_free(left), gsl_matrix_free(right), gsl_vector_free(size), gsl_vector_free(along);
+  return fall;
+}
+
+/* Is the sum as small as it gets, up to that part of its mean? `first`: the sum where the method began. */
+static bool is_least(const solver *self, const gsl_multifit_nlinear_workspace *workspace,
+                     double first, double part) {
+  const gsl_vector *residual = gsl_multifit_nlinear_residual(workspace);
+  double sum = sum_of_squares(residual->data, residual->size);
+  double fall = find_fall(gsl_multifit_nlinear_jac(workspace), residual);
+  return fall >= 0.0 && (fall <= part * sum / (double)self->problem->count || sum <= EXACT * first);
 }
 
 /*
@@ -200,7 +205,7 @@ static bool converge(solver *self, gsl_multifit_nlinear_workspace *workspace, do
                                          &info, workspace);
     steps = gsl_multifit_nlinear_niter(workspace);
   } while (self->changed && steps < most);
-  return !status || !could_fall(self, workspace, first);
+  return is_least(self, workspace, first, status ? MUCH : 1.0);
 }
 
 /* Solves for the free parameters in x. */
