@@ -4,21 +4,45 @@
 #
 #   sh tests/install.sh          to build and run strut
 #   sh tests/install.sh tests    and what its tests need besides
+#   sh tests/install.sh tests --without browser,films,pages,slurm,vtk,wheel
+#                                without what only tests of these need: ctest names them as skipped
 #   sh tests/install.sh web      and what strut for browsers needs, with its tests
 set -eu
+
+usage() { echo "usage: sh tests/install.sh [web | tests [--without browser,films,pages,slurm,vtk,wheel]]" >&2; exit 1; }
+
+# What a group of tests alone needs.
+group() {
+  case $1 in
+    browser) echo "python3-selenium chromium chromium-driver" ;;
+    films) echo "ffmpeg" ;;
+    pages) echo "python3-myst-parser furo weasyprint" ;;
+    slurm) echo "slurm-wlm munge" ;;
+    vtk) echo "python3-vtk9" ;;
+    wheel) echo "python3-build python3-setuptools python3-wheel python3-venv patchelf mypy" ;;
+    *) return 1 ;;
+  esac
+}
 
 packages="gcc libc6-dev make cmake pkg-config
   libyaml-dev libgsl-dev libsuitesparse-dev libcjson-dev libhdf5-dev libarpack2-dev libglpk-dev
   libnlopt-dev libpango1.0-dev zlib1g-dev fonts-dejavu-core libjs-dygraphs"
 case ${1:-} in
   '') ;;
-  tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq
-  python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge
-  python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
-  python3-build python3-setuptools python3-wheel python3-venv patchelf mypy
-  python3-myst-parser furo weasyprint" ;;
+  tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq poppler-utils patch
+  python3 python3-pandas python3-matplotlib python3-jsonschema python3-yaml"
+    without=
+    case $#,${2:-} in
+      1,) ;;
+      3,--without) without=$3 ;;
+      *) usage ;;
+    esac
+    for name in $(echo "$without" | tr , ' '); do group "$name" >/dev/null || usage; done
+    for name in browser films pages slurm vtk wheel; do
+      case ,$without, in *,"$name",*) ;; *) packages="$packages $(group "$name")" ;; esac
+    done ;;
   web) packages="$packages emscripten clang patch xz-utils ca-certificates nodejs npm node-acorn chromium" ;;
-  *) echo "usage: sh tests/install.sh [tests|web]" >&2; exit 1 ;;
+  *) usage ;;
 esac
 
 as_root=
