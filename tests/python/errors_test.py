@@ -42,7 +42,7 @@ class Errors(unittest.TestCase):
         scene = strut.load(CRAWLER)
         self.assertRaises(strut.SceneError, scene.with_, frequency="10 kg")
         self.assertRaises(strut.SceneError, scene.with_, frequency=float("nan"))
-        self.assertRaisesRegex(TypeError, "unexpected keyword argument 'integratr'", scene.run, integratr="rk4")
+        self.assertRaisesRegex(TypeError, "did you mean 'integrator'", scene.run, integratr="rk4")
         self.assertRaises(strut.UsageError, scene.modes, at="IV")
         self.assertRaises(TypeError, scene.with_, frequency=object())
         self.assertRaises(TypeError, scene.with_, frequency=None)
@@ -53,7 +53,8 @@ class Errors(unittest.TestCase):
         self.assertRaises(ValueError, scene.with_, frequency="1\0")
         self.assertRaises(AttributeError, lambda: scene.nodez)
         self.assertRaises(KeyError, scene.array, "nodes.weight")
-        self.assertIsNone(scene["nodes.n9.0"])
+        self.assertRaises(KeyError, lambda: scene["nodes.n9.0"])
+        self.assertIsNone(scene.get("nodes.n9.0"))
         self.assertEqual(scene.names("nothing"), ())
 
     def test_files(self):

@@ -34,7 +34,7 @@ class Reference(unittest.TestCase):
                 for parameter in inspect.signature(thing).parameters.values():
                     self.assertTrue(parameter.name == "self" or parameter.annotation is not parameter.empty, name)
                     if parameter.kind is parameter.VAR_KEYWORD:
-                        self.assertEqual(parameter.name, "parameters", name)  # those of the scene
+                        self.assertIn(parameter.name, ("parameters", "changes"), name)  # of the scene and of its run
 
 
 main()

@@ -32,7 +32,7 @@ WRONG = """
 import strut
 strut.load(3).run()
 strut.load("a.yaml").simulation().advance("ten")
-strut.load("a.yaml").run(acuracy=1)
+strut.load("a.yaml").modes(cout=1)
 strut.load("a.yaml").form(given="nothing")
 """
 

@@ -93,18 +93,19 @@ class Frozen(unittest.TestCase):
 
 class Arguments(unittest.TestCase):
     def test_a_wrong_keyword_is_pythons_error(self):
-        for call in (CRAWLER.run, CRAWLER.equilibria, CRAWLER.modes, CRAWLER.rigidity, CRAWLER.form, CRAWLER.path,
+        for call in (CRAWLER.equilibria, CRAWLER.modes, CRAWLER.rigidity, CRAWLER.form, CRAWLER.path,
                      CRAWLER.matrices, CRAWLER.simulation, CRAWLER.svg, RUN.svg, RUN.plot,
                      RESULTS["equilibria"][0].modes, RESULTS["equilibria"][0].rigidity):
             self.assertRaisesRegex(TypeError, "unexpected keyword argument 'acuracy'", call, acuracy=1)
         self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", CRAWLER.sweep, friction=[1], acuracy=1)
+        self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", CRAWLER.run, acuracy=1)
 
     def test_arguments_are_the_librarys_options(self):
         for command in ("run", "equilibria", "modes", "rigidity", "form", "path", "matrices", "sweep"):
             given = inspect.signature(getattr(strut.Scene, command)).parameters
             names = {_values._SPELLED.get(name, name.replace("_", "-")) for name in given}
             there = {name.replace("_", "-") for name, _ in _strut.options(command)}
-            extra = {"self", "progress", "axes", "points", "names", "keep", "parameters"}
+            extra = {"self", "progress", "axes", "points", "names", "keep", "parameters", "controller", "changes"}
             self.assertEqual(there, names - extra, command)
 
     def test_messages_name_arguments(self):

@@ -90,7 +90,7 @@ class Wheel(unittest.TestCase):
         loaded = {path for word, path in said if word == "loaded"}
         own = {path for path in loaded if path.startswith(f"{self.here}/venv")}
         self.assertGreater(len(own), 30)
-        pythons = self.run_python("import ctypes\n" + LOADED)
+        pythons = self.run_python("import ctypes, tempfile\n" + LOADED)
         for path in loaded - own:
             outside = OUTSIDE.match(os.path.basename(path)) or "/lib-dynload/" in path or path in pythons
             self.assertTrue(outside, f"{path} is not of the wheel")

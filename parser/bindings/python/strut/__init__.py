@@ -32,12 +32,12 @@ from ._results import (
     Rigidity,
     Run,
 )
-from ._scene import Scene, load, loads
-from ._simulation import Simulation
+from ._scene import Scene, load, loads, run
+from ._simulation import Motion, Simulation
 from ._strut import version as __version__
 from ._studies import Fit, Study, fit, sweep
 from ._sweep import Table
-from ._values import Named, Words
+from ._values import Named, Words, unknown as _unknown
 
 __all__ = [
     "Equilibria",
@@ -51,6 +51,7 @@ __all__ = [
     "Message",
     "MissingFileError",
     "Modes",
+    "Motion",
     "Named",
     "Path",
     "Result",
@@ -68,8 +69,28 @@ __all__ = [
     "load",
     "loads",
     "models",
+    "run",
     "sweep",
 ]
+
+#: commands of the program that are no functions here, and what does it
+_ELSEWHERE = {
+    "check": "strut.load(FILE) checks it; its `warnings` are those of the command",
+    "compare": "the program does that: strut compare FILE FILE --json",
+    "examples": "strut.models is the folder of them",
+    "export": "strut.load(FILE).to_yaml()",
+    "help": "help(strut), or strut help in a terminal",
+    "keys": "strut keys NAME in a terminal",
+    "plot": "results and tables have plot()",
+    "tradeoff": "the program does that: strut tradeoff FILE --json",
+}
+
+
+def __getattr__(name: str) -> object:
+    of_scene = name in ("equilibria", "form", "matrices", "modes", "path", "rigidity", "simulation", "view")
+    there = f"strut.load(FILE).{name}()" if of_scene else _ELSEWHERE.get(name)
+    raise AttributeError(f"no 'strut.{name}': {there}" if there else _unknown(name, __all__, "name in strut"))
+
 
 for _name in set(__all__) - {"models"}:  # messages say strut.SceneError, whichever file it is in
     globals()[_name].__module__ = "strut"

@@ -52,6 +52,20 @@ class Scale:
         return name if self.unit in ("", "1") else f"{name} in {self.unit}"
 
 
+def scene(drawn: Scene, ax: Any) -> Any:
+    ax = axes(ax)
+    place = drawn.array("nodes.position")
+    scale = Scale(place, "m")
+    place = scale(place)
+    for a, b in drawn.array("members.nodes").astype(int):
+        ax.plot(place[[a, b], 0], place[[a, b], 1], color="C0")
+    ax.plot(place[:, 0], place[:, 1], "o", color="C0")
+    for name, (x, y) in zip(drawn.names("nodes"), place):
+        ax.annotate(name, (x, y), (3, 3), textcoords="offset points")
+    ax.set(xlabel=scale.label("x"), ylabel=scale.label("y"), aspect="equal")
+    return ax
+
+
 def _legend(ax: Any, count: int) -> None:
     if 1 < count <= 12:
         ax.legend()

@@ -3,13 +3,50 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Callable
+import math
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 from . import _strut
-from ._values import COMPONENTS, Frozen, Named, fixed, numpy, unknown
+from ._values import COMPONENTS, Frozen, Named, UnknownName, fixed, numpy, unknown
 
 if TYPE_CHECKING:
     from ._scene import Scene
+
+class Motion(Frozen):
+    """What a run under a controller has recorded: `time` (samples) [s], and arrays of channels by name.
+
+    motion["position"]["n1"] is (samples, 2).
+    """
+
+    time: Any
+    _arrays: dict[str, Named]
+
+    def __init__(self, time: Any, arrays: dict[str, Named]) -> None:
+        self.__dict__.update(time=time, _arrays=arrays)
+
+    def __getitem__(self, channel: str) -> Named:
+        if channel not in self._arrays:
+            raise UnknownName(unknown(channel, self._arrays, "channel"))
+        return self._arrays[channel]
+
+    def __repr__(self) -> str:
+        return f"<strut.Motion: {len(self.time)} samples of {', '.join(self._arrays)}>"
+
+
+def controlled(
+    sim: Simulation, controller: Callable[[Simulation], object], until: float, channels: Sequence[str]
+) -> Motion:
+    """Advances by single steps, before each of which the controller sets inputs, and records after each."""
+    time, rows = [], {name: [] for name in channels}  # type: ignore[var-annotated]
+    while sim.time < until - 0.5 * sim.step:
+        controller(sim)
+        sim.advance(1)
+        time.append(sim.time)
+        for name in channels:
+            rows[name].append(getattr(sim, name).copy())
+    arrays = {n: Named(fixed(each), getattr(sim, n).names, 1) for n, each in rows.items()}
+    return Motion(fixed(time), arrays)
+
 
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 
@@ -46,6 +83,10 @@ class Simulation(Frozen):
             snapshot=raw.snapshot,
             restore=raw.restore,
         )
+
+    def advance_to(self, time: float) -> None:
+        """Makes the steps until `time` [s] is reached, none where it has passed."""
+        self.advance(max(0, math.ceil((time - self.time) / self.step - 1e-9)))
 
     @property
     def time(self) -> float:

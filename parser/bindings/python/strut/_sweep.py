@@ -76,7 +76,7 @@ def _values(scene: Scene, name: str, values: Iterable[object] | object) -> list[
     refuse_bytes(values)
     if isinstance(values, str) or not isinstance(values, Iterable):
         values = [values]
-    is_word = isinstance(scene[f"parameters.{name}"], str)
+    is_word = isinstance(scene.get(f"parameters.{name}"), str)
     return [_value(scene, name, value, is_word) for value in values]
 
 

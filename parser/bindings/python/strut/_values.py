@@ -149,7 +149,7 @@ def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
     """A sentence for a name that is not there, with those that may have been meant."""
     import difflib
 
-    names = list(known)
+    names = [one for one in known if not one.startswith("_")]
     close = difflib.get_close_matches(name, names, 3)
     if close:
         return f"no {what} '{name}'; did you mean {' or '.join(map(repr, close))}?"
