@@ -88,8 +88,9 @@ typedef struct dense_curvature {
   strut_tridiagonal *reduced;
   bool has_modes; /* `now` is filled, and `reduced` has lost its reflections */
   strut_spectrum now;
-  double *part, *x;  /* (n) the gradient and the step in the modes, or in the basis of T */
-  uint8_t *idle;     /* (n) modes to leave alone */
+  double *part, *x; /* (n) the gradient and the step in the modes, or in the basis of T */
+  uint8_t *idle;    /* (n) modes to leave alone */
+  strut_arena arena;
   double scale;      /* largest |eigenvalue| */
   double multiplier; /* of the step that descend gave last */
 } dense_curvature;
@@ -98,9 +99,7 @@ static void dense_free(void *memory) {
   dense_curvature *curvature = memory;
   if (!curvature) return;
   strut_spectrum_free(curvature->spectra);
-  strut_release(curvature->part);
-  strut_release(curvature->x);
-  strut_release(curvature->idle);
+  strut_arena_free(&curvature->arena);
   strut_release(curvature);
 }
 
@@ -108,10 +107,12 @@ void *strut_curvature_dense_create(const strut_potential *potential) {
   dense_curvature *curvature = strut_allocate(1, sizeof *curvature);
   if (!curvature) return NULL;
   curvature->spectra = strut_spectrum_create(potential);
-  curvature->part = strut_allocate((size_t)potential->n, sizeof *curvature->part);
-  curvature->x = strut_allocate((size_t)potential->n, sizeof *curvature->x);
-  curvature->idle = strut_allocate((size_t)potential->n, sizeof *curvature->idle);
-  if (curvature->spectra && curvature->part && curvature->x && curvature->idle) return curvature;
+  size_t n = (size_t)potential->n;
+  curvature->idle = strut_arena_allocate(&curvature->arena, n, sizeof *curvature->idle);
+  if (curvature->spectra && curvature->idle &&
+      strut_arena_numbers(&curvature->arena, n,
+                          (double **[]){&curvature->part, &curvature->x, NULL}))
+    return curvature;
   dense_free(curvature);
   return NULL;
 }
@@ -292,16 +293,12 @@ void *strut_curvature_sparse_create(const strut_potential *potential) {
   if (!curvature) return NULL;
   curvature->potential = potential;
   curvature->hessian = strut_potential_matrix(potential, &curvature->arena);
-  curvature->work =
-      strut_arena_allocate(&curvature->arena, (size_t)potential->n, sizeof *curvature->work);
-  curvature->scratch =
-      strut_arena_allocate(&curvature->arena, (size_t)potential->n, sizeof *curvature->scratch);
-  size_t nonzeros =
-      curvature->hessian ? (size_t)curvature->hessian->start[curvature->hessian->n] : 0;
-  curvature->factored =
-      strut_arena_allocate(&curvature->arena, nonzeros, sizeof *curvature->factored);
   curvature->shift = (double)NAN;
-  if (curvature->hessian && curvature->work && curvature->scratch && curvature->factored &&
+  if (curvature->hessian &&
+      strut_arena_numbers(&curvature->arena, (size_t)potential->n,
+                          (double **[]){&curvature->work, &curvature->scratch, NULL}) &&
+      strut_arena_numbers(&curvature->arena, (size_t)curvature->hessian->start[potential->n],
+                          (double **[]){&curvature->factored, NULL}) &&
       strut_ldl_create(potential->pattern, &curvature->ldl, NULL) == STRUT_OK)
     return curvature;
   sparse_free(curvature);

@@ -172,14 +172,12 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
 
 bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t rows, strut_arena *arena) {
   size_t n = (size_t)rows;
-  *tridiagonal = (strut_tridiagonal){
-      .n = rows, .z = strut_arena_allocate(arena, n * n, sizeof *tridiagonal->z)};
-  double **line[] = {&tridiagonal->height, &tridiagonal->work,  &tridiagonal->diagonal,
-                     &tridiagonal->beside, &tridiagonal->pivot, &tridiagonal->ratio};
-  bool good = tridiagonal->z != NULL;
-  for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
-    good = good && (*line[i] = strut_arena_allocate(arena, n, sizeof(double)));
-  return good;
+  strut_tridiagonal *t = tridiagonal;
+  *t = (strut_tridiagonal){.n = rows};
+  return strut_arena_numbers(arena, n * n, (double **[]){&t->z, NULL}) &&
+         strut_arena_numbers(arena, n,
+                             (double **[]){&t->height, &t->work, &t->diagonal, &t->beside,
+                                           &t->pivot, &t->ratio, NULL});
 }
 
 void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal) {
@@ -275,6 +273,12 @@ bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vect
   gsl_eigen_symmv_free(work);
   for (size_t i = 0; good && i < n; i++) turn(vector + i * n, n);
   return good;
+}
+
+bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list) {
+  for (; *list; list++)
+    if (!(**list = strut_arena_allocate(arena, count, sizeof(double)))) return false;
+  return true;
 }
 
 gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns) {

@@ -9,6 +9,7 @@
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/model/algebra/linear_solver.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
@@ -51,13 +52,10 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
   m->workspace =
       dense ? strut_curvature_dense_create(potential) : strut_curvature_sparse_create(potential);
-  m->g = strut_arena_allocate(&m->arena, n, sizeof *m->g);
-  m->g_trial = strut_arena_allocate(&m->arena, n, sizeof *m->g_trial);
-  m->step = strut_arena_allocate(&m->arena, n, sizeof *m->step);
-  m->unbent = strut_arena_allocate(&m->arena, n, sizeof *m->unbent);
-  m->trial = strut_arena_allocate(&m->arena, length, sizeof *m->trial);
-  m->before = strut_arena_allocate(&m->arena, length, sizeof *m->before);
-  if (m->workspace && m->g && m->g_trial && m->step && m->unbent && m->trial && m->before)
+  if (m->workspace &&
+      strut_arena_numbers(&m->arena, n,
+                          (double **[]){&m->g, &m->g_trial, &m->step, &m->unbent, NULL}) &&
+      strut_arena_numbers(&m->arena, length, (double **[]){&m->trial, &m->before, NULL}))
     return STRUT_OK;
   strut_minimiser_free(m);
   *minimiser = NULL;

@@ -22,10 +22,6 @@ struct strut_spectrum_workspace {
   int32_t *order;                      /* (n) */
 };
 
-static double *numbers(strut_arena *arena, size_t count) {
-  return strut_arena_allocate(arena, count, sizeof(double));
-}
-
 static bool is_uneven(const strut_model *model) {
   double low = HUGE_VAL, high = 0.0;
   for (int32_t i = 0; i < strut_force_count(model, true); i++) {
@@ -41,18 +37,16 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
   if (!room) return NULL;
   room->potential = potential;
   room->uneven = is_uneven(potential->model);
-  double **square[] = {&room->soft, &room->vector, &room->turned};
-  double **line[] = {&room->raw,   &room->value,  &room->noise,     &room->work,
-                     &room->along, &room->across, &room->form_noise};
-  bool good = true;
-  for (size_t i = 0; i < sizeof square / sizeof square[0]; i++)
-    good = good && (*square[i] = numbers(&room->arena, n * n));
-  for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
-    good = good && (*line[i] = numbers(&room->arena, n));
-  good = good && (room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order));
-  good = good && strut_tridiagonal_create(&room->dense, potential->n, &room->arena);
-  good = good && (room->hessian = strut_potential_matrix(potential, &room->arena));
-  if (good) return room;
+  room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order);
+  room->hessian = strut_potential_matrix(potential, &room->arena);
+  if (room->order && room->hessian &&
+      strut_arena_numbers(&room->arena, n * n,
+                          (double **[]){&room->soft, &room->vector, &room->turned, NULL}) &&
+      strut_arena_numbers(&room->arena, n,
+                          (double **[]){&room->raw, &room->value, &room->noise, &room->work,
+                                        &room->along, &room->across, &room->form_noise, NULL}) &&
+      strut_tridiagonal_create(&room->dense, potential->n, &room->arena))
+    return room;
   strut_spectrum_free(room);
   return NULL;
 }

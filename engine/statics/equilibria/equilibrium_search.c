@@ -12,6 +12,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/search/critical.h"
 
 /* Quantities of one candidate. */
@@ -361,12 +362,11 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
   relaxer->potential = potential;
   relaxer->limit = limit;
   relaxer->model = potential->model;
-  relaxer->quenched = strut_arena_allocate(&relaxer->arena, length, sizeof(double));
-  relaxer->last = strut_arena_allocate(&relaxer->arena, length, sizeof(double));
-  relaxer->start = strut_arena_allocate(&relaxer->arena, length, sizeof(double));
-  strut_status status = relaxer->quenched && relaxer->last && relaxer->start
-                            ? strut_minimiser_create(potential, &relaxer->minimiser, error)
-                            : strut_no_memory(error, "");
+  bool good =
+      strut_arena_numbers(&relaxer->arena, length,
+                          (double **[]){&relaxer->quenched, &relaxer->last, &relaxer->start, NULL});
+  strut_status status = good ? strut_minimiser_create(potential, &relaxer->minimiser, error)
+                             : strut_no_memory(error, "");
   if (!status) status = prepare_motion(relaxer, error);
   if (status) {
     strut_relaxer_free(relaxer);

@@ -119,13 +119,10 @@ static strut_status find_rigid(strut_modes_work *work, strut_error *error) {
 static int32_t sort_zeros(strut_modes_work *work, double *zero, int32_t count) {
   size_t n = (size_t)work->v->n;
   strut_arena scratch = {0};
-  double *basis = strut_arena_allocate(&scratch, (size_t)count * n, sizeof *basis);
-  double *x = strut_arena_allocate(&scratch, n, sizeof *x);
+  double *basis = strut_arena_allocate(&scratch, ((size_t)count + 1) * n, sizeof *basis);
+  double *x = basis + (size_t)count * n;
   int32_t rigid = 0, found = 0;
-  if (!basis || !x) {
-    strut_arena_free(&scratch);
-    return -1;
-  }
+  if (!basis) return -1;
   for (int32_t r = 0; r < work->rigid_count && found < count; r++) {
     memcpy(x, work->rigid + (size_t)r * n, n * sizeof *x);
     if (remove_shares(work, zero, count, x) > 1e-8) continue;
@@ -255,14 +252,7 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   status = strut_experiment_end(work->experiment, status, error);
   if (status != STRUT_OK) return status;
   status = modes->dense ? strut_modes_dense(work, error) : strut_modes_sparse(work, wanted, error);
-  if (status != STRUT_OK) return status;
-  size_t count = (size_t)work->set.count;
-  work->set.noise = strut_arena_allocate(work->arena, count, sizeof(double));
-  work->set.error = strut_arena_allocate(work->arena, count, sizeof(double));
-  work->set.residual = strut_arena_allocate(work->arena, count, sizeof(double));
-  if (!work->set.noise || !work->set.error || !work->set.residual)
-    return strut_no_memory(error, "");
-  status = strut_modes_noise(work, modes->at_rest, error);
+  if (status == STRUT_OK) status = strut_modes_noise(work, modes->at_rest, error);
   if (status == STRUT_OK) status = find_rigid(work, error);
   if (status == STRUT_OK) status = strut_modes_measure(work, error);
   if (status == STRUT_OK && work->solver.no_memory) status = strut_no_memory(error, "");

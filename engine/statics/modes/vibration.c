@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/statics/algebra.h"
 
 static const double EDGE =
     8.0; /* last bits that a length and a rest length are known to, together */
@@ -160,22 +161,17 @@ void strut_vibration_update(strut_vibration *vibration) {
 static bool allocate(strut_vibration *vibration) {
   const strut_model *model = vibration->model;
   size_t n = (size_t)vibration->n, entries = (size_t)vibration->shape->pattern->start[n];
-  vibration->q =
-      strut_arena_allocate(&vibration->arena, (size_t)model->length, sizeof *vibration->q);
-  vibration->closed = strut_arena_allocate(&vibration->arena, (size_t)model->contacts.count,
-                                           sizeof *vibration->closed);
-  vibration->k = strut_arena_allocate(&vibration->arena, entries, sizeof *vibration->k);
-  vibration->m = strut_arena_allocate(&vibration->arena, entries, sizeof *vibration->m);
-  vibration->d = strut_arena_allocate(&vibration->arena, entries, sizeof *vibration->d);
-  vibration->low =
-      strut_arena_allocate(&vibration->arena, (size_t)model->length, sizeof *vibration->low);
-  vibration->mass = strut_arena_allocate(&vibration->arena, n, sizeof *vibration->mass);
-  vibration->own_mass = strut_arena_allocate(&vibration->arena, n, sizeof *vibration->own_mass);
-  vibration->work = strut_arena_allocate(&vibration->arena, n, sizeof *vibration->work);
-  vibration->state =
-      strut_arena_allocate(&vibration->arena, (size_t)strut_force_count(model, false), 1);
-  return vibration->state && vibration->low && vibration->q && vibration->closed && vibration->k &&
-         vibration->m && vibration->d && vibration->mass && vibration->own_mass && vibration->work;
+  strut_arena *arena = &vibration->arena;
+  vibration->closed = strut_arena_allocate(arena, (size_t)model->contacts.count, 1);
+  vibration->state = strut_arena_allocate(arena, (size_t)strut_force_count(model, false), 1);
+  return vibration->closed && vibration->state &&
+         strut_arena_numbers(arena, (size_t)model->length,
+                             (double **[]){&vibration->q, &vibration->low, NULL}) &&
+         strut_arena_numbers(arena, entries,
+                             (double **[]){&vibration->k, &vibration->m, &vibration->d, NULL}) &&
+         strut_arena_numbers(
+             arena, n,
+             (double **[]){&vibration->mass, &vibration->own_mass, &vibration->work, NULL});
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,

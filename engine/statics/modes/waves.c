@@ -10,6 +10,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/things.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/modes/parts.h"
 
 enum { SAMPLES_ALONE = 200, SAMPLES_OF_LINE = 40, SAMPLES_ACROSS = 24 };
@@ -107,12 +108,12 @@ static bool allocate(strut_waves *waves, size_t corners, size_t each) {
   size_t n = (size_t)waves->band_count;
   waves->count = (corners - 1) * each + 1;
   waves->phase = strut_arena_allocate(&waves->arena, waves->count, sizeof *waves->phase);
-  waves->along = strut_arena_allocate(&waves->arena, waves->count, sizeof *waves->along);
-  waves->frequency =
-      strut_arena_allocate(&waves->arena, waves->count * n, sizeof *waves->frequency);
   waves->band = strut_arena_allocate(&waves->arena, n, sizeof *waves->band);
   waves->gaps = strut_arena_allocate(&waves->arena, n, sizeof *waves->gaps);
-  return waves->phase && waves->along && waves->frequency && waves->band && waves->gaps;
+  return waves->phase && waves->band && waves->gaps &&
+         strut_arena_numbers(&waves->arena, waves->count, (double **[]){&waves->along, NULL}) &&
+         strut_arena_numbers(&waves->arena, waves->count * n,
+                             (double **[]){&waves->frequency, NULL});
 }
 
 static void include(strut_waves *waves, const double phase[2], const double *frequency) {
@@ -275,9 +276,9 @@ static strut_status find(const strut_model *model, const strut_experiment *exper
                          strut_error *error) {
   strut_lattice_cell cell;
   size_t length = (size_t)model->length;
-  double *q = strut_arena_allocate(&waves->arena, length, sizeof *q);
-  double *before = strut_arena_allocate(&waves->arena, length, sizeof *before);
-  if (!q || !before) return strut_no_memory(error, "");
+  double *q, *before;
+  if (!strut_arena_numbers(&waves->arena, length, (double **[]){&q, &before, NULL}))
+    return strut_no_memory(error, "");
   strut_status status = strut_lattice_cell_create(model, &waves->arena, &cell, error);
   if (status == STRUT_OK) status = choose_shape(model->scene, options->at, waves, q, error);
   if (status != STRUT_OK) return status;

@@ -261,18 +261,13 @@ static strut_status critical_judge(const strut_potential *potential, const doubl
   strut_arena scratch = {0};
   judgement j = {.potential = potential};
   *point = (strut_critical_point){.found = 1, .placements = 1, .down = {-1, -1}};
-  point->q = strut_arena_allocate(arena, length, sizeof *point->q);
-  point->softest = strut_arena_allocate(arena, length, sizeof *point->softest);
-  j.motion = strut_arena_allocate(&scratch, 3 * n, sizeof *j.motion);
-  j.work = strut_arena_allocate(&scratch, 3 * n, sizeof *j.work);
+  point->q = strut_arena_copy(arena, positions, length, sizeof *positions);
   j.hessian = strut_potential_matrix(potential, &scratch);
-  strut_status status = STRUT_NO_MEMORY;
-  if (point->q && point->softest && j.motion && j.work && j.hessian) {
-    memcpy(point->q, positions, length * sizeof *positions);
-    status = judge_point(&j, positions, arena, point, error);
-  } else {
-    strut_no_memory(error, "");
-  }
+  bool good = point->q && j.hessian &&
+              strut_arena_numbers(arena, length, (double **[]){&point->softest, NULL}) &&
+              strut_arena_numbers(&scratch, 3 * n, (double **[]){&j.motion, &j.work, NULL});
+  strut_status status =
+      good ? judge_point(&j, positions, arena, point, error) : strut_no_memory(error, "");
   bool finite = !status || !j.hessian || is_finite(j.hessian);
   for (size_t i = 0; i < length; i++) finite = finite && fabs(positions[i]) < FARTHEST;
   strut_arena_free(&scratch);
