@@ -14,20 +14,6 @@ double strut_path_distance(const strut_path_walk *walk, const double *first, con
   return sqrt(sum);
 }
 
-/* Memory for one more of `size` bytes at *items. */
-static bool reserve_items(strut_path_walk *walk, void **items, size_t count, size_t *room,
-                          size_t size) {
-  if (count < *room) return true;
-  size_t more = *room ? 2 * *room : 64;
-  void *block = *items ? strut_reallocate(*items, more, size) : strut_allocate(more, size);
-  if (!block) {
-    walk->failed = true;
-    return false;
-  }
-  *items = block, *room = more;
-  return true;
-}
-
 static double *new_values(strut_path_walk *walk, size_t count) {
   double *values = strut_arena_allocate(&walk->path->arena, count, sizeof *values);
   if (!values) walk->failed = true;
@@ -70,21 +56,18 @@ static strut_path_state keep_state(strut_path_walk *walk, const double *unknowns
 void strut_path_add_point(strut_path_walk *walk, int32_t negative) {
   strut_path *path = walk->path;
   strut_path_keep_guides(walk);
-  void *items = path->points;
   strut_path_point point = {keep_state(walk, walk->y, walk->arc), negative};
-  if (walk->failed ||
-      !reserve_items(walk, &items, path->point_count, &walk->point_room, sizeof *path->points))
-    return;
+  walk->failed = walk->failed || !strut_grow(&path->points, &walk->point_room, path->point_count,
+                                             sizeof *path->points);
+  if (walk->failed) return;
   strut_path_keep_turns(&walk->system);
   strut_path_keep_directions(&walk->system);
-  path->points = items;
   path->points[path->point_count++] = point;
 }
 
 void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *unknowns,
                           int32_t index, int32_t before, int32_t after, const char *detail) {
   strut_path *path = walk->path;
-  void *items = path->events;
   detail = strut_arena_text(&path->arena, detail, strlen(detail));
   if (!detail) walk->failed = true;
   if (walk->failed) return;
@@ -95,10 +78,9 @@ void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, con
       before,
       after,
       detail};
-  if (walk->failed ||
-      !reserve_items(walk, &items, path->event_count, &walk->event_room, sizeof *path->events))
-    return;
-  path->events = items;
+  walk->failed = walk->failed || !strut_grow(&path->events, &walk->event_room, path->event_count,
+                                             sizeof *path->events);
+  if (walk->failed) return;
   size_t at = path->event_count++; /* in the order of the path */
   for (; at > 0 && path->events[at - 1].at.arc > event.at.arc; at--)
     path->events[at] = path->events[at - 1];
