@@ -255,13 +255,11 @@ static bool end_path(strut_path_walk *walk, strut_path_end end) {
 }
 
 static bool pass_switch(strut_path_walk *walk, int32_t which, const double *beyond) {
-  const strut_path_system *system = &walk->system;
-  if (strut_path_turns_round(system, which)) return strut_path_pass_zero_length(walk, which);
-  if (which < strut_path_first_corner_switch(system) ||
-      which >= strut_path_first_element_switch(system))
-    return strut_path_pass_kink(walk, which, beyond);
-  return which < strut_path_first_grip_switch(system) ? strut_path_pass_corner(walk, which)
-                                                      : strut_path_pass_grip(walk, which, beyond);
+  const strut_path_switch own = strut_path_switch_at(&walk->system, which);
+  if (strut_path_turns_round(&walk->system, which)) return strut_path_pass_zero_length(walk, which);
+  if (own.of == STRUT_PATH_FACET) return strut_path_pass_corner(walk, own.index);
+  return own.of == STRUT_PATH_GRIP ? strut_path_pass_grip(walk, which, beyond)
+                                   : strut_path_pass_kink(walk, which, beyond);
 }
 
 /* From w->fork, where the path ends, along another one. */
@@ -380,9 +378,8 @@ static void sharpen_start(strut_path_walk *walk) {
 
 /* A contact that slides at once with another coefficient does so in a first step, which jumps. */
 static bool is_about_to_drop(const strut_path_system *system, int32_t which) {
-  int32_t grip = which - strut_path_first_grip_switch(system);
-  return grip >= 0 && which < strut_path_first_element_switch(system) &&
-         strut_path_friction_drops(system, grip);
+  const strut_path_switch own = strut_path_switch_at(system, which);
+  return own.of == STRUT_PATH_GRIP && strut_path_friction_drops(system, own.index);
 }
 
 bool strut_path_walk_begin(strut_path_walk *walk) {
