@@ -306,9 +306,6 @@ strut_status strut_name_equilibria(const strut_model *model, size_t count, strut
 /** True if strut_name_equilibria may give this name. */
 bool strut_is_listed_name(const strut_scene *scene, const char *name);
 
-/** Finds which nodes of the shape coincide and which members cross; only what overlaps is compared. */
-void strut_find_shape_flaws(const strut_model *model, strut_equilibrium *equilibrium);
-
 /** True where the set holds the same nodes, in any order. */
 bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count);
 
