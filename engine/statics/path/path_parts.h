@@ -506,6 +506,9 @@ void strut_path_count_negative(strut_path_walk *walk);
 
 /** Name of the path's parameter, as the subject of a sentence. */
 const char *strut_path_subject(const strut_path_walk *walk);
+/** The parameter at a value, "the factor 1.5"; returns the text. */
+enum { STRUT_PATH_TEXT = 200 };
+const char *strut_path_at(const strut_path_walk *walk, double value, char text[STRUT_PATH_TEXT]);
 /**
  * "can grow no further" where the parameter turns that went on by `turn` [ranges], or "grows again
  * from".

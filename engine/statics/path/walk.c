@@ -236,21 +236,19 @@ static bool end_path(strut_path_walk *walk, strut_path_end end) {
   if (end == STRUT_PATH_LOST) name_vanished(walk, cause, sizeof cause);
   const strut_path_parameter *parameter = &walk->system.parameter;
   size_t room = sizeof walk->path->remark;
-  double value = strut_path_value(&walk->system, walk->y);
-  const char *unit = walk->path->unit, *gap = *unit ? " " : "";
+  char at[STRUT_PATH_TEXT];
+  const char *unit = walk->path->unit;
+  strut_path_at(walk, strut_path_value(&walk->system, walk->y), at);
   walk->path->end = end;
   if (end == STRUT_PATH_LOST)
     snprintf(walk->path->remark, room,
-             "the path ends at %s %.6g%s%s: no equilibrium was found nearby beyond it%s",
-             strut_path_subject(walk), value, gap, unit, cause);
+             "the path ends at %s: no equilibrium was found nearby beyond it%s", at, cause);
   if (end == STRUT_PATH_AWAY)
     snprintf(walk->path->remark, room,
-             "followed to %s %.6g%s%s: beyond, the structure moves away without end",
-             strut_path_subject(walk), value, gap, unit);
+             "followed to %s: beyond, the structure moves away without end", at);
   if (end == STRUT_PATH_INVALID)
-    snprintf(walk->path->remark, room, "the path ends at %s %.6g%s%s: beyond, at %.6g%s%s, %s",
-             strut_path_subject(walk), value, gap, unit, parameter->refused_at, gap, unit,
-             parameter->refusal.message);
+    snprintf(walk->path->remark, room, "the path ends at %s: beyond, at %.6g%s%s, %s", at,
+             parameter->refused_at, *unit ? " " : "", unit, parameter->refusal.message);
   return false;
 }
 
@@ -282,6 +280,19 @@ static bool go_on_along(strut_path_walk *walk, const strut_path_ray *way) {
   return !landed && !walk->failed;
 }
 
+/* To the next point. */
+static void advance(strut_path_walk *walk) {
+  walk->arc += strut_path_distance(walk, walk->next, walk->y);
+  memcpy(walk->y, walk->next, strut_path_bytes(walk));
+  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
+}
+
+/* How far the next point is along the tangent. */
+static double length_ahead(const strut_path_walk *walk) {
+  return strut_path_dot(walk, walk->tangent, walk->next) -
+         strut_path_dot(walk, walk->tangent, walk->y);
+}
+
 /* Ends the piece where a switch is thrown and continues from there. */
 static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_t which,
                           double *beyond) {
@@ -291,9 +302,7 @@ static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_
     memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
   strut_path_ray way;
   if (strut_path_find_criticals(walk, piece, &way)) return go_on_along(walk, &way);
-  walk->arc += strut_path_distance(walk, walk->next, walk->y);
-  memcpy(walk->y, walk->next, strut_path_bytes(walk));
-  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
+  advance(walk);
   int32_t negative = walk->negative;
   bool on = pass_switch(walk, which, beyond);
   double since = walk->arc - walk->path->points[walk->path->point_count - 1].at.arc;
@@ -313,12 +322,9 @@ static bool take_step(strut_path_walk *walk) {
   double place;
   do {
     if (!strut_path_find_next(walk)) return end_path(walk, find_reason(walk));
-    piece.length = strut_path_dot(walk, walk->tangent, walk->next) -
-                   strut_path_dot(walk, walk->tangent, walk->y);
+    piece.length = length_ahead(walk);
     landed = land_on_end(walk), stopped = land_on_stop(walk, &piece);
-    if (landed || stopped)
-      piece.length = strut_path_dot(walk, walk->tangent, walk->next) -
-                     strut_path_dot(walk, walk->tangent, walk->y);
+    if (landed || stopped) piece.length = length_ahead(walk);
     place = first_switch(walk, &piece, &which, &strayed);
     strayed = strayed && walk->step > SHORTEST_CHECKED;
     if (strayed) walk->step *= 0.25;
@@ -334,9 +340,7 @@ static bool take_step(strut_path_walk *walk) {
   walk->bends = 0;
   strut_path_ray way;
   if (strut_path_find_criticals(walk, &piece, &way)) return go_on_along(walk, &way);
-  walk->arc += strut_path_distance(walk, walk->next, walk->y);
-  memcpy(walk->y, walk->next, strut_path_bytes(walk));
-  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
+  advance(walk);
   strut_path_add_point(walk, walk->negative);
   if (walk->failed) return false;
   if (landed || stopped) {
