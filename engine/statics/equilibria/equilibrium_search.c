@@ -210,7 +210,7 @@ static strut_status explore_landscape(strut_equilibrium_search *search) {
     double *q = strut_arena_copy(&scratch, equilibrium->point.q, length, sizeof *q);
     if (!q) status = STRUT_NO_MEMORY;
     if (status) break;
-    strut_minimise(search->relaxer->minimiser, q, 0.0);
+    strut_minimise(search->relaxer->minimiser, q);
     extra[extras++] = q;
     if (equilibrium->rest) extra[extras++] = equilibrium->rest;
   }
@@ -424,11 +424,12 @@ typedef struct verdict {
   int agreed;
 } verdict;
 
-static bool is_decided(strut_relaxer *relaxer, double energy, const double *positions,
-                       const strut_landscape *passes, verdict *self) {
+static bool is_decided(strut_relaxer *relaxer, double energy, const strut_landscape *passes,
+                       verdict *self) {
+  const double *positions = relaxer->state->q;
   size_t bytes = (size_t)relaxer->model->length * sizeof(double);
   memcpy(relaxer->quenched, positions, bytes);
-  strut_descent descent = strut_minimise(relaxer->minimiser, relaxer->quenched, 0.0);
+  strut_descent descent = strut_minimise(relaxer->minimiser, relaxer->quenched);
   if (descent.end != STRUT_DESCENT_REACHED) {
     self->agreed = 0;
     return false;
@@ -454,7 +455,7 @@ static outcome simulate(strut_relaxer *relaxer, double step, const strut_landsca
   memcpy(relaxer->state->q, relaxer->start, bytes);
   memset(relaxer->state->v, 0, bytes);
   double first = total_energy(relaxer), look = (double)FIRST_LOOK;
-  if (is_decided(relaxer, first, relaxer->state->q, passes, &v)) return DECIDED;
+  if (is_decided(relaxer, first, passes, &v)) return DECIDED;
   while (relaxer->state->step < MOST_STEPS &&
          (double)relaxer->state->step * step < relaxer->limit) {
     if (interrupt && *interrupt) return STOPPED;
@@ -464,7 +465,7 @@ static outcome simulate(strut_relaxer *relaxer, double step, const strut_landsca
     /* Nothing feeds the motion: an energy above the first comes from the step. */
     if (!isfinite(energy) || energy > first + GROWN * fabs(first)) return UNSTABLE_STEP;
     if (has_escaped(relaxer->model, relaxer->start, relaxer->state->q)) return LEFT;
-    if (is_decided(relaxer, energy, relaxer->state->q, passes, &v)) return DECIDED;
+    if (is_decided(relaxer, energy, passes, &v)) return DECIDED;
     look = fmin(1.1 * look, (double)LAST_LOOK);
   }
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
@@ -485,7 +486,7 @@ static void judge_rest(strut_relaxer *relaxer, const double *positions, strut_re
 /* Minimises from q, with the centre of mass moved to x. */
 static void quench_to_rest(strut_relaxer *relaxer, double x, double *positions,
                            strut_relaxed *relaxed) {
-  strut_descent descent = strut_minimise(relaxer->minimiser, positions, 0.0);
+  strut_descent descent = strut_minimise(relaxer->minimiser, positions);
   relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS
                  : descent.end == STRUT_DESCENT_RUNAWAY ? STRUT_RELAXED_LEAVES
                                                         : STRUT_RELAXED_MOVES;

@@ -202,7 +202,7 @@ static strut_status settle_cell(const lattice_cell *cell, const strut_experiment
     strut_minimiser_watch(minimiser, experiment->interrupt);
     strut_minimiser_stay(minimiser);
     place_images(cell, q);
-    strut_descent descent = strut_minimise(minimiser, q, 0.0);
+    strut_descent descent = strut_minimise(minimiser, q);
     *residual = descent.residual;
     status = strut_experiment_end(experiment, status, error);
     strut_potential_gradient(potential, q, gradient);

@@ -226,7 +226,7 @@ static strut_status descend_to_rest(const path_start *self, const uint8_t *held,
     status = strut_minimiser_create(potential, &minimiser, error);
   if (status == STRUT_OK && potential->n > 0) {
     strut_minimiser_watch(minimiser, self->setup.experiment.interrupt);
-    strut_descent descent = strut_minimise(minimiser, self->q, 0.0);
+    strut_descent descent = strut_minimise(minimiser, self->q);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "%s there is no equilibrium to start from: nothing holds the structure; "
