@@ -31,41 +31,13 @@
 STRUT_API bool strut_eigen(double *matrix, int32_t n, double *value, double *work);
 
 /**
- * A symmetric matrix H = Q T Q' with tridiagonal T, the first half of strut_eigen and a fifth of its
- * work: enough for steps by (H + shift)^-1 with any number of shifts.
- */
-typedef struct strut_tridiagonal {
-  int32_t n;
-  double *z; /* (n, n) H, then the reflections of Q, then eigenvectors, one per row */
-  double *diagonal, *beside; /* (n) of T; beside[i] joins i and i + 1 */
-  double bound;              /* no |eigenvalue| is larger */
-  double *pivot, *ratio;     /* (n) L D L' of T + shift */
-  double *height, *work;     /* (n) of the reflections */
-  int power;                 /* z was scaled by 2^-power */
-} strut_tridiagonal;
-
-/** False: out of memory. */
-STRUT_API bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t n,
-                                        strut_arena *arena);
-/** z, symmetric and finite, becomes Q and T. */
-STRUT_API void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal);
-/** Once after each reduction: what strut_eigen computes, eigenvectors in z. T remains, Q does not. */
-STRUT_API bool strut_tridiagonal_eigen(strut_tridiagonal *tridiagonal, double *value);
-/** x (n) becomes Q'x, or Qx. */
-STRUT_API void strut_tridiagonal_enter(const strut_tridiagonal *tridiagonal, double *vector);
-STRUT_API void strut_tridiagonal_leave(const strut_tridiagonal *tridiagonal, double *vector);
-/** Factors T + shift; returns how many eigenvalues of H lie below -shift. */
-STRUT_API int32_t strut_tridiagonal_factor(strut_tridiagonal *tridiagonal, double shift);
-/** x'(T + shift)^-1 x; x becomes (T + shift)^-1 x. */
-STRUT_API double strut_tridiagonal_form(const strut_tridiagonal *tridiagonal, const double *vector);
-STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, double *vector);
-
-/**
  * Of matrix (n, n), which it overwrites: value (n) ascending, and the unit vector of value i as row
  * i of vector (n, n), its largest entry positive. False: out of memory.
  */
 bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector);
 
+/** Gives each pointer of the list, which ends with NULL, `count` zeros owned by the arena; false: out of memory. */
+STRUT_API bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list);
 /** Zeros, owned by the arena; NULL: out of memory. */
 gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns);
 gsl_vector *strut_arena_vector(strut_arena *arena, size_t size);
@@ -86,8 +58,6 @@ bool strut_solve_rows(gsl_matrix *matrix, gsl_vector *right, gsl_permutation *or
  * the BLAS beneath them uses one thread.
  */
 
-typedef struct strut_sparse_qr strut_sparse_qr;
-
 typedef struct strut_lanczos_problem {
   int32_t n;
   double shift; /* below all eigenvalues */
@@ -104,28 +74,26 @@ typedef struct strut_sparse_columns {
   const double *value;
 } strut_sparse_columns;
 
+/** Bases of what a matrix A (rows, columns) and its transpose map to zero. */
+typedef struct strut_sparse_null_spaces {
+  int32_t most_vectors; /* of a basis, and its numbers, that are wanted: larger ones stay NULL */
+  int64_t most_numbers;
+  int32_t rank;
+  double smallest, largest; /* diagonal entries of R, absolute; 0 where the rank is 0 */
+  double *
+      null; /* (columns - rank, columns): 1 at a dependent column of its own, 0 at the other dependent ones */
+  double *left; /* (rows - rank, rows) orthonormal, of the transpose */
+} strut_sparse_null_spaces;
+
 typedef struct strut_sparse_algebra_library {
   strut_library_stamp stamp;
   /**
-   * Factorises A by columns. Columns that keep a norm
-   * of `tolerance` or less beside those before them count as dependent. STRUT_NO_MEMORY, or
-   * STRUT_SINGULAR where SPQR fails for another reason.
+   * By a QR of A, into the arena. Columns that keep a norm of `tolerance` or less beside those before them count as
+   * dependent. STRUT_NO_MEMORY, or STRUT_SINGULAR where SPQR fails for another reason.
    */
-  strut_status (*create_qr)(const strut_sparse_columns *columns, double tolerance,
-                            strut_sparse_qr **qr, strut_error *error);
-  void (*free_qr)(strut_sparse_qr *qr);
-  int32_t (*rank)(const strut_sparse_qr *qr);
-  /** Smallest and largest diagonal entry of R, absolute; 0 where the rank is 0. */
-  void (*diagonal)(const strut_sparse_qr *qr, double *smallest, double *largest);
-  /**
-   * The i-th vector of an orthonormal basis of what A' maps to zero, 0 <= i < rows - rank: y (rows).
-   */
-  void (*left_null)(const strut_sparse_qr *qr, int32_t i, double *y);
-  /**
-   * The i-th vector of a basis of what A maps to zero, 0 <= i < columns - rank: x (columns), 1 at a
-   * dependent column of its own, 0 at the other dependent ones.
-   */
-  void (*null)(const strut_sparse_qr *qr, int32_t i, double *vector);
+  strut_status (*null_spaces)(const strut_sparse_columns *columns, double tolerance,
+                              strut_arena *arena, strut_sparse_null_spaces *spaces,
+                              strut_error *error);
   /**
    * The `count` eigenvalues next above the shift, ascending, and their vectors (count, n) with
    * x'Mx = 1. count < n. The start vector is always the same. STRUT_SINGULAR where it does not
@@ -150,7 +118,7 @@ typedef struct strut_linear_program {
   double *row_low, *row_high; /* (rows); 0 at first */
   double *low, *high, *cost;  /* (columns); 0, INFINITY, 0 at first */
   size_t entry_count, entry_room;
-  int32_t *entry_row, *entry_column; /* each place once */
+  int *entry_row, *entry_column; /* (1 + entry_room) as GLPK counts all, from 1; each place once */
   double *entry;
   const strut_flag *interrupt; /* ends the solution; NULL at first */
 } strut_linear_program;
@@ -192,16 +160,6 @@ typedef struct strut_spectrum_workspace strut_spectrum_workspace;
 /** NULL: out of memory. */
 strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential);
 void strut_spectrum_free(strut_spectrum_workspace *room);
-
-/**
- * Reduces the Hessian at q, valid until the next call of a function of this room. *singular: some
- * eigenvalue may be all rounding, and steps need the modes. False if the Hessian is not finite.
- */
-bool strut_spectrum_reduce(strut_spectrum_workspace *room, const double *q,
-                           strut_tridiagonal **tridiagonals, bool *singular);
-/** The spectrum of what was reduced last, at q; not refined if it was not singular, without q then. */
-bool strut_spectrum_finish(strut_spectrum_workspace *room, const double *q, bool careful,
-                           strut_spectrum *spectrum);
 
 /**
  * The spectrum of strut_potential_hessian_above(q, least), valid until the next call. `careful`:

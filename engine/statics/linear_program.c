@@ -15,21 +15,15 @@ static const double TOLERANCE = 1e-10; /* of bounds and of reduced costs */
 bool strut_linear_program_create(strut_linear_program *program, int32_t rows, int32_t columns,
                                  size_t entries, strut_arena *arena) {
   *program = (strut_linear_program){.rows = rows, .columns = columns, .entry_room = entries};
-  double **by_row[] = {&program->row_low, &program->row_high},
-         **by_column[] = {&program->low, &program->high, &program->cost};
-  bool good = true;
-  for (int i = 0; i < 2; i++) {
-    *by_row[i] = strut_arena_allocate(arena, (size_t)rows, sizeof(double));
-    good = good && *by_row[i];
-  }
-  for (int i = 0; i < 3; i++) {
-    *by_column[i] = strut_arena_allocate(arena, (size_t)columns, sizeof(double));
-    good = good && *by_column[i];
-  }
-  program->entry_row = strut_arena_allocate(arena, entries, sizeof *program->entry_row);
-  program->entry_column = strut_arena_allocate(arena, entries, sizeof *program->entry_column);
-  program->entry = strut_arena_allocate(arena, entries, sizeof *program->entry);
-  if (!good || !program->entry_row || !program->entry_column || !program->entry) return false;
+  program->entry_row = strut_arena_allocate(arena, entries + 1, sizeof *program->entry_row);
+  program->entry_column = strut_arena_allocate(arena, entries + 1, sizeof *program->entry_column);
+  if (!program->entry_row || !program->entry_column ||
+      !strut_arena_numbers(arena, entries + 1, (double **[]){&program->entry, NULL}) ||
+      !strut_arena_numbers(arena, (size_t)rows,
+                           (double **[]){&program->row_low, &program->row_high, NULL}) ||
+      !strut_arena_numbers(arena, (size_t)columns,
+                           (double **[]){&program->low, &program->high, &program->cost, NULL}))
+    return false;
   for (int32_t j = 0; j < columns; j++) program->high[j] = HUGE_VAL;
   return true;
 }
@@ -40,41 +34,15 @@ void strut_linear_program_add(strut_linear_program *program, int32_t row, int32_
   assert(column >= 0 && column < program->columns);
   if (value == 0) return;
   assert(program->entry_count < program->entry_room);
-  program->entry_row[program->entry_count] = row;
-  program->entry_column[program->entry_count] = column;
-  program->entry[program->entry_count++] = value;
+  size_t at = ++program->entry_count;
+  program->entry_row[at] = row + 1, program->entry_column[at] = column + 1;
+  program->entry[at] = value;
 }
 
 static int kind_of(double low, double high) {
   if (low == high) return GLP_FX;
   if (isfinite(low)) return isfinite(high) ? GLP_DB : GLP_LO;
   return isfinite(high) ? GLP_UP : GLP_FR;
-}
-
-/* The entries as GLPK wants them, counted from 1. */
-typedef struct entries {
-  int *row, *column;
-  double *value;
-} entries;
-
-static bool make_entries(const strut_linear_program *program, entries *self) {
-  size_t count = program->entry_count;
-  self->row = strut_allocate(count + 1, sizeof *self->row);
-  self->column = strut_allocate(count + 1, sizeof *self->column);
-  self->value = strut_allocate(count + 1, sizeof *self->value);
-  if (!self->row || !self->column || !self->value) return false;
-  for (size_t i = 0; i < count; i++) {
-    self->row[i + 1] = program->entry_row[i] + 1;
-    self->column[i + 1] = program->entry_column[i] + 1;
-    self->value[i + 1] = program->entry[i];
-  }
-  return true;
-}
-
-static void free_entries(entries *self) {
-  strut_release(self->row);
-  strut_release(self->column);
-  strut_release(self->value);
 }
 
 static strut_linear_program_end end_of(int code, int status) {
@@ -100,8 +68,8 @@ static int run_simplex(glp_prob *problem, int scaling) {
   return glp_simplex(problem, &how);
 }
 
-static void solve(const strut_linear_program *program, const entries *self, double *vector,
-                  double *sum, strut_linear_program_end *end) {
+static void solve(const strut_linear_program *program, double *vector, double *sum,
+                  strut_linear_program_end *end) {
   glp_prob *problem = glp_create_prob();
   glp_set_obj_dir(problem, GLP_MIN);
   if (program->rows > 0) glp_add_rows(problem, program->rows);
@@ -114,7 +82,8 @@ static void solve(const strut_linear_program *program, const entries *self, doub
                      program->high[j]);
     glp_set_obj_coef(problem, j + 1, program->cost[j]);
   }
-  glp_load_matrix(problem, (int)program->entry_count, self->row, self->column, self->value);
+  glp_load_matrix(problem, (int)program->entry_count, program->entry_row, program->entry_column,
+                  program->entry);
   *end = STRUT_PROGRAM_FAILED;
   for (int i = 0; i < SCALINGS && *end != STRUT_PROGRAM_OPTIMAL; i++) {
     int code = run_simplex(problem, scalings[i]);
@@ -145,11 +114,7 @@ strut_status strut_linear_program_solve(const strut_linear_program *program, dou
                                         double *sum, strut_linear_program_end *end) {
   assert(program->entry_count <= program->entry_room);
   way_out out = {.interrupt = program->interrupt};
-  entries e = {0};
-  if (!make_entries(program, &e) || glp_init_env() > 1) {
-    free_entries(&e);
-    return STRUT_NO_MEMORY;
-  }
+  if (glp_init_env() > 1) return STRUT_NO_MEMORY;
   strut_status left = STRUT_OK;
   switch (setjmp(out.place)) { /* once left, all that GLPK has is lost to us */
     case 0: break;
@@ -158,15 +123,13 @@ strut_status strut_linear_program_solve(const strut_linear_program *program, dou
   }
   if (left) {
     glp_free_env();
-    free_entries(&e);
     return left;
   }
   glp_term_out(GLP_ON);
   glp_term_hook(look_up, &out);
   glp_error_hook(leave, &out);
-  solve(program, &e, vector, sum, end);
+  solve(program, vector, sum, end);
   glp_error_hook(NULL, NULL);
   glp_term_hook(NULL, NULL);
-  free_entries(&e);
   return STRUT_OK;
 }

@@ -9,6 +9,7 @@
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/model/algebra/linear_solver.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
@@ -51,13 +52,10 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
   m->workspace =
       dense ? strut_curvature_dense_create(potential) : strut_curvature_sparse_create(potential);
-  m->g = strut_arena_allocate(&m->arena, n, sizeof *m->g);
-  m->g_trial = strut_arena_allocate(&m->arena, n, sizeof *m->g_trial);
-  m->step = strut_arena_allocate(&m->arena, n, sizeof *m->step);
-  m->unbent = strut_arena_allocate(&m->arena, n, sizeof *m->unbent);
-  m->trial = strut_arena_allocate(&m->arena, length, sizeof *m->trial);
-  m->before = strut_arena_allocate(&m->arena, length, sizeof *m->before);
-  if (m->workspace && m->g && m->g_trial && m->step && m->unbent && m->trial && m->before)
+  if (m->workspace &&
+      strut_arena_numbers(&m->arena, n,
+                          (double **[]){&m->g, &m->g_trial, &m->step, &m->unbent, NULL}) &&
+      strut_arena_numbers(&m->arena, length, (double **[]){&m->trial, &m->before, NULL}))
     return STRUT_OK;
   strut_minimiser_free(m);
   *minimiser = NULL;
@@ -101,18 +99,17 @@ static bool ran_away(const strut_minimiser *minimiser, const double *q, const do
   return !(largest <= 1e4 * minimiser->size);
 }
 
-static double residual_allowed(const strut_minimiser *minimiser, const double *q, double tolerance,
+static double residual_allowed(const strut_minimiser *minimiser, const double *q,
                                double *rounding) {
   *rounding = strut_potential_rounding(minimiser->potential, q);
-  return fmax(tolerance, 8.0 * *rounding);
+  return 8.0 * *rounding;
 }
 
 /*
  * Newton steps from a q whose gradient is small, as long as they become shorter: the residual may
  * be all rounding long before soft directions have converged. Ends with the last residual.
  */
-static void polish_point(strut_minimiser *minimiser, double *q, double tolerance, double reach,
-                         strut_descent *end) {
+static void polish_point(strut_minimiser *minimiser, double *q, double reach, strut_descent *end) {
   int32_t n = minimiser->potential->n;
   double earlier = HUGE_VAL;
   for (int i = 0; i < MOST_POLISH; i++) {
@@ -124,7 +121,7 @@ static void polish_point(strut_minimiser *minimiser, double *q, double tolerance
     set_trial(minimiser, q, 1.0);
     strut_potential_gradient(minimiser->potential, minimiser->trial, minimiser->g_trial);
     double residual = strut_largest_magnitude(minimiser->g_trial, n);
-    double allowed = residual_allowed(minimiser, minimiser->trial, tolerance, &end->rounding);
+    double allowed = residual_allowed(minimiser, minimiser->trial, &end->rounding);
     if (!(residual <= fmax(allowed, end->residual))) break;
     keep_trial(minimiser, q);
     end->residual = residual;
@@ -276,7 +273,7 @@ static void visit(const strut_minimiser *minimiser, const double *q) {
   if (minimiser->visit) minimiser->visit(minimiser->visitor, q);
 }
 
-strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double tolerance) {
+strut_descent strut_minimise(strut_minimiser *minimiser, double *q) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   int32_t n = minimiser->potential->n, extra = 0;
   double radius = fmin(minimiser->first_step, minimiser->longest_step),
@@ -285,7 +282,7 @@ strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double toler
   strut_potential_gradient(minimiser->potential, q, minimiser->g);
   for (; end.iterations < MOST_STEPS; end.iterations++) {
     end.residual = strut_largest_magnitude(minimiser->g, n);
-    double allowed = residual_allowed(minimiser, q, tolerance, &end.rounding);
+    double allowed = residual_allowed(minimiser, q, &end.rounding);
     end.end = STRUT_DESCENT_EXHAUSTED;
     visit(minimiser, q);
     if (ran_away(minimiser, q, minimiser->before)) {
@@ -309,7 +306,7 @@ strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double toler
     if (!descend_once(minimiser, q, sqrt((double)n) * allowed, &radius, &energy)) break;
   }
   if (end.end != STRUT_DESCENT_REACHED) return end;
-  polish_point(minimiser, q, tolerance, 1e-3 * minimiser->size, &end);
+  polish_point(minimiser, q, 1e-3 * minimiser->size, &end);
   visit(minimiser, q);
   if (end.step > 1e-5 * minimiser->size ||
       strut_shape_has_collapsed(minimiser->potential->model, q))
@@ -341,7 +338,7 @@ static strut_descent_end descend_shortly(strut_minimiser *minimiser, double firs
   double usual = minimiser->first_step;
   minimiser->first_step = first_step, minimiser->longest_step = 0.03 * minimiser->size,
   minimiser->short_steps = true;
-  strut_descent end = strut_minimise(minimiser, q, 0.0);
+  strut_descent end = strut_minimise(minimiser, q);
   minimiser->first_step = usual, minimiser->longest_step = HUGE_VAL, minimiser->short_steps = false;
   return end.end;
 }
@@ -360,13 +357,13 @@ bool strut_descend_along(strut_minimiser *minimiser, const double *direction, do
   return descend_shortly(minimiser, first_step, q) == STRUT_DESCENT_REACHED;
 }
 
-strut_descent strut_polish(strut_minimiser *minimiser, double *q, double tolerance) {
+strut_descent strut_polish(strut_minimiser *minimiser, double *q) {
   strut_descent end = {.end = STRUT_DESCENT_EXHAUSTED};
   strut_potential_gradient(minimiser->potential, q, minimiser->g);
   end.residual = strut_largest_magnitude(minimiser->g, minimiser->potential->n);
-  polish_point(minimiser, q, tolerance, 0.1 * minimiser->size, &end);
+  polish_point(minimiser, q, 0.1 * minimiser->size, &end);
   end.residual = strut_largest_magnitude(minimiser->g, minimiser->potential->n);
-  if (end.residual <= residual_allowed(minimiser, q, tolerance, &end.rounding))
+  if (end.residual <= residual_allowed(minimiser, q, &end.rounding))
     end.end = STRUT_DESCENT_REACHED;
   return end;
 }

@@ -2,9 +2,8 @@
 /**
  * From a shape downhill to a stationary point of the potential: Newton's method in a trust region.
  *
- * Up to STRUT_DENSE_STATICS free coordinates by exact steps, from the tridiagonal form of the Hessian
- * or its eigenvectors; above by its sparse L D L' factor, shifted until it is positive definite.
- * Directions without stiffness and without force (free bodies, mechanisms) are left alone.
+ * Up to STRUT_DENSE_STATICS free coordinates by exact steps, from the Hessian's eigenvectors; above by
+ * its sparse L D L' factor, shifted until it is positive definite. Directions without stiffness and without force (free bodies, mechanisms) are left alone.
  * Deterministic.
  */
 #ifndef STRUT_ENGINE_STATICS_MINIMISE_H
@@ -48,15 +47,14 @@ void strut_minimiser_visit(strut_minimiser *minimiser,
 /**
  * Moves q (length) downhill to a point where g = 0, never uphill. It may end on a saddle only if
  * the start lies exactly on its ridge; then it leaves along the unstable direction. At the end it
- * is polished until |g| <= max(tolerance, a few times the rounding). tolerance [N]; 0: rounding
- * alone.
+ * is polished until |g| is a few times the rounding.
  */
-STRUT_API strut_descent strut_minimise(strut_minimiser *minimiser, double *q, double tolerance);
+STRUT_API strut_descent strut_minimise(strut_minimiser *minimiser, double *q);
 
 /**
  * Plain Newton steps to the nearest stationary point of any kind, for a q that is close already.
  */
-STRUT_API strut_descent strut_polish(strut_minimiser *minimiser, double *q, double tolerance);
+STRUT_API strut_descent strut_polish(strut_minimiser *minimiser, double *q);
 
 /** Hessians decomposed so far: a measure of the work done. */
 int64_t strut_minimiser_hessian_count(const strut_minimiser *minimiser);

@@ -42,7 +42,7 @@ static void end_single_thread(void) {
 /* ---- rank-revealing QR, by SPQR ---- */
 
 /* A column of the squeezed R is live where it reaches one row further down than those before it. */
-struct strut_sparse_qr {
+typedef struct sparse_qr {
   cholmod_common common;
   cholmod_sparse *r, *h; /* H: reflections, one per column, in the order of permuted rows */
   cholmod_dense *tau;    /* of the reflections */
@@ -52,18 +52,18 @@ struct strut_sparse_qr {
   int32_t *live; /* (rank) column of R with the diagonal of row k */
   int32_t *dead; /* (columns - rank) the others */
   double *work;  /* (rows) */
-};
+  strut_arena arena;
+} sparse_qr;
 
-static cholmod_sparse *copy_matrix(strut_sparse_qr *qr, const int32_t *start, const int32_t *row,
-                                   const double *value) {
-  size_t count = (size_t)start[qr->columns];
+static cholmod_sparse *copy_matrix(sparse_qr *qr, const strut_sparse_columns *columns) {
+  size_t count = (size_t)columns->start[qr->columns];
   cholmod_sparse *matrix = cholmod_l_allocate_sparse(
       (size_t)qr->rows, (size_t)qr->columns, count ? count : 1, 1, 1, 0, CHOLMOD_REAL, &qr->common);
   if (!matrix) return NULL;
   int64_t *p = matrix->p, *i = matrix->i;
-  for (int32_t j = 0; j <= qr->columns; j++) p[j] = start[j];
-  for (size_t k = 0; k < count; k++) i[k] = row[k];
-  memcpy(matrix->x, value, count * sizeof *value);
+  for (int32_t j = 0; j <= qr->columns; j++) p[j] = columns->start[j];
+  for (size_t k = 0; k < count; k++) i[k] = columns->row[k];
+  memcpy(matrix->x, columns->value, count * sizeof *columns->value);
   return matrix;
 }
 
@@ -77,7 +77,7 @@ static int64_t last_entry(const cholmod_sparse *matrix, int32_t column, double *
   return last;
 }
 
-static void sort_columns(strut_sparse_qr *qr) {
+static void sort_columns(sparse_qr *qr) {
   int32_t live = 0, dead = 0;
   double value = 0.0;
   for (int32_t j = 0; j < qr->columns; j++) {
@@ -89,15 +89,15 @@ static void sort_columns(strut_sparse_qr *qr) {
   }
 }
 
-static bool factorise(strut_sparse_qr *qr, cholmod_sparse *matrix, double tolerance) {
+static bool factorise(sparse_qr *qr, cholmod_sparse *matrix, double tolerance) {
   int64_t rank =
       SuiteSparseQR_C(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, matrix, NULL, NULL, NULL, NULL,
                       &qr->r, &qr->order, &qr->h, &qr->place, &qr->tau, &qr->common);
   if (rank < 0 || !qr->r || !qr->h || !qr->tau) return false;
   qr->rank = (int32_t)rank;
-  qr->live = strut_allocate((size_t)rank + 1, sizeof *qr->live);
-  qr->dead = strut_allocate((size_t)(qr->columns - rank) + 1, sizeof *qr->dead);
-  qr->work = strut_allocate((size_t)qr->rows + 1, sizeof *qr->work);
+  qr->live = strut_arena_allocate(&qr->arena, (size_t)rank, sizeof *qr->live);
+  qr->dead = strut_arena_allocate(&qr->arena, (size_t)(qr->columns - rank), sizeof *qr->dead);
+  qr->work = strut_arena_allocate(&qr->arena, (size_t)qr->rows, sizeof *qr->work);
   if (!qr->live || !qr->dead || !qr->work) {
     qr->common.status = CHOLMOD_OUT_OF_MEMORY;
     return false;
@@ -106,59 +106,28 @@ static bool factorise(strut_sparse_qr *qr, cholmod_sparse *matrix, double tolera
   return true;
 }
 
-static void free_qr(strut_sparse_qr *qr) {
-  if (!qr) return;
+static void free_qr(sparse_qr *qr) {
   cholmod_l_free_sparse(&qr->r, &qr->common);
   cholmod_l_free_sparse(&qr->h, &qr->common);
   cholmod_l_free_dense(&qr->tau, &qr->common);
   cholmod_l_free((size_t)qr->columns, sizeof *qr->order, qr->order, &qr->common);
   cholmod_l_free((size_t)qr->rows, sizeof *qr->place, qr->place, &qr->common);
   cholmod_l_finish(&qr->common);
-  strut_release(qr->live);
-  strut_release(qr->dead);
-  strut_release(qr->work);
-  strut_release(qr);
+  strut_arena_free(&qr->arena);
 }
 
-static strut_status create_qr(const strut_sparse_columns *matrix, double tolerance,
-                              strut_sparse_qr **result, strut_error *error) {
-  *result = NULL;
-  strut_sparse_qr *qr = *result = strut_allocate(1, sizeof *qr);
-  if (!qr) return strut_no_memory(error, "");
-  cholmod_l_start(&qr->common);
-  qr->common.print = 0;
-  qr->common.error_handler = NULL;
-  qr->common.SPQR_nthreads = 1;
-  qr->rows = matrix->rows, qr->columns = matrix->columns;
-  cholmod_sparse *a = copy_matrix(qr, matrix->start, matrix->row, matrix->value);
-  begin_single_thread();
-  bool done = a && factorise(qr, a, tolerance);
-  end_single_thread();
-  bool memory =
-      qr->common.status == CHOLMOD_OUT_OF_MEMORY || qr->common.status == CHOLMOD_TOO_LARGE;
-  cholmod_l_free_sparse(&a, &qr->common);
-  if (done) return STRUT_OK;
-  free_qr(qr);
-  *result = NULL;
-  if (memory) return strut_no_memory(error, "");
-  return strut_fail(error, STRUT_SINGULAR, "the equilibrium matrix could not be factorised");
-}
-
-static int32_t rank_of(const strut_sparse_qr *qr) { return qr->rank; }
-
-static void find_diagonal(const strut_sparse_qr *qr, double *smallest, double *largest) {
-  *smallest = *largest = 0.0;
+static void find_diagonal(const sparse_qr *qr, strut_sparse_null_spaces *spaces) {
   for (int32_t k = 0; k < qr->rank; k++) {
     double value = 0.0;
     last_entry(qr->r, qr->live[k], &value);
     value = fabs(value);
-    if (k == 0 || value < *smallest) *smallest = value;
-    if (value > *largest) *largest = value;
+    if (k == 0 || value < spaces->smallest) spaces->smallest = value;
+    spaces->largest = fmax(spaces->largest, value);
   }
 }
 
 /* Q e: the reflections in reverse, then the rows back to where A has them. */
-static void find_left_null(const strut_sparse_qr *qr, int32_t i, double *y) {
+static void find_left_null(const sparse_qr *qr, int32_t i, double *y) {
   assert(i >= 0 && i < qr->rows - qr->rank);
   const int64_t *p = qr->h->p, *at = qr->h->i;
   const double *h = qr->h->x, *tau = qr->tau->x;
@@ -175,7 +144,7 @@ static void find_left_null(const strut_sparse_qr *qr, int32_t i, double *y) {
 }
 
 /* Back substitution: R of the live columns times x is minus the dead column. */
-static void find_null(const strut_sparse_qr *qr, int32_t i, double *vector) {
+static void find_null(const sparse_qr *qr, int32_t i, double *vector) {
   assert(i >= 0 && i < qr->columns - qr->rank);
   const int64_t *p = qr->r->p, *at = qr->r->i;
   const double *r = qr->r->x;
@@ -195,6 +164,45 @@ static void find_null(const strut_sparse_qr *qr, int32_t i, double *vector) {
       if (at[m] != k) w[at[m]] -= value * r[m];
     vector[qr->order ? qr->order[column] : column] = value;
   }
+}
+
+/* `count` vectors of `length` numbers each, unless they are too many; false: out of memory. */
+static bool make_basis(const sparse_qr *qr, int32_t count, int32_t length,
+                       void (*find)(const sparse_qr *qr, int32_t i, double *vector),
+                       const strut_sparse_null_spaces *spaces, strut_arena *arena, double **basis) {
+  if (!count || count > spaces->most_vectors || (int64_t)count * length > spaces->most_numbers)
+    return true;
+  *basis = strut_arena_allocate(arena, (size_t)count * (size_t)length, sizeof **basis);
+  for (int32_t i = 0; i < count && *basis; i++) find(qr, i, *basis + (size_t)i * (size_t)length);
+  return *basis;
+}
+
+static strut_status find_null_spaces(const strut_sparse_columns *columns, double tolerance,
+                                     strut_arena *arena, strut_sparse_null_spaces *spaces,
+                                     strut_error *error) {
+  sparse_qr qr = {.rows = columns->rows, .columns = columns->columns};
+  cholmod_l_start(&qr.common);
+  qr.common.print = 0;
+  qr.common.error_handler = NULL;
+  qr.common.SPQR_nthreads = 1;
+  cholmod_sparse *a = copy_matrix(&qr, columns);
+  begin_single_thread();
+  bool done = a && factorise(&qr, a, tolerance);
+  end_single_thread();
+  bool memory = qr.common.status == CHOLMOD_OUT_OF_MEMORY || qr.common.status == CHOLMOD_TOO_LARGE;
+  cholmod_l_free_sparse(&a, &qr.common);
+  if (done) {
+    spaces->rank = qr.rank;
+    find_diagonal(&qr, spaces);
+    memory =
+        !make_basis(&qr, qr.columns - qr.rank, qr.columns, find_null, spaces, arena,
+                    &spaces->null) ||
+        !make_basis(&qr, qr.rows - qr.rank, qr.rows, find_left_null, spaces, arena, &spaces->left);
+  }
+  free_qr(&qr);
+  if (memory) return strut_no_memory(error, "");
+  return done ? STRUT_OK
+              : strut_fail(error, STRUT_SINGULAR, "the equilibrium matrix could not be factorised");
 }
 
 /* ---- lowest eigenpairs, by ARPACK ---- */
@@ -226,14 +234,12 @@ static double stirred(uint64_t i) {
 
 static bool allocate_search(search *self, strut_arena *arena) {
   size_t n = (size_t)self->n, p = (size_t)self->vectors;
-  self->residual = strut_arena_allocate(arena, n, sizeof(double));
-  self->basis = strut_arena_allocate(arena, n * p, sizeof(double));
-  self->work = strut_arena_allocate(arena, 3 * n, sizeof(double));
-  self->small = strut_arena_allocate(arena, p * (p + 8), sizeof(double));
-  self->value = strut_arena_allocate(arena, p, sizeof(double));
   self->select = strut_arena_allocate(arena, p, sizeof *self->select);
-  if (!self->residual || !self->basis || !self->work || !self->small || !self->value ||
-      !self->select)
+  if (!self->select || !strut_arena_numbers(arena, n, (double **[]){&self->residual, NULL}) ||
+      !strut_arena_numbers(arena, n * p, (double **[]){&self->basis, NULL}) ||
+      !strut_arena_numbers(arena, 3 * n, (double **[]){&self->work, NULL}) ||
+      !strut_arena_numbers(arena, p * (p + 8), (double **[]){&self->small, NULL}) ||
+      !strut_arena_numbers(arena, p, (double **[]){&self->value, NULL}))
     return false;
   for (int32_t i = 0; i < self->n; i++) self->residual[i] = stirred((uint64_t)i);
   self->parameter[0] = 1; /* ARPACK chooses the shifts of its restarts */
@@ -320,12 +326,7 @@ static strut_status find_lowest(const strut_lanczos_problem *problem, int32_t co
 extern STRUT_API const strut_sparse_algebra_library strut_sparse_algebra_table;
 const strut_sparse_algebra_library strut_sparse_algebra_table = {
     .stamp = STRUT_LIBRARY_STAMP(strut_sparse_algebra_library),
-    .create_qr = create_qr,
-    .free_qr = free_qr,
-    .rank = rank_of,
-    .diagonal = find_diagonal,
-    .left_null = find_left_null,
-    .null = find_null,
+    .null_spaces = find_null_spaces,
     .lowest_eigenpairs = find_lowest,
 };
 

@@ -30,7 +30,7 @@ TEST(statics_of_a_stiffness_ratio) {
     FREED double *q = calloc((size_t)model->length, sizeof *q);
     assert_non_null(q);
     for (int32_t i = 0; i < model->length; i++) q[i] = model->start[i];
-    strut_descent end = strut_minimise(minimiser, q, 0);
+    strut_descent end = strut_minimise(minimiser, q);
     print_message("%d springs of 1 to 1e12 N/m: gives %.9f m, closed form %.9f m, %d iterations\n",
                   links, q[2 * links] - links, stretch, (int)end.iterations);
     assert_relative(q[2 * links] - links, stretch, 1e-9);

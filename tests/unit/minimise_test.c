@@ -50,7 +50,7 @@ TEST(the_crawlers_first_state) {
                                      {43.4758e-3, 10.6875e-3}};
   OWN(fixture) f = {0};
   crawler(&f);
-  strut_descent d = strut_minimise(f.minimiser, f.q, 0);
+  strut_descent d = strut_minimise(f.minimiser, f.q);
   double force[64];
   assert_reached(&d);
   assert_true(d.iterations < 10);
@@ -70,7 +70,7 @@ TEST(from_random_shapes) {
     for (int32_t i = 0; i < f.potential->n; i++)
       f.q[f.potential->coordinate[i]] = random_between(&r, -0.07, 0.07);
     double before = strut_potential_value(f.potential, f.q);
-    strut_descent d = strut_minimise(f.minimiser, f.q, 0);
+    strut_descent d = strut_minimise(f.minimiser, f.q);
     assert_reached(&d);
     assert_true(strut_potential_value(f.potential, f.q) < before);
     assert_true(d.iterations < 120);
@@ -98,7 +98,7 @@ static double tip_error(int32_t springs, double ratio, bool sparse, strut_descen
     build_sized(&f.scene, STRUT_SPRING, 0, springs + 1 + i, 1, 0, 0, 9);
   }
   compile(&f, NULL, false);
-  *d = strut_minimise(f.minimiser, f.q, 0);
+  *d = strut_minimise(f.minimiser, f.q);
   double error = fabs(f.q[2 * springs] - springs - sum) / sum;
   return error;
 }
@@ -123,10 +123,10 @@ TEST(it_leaves_a_ridge) {
   build_sized(&f.scene, STRUT_BAR, 0, 2, 1, 0, 0, sqrt(1.25));
   build_sized(&f.scene, STRUT_BAR, 1, 2, 1, 0, 0, sqrt(1.25));
   compile(&f, NULL, false);
-  strut_descent d = strut_polish(f.minimiser, f.q, 0);
+  strut_descent d = strut_polish(f.minimiser, f.q);
   assert_int_equal(d.end, STRUT_DESCENT_REACHED);
   assert_near(f.q[5], 0, 1e-15); /* polishing stays on it */
-  d = strut_minimise(f.minimiser, f.q, 0);
+  d = strut_minimise(f.minimiser, f.q);
   assert_reached(&d);
   assert_all_near(1e-14, fabs(f.q[5]), 0.5, f.q[4], 0);
 }
@@ -138,7 +138,7 @@ TEST(it_falls_onto_the_ground) {
   build_contact(&f.scene, 0, 1e5, 0);
   f.scene.gravity[1] = -10;
   compile(&f, NULL, true);
-  strut_descent d = strut_minimise(f.minimiser, f.q, 0);
+  strut_descent d = strut_minimise(f.minimiser, f.q);
   assert_reached(&d);
   assert_near(f.q[1], -2e-4, 1e-17);
   assert_near(f.q[0], 0.3, 0);
@@ -149,7 +149,7 @@ TEST(without_ground_it_falls_for_ever) {
   build_mass(&f.scene, 0.3, 1, 2);
   f.scene.gravity[1] = -10;
   compile(&f, NULL, true);
-  assert_int_equal(strut_minimise(f.minimiser, f.q, 0).end, STRUT_DESCENT_RUNAWAY);
+  assert_int_equal(strut_minimise(f.minimiser, f.q).end, STRUT_DESCENT_RUNAWAY);
 }
 
 /* A mass on a slack cable falls until the cable holds it, then hangs. */
@@ -160,7 +160,7 @@ TEST(a_slack_cable_catches) {
   build_sized(&f.scene, STRUT_CABLE, 0, 1, 1000, 0, 0, 1);
   f.scene.gravity[1] = -10;
   compile(&f, NULL, false);
-  strut_descent d = strut_minimise(f.minimiser, f.q, 0);
+  strut_descent d = strut_minimise(f.minimiser, f.q);
   assert_reached(&d);
   assert_near(f.q[2], 0, 1e-13);
   assert_near(f.q[3], -1.01, 1e-14);
@@ -174,7 +174,7 @@ TEST(a_free_body) {
   for (int i = 0; i < 4; i++) build_sized(&f.scene, STRUT_CABLE, i, (i + 1) % 4, 100, 0, 0, 0.95);
   for (int i = 0; i < 2; i++) build_sized(&f.scene, STRUT_BAR, i, i + 2, 1000, 0, 0, sqrt(2));
   compile(&f, NULL, true);
-  strut_descent d = strut_minimise(f.minimiser, f.q, 0);
+  strut_descent d = strut_minimise(f.minimiser, f.q);
   assert_reached(&d);
   assert_near(strut_potential_value(f.potential, f.q), 5.0 / 11.0, 1e-14);
   for (int i = 0; i < 4; i++) {
@@ -198,7 +198,7 @@ TEST(a_large_net) {
   }
   f.scene.gravity[1] = -10;
   compile(&f, NULL, false);
-  strut_descent d = strut_minimise(f.minimiser, f.q, 0);
+  strut_descent d = strut_minimise(f.minimiser, f.q);
   assert_reached(&d);
   assert_true(d.step < 1e-13);
   for (int32_t i = 0; i < SIDE; i++) /* symmetric about the middle */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/pose.h"
 #include "engine/run/settle.h"
@@ -410,6 +411,36 @@ static strut_status settle_start(strut_equilibrium_search *search, const strut_m
   return STRUT_OK; /* the list is valid without it */
 }
 
+/* Twice the area of a, b, c: positive where they turn left. */
+static double turn(const double *a, const double *b, const double *c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static bool members_cross(const strut_model *model, const double *positions, int32_t i, int32_t j) {
+  const strut_member_table *members = &model->members;
+  const double *a = positions + members->from[i], *b = positions + members->to[i],
+               *c = positions + members->from[j], *d = positions + members->to[j];
+  if (a == c || a == d || b == c || b == d || fmin(a[0], b[0]) > fmax(c[0], d[0]) ||
+      fmin(c[0], d[0]) > fmax(a[0], b[0]))
+    return false;
+  double least = 1e-8 * model->size * model->size;
+  double c_side = turn(a, b, c), d_side = turn(a, b, d);
+  double a_side = turn(c, d, a), b_side = turn(c, d, b);
+  bool apart = fmin(fabs(c_side), fabs(d_side)) > least && fmin(fabs(a_side), fabs(b_side)) > least;
+  return apart && (c_side > 0) != (d_side > 0) && (a_side > 0) != (b_side > 0);
+}
+
+/* Finds whether nodes of the shape coincide and which members cross. */
+static void find_shape_flaws(const strut_model *model, strut_equilibrium *equilibrium) {
+  const double *q = equilibrium->point.q, near = 1e-4 * model->size;
+  for (int32_t i = 0; i < model->node_count && !equilibrium->collapsed; i++)
+    for (int32_t j = 0; j < i && !equilibrium->collapsed; j++)
+      equilibrium->collapsed =
+          fabs(q[2 * i] - q[2 * j]) < near && strut_distance(q + 2 * i, q + 2 * j) < near;
+  for (int32_t i = 0; i < model->members.count; i++)
+    for (int32_t j = 0; j < i; j++) equilibrium->crossings += members_cross(model, q, i, j);
+}
+
 strut_status strut_equilibria_find(const strut_model *model, const strut_experiment *experiment,
                                    const strut_equilibria_options *options,
                                    strut_equilibria *equilibria, strut_error *error) {
@@ -424,7 +455,7 @@ strut_status strut_equilibria_find(const strut_model *model, const strut_experim
   if (!status) status = report_equilibria(&h);
   if (!status) status = settle_start(&h, model);
   for (size_t i = 0; !status && i < equilibria->count; i++)
-    strut_find_shape_flaws(model, &equilibria->list[i]);
+    find_shape_flaws(model, &equilibria->list[i]);
   strut_landscape_free(&h.landscape);
   strut_relaxer_free(h.relaxer);
   strut_potential_free(h.potential);

@@ -36,8 +36,11 @@ void strut_landscape_free(strut_landscape *landscape);
 /** The minimum that the shape q (length) is, or -1. */
 int32_t strut_landscape_find(const strut_landscape *landscape, const double *positions);
 
-/** A strut_pass_of for a landscape as the context. */
-double strut_landscape_pass(const void *landscape, const double *positions);
+/**
+ * Potential energy of the lowest known pass out of the basin of the minimum q [J]; -INFINITY if none is known: then the
+ * end of a motion is known only when it has died down.
+ */
+double strut_landscape_pass(const strut_landscape *landscape, const double *positions);
 
 /**
  * Index of the highest saddle on the lowest path from minimum a to minimum b; -1 if the known
@@ -128,12 +131,6 @@ void strut_supports_place(const strut_supports *supports, const strut_scene *lev
  * Newton's method then converges to it. The result is that of the undamped model, at less cost.
  */
 
-/**
- * Potential energy of the lowest known pass out of the basin of the minimum q [J]; -INFINITY if
- * none is known: then the end is known only when the motion has died down.
- */
-typedef double (*strut_pass_of)(const void *context, const double *q);
-
 typedef enum strut_relaxed_end {
   STRUT_RELAXED_RESTS,
   STRUT_RELAXED_LEAVES, /* moves off without end: falls, slides, is lifted */
@@ -163,19 +160,15 @@ void strut_relaxer_free(strut_relaxer *relaxer);
 /** True if the model can be simulated. */
 bool strut_relaxer_simulates(const strut_relaxer *relaxer);
 
-/** Minimises from q (length) as strut_minimise does. */
-strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *positions);
-
 /** Minimises without simulation, for a q with one possible end; reports as strut_relax does. */
 void strut_relax_down(strut_relaxer *relaxer, double *positions, strut_relaxed *relaxed);
 
 /**
  * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass
- * where the motion has left it along the ground. passes may be NULL. STRUT_OK or STRUT_INTERRUPTED.
+ * where the motion has left it along the ground. passes: a landscape, or NULL. STRUT_OK or STRUT_INTERRUPTED.
  */
-strut_status strut_relax(strut_relaxer *relaxer, double *positions, strut_pass_of passes,
-                         const void *context, const strut_flag *interrupt, strut_relaxed *relaxed,
-                         strut_error *error);
+strut_status strut_relax(strut_relaxer *relaxer, double *positions, const strut_landscape *passes,
+                         const strut_flag *interrupt, strut_relaxed *relaxed, strut_error *error);
 
 /* The state of a search for equilibria: the level scene and the candidates found so far. */
 
@@ -305,9 +298,6 @@ strut_status strut_name_equilibria(const strut_model *model, size_t count, strut
 
 /** True if strut_name_equilibria may give this name. */
 bool strut_is_listed_name(const strut_scene *scene, const char *name);
-
-/** Finds which nodes of the shape coincide and which members cross; only what overlaps is compared. */
-void strut_find_shape_flaws(const strut_model *model, strut_equilibrium *equilibrium);
 
 /** True where the set holds the same nodes, in any order. */
 bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count);

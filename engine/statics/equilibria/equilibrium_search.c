@@ -12,6 +12,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/search/critical.h"
 
 /* Quantities of one candidate. */
@@ -145,6 +146,20 @@ strut_status strut_equilibrium_search_contacts(strut_equilibrium_search *search,
   return STRUT_OK;
 }
 
+struct strut_relaxer {
+  double limit; /* [s] */
+  const strut_potential *potential;
+  const strut_model *model;
+  strut_minimiser *minimiser;
+  strut_state *state; /* NULL: not simulated */
+  const strut_integrator *method;
+  void *workspace;
+  double step;
+  double *quenched, *last; /* (length) the minimum below the present shape, and the one before */
+  double *start;           /* (length) */
+  strut_arena arena;
+};
+
 /* Follows equilibria on static supports after the ground replaces the supports. */
 
 /* A candidate stands if no node moves farther than this, in model sizes. */
@@ -192,11 +207,10 @@ static strut_status explore_landscape(strut_equilibrium_search *search) {
   for (size_t i = 0; i < search->count && !status; i++) {
     strut_equilibrium *equilibrium = &search->candidates[i].e;
     if (!is_followed(search, &search->candidates[i]) && !equilibrium->rest) continue;
-    double *q = strut_arena_allocate(&scratch, length, sizeof *q);
+    double *q = strut_arena_copy(&scratch, equilibrium->point.q, length, sizeof *q);
     if (!q) status = STRUT_NO_MEMORY;
     if (status) break;
-    memcpy(q, equilibrium->point.q, length * sizeof *q);
-    strut_relaxer_quench(search->relaxer, q);
+    strut_minimise(search->relaxer->minimiser, q);
     extra[extras++] = q;
     if (equilibrium->rest) extra[extras++] = equilibrium->rest;
   }
@@ -250,12 +264,11 @@ static int32_t turning_node(const strut_candidate_equilibrium *candidate) {
 static strut_status follow_candidate(strut_equilibrium_search *search,
                                      strut_candidate_equilibrium *candidate) {
   strut_equilibrium *equilibrium = &candidate->e;
-  size_t length = (size_t)search->model->length;
   strut_relaxed relaxed;
-  double *q = strut_arena_allocate(&search->out->arena, length, sizeof *q);
+  double *q = strut_arena_copy(&search->out->arena, equilibrium->point.q,
+                               (size_t)search->model->length, sizeof *q);
   if (!q) return strut_no_memory(search->error, "");
-  memcpy(q, equilibrium->point.q, length * sizeof *q);
-  strut_status status = strut_relax(search->relaxer, q, strut_landscape_pass, &search->landscape,
+  strut_status status = strut_relax(search->relaxer, q, &search->landscape,
                                     search->options->interrupt, &relaxed, search->error);
   if (status) return status;
   equilibrium->tips_over = turning_node(candidate);
@@ -314,20 +327,6 @@ static const double CAREFUL = 0.5;
 static const double GROWN = 1e-6;
 enum { HALVINGS = 6 };
 
-struct strut_relaxer {
-  double limit; /* [s] */
-  const strut_potential *potential;
-  const strut_model *model;
-  strut_minimiser *minimiser;
-  strut_state *state; /* NULL: not simulated */
-  const strut_integrator *method;
-  void *workspace;
-  double step;
-  double *quenched, *last; /* (length) the minimum below the present shape, and the one before */
-  double *start;           /* (length) */
-  strut_arena arena;
-};
-
 static bool loses_energy(const strut_model *model) {
   strut_force force = {.damping = model->mass_damping};
   for (int32_t i = 0; i < strut_force_count(model, true) && !(force.damping > 0); i++)
@@ -361,12 +360,11 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
   relaxer->potential = potential;
   relaxer->limit = limit;
   relaxer->model = potential->model;
-  relaxer->quenched = strut_arena_allocate(&relaxer->arena, length, sizeof(double));
-  relaxer->last = strut_arena_allocate(&relaxer->arena, length, sizeof(double));
-  relaxer->start = strut_arena_allocate(&relaxer->arena, length, sizeof(double));
-  strut_status status = relaxer->quenched && relaxer->last && relaxer->start
-                            ? strut_minimiser_create(potential, &relaxer->minimiser, error)
-                            : strut_no_memory(error, "");
+  bool good =
+      strut_arena_numbers(&relaxer->arena, length,
+                          (double **[]){&relaxer->quenched, &relaxer->last, &relaxer->start, NULL});
+  strut_status status = good ? strut_minimiser_create(potential, &relaxer->minimiser, error)
+                             : strut_no_memory(error, "");
   if (!status) status = prepare_motion(relaxer, error);
   if (status) {
     strut_relaxer_free(relaxer);
@@ -384,10 +382,6 @@ void strut_relaxer_free(strut_relaxer *relaxer) {
 }
 
 bool strut_relaxer_simulates(const strut_relaxer *relaxer) { return relaxer->state != NULL; }
-
-strut_descent strut_relaxer_quench(strut_relaxer *relaxer, double *positions) {
-  return strut_minimise(relaxer->minimiser, positions, 0.0);
-}
 
 static bool free_along_x(const strut_model *model) {
   if (model->contacts.count && !strut_contacts_are_level(&model->contacts)) return false;
@@ -430,16 +424,17 @@ typedef struct verdict {
   int agreed;
 } verdict;
 
-static bool is_decided(strut_relaxer *relaxer, double energy, const double *positions,
-                       strut_pass_of passes, const void *context, verdict *self) {
+static bool is_decided(strut_relaxer *relaxer, double energy, const strut_landscape *passes,
+                       verdict *self) {
+  const double *positions = relaxer->state->q;
   size_t bytes = (size_t)relaxer->model->length * sizeof(double);
   memcpy(relaxer->quenched, positions, bytes);
-  strut_descent descent = strut_relaxer_quench(relaxer, relaxer->quenched);
+  strut_descent descent = strut_minimise(relaxer->minimiser, relaxer->quenched);
   if (descent.end != STRUT_DESCENT_REACHED) {
     self->agreed = 0;
     return false;
   }
-  if (passes && energy < passes(context, relaxer->quenched)) return true;
+  if (passes && energy < strut_landscape_pass(passes, relaxer->quenched)) return true;
   double excess =
       energy - strut_potential_value_near(relaxer->potential, relaxer->quenched, positions);
   if (self->excess < 0) self->excess = excess;
@@ -452,15 +447,15 @@ static bool is_decided(strut_relaxer *relaxer, double energy, const double *posi
 
 typedef enum outcome { DECIDED, LEFT, TIME_OUT, UNSTABLE_STEP, STOPPED } outcome;
 
-static outcome simulate(strut_relaxer *relaxer, double step, strut_pass_of passes,
-                        const void *context, const strut_flag *interrupt) {
+static outcome simulate(strut_relaxer *relaxer, double step, const strut_landscape *passes,
+                        const strut_flag *interrupt) {
   size_t bytes = (size_t)relaxer->model->length * sizeof(double);
   verdict v = {-1.0, 0};
   strut_state_reset(relaxer->model, relaxer->state);
   memcpy(relaxer->state->q, relaxer->start, bytes);
   memset(relaxer->state->v, 0, bytes);
   double first = total_energy(relaxer), look = (double)FIRST_LOOK;
-  if (is_decided(relaxer, first, relaxer->state->q, passes, context, &v)) return DECIDED;
+  if (is_decided(relaxer, first, passes, &v)) return DECIDED;
   while (relaxer->state->step < MOST_STEPS &&
          (double)relaxer->state->step * step < relaxer->limit) {
     if (interrupt && *interrupt) return STOPPED;
@@ -470,7 +465,7 @@ static outcome simulate(strut_relaxer *relaxer, double step, strut_pass_of passe
     /* Nothing feeds the motion: an energy above the first comes from the step. */
     if (!isfinite(energy) || energy > first + GROWN * fabs(first)) return UNSTABLE_STEP;
     if (has_escaped(relaxer->model, relaxer->start, relaxer->state->q)) return LEFT;
-    if (is_decided(relaxer, energy, relaxer->state->q, passes, context, &v)) return DECIDED;
+    if (is_decided(relaxer, energy, passes, &v)) return DECIDED;
     look = fmin(1.1 * look, (double)LAST_LOOK);
   }
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
@@ -491,7 +486,7 @@ static void judge_rest(strut_relaxer *relaxer, const double *positions, strut_re
 /* Minimises from q, with the centre of mass moved to x. */
 static void quench_to_rest(strut_relaxer *relaxer, double x, double *positions,
                            strut_relaxed *relaxed) {
-  strut_descent descent = strut_relaxer_quench(relaxer, positions);
+  strut_descent descent = strut_minimise(relaxer->minimiser, positions);
   relaxed->end = descent.end == STRUT_DESCENT_REACHED   ? STRUT_RELAXED_RESTS
                  : descent.end == STRUT_DESCENT_RUNAWAY ? STRUT_RELAXED_LEAVES
                                                         : STRUT_RELAXED_MOVES;
@@ -505,9 +500,8 @@ void strut_relax_down(strut_relaxer *relaxer, double *positions, strut_relaxed *
   quench_to_rest(relaxer, centre_x(relaxer->model, positions), positions, relaxed);
 }
 
-strut_status strut_relax(strut_relaxer *relaxer, double *positions, strut_pass_of passes,
-                         const void *context, const strut_flag *interrupt, strut_relaxed *relaxed,
-                         strut_error *error) {
+strut_status strut_relax(strut_relaxer *relaxer, double *positions, const strut_landscape *passes,
+                         const strut_flag *interrupt, strut_relaxed *relaxed, strut_error *error) {
   size_t bytes = (size_t)relaxer->model->length * sizeof(double);
   outcome end = DECIDED;
   *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
@@ -515,9 +509,9 @@ strut_status strut_relax(strut_relaxer *relaxer, double *positions, strut_pass_o
   strut_minimiser_watch(relaxer->minimiser, interrupt);
   if (relaxer->state) {
     double step = relaxer->step;
-    end = simulate(relaxer, step, passes, context, interrupt);
+    end = simulate(relaxer, step, passes, interrupt);
     for (int i = 0; end == UNSTABLE_STEP && i < HALVINGS; i++)
-      end = simulate(relaxer, step *= 0.5, passes, context, interrupt);
+      end = simulate(relaxer, step *= 0.5, passes, interrupt);
     relaxed->time = (double)relaxer->state->step * step;
     relaxed->simulated = relaxer->state->step > 0;
     memcpy(positions, end == DECIDED ? relaxer->quenched : relaxer->state->q, bytes);

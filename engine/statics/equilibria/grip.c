@@ -84,7 +84,7 @@ static double share(grip_search *self, double along) {
 static bool find_rest(grip_search *self, double along, double *residual) {
   double scale = self->search->potential->force_scale;
   for (int turn = 0; turn < ROUNDS; turn++) {
-    strut_descent descent = strut_minimise(self->minimiser, self->q, 0.0);
+    strut_descent descent = strut_minimise(self->minimiser, self->q);
     if (descent.end == STRUT_DESCENT_RUNAWAY) return false;
     *residual = descent.residual;
     if (share(self, along) <= SAME * scale) return descent.end == STRUT_DESCENT_REACHED;

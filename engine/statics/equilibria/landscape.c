@@ -255,10 +255,9 @@ int32_t strut_landscape_find(const strut_landscape *landscape, const double *pos
   return -1;
 }
 
-double strut_landscape_pass(const void *landscape, const double *positions) {
-  const strut_landscape *l = landscape;
-  int32_t at = strut_landscape_find(l, positions);
-  return at >= 0 && isfinite(l->lowest[at]) ? l->lowest[at] : -HUGE_VAL;
+double strut_landscape_pass(const strut_landscape *landscape, const double *positions) {
+  int32_t at = strut_landscape_find(landscape, positions);
+  return at >= 0 && isfinite(landscape->lowest[at]) ? landscape->lowest[at] : -HUGE_VAL;
 }
 
 /* The root of a's tree. */

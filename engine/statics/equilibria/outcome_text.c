@@ -96,7 +96,7 @@ static bool stays_displaced(const strut_potential *potential, const strut_critic
     memcpy(q, point->q, length * sizeof *q);
     for (int32_t at = 0; at < 2 * model->node_count; at++)
       q[at] += side * PUSHED * size / most * point->softest[at];
-    strut_descent end = strut_minimise(minimiser, q, 0.0);
+    strut_descent end = strut_minimise(minimiser, q);
     stays = end.end == STRUT_DESCENT_REACHED && distance_moved(model, point, q) > AWAY * size &&
             fabs(strut_potential_value(potential, q) - point->potential) <= same;
   }

@@ -103,11 +103,9 @@ static strut_status relax_to_rest(strut_equilibrium_search *search, const char *
   strut_relaxed relaxed;
   strut_status status = STRUT_OK;
   if (search->potential->n == 0) return STRUT_OK;
-  double *near = strut_arena_allocate(&search->out->arena, 1, bytes);
-  double *from = strut_arena_allocate(&search->out->arena, 1, bytes);
+  double *near = strut_arena_copy(&search->out->arena, positions, 1, bytes);
+  double *from = strut_arena_copy(&search->out->arena, positions, 1, bytes);
   if (!near || !from) return strut_no_memory(search->error, "");
-  memcpy(near, positions, bytes);
-  memcpy(from, positions, bytes);
   strut_relax_down(search->relaxer, near, &relaxed);
   bool close = relaxed.end == STRUT_RELAXED_RESTS &&
                strut_shape_distance(search->model, positions, near, false, NULL) <
@@ -115,8 +113,8 @@ static strut_status relax_to_rest(strut_equilibrium_search *search, const char *
   if (close || !strut_relaxer_simulates(search->relaxer))
     memcpy(positions, near, bytes);
   else
-    status = strut_relax(search->relaxer, positions, NULL, NULL, search->experiment->interrupt,
-                         &relaxed, search->error);
+    status = strut_relax(search->relaxer, positions, NULL, search->experiment->interrupt, &relaxed,
+                         search->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
   return strut_fail(
       search->error, STRUT_NOT_SETTLED,
@@ -154,15 +152,15 @@ static strut_status relax_from_shape(strut_equilibrium_search *search,
                                      const strut_configuration *configuration, double *positions,
                                      bool *found, strut_node_set *rests_on) {
   size_t nodes = search->level.scene.node_count;
-  double *shape =
-      strut_arena_allocate(&search->out->arena, (size_t)search->model->length, sizeof *shape);
+  size_t length = (size_t)search->model->length;
+  double *shape = strut_arena_allocate(&search->out->arena, length, sizeof *shape);
   if (!shape) return strut_no_memory(search->error, "");
   memcpy(shape, configuration->position[0], 2 * nodes * sizeof *shape);
   for (size_t i = 0; i < nodes; i++) /* held coordinates stay */
     for (size_t k = 0; k < 2; k++)
       if (search->level.scene.nodes[i].fixed[k])
         shape[2 * i + k] = search->level.scene.nodes[i].start[k];
-  memcpy(positions, shape, (size_t)search->model->length * sizeof *positions);
+  memcpy(positions, shape, length * sizeof *positions);
   strut_status status = relax_to_rest(search, "the configuration's shape", positions);
   if (status == STRUT_NOT_SETTLED) return STRUT_OK;
   *found = !status && fits_configuration(search, configuration, shape, positions, rests_on);

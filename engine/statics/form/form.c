@@ -382,9 +382,9 @@ static strut_status polish(strut_former *former, strut_error *error) {
   if (status == STRUT_OK) {
     memcpy(q, model->start, (size_t)model->length * sizeof *q);
     strut_minimiser_watch(minimiser, former->experiment->interrupt);
-    strut_descent descent = strut_minimise(minimiser, q, 0.0);
+    strut_descent descent = strut_minimise(minimiser, q);
     if (descent.end != STRUT_DESCENT_RUNAWAY && undo_drift(former, model->start, q))
-      descent = strut_polish(minimiser, q, 0.0);
+      descent = strut_polish(minimiser, q);
     former->form->residual = descent.residual;
     status = judge(former, &descent, q, error);
   }

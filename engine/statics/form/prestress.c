@@ -333,13 +333,12 @@ static bool minimise_squares(prestress *self) {
   const double faint = 1e-5; /* bars and contacts decide only what cables leave open */
   int32_t count = at->members + at->contacts;
   strut_arena arena = {0};
-  double *matrix = strut_arena_allocate(&arena, (size_t)at->n * (size_t)count, sizeof *matrix);
-  double *weight = strut_arena_allocate(&arena, (size_t)count, sizeof *weight);
-  double *low = strut_arena_allocate(&arena, (size_t)count, sizeof *low);
-  double *x = strut_arena_allocate(&arena, (size_t)count, sizeof *x);
-  bool good = matrix && weight && low && x;
-  for (size_t k = 0; k < self->program.entry_count && good; k++) {
-    int32_t row = self->program.entry_row[k], column = self->program.entry_column[k];
+  double *matrix, *weight, *low, *x;
+  bool good =
+      strut_arena_numbers(&arena, (size_t)count, (double **[]){&weight, &low, &x, NULL}) &&
+      strut_arena_numbers(&arena, (size_t)at->n * (size_t)count, (double **[]){&matrix, NULL});
+  for (size_t k = 1; k <= self->program.entry_count && good; k++) {
+    int32_t row = self->program.entry_row[k] - 1, column = self->program.entry_column[k] - 1;
     if (row >= at->n) continue;
     if (column < at->members) matrix[row * count + column] = self->program.entry[k];
     if (column >= at->ground && column < at->most)

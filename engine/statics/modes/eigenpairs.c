@@ -81,21 +81,28 @@ static void store_eigenpairs(const dense *self) {
   }
 }
 
+static bool allocate_set(strut_modes_work *work) {
+  strut_eigen_set *set = &work->set;
+  size_t count = (size_t)set->count;
+  return strut_arena_numbers(
+             work->arena, count,
+             (double **[]){&set->value, &set->noise, &set->error, &set->residual, NULL}) &&
+         strut_arena_numbers(work->arena, count * (size_t)set->n,
+                             (double **[]){&set->vector, NULL});
+}
+
 static bool allocate_dense(dense *self) {
   strut_eigen_set *set = &self->work->set;
   const strut_vibration *vibration = self->work->v;
   self->n = (size_t)vibration->n, self->massive = (size_t)vibration->massive;
   self->place = strut_arena_allocate(self->work->arena, self->n, sizeof *self->place);
   set->n = vibration->n, set->count = vibration->massive;
-  set->value = strut_arena_allocate(self->work->arena, self->massive, sizeof *set->value);
-  set->vector =
-      strut_arena_allocate(self->work->arena, self->massive * self->n, sizeof *set->vector);
   self->k = strut_arena_matrix(&self->arena, self->n, self->n);
   self->m = strut_arena_matrix(&self->arena, self->n, self->n);
   self->vector = strut_arena_matrix(&self->arena, self->massive, self->massive);
   self->value = strut_arena_vector(&self->arena, self->massive);
-  if (!self->place || !set->value || !set->vector || !self->k || !self->m || !self->vector ||
-      !self->value)
+  if (!self->place || !self->k || !self->m || !self->vector || !self->value ||
+      !allocate_set(self->work))
     return false;
   for (size_t i = 0, heavy = 0, light = self->massive; i < self->n; i++)
     self->place[i] = vibration->mass[i] > 0 ? heavy++ : light++;
@@ -178,13 +185,9 @@ strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_err
         "them a prestress",
         (int)below);
   if (below >= vibration->massive) below = vibration->massive - 1;
-  size_t room = (size_t)below;
   strut_eigen_set *set = &work->set;
-  set->n = vibration->n;
-  set->count = below;
-  set->value = strut_arena_allocate(work->arena, room, sizeof *set->value);
-  set->vector = strut_arena_allocate(work->arena, room * (size_t)vibration->n, sizeof *set->vector);
-  if (!set->value || !set->vector) return strut_no_memory(error, "");
+  set->n = vibration->n, set->count = below;
+  if (!allocate_set(work)) return strut_no_memory(error, "");
   for (int i = 0; i < MOST_FACTORS && count_below(work, shift) > 0; i++) shift *= 4.0;
   strut_lanczos_problem problem = {vibration->n,  shift,      work,
                                    apply_inverse, apply_mass, work->experiment->interrupt};

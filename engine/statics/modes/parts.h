@@ -7,7 +7,6 @@
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
-#include "engine/statics/modes/waves.h"
 #include "engine/statics/potential.h"
 
 /*
@@ -156,32 +155,5 @@ strut_status strut_modes_measure(strut_modes_work *work, strut_error *error);
 /** Damping of the modes into the list; `exactly`: the set holds all modes. */
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
                                  strut_error *error);
-
-/** Describes a mode in words. */
-void strut_modes_describe(const strut_modes_work *work, const double *vector, strut_mode *mode);
-
-/* A cell of a structure that repeats: which of its nodes are those of neighbouring cells. */
-
-typedef struct strut_lattice_cell {
-  const strut_model *model;
-  int32_t *owner;      /* (nodes) the node of this cell that a node repeats; itself if none */
-  int32_t (*shift)[2]; /* (nodes) whole steps from there */
-  int32_t n;           /* coordinates of a cell */
-  int32_t *row;        /* (length) of a coordinate's owner among them; -1 where held */
-  int32_t *first;      /* (n) coordinate of a row */
-  int32_t images;
-} strut_lattice_cell;
-
-/** Arrays are in the arena. STRUT_BAD_SCENE as strut_waves_find; STRUT_NO_MEMORY. */
-strut_status strut_lattice_cell_create(const strut_model *model, strut_arena *arena,
-                                       strut_lattice_cell *cell, strut_error *error);
-
-/**
- * Moves q (length) to an equilibrium of the repeated structure whose steps are held; `residual` is
- * the largest net force that is left there [N]. STRUT_NOT_SETTLED, STRUT_INTERRUPTED, STRUT_NO_MEMORY.
- */
-strut_status strut_lattice_cell_settle(const strut_lattice_cell *cell,
-                                       const strut_experiment *experiment, double *q,
-                                       double *residual, strut_error *error);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/statics/algebra.h"
 
 /* The shape below the last bits of its positions, and what last bits do to a stiffness. */
 
@@ -131,9 +132,9 @@ static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *
   const strut_vibration *vibration = work->v;
   size_t count = (size_t)strut_force_count(vibration->model, false);
   strut_arena scratch = {0};
-  double *x = strut_arena_allocate(&scratch, (size_t)vibration->n, sizeof *x);
-  double *one = strut_arena_allocate(&scratch, count, sizeof *one);
-  bool good = x && one;
+  double *x, *one;
+  bool good = strut_arena_numbers(&scratch, (size_t)vibration->n, (double **[]){&x, NULL}) &&
+              strut_arena_numbers(&scratch, count, (double **[]){&one, NULL});
   if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
   for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
     sample_noise(work, at_rest, sample, one, x);
@@ -344,9 +345,9 @@ static void sort(strut_eigen_set *set) {
 strut_status strut_modes_measure(strut_modes_work *work, strut_error *error) {
   size_t n = (size_t)work->v->n;
   strut_arena scratch = {0};
-  double *kx = strut_arena_allocate(&scratch, n, sizeof *kx);
-  double *mx = strut_arena_allocate(&scratch, n, sizeof *mx);
-  strut_status status = kx && mx ? STRUT_OK : strut_no_memory(error, "");
+  double *kx, *mx;
+  bool good = strut_arena_numbers(&scratch, n, (double **[]){&kx, &mx, NULL});
+  strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
   for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) measure_value(work, i, mx);
   if (status == STRUT_OK) sort(&work->set);
   for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) {

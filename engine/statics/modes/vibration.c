@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "engine/statics/algebra.h"
 
 static const double EDGE =
     8.0; /* last bits that a length and a rest length are known to, together */
@@ -160,22 +161,17 @@ void strut_vibration_update(strut_vibration *vibration) {
 static bool allocate(strut_vibration *vibration) {
   const strut_model *model = vibration->model;
   size_t n = (size_t)vibration->n, entries = (size_t)vibration->shape->pattern->start[n];
-  vibration->q =
-      strut_arena_allocate(&vibration->arena, (size_t)model->length, sizeof *vibration->q);
-  vibration->closed = strut_arena_allocate(&vibration->arena, (size_t)model->contacts.count,
-                                           sizeof *vibration->closed);
-  vibration->k = strut_arena_allocate(&vibration->arena, entries, sizeof *vibration->k);
-  vibration->m = strut_arena_allocate(&vibration->arena, entries, sizeof *vibration->m);
-  vibration->d = strut_arena_allocate(&vibration->arena, entries, sizeof *vibration->d);
-  vibration->low =
-      strut_arena_allocate(&vibration->arena, (size_t)model->length, sizeof *vibration->low);
-  vibration->mass = strut_arena_allocate(&vibration->arena, n, sizeof *vibration->mass);
-  vibration->own_mass = strut_arena_allocate(&vibration->arena, n, sizeof *vibration->own_mass);
-  vibration->work = strut_arena_allocate(&vibration->arena, n, sizeof *vibration->work);
-  vibration->state =
-      strut_arena_allocate(&vibration->arena, (size_t)strut_force_count(model, false), 1);
-  return vibration->state && vibration->low && vibration->q && vibration->closed && vibration->k &&
-         vibration->m && vibration->d && vibration->mass && vibration->own_mass && vibration->work;
+  strut_arena *arena = &vibration->arena;
+  vibration->closed = strut_arena_allocate(arena, (size_t)model->contacts.count, 1);
+  vibration->state = strut_arena_allocate(arena, (size_t)strut_force_count(model, false), 1);
+  return vibration->closed && vibration->state &&
+         strut_arena_numbers(arena, (size_t)model->length,
+                             (double **[]){&vibration->q, &vibration->low, NULL}) &&
+         strut_arena_numbers(arena, entries,
+                             (double **[]){&vibration->k, &vibration->m, &vibration->d, NULL}) &&
+         strut_arena_numbers(
+             arena, n,
+             (double **[]){&vibration->mass, &vibration->own_mass, &vibration->work, NULL});
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,
@@ -326,4 +322,46 @@ strut_vibration_energy strut_vibration_energy_of(const strut_vibration *vibratio
   for (int32_t i = 0; i < strut_force_count(vibration->model, true); i++)
     if (strut_vibration_force_at(vibration, i, &force)) add_energy(vibration, &force, vector, &sum);
   return sum;
+}
+
+enum { MOST_SHIFTS = 4 }; /* where one is an eigenvalue to the last bit */
+
+strut_status strut_modes_solver_create(const strut_vibration *vibration, strut_modes_solver *solver,
+                                       strut_error *error) {
+  size_t entries = (size_t)vibration->shape->pattern->start[vibration->n];
+  *solver = (strut_modes_solver){.v = vibration, .sum = *vibration->shape->pattern};
+  solver->sum.value = strut_arena_allocate(&solver->arena, entries, sizeof(double));
+  if (!solver->sum.value) return strut_no_memory(error, "");
+  return strut_ldl_create(vibration->shape->pattern, &solver->ldl, error);
+}
+
+void strut_modes_solver_free(strut_modes_solver *solver) {
+  strut_ldl_free(solver->ldl);
+  strut_arena_free(&solver->arena);
+  *solver = (strut_modes_solver){0};
+}
+
+static bool is_interrupted(const strut_modes_solver *solver) {
+  return solver->interrupt && *solver->interrupt;
+}
+
+void strut_modes_factorise(strut_modes_solver *solver, double shift) {
+  const strut_vibration *vibration = solver->v;
+  strut_status status = STRUT_SINGULAR;
+  for (int i = 0; i < MOST_SHIFTS && status == STRUT_SINGULAR && !is_interrupted(solver); i++) {
+    for (int32_t at = 0; at < solver->sum.start[vibration->n]; at++)
+      solver->sum.value[at] = vibration->k[at] + shift * vibration->m[at];
+    status = strut_ldl_factorise(solver->ldl, &solver->sum, 0.0, &solver->inertia);
+    shift *= 1.0 + 1e-3;
+  }
+  if (status != STRUT_OK) solver->inertia.smallest = 0.0;
+  if (status == STRUT_NO_MEMORY) solver->no_memory = true;
+}
+
+void strut_modes_solve(strut_modes_solver *solver, double *vector) {
+  if (is_interrupted(solver)) return;
+  if (solver->inertia.smallest > 0.0)
+    strut_ldl_solve(solver->ldl, vector);
+  else
+    memset(vector, 0, (size_t)solver->v->n * sizeof *vector);
 }

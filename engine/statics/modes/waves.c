@@ -10,9 +10,14 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/things.h"
+#include "engine/statics/algebra.h"
+#include "engine/statics/minimise.h"
 #include "engine/statics/modes/parts.h"
 
 enum { SAMPLES_ALONE = 200, SAMPLES_OF_LINE = 40, SAMPLES_ACROSS = 24 };
+static const double SAME_PLACE = 1e-6; /* distance, in shorter steps of the lattice */
+static const double FARTHEST = 1e6;    /* steps between nodes of one cell */
+
 static const double LONG_WAVE = 1e-3; /* phase at which speeds are measured [turns] */
 static const double LOCATED = 1e-7;   /* phase to which edges of gaps are located [turns] */
 static const double REAL_GAP = 1e-6;  /* width of a gap, of its lower edge */
@@ -27,8 +32,193 @@ static const zone_corner ALONE[] = {{"0", {0.0, 0.0}}, {"1/2", {0.5, 0.0}}};
 static const zone_corner PLANE[] = {{"G", {0.0, 0.0}}, {"X", {0.5, 0.0}}, {"M", {0.5, 0.5}},
                                     {"G", {0.0, 0.0}}, {"Y", {0.0, 0.5}}, {"M", {0.5, 0.5}}};
 
+typedef struct lattice_cell {
+  const strut_model *model;
+  int32_t *owner;      /* (nodes) the node of this cell that a node repeats; itself if none */
+  int32_t (*shift)[2]; /* (nodes) whole steps from there */
+  int32_t n;           /* coordinates of a cell */
+  int32_t *row;        /* (length) of a coordinate's owner among them; -1 where held */
+  int32_t *first;      /* (n) coordinate of a row */
+  int32_t images;
+} lattice_cell;
+
+/* ---- a cell: its nodes among those of its neighbours ---- */
+
+/* Whole steps from point a to point b; false where they lie otherwise. */
+static bool steps_between(const strut_scene *scene, const double a[2], const double b[2],
+                          int32_t steps[2]) {
+  const double(*s)[2] = scene->lattice, d[2] = {b[0] - a[0], b[1] - a[1]};
+  double count[2] = {0.0, 0.0}, shorter = hypot(s[0][0], s[0][1]);
+  if (scene->lattice_count == 2) {
+    double area = s[0][0] * s[1][1] - s[0][1] * s[1][0];
+    count[0] = (d[0] * s[1][1] - d[1] * s[1][0]) / area;
+    count[1] = (s[0][0] * d[1] - s[0][1] * d[0]) / area;
+    shorter = fmin(shorter, hypot(s[1][0], s[1][1]));
+  } else {
+    count[0] = (d[0] * s[0][0] + d[1] * s[0][1]) / (shorter * shorter);
+  }
+  if (!(fabs(count[0]) < FARTHEST && fabs(count[1]) < FARTHEST)) return false;
+  double left[2] = {d[0], d[1]};
+  for (int k = 0; k < scene->lattice_count; k++) {
+    steps[k] = (int32_t)lround(count[k]);
+    for (int c = 0; c < 2; c++) left[c] -= steps[k] * s[k][c];
+  }
+  return hypot(left[0], left[1]) <= SAME_PLACE * shorter;
+}
+
+/* Finds the first node that node i repeats, and whether a second one in the same place could be meant. */
+static strut_status find_owner(lattice_cell *cell, int32_t i, strut_error *error) {
+  const strut_scene *scene = cell->model->scene;
+  int32_t steps[2] = {0, 0};
+  cell->owner[i] = i;
+  for (int32_t k = 0; k < i; k++) {
+    if (cell->owner[k] != k ||
+        !steps_between(scene, scene->nodes[k].position, scene->nodes[i].position, steps))
+      continue;
+    if (steps[0] == 0 && steps[1] == 0) continue; /* two nodes in one place */
+    if (cell->owner[i] != i)
+      return strut_fail(
+          error, STRUT_BAD_SCENE,
+          "--wave: node '%s' lies whole steps of the lattice from both '%s' and '%s', which "
+          "are drawn in one place, so it is not clear whose image it is; draw one of "
+          "them elsewhere in the cell",
+          scene->nodes[i].name, scene->nodes[cell->owner[i]].name, scene->nodes[k].name);
+    cell->owner[i] = k;
+    memcpy(cell->shift[i], steps, sizeof steps);
+    cell->images++;
+  }
+  return STRUT_OK;
+}
+
+/* Does every step of the lattice lead from some node to another? */
+static strut_status check_steps(const lattice_cell *cell, strut_error *error) {
+  const strut_scene *scene = cell->model->scene;
+  for (int k = 0; k < scene->lattice_count; k++) {
+    bool used = false;
+    for (int32_t i = 0; i < cell->model->node_count; i++) used = used || cell->shift[i][k] != 0;
+    if (!used)
+      return strut_fail(
+          error, STRUT_BAD_SCENE,
+          "--wave: no node lies a step [%g m, %g m] of the lattice from another one, so "
+          "nothing ties the cell to the next; draw the nodes of the next cell at which "
+          "members of this one end",
+          scene->lattice[k][0], scene->lattice[k][1]);
+  }
+  return STRUT_OK;
+}
+
+/* A coordinate is held where that of any image is. */
+static void number_rows(lattice_cell *cell) {
+  const strut_scene *scene = cell->model->scene;
+  int32_t nodes = cell->model->node_count;
+  memset(cell->row, 0, (size_t)cell->model->length * sizeof *cell->row);
+  for (int32_t i = 0; i < nodes; i++)
+    for (int32_t c = 0; c < 2; c++)
+      if (scene->nodes[i].fixed[c]) cell->row[2 * cell->owner[i] + c] = -1;
+  for (int32_t i = 0; i < 2 * nodes; i++) {
+    if (cell->owner[i / 2] != i / 2 || cell->row[i] < 0) continue;
+    cell->first[cell->n] = i;
+    cell->row[i] = cell->n++;
+  }
+  for (int32_t i = 0; i < 2 * nodes; i++) cell->row[i] = cell->row[2 * cell->owner[i / 2] + i % 2];
+}
+
+static strut_status create_cell(const strut_model *model, strut_arena *arena, lattice_cell *cell,
+                                strut_error *error) {
+  size_t nodes = (size_t)model->node_count, length = (size_t)model->length;
+  *cell = (lattice_cell){
+      .model = model,
+      .owner = strut_arena_allocate(arena, nodes, sizeof *cell->owner),
+      .shift = strut_arena_allocate(arena, nodes, sizeof *cell->shift),
+      .row = strut_arena_allocate(arena, length, sizeof *cell->row),
+      .first = strut_arena_allocate(arena, length, sizeof *cell->first),
+  };
+  if (!cell->owner || !cell->shift || !cell->row || !cell->first) return strut_no_memory(error, "");
+  if (model->scene->lattice_count == 0)
+    return strut_fail(error, STRUT_USAGE,
+                      "--wave needs 'lattice' in the scene, the steps by which the structure "
+                      "repeats, such as lattice: [[100 mm, 0]]");
+  strut_status status = STRUT_OK;
+  for (int32_t i = 0; i < model->node_count && status == STRUT_OK; i++)
+    status = find_owner(cell, i, error);
+  if (status == STRUT_OK) status = check_steps(cell, error);
+  if (status != STRUT_OK) return status;
+  number_rows(cell);
+  if (cell->n == 0)
+    return strut_fail(error, STRUT_BAD_SCENE,
+                      "--wave: no node is free to move, so there are no waves");
+  if (cell->n > STRUT_MOST_BANDS)
+    return strut_fail(
+        error, STRUT_BAD_SCENE,
+        "--wave: the cell has %d coordinates; waves are computed for at most %d. Choose the "
+        "smallest part of the structure that repeats",
+        (int)cell->n, (int)STRUT_MOST_BANDS);
+  return STRUT_OK;
+}
+
+/* ---- its equilibrium ---- */
+
+static const double MOST_LEFT = 16.0; /* force that rounding may leave, over the least */
+
+static strut_status not_found(const lattice_cell *cell, const double *gradient,
+                              strut_error *error) {
+  int32_t worst = 0;
+  for (int32_t r = 0; r < cell->n; r++)
+    if (fabs(gradient[r]) > fabs(gradient[worst])) worst = r;
+  return strut_fail(
+      error, STRUT_NOT_SETTLED,
+      "the repeated structure finds no equilibrium near this shape: a force of %.3g N "
+      "stays on node '%s'. Draw the cell in equilibrium among its neighbours, or hold "
+      "what loads move",
+      fabs(gradient[worst]), cell->model->scene->nodes[cell->first[worst] / 2].name);
+}
+
+/* Images lie whole steps away, to all digits. */
+static void place_images(const lattice_cell *cell, double *q) {
+  const strut_scene *scene = cell->model->scene;
+  for (int32_t i = 0; i < cell->model->length; i++) {
+    int32_t owner = cell->owner[i / 2];
+    if (owner == i / 2) continue;
+    q[i] = q[2 * owner + i % 2];
+    for (int k = 0; k < scene->lattice_count; k++)
+      q[i] += cell->shift[i / 2][k] * scene->lattice[k][i % 2];
+  }
+}
+
+/*
+ * Moves q (length) to an equilibrium of the repeated structure whose steps are held; `residual` is the largest net
+ * force that is left there [N].
+ */
+static strut_status settle_cell(const lattice_cell *cell, const strut_experiment *experiment,
+                                double *q, double *residual, strut_error *error) {
+  strut_potential *potential = NULL;
+  strut_minimiser *minimiser = NULL;
+  double *gradient = strut_allocate((size_t)cell->n, sizeof *gradient);
+  strut_status status =
+      gradient ? strut_potential_create_tied(cell->model, cell->row, cell->n, &potential, error)
+               : strut_no_memory(error, "");
+  if (status == STRUT_OK) status = strut_minimiser_create(potential, &minimiser, error);
+  if (status == STRUT_OK) {
+    strut_minimiser_watch(minimiser, experiment->interrupt);
+    strut_minimiser_stay(minimiser);
+    place_images(cell, q);
+    strut_descent descent = strut_minimise(minimiser, q);
+    *residual = descent.residual;
+    status = strut_experiment_end(experiment, status, error);
+    strut_potential_gradient(potential, q, gradient);
+    if (status == STRUT_OK && !(descent.residual <= MOST_LEFT * descent.rounding))
+      status = not_found(cell, gradient, error);
+  }
+  strut_minimiser_free(minimiser);
+  strut_potential_free(potential);
+  strut_release(gradient);
+  return status;
+}
+
+/* ---- frequencies ---- */
+
 typedef struct solver {
-  const strut_lattice_cell *cell;
+  const lattice_cell *cell;
   const strut_experiment *experiment;
   strut_vibration *v;
   gsl_matrix_complex *k, *m;
@@ -61,7 +251,7 @@ static void add_entry(gsl_matrix_complex *matrix, int32_t row, int32_t column, g
 
 /* u of a node is that of its owner times exp(i shift phase); so are rows and columns of K and M. */
 static void fold(solver *self, const double phase[2]) {
-  const strut_lattice_cell *cell = self->cell;
+  const lattice_cell *cell = self->cell;
   const strut_sparse *matrix = self->v->shape->pattern;
   const int32_t *coordinate = self->v->shape->coordinate;
   gsl_matrix_complex_set_zero(self->k);
@@ -107,12 +297,12 @@ static bool allocate(strut_waves *waves, size_t corners, size_t each) {
   size_t n = (size_t)waves->band_count;
   waves->count = (corners - 1) * each + 1;
   waves->phase = strut_arena_allocate(&waves->arena, waves->count, sizeof *waves->phase);
-  waves->along = strut_arena_allocate(&waves->arena, waves->count, sizeof *waves->along);
-  waves->frequency =
-      strut_arena_allocate(&waves->arena, waves->count * n, sizeof *waves->frequency);
   waves->band = strut_arena_allocate(&waves->arena, n, sizeof *waves->band);
   waves->gaps = strut_arena_allocate(&waves->arena, n, sizeof *waves->gaps);
-  return waves->phase && waves->along && waves->frequency && waves->band && waves->gaps;
+  return waves->phase && waves->band && waves->gaps &&
+         strut_arena_numbers(&waves->arena, waves->count, (double **[]){&waves->along, NULL}) &&
+         strut_arena_numbers(&waves->arena, waves->count * n,
+                             (double **[]){&waves->frequency, NULL});
 }
 
 static void include(strut_waves *waves, const double phase[2], const double *frequency) {
@@ -273,12 +463,12 @@ static strut_status choose_shape(const strut_scene *scene, const char *at, strut
 static strut_status find(const strut_model *model, const strut_experiment *experiment,
                          const strut_waves_options *options, strut_waves *waves,
                          strut_error *error) {
-  strut_lattice_cell cell;
+  lattice_cell cell;
   size_t length = (size_t)model->length;
-  double *q = strut_arena_allocate(&waves->arena, length, sizeof *q);
-  double *before = strut_arena_allocate(&waves->arena, length, sizeof *before);
-  if (!q || !before) return strut_no_memory(error, "");
-  strut_status status = strut_lattice_cell_create(model, &waves->arena, &cell, error);
+  double *q, *before;
+  if (!strut_arena_numbers(&waves->arena, length, (double **[]){&q, &before, NULL}))
+    return strut_no_memory(error, "");
+  strut_status status = create_cell(model, &waves->arena, &cell, error);
   if (status == STRUT_OK) status = choose_shape(model->scene, options->at, waves, q, error);
   if (status != STRUT_OK) return status;
   memcpy(before, q, length * sizeof *q);
@@ -287,7 +477,7 @@ static strut_status find(const strut_model *model, const strut_experiment *exper
   waves->images = cell.images;
   waves->band_count = cell.n;
   waves->shown = options->count > 0 && options->count < cell.n ? options->count : cell.n;
-  status = strut_lattice_cell_settle(&cell, experiment, q, &waves->residual, error);
+  status = settle_cell(&cell, experiment, q, &waves->residual, error);
   if (status != STRUT_OK) return status;
   for (size_t i = 0; i < length; i += 2)
     waves->moved = fmax(waves->moved, hypot(q[i] - before[i], q[i + 1] - before[i + 1]));

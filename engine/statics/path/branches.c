@@ -130,13 +130,13 @@ static double passing_distance(const strut_path_walk *walk, const double *from,
 
 static void remark_joined(strut_path_walk *walk, const strut_path_fork *fork) {
   strut_path *path = walk->path;
-  char joined[40] = "the path";
+  char joined[40] = "the path", at[STRUT_PATH_TEXT];
   memcpy(walk->y, fork->y, strut_path_bytes(walk));
   strut_path_add_point(walk, path->points[path->point_count - 1].negative);
   path->end = STRUT_PATH_JOINED;
   if (fork->path) snprintf(joined, sizeof joined, "branch %d", (int)fork->path);
-  snprintf(path->remark, sizeof path->remark, "joins %s at the bifurcation at %s %.6g%s%s", joined,
-           strut_path_subject(walk), fork->factor, *path->unit ? " " : "", path->unit);
+  snprintf(path->remark, sizeof path->remark, "joins %s at the bifurcation at %s", joined,
+           strut_path_at(walk, fork->factor, at));
 }
 
 /* Can the branch end at this bifurcation? It begins at `origin`. */

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * Contacts in the equations of a path: which touch, and on which facet of its surface each lies, is
- * frozen between events, as for cables.
+ * Contacts in the equations of a path: which touch, on which facet of its surface each lies, and, with friction,
+ * whether it sticks or slides one way is frozen between events, as for cables.
+ *
+ * Where a contact sticks, a spring much stiffer than all else holds its node along the ground; where it slides, the
+ * force is that of the kinetic coefficient, and the stiffness has no symmetry. Nothing moves at a speed: laws whose
+ * force vanishes with the speed have no part in this.
  */
 #include <assert.h>
 #include <math.h>
@@ -13,6 +17,8 @@
 
 static const double ALONG = 1e-9; /* a direction's part across its line */
 static const double STILL = 1e-9; /* what does not move [units of y] */
+static const double STIFF = 1e5;  /* what holds a contact, over the stiffest member or ground */
+static const double SMALL = 1e-6; /* of the range: a jump that is none */
 
 bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
                                 strut_path_contacts *contacts) {
@@ -85,13 +91,137 @@ static strut_contact_pose pose_in(const strut_path_system *system, const strut_p
   return pose;
 }
 
+/* ---- friction ---- */
+
+/* The law of contact i at some value of the parameter; driven coefficients are those at t = 0. */
+static strut_friction law_of(const strut_path_terms *terms, int32_t i) {
+  strut_friction law = terms->laws->contacts.entry[i].friction;
+  strut_scene_stop_grip(terms->laws->scene, &law);
+  return law;
+}
+
+static bool has_static_friction(const strut_friction *law) {
+  bool coulomb = strut_friction_has_band(law->law) || strut_friction_is_exact(law->law);
+  return coulomb &&
+         (strut_friction_static(law, 1.0) > 0.0 || strut_friction_static(law, -1.0) > 0.0);
+}
+
+bool strut_path_friction_create(strut_path_system *system) {
+  const strut_contact_table *contacts = &system->model->contacts;
+  double stiffest = strut_stiffest(system->model);
+  const strut_path_terms drawn = {.laws = system->model};
+  bool some = false;
+  for (int32_t i = 0; i < contacts->count; i++) {
+    const strut_friction law = law_of(&drawn, i);
+    system->contacts.contact[i].grips = has_static_friction(&law);
+    some = some || system->contacts.contact[i].grips;
+    stiffest = fmax(stiffest, contacts->entry[i].stiffness);
+  }
+  system->contacts.grip = STIFF * stiffest;
+  return some;
+}
+
+/* How far the node of a contact that sticks has come from where nothing holds it back, along the ground [m]. */
+static double strain_of(const strut_path_system *system, int32_t i) {
+  const strut_path_contact *own = &system->contacts.contact[i];
+  uint32_t at = system->model->contacts.at[i];
+  const strut_dd x = {system->latest.q[at], system->latest.q_low[at]};
+  const strut_dd y = {system->latest.q[at + 1], system->latest.q_low[at + 1]};
+  strut_dd along = dd_add(dd_scale(x, own->tangent[0]), dd_scale(y, own->tangent[1]));
+  return dd_double(dd_sub(along, own->anchor));
+}
+
+/* Sticks from the latest place on, where the ground pulls its node by `force` along the tangent [N]. */
+static void stick(strut_path_system *system, int32_t i, double force) {
+  strut_path_contact *own = &system->contacts.contact[i];
+  own->sticks = true, own->direction = 0.0;
+  own->anchor = dd_of(0.0);
+  memcpy(own->tangent, own->pose.axes.tangent, sizeof own->tangent);
+  own->anchor = dd_of(strain_of(system, i) + force / system->contacts.grip);
+}
+
+/* Push of the ground, and what it can hold or holds of a sliding node [N]. */
+static double limit_of(const strut_path_system *system, const strut_path_terms *terms, int32_t i,
+                       double gap) {
+  const strut_path_contact *own = &system->contacts.contact[i];
+  const strut_friction law = law_of(terms, i);
+  double push = -terms->laws->contacts.entry[i].stiffness * gap;
+  double way = own->sticks ? strain_of(system, i) : own->direction;
+  return push *
+         (own->sticks ? strut_friction_static(&law, way) : strut_friction_kinetic(&law, way));
+}
+
+/* Force on the node along the tangent for some terms and gap [N]; 0 where there is no friction. */
+static double friction_force(const strut_path_system *system, const strut_path_terms *terms,
+                             int32_t i, double gap) {
+  const strut_path_contact *own = &system->contacts.contact[i];
+  if (!own->grips || !own->touches) return 0.0;
+  if (own->sticks) return -system->contacts.grip * strain_of(system, i);
+  return -own->direction * limit_of(system, terms, i, gap);
+}
+
+/* Adds the stiffness; where the contact slides it has no symmetry. */
+static void add_friction_block(const strut_path_system *system, int32_t i, double block[4]) {
+  const strut_path_contact *own = &system->contacts.contact[i];
+  const double *n = own->pose.axes.normal, *t = own->pose.axes.tangent;
+  if (!own->grips) return;
+  double force = friction_force(system, &system->equations.terms, i, own->pose.gap);
+  double per_gap = -friction_force(system, &system->equations.terms, i, 1.0); /* where it slides */
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b < 2; b++)
+      block[2 * a + b] += own->sticks
+                              ? system->contacts.grip * own->tangent[a] * own->tangent[b]
+                              : per_gap * t[a] * n[b] + force * own->pose.curvature * n[a] * t[b];
+}
+
+bool strut_path_slides(const strut_path_system *system) {
+  for (int32_t i = 0; i < system->model->contacts.count; i++) {
+    const strut_path_contact *own = &system->contacts.contact[i];
+    if (own->grips && own->touches && !own->sticks) return true;
+  }
+  return false;
+}
+
+void strut_path_friction_begin(strut_path_system *system) {
+  for (int32_t i = 0; i < system->model->contacts.count; i++) {
+    strut_path_contact *own = &system->contacts.contact[i];
+    double force = 0.0, held = 0.0;
+    if (!own->grips || !own->touches) continue;
+    /* what other forces leave at the node is what holds it */
+    for (uint32_t c = 0; c < 2; c++) {
+      int32_t row = system->potential->row_of[system->model->contacts.at[i] + c];
+      double t = own->pose.axes.tangent[c];
+      if (row >= 0) force += system->latest.g[row] * t, held += t * t;
+    }
+    stick(system, i, held > 0.0 ? force / held : 0.0);
+  }
+}
+
+bool strut_path_friction_drops(const strut_path_system *system, int32_t i) {
+  const strut_friction law = law_of(&system->equations.terms, i);
+  return strut_friction_drops(&law);
+}
+
+void strut_path_grip_set(strut_path_system *system, int32_t i, bool on) {
+  strut_path_contact *own = &system->contacts.contact[i];
+  if (on == own->sticks || !own->grips) return;
+  if (on) {
+    stick(system, i, friction_force(system, &system->equations.terms, i, own->pose.gap));
+    return;
+  }
+  own->direction = strain_of(system, i) < 0.0 ? -1.0 : 1.0;
+  own->sticks = false;
+}
+
+/* ---- forces ---- */
+
 /* Derivative of its energy, with friction, by its node's coordinates: minus the force on the node [N]. */
 static void gradient_in(const strut_path_system *system, const strut_path_terms *terms, int32_t i,
                         const strut_contact_pose *pose, double gradient[2]) {
   const strut_path_contact *own = &system->contacts.contact[i];
   const double *along = own->sticks ? own->tangent : pose->axes.tangent;
   double normal = terms->laws->contacts.entry[i].stiffness * pose->gap;
-  double friction = strut_path_friction_force(system, terms, i, pose->gap);
+  double friction = friction_force(system, terms, i, pose->gap);
   for (int c = 0; c < 2; c++) gradient[c] = normal * pose->axes.normal[c] - friction * along[c];
 }
 
@@ -119,7 +249,7 @@ static void add_contact(strut_path_system *system, int32_t i, strut_force *force
   strut_force_set_contact(stiffness, &own->pose, force);
   force->across = stiffness * own->pose.gap * own->pose.curvature;
   strut_force_stiffness(system->model, force, system->latest.q, block);
-  strut_path_friction_block(system, i, block);
+  add_friction_block(system, i, block);
   if (own->sticks) force->across += system->contacts.grip;
   gradient_in(system, &system->equations.terms, i, &own->pose, gradient);
   find_rate(system, i, rate);
@@ -142,8 +272,7 @@ void strut_path_contact_reactions(const strut_path_system *system, double *react
     double gradient[2] = {0.0, 0.0};
     if (own->touches) gradient_in(system, &system->equations.terms, i, &own->pose, gradient);
     contact[i] = own->touches ? 0.0 - stiffness_of(system, i) * own->pose.gap : 0.0;
-    friction[i] =
-        0.0 + strut_path_friction_force(system, &system->equations.terms, i, own->pose.gap);
+    friction[i] = 0.0 + friction_force(system, &system->equations.terms, i, own->pose.gap);
     for (uint32_t c = 0; c < 2; c++) reaction[system->model->contacts.at[i] + c] += gradient[c];
   }
 }
@@ -157,14 +286,20 @@ void strut_path_contact_switch_set(strut_path_system *system, int32_t i, bool on
   if (on && !own->touches) {
     own->pose = pose_in(system, &system->equations.terms, i);
     own->facet = own->pose.facet;
-    strut_path_friction_touch(system, i);
+    if (own->grips) stick(system, i, 0.0);
   }
   own->touches = on;
   if (!on) own->sticks = false, own->direction = 0.0;
 }
 
-double strut_path_grip_switch_value(const strut_path_system *system, int32_t i) {
-  return strut_path_grip_value(system, i, pose_in(system, &system->equations.terms, i).gap);
+/* What is left of the limit of a contact that sticks, as a depth of the ground. */
+double strut_path_grip_value(const strut_path_system *system, int32_t i) {
+  const strut_path_contact *own = &system->contacts.contact[i];
+  const strut_path_terms *terms = &system->equations.terms;
+  if (!own->sticks || !own->touches) return -HUGE_VAL;
+  double gap = pose_in(system, terms, i).gap;
+  return (limit_of(system, terms, i, gap) - fabs(friction_force(system, terms, i, gap))) /
+         stiffness_of(system, i);
 }
 
 /* The surface of contact i where it has corners that the contact may pass, or NULL. */
@@ -183,20 +318,22 @@ double strut_path_corner_value(const strut_path_system *system, int32_t i) {
                               system->contacts.contact[i].facet, &other);
 }
 
-void strut_path_add_to_row(const strut_path_system *system, uint32_t at, double entry,
-                           double *row) {
+/* Adds the derivative by coordinate `at` [1] to a row (n + 1) over the unknowns. */
+static void add_to_row(const strut_path_system *system, uint32_t at, double entry, double *row) {
   int32_t free = system->potential->row_of[at];
   double moved = system->equations.rates.position[at] * system->parameter.range / system->size;
   row[free >= 0 ? free : system->n] += free >= 0 ? entry : entry * moved;
 }
 
-double strut_path_rate_of(const strut_path_system *system, uint32_t at, const double *tangent) {
+/* Rate of coordinate `at` along a tangent (n + 1), in units of y. */
+static double rate_of(const strut_path_system *system, uint32_t at, const double *tangent) {
   int32_t free = system->potential->row_of[at];
   double moved = system->equations.rates.position[at] * system->parameter.range / system->size;
   return free >= 0 ? tangent[free] : tangent[system->n] * moved;
 }
 
-bool strut_path_jump(strut_path_walk *walk, const double *row) {
+/* Corrects walk->y, with row . y as it is; false: it does not converge. A row of zeros changes nothing. */
+static bool jump(strut_path_walk *walk, const double *row) {
   int32_t count = walk->system.n + 1;
   double place = strut_path_dot(walk, row, walk->y);
   if (!(strut_path_dot(walk, row, row) > 0.0)) return true;
@@ -216,10 +353,30 @@ static void change_facet(strut_path_system *system, int32_t i, double *row) {
   strut_surface_margin(surface, system->latest.q + at, own->facet, &other);
   memset(row, 0, ((size_t)system->n + 1) * sizeof *row);
   for (uint32_t c = 0; c < 2; c++)
-    strut_path_add_to_row(
-        system, at + c,
-        surface->facet[other].axes.normal[c] - surface->facet[own->facet].axes.normal[c], row);
+    add_to_row(system, at + c,
+               surface->facet[other].axes.normal[c] - surface->facet[own->facet].axes.normal[c],
+               row);
   own->facet = other;
+}
+
+/*
+ * Goes on from walk->y along walk->next_tangent, and reports what happened there and, unless it is within `least`, the
+ * jump of the parameter from a value.
+ */
+static void finish_jump(strut_path_walk *walk, strut_path_event_kind kind, int32_t index,
+                        double from, double least, const char *what) {
+  strut_path_system *system = &walk->system;
+  int32_t before = walk->negative;
+  double turn = walk->tangent[system->n], to = strut_path_value(system, walk->y);
+  char detail[300];
+  int used = snprintf(detail, sizeof detail, "%s", what);
+  if (!(fabs(to - from) <= least))
+    snprintf(detail + used, sizeof detail - (size_t)used, ": %s jumps from %.6g to %.6g there",
+             strut_path_subject(walk), from, to);
+  memcpy(walk->tangent, walk->next_tangent, ((size_t)system->n + 1) * sizeof *walk->tangent);
+  strut_path_count_negative(walk);
+  strut_path_add_event(walk, kind, walk->y, index, before, walk->negative, detail);
+  strut_path_report_exchange(walk, turn, before);
 }
 
 /*
@@ -227,28 +384,21 @@ static void change_facet(strut_path_system *system, int32_t i, double *row) {
  * between is in equilibrium for some value of the parameter, with the node held by nothing else: the path leads
  * along the corner to the value that the facet beyond wants, and that piece is unstable but for a displacement.
  */
-bool strut_path_pass_corner(strut_path_walk *walk, int32_t which) {
+bool strut_path_pass_corner(strut_path_walk *walk, int32_t i) {
   strut_path_system *system = &walk->system;
-  const strut_scene *scene = system->model->scene;
-  int32_t i = which - strut_path_first_corner_switch(system), before = walk->negative;
   int32_t node = system->model->contacts.entry[i].node;
-  double *row = walk->trial, value = strut_path_value(system, walk->y),
-         turn = walk->tangent[system->n];
-  char detail[300];
+  double *row = walk->trial, value = strut_path_value(system, walk->y);
+  char what[200];
   strut_path_evaluate(system, walk->y);
-  strut_path_add_point(walk, before);
+  strut_path_add_point(walk, walk->negative);
   change_facet(system, i, row);
   bool held = !(strut_path_dot(walk, row, row) > 0.0); /* the ground moves under a support */
-  if (!strut_path_jump(walk, row)) return false;
-  if (!strut_path_tangent(system, walk->y, held ? walk->tangent : row, walk->next_tangent))
+  if (!jump(walk, row) ||
+      !strut_path_tangent(system, walk->y, held ? walk->tangent : row, walk->next_tangent))
     return false;
-  memcpy(walk->tangent, walk->next_tangent, ((size_t)system->n + 1) * sizeof *walk->tangent);
-  strut_path_count_negative(walk);
-  snprintf(detail, sizeof detail, "%s passes a corner of %s: %s jumps from %.6g to %.6g there",
-           scene->nodes[node].name, strut_path_ground_name(system, i), strut_path_subject(walk),
-           value, strut_path_value(system, walk->y));
-  strut_path_add_event(walk, STRUT_PATH_CORNER, walk->y, node, before, walk->negative, detail);
-  strut_path_report_exchange(walk, turn, before);
+  snprintf(what, sizeof what, "%s passes a corner of %s", system->model->scene->nodes[node].name,
+           strut_path_ground_name(system, i));
+  finish_jump(walk, STRUT_PATH_CORNER, node, value, -1.0, what);
   return true;
 }
 
@@ -270,24 +420,21 @@ static bool is_kept_on_line(const strut_path_system *system, int32_t member, con
 bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member) {
   strut_path_system *system = &walk->system;
   const strut_member_table *members = &system->model->members;
-  double *ahead = &system->latest.ahead[2 * member], *row = walk->trial,
-         turn = walk->tangent[system->n];
+  double *ahead = &system->latest.ahead[2 * member], *row = walk->trial;
   double value = strut_path_value(system, walk->y), arc = walk->arc,
          beyond[2] = {-ahead[0], -ahead[1]};
-  int32_t before = walk->negative;
-  char detail[300];
+  char what[200];
   strut_path_evaluate(system, walk->y);
   if (fabs(system->force[member].pose.strain) > STRUT_PATH_EVEN * system->size)
     return false; /* it has a direction */
   memset(row, 0, ((size_t)system->n + 1) * sizeof *row);
   for (uint32_t c = 0; c < 2; c++) {
     ahead[c] = beyond[c];
-    strut_path_add_to_row(system, members->to[member] + c, beyond[c], row);
-    strut_path_add_to_row(system, members->from[member] + c, -beyond[c], row);
+    add_to_row(system, members->to[member] + c, beyond[c], row);
+    add_to_row(system, members->from[member] + c, -beyond[c], row);
   }
   memcpy(walk->next, walk->y, strut_path_bytes(walk));
-  bool found =
-      strut_path_jump(walk, row) && strut_path_tangent(system, walk->y, row, walk->next_tangent);
+  bool found = jump(walk, row) && strut_path_tangent(system, walk->y, row, walk->next_tangent);
   bool still = true;
   for (int32_t i = 0; i < system->n; i++) still = still && fabs(walk->y[i] - walk->next[i]) < STILL;
   memcpy(walk->trial, walk->y, strut_path_bytes(walk));
@@ -295,17 +442,61 @@ bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member) {
   if (!found || !(still || is_kept_on_line(system, member, beyond))) return false;
   double jumped = walk->arc;
   ahead[0] = -beyond[0], ahead[1] = -beyond[1], walk->arc = arc;
-  strut_path_add_point(walk, before);
+  strut_path_add_point(walk, walk->negative);
   memcpy(ahead, beyond, sizeof beyond), walk->arc = jumped;
   memcpy(walk->y, walk->trial, strut_path_bytes(walk));
-  memcpy(walk->tangent, walk->next_tangent, ((size_t)system->n + 1) * sizeof *walk->tangent);
-  strut_path_count_negative(walk);
-  snprintf(detail, sizeof detail,
-           "%s shrinks to nothing and its force turns round: %s jumps from %.6g to %.6g there",
-           system->model->scene->members[member].name, strut_path_subject(walk), value,
-           strut_path_value(system, walk->y));
-  strut_path_add_event(walk, STRUT_PATH_ZERO_LENGTH, walk->y, member, before, walk->negative,
-                       detail);
-  strut_path_report_exchange(walk, turn, before);
+  snprintf(what, sizeof what, "%s shrinks to nothing and its force turns round",
+           system->model->scene->members[member].name);
+  finish_jump(walk, STRUT_PATH_ZERO_LENGTH, member, value, -1.0, what);
+  return true;
+}
+
+/* The direction of a contact's tangent, over the unknowns. */
+static void fill_row(const strut_path_system *system, int32_t i, double *row) {
+  uint32_t at = system->model->contacts.at[i];
+  memset(row, 0, ((size_t)system->n + 1) * sizeof *row);
+  for (uint32_t c = 0; c < 2; c++)
+    add_to_row(system, at + c, system->contacts.contact[i].pose.axes.tangent[c], row);
+}
+
+double strut_path_measure_switch(strut_path_system *system, const double *unknowns,
+                                 const strut_path_piece *piece, int32_t which) {
+  const strut_path_switch kind = strut_path_switch_at(system, which);
+  if (kind.of != STRUT_PATH_GRIP) return strut_path_switch_value(system, which, unknowns);
+  int32_t i = kind.index;
+  const strut_path_contact *own = &system->contacts.contact[i];
+  double *along = system->latest.row, back = 0.0;
+  if (own->sticks || own->direction == 0.0) return strut_path_switch_value(system, which, unknowns);
+  if (!strut_path_tangent(system, unknowns, piece->tangent, along)) return (double)NAN;
+  for (uint32_t c = 0; c < 2; c++)
+    back -= own->direction * own->pose.axes.tangent[c] *
+            rate_of(system, system->model->contacts.at[i] + c, along);
+  return back;
+}
+
+bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond) {
+  strut_path_system *system = &walk->system;
+  int32_t i = strut_path_switch_at(system, which).index;
+  int32_t node = system->model->contacts.entry[i].node;
+  strut_path_contact *own = &system->contacts.contact[i];
+  double *row = walk->trial, value = strut_path_value(system, walk->y);
+  char what[200];
+  bool slips = own->sticks;
+  if (slips && strut_path_friction_drops(system, i)) strut_path_add_point(walk, walk->negative);
+  strut_path_switch_value(system, which, beyond);
+  if (slips) strut_path_grip_set(system, i, false);
+  strut_path_evaluate(system, walk->y);
+  if (!slips) strut_path_grip_set(system, i, true);
+  fill_row(system, i, row);
+  /* against the kinetic coefficient it takes less to hold the node where it is */
+  if (slips && !jump(walk, row)) return false;
+  for (int32_t k = 0; k <= system->n; k++) row[k] *= own->direction;
+  bool leads = strut_path_dot(walk, row, row) > 0.0; /* its direction is where it slides to */
+  if (!strut_path_tangent(system, walk->y, leads ? row : walk->tangent, walk->next_tangent))
+    return false;
+  snprintf(what, sizeof what, "%s %s %s", system->model->scene->nodes[node].name,
+           slips ? "begins to slide on" : "sticks to", strut_path_ground_name(system, i));
+  finish_jump(walk, slips ? STRUT_PATH_SLIP : STRUT_PATH_STICK, node, value,
+              SMALL * fabs(system->parameter.range), what);
   return true;
 }

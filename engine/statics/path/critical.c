@@ -38,6 +38,12 @@ static double coupling(const strut_path_system *system, const gsl_vector *vector
   return load > 0 ? fabs(work) / sqrt(load) : 0;
 }
 
+/* Does the parameter turn back on the step? No sign of a rate below rounding counts. */
+static bool turns_back(const strut_path_walk *walk) {
+  double a = walk->tangent[walk->system.n], b = walk->next_tangent[walk->system.n], level = 1e-9;
+  return (a > level && b < -level) || (a < -level && b > level);
+}
+
 const char *strut_path_subject(const strut_path_walk *walk) {
   return walk->path->over == STRUT_PATH_OVER_LOAD ? "the factor" : walk->path->name;
 }
@@ -115,7 +121,7 @@ static bool meet_critical(strut_path_walk *walk, const strut_path_piece *piece,
                           const double *unknowns, critical *self, strut_path_ray *way) {
   strut_path_system *system = &walk->system;
   int32_t crossed = self->after - self->before, first = 0;
-  bool turned = strut_path_turns(walk, walk->tangent, walk->next_tangent);
+  bool turned = turns_back(walk);
   double works = 0;
   self->null = count_null(walk, piece, unknowns, &first);
   if (!self->null) { /* it passes within rounding: nearest to zero */
@@ -168,8 +174,7 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *wh
   int32_t before = walk->negative, after = system->spectrum.negative,
           folded = system->spectrum.folded;
   int32_t sense = after > before ? 1 : -1, count = sense * (after - before), i = 0;
-  bool turned = strut_path_turns(walk, walk->tangent, walk->next_tangent), leads_on = false,
-       met = false;
+  bool turned = turns_back(walk), leads_on = false, met = false;
   for (int32_t k = 0; k < system->n; k++) walk->values[k] = system->spectrum.value[k];
   walk->negative = after;
   if (before < 0 || !(piece->length > 0)) return false;

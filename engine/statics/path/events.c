@@ -21,14 +21,6 @@ static const double ALIKE = 20;    /* over an eigenvalue: another one that is ne
 static const double APART =
     1e-4; /* [units of y] between trials about a bifurcation, where the piece has room */
 
-double strut_path_measure_switch(strut_path_system *system, const double *unknowns,
-                                 const strut_path_piece *piece, int32_t which) {
-  bool grip = which >= strut_path_first_grip_switch(system) &&
-              which < strut_path_first_element_switch(system);
-  return grip ? strut_path_measure_grip(system, unknowns, piece, which)
-              : strut_path_switch_value(system, which, unknowns);
-}
-
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *unknowns,
                                      const strut_path_piece *piece, int32_t which) {
   assert(which >= 0 && which < system->n);
@@ -216,8 +208,8 @@ static switch_group collect_switches(strut_path_walk *walk, int32_t which) {
   switch_group g = {0};
   for (int32_t k = 0; k < strut_path_switch_count(system); k++) {
     double here = strut_path_switch_value(system, k, walk->y);
-    if (k >= strut_path_first_corner_switch(system) && k < strut_path_first_element_switch(system))
-      continue; /* they are passed one by one */
+    strut_path_switch_kind kind = strut_path_switch_at(system, k).of;
+    if (kind == STRUT_PATH_FACET || kind == STRUT_PATH_GRIP) continue; /* are passed one by one */
     if (k == which) g.first = g.count;
     if (k != which &&
         !(fabs(here) <= STRUT_PATH_EVEN * system->size && g.count + (k < which) < MOST_TOGETHER))
@@ -323,11 +315,12 @@ static strut_path_event_kind describe_element(const strut_path_system *system, i
 }
 
 bool strut_path_is_bend(const strut_path_system *system, int32_t which) {
-  int32_t k = which - strut_path_first_element_switch(system);
-  if (k < 0 || system->elements.switches[k].kink < 0) return false;
-  const strut_element *element =
-      &system->model->elements.element[system->elements.switches[k].element];
-  int kink = system->elements.switches[k].kink;
+  const strut_path_switch found = strut_path_switch_at(system, which);
+  if (found.of != STRUT_PATH_ELEMENT || system->elements.switches[found.index].kink < 0)
+    return false;
+  const strut_path_element_switch *own = &system->elements.switches[found.index];
+  const strut_element *element = &system->model->elements.element[own->element];
+  int kink = own->kink;
   return element->law == STRUT_LAW_FOLDING && element->numbers.curve->smooth &&
          strut_folding_way(element->numbers.curve, kink) ==
              strut_folding_way(element->numbers.curve, kink + 1);
@@ -337,8 +330,7 @@ static void report_switch(strut_path_walk *walk, int32_t which, int32_t before, 
   const strut_path_system *system = &walk->system;
   if (strut_path_is_bend(system, which)) return;
   const strut_scene *scene = system->model->scene;
-  int32_t members = system->model->members.count,
-          elements = strut_path_first_element_switch(system);
+  const strut_path_switch own = strut_path_switch_at(system, which);
   bool on = strut_path_switch_is_on(system, which);
   const char *stable = !before && after   ? ", unstable from here"
                        : before && !after ? ", stable from here"
@@ -346,21 +338,20 @@ static void report_switch(strut_path_walk *walk, int32_t which, int32_t before, 
   char detail[300], what[240];
   int32_t index = which;
   strut_path_event_kind kind = on ? STRUT_PATH_TAUT : STRUT_PATH_SLACK;
-  if (which >= elements) {
-    int32_t element = system->elements.switches[which - elements].element;
-    kind = describe_element(system, which - elements, on, what, sizeof what);
+  if (own.of == STRUT_PATH_ELEMENT) {
+    int32_t element = system->elements.switches[own.index].element;
+    kind = describe_element(system, own.index, on, what, sizeof what);
     index = kind == STRUT_PATH_TAUT || kind == STRUT_PATH_SLACK
                 ? system->model->elements.element[element].item
                 : element;
-  } else if (which < members) {
+  } else if (own.of == STRUT_PATH_CABLE) {
     snprintf(what, sizeof what, "%s %s", scene->members[which].name,
              on ? "begins to pull" : "goes slack");
   } else {
-    int32_t contact = which - members;
-    index = system->model->contacts.entry[contact].node;
+    index = system->model->contacts.entry[own.index].node;
     kind = on ? STRUT_PATH_TOUCHDOWN : STRUT_PATH_LIFT_OFF;
     snprintf(what, sizeof what, "%s %s %s", scene->nodes[index].name, on ? "touches" : "leaves",
-             strut_path_ground_name(system, contact));
+             strut_path_ground_name(system, own.index));
   }
   snprintf(detail, sizeof detail, "%s%s", what, stable);
   strut_path_add_event(walk, kind, walk->y, index, before, after, detail);

@@ -38,13 +38,13 @@ bool strut_path_guides_create(strut_path_system *system, const strut_path *after
 
 bool strut_path_has_rubbing(const strut_path_system *system) { return system->elements.material; }
 
-/* The cable at q with the numbers of some terms and the materials that the path remembers. */
+/* The cable at the latest place with the numbers of some terms and the materials that the path remembers. */
 static void find_in(const strut_path_system *system, const strut_path_terms *terms, int32_t i,
-                    const double *q, strut_capstan_rest *rest) {
+                    strut_capstan_rest *rest) {
   const strut_element *element = &system->model->elements.element[i];
   size_t bytes = ((size_t)element->nodes - 1) * sizeof(double);
   memcpy(terms->rest + element->slot + 1, system->elements.material + element->slot + 1, bytes);
-  strut_capstan_find_rest(terms->laws, i, terms->rest, q, rest);
+  strut_capstan_find_rest(terms->laws, i, terms->rest, system->latest.q, rest);
 }
 
 /* How its forces on its nodes change with the parameter where these stay. */
@@ -57,16 +57,16 @@ static void find_rate(strut_path_system *system, int32_t i, double *rate) {
   memset(rate, 0, 2 * (size_t)element->nodes * sizeof *rate);
   if (parameter->options->over != STRUT_PATH_OVER_SCENE && by == 0.0) return;
   if (parameter->options->over == STRUT_PATH_OVER_SCENE) {
-    find_in(system, &parameter->low, i, system->latest.q, &low);
-    find_in(system, &parameter->high, i, system->latest.q, &high);
+    find_in(system, &parameter->low, i, &low);
+    find_in(system, &parameter->high, i, &high);
     by = 1.0;
   } else {
     double whole = terms->rest[element->base];
     apart = 2.0 * STEP * system->size;
     terms->rest[element->base] = whole - STEP * system->size;
-    find_in(system, terms, i, system->latest.q, &low);
+    find_in(system, terms, i, &low);
     terms->rest[element->base] = whole + STEP * system->size;
-    find_in(system, terms, i, system->latest.q, &high);
+    find_in(system, terms, i, &high);
     terms->rest[element->base] = whole;
   }
   for (int32_t k = 0; k < 2 * element->nodes; k++)
@@ -79,7 +79,7 @@ void strut_path_add_rubbing(strut_path_system *system, int32_t i) {
   double rate[STRUT_MOST_GRADIENT], h = STEP * system->size;
   int32_t n = 2 * element->nodes;
   strut_capstan_rest here, low, high;
-  find_in(system, &system->equations.terms, i, system->latest.q, &here);
+  find_in(system, &system->equations.terms, i, &here);
   force->pose.force = here.tension[0];
   find_rate(system, i, rate);
   for (int32_t b = 0; b < n; b++) {
@@ -89,9 +89,9 @@ void strut_path_add_rubbing(strut_path_system *system, int32_t i) {
            moved = column < 0 ? system->equations.rates.position[at] : 0.0;
     if (column < 0 && moved == 0.0) continue;
     system->latest.q[at] = q - h;
-    find_in(system, &system->equations.terms, i, system->latest.q, &low);
+    find_in(system, &system->equations.terms, i, &low);
     system->latest.q[at] = q + h;
-    find_in(system, &system->equations.terms, i, system->latest.q, &high);
+    find_in(system, &system->equations.terms, i, &high);
     system->latest.q[at] = q;
     for (int32_t a = 0; a < n; a++) {
       int32_t row = system->potential->row_of[strut_force_coordinate(force, a)];
@@ -111,7 +111,7 @@ void strut_path_add_rubbing(strut_path_system *system, int32_t i) {
 void strut_path_rubbing_reactions(const strut_path_system *system, int32_t i, double *reaction) {
   const strut_force *force = strut_path_element_force(system, i);
   strut_capstan_rest here;
-  find_in(system, &system->equations.terms, i, system->latest.q, &here);
+  find_in(system, &system->equations.terms, i, &here);
   for (int32_t k = 0; k < 2 * force->nodes; k++)
     reaction[strut_force_coordinate(force, k)] -= here.force[k];
 }
@@ -136,7 +136,7 @@ void strut_path_keep_guides(strut_path_walk *walk) {
     const strut_element *element = &system->model->elements.element[i];
     strut_capstan_rest now;
     if (!strut_path_rubs(system, i) || !system->elements.element[i].acts) continue;
-    find_in(system, &system->equations.terms, i, system->latest.q, &now);
+    find_in(system, &system->equations.terms, i, &now);
     for (int32_t k = 0; k + 2 < element->nodes; k++) {
       int *mode = &system->elements.guide_mode[element->slot + 1 + k];
       if (walk->path->point_count == 0) continue; /* nothing has moved yet */

@@ -18,44 +18,31 @@ enum { NAMES = 400 };
 static const double NEARLY = 1e6;
 static const double ALIKE = 1e-12; /* forces of several loads that count as one number */
 
+#define NAME(KIND, text) text,
+
 const char *strut_path_event_name(strut_path_event_kind kind) {
-  static const char *const names[] = {"limit point",
-                                      "bifurcation",
-                                      "slack",
-                                      "taut",
-                                      "touchdown",
-                                      "lift-off",
-                                      "limit point at a kink",
-                                      "bifurcation at a kink",
-                                      "engages",
-                                      "releases",
-                                      "kink of a law",
-                                      "corner",
-                                      "slips",
-                                      "sticks",
-                                      "zero length"};
+  static const char *const names[] = {STRUT_PATH_EVENTS(NAME)};
   return names[kind];
 }
 
 const char *strut_path_end_word(strut_path_end end) {
-  switch (end) {
-    case STRUT_PATH_UNTIL: return "until";
-    case STRUT_PATH_STOP: return "stop";
-    case STRUT_PATH_STEPS: return "steps";
-    case STRUT_PATH_AWAY: return "away";
-    case STRUT_PATH_LOST: return "lost";
-    case STRUT_PATH_INVALID: return "invalid";
-    case STRUT_PATH_JOINED: return "joined";
-  }
-  return "";
+  static const char *const names[] = {STRUT_PATH_ENDS(NAME)};
+  return names[end];
+}
+
+const char *strut_path_at(const strut_path_walk *walk, double value, char text[STRUT_PATH_TEXT]) {
+  const char *unit = walk->path->unit;
+  snprintf(text, STRUT_PATH_TEXT, "%.150s %.6g%s%.20s", strut_path_subject(walk), value,
+           *unit ? " " : "", unit);
+  return text;
 }
 
 void strut_path_remark_steps(strut_path_walk *walk, int32_t steps) {
   const strut_path *path = walk->path;
   if (path->end != STRUT_PATH_STEPS || path->point_count == 0) return;
-  snprintf(walk->path->remark, sizeof path->remark,
-           "%d steps led to %s %.6g%s%s; --steps allows more", (int)steps, strut_path_subject(walk),
-           path->points[path->point_count - 1].at.factor, *path->unit ? " " : "", path->unit);
+  char at[STRUT_PATH_TEXT];
+  snprintf(walk->path->remark, sizeof path->remark, "%d steps led to %s; --steps allows more",
+           (int)steps, strut_path_at(walk, path->points[path->point_count - 1].at.factor, at));
 }
 
 static strut_status no_such_load(const strut_scene *scene, const char *name, strut_error *error) {
@@ -239,7 +226,7 @@ static strut_status descend_to_rest(const path_start *self, const uint8_t *held,
     status = strut_minimiser_create(potential, &minimiser, error);
   if (status == STRUT_OK && potential->n > 0) {
     strut_minimiser_watch(minimiser, self->setup.experiment.interrupt);
-    strut_descent descent = strut_minimise(minimiser, self->q, 0.0);
+    strut_descent descent = strut_minimise(minimiser, self->q);
     if (descent.end == STRUT_DESCENT_RUNAWAY)
       status = strut_fail(error, STRUT_NOT_SETTLED,
                           "%s there is no equilibrium to start from: nothing holds the structure; "

@@ -22,30 +22,33 @@
 /** Free coordinates that a path is followed with at most: its matrices are dense. */
 enum { STRUT_PATH_COORDINATES = 600 };
 
+/** What may happen on a path, with its name. */
+#define STRUT_PATH_EVENTS(X)                                                                       \
+  X(LIMIT, "limit point") /* the parameter turns back */                                           \
+  /* an eigenvalue of the stiffness changes its sign, the parameter goes on */                     \
+  X(BIFURCATION, "bifurcation")                                                                    \
+  X(SLACK, "slack")                                                                                \
+  X(TAUT, "taut")                                                                                  \
+  X(TOUCHDOWN, "touchdown")                                                                        \
+  X(LIFT_OFF, "lift-off")                                                                          \
+  /* the parameter turns back at a kink: no eigenvalue passes zero */                              \
+  X(KINK_LIMIT, "limit point at a kink")                                                           \
+  /* the parameter continues, but the number of negative eigenvalues jumps */                      \
+  X(KINK_BIFURCATION, "bifurcation at a kink")                                                     \
+  X(ENGAGE, "engages") /* a stop is reached, or another element of one sign begins to act */       \
+  X(RELEASE, "releases")                                                                           \
+  X(LAW, "kink of a law")                                                                          \
+  X(CORNER, "corner") /* a node passes a corner of a profile, where the force on it turns */       \
+  X(SLIP, "slips")                                                                                 \
+  X(STICK, "sticks")                                                                               \
+  X(ZERO_LENGTH, "zero length") /* a member shrinks to nothing, and its force turns round */
+
 typedef enum strut_path_event_kind {
-  STRUT_PATH_LIMIT,            /* the parameter turns back */
-  STRUT_PATH_BIFURCATION,      /* an eigenvalue of the stiffness changes its sign, the parameter
-                                  goes on */
-  STRUT_PATH_SLACK,            /* a cable ceases to pull */
-  STRUT_PATH_TAUT,             /* a cable begins to pull */
-  STRUT_PATH_TOUCHDOWN,        /* a node meets the ground */
-  STRUT_PATH_LIFT_OFF,         /* a node leaves it */
-  STRUT_PATH_KINK_LIMIT,       /* the parameter turns back at a kink: no eigenvalue passes zero */
-  STRUT_PATH_KINK_BIFURCATION, /* the parameter continues, but the number of negative eigenvalues
-                                  jumps */
-  STRUT_PATH_ENGAGE,           /* a stop is reached, or another element of one sign begins to act */
-  STRUT_PATH_RELEASE,          /* it ceases to act */
-  STRUT_PATH_LAW,              /* a law passes a kink */
-  STRUT_PATH_CORNER,     /* a node passes a corner of a profile, where the force on it turns */
-  STRUT_PATH_SLIP,       /* a contact begins to slide */
-  STRUT_PATH_STICK,      /* it sticks again */
-  STRUT_PATH_ZERO_LENGTH /* a member shrinks to nothing, and its force turns round */
+#define STRUT_PATH_EVENT(NAME, text) STRUT_PATH_##NAME,
+  STRUT_PATH_EVENTS(STRUT_PATH_EVENT)
+#undef STRUT_PATH_EVENT
 } strut_path_event_kind;
 
-/**
- * "limit point", "bifurcation", "slack", "taut", "touchdown", "lift-off", "limit point at a kink",
- * "bifurcation at a kink", "engages", "releases", "kink of a law", "corner", "slips", "sticks", "zero length".
- */
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
 
 /** What a path is at one of its points or events. */
@@ -79,17 +82,22 @@ typedef struct strut_path_event {
   const char *detail;    /* in words */
 } strut_path_event;
 
+/** Why a path ends, with the word for it in files. */
+#define STRUT_PATH_ENDS(X)                                                                         \
+  X(UNTIL, "until")                                                                                \
+  X(STOP, "stop")                                                                                  \
+  X(STEPS, "steps")     /* the maximum number of steps */                                          \
+  X(AWAY, "away")       /* a node left all bounds, or the parameter went ten ranges back */        \
+  X(LOST, "lost")       /* no equilibrium nearby; the remark says where */                         \
+  X(INVALID, "invalid") /* the scene is invalid beyond this value; the remark says why */          \
+  X(JOINED, "joined")   /* of a branch: at a bifurcation found before; the remark says where */
+
 typedef enum strut_path_end {
-  STRUT_PATH_UNTIL,   /* the value asked for */
-  STRUT_PATH_STOP,    /* the displacement asked for */
-  STRUT_PATH_STEPS,   /* the maximum number of steps */
-  STRUT_PATH_AWAY,    /* a node left all bounds, or the parameter went ten ranges the other way */
-  STRUT_PATH_LOST,    /* no equilibrium nearby; the remark says where */
-  STRUT_PATH_INVALID, /* the scene is invalid beyond this value; the remark says why */
-  STRUT_PATH_JOINED   /* of a branch: at a bifurcation found before; the remark says where */
+#define STRUT_PATH_END(NAME, text) STRUT_PATH_##NAME,
+  STRUT_PATH_ENDS(STRUT_PATH_END)
+#undef STRUT_PATH_END
 } strut_path_end;
 
-/** The word for it in files: "until", "stop", "steps", "away", "lost", "invalid", "joined". */
 STRUT_API const char *strut_path_end_word(strut_path_end end);
 
 /** Branches that are followed from one path at most, those of its branches included. */

@@ -169,29 +169,20 @@ const char *strut_path_ground_name(const struct strut_path_system *system, int32
 /** As strut_path_switch_value: of touching, and of staying on its facet. */
 double strut_path_contact_switch_value(const struct strut_path_system *system, int32_t contact);
 double strut_path_corner_value(const struct strut_path_system *system, int32_t contact);
-double strut_path_grip_switch_value(const struct strut_path_system *system, int32_t contact);
 void strut_path_contact_switch_set(struct strut_path_system *system, int32_t contact, bool on);
 
-/* Friction of contacts in the equations of a path. For contacts.c; only where the path keeps friction. */
+/* Friction of contacts; only where the path keeps it. */
 
 /** Finds which contacts have static friction; false: none. */
 bool strut_path_friction_create(struct strut_path_system *system);
 /** All that touch stick, with the forces that equilibrium needs; after strut_path_evaluate. */
 void strut_path_friction_begin(struct strut_path_system *system);
-/** A contact that has just touched sticks. */
-void strut_path_friction_touch(struct strut_path_system *system, int32_t contact);
-/** Force on the node along the tangent for some terms and gap [N]; 0 where there is no friction. */
-double strut_path_friction_force(const struct strut_path_system *system,
-                                 const strut_path_terms *terms, int32_t contact, double gap);
-/** Adds the stiffness; where the contact slides it has no symmetry. */
-void strut_path_friction_block(const struct strut_path_system *system, int32_t contact,
-                               double block[4]);
 /** Does some contact slide? */
 bool strut_path_slides(const struct strut_path_system *system);
 /** Is the kinetic coefficient of a contact another than the static one? */
 bool strut_path_friction_drops(const struct strut_path_system *system, int32_t contact);
-/** As strut_path_switch_value, of a contact that sticks, with the gap there; of another one -INFINITY. */
-double strut_path_grip_value(const struct strut_path_system *system, int32_t contact, double gap);
+/** As strut_path_switch_value, of a contact that sticks; of another one -INFINITY. */
+double strut_path_grip_value(const struct strut_path_system *system, int32_t contact);
 void strut_path_grip_set(struct strut_path_system *system, int32_t contact, bool on);
 
 /* The equations of a path: equilibrium for a parameter, with what is taut and touching held fixed.
@@ -318,14 +309,23 @@ typedef enum strut_path_spectrum_detail {
 bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
                          strut_path_spectrum_detail wanted);
 
-/** Cables first, then contacts, corners of their surfaces, and their grips, then elements: what may change along
-    the path. */
+/** What may change along the path; switches are numbered in this order. */
+typedef enum strut_path_switch_kind {
+  STRUT_PATH_CABLE, /* of members: also whether a spring or a bar has turned round */
+  STRUT_PATH_TOUCH,
+  STRUT_PATH_FACET, /* does a contact stay on its facet? None without corners */
+  STRUT_PATH_GRIP,  /* none without friction */
+  STRUT_PATH_ELEMENT
+} strut_path_switch_kind;
+
+/** A switch of a kind: of a member, a contact, or one of elements.switches. */
+typedef struct strut_path_switch {
+  strut_path_switch_kind of;
+  int32_t index;
+} strut_path_switch;
+
 int32_t strut_path_switch_count(const strut_path_system *system);
-/** Index of the first switch of corners, and of grips; there are none where this is the next one's. */
-int32_t strut_path_first_corner_switch(const strut_path_system *system);
-int32_t strut_path_first_grip_switch(const strut_path_system *system);
-/** Index of the first switch of elements. */
-int32_t strut_path_first_element_switch(const strut_path_system *system);
+strut_path_switch strut_path_switch_at(const strut_path_system *system, int32_t which);
 /**
  * Above 0 where it ought to be on (pulls, touches) [m], NAN where no scene has this value;
  * -INFINITY for what never changes: members that are no cables, kinks where an element does not act.
@@ -348,12 +348,9 @@ typedef struct strut_path_piece {
 typedef double (*strut_path_measure)(strut_path_system *system, const double *y,
                                      const strut_path_piece *piece, int32_t which);
 
-/** The value of a switch, strut_path_switch_value. */
+/** The value of a switch, strut_path_switch_value; of a contact that slides, how fast the path leads it back. */
 double strut_path_measure_switch(strut_path_system *system, const double *unknowns,
                                  const strut_path_piece *piece, int32_t which);
-/** The same of the grip of a contact; where it slides, how fast the path leads it back. */
-double strut_path_measure_grip(strut_path_system *system, const double *unknowns,
-                               const strut_path_piece *piece, int32_t which);
 /** An eigenvalue of the stiffness, counted from the lowest. */
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *unknowns,
                                      const strut_path_piece *piece, int32_t which);
@@ -486,7 +483,7 @@ void strut_path_walk_branches(strut_path_walk *walk, strut_path *path,
 bool strut_path_pass_kink(strut_path_walk *walk, int32_t which, const double *beyond);
 
 /** The same where a node leaves its facet over a corner, along which the parameter changes at once. */
-bool strut_path_pass_corner(strut_path_walk *walk, int32_t which);
+bool strut_path_pass_corner(strut_path_walk *walk, int32_t contact);
 /** The same where a member shrinks to nothing, so that its force turns round. */
 bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member);
 /** Is this switch that of such a member? */
@@ -498,12 +495,6 @@ void strut_path_forget_directions(strut_path_system *system);
 bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond);
 /** At a point that is kept: materials are renewed, and guides that began to slip or stick since the last one reported. */
 void strut_path_keep_guides(strut_path_walk *walk);
-/** Adds the derivative by coordinate `at` [1] to a row (n + 1) over the unknowns. */
-void strut_path_add_to_row(const strut_path_system *system, uint32_t at, double entry, double *row);
-/** Rate of coordinate `at` along a tangent (n + 1), in units of y. */
-double strut_path_rate_of(const strut_path_system *system, uint32_t at, const double *tangent);
-/** Corrects walk->y, with row . y as it is; false: it does not converge. A row of zeros changes nothing. */
-bool strut_path_jump(strut_path_walk *walk, const double *row);
 /** Reports a parameter that turns back at walk->y, or a change of stability if it continues. */
 void strut_path_report_exchange(strut_path_walk *walk, double turn, int32_t before);
 
@@ -515,18 +506,15 @@ void strut_path_count_negative(strut_path_walk *walk);
 
 /** Name of the path's parameter, as the subject of a sentence. */
 const char *strut_path_subject(const strut_path_walk *walk);
+/** The parameter at a value, "the factor 1.5"; returns the text. */
+enum { STRUT_PATH_TEXT = 200 };
+const char *strut_path_at(const strut_path_walk *walk, double value, char text[STRUT_PATH_TEXT]);
 /**
  * "can grow no further" where the parameter turns that went on by `turn` [ranges], or "grows again
  * from".
  */
 const char *strut_path_turn(const strut_path_walk *walk, double turn);
 
-/** Does the parameter turn back between two tangents? No sign of a rate below rounding counts. */
-static inline bool strut_path_turns(const strut_path_walk *walk, const double *before,
-                                    const double *after) {
-  double a = before[walk->system.n], b = after[walk->system.n], level = 1e-9;
-  return (a > level && b < -level) || (a < -level && b > level);
-}
 /** a . b over the first n + 1 numbers. */
 double strut_path_dot(const strut_path_walk *walk, const double *first, const double *second);
 /** Distance of two points of the path in y. */

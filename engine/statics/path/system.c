@@ -414,22 +414,31 @@ bool strut_path_tangent(strut_path_system *system, const double *unknowns, const
   return true;
 }
 
-int32_t strut_path_first_corner_switch(const strut_path_system *system) {
-  return system->model->members.count + system->model->contacts.count;
-}
+enum { SWITCH_KINDS = STRUT_PATH_ELEMENT + 1 };
 
-int32_t strut_path_first_grip_switch(const strut_path_system *system) {
-  int32_t corners = system->contacts.has_corners ? system->model->contacts.count : 0;
-  return strut_path_first_corner_switch(system) + corners;
-}
-
-int32_t strut_path_first_element_switch(const strut_path_system *system) {
-  int32_t grips = system->contacts.grip > 0.0 ? system->model->contacts.count : 0;
-  return strut_path_first_grip_switch(system) + grips;
+static int32_t count_switches(const strut_path_system *system, strut_path_switch_kind kind) {
+  const int32_t contacts = system->model->contacts.count;
+  const int32_t count[SWITCH_KINDS] = {
+      [STRUT_PATH_CABLE] = system->model->members.count,
+      [STRUT_PATH_TOUCH] = contacts,
+      [STRUT_PATH_FACET] = system->contacts.has_corners ? contacts : 0,
+      [STRUT_PATH_GRIP] = system->contacts.grip > 0.0 ? contacts : 0,
+      [STRUT_PATH_ELEMENT] = system->elements.switch_count};
+  return count[kind];
 }
 
 int32_t strut_path_switch_count(const strut_path_system *system) {
-  return strut_path_first_element_switch(system) + system->elements.switch_count;
+  int32_t sum = 0;
+  for (int kind = 0; kind < SWITCH_KINDS; kind++) sum += count_switches(system, kind);
+  return sum;
+}
+
+strut_path_switch strut_path_switch_at(const strut_path_system *system, int32_t which) {
+  strut_path_switch found = {STRUT_PATH_CABLE, which};
+  assert(which >= 0 && which < strut_path_switch_count(system));
+  for (int32_t count; found.index >= (count = count_switches(system, found.of)); found.of++)
+    found.index -= count;
+  return found;
 }
 
 /* Plain cables alone: a running one and one with another law is an element. */
@@ -459,47 +468,44 @@ void strut_path_forget_directions(strut_path_system *system) {
 }
 
 double strut_path_switch_value(strut_path_system *system, int32_t which, const double *unknowns) {
-  int32_t members = system->model->members.count,
-          elements = strut_path_first_element_switch(system);
-  int32_t corners = strut_path_first_corner_switch(system),
-          grips = strut_path_first_grip_switch(system);
-  strut_force member;
-  bool turns = strut_path_turns_round(system, which);
-  if (which < members && !turns && !is_plain_cable(system->model, which)) return -HUGE_VAL;
+  const strut_path_switch own = strut_path_switch_at(system, which);
+  bool member = own.of == STRUT_PATH_CABLE, turns = strut_path_turns_round(system, which);
+  strut_force force;
+  if (member && !turns && !is_plain_cable(system->model, which)) return -HUGE_VAL;
   if (!place(system, unknowns)) return (double)NAN;
-  if (turns) return measure_ahead(system, which);
-  if (which >= elements) return strut_path_element_switch_value(system, which - elements);
-  if (which >= grips) return strut_path_grip_switch_value(system, which - grips);
-  if (which >= corners) return strut_path_corner_value(system, which - corners);
-  return which < members ? measure_member(system, which, &member)
-                         : strut_path_contact_switch_value(system, which - members);
+  switch (own.of) {
+    case STRUT_PATH_CABLE:
+      return turns ? measure_ahead(system, which) : measure_member(system, which, &force);
+    case STRUT_PATH_TOUCH: return strut_path_contact_switch_value(system, own.index);
+    case STRUT_PATH_FACET: return strut_path_corner_value(system, own.index);
+    case STRUT_PATH_GRIP: return strut_path_grip_value(system, own.index);
+    case STRUT_PATH_ELEMENT: return strut_path_element_switch_value(system, own.index);
+  }
+  return (double)NAN;
 }
 
 bool strut_path_switch_is_on(const strut_path_system *system, int32_t which) {
-  int32_t members = system->model->members.count,
-          elements = strut_path_first_element_switch(system);
-  if (which >= elements) return strut_path_element_switch_is_on(system, which - elements);
-  int32_t grips = strut_path_first_grip_switch(system);
-  if (which >= grips) return system->contacts.contact[which - grips].sticks;
-  if (which >= strut_path_first_corner_switch(system))
-    return true; /* it changes its facet instead */
-  if (which < members && !is_plain_cable(system->model, which))
-    return true; /* it is turned round */
-  return which < members ? system->latest.pulling[which]
-                         : system->contacts.contact[which - members].touches;
+  const strut_path_switch own = strut_path_switch_at(system, which);
+  switch (own.of) {
+    case STRUT_PATH_CABLE: /* others are turned round */
+      return !is_plain_cable(system->model, which) || system->latest.pulling[which];
+    case STRUT_PATH_TOUCH: return system->contacts.contact[own.index].touches;
+    case STRUT_PATH_FACET: return true; /* it changes its facet instead */
+    case STRUT_PATH_GRIP: return system->contacts.contact[own.index].sticks;
+    case STRUT_PATH_ELEMENT: return strut_path_element_switch_is_on(system, own.index);
+  }
+  return false;
 }
 
 void strut_path_switch_set(strut_path_system *system, int32_t which, bool on) {
-  assert(which >= 0 && which < strut_path_switch_count(system));
-  int32_t members = system->model->members.count, corners = strut_path_first_corner_switch(system);
-  int32_t elements = strut_path_first_element_switch(system),
-          grips = strut_path_first_grip_switch(system);
-  if (which >= elements)
-    strut_path_element_switch_set(system, which - elements, on);
-  else if (which >= grips)
-    strut_path_grip_set(system, which - grips, on);
-  else if (which < members)
-    system->latest.pulling[which] = on || !is_plain_cable(system->model, which);
-  else if (which < corners)
-    strut_path_contact_switch_set(system, which - members, on);
+  const strut_path_switch own = strut_path_switch_at(system, which);
+  switch (own.of) {
+    case STRUT_PATH_CABLE:
+      system->latest.pulling[which] = on || !is_plain_cable(system->model, which);
+      break;
+    case STRUT_PATH_TOUCH: strut_path_contact_switch_set(system, own.index, on); break;
+    case STRUT_PATH_FACET: break;
+    case STRUT_PATH_GRIP: strut_path_grip_set(system, own.index, on); break;
+    case STRUT_PATH_ELEMENT: strut_path_element_switch_set(system, own.index, on); break;
+  }
 }

@@ -14,20 +14,6 @@ double strut_path_distance(const strut_path_walk *walk, const double *first, con
   return sqrt(sum);
 }
 
-/* Memory for one more of `size` bytes at *items. */
-static bool reserve_items(strut_path_walk *walk, void **items, size_t count, size_t *room,
-                          size_t size) {
-  if (count < *room) return true;
-  size_t more = *room ? 2 * *room : 64;
-  void *block = *items ? strut_reallocate(*items, more, size) : strut_allocate(more, size);
-  if (!block) {
-    walk->failed = true;
-    return false;
-  }
-  *items = block, *room = more;
-  return true;
-}
-
 static double *new_values(strut_path_walk *walk, size_t count) {
   double *values = strut_arena_allocate(&walk->path->arena, count, sizeof *values);
   if (!values) walk->failed = true;
@@ -70,21 +56,18 @@ static strut_path_state keep_state(strut_path_walk *walk, const double *unknowns
 void strut_path_add_point(strut_path_walk *walk, int32_t negative) {
   strut_path *path = walk->path;
   strut_path_keep_guides(walk);
-  void *items = path->points;
   strut_path_point point = {keep_state(walk, walk->y, walk->arc), negative};
-  if (walk->failed ||
-      !reserve_items(walk, &items, path->point_count, &walk->point_room, sizeof *path->points))
-    return;
+  walk->failed = walk->failed || !strut_grow(&path->points, &walk->point_room, path->point_count,
+                                             sizeof *path->points);
+  if (walk->failed) return;
   strut_path_keep_turns(&walk->system);
   strut_path_keep_directions(&walk->system);
-  path->points = items;
   path->points[path->point_count++] = point;
 }
 
 void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *unknowns,
                           int32_t index, int32_t before, int32_t after, const char *detail) {
   strut_path *path = walk->path;
-  void *items = path->events;
   detail = strut_arena_text(&path->arena, detail, strlen(detail));
   if (!detail) walk->failed = true;
   if (walk->failed) return;
@@ -95,10 +78,9 @@ void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, con
       before,
       after,
       detail};
-  if (walk->failed ||
-      !reserve_items(walk, &items, path->event_count, &walk->event_room, sizeof *path->events))
-    return;
-  path->events = items;
+  walk->failed = walk->failed || !strut_grow(&path->events, &walk->event_room, path->event_count,
+                                             sizeof *path->events);
+  if (walk->failed) return;
   size_t at = path->event_count++; /* in the order of the path */
   for (; at > 0 && path->events[at - 1].at.arc > event.at.arc; at--)
     path->events[at] = path->events[at - 1];
@@ -254,32 +236,28 @@ static bool end_path(strut_path_walk *walk, strut_path_end end) {
   if (end == STRUT_PATH_LOST) name_vanished(walk, cause, sizeof cause);
   const strut_path_parameter *parameter = &walk->system.parameter;
   size_t room = sizeof walk->path->remark;
-  double value = strut_path_value(&walk->system, walk->y);
-  const char *unit = walk->path->unit, *gap = *unit ? " " : "";
+  char at[STRUT_PATH_TEXT];
+  const char *unit = walk->path->unit;
+  strut_path_at(walk, strut_path_value(&walk->system, walk->y), at);
   walk->path->end = end;
   if (end == STRUT_PATH_LOST)
     snprintf(walk->path->remark, room,
-             "the path ends at %s %.6g%s%s: no equilibrium was found nearby beyond it%s",
-             strut_path_subject(walk), value, gap, unit, cause);
+             "the path ends at %s: no equilibrium was found nearby beyond it%s", at, cause);
   if (end == STRUT_PATH_AWAY)
     snprintf(walk->path->remark, room,
-             "followed to %s %.6g%s%s: beyond, the structure moves away without end",
-             strut_path_subject(walk), value, gap, unit);
+             "followed to %s: beyond, the structure moves away without end", at);
   if (end == STRUT_PATH_INVALID)
-    snprintf(walk->path->remark, room, "the path ends at %s %.6g%s%s: beyond, at %.6g%s%s, %s",
-             strut_path_subject(walk), value, gap, unit, parameter->refused_at, gap, unit,
-             parameter->refusal.message);
+    snprintf(walk->path->remark, room, "the path ends at %s: beyond, at %.6g%s%s, %s", at,
+             parameter->refused_at, *unit ? " " : "", unit, parameter->refusal.message);
   return false;
 }
 
 static bool pass_switch(strut_path_walk *walk, int32_t which, const double *beyond) {
-  const strut_path_system *system = &walk->system;
-  if (strut_path_turns_round(system, which)) return strut_path_pass_zero_length(walk, which);
-  if (which < strut_path_first_corner_switch(system) ||
-      which >= strut_path_first_element_switch(system))
-    return strut_path_pass_kink(walk, which, beyond);
-  return which < strut_path_first_grip_switch(system) ? strut_path_pass_corner(walk, which)
-                                                      : strut_path_pass_grip(walk, which, beyond);
+  const strut_path_switch own = strut_path_switch_at(&walk->system, which);
+  if (strut_path_turns_round(&walk->system, which)) return strut_path_pass_zero_length(walk, which);
+  if (own.of == STRUT_PATH_FACET) return strut_path_pass_corner(walk, own.index);
+  return own.of == STRUT_PATH_GRIP ? strut_path_pass_grip(walk, which, beyond)
+                                   : strut_path_pass_kink(walk, which, beyond);
 }
 
 /* From w->fork, where the path ends, along another one. */
@@ -302,6 +280,19 @@ static bool go_on_along(strut_path_walk *walk, const strut_path_ray *way) {
   return !landed && !walk->failed;
 }
 
+/* To the next point. */
+static void advance(strut_path_walk *walk) {
+  walk->arc += strut_path_distance(walk, walk->next, walk->y);
+  memcpy(walk->y, walk->next, strut_path_bytes(walk));
+  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
+}
+
+/* How far the next point is along the tangent. */
+static double length_ahead(const strut_path_walk *walk) {
+  return strut_path_dot(walk, walk->tangent, walk->next) -
+         strut_path_dot(walk, walk->tangent, walk->y);
+}
+
 /* Ends the piece where a switch is thrown and continues from there. */
 static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_t which,
                           double *beyond) {
@@ -311,9 +302,7 @@ static bool end_at_switch(strut_path_walk *walk, strut_path_piece *piece, int32_
     memcpy(walk->next_tangent, walk->tangent, strut_path_bytes(walk));
   strut_path_ray way;
   if (strut_path_find_criticals(walk, piece, &way)) return go_on_along(walk, &way);
-  walk->arc += strut_path_distance(walk, walk->next, walk->y);
-  memcpy(walk->y, walk->next, strut_path_bytes(walk));
-  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
+  advance(walk);
   int32_t negative = walk->negative;
   bool on = pass_switch(walk, which, beyond);
   double since = walk->arc - walk->path->points[walk->path->point_count - 1].at.arc;
@@ -333,12 +322,9 @@ static bool take_step(strut_path_walk *walk) {
   double place;
   do {
     if (!strut_path_find_next(walk)) return end_path(walk, find_reason(walk));
-    piece.length = strut_path_dot(walk, walk->tangent, walk->next) -
-                   strut_path_dot(walk, walk->tangent, walk->y);
+    piece.length = length_ahead(walk);
     landed = land_on_end(walk), stopped = land_on_stop(walk, &piece);
-    if (landed || stopped)
-      piece.length = strut_path_dot(walk, walk->tangent, walk->next) -
-                     strut_path_dot(walk, walk->tangent, walk->y);
+    if (landed || stopped) piece.length = length_ahead(walk);
     place = first_switch(walk, &piece, &which, &strayed);
     strayed = strayed && walk->step > SHORTEST_CHECKED;
     if (strayed) walk->step *= 0.25;
@@ -354,9 +340,7 @@ static bool take_step(strut_path_walk *walk) {
   walk->bends = 0;
   strut_path_ray way;
   if (strut_path_find_criticals(walk, &piece, &way)) return go_on_along(walk, &way);
-  walk->arc += strut_path_distance(walk, walk->next, walk->y);
-  memcpy(walk->y, walk->next, strut_path_bytes(walk));
-  memcpy(walk->tangent, walk->next_tangent, strut_path_bytes(walk));
+  advance(walk);
   strut_path_add_point(walk, walk->negative);
   if (walk->failed) return false;
   if (landed || stopped) {
@@ -398,9 +382,8 @@ static void sharpen_start(strut_path_walk *walk) {
 
 /* A contact that slides at once with another coefficient does so in a first step, which jumps. */
 static bool is_about_to_drop(const strut_path_system *system, int32_t which) {
-  int32_t grip = which - strut_path_first_grip_switch(system);
-  return grip >= 0 && which < strut_path_first_element_switch(system) &&
-         strut_path_friction_drops(system, grip);
+  const strut_path_switch own = strut_path_switch_at(system, which);
+  return own.of == STRUT_PATH_GRIP && strut_path_friction_drops(system, own.index);
 }
 
 bool strut_path_walk_begin(strut_path_walk *walk) {

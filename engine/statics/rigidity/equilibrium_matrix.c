@@ -112,21 +112,20 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
                                        .size = model->size > 0 ? model->size : 1.0};
   matrix->coordinate = strut_arena_allocate(arena, length, sizeof *matrix->coordinate);
   matrix->row_of = strut_arena_allocate(arena, length, sizeof *matrix->row_of);
-  matrix->length = strut_arena_allocate(arena, columns + 1, sizeof *matrix->length);
-  matrix->scale = strut_arena_allocate(arena, columns + 1, sizeof *matrix->scale);
   matrix->direction = strut_arena_allocate(arena, columns + 1, sizeof *matrix->direction);
   matrix->start = strut_arena_allocate(arena, columns + 1, sizeof *matrix->start);
   matrix->curved = strut_arena_allocate(arena, columns + 1, sizeof *matrix->curved);
-  matrix->curvature = strut_arena_allocate(arena, columns + 1, sizeof *matrix->curvature);
   matrix->bend = strut_arena_allocate(arena, columns + 1, sizeof *matrix->bend);
   size_t most = ENTRIES * members + 1;
   for (int32_t i = 0; i < model->elements.count; i++)
     most += 2 * (size_t)model->elements.element[i].nodes;
   matrix->row = strut_arena_allocate(arena, most, sizeof *matrix->row);
-  matrix->value = strut_arena_allocate(arena, most, sizeof *matrix->value);
-  if (!matrix->coordinate || !matrix->row_of || !matrix->length || !matrix->scale ||
-      !matrix->direction || !matrix->start || !matrix->row || !matrix->value || !matrix->curved ||
-      !matrix->curvature || !matrix->bend)
+  if (!matrix->coordinate || !matrix->row_of || !matrix->direction || !matrix->start ||
+      !matrix->row || !matrix->curved || !matrix->bend ||
+      !strut_arena_numbers(arena, most, (double **[]){&matrix->value, NULL}) ||
+      !strut_arena_numbers(
+          arena, columns + 1,
+          (double **[]){&matrix->length, &matrix->scale, &matrix->curvature, NULL}))
     return STRUT_NO_MEMORY;
   matrix->rows = strut_number_free(model, NULL, matrix->row_of, matrix->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
@@ -267,11 +266,9 @@ static bool allocate_tall(const strut_equilibrium_matrix *matrix, strut_arena *a
   self->turned = matrix->columns > matrix->rows;
   self->rows = (size_t)(self->turned ? matrix->columns : matrix->rows);
   self->columns = (size_t)(self->turned ? matrix->rows : matrix->columns);
-  self->u = strut_arena_allocate(arena, self->rows * self->columns + 1, sizeof(double));
-  self->v = strut_arena_allocate(arena, self->columns * self->columns + 1, sizeof(double));
-  self->s = strut_arena_allocate(arena, self->columns + 1, sizeof(double));
-  self->work = strut_arena_allocate(arena, self->columns + 1, sizeof(double));
-  return self->u && self->v && self->s && self->work;
+  return strut_arena_numbers(arena, self->rows * self->columns, (double **[]){&self->u, NULL}) &&
+         strut_arena_numbers(arena, self->columns * self->columns, (double **[]){&self->v, NULL}) &&
+         strut_arena_numbers(arena, self->columns, (double **[]){&self->s, &self->work, NULL});
 }
 
 static void fill_tall(const strut_equilibrium_matrix *matrix, tall *self) {
@@ -381,39 +378,20 @@ strut_status strut_null_spaces_dense(const strut_equilibrium_matrix *matrix, str
   return status;
 }
 
-static bool few(int32_t count, int32_t length) {
-  return count > 0 && count <= MOST_VECTORS && (int64_t)count * length <= MOST_NUMBERS;
-}
-
 strut_status strut_null_spaces_sparse(const strut_equilibrium_matrix *matrix, strut_arena *arena,
                                       strut_null_spaces *spaces, strut_error *error) {
   *spaces = (strut_null_spaces){.dropped = (double)NAN};
   if (matrix->rows == 0 || matrix->columns == 0) return trivial(matrix, arena, spaces, error);
-  strut_sparse_qr *qr = NULL;
   const strut_sparse_algebra_library *sparse = NULL;
+  const strut_sparse_columns columns = {matrix->rows, matrix->columns, matrix->start, matrix->row,
+                                        matrix->value};
+  strut_sparse_null_spaces found = {.most_vectors = MOST_VECTORS, .most_numbers = MOST_NUMBERS};
   strut_status status = strut_sparse_algebra_load(&sparse, error);
-  if (status != STRUT_OK) return status;
-  status = sparse->create_qr(&(strut_sparse_columns){matrix->rows, matrix->columns, matrix->start,
-                                                     matrix->row, matrix->value},
-                             STRUT_RANK_TOLERANCE * sqrt(2.0), &qr, error);
-  if (status != STRUT_OK) return status;
-  size_t rows = (size_t)matrix->rows, columns = (size_t)matrix->columns;
-  spaces->rank = sparse->rank(qr);
-  sparse->diagonal(qr, &spaces->kept, &spaces->largest);
-  spaces->states = matrix->columns - spaces->rank, spaces->motions = matrix->rows - spaces->rank;
-  if (few(spaces->states, matrix->columns)) {
-    spaces->state = strut_arena_allocate(arena, (size_t)spaces->states * columns, sizeof(double));
-    if (!spaces->state) status = strut_no_memory(error, "");
-  }
-  if (few(spaces->motions, matrix->rows)) {
-    spaces->motion = strut_arena_allocate(arena, (size_t)spaces->motions * rows, sizeof(double));
-    if (!spaces->motion) status = strut_no_memory(error, "");
-  }
-  for (int32_t i = 0; i < spaces->states && spaces->state; i++)
-    sparse->null(qr, i, spaces->state + (size_t)i * columns);
-  for (int32_t i = 0; i < spaces->motions && spaces->motion; i++)
-    sparse->left_null(qr, i, spaces->motion + (size_t)i * rows);
-  sparse->free_qr(qr);
+  if (status == STRUT_OK)
+    status = sparse->null_spaces(&columns, STRUT_RANK_TOLERANCE * sqrt(2.0), arena, &found, error);
+  spaces->rank = found.rank, spaces->kept = found.smallest, spaces->largest = found.largest;
+  spaces->states = matrix->columns - found.rank, spaces->motions = matrix->rows - found.rank;
+  spaces->state = found.null, spaces->motion = found.left;
   return status;
 }
 

@@ -39,18 +39,12 @@ static bool allocate_walk(walker *self, const double *positions, strut_arena *ar
   size_t length = (size_t)self->model->length;
   size_t members = (size_t)strut_equilibrium_columns(self->model);
   self->start = positions;
-  self->q = strut_arena_allocate(arena, length, sizeof(double));
-  self->before = strut_arena_allocate(arena, length, sizeof(double));
-  self->motion = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
-  self->step = strut_arena_allocate(arena, (size_t)rows + 1, sizeof(double));
-  self->length = strut_arena_allocate(arena, members + 1, sizeof(double));
-  self->strain = strut_arena_allocate(arena, members + 1, sizeof(double));
-  self->gram = strut_arena_allocate(arena, members * members + 1, sizeof(double));
-  if (!self->q || !self->before || !self->motion || !self->step || !self->length || !self->strain ||
-      !self->gram)
-    return false;
-  memcpy(self->q, positions, length * sizeof *positions);
-  return true;
+  self->q = strut_arena_copy(arena, positions, length, sizeof *positions);
+  return self->q && strut_arena_numbers(arena, length, (double **[]){&self->before, NULL}) &&
+         strut_arena_numbers(arena, (size_t)rows,
+                             (double **[]){&self->motion, &self->step, NULL}) &&
+         strut_arena_numbers(arena, members, (double **[]){&self->length, &self->strain, NULL}) &&
+         strut_arena_numbers(arena, members * members, (double **[]){&self->gram, NULL});
 }
 
 static bool build_matrix(walker *self) {
@@ -259,9 +253,9 @@ static bool rotate(sorter *self, double *form) {
 static bool compare_states(sorter *self) {
   size_t square = self->n * self->n, count = (size_t)self->states->count;
   if (!self->states->force || count > MOST_STATES || self->n > MOST_MOTIONS) return true;
-  self->forms = strut_arena_allocate(&self->scratch, count * square + 1, sizeof *self->forms);
-  self->scale = strut_arena_allocate(&self->scratch, count + 1, sizeof *self->scale);
-  if (!self->forms || !self->scale) return false;
+  if (!strut_arena_numbers(&self->scratch, count * square, (double **[]){&self->forms, NULL}) ||
+      !strut_arena_numbers(&self->scratch, count, (double **[]){&self->scale, NULL}))
+    return false;
   for (size_t i = 0; i < count; i++)
     self->scale[i] =
         form_of(self, self->states->force + i * self->members, self->forms + i * square);
@@ -428,14 +422,14 @@ static strut_status only_count(sorter *self, strut_mechanisms *mechanisms) {
 }
 
 static bool allocate_sorter(sorter *self, size_t count) {
-  size_t square = count * count + 1, room = (count + 3) * self->rows + 1;
-  self->motion = strut_arena_allocate(self->arena, room, sizeof(double));
-  self->turned = strut_arena_allocate(&self->scratch, room, sizeof(double));
-  self->density = strut_arena_allocate(&self->scratch, self->members + 1, sizeof(double));
-  self->form = strut_arena_allocate(&self->scratch, square, sizeof(double));
-  self->value = strut_arena_allocate(&self->scratch, count + 1, sizeof(double));
-  self->vector = strut_arena_allocate(&self->scratch, square, sizeof(double));
-  return self->motion && self->turned && self->density && self->form && self->value && self->vector;
+  size_t room = (count + 3) * self->rows;
+  strut_arena *scratch = &self->scratch;
+  return strut_arena_numbers(self->arena, room, (double **[]){&self->motion, NULL}) &&
+         strut_arena_numbers(scratch, room, (double **[]){&self->turned, NULL}) &&
+         strut_arena_numbers(scratch, self->members, (double **[]){&self->density, NULL}) &&
+         strut_arena_numbers(scratch, count, (double **[]){&self->value, NULL}) &&
+         strut_arena_numbers(scratch, count * count,
+                             (double **[]){&self->form, &self->vector, NULL});
 }
 
 static double largest_motion(const sorter *self, const double *motion) {

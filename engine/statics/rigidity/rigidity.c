@@ -7,6 +7,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/tangent.h"
+#include "engine/statics/algebra.h"
 
 static const double NONE = 1e-9;    /* of the largest force: no force */
 static const double ON_LINE = 1e-9; /* of the size: a node on the outline */
@@ -162,11 +163,9 @@ static void measure_elements(const strut_model *model, const double *positions,
 static bool measure_forces(const strut_model *model, const double *positions,
                            strut_rigidity *rigidity) {
   const strut_member_table *members = &model->members;
-  rigidity->force = strut_arena_allocate(&rigidity->arena, (size_t)rigidity->matrix.columns + 1,
-                                         sizeof *rigidity->force);
-  rigidity->density =
-      strut_arena_allocate(&rigidity->arena, (size_t)members->count + 1, sizeof *rigidity->density);
-  if (!rigidity->force || !rigidity->density) return false;
+  if (!strut_arena_numbers(&rigidity->arena, (size_t)rigidity->matrix.columns,
+                           (double **[]){&rigidity->force, &rigidity->density, NULL}))
+    return false;
   for (int32_t j = 0; j < members->count; j++) {
     double length = rigidity->matrix.length[j];
     rigidity->force[j] = resolved(strut_member_elastic_tension(model, members->rest, j, positions),
@@ -217,9 +216,9 @@ static bool measure_balance(const strut_model *model, const double *positions,
                             strut_rigidity *rigidity) {
   const strut_equilibrium_matrix *matrix = &rigidity->matrix;
   strut_arena scratch = {0};
-  double *net = strut_arena_allocate(&scratch, (size_t)model->length, sizeof *net);
-  double *held = strut_arena_allocate(&scratch, (size_t)matrix->rows + 1, sizeof *held);
-  bool good = net && held;
+  double *net, *held;
+  bool good =
+      strut_arena_numbers(&scratch, (size_t)model->length, (double **[]){&net, &held, NULL});
   if (good) {
     double members = rigidity->largest_force;
     strut_equilibrium_multiply(matrix, rigidity->force, held);

@@ -294,27 +294,6 @@ STRUT_API strut_status strut_rigidity_find(const strut_model *model, const doubl
                                            strut_rigidity *rigidity, strut_error *error);
 STRUT_API void strut_rigidity_free(strut_rigidity *rigidity);
 
-/* ---- what is found, in words and as rows ---- */
-
-enum { STRUT_RIGIDITY_WORDS = 240 };
-STRUT_API const char *strut_mechanism_words(const strut_mechanisms *all,
-                                            const strut_mechanism *motion,
-                                            char words[STRUT_RIGIDITY_WORDS]);
-STRUT_API const char *strut_super_stability_words(const strut_rigidity *rigidity,
-                                                  char words[STRUT_RIGIDITY_WORDS]);
-
-/** Column of the equilibrium matrix of thing i of an owner: members, then hinges, cells, distances. */
-STRUT_API size_t strut_column_of(const strut_scene *scene, strut_channel_owner owner, size_t i);
-/** What such a column's force is: a moment [N m], a pressure [N/m] outwards, or itself [N]. */
-STRUT_API double strut_column_force(const strut_rigidity *rigidity, strut_channel_owner owner,
-                                    double force);
-/** An angle [rad], an area [m^2] or a length [m]. */
-STRUT_API double strut_column_extent(const strut_rigidity *rigidity, strut_channel_owner owner,
-                                     size_t j);
-/** A cable that does not pull in this shape. */
-STRUT_API bool strut_member_is_idle(const strut_rigidity *rigidity, const strut_scene *scene,
-                                    size_t j);
-
 /** Rows of a strut_rigidity. */
 STRUT_API extern const strut_value_rows strut_rigidity_values;
 

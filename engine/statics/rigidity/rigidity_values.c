@@ -15,31 +15,30 @@ static const char *stress_source_words(strut_stress_source source) {
   return words[source];
 }
 
-const char *strut_mechanism_words(const strut_mechanisms *all, const strut_mechanism *motion,
-                                  char words[STRUT_RIGIDITY_WORDS]) {
+static void write_test(const strut_result_object *of, char words[STRUT_VALUE_ROOM]) {
+  const strut_mechanisms *all = &((const strut_rigidity *)strut_result_whole(of))->mechanisms;
+  const strut_mechanism *motion = of->at;
   char moved[STRUT_QUANTITY_TEXT], stiff[STRUT_QUANTITY_TEXT];
   bool followed = isfinite(motion->moved) && motion->kind == STRUT_MOTION_FINITE;
-  words[0] = '\0';
   if (motion->kind == STRUT_MOTION_RIGID_BODY) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "not prevented by the supports");
+    snprintf(words, STRUT_VALUE_ROOM, "not prevented by the supports");
   } else if (motion->kind == STRUT_MOTION_INFINITESIMAL && all->by_forces) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "stiffened by the member forces: %s",
+    snprintf(words, STRUT_VALUE_ROOM, "stiffened by the member forces: %s",
              strut_quantity_text(motion->stiffness, FEW_DIGITS, "N/m", stiff));
   } else if (motion->kind == STRUT_MOTION_INFINITESIMAL) {
     snprintf(
-        words, STRUT_RIGIDITY_WORDS, "stiffened by a self-stress state%s",
+        words, STRUT_VALUE_ROOM, "stiffened by a self-stress state%s",
         all->stiffener_pulls ? "" : ", but none is known that does so without compressing a cable");
   } else if (followed) {
-    snprintf(words, STRUT_RIGIDITY_WORDS, "member lengths constant within %.0e over %s",
-             motion->strain, strut_quantity_text(motion->moved, FEW_DIGITS, "m", moved));
+    snprintf(words, STRUT_VALUE_ROOM, "member lengths constant within %.0e over %s", motion->strain,
+             strut_quantity_text(motion->moved, FEW_DIGITS, "m", moved));
   } else if (motion->kind == STRUT_MOTION_FINITE) {
-    snprintf(words, STRUT_RIGIDITY_WORDS,
+    snprintf(words, STRUT_VALUE_ROOM,
              "finite: without self-stress the member lengths are independent");
   } else {
-    snprintf(words, STRUT_RIGIDITY_WORDS,
+    snprintf(words, STRUT_VALUE_ROOM,
              "undecided: no stiffening self-stress found, and it could not be followed");
   }
-  return words;
 }
 
 static const char *why_not(const strut_rigidity *rigidity) {
@@ -55,27 +54,27 @@ static const char *why_not(const strut_rigidity *rigidity) {
   return "a cable is in compression";
 }
 
-const char *strut_super_stability_words(const strut_rigidity *rigidity,
-                                        char words[STRUT_RIGIDITY_WORDS]) {
+static void write_super_stability(const strut_result_object *of, char words[STRUT_VALUE_ROOM]) {
+  const strut_rigidity *rigidity = of->at;
   const char *source = stress_source_words(rigidity->source);
   if (rigidity->states.count == 0)
-    snprintf(words, STRUT_RIGIDITY_WORDS, "no: %s", source);
+    snprintf(words, STRUT_VALUE_ROOM, "no: %s", source);
   else if (rigidity->stress.by_elements)
-    snprintf(words, STRUT_RIGIDITY_WORDS,
+    snprintf(words, STRUT_VALUE_ROOM,
              "not judged: elements (hinges, cells, running cables) carry %s", source);
   else if (!rigidity->stress.tested)
-    snprintf(words, STRUT_RIGIDITY_WORDS, "not tested: the structure is too large");
+    snprintf(words, STRUT_VALUE_ROOM, "not tested: the structure is too large");
   else if (rigidity->stress.super_stable)
-    snprintf(words, STRUT_RIGIDITY_WORDS, "yes, by %s", source);
+    snprintf(words, STRUT_VALUE_ROOM, "yes, by %s", source);
   else
-    snprintf(words, STRUT_RIGIDITY_WORDS, "%s, by %s: %s",
+    snprintf(words, STRUT_VALUE_ROOM, "%s, by %s: %s",
              rigidity->states.count == 1 ? "no" : "not shown", source, why_not(rigidity));
-  return words;
 }
 
 /* ---- columns of the equilibrium matrix ---- */
 
-size_t strut_column_of(const strut_scene *scene, strut_channel_owner owner, size_t i) {
+/* Column of thing i of an owner: members, then hinges, cells, distances. */
+static size_t column_of(const strut_scene *scene, strut_channel_owner owner, size_t i) {
   size_t hinges = scene->member_count, cells = hinges + scene->hinge_count;
   return i + (owner == STRUT_OWNER_HINGE      ? hinges
               : owner == STRUT_OWNER_CELL     ? cells
@@ -83,29 +82,27 @@ size_t strut_column_of(const strut_scene *scene, strut_channel_owner owner, size
                                               : 0);
 }
 
-double strut_column_force(const strut_rigidity *rigidity, strut_channel_owner owner, double force) {
+/* What such a column's force is: a moment [N m], a pressure [N/m] outwards, or itself [N]. */
+static double column_force(const strut_rigidity *rigidity, strut_channel_owner owner,
+                           double force) {
   return owner == STRUT_OWNER_HINGE  ? force * rigidity->matrix.size
          : owner == STRUT_OWNER_CELL ? -force / rigidity->matrix.size + 0.0
                                      : force;
 }
 
-double strut_column_extent(const strut_rigidity *rigidity, strut_channel_owner owner, size_t j) {
+/* An angle [rad], an area [m^2] or a length [m]. */
+static double column_extent(const strut_rigidity *rigidity, strut_channel_owner owner, size_t j) {
   double length = rigidity->matrix.length[j];
   return owner == STRUT_OWNER_HINGE  ? length / rigidity->matrix.size
          : owner == STRUT_OWNER_CELL ? length * rigidity->matrix.size
                                      : length;
 }
 
-bool strut_member_is_idle(const strut_rigidity *rigidity, const strut_scene *scene, size_t j) {
-  return scene->members[j].kind == STRUT_CABLE && !(rigidity->force[j] > 0.0);
-}
-
 /* ---- forces of all columns, an array that is the object ---- */
 
 static double item_of(const strut_result_object *of, strut_channel_owner owner, size_t i) {
   const double *force = of->at;
-  return strut_column_force(strut_result_whole(of), owner,
-                            force[strut_column_of(of->scene, owner, i)]);
+  return column_force(strut_result_whole(of), owner, force[column_of(of->scene, owner, i)]);
 }
 
 static double moment_of(const strut_result_object *of, size_t i) {
@@ -173,11 +170,6 @@ static double motion_of(const strut_result_object *of, size_t k) {
   return !(largest > 0) ? moves : fabs(moves) < 1e-13 * largest ? 0.0 : moves / largest;
 }
 
-static void write_test(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  const strut_rigidity *rigidity = strut_result_whole(of);
-  strut_mechanism_words(&rigidity->mechanisms, of->at, text);
-}
-
 #define MODE(X)                                                                                    \
   X("kind", "", TEXT(strut_motion_kind_name(mode->kind)),                                          \
     "rigid-body, infinitesimal, finite, ...", .label = {""})                                       \
@@ -229,10 +221,6 @@ STRUT_VALUES_HERE(stress_values, STRESS, const strut_rigidity *r = strut_result_
   X("struts_inside", "", FLAG(t->struts_inside), "what is pulled is one net around all struts")
 STRUT_VALUES_HERE(tensegrity_values, TENSEGRITY, const strut_tensegrity *t = of->at)
 
-static void write_super_stability(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  strut_super_stability_words(of->at, text);
-}
-
 /* Of several states another combination might do it. */
 static bool is_judged(const strut_rigidity *rigidity) {
   bool single = rigidity->states.count <= 1;
@@ -240,8 +228,11 @@ static bool is_judged(const strut_rigidity *rigidity) {
          (rigidity->stress.tested && (single || rigidity->stress.super_stable));
 }
 
+/* Of a cable that does not pull. */
 static const char *name_of_idle(const strut_result_object *of, size_t j) {
-  return strut_member_is_idle(of->at, of->scene, j) ? of->scene->members[j].name : NULL;
+  const strut_member *member = &of->scene->members[j];
+  bool pulls = ((const strut_rigidity *)of->at)->force[j] > 0.0;
+  return member->kind == STRUT_CABLE && !pulls ? member->name : NULL;
 }
 
 /* ---- members and elements, each under its name ---- */
@@ -261,11 +252,11 @@ STRUT_VALUES_HERE(member_values, MEMBER, const strut_rigidity *r = strut_result_
     return strut_owner_name(STRUT_OWNER_##OWNER, of->scene, i);                                    \
   }                                                                                                \
   STRUT_VALUES_HERE(NAME##_values, NAME##_TABLE, const strut_rigidity *r = strut_result_whole(of); \
-                    size_t j = strut_column_of(of->scene, STRUT_OWNER_##OWNER, of->index))
+                    size_t j = column_of(of->scene, STRUT_OWNER_##OWNER, of->index))
 #define ELEMENT(X, OWNER, EXTENT, EXTENT_UNIT, FORCE, FORCE_UNIT)                                  \
-  X(EXTENT, EXTENT_UNIT, NUMBER(strut_column_extent(r, STRUT_OWNER_##OWNER, j)), "in the shape",   \
+  X(EXTENT, EXTENT_UNIT, NUMBER(column_extent(r, STRUT_OWNER_##OWNER, j)), "in the shape",         \
     .label = {""})                                                                                 \
-  X(FORCE, FORCE_UNIT, NUMBER(strut_column_force(r, STRUT_OWNER_##OWNER, r->force[j])), "there",   \
+  X(FORCE, FORCE_UNIT, NUMBER(column_force(r, STRUT_OWNER_##OWNER, r->force[j])), "there",         \
     .label = {""})
 #define hinge_TABLE(X) ELEMENT(X, HINGE, "angle", "rad", "moment", "N m")
 #define cell_TABLE(X) ELEMENT(X, CELL, "area", "m^2", "pressure", "N/m")

@@ -192,14 +192,13 @@ static void combine_states(const strut_self_stress *states, size_t members, cons
 }
 
 static bool allocate(search *self, strut_arena *scratch) {
-  size_t square = self->motions * self->motions + 1;
-  self->weight = strut_arena_allocate(scratch, self->states_count, sizeof(double));
-  self->pull = strut_arena_allocate(scratch, self->states_count, sizeof(double));
-  self->cable = strut_arena_allocate(scratch, self->members, sizeof(double));
-  self->form = strut_arena_allocate(scratch, square, sizeof(double));
-  self->value = strut_arena_allocate(scratch, self->motions + 1, sizeof(double));
-  self->vector = strut_arena_allocate(scratch, square, sizeof(double));
-  return self->weight && self->pull && self->cable && self->form && self->value && self->vector;
+  size_t motions = self->motions;
+  return strut_arena_numbers(scratch, self->states_count,
+                             (double **[]){&self->weight, &self->pull, NULL}) &&
+         strut_arena_numbers(scratch, self->members, (double **[]){&self->cable, NULL}) &&
+         strut_arena_numbers(scratch, motions, (double **[]){&self->value, NULL}) &&
+         strut_arena_numbers(scratch, motions * motions,
+                             (double **[]){&self->form, &self->vector, NULL});
 }
 
 static void measure_cables(search *self) {

@@ -165,12 +165,11 @@ strut_status strut_stress_matrix_judge(const strut_model *model, const strut_equ
   strut_arena scratch = {0};
   strut_status status = STRUT_NO_MEMORY;
   size_t most = (size_t)model->length;
-  double *sum = strut_arena_allocate(&scratch, most, sizeof *sum);
+  double *sum, *matrix, *vector;
   int32_t *row = strut_arena_allocate(&scratch, most, sizeof *row);
-  double *matrix = strut_arena_allocate(&scratch, most * most, sizeof *matrix);
-  double *vector = strut_arena_allocate(&scratch, most * most, sizeof *vector);
-  stress->eigenvalues = strut_arena_allocate(arena, most, sizeof(double));
-  if (sum && row && matrix && vector && stress->eigenvalues) {
+  if (row && strut_arena_numbers(&scratch, most, (double **[]){&sum, NULL}) &&
+      strut_arena_numbers(&scratch, most * most, (double **[]){&matrix, &vector, NULL}) &&
+      strut_arena_numbers(arena, most, (double **[]){&stress->eigenvalues, NULL})) {
     for (int32_t i = 0; i < model->node_count; i++) row[i] = -1;
     stress->supported = !balances_alone(model, a, force, sum);
     stress->count = stress->supported ? a->rows : count_nodes(model, row);
@@ -280,12 +279,11 @@ double strut_node_stiffness_along(stiff *self, int32_t node, const double direct
 static strut_status fill_stiffness(stiff *self, const strut_model *model, const double *positions,
                                    const char **reason) {
   strut_linear_matrices matrices;
-  self->k = strut_arena_allocate(&self->arena, self->n * self->n, sizeof *self->k);
-  self->rigid = strut_arena_allocate(&self->arena, 3 * self->n, sizeof *self->rigid);
-  self->load = strut_arena_allocate(&self->arena, 3 * self->n, sizeof *self->load);
-  strut_status status = self->k && self->rigid && self->load
-                            ? strut_linear_matrices_build(model, positions, &self->arena, &matrices)
-                            : STRUT_NO_MEMORY;
+  if (!strut_arena_numbers(&self->arena, self->n * self->n, (double **[]){&self->k, NULL}) ||
+      !strut_arena_numbers(&self->arena, 3 * self->n,
+                           (double **[]){&self->rigid, &self->load, NULL}))
+    return STRUT_NO_MEMORY;
+  strut_status status = strut_linear_matrices_build(model, positions, &self->arena, &matrices);
   if (status) return status;
   add_sparse(self, matrices.elastic);
   add_sparse(self, matrices.geometric);

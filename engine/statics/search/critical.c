@@ -29,25 +29,17 @@ typedef struct search {
   strut_search_tasks *batch;
   strut_task task[STRUT_BATCH];
   size_t tasks;
-  int64_t random, room; /* random starts made; how many points `hits` has room for */
-  int64_t *hits;        /* (count) starts that ended at each point; of strut_allocate */
+  int64_t random; /* random starts made */
+  int64_t *hits;  /* (count) of these, those that ended at each point; of strut_allocate */
+  size_t room;    /* how many points `hits` has room for */
   int64_t climbs_left;
   double cost, spent, budget; /* of one Hessian, so far, and at most */
   size_t batch_size;          /* tasks between checks of the work done */
   size_t climbed, paired;     /* points up to which modes and pairs were climbed */
   size_t shaken;              /* points up to which rare minima were shaken */
+  strut_status status;        /* once it is set, no more tasks are added */
   strut_error *error;
 } search;
-
-static bool reserve_hits(search *self) {
-  if ((int64_t)self->all.count <= self->room) return true;
-  int64_t room = 2 * (int64_t)self->all.count + 16;
-  int64_t *larger = strut_reallocate(self->hits, (size_t)room, sizeof *larger);
-  if (!larger) return false;
-  memset(larger + self->room, 0, (size_t)(room - self->room) * sizeof *larger);
-  self->hits = larger, self->room = room;
-  return true;
-}
 
 /* Reads one result into the points. */
 static strut_status read_result(search *self, const strut_task *task,
@@ -62,7 +54,9 @@ static strut_status read_result(search *self, const strut_task *task,
   strut_status status =
       strut_stationary_set_add(&self->all, result->q, &index, &fresh, self->error);
   if (status) return status;
-  if (!reserve_hits(self)) return strut_no_memory(self->error, "");
+  if (fresh && !strut_grow(&self->hits, &self->room, (size_t)index, sizeof *self->hits))
+    return strut_no_memory(self->error, "");
+  if (fresh) self->hits[index] = 0;
   if (task->kind == STRUT_TASK_RANDOM) self->hits[index]++;
   if (!down) return STRUT_OK;
   self->all.points[index].found--;
@@ -71,26 +65,27 @@ static strut_status read_result(search *self, const strut_task *task,
   return STRUT_OK;
 }
 
-static strut_status run_tasks(search *self) {
+/* Runs the tasks added so far; nothing once the search has failed. */
+static void run_tasks(search *self) {
   const strut_flag *interrupt = self->effort->interrupt;
+  if (self->status) return;
   const strut_task_result *result =
       strut_search_tasks_run(self->batch, self->task, self->tasks, interrupt);
   if (interrupt && *interrupt)
-    return strut_fail(self->error, STRUT_INTERRUPTED, "interrupted while searching");
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < self->tasks && !status; i++) {
+    self->status = strut_fail(self->error, STRUT_INTERRUPTED, "interrupted while searching");
+  for (size_t i = 0; i < self->tasks && !self->status; i++) {
     self->spent += self->cost * (double)result[i].hessian_count;
-    status = read_result(self, &self->task[i], &result[i]);
+    self->status = read_result(self, &self->task[i], &result[i]);
   }
   self->tasks = 0;
-  return status;
 }
 
 /* Appends a task to the batch, which runs when full. */
-static strut_status add_task(search *self, strut_task task) {
+static void add_task(search *self, strut_task task) {
+  if (self->status) return;
   assert(self->tasks < self->batch_size && self->batch_size <= STRUT_BATCH);
   self->task[self->tasks++] = task;
-  return self->tasks == self->batch_size ? run_tasks(self) : STRUT_OK;
+  if (self->tasks == self->batch_size) run_tasks(self);
 }
 
 /* True, and the search cut short, if this share of the budget is spent. */
@@ -116,18 +111,18 @@ static int64_t affordable_count(int32_t n, double budget, int64_t least, int64_t
 }
 
 /* Starts from the model's own shape, its folds, and the caller's shapes. */
-static strut_status search_known_shapes(search *self) {
+static void search_known_shapes(search *self) {
   const double *own = self->potential->model->start;
-  strut_status status = add_task(self, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
-  for (size_t i = 0; i < self->effort->extra_count && !status; i++)
-    status = add_task(self, (strut_task){.kind = STRUT_TASK_SHAPE, .q = self->effort->extra[i]});
+  add_task(self, (strut_task){.kind = STRUT_TASK_SHAPE, .q = own});
+  for (size_t i = 0; i < self->effort->extra_count; i++)
+    add_task(self, (strut_task){.kind = STRUT_TASK_SHAPE, .q = self->effort->extra[i]});
   int64_t most = affordable_count(self->potential->n, 4e6, 4, 256),
           folds = strut_fold_count(self->potential);
   if (self->potential->n > STRUT_DENSE_STATICS) folds = 0;
   if (folds > most) folds = most;
-  for (int64_t i = 0; i < folds && !status && !is_over_budget(self, KNOWN_BY); i++)
-    status = add_task(self, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
-  return status ? status : run_tasks(self);
+  for (int64_t i = 0; i < folds && !is_over_budget(self, KNOWN_BY); i++)
+    add_task(self, (strut_task){.kind = STRUT_TASK_FOLD, .q = own, .number = i});
+  run_tasks(self);
 }
 
 /* Minima that random starts have met at all, exactly once, exactly twice, and never. */
@@ -156,75 +151,64 @@ static bool has_enough_starts(search *self, int64_t most) {
   return self->random >= most || is_over_budget(self, RANDOM_BY);
 }
 
-static strut_status search_random_shapes(search *self) {
+static void search_random_shapes(search *self) {
   int32_t n = self->potential->n;
   int64_t wanted = self->effort->starts, most = affordable_count(n, 1.5e7, 4, 4000);
-  strut_status status = STRUT_OK;
-  if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return STRUT_OK;
+  if (n == 0 || (wanted <= 0 && n > STRUT_DENSE_STATICS)) return;
   double before = self->spent;
   int64_t size = (int64_t)self->batch_size;
-  while (!status && (wanted > 0 ? self->random < wanted : !has_enough_starts(self, most))) {
+  while (!self->status && (wanted > 0 ? self->random < wanted : !has_enough_starts(self, most))) {
     int64_t left = (wanted > 0 ? wanted : most) - self->random;
-    for (int64_t i = 0; i < left && i < size && !status; i++)
-      status = add_task(self, (strut_task){.kind = STRUT_TASK_RANDOM, .number = self->random++});
-    if (!status) status = run_tasks(self);
+    for (int64_t i = 0; i < left && i < size; i++)
+      add_task(self, (strut_task){.kind = STRUT_TASK_RANDOM, .number = self->random++});
+    run_tasks(self);
   }
   if (wanted > 0) self->budget += self->spent - before; /* requested starts cost no budget */
-  return status;
 }
 
 /* Folds of the minima found: a shape that random starts seldom meet often lies next to one. */
-static strut_status search_folded_minima(search *self) {
-  int32_t n = self->potential->n;
+static void search_folded_minima(search *self) {
   int64_t folds = strut_fold_count(self->potential), left = self->random / 2;
-  strut_status status = STRUT_OK;
-  if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
-  for (int64_t fold = 0; fold < folds && left > 0 && !status; fold++)
-    for (size_t i = 0;
-         i < self->all.count && left > 0 && !status && !is_over_budget(self, FOLDS_BY); i++, left--)
-      status = add_task(
-          self, (strut_task){.kind = STRUT_TASK_FOLD, .q = self->all.points[i].q, .number = fold});
-  return status ? status : run_tasks(self);
+  for (int64_t fold = 0; fold < folds && left > 0; fold++)
+    for (size_t i = 0; i < self->all.count && left > 0 && !is_over_budget(self, FOLDS_BY);
+         i++, left--)
+      add_task(self,
+               (strut_task){.kind = STRUT_TASK_FOLD, .q = self->all.points[i].q, .number = fold});
+  run_tasks(self);
 }
 
 /*
  * Part of one minimum and the rest of another, in all pairs: where a structure has several bistable
  * parts, its rare states are made of those that its common ones have.
  */
-static strut_status search_crossed_minima(search *self) {
-  int32_t n = self->potential->n;
+static void search_crossed_minima(search *self) {
   int64_t left = self->random / PART_CROSSED, number = 0;
-  strut_status status = STRUT_OK;
   size_t end = self->all.count;
-  if (n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
   for (int turn = 0; turn < CROSSINGS; turn++)
-    for (size_t i = 1; i < end && !status; i++)
-      for (size_t k = 0; k < i && left > 0 && !status && !is_over_budget(self, CROSSES_BY);
-           k++, left--)
-        status = add_task(self, (strut_task){.kind = STRUT_TASK_CROSS,
-                                             .q = self->all.points[i].q,
-                                             .other = self->all.points[k].q,
-                                             .number = number++});
-  return status ? status : run_tasks(self);
+    for (size_t i = 1; i < end; i++)
+      for (size_t k = 0; k < i && left > 0 && !is_over_budget(self, CROSSES_BY); k++, left--)
+        add_task(self, (strut_task){.kind = STRUT_TASK_CROSS,
+                                    .q = self->all.points[i].q,
+                                    .other = self->all.points[k].q,
+                                    .number = number++});
+  run_tasks(self);
 }
 
 /*
  * Shakes minima that random starts found at most once: neighbours of small basins may be small too.
  */
-static strut_status shake_rare_minima(search *self) {
-  strut_status status = STRUT_OK;
+static void shake_rare_minima(search *self) {
   size_t end = self->all.count;
-  if (self->potential->n == 0 || self->potential->n > STRUT_DENSE_STATICS) return STRUT_OK;
-  for (; self->shaken < end && !status; self->shaken++) {
+  for (; self->shaken < end && !self->status; self->shaken++) {
     const double *q = self->all.points[self->shaken].q;
     if (!strut_is_minimum(&self->all.points[self->shaken]) || self->hits[self->shaken] > 1)
       continue;
-    for (int64_t k = 0; k < SHAKES && !status && !is_over_budget(self, CLIMBS_BY); k++)
-      status = add_task(self, (strut_task){.kind = STRUT_TASK_SHAKE,
-                                           .q = q,
-                                           .number = SHAKES * (int64_t)self->shaken + k});
+    for (int64_t k = 0; k < SHAKES && !is_over_budget(self, CLIMBS_BY); k++)
+      add_task(self,
+               (strut_task){
+                   .kind = STRUT_TASK_SHAKE, .q = q, .number = SHAKES * (int64_t)self->shaken + k});
   }
-  return status ? status : run_tasks(self);
+  run_tasks(self);
 }
 
 /* Upper 95 % limit of the mean of a count with this variance; of a count of none it is exact. */
@@ -255,68 +239,63 @@ static void estimate_missed(search *self) {
   self->set->unseen = (int64_t)fmax(0.0, self->set->missed.count - (double)(m.distinct + m.never));
 }
 
-static strut_status climb_from(search *self, strut_task task) {
+static void climb_from(search *self, strut_task task) {
   if (self->climbs_left-- <= 0) self->set->cut_short = true;
-  return self->climbs_left >= 0 && !is_over_budget(self, CLIMBS_BY) ? add_task(self, task)
-                                                                    : STRUT_OK;
+  if (self->climbs_left >= 0 && !is_over_budget(self, CLIMBS_BY)) add_task(self, task);
 }
 
 /* Along the softest modes of every minimum not yet climbed from. */
-static strut_status climb_modes(search *self) {
-  strut_status status = STRUT_OK;
+static void climb_modes(search *self) {
   size_t end = self->all.count;
-  for (; self->climbed < end && !status; self->climbed++) {
+  for (; self->climbed < end; self->climbed++) {
     const strut_critical_point *point = &self->all.points[self->climbed];
     int64_t modes = self->potential->n < MODES_CLIMBED ? self->potential->n : MODES_CLIMBED;
     const double *q = point->q;
     if (!strut_is_minimum(point)) continue;
-    for (int64_t k = 0; k < 2 * modes && !status; k++)
-      status = climb_from(
+    for (int64_t k = 0; k < 2 * modes; k++)
+      climb_from(
           self,
           (strut_task){
               .kind = STRUT_TASK_CLIMB_MODE, .q = q, .number = k / 2, .side = k % 2 ? -1.0 : 1.0});
   }
-  return status ? status : run_tasks(self);
+  run_tasks(self);
 }
 
 /* Between every two minima, in all different placements of the second; copies of one included. */
-static strut_status climb_pairs(search *self) {
-  strut_status status = STRUT_OK;
+static void climb_pairs(search *self) {
   size_t end = self->all.count;
-  for (; self->paired < end && !status; self->paired++) {
+  for (; self->paired < end; self->paired++) {
     if (!strut_is_minimum(&self->all.points[self->paired])) continue;
-    for (size_t i = 0; i <= self->paired && !status; i++) {
+    for (size_t i = 0; i <= self->paired; i++) {
       if (!strut_is_minimum(&self->all.points[i])) continue;
       const double *a = self->all.points[i].q, *b;
-      for (int32_t k = i == self->paired; k < 3 && !status; k++) {
+      for (int32_t k = i == self->paired; k < 3; k++) {
         b = strut_stationary_set_placement(&self->all, (int32_t)self->paired, k);
         if (!b) break;
-        status = climb_from(self, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
-        if (!status)
-          status = climb_from(
-              self, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b, .side = 1.0});
+        climb_from(self, (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b});
+        climb_from(self,
+                   (strut_task){.kind = STRUT_TASK_CLIMB_PAIR, .q = a, .other = b, .side = 1.0});
       }
     }
   }
-  return status ? status : run_tasks(self);
+  run_tasks(self);
 }
 
 /* Down both sides of every saddle with one unstable direction, from point `begin` on. */
-static strut_status descend_from_saddles(search *self, size_t begin) {
-  strut_status status = STRUT_OK;
+static void descend_from_saddles(search *self, size_t begin) {
   size_t end = self->all.count;
-  for (size_t i = begin; i < end && !status && !is_over_budget(self, 1.0); i++) {
+  for (size_t i = begin; i < end && !is_over_budget(self, 1.0); i++) {
     const strut_critical_point *point = &self->all.points[i];
     const double *q = point->q, *direction = point->softest;
     if (strut_is_minimum(point) || point->negative != 1) continue;
-    for (int k = 0; k < 2 && !status; k++)
-      status = add_task(self, (strut_task){.kind = STRUT_TASK_DOWN,
-                                           .q = q,
-                                           .other = direction,
-                                           .side = k ? -1.0 : 1.0,
-                                           .from = (int32_t)i});
+    for (int k = 0; k < 2; k++)
+      add_task(self, (strut_task){.kind = STRUT_TASK_DOWN,
+                                  .q = q,
+                                  .other = direction,
+                                  .side = k ? -1.0 : 1.0,
+                                  .from = (int32_t)i});
   }
-  return status ? status : run_tasks(self);
+  run_tasks(self);
 }
 
 /* Even numbers start from a shaken minimum, each in turn; odd ones from a random shape. */
@@ -331,12 +310,10 @@ static strut_task random_climb_task(const search *self, int64_t number) {
   return task;
 }
 
-static strut_status climb_hints(search *self) {
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < self->effort->hint_count && !status; i++)
-    status =
-        climb_from(self, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = self->effort->hint[i]});
-  return status ? status : run_tasks(self);
+static void climb_hints(search *self) {
+  for (size_t i = 0; i < self->effort->hint_count; i++)
+    climb_from(self, (strut_task){.kind = STRUT_TASK_CLIMB_SHAPE, .q = self->effort->hint[i]});
+  run_tasks(self);
 }
 
 static int64_t count_passes(const search *self) {
@@ -347,39 +324,36 @@ static int64_t count_passes(const search *self) {
 }
 
 /* Climbs from random shapes until a whole batch finds no new pass. */
-static strut_status climb_at_random(search *self) {
-  strut_status status = STRUT_OK;
+static void climb_at_random(search *self) {
   int64_t number = 0;
-  for (int turn = 0; turn < RANDOM_CLIMBS && !status; turn++) {
+  for (int turn = 0; turn < RANDOM_CLIMBS; turn++) {
     int64_t before = count_passes(self);
-    for (int i = 0; i < STRUT_BATCH && !status; i++, number++)
-      status = climb_from(self, random_climb_task(self, number));
-    if (!status) status = run_tasks(self);
+    for (int i = 0; i < STRUT_BATCH; i++, number++)
+      climb_from(self, random_climb_task(self, number));
+    run_tasks(self);
     if (count_passes(self) == before) break;
   }
-  return status;
 }
 
-static strut_status find_saddles(search *self) {
-  int32_t n = self->potential->n;
-  strut_status status = STRUT_OK;
+static void find_saddles(search *self) {
   size_t gone = 0;
-  if (!self->effort->saddles || n == 0 || n > STRUT_DENSE_STATICS) return STRUT_OK;
-  self->climbs_left = affordable_count(n, 4e6, 4, 2000);
-  for (int turn = 0; turn < ROUNDS && !status; turn++) {
-    status = turn == 0 ? climb_hints(self) : shake_rare_minima(self);
-    if (!status) status = climb_modes(self);
-    if (!status) status = climb_pairs(self);
-    if (!status && turn == 0) status = climb_at_random(self);
-    while (!status &&
+  self->climbs_left = affordable_count(self->potential->n, 4e6, 4, 2000);
+  for (int turn = 0; turn < ROUNDS && !self->status; turn++) {
+    if (turn == 0)
+      climb_hints(self);
+    else
+      shake_rare_minima(self);
+    climb_modes(self);
+    climb_pairs(self);
+    if (turn == 0) climb_at_random(self);
+    while (!self->status &&
            gone < self->all.count) { /* what lies below may be new, and a saddle's end too */
       size_t begin = gone;
       gone = self->all.count;
-      status = descend_from_saddles(self, begin);
+      descend_from_saddles(self, begin);
     }
     if (self->climbed == self->all.count) break;
   }
-  return status;
 }
 
 static int kind_rank(const strut_critical_point *point) {
@@ -422,24 +396,27 @@ strut_status strut_critical_search(const strut_potential *potential,
                                    const strut_critical_effort *effort, strut_critical_set *set,
                                    strut_error *error) {
   search s = {.potential = potential, .effort = effort, .set = set, .error = error};
-  bool climbs = effort->saddles && potential->n <= STRUT_DENSE_STATICS;
+  bool dense = potential->n > 0 && potential->n <= STRUT_DENSE_STATICS;
   *set = (strut_critical_set){0};
   set_budget(&s);
   strut_stationary_set_start(&s.all, potential, &set->arena);
-  strut_status status = strut_search_tasks_create(potential, effort->seed, climbs, &s.batch, error);
-  if (!status) status = search_known_shapes(&s);
-  if (!status) status = search_random_shapes(&s);
-  if (!status) status = search_folded_minima(&s);
-  if (!status) status = search_crossed_minima(&s);
-  if (!status) status = shake_rare_minima(&s);
-  if (!status) status = find_saddles(&s);
-  if (!status) estimate_missed(&s);
-  if (!status) status = sort_into_set(&s);
+  s.status =
+      strut_search_tasks_create(potential, effort->seed, dense && effort->saddles, &s.batch, error);
+  search_known_shapes(&s);
+  search_random_shapes(&s);
+  if (dense) {
+    search_folded_minima(&s);
+    search_crossed_minima(&s);
+    shake_rare_minima(&s);
+  }
+  if (dense && effort->saddles) find_saddles(&s);
+  if (!s.status) estimate_missed(&s);
+  if (!s.status) s.status = sort_into_set(&s);
   strut_search_tasks_free(s.batch);
   strut_stationary_set_free(&s.all);
   strut_release(s.hits);
-  if (status) strut_critical_free(set);
-  return status;
+  if (s.status) strut_critical_free(set);
+  return s.status;
 }
 
 void strut_critical_free(strut_critical_set *set) {

@@ -127,12 +127,12 @@ typedef struct strut_congruent_copy strut_congruent_copy;
 
 typedef struct strut_stationary_set {
   const strut_potential *potential;
-  strut_arena *arena;    /* of the points; the caller's */
-  bool congruent;        /* copies of one shape are one point */
-  bool shifts[2], turns; /* rigid motions that no support, load or ground forbids */
-  double near;           /* two shapes are one within this [m] */
-  double flat;           /* two energies may differ by this anyway [J] */
-  size_t count, room;
+  strut_arena *arena;               /* of the points; the caller's */
+  bool congruent;                   /* copies of one shape are one point */
+  bool shifts[2], turns;            /* rigid motions that no support, load or ground forbids */
+  double near;                      /* two shapes are one within this [m] */
+  double flat;                      /* two energies may differ by this anyway [J] */
+  size_t count, room[2];            /* of points, and of placements */
   strut_critical_point *points;     /* of strut_allocate */
   strut_congruent_copy **placement; /* (count) their different placements; of strut_allocate */
 } strut_stationary_set;

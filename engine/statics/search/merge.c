@@ -261,18 +261,13 @@ static strut_status critical_judge(const strut_potential *potential, const doubl
   strut_arena scratch = {0};
   judgement j = {.potential = potential};
   *point = (strut_critical_point){.found = 1, .placements = 1, .down = {-1, -1}};
-  point->q = strut_arena_allocate(arena, length, sizeof *point->q);
-  point->softest = strut_arena_allocate(arena, length, sizeof *point->softest);
-  j.motion = strut_arena_allocate(&scratch, 3 * n, sizeof *j.motion);
-  j.work = strut_arena_allocate(&scratch, 3 * n, sizeof *j.work);
+  point->q = strut_arena_copy(arena, positions, length, sizeof *positions);
   j.hessian = strut_potential_matrix(potential, &scratch);
-  strut_status status = STRUT_NO_MEMORY;
-  if (point->q && point->softest && j.motion && j.work && j.hessian) {
-    memcpy(point->q, positions, length * sizeof *positions);
-    status = judge_point(&j, positions, arena, point, error);
-  } else {
-    strut_no_memory(error, "");
-  }
+  bool good = point->q && j.hessian &&
+              strut_arena_numbers(arena, length, (double **[]){&point->softest, NULL}) &&
+              strut_arena_numbers(&scratch, 3 * n, (double **[]){&j.motion, &j.work, NULL});
+  strut_status status =
+      good ? judge_point(&j, positions, arena, point, error) : strut_no_memory(error, "");
   bool finite = !status || !j.hessian || is_finite(j.hessian);
   for (size_t i = 0; i < length; i++) finite = finite && fabs(positions[i]) < FARTHEST;
   strut_arena_free(&scratch);
@@ -326,7 +321,7 @@ void strut_stationary_set_start(strut_stationary_set *set, const strut_potential
 void strut_stationary_set_free(strut_stationary_set *set) {
   strut_release(set->points);
   strut_release(set->placement);
-  set->points = NULL, set->placement = NULL, set->count = set->room = 0;
+  *set = (strut_stationary_set){0};
 }
 
 /* Largest distance between two placements, up to the free rigid motions. */
@@ -373,7 +368,9 @@ static double position_blur(const strut_stationary_set *set, const strut_critica
   return fmin(far, MOST_BLUR * set->near);
 }
 
-static int32_t find_point(const strut_stationary_set *set, const double *positions, double energy) {
+/* Index of the point that q equals, or -1. */
+static int32_t find_point(const strut_stationary_set *set, const double *positions) {
+  double energy = strut_potential_value(set->potential, positions);
   for (size_t i = 0; i < set->count; i++)
     if (same_energy(set, energy, set->points[i].potential) &&
         same_point(set, positions, set->points[i].q, set->near))
@@ -387,39 +384,16 @@ static int32_t find_point(const strut_stationary_set *set, const double *positio
   return -1;
 }
 
-/* Index of the point that q equals, or -1. */
-static int32_t stationary_set_find(const strut_stationary_set *set, const double *positions) {
-  return find_point(set, positions, strut_potential_value(set->potential, positions));
-}
-
 static bool remember_placement(strut_stationary_set *set, int32_t index, const double *positions) {
   strut_congruent_copy **end = &set->placement[index];
   double near = fmax(set->near, position_blur(set, &set->points[index]));
   for (; *end; end = &(*end)->next)
     if (place_distance(set, positions, (*end)->q) <= near) return true;
-  size_t length = (size_t)set->potential->model->length;
-  double *copy = strut_arena_allocate(set->arena, length, sizeof *copy);
-  *end = strut_arena_allocate(set->arena, 1, sizeof **end);
-  if (!copy || !*end) {
-    *end = NULL;
-    return false;
-  }
-  memcpy(copy, positions, length * sizeof *positions);
-  (*end)->q = copy;
-  return true;
-}
-
-static bool reserve_points(strut_stationary_set *set) {
-  if (set->count < set->room) return true;
-  size_t room = set->room ? 2 * set->room : 16;
-  strut_critical_point *points = strut_reallocate(set->points, room, sizeof *points);
-  if (!points) return false;
-  set->points = points;
-  strut_congruent_copy **placement = strut_reallocate(set->placement, room, sizeof *placement);
-  if (!placement) return false;
-  set->placement = placement;
-  set->room = room;
-  return true;
+  const strut_congruent_copy copy = {.q = strut_arena_copy(set->arena, positions,
+                                                           (size_t)set->potential->model->length,
+                                                           sizeof *positions)};
+  *end = copy.q ? strut_arena_copy(set->arena, &copy, 1, sizeof copy) : NULL;
+  return *end;
 }
 
 /* One of a continuum: some motion that is no rigid one meets no stiffness. */
@@ -453,7 +427,7 @@ static void make_degenerate(strut_critical_point *known, const strut_critical_po
 strut_status strut_stationary_set_add(strut_stationary_set *set, const double *positions,
                                       int32_t *index, bool *fresh, strut_error *error) {
   strut_critical_point point;
-  *index = stationary_set_find(set, positions);
+  *index = find_point(set, positions);
   *fresh = *index < 0;
   if (*fresh) {
     strut_status status = critical_judge(set->potential, positions, set->arena, &point, error);
@@ -463,7 +437,9 @@ strut_status strut_stationary_set_add(strut_stationary_set *set, const double *p
     if (!*fresh && is_degenerate(&point)) make_degenerate(&set->points[*index], &point);
   }
   if (*fresh) {
-    if (!reserve_points(set)) return strut_no_memory(error, "");
+    if (!strut_grow(&set->points, &set->room[0], set->count, sizeof *set->points) ||
+        !strut_grow(&set->placement, &set->room[1], set->count, sizeof *set->placement))
+      return strut_no_memory(error, "");
     *index = (int32_t)set->count++;
     set->placement[*index] = NULL;
     set->points[*index] = point;

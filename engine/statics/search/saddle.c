@@ -35,17 +35,15 @@ strut_climber *strut_climber_create(const strut_potential *potential) {
   climber->potential = potential;
   climber->size = potential->model->size > 0 ? potential->model->size : 1.0;
   climber->spectra = strut_spectrum_create(potential);
-  double **line[] = {&climber->g,    &climber->part,   &climber->value,    &climber->x,
-                     &climber->step, &climber->follow, &climber->straight, &climber->g_trial};
-  bool good = climber->spectra != NULL;
-  for (size_t i = 0; i < sizeof line / sizeof line[0]; i++)
-    good = good && (*line[i] = strut_arena_allocate(&climber->arena, n, sizeof(double)));
   climber->idle = strut_arena_allocate(&climber->arena, n, sizeof *climber->idle);
-  climber->trial = strut_arena_allocate(&climber->arena, (size_t)potential->model->length,
-                                        sizeof *climber->trial);
-  climber->begin = strut_arena_allocate(&climber->arena, (size_t)potential->model->length,
-                                        sizeof *climber->begin);
-  if (good && climber->idle && climber->trial && climber->begin) return climber;
+  if (climber->spectra && climber->idle &&
+      strut_arena_numbers(
+          &climber->arena, n,
+          (double **[]){&climber->g, &climber->part, &climber->value, &climber->x, &climber->step,
+                        &climber->follow, &climber->straight, &climber->g_trial, NULL}) &&
+      strut_arena_numbers(&climber->arena, (size_t)potential->model->length,
+                          (double **[]){&climber->trial, &climber->begin, NULL}))
+    return climber;
   strut_climber_free(climber);
   return NULL;
 }

@@ -310,7 +310,7 @@ static strut_descent_end descend_task(const strut_search_tasks *tasks, worker *s
     shake(potential, tasks->seed ^ CROSSES, (uint64_t)task->number, positions);
     return strut_descend_gently(self->minimiser, positions);
   }
-  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(self->minimiser, positions, 0.0).end;
+  if (task->kind != STRUT_TASK_DOWN) return strut_minimise(self->minimiser, positions).end;
   return strut_descend_along(self->minimiser, task->other, task->side, positions)
              ? STRUT_DESCENT_REACHED
              : STRUT_DESCENT_EXHAUSTED;
