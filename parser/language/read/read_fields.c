@@ -11,6 +11,11 @@ strut_slot *strut_slot_of(strut_fields *fields, int key) {
   return &fields->slot[key - strut_section_first(fields->section)];
 }
 
+const strut_tree *strut_given(strut_fields *fields, int key) {
+  const strut_slot *slot = strut_slot_of(fields, key);
+  return slot->state == STRUT_GIVEN ? slot->value : NULL;
+}
+
 void strut_suppress_missing(strut_fields *fields) {
   for (int i = 0; i < strut_section_size(fields->section); i++)
     if (fields->slot[i].state == STRUT_ABSENT) fields->slot[i].state = STRUT_BROKEN;
@@ -346,6 +351,10 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
 }
 
 const strut_tree *strut_entries(strut_reader *reader, int key) {
-  const strut_slot *slot = strut_slot_of(&reader->top, key);
-  return slot->state == STRUT_GIVEN ? slot->value : NULL;
+  return strut_given(&reader->top, key);
+}
+
+size_t strut_entry_count(strut_reader *reader, int key) {
+  const strut_tree *map = strut_entries(reader, key);
+  return map ? map->count : 0;
 }

@@ -327,19 +327,19 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
   return read_signal(reader, value, key, within, expected);
 }
 
+void strut_list_signal(strut_reader *reader, const strut_tree *key, bool controller) {
+  reader->named[reader->named_count] =
+      (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1, controller};
+  strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
+}
+
 void strut_list_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
-  const strut_slot *controllers = strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONTROLLERS);
-  size_t count = map ? map->count : 0;
-  if (controllers->state == STRUT_GIVEN) count += controllers->value->count;
+  size_t count = (map ? map->count : 0) + strut_entry_count(reader, STRUT_KEY_SCENE_CONTROLLERS);
   if (!count) return;
   reader->named = strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->named);
-  for (const strut_tree *key = map ? map->first : NULL; key && reader->named;
-       key = key->next->next) {
-    strut_named_signal *named = &reader->named[reader->named_count];
-    *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1, false};
-    strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
-  }
+  for (const strut_tree *key = map && reader->named ? map->first : NULL; key; key = key->next->next)
+    strut_list_signal(reader, key, false);
 }
 
 int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
