@@ -41,11 +41,12 @@ static bool check_law_numbers(strut_checker *checker, const strut_law *law) {
   if (fault) return strut_fault_of(checker, "law", "the law of %s %s", checker->owner, fault);
   bool valid = true;
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
+    const strut_law_parameter *row = strut_law_parameter_at(p);
     double value = strut_law_value(law, p);
-    bool needed = strut_law_needs(law->kind, p);
-    if (isfinite(value) && !(needed && strut_law_above_zero(p) && !(value > 0.0))) continue;
-    valid = strut_fault_of(checker, "law", "the law of %s needs a %s%s", checker->owner,
-                           strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
+    bool positive = strut_law_needs(law->kind, p) && row->above_zero;
+    if (isfinite(value) && (!positive || value > 0.0)) continue;
+    valid = strut_fault_of(checker, "law", "the law of %s needs a %s%s", checker->owner, row->key,
+                           row->above_zero ? " above zero" : "");
   }
   return valid;
 }

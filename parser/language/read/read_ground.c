@@ -467,10 +467,6 @@ static size_t pieces_of(const strut_ground *ground) {
   return strut_profile_check(ground, &segment, &other) ? 1 : strut_ground_pieces(ground);
 }
 
-static bool nodes_are_known(strut_reader *reader) {
-  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
-}
-
 /* Names of contacts where a node may have several: NODE, NODE.GROUND, NODE.PIECE or NODE.GROUND.PIECE. */
 static void name_contacts(strut_reader *reader) {
   strut_scene *scene = reader->scene;
@@ -481,14 +477,11 @@ static void name_contacts(strut_reader *reader) {
   for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
     strut_contact *contact = &scene->contacts[i];
     const char *node = scene->nodes[contact->node].name,
-               *ground = scene->grounds[contact->ground].name;
-    size_t size = strlen(node) + strlen(ground) + 16, used;
-    char *name = strut_reader_allocate(reader, &scene->arena, size, 1);
-    if (!name) return;
-    used = (size_t)snprintf(name, size, "%s%s%s", node, *ground ? "." : "", ground);
-    if (pieces[contact->ground] > 1)
-      snprintf(name + used, size - used, ".%d", (int)contact->piece + 1);
-    contact->name = name;
+               *ground = scene->grounds[contact->ground].name, *dot = *ground ? "." : "";
+    contact->name = pieces[contact->ground] > 1
+                        ? strut_formatted(reader, &scene->arena, "%s%s%s.%d", node, dot, ground,
+                                          (int)contact->piece + 1)
+                        : strut_formatted(reader, &scene->arena, "%s%s%s", node, dot, ground);
   }
 }
 
@@ -533,7 +526,7 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
   bool line = ground->shape == STRUT_GROUND_LINE;
   defaults.along[0] = line ? cos(ground->slope) : 1.0;
   defaults.along[1] = line ? sin(ground->slope) : 0.0;
-  if (nodes_are_known(reader))
+  if (strut_entries(reader, STRUT_KEY_SCENE_NODES))
     read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
   else
     fields->broken = true;

@@ -340,6 +340,10 @@ int strut_key_named(strut_reader *reader, strut_section section, const strut_tre
 strut_slot *strut_slot_of(strut_fields *fields, int key);
 /** The value of a key that is given and could be read, else NULL. */
 const strut_tree *strut_given(strut_fields *fields, int key);
+/** Is the key there, whether or not its value could be read? */
+static inline bool strut_mentions(strut_fields *fields, int key) {
+  return strut_slot_of(fields, key)->state != STRUT_ABSENT;
+}
 /** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner);

@@ -272,11 +272,11 @@ static const char *count_hint(strut_reader *reader, const strut_placement *place
   long long number = strtoll(name, &end, 10);
   bool counted = length && end == name + length && number >= placement->count[which];
   if (!counted) return "";
-  return strut_arena_format(&reader->scratch, "; '%s' has the copies 0 to %lld%s", placement->name,
-                            (long long)placement->count[which] - 1,
-                            placement->numbers == 1 ? ""
-                            : which                 ? " along its second count"
-                                                    : " along its first count");
+  return strut_formatted(reader, &reader->scratch, "; '%s' has the copies 0 to %lld%s",
+                         placement->name, (long long)placement->count[which] - 1,
+                         placement->numbers == 1 ? ""
+                         : which                 ? " along its second count"
+                                                 : " along its first count");
 }
 
 const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
@@ -294,7 +294,6 @@ const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
       bool number = length && strspn(piece, "0123456789") == length;
       if (placement->numbers || number || strncmp(piece, "last.", 5) == 0)
         hint = count_hint(reader, placement, piece, length, k);
-      if (!hint) return "";
       piece += length + (piece[length] == '.');
     }
   }

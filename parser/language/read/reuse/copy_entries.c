@@ -51,15 +51,13 @@ static void copy_entries(strut_expansion *expansion, const strut_tree *map, stru
   if (!pairs) expansion->stopped = true;
   for (const strut_tree *from = map->first; from && !expansion->stopped; from = from->next->next) {
     struct pair *pair = pairs++;
-    const char *name = strut_arena_format(&reader->scratch, "%s%s", scope->prefix, from->text);
-    if (!name) reader->out_of_memory = expansion->stopped = true;
+    const char *name = strut_formatted(reader, &reader->scratch, "%s%s", scope->prefix, from->text);
     pair->key = (strut_placed_tree){*from, scope};
     pair->key.tree.placed = true;
     pair->key.tree.text = name;
     pair->value = *from->next;
     pair->key.tree.next = &pair->value;
     pair->value.next = NULL;
-    if (expansion->stopped) return;
     append(list, &pair->key.tree);
     if (nodes) strut_remember_node(expansion, &pair->key.tree);
   }

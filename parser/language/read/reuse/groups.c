@@ -125,8 +125,7 @@ static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges)
 }
 
 static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
-  if (ground && ground->kind == STRUT_TREE_MAP)
-    mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
+  if (ground) mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
 }
 
 static void find_users(strut_reader *reader) {
