@@ -309,12 +309,13 @@ static void check_lattice(strut_checker *checker) {
   for (int32_t k = 0; k < scene->lattice_count; k++)
     empty = empty || !(length[k] > 0.0 && length[k] < HUGE_VAL);
   if (empty)
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "lattice",
-                         "a step of the lattice must lead somewhere, it is [0, 0]");
-  else if (scene->lattice_count == 2 && !(area > 1e-9 * length[0] * length[1]))
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "lattice",
-                         "the two steps of the lattice are parallel; one step is enough for a "
-                         "structure that repeats along a line");
+    if (empty)
+      strut_fault_of(checker, "lattice", "a step of the lattice must lead somewhere, it is [0, 0]");
+    else if (scene->lattice_count == 2 && !(area > 1e-9 * length[0] * length[1]))
+      strut_fault_of(
+          checker, "lattice",
+          "the two steps of the lattice are parallel; one step is enough for a structure "
+          "that repeats along a line");
 }
 
 void strut_check_members(strut_checker *checker) {

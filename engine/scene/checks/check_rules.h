@@ -67,6 +67,12 @@ bool strut_check_number(strut_checker *checker, strut_thing_section section, con
 /** Are two nodes drawn, and do they start, apart, so that `what` of the owner ("", "an arm of ") has a direction? */
 bool strut_check_apart(strut_checker *checker, const char *key, int32_t first, int32_t second,
                        const char *what);
+/**
+ * Has the signal of a motion an acceleration and no jumps? If not, that is reported of `what` ("the angle of unbalance
+ * 'u'"), by which a `moved` ("support") moves.
+ */
+bool strut_check_motion(strut_checker *checker, const char *key, int32_t signal, const char *what,
+                        const char *moved);
 /** Does an actuator add a force to that member, a moment to that hinge? -1: none. */
 bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
 
