@@ -271,7 +271,6 @@ void strut_experiment_choose_step(strut_experiment *experiment, const strut_scen
   experiment->step_chosen = true;
 }
 
-/* Moves the shape of a ground. */
 static bool shift_ground(strut_ground *ground, const double place[2], strut_arena *arena) {
   if (!ground->placed) ground->through[0] = 0.0, ground->through[1] = ground->height;
   ground->placed = ground->placed || ground->shape == STRUT_GROUND_LINE;

@@ -151,7 +151,6 @@ void strut_check_drives(strut_checker *checker) {
   }
 }
 
-/* Checks the length of the run: its duration, or its period. */
 static bool check_length(strut_checker *checker) {
   const strut_experiment *experiment = checker->experiment;
   const strut_experiment usual = {0};
@@ -168,11 +167,11 @@ static bool check_length(strut_checker *checker) {
   if (period > 0.0 && isfinite(period * experiment->periods)) return true;
   if (period > 0.0 && isfinite(period))
     return strut_fault_of(checker, "periods", "the duration of the run overflows");
-  return strut_fault_of(checker, "of",
-                        "'%s' has no period: the run can be given in periods of a sine, a "
-                        "half-sine, a square, or a "
-                        "sum whose longest period is a multiple of the others",
-                        experiment->period_of ? experiment->period_of : "the signal");
+  return strut_fault_of(
+      checker, "of",
+      "'%s' has no period: the run can be given in periods of a sine, a "
+      "half-sine, a square, or a sum whose longest period is a multiple of the others",
+      experiment->period_of ? experiment->period_of : "the signal");
 }
 
 static void check_window(strut_checker *checker, strut_subject subject, const char *owner,
@@ -185,7 +184,6 @@ static void check_window(strut_checker *checker, strut_subject subject, const ch
                        last, periods ? "periods" : "s", whole, periods ? "periods" : "s");
 }
 
-/* Checks the step and the resulting number of steps. */
 static void check_step(strut_checker *checker, bool length_known) {
   const strut_experiment *experiment = checker->experiment;
   strut_check_begin_with(checker, STRUT_ON_SOLVER, 0, "the solver");
@@ -270,7 +268,6 @@ static bool node_moves(const strut_scene *scene, int32_t node) {
   return false;
 }
 
-/* Can the member carry a mass that slides? */
 static bool check_carrier(strut_checker *checker) {
   size_t i = checker->index;
   const strut_scene *scene = checker->scene;

@@ -26,7 +26,6 @@ static strut_place asking_place(strut_reader *reader) {
   return parameters->set->place.line ? parameters->set->place : parameters->key->place;
 }
 
-/* The place for messages about the parameters as a whole. */
 static strut_place section_place(strut_reader *reader) {
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   return slot->key ? slot->key->place : strut_root_place(reader);
@@ -57,7 +56,6 @@ static void report_setting(strut_reader *reader, const strut_setting *set, strut
                        strut_sanitised_text(reader, set->text), message);
 }
 
-/* The value that is given from outside. */
 static bool evaluate_set(strut_reader *reader, strut_parameter_state *parameters) {
   if (parameters->set->known) {
     parameters->quantity = (strut_quantity){.value = parameters->set->value,

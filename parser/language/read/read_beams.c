@@ -292,12 +292,10 @@ static bool find_target(strut_reader *reader, const strut_beam *beam, int end,
   return true;
 }
 
-/* Stiffness of the half part at an end. */
 static double half_stiffness(const strut_reader *reader, const strut_beam *beam) {
   return 2.0 * beam->bending_stiffness / part_length(reader, beam);
 }
 
-/* The node next to an end. */
 static int32_t inner_node(const strut_beam *beam, int end) {
   return node_of(beam, end ? beam->parts - 1 : 1);
 }
@@ -346,7 +344,6 @@ static bool make_couplings(strut_reader *reader, joints *self) {
   return true;
 }
 
-/* Resolves what ends are clamped to. */
 static void join_all(const joints *self) {
   strut_reader *reader = self->reader;
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++) {

@@ -213,7 +213,6 @@ static bool add_integral(strut_reader *reader, const strut_tree *key, controller
   return true;
 }
 
-/* Does the controller make sense beside its sensor? If not, that is reported. */
 static bool check_controller(strut_reader *reader, const strut_tree *key, const controller *self) {
   const strut_sensor *sensor = &reader->scene->sensors[self->keys.sensor];
   const double *limit = self->keys.limit;
@@ -266,7 +265,6 @@ bool strut_is_relay(const strut_tree *map) {
 
 /* ---- relays: controllers that switch between two values ---- */
 
-/* The thresholds, in the unit of the input. */
 static bool read_thresholds(strut_reader *reader, const strut_tree *key, strut_owner owner,
                             strut_fields *fields, strut_dimension input, strut_signal *relay) {
   bool above = strut_given(fields, STRUT_KEY_RELAY_ON_ABOVE) != NULL;

@@ -63,7 +63,6 @@ static bool turn_sensor(strut_reader *reader, const strut_tree *place, strut_sen
   return false;
 }
 
-/* What `of` names, if a sensor may see it. */
 static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner owner,
                     strut_sensor *sensor) {
   strut_column seen;
@@ -239,7 +238,6 @@ static bool read_start(strut_reader *reader, const strut_tree *key, strut_quanti
                                  owner, "a number such as '0 rad'", start);
 }
 
-/* An oscillator's phase at t = 0. */
 static bool read_phase(strut_reader *reader, const strut_tree *key, strut_quantity *start) {
   strut_owner owner = {"oscillator", key->text};
   strut_fields fields;

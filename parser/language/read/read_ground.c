@@ -247,7 +247,6 @@ static bool moves(const strut_reader *reader, int32_t node) {
   return reader->node_moves && reader->node_moves[node];
 }
 
-/* Marks the nodes whose names fit a pattern. */
 static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_owner owner,
                          unsigned char *touches) {
   bool any = false;
@@ -259,7 +258,6 @@ static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_own
   return any;
 }
 
-/* Marks the nodes that may touch a ground. */
 static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        unsigned char *touches) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
@@ -396,7 +394,6 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owne
   }
 }
 
-/* What all contacts of a ground begin with. */
 static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
                                      const strut_contact *contact, strut_owner owner) {
   ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
@@ -513,7 +510,6 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
                        "'belt_speed' has no meaning without 'friction' of a contact");
 }
 
-/* One ground of the scene: its fields, itself and its contacts. */
 static void read_one(strut_reader *reader, strut_fields *fields, strut_owner owner,
                      strut_place place, strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, owner, place);

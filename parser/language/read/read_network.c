@@ -30,7 +30,6 @@ static bool fail_network(network *self, const char *what, const char *text) {
                             text ? strut_sanitised_text(self->reader, text) : "");
 }
 
-/* A signal of the network with a name of its own. */
 static int32_t add_neuron(network *self, const char *end, const strut_signal *signal) {
   strut_signal named = *signal;
   named.name = strut_made_name(self->reader, self->key, "a neuron of controller", end, NULL);
@@ -51,7 +50,6 @@ static strut_signal make_neuron(const network *self, bool linear) {
   return signal;
 }
 
-/* The numbers of a line become a neuron's weights. */
 static bool read_weights(network *self, char *line) {
   size_t count = 0;
   char *rest = line;

@@ -156,7 +156,6 @@ static bool has_contact(const strut_scene *scene, int32_t node) {
   return false;
 }
 
-/* Does the node have the columns of the ground? If not, that is reported. */
 static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
                     strut_refusal *refusal) {
   const strut_scene *scene = reader->scene;
@@ -460,7 +459,6 @@ static bool find_declared(strut_reader *reader, const strut_scene_source *source
   return of_source || own;
 }
 
-/* True where a derivative by the item can be made; if not, that is reported. */
 static bool check_derivative(strut_reader *reader, const strut_tree *list, const strut_tree *item,
                              strut_owner owner, const strut_scene_source *source,
                              strut_declared *declared) {

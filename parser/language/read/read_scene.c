@@ -127,7 +127,6 @@ static void clear_sections(strut_reader *reader) {
   reader->output.section = STRUT_SECTION_OUTPUT;
 }
 
-/* Does the file describe a run? */
 static bool describes_run(strut_reader *reader) {
   const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
   const char *step = strut_key_at(STRUT_KEY_SOLVER_STEP)->name;
@@ -147,7 +146,6 @@ void strut_reader_target(strut_reader *reader, strut_setup *setup) {
   reader->experiment = &setup->experiment;
 }
 
-/* Reads and checks the tree; reports all errors. */
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
@@ -260,7 +258,6 @@ strut_status strut_setup_read(strut_setup *setup, const char *file, const char *
   return status;
 }
 
-/* Takes over the texts of used files. */
 static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {
   if (!from->used_count) return STRUT_OK;
   source->used = strut_arena_allocate(&source->arena, from->used_count, sizeof *source->used);
@@ -550,7 +547,6 @@ static bool signal_place(strut_reader *reader, const strut_finding *finding, str
   return true;
 }
 
-/* Findings about things of a scene. */
 static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *source = &reader->things[finding->subject].source[finding->index];
   if (source->broken) return false;
@@ -562,7 +558,6 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
   return thing_place(reader, source, finding->key, place);
 }
 
-/* Findings about the ground, the initial state, the solver and other single mappings. */
 static bool single_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const struct {
     strut_fields *fields;

@@ -143,7 +143,6 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
 }
 
-/* A column of data over time. */
 static bool read_data(strut_reader *reader, strut_fields *fields, strut_owner owner, meaning *self,
                       strut_signal *signal) {
   const strut_slot *data = strut_slot_of(fields, STRUT_KEY_SIGNAL_DATA);
@@ -155,7 +154,6 @@ static bool read_data(strut_reader *reader, strut_fields *fields, strut_owner ow
          check_unscaled(reader, data->value, "data");
 }
 
-/* The event with which the signal's time begins. */
 bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner owner,
                         void *object) {
   strut_trigger *trigger = object;

@@ -376,7 +376,6 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
              strut_owner_text(reader, owner));
 }
 
-/* Is there one of the three forms? If not, that is reported. */
 bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owner owner,
                           void *object) {
   const strut_slot *node = strut_slot_of(fields, STRUT_KEY_COLLISION_NODE);
@@ -397,7 +396,6 @@ bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owne
       alone && pair ? "names a node beside a pair" : "does not name two things");
 }
 
-/* Is it one of the two forms? If not, that is reported. */
 bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner owner,
                          void *object) {
   strut_distance_spring *spring = object;

@@ -359,8 +359,6 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
 const strut_tree *strut_entries(strut_reader *reader, int key);
 size_t strut_entry_count(strut_reader *reader, int key);
 
-/* companions.c */
-
 /** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
 bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner);
 /** What a study must compute for a key of it to mean anything, "modes|path"; NULL: anything. */

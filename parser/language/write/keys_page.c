@@ -25,7 +25,6 @@ static void put_unit(strut_writer *writer, const strut_key *key) {
                      strut_dimension_unit(strut_measure_dimension(key->measure)));
 }
 
-/* A link to the heading of a section. */
 static void put_section_link(strut_writer *writer, const char *name) {
   char letter[2] = "";
   strut_put(writer, "[mapping](#");

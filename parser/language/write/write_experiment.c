@@ -148,7 +148,6 @@ static int32_t signal_of(const strut_scene *scene, strut_thing kind, size_t i) {
   return kind == STRUT_THING_LOAD ? scene->loads[i].signal : scene->actuators[i].signal;
 }
 
-/* Would `of: name` refer to this signal? */
 static bool refers_to(const strut_scene *scene, const char *name, int32_t signal) {
   bool found = false;
   for (size_t k = 0; k < DRIVERS; k++)

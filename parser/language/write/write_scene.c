@@ -12,7 +12,6 @@
 
 /* ---- signals, and what they drive ---- */
 
-/* The name of the signal in the file; NULL if it is written where it is used. */
 const char *strut_signal_name(const strut_writer *writer, int32_t index) {
   assert(index >= 0 && (size_t)index < writer->scene->signal_count);
   const char *name = writer->scene->signals[index].name;

@@ -111,7 +111,6 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   return count;
 }
 
-/* Marks the groups that the things of a mapping name. */
 static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
   strut_group *groups[STRUT_MOST_GROUPS];
   if (!map || map->kind != STRUT_TREE_MAP) return;
@@ -162,7 +161,6 @@ void strut_read_groups(strut_reader *reader) {
     read_group(reader, key, &reader->groups[i++]);
 }
 
-/* Does every name in `group:` name a group? Unknown ones are reported. */
 static bool check_names(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner) {
   bool fine = true,

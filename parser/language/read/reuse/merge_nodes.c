@@ -55,7 +55,6 @@ static strut_place drawn_place(const merging *self, int32_t node) {
   return self->reader->things[STRUT_THING_NODE].source[node].key->place;
 }
 
-/* Reports two nodes that are apart, and where each is drawn. */
 static void report_apart(merging *self, const strut_merger *merger, int32_t a, int32_t b,
                          double apart) {
   strut_reader *reader = self->reader;

@@ -150,7 +150,6 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
 
 /* ---- one placement ---- */
 
-/* Does an expression of the mapping mention i or j? */
 static bool mentions_number(const strut_tree *tree) {
   if (tree->kind != STRUT_TREE_SCALAR) {
     for (const strut_tree *k = tree->first; k; k = k->next)
@@ -244,7 +243,6 @@ static void add_ports(strut_expansion *expansion, strut_copy *copy) {
   }
 }
 
-/* The entries of a copy, and of the parts that it places. */
 static void fill_copy(strut_expansion *expansion, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   expansion->reader->scope = NULL;
@@ -400,7 +398,6 @@ static void make_copies(strut_expansion *expansion, strut_placing *placing) {
   }
 }
 
-/* Reports a part that contains itself. */
 static bool enter_part(strut_expansion *expansion, const strut_part *part, const strut_tree *name) {
   struct strut_copies *copies = expansion->copies;
   char chain[600] = "";
