@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 #include "engine/base/status.h"
-#include "engine/scene/dimension.h"
+#include "engine/scene/observables.h"
 
 typedef struct strut_data_column {
   const char *name; /* within its table: "x1", "snout.x" */

@@ -105,76 +105,53 @@ static inline bool strut_friction_needs(strut_friction_law law, int parameter) {
   return strut_friction_law_at(law)->needs >> parameter & 1u;
 }
 
-/** Key of a parameter. */
-static inline const char *strut_friction_key(int parameter) {
-  static const char *const keys[] = {
-#define STRUT_FRICTION_ROW(NAME, field, range) #field,
-      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
-#undef STRUT_FRICTION_ROW
-  };
-  return keys[parameter];
-}
+/** A parameter of the laws. */
+typedef struct strut_friction_parameter {
+  const char *key;
+  bool above_zero; /* where the law needs it; otherwise not negative */
+  size_t offset;   /* in a strut_friction */
+} strut_friction_parameter;
 
-/** Must the parameter be above zero where the law needs it? Otherwise it must not be negative. */
-static inline bool strut_friction_above_zero(int parameter) {
+static inline const strut_friction_parameter *strut_friction_parameter_at(int parameter) {
   enum { NOT_NEGATIVE, ABOVE_ZERO };
-  static const bool above[] = {
-#define STRUT_FRICTION_ROW(NAME, field, range) range == ABOVE_ZERO,
+  static const strut_friction_parameter rows[] = {
+#define STRUT_FRICTION_ROW(NAME, field, range)                                                     \
+  {#field, range == ABOVE_ZERO, offsetof(strut_friction, field)},
       STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW
   };
-  return above[parameter];
+  return &rows[parameter];
 }
 
-/** The friction's number for a parameter. */
-static inline double *strut_friction_parameter(strut_friction *friction, int parameter) {
-  double *const numbers[] = {
-#define STRUT_FRICTION_ROW(NAME, field, range) &friction->field,
-      STRUT_FRICTION_PARAMETERS(STRUT_FRICTION_ROW)
-#undef STRUT_FRICTION_ROW
-  };
-  return numbers[parameter];
+static inline const char *strut_friction_key(int parameter) {
+  return strut_friction_parameter_at(parameter)->key;
 }
-
+static inline bool strut_friction_above_zero(int parameter) {
+  return strut_friction_parameter_at(parameter)->above_zero;
+}
 static inline double strut_friction_value(const strut_friction *friction, int parameter) {
-  strut_friction copy = *friction;
-  return *strut_friction_parameter(&copy, parameter);
+  const char *at = (const char *)friction + strut_friction_parameter_at(parameter)->offset;
+  return *(const double *)(const void *)at;
 }
 
 /** Contact states of a law; see strut_friction_class. */
 static inline strut_friction_class strut_friction_states(strut_friction_law law) {
-  switch (law) {
-#define STRUT_FRICTION_ROW(NAME, name, word, states, needs)                                        \
-  case STRUT_FRICTION_##NAME: return STRUT_FRICTION_##states;
-    STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
-#undef STRUT_FRICTION_ROW
-    case STRUT_FRICTION_LAW_COUNT: break;
-  }
-  return STRUT_FRICTION_ABSENT;
+  return strut_friction_law_at(law)->states;
 }
 
 /** Has it a band of speeds in which it balances the other forces? */
 static inline bool strut_friction_has_band(strut_friction_law law) {
-  switch (strut_friction_states(law)) {
-    case STRUT_FRICTION_STICK_BAND: return true;
-    case STRUT_FRICTION_ABSENT:
-    case STRUT_FRICTION_EXACT_STICK:
-    case STRUT_FRICTION_CONTINUOUS:
-    case STRUT_FRICTION_BRISTLES: break;
-  }
-  return false;
+  return strut_friction_states(law) == STRUT_FRICTION_STICK_BAND;
 }
 
 /** Does it need a method with events? */
 static inline bool strut_friction_is_exact(strut_friction_law law) {
-  switch (strut_friction_states(law)) {
-    case STRUT_FRICTION_EXACT_STICK: return true;
-    case STRUT_FRICTION_ABSENT:
-    case STRUT_FRICTION_STICK_BAND:
-    case STRUT_FRICTION_CONTINUOUS:
-    case STRUT_FRICTION_BRISTLES: break;
-  }
-  return false;
+  return strut_friction_states(law) == STRUT_FRICTION_EXACT_STICK;
+}
+
+/** Is it a force that follows from the speed alone? */
+static inline bool strut_friction_is_continuous(strut_friction_law law) {
+  return strut_friction_states(law) == STRUT_FRICTION_CONTINUOUS;
 }
 
 /**
@@ -191,18 +168,6 @@ static inline int strut_friction_holds_too_little(const strut_friction *f) {
 /** Has it an internal state? */
 static inline bool strut_friction_has_bristles(strut_friction_law law) {
   return strut_friction_states(law) == STRUT_FRICTION_BRISTLES;
-}
-
-/** Is it a force that follows from the speed alone? */
-static inline bool strut_friction_is_continuous(strut_friction_law law) {
-  switch (strut_friction_states(law)) {
-    case STRUT_FRICTION_CONTINUOUS: return true;
-    case STRUT_FRICTION_BRISTLES:
-    case STRUT_FRICTION_ABSENT:
-    case STRUT_FRICTION_STICK_BAND:
-    case STRUT_FRICTION_EXACT_STICK: break;
-  }
-  return false;
 }
 
 /** The numbers as the laws take them. */

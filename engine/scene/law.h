@@ -136,51 +136,34 @@ static inline bool strut_law_allows(strut_law_kind kind, int parameter) {
   return strut_law_needs(kind, parameter) || strut_law_at(kind)->may >> parameter & 1u;
 }
 
-/** Key of a parameter. */
-static inline const char *strut_law_key(int parameter) {
-  static const char *const keys[] = {
-#define STRUT_LAW_ROW(NAME, field, ...) #field,
-      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_ROW)
-#undef STRUT_LAW_ROW
-  };
-  return keys[parameter];
-}
+/** A parameter of laws; the lists, which come last, have a key only. */
+typedef struct strut_law_parameter {
+  const char *key;
+  bool above_zero; /* where a law needs it */
+  int power;     /* it is a force over this power of a strain: 1 a slope, 0 a force; -1: a strain */
+  size_t offset; /* in a strut_law */
+} strut_law_parameter;
 
-/** Must number p be above zero where the law needs it? */
-static inline bool strut_law_above_zero(int p) {
+static inline const strut_law_parameter *strut_law_parameter_at(int p) {
   enum { ANY_NUMBER, ABOVE_ZERO };
-  static const bool above[] = {
-#define STRUT_LAW_ROW(NAME, field, range, measure) range == ABOVE_ZERO,
-      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
-#undef STRUT_LAW_ROW
-  };
-  return above[p];
-}
-
-/** Number p is a force over this power of a strain: 1 for a slope, 0 for a force; -1: it is a strain. */
-static inline int strut_law_power(int p) {
   enum { STRAIN = -1, FORCE, SLOPE };
-  static const int power[] = {
-#define STRUT_LAW_ROW(NAME, field, range, measure) measure,
-      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
+  static const strut_law_parameter rows[] = {
+#define STRUT_LAW_ROW(NAME, field, range, measure)                                                 \
+  {#field, range == ABOVE_ZERO, measure, offsetof(strut_law, field)},
+#define STRUT_LAW_LIST(NAME, field, ...) {#field, false, 0, 0},
+      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_LIST)
 #undef STRUT_LAW_ROW
+#undef STRUT_LAW_LIST
   };
-  return power[p];
+  return &rows[p];
 }
 
 /** The law's number p, p < STRUT_LAW_NUMBER_COUNT. */
 static inline double *strut_law_number(strut_law *law, int p) {
-  double *const numbers[] = {
-#define STRUT_LAW_ROW(NAME, field, ...) &law->field,
-      STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
-#undef STRUT_LAW_ROW
-  };
-  return numbers[p];
+  return (double *)(void *)((char *)law + strut_law_parameter_at(p)->offset);
 }
-
 static inline double strut_law_value(const strut_law *law, int p) {
-  strut_law copy = *law;
-  return *strut_law_number(&copy, p);
+  return *(const double *)(const void *)((const char *)law + strut_law_parameter_at(p)->offset);
 }
 
 /*

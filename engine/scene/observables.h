@@ -15,6 +15,11 @@
 
 #include "engine/base/status.h"
 
+/** What a number measures: exponents of kg, m, s and angle. */
+typedef struct strut_dimension {
+  float kg, m, s, angle;
+} strut_dimension;
+
 /**
  * X(OWNER, THING, TABLE, group, phrase, things, axis, file): what observables belong to. THING is the kind whose
  * names stand before the dot, COUNT where there is none; then `group` does, which messages call `phrase`. As channels

@@ -271,7 +271,6 @@ void strut_experiment_choose_step(strut_experiment *experiment, const strut_scen
   experiment->step_chosen = true;
 }
 
-/* Moves the shape of a ground. */
 static bool shift_ground(strut_ground *ground, const double place[2], strut_arena *arena) {
   if (!ground->placed) ground->through[0] = 0.0, ground->through[1] = ground->height;
   ground->placed = ground->placed || ground->shape == STRUT_GROUND_LINE;
@@ -388,4 +387,19 @@ bool strut_path_names_load(const char *names, const char *load) {
     if (begins && (at[length] == '\0' || at[length] == ',')) return true;
   }
   return false;
+}
+
+/* ---- measured data ---- */
+
+const strut_data_column *strut_data_find(const strut_data_table *tables, size_t count,
+                                         const char *name, const strut_data_table **table) {
+  size_t length = strcspn(name, ".");
+  if (table) *table = NULL;
+  for (size_t i = 0; i < count; i++) {
+    if (strncmp(tables[i].name, name, length) != 0 || tables[i].name[length]) continue;
+    if (table) *table = &tables[i];
+    for (size_t k = 0; name[length] && k < tables[i].column_count; k++)
+      if (strcmp(tables[i].columns[k].name, name + length + 1) == 0) return &tables[i].columns[k];
+  }
+  return NULL;
 }

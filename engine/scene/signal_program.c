@@ -36,7 +36,6 @@ static dual raise_to_power(dual a, dual b) {
   return result;
 }
 
-/* Of two arguments a and b. */
 static dual combine(strut_operation operation, dual a, dual b) {
   double square = a.value * a.value + b.value * b.value, root;
   switch ((int)operation) {
@@ -59,7 +58,6 @@ static dual combine(strut_operation operation, dual a, dual b) {
   return (dual){(double)NAN, (double)NAN};
 }
 
-/* Of one argument. */
 static dual apply(strut_operation operation, dual a) {
   const double ten = 2.30258509299404568402; /* log 10 */
   double x = a.value, y;

@@ -176,7 +176,6 @@ static double number_at(strut_field_type type, const void *value) {
   return 0.0;
 }
 
-/* The numbers of one value. */
 static void put_value(const numbers *to, strut_field_type type, const void *value) {
   if (type == STRUT_FIELD_DOUBLE_PAIR) {
     for (int c = 0; c < 2; c++) put(to, ((const double *)value)[c]);

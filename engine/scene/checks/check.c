@@ -153,7 +153,7 @@ static bool is_named(const strut_scene *scene, strut_thing kind, size_t i) {
   return kind != STRUT_THING_SIGNAL || scene->signals[i].name;
 }
 
-void strut_check_names(strut_checker *checker) {
+static void check_all_names(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   for (int k = 0; k < STRUT_THING_COUNT; k++) {
     strut_thing kind = (strut_thing)k;
@@ -169,7 +169,7 @@ void strut_check_names(strut_checker *checker) {
 /* Beyond it squares of distances have no number [m]. */
 static const double FARTHEST = 1e150;
 
-void strut_check_nodes(strut_checker *checker) {
+static void check_all_nodes(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   if (!scene->node_count)
     strut_report_finding(checker, STRUT_ON_SCENE, 0, "nodes", "the scene has no nodes");
@@ -228,7 +228,6 @@ static bool check_ends(strut_checker *checker) {
   return strut_fault(checker, "nodes", "runs over guides, which a bar cannot");
 }
 
-/* Checks each number of a member by itself. */
 static bool check_numbers(strut_checker *checker) {
   const strut_member *member = &checker->scene->members[checker->index];
   bool valid = strut_check_thing(checker);
@@ -236,7 +235,6 @@ static bool check_numbers(strut_checker *checker) {
   return strut_fault(checker, "kind", "is of an unknown kind");
 }
 
-/* Checks the numbers of a member together. */
 static bool check_law(strut_checker *checker) {
   const strut_member *member = &checker->scene->members[checker->index];
   const char *key = rest_key(member->rest_kind);
@@ -309,15 +307,14 @@ static void check_lattice(strut_checker *checker) {
   for (int32_t k = 0; k < scene->lattice_count; k++)
     empty = empty || !(length[k] > 0.0 && length[k] < HUGE_VAL);
   if (empty)
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "lattice",
-                         "a step of the lattice must lead somewhere, it is [0, 0]");
+    strut_fault_of(checker, "lattice", "a step of the lattice must lead somewhere, it is [0, 0]");
   else if (scene->lattice_count == 2 && !(area > 1e-9 * length[0] * length[1]))
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "lattice",
-                         "the two steps of the lattice are parallel; one step is enough for a "
-                         "structure that repeats along a line");
+    strut_fault_of(checker, "lattice",
+                   "the two steps of the lattice are parallel; one step is enough for a structure "
+                   "that repeats along a line");
 }
 
-void strut_check_members(strut_checker *checker) {
+static void check_all_members(strut_checker *checker) {
   strut_check_begin_with(checker, STRUT_ON_SCENE, 0, "rayleigh in the scene");
   checker->within = "rayleigh";
   strut_check_fields(checker, STRUT_FIELDS_RAYLEIGH, checker->scene, NULL);
@@ -330,7 +327,6 @@ void strut_check_members(strut_checker *checker) {
   }
 }
 
-/* Marks the nodes that exist. */
 static void mark_nodes(unsigned char *joined, const strut_scene *scene, const int32_t *node,
                        size_t count) {
   for (size_t k = 0; k < count; k++)
@@ -360,7 +356,7 @@ unsigned char *strut_joined_nodes(strut_checker *checker) {
 }
 
 /* Is every node used, and does every free node have mass in a run? */
-void strut_check_use(strut_checker *checker) {
+static void check_all_use(strut_checker *checker) {
   enum { USED = 1, HEAVY = 2 };
   const strut_scene *scene = checker->scene;
   unsigned char *state = strut_joined_nodes(checker);
@@ -396,8 +392,8 @@ void strut_check_use(strut_checker *checker) {
 strut_status strut_setup_check(const strut_setup *setup, strut_purpose purpose,
                                strut_findings *findings) {
   static void (*const rules[])(strut_checker *) = {
-      strut_check_names,     strut_check_nodes,      strut_check_members,        strut_check_hinges,
-      strut_check_cells,     strut_check_collisions, strut_check_distances,      strut_check_use,
+      check_all_names,       check_all_nodes,        check_all_members,          strut_check_hinges,
+      strut_check_cells,     strut_check_collisions, strut_check_distances,      check_all_use,
       strut_check_sensors,   strut_check_states,     strut_check_signals,        strut_check_ground,
       strut_check_feet,      strut_check_drives,     strut_check_sliding_masses, strut_check_shapes,
       strut_check_experiment};

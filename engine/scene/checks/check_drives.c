@@ -37,9 +37,28 @@ static const char *fault_of_motion(const strut_scene *scene, size_t i) {
   return NULL;
 }
 
-static void check_motions(strut_checker *checker) {
+bool strut_check_motion(strut_checker *checker, const char *key, int32_t signal, const char *what,
+                        const char *moved) {
   const strut_scene *scene = checker->scene;
   double when;
+  if (!strut_exists(signal, scene->signal_count))
+    return strut_fault_of(checker, key, "%s has a signal that does not exist", what);
+  if (checker->wild[signal]) return false;
+  if (!strut_signal_is_wave(scene->signals, signal))
+    return strut_fault_of(checker, key,
+                          "%s is an expression, a lag, samples or a start, whose acceleration is "
+                          "not known; use waves, ramps, tables and sums of them",
+                          what);
+  return !strut_signal_value_jumps(scene->signals, signal, HUGE_VAL, &when) ||
+         strut_fault_of(checker, key,
+                        "%s jumps at t = %g s, but a %s cannot jump; use a ramp, a table, or waves "
+                        "that begin and stop at zero",
+                        what, when, moved);
+}
+
+static void check_motions(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  char what[240];
   for (size_t i = 0; i < scene->support_motion_count; i++) {
     const strut_support_motion *motion = &scene->support_motions[i];
     if (!strut_exists(motion->node, scene->node_count)) {
@@ -49,27 +68,17 @@ static void check_motions(strut_checker *checker) {
     }
     strut_check_begin(checker, STRUT_THING_NODE, (size_t)motion->node);
     const char *fault = fault_of_motion(scene, i);
+    snprintf(what, sizeof what, "the motion of %s in %c", checker->owner, "xy"[motion->axis & 1]);
     if (fault)
       strut_fault(checker, "moves", "%s", fault);
-    else if (!strut_exists(motion->signal, scene->signal_count))
-      strut_fault(checker, "moves", "moves by a signal that does not exist");
-    else if (!checker->wild[motion->signal] &&
-             !strut_signal_is_wave(scene->signals, motion->signal))
-      strut_fault(checker, "moves",
-                  "moves by an expression, a lag, samples or a start, whose acceleration is "
-                  "not known; use waves, ramps, tables and sums of them");
-    else if (!checker->wild[motion->signal] &&
-             strut_signal_value_jumps(scene->signals, motion->signal, HUGE_VAL, &when))
-      strut_fault_of(checker, "moves",
-                     "the signal that moves %s in %c jumps at t = %g s, but a support cannot "
-                     "jump; use a ramp or a table",
-                     checker->owner, "xy"[motion->axis], when);
+    else
+      strut_check_motion(checker, "moves", motion->signal, what, "support");
   }
 }
 
 static void check_unbalances(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  double when;
+  char what[240];
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     const strut_unbalance *unbalance = &scene->unbalances[i];
     strut_check_begin(checker, STRUT_THING_UNBALANCE, i);
@@ -78,20 +87,8 @@ static void check_unbalances(strut_checker *checker) {
     if (!strut_exists(unbalance->node, scene->node_count))
       strut_fault(checker, "node", "rotates about a node that does not exist");
     if (unbalance->signal == -1) continue;
-    if (!strut_exists(unbalance->signal, scene->signal_count))
-      strut_fault(checker, "angle", "has a signal that does not exist");
-    else if (!checker->wild[unbalance->signal] &&
-             !strut_signal_is_wave(scene->signals, unbalance->signal))
-      strut_fault_of(checker, "angle",
-                     "the angle of %s is an expression, a lag, samples or a start, whose "
-                     "acceleration is not known; use waves, ramps, tables and sums of them",
-                     checker->owner);
-    else if (!checker->wild[unbalance->signal] &&
-             strut_signal_value_jumps(scene->signals, unbalance->signal, HUGE_VAL, &when))
-      strut_fault_of(checker, "angle",
-                     "the angle of %s jumps at t = %g s, but a rotating mass cannot jump; use "
-                     "a ramp or a table",
-                     checker->owner, when);
+    snprintf(what, sizeof what, "the angle of %s", checker->owner);
+    strut_check_motion(checker, "angle", unbalance->signal, what, "rotating mass");
   }
 }
 
@@ -154,31 +151,27 @@ void strut_check_drives(strut_checker *checker) {
   }
 }
 
-/* Checks the length of the run: its duration, or its period. */
 static bool check_length(strut_checker *checker) {
   const strut_experiment *experiment = checker->experiment;
   const strut_experiment usual = {0};
   strut_check_begin_with(checker, STRUT_ON_RUN, 0, "the run");
   if (!strut_check_fields(checker, STRUT_FIELDS_RUN, experiment, &usual)) return false;
   if (experiment->duration > 0.0 && experiment->periods > 0.0)
-    return strut_report_finding(checker, STRUT_ON_RUN, 0, "periods",
-                                "the run has both a duration and a number of periods; give one");
+    return strut_fault_of(checker, "periods",
+                          "the run has both a duration and a number of periods; give one");
   if (experiment->periods == 0.0) return experiment->duration > 0.0;
   if (!strut_exists(experiment->period_signal, checker->scene->signal_count))
-    return strut_report_finding(checker, STRUT_ON_RUN, 0, "of",
-                                "a run in periods needs a signal to define the period");
+    return strut_fault_of(checker, "of", "a run in periods needs a signal to define the period");
   if (checker->wild[experiment->period_signal]) return false; /* reported there */
   double period = strut_signal_period(checker->scene->signals, experiment->period_signal);
   if (period > 0.0 && isfinite(period * experiment->periods)) return true;
   if (period > 0.0 && isfinite(period))
-    strut_report_finding(checker, STRUT_ON_RUN, 0, "periods", "the duration of the run overflows");
-  else
-    strut_report_finding(
-        checker, STRUT_ON_RUN, 0, "of",
-        "'%s' has no period: the run can be given in periods of a sine, a half-sine, a square, or "
-        "a sum whose longest period is a multiple of the others",
-        experiment->period_of ? experiment->period_of : "the signal");
-  return false;
+    return strut_fault_of(checker, "periods", "the duration of the run overflows");
+  return strut_fault_of(
+      checker, "of",
+      "'%s' has no period: the run can be given in periods of a sine, a "
+      "half-sine, a square, or a sum whose longest period is a multiple of the others",
+      experiment->period_of ? experiment->period_of : "the signal");
 }
 
 static void check_window(strut_checker *checker, strut_subject subject, const char *owner,
@@ -191,31 +184,26 @@ static void check_window(strut_checker *checker, strut_subject subject, const ch
                        last, periods ? "periods" : "s", whole, periods ? "periods" : "s");
 }
 
-/* Checks the step and the resulting number of steps. */
 static void check_step(strut_checker *checker, bool length_known) {
   const strut_experiment *experiment = checker->experiment;
+  strut_check_begin_with(checker, STRUT_ON_SOLVER, 0, "the solver");
   if (!experiment->integrator || !*experiment->integrator)
-    strut_report_finding(checker, STRUT_ON_SOLVER, 0, "integrator",
-                         "the solver names no integrator");
+    strut_fault(checker, "integrator", "names no integrator");
   if (experiment->step == 0.0) {
     if (checker->purpose == STRUT_FOR_RUN && !checker->step_given_later &&
         !(experiment->accuracy > 0.0) && !strut_experiment_is_adaptive(experiment->integrator))
-      strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
-                           "the solver has no step, expected a time such as '0.1 ms'");
+      strut_fault(checker, "step", "has no step, expected a time such as '0.1 ms'");
     return;
   }
-  strut_check_begin_with(checker, STRUT_ON_SOLVER, 0, "the solver");
   if (!strut_check_number(checker, STRUT_FIELDS_SOLVER, "step", experiment->step) || !length_known)
     return;
   double duration = strut_experiment_span(experiment, checker->scene).duration;
   if (experiment->step > duration)
-    strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
-                         "the step of %g s is longer than the whole run of %g s", experiment->step,
-                         duration);
+    strut_fault_of(checker, "step", "the step of %g s is longer than the whole run of %g s",
+                   experiment->step, duration);
   else if (duration / experiment->step > 1e15)
-    strut_report_finding(checker, STRUT_ON_SOLVER, 0, "step",
-                         "the run of %g s would take more than 1e15 steps of %g s", duration,
-                         experiment->step);
+    strut_fault_of(checker, "step", "the run of %g s would take more than 1e15 steps of %g s",
+                   duration, experiment->step);
 }
 
 void strut_check_experiment(strut_checker *checker) {
@@ -226,14 +214,14 @@ void strut_check_experiment(strut_checker *checker) {
   strut_check_begin_with(checker, STRUT_ON_INITIAL, 0, "settling");
   if (settle->wanted) strut_check_fields(checker, STRUT_FIELDS_SETTLE, settle, &usual.settle);
   if (settle->wanted && !isfinite(settle->step))
-    strut_report_finding(checker, STRUT_ON_INITIAL, 0, "step",
-                         "the step of settling is not finite");
+    strut_fault_of(checker, "step", "the step of settling is not finite");
+  strut_check_begin_with(checker, STRUT_ON_SCENE, 0, "the scene");
   if (!isfinite(scene->gravity[0]) || !isfinite(scene->gravity[1]))
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "gravity", "gravity is not finite");
+    strut_fault_of(checker, "gravity", "gravity is not finite");
   if ((unsigned)scene->mass_model > STRUT_MASS_LUMPED)
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "mass_model", "the mass model is unknown");
+    strut_fault_of(checker, "mass_model", "the mass model is unknown");
   if ((unsigned)scene->bar_model > STRUT_BARS_RIGID)
-    strut_report_finding(checker, STRUT_ON_SCENE, 0, "bars", "the model of bars is unknown");
+    strut_fault_of(checker, "bars", "the model of bars is unknown");
   if (experiment->steady.wanted && !(experiment->periods > 0.0) &&
       checker->purpose == STRUT_FOR_RUN)
     strut_report_finding(
@@ -280,7 +268,6 @@ static bool node_moves(const strut_scene *scene, int32_t node) {
   return false;
 }
 
-/* Can the member carry a mass that slides? */
 static bool check_carrier(strut_checker *checker) {
   size_t i = checker->index;
   const strut_scene *scene = checker->scene;
@@ -346,24 +333,11 @@ static void check_way(strut_checker *checker) {
 
 /* Has the motion an acceleration, and no jumps? */
 static bool check_signal(strut_checker *checker) {
-  size_t i = checker->index;
-  const strut_scene *scene = checker->scene;
-  const strut_sliding_mass *mass = &scene->sliding_masses[i];
-  const char *key = mass->travel ? "travel" : "moves";
-  double when;
-  if (mass->signal == -1) return true;
-  if (!strut_exists(mass->signal, scene->signal_count))
-    return strut_fault(checker, key, "has a signal that does not exist");
-  if (checker->wild[mass->signal]) return false;
-  if (!strut_signal_is_wave(scene->signals, mass->signal))
-    return strut_fault(checker, key,
-                       "moves by an expression, a lag, samples or a start, whose acceleration "
-                       "is not known; use waves, ramps, tables and sums of them");
-  if (!strut_signal_value_jumps(scene->signals, mass->signal, HUGE_VAL, &when)) return true;
-  return strut_fault_of(checker, key,
-                        "the signal that moves %s jumps at t = %g s, but a mass cannot jump; use a "
-                        "ramp, a table, or waves that begin and stop at zero",
-                        checker->owner, when);
+  const strut_sliding_mass *mass = &checker->scene->sliding_masses[checker->index];
+  char what[240];
+  snprintf(what, sizeof what, "the motion of %s", checker->owner);
+  return mass->signal == -1 ||
+         strut_check_motion(checker, mass->travel ? "travel" : "moves", mass->signal, what, "mass");
 }
 
 void strut_check_sliding_masses(strut_checker *checker) {

@@ -122,34 +122,18 @@ static void check_profile(strut_checker *checker) {
 
 /* A displacement that jumps would take the ground through nodes. */
 static void check_motion(strut_checker *checker) {
-  const strut_scene *scene = checker->scene;
-  const strut_ground *ground = &scene->grounds[checker->index];
-  double when;
+  const strut_ground *ground = &checker->scene->grounds[checker->index];
+  char what[240];
   for (int c = 0; c < 2; c++) {
-    const char *axis = c ? "y" : "x";
     if (!ground->moves[c]) continue;
-    int32_t signal = ground->motion[c];
-    if (signal < 0 || (size_t)signal >= scene->signal_count)
-      strut_fault_of(checker, "motion", "the motion of %s in %s has no signal", checker->owner,
-                     axis);
-    else if (!checker->wild[signal] && !strut_signal_is_wave(scene->signals, signal))
-      strut_fault_of(checker, "motion",
-                     "the motion of %s in %s is an expression, a lag, samples or a start, whose "
-                     "acceleration is not known; use waves, ramps, tables and sums of them",
-                     checker->owner, axis);
-    else if (!checker->wild[signal] &&
-             strut_signal_value_jumps(scene->signals, signal, HUGE_VAL, &when))
-      strut_fault_of(checker, "motion",
-                     "the motion of %s in %s jumps; use a ramp, a table, or waves that begin "
-                     "and stop at zero",
-                     checker->owner, axis);
+    snprintf(what, sizeof what, "the motion of %s in %c", checker->owner, "xy"[c]);
+    strut_check_motion(checker, "motion", ground->motion[c], what, "ground");
   }
 }
 
 static void check_grounds(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
-  if (scene->ground.present)
-    strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are both a ground and grounds");
+  if (scene->ground.present) strut_fault_of(checker, NULL, "there are both a ground and grounds");
   for (size_t i = 0; i < scene->ground_count; i++) {
     const strut_ground *ground = &scene->grounds[i];
     bool single = scene->ground_count == 1 && !(ground->name && *ground->name), used = false;
@@ -237,19 +221,18 @@ void strut_check_ground(strut_checker *checker) {
   strut_check_number(checker, STRUT_FIELDS_GROUND, "height", ground->height);
   strut_check_number(checker, STRUT_FIELDS_GROUND, "belt_speed", ground->belt_speed);
   if (!(fabs(ground->slope) < QUARTER_TURN))
-    strut_report_finding(
-        checker, STRUT_ON_GROUND, 0, "slope",
+    strut_fault_of(
+        checker, "slope",
         "the slope of the ground must lie between -90 deg and 90 deg, found %g deg; a line at any "
         "angle needs a point, through: [x, y]",
         ground->slope / QUARTER_TURN * 90.0);
   if ((unsigned)ground->damping_law >= STRUT_DAMPING_COUNT)
-    strut_report_finding(checker, STRUT_ON_GROUND, 0, "damping_law",
-                         "the ground's damping law is unknown");
+    strut_fault_of(checker, "damping_law", "the ground's damping law is unknown");
   if (ground->present && !scene->contact_count)
-    strut_report_finding(checker, STRUT_ON_GROUND, 0, "nodes", "no node may touch the ground");
+    strut_fault_of(checker, "nodes", "no node may touch the ground");
   if (scene->ground_count) check_grounds(checker);
   if (!strut_scene_has_ground(scene) && scene->contact_count)
-    strut_report_finding(checker, STRUT_ON_GROUND, 0, NULL, "there are contacts but no ground");
+    strut_fault_of(checker, NULL, "there are contacts but no ground");
   size_t *pieces = count_pieces(checker);
   if (pieces) check_contacts(checker, pieces);
   strut_release(pieces);
@@ -372,13 +355,12 @@ static void check_search(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_search *search = &checker->experiment->search;
   if (search->starts < 0 || search->starts > STRUT_MOST_STARTS)
-    strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "starts",
-                         "the starts of the search for equilibria must be from 0 to %d",
-                         STRUT_MOST_STARTS);
+    strut_fault_of(checker, "starts",
+                   "the starts of the search for equilibria must be from 0 to %d",
+                   STRUT_MOST_STARTS);
   if ((double)search->seed > STRUT_MOST_SEED)
-    strut_report_finding(checker, STRUT_ON_EQUILIBRIA, 0, "seed",
-                         "the seed of the search for equilibria must be at most %.0f",
-                         STRUT_MOST_SEED);
+    strut_fault_of(checker, "seed", "the seed of the search for equilibria must be at most %.0f",
+                   STRUT_MOST_SEED);
   if (scene->start_equilibrium < -1 ||
       (scene->start_equilibrium >= 0 &&
        (size_t)scene->start_equilibrium >= scene->configuration_count))

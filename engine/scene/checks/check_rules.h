@@ -67,6 +67,12 @@ bool strut_check_number(strut_checker *checker, strut_thing_section section, con
 /** Are two nodes drawn, and do they start, apart, so that `what` of the owner ("", "an arm of ") has a direction? */
 bool strut_check_apart(strut_checker *checker, const char *key, int32_t first, int32_t second,
                        const char *what);
+/**
+ * Has the signal of a motion an acceleration and no jumps? If not, that is reported of `what` ("the angle of unbalance
+ * 'u'"), by which a `moved` ("support") moves.
+ */
+bool strut_check_motion(strut_checker *checker, const char *key, int32_t signal, const char *what,
+                        const char *moved);
 /** Does an actuator add a force to that member, a moment to that hinge? -1: none. */
 bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
 
@@ -74,8 +80,6 @@ bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge);
 unsigned char *strut_joined_nodes(strut_checker *checker);
 
 /** The rules, one function for each kind of thing. */
-void strut_check_names(strut_checker *checker);
-void strut_check_nodes(strut_checker *checker);
 /** Is it a valid law of the member? Findings name its key. */
 bool strut_check_member_law(strut_checker *checker);
 void strut_check_hinges(strut_checker *checker);
@@ -86,19 +90,11 @@ void strut_check_feet(strut_checker *checker);
 void strut_warn_of_overlaps(strut_checker *checker);
 /** After the signals. */
 void strut_check_sliding_masses(strut_checker *checker);
-void strut_check_members(strut_checker *checker);
-void strut_check_use(strut_checker *checker);
 void strut_check_ground(strut_checker *checker);
 void strut_check_sensors(strut_checker *checker);
 /** Is the Maxwell branch of the member valid? */
 void strut_check_maxwell(strut_checker *checker);
 void strut_check_states(strut_checker *checker);
-/** Are the lag and the sampling of the signal valid? */
-bool strut_check_modifiers(strut_checker *checker);
-/** Is the program of the signal valid? */
-bool strut_check_program(strut_checker *checker);
-/** Thresholds, values and name of a relay. */
-bool strut_check_relay(strut_checker *checker);
 /** Is the rate of an actuator's signal, which is valid, known? */
 void strut_check_driven_rate(strut_checker *checker);
 void strut_check_signals(strut_checker *checker);

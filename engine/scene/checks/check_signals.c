@@ -9,229 +9,6 @@
 #include "engine/scene/signal_motion.h"
 #include "engine/scene/signal_program.h"
 
-/* ---- signals ---- */
-
-enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
-
-static bool check_table(strut_checker *checker) {
-  const strut_signal *signal = &checker->scene->signals[checker->index];
-  if (signal->point_count < (signal->kind == STRUT_DATA ? 2 : 1))
-    return strut_fault_of(checker, "table", "the table of %s has %s", checker->owner,
-                          signal->point_count ? "one point" : "no points");
-  for (size_t i = 0; i < signal->point_count; i++) {
-    if (!isfinite(signal->time[i]) || !isfinite(signal->value[i]))
-      strut_fault_of(checker, "table", "point %zu in the table of %s is not finite", i + 1,
-                     checker->owner);
-    else if (i && signal->time[i] < signal->time[i - 1])
-      strut_fault_of(
-          checker, "table",
-          "the times in the table of %s must increase, but point %zu at %g s follows %g s",
-          checker->owner, i + 1, signal->time[i], signal->time[i - 1]);
-    else if (i > 1 && signal->time[i] <= signal->time[i - 2])
-      strut_fault_of(
-          checker, "table",
-          "the table of %s has three points at %g s, expected at most two, between which it jumps",
-          checker->owner, signal->time[i]);
-    else
-      continue;
-    return false;
-  }
-  return true;
-}
-
-/* How long a run takes [s]; 0 where that is not known, or nothing runs. */
-static double run_time(const strut_checker *checker) {
-  const strut_experiment *experiment = checker->experiment;
-  int32_t period = experiment->period_signal;
-  bool known = experiment->periods == 0.0 ||
-               (strut_exists(period, checker->scene->signal_count) && !checker->wild[period]);
-  if (checker->purpose != STRUT_FOR_RUN || !known) return 0.0;
-  return strut_experiment_span(experiment, checker->scene).duration;
-}
-
-/* Do data last from t = 0 to the end of a run, where they must? */
-static void check_data(strut_checker *checker) {
-  const strut_signal *signal = &checker->scene->signals[checker->index];
-  double first = signal->time[0], last = signal->time[signal->point_count - 1],
-         end = run_time(checker);
-  if (signal->outside != STRUT_OUTSIDE_ERROR) return;
-  if (signal->trigger.kind != STRUT_TRIGGER_NONE)
-    strut_fault_of(checker, "data",
-                   "the time of %s begins later, so that its data need 'outside: hold' or 'repeat'",
-                   checker->owner);
-  else if (first > 0.0 || last < end)
-    strut_fault_of(checker, "data",
-                   "the data of %s last from %g s to %g s, expected all times from 0 to %g s; or "
-                   "say what they are 'outside': hold or repeat",
-                   checker->owner, first, last, end);
-}
-
-/* Signal that part i of a sum or an expression refers to; -1: it refers to none. */
-static int32_t part_of(const strut_signal *signal, size_t i) {
-  if (signal->kind == STRUT_SUM) return signal->terms[i];
-  const strut_instruction *instruction = &signal->program.instruction[i];
-  bool refers = instruction->operation == STRUT_OPERATION_COLUMN &&
-                instruction->column.kind == STRUT_COLUMN_SIGNAL;
-  return refers ? instruction->column.item : -1;
-}
-
-static size_t part_count(const strut_signal *signal) {
-  if (signal->kind == STRUT_SUM) return signal->term_count;
-  return strut_signal_has_program(signal) ? signal->program.length : 0;
-}
-
-/* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
-static bool check_sum(strut_checker *checker, uint32_t *size, uint32_t *depth) {
-  const strut_signal *signal = &checker->scene->signals[checker->index];
-  uint64_t terms = 1;
-  size_t index = checker->index;
-  if (strut_signal_has_program(signal) && !strut_check_program(checker)) return false;
-  if (signal->kind == STRUT_RELAY && !strut_check_relay(checker)) return false;
-  if (signal->kind == STRUT_SUM && !signal->term_count)
-    return strut_fault_of(checker, "sum", "the sum of %s has no terms", checker->owner);
-  for (size_t i = 0; i < part_count(signal); i++) {
-    int32_t term = part_of(signal, i);
-    if (term < 0 && strut_signal_has_program(signal)) continue;
-    if (term < 0 || (size_t)term >= index)
-      return strut_fault_of(checker, "sum", "term %zu of %s is not a signal that comes before it",
-                            i + 1, checker->owner);
-    if (checker->wild[term]) return false; /* reported there */
-    terms += size[term];
-    if (depth[term] >= depth[index]) depth[index] = depth[term] + 1;
-  }
-  size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
-  if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
-  return strut_fault(checker, NULL, "has more than %d terms, or sums within sums more than %d deep",
-                     MOST_TERMS, DEEPEST_SUM);
-}
-
-/* Checks the numbers of a waveform. */
-static bool check_wave(strut_checker *checker) {
-  const strut_signal *signal = &checker->scene->signals[checker->index];
-  bool wave =
-      signal->kind == STRUT_SINE || signal->kind == STRUT_HALF_SINE || signal->kind == STRUT_SQUARE;
-  const struct {
-    const char *key;
-    double value;
-  } numbers[] = {
-      {"amplitude", signal->amplitude}, {"phase", signal->phase}, {"start", signal->start}};
-  bool valid = true; /* as of a sine, whatever the wave */
-  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-    valid =
-        strut_check_number(checker, STRUT_FIELDS_SINE, numbers[i].key, numbers[i].value) && valid;
-  if (wave)
-    valid = strut_check_number(checker, STRUT_FIELDS_SINE, "frequency", signal->frequency) && valid;
-  if (!valid) return false;
-  if (signal->kind == STRUT_RAMP && !isfinite(signal->stop))
-    return strut_fault(checker, "stop", "needs a stop");
-  if (!(signal->stop > signal->start))
-    return strut_fault_of(checker, "stop",
-                          "the stop of %s must come after its start, found %g s after %g s",
-                          checker->owner, signal->stop, signal->start);
-  return true;
-}
-
-/* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
-static double jump_rate(const strut_signal *signal) {
-  double rate = signal->kind == STRUT_SQUARE ? 2.0 * signal->frequency : 0.0;
-  return signal->every > 0.0 ? fmax(rate, 1.0 / signal->every) : rate;
-}
-
-/* A run stops at each jump: more of them than this in a step, or in a run without one, are a mistake. */
-static const double MOST_JUMPS_OF_STEP = 1e3, MOST_JUMPS_OF_RUN = 1e9;
-
-static void check_jumps(strut_checker *checker) {
-  const strut_experiment *experiment = checker->experiment;
-  const strut_signal *signal = &checker->scene->signals[checker->index];
-  bool step = experiment->step > 0.0 && isfinite(experiment->step);
-  double rate = jump_rate(signal), span = step ? experiment->step : experiment->duration;
-  if (checker->purpose != STRUT_FOR_RUN || !(span > 0.0 && isfinite(span))) return;
-  if (rate * span <= (step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN)) return;
-  bool sampled = signal->every > 0.0 && signal->every * rate <= 1.0;
-  strut_fault(checker, sampled ? "every" : "frequency",
-              "jumps %.3g times within %s of %g s, expected at most %g; give %s%s", rate * span,
-              step ? "a step" : "the run", span, step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN,
-              sampled ? "a longer 'every'" : "a lower frequency", step ? " or a smaller step" : "");
-}
-
-/* Begins with a signal, by a name for messages: its own, or that of its first user. */
-static void call_signal(strut_checker *checker, const size_t *user, size_t i) {
-  const strut_scene *scene = checker->scene;
-  char thing[200];
-  size_t u = user[i];
-  strut_check_begin(checker, STRUT_THING_SIGNAL, i);
-  if (scene->signals[i].name || !u) return;
-  size_t drives = scene->actuator_count + scene->load_count;
-  if (u > drives) {
-    int32_t node = scene->support_motions[u - 1 - drives].node;
-    strut_format_name(thing, "node", scene->nodes[node].name, (size_t)node);
-    snprintf(checker->owner, 200, "the signal of %.180s", thing);
-    return;
-  }
-  bool actuator = u <= scene->actuator_count;
-  size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
-  strut_format_name(thing, actuator ? "actuator" : "load",
-                    actuator ? scene->actuators[index].name : scene->loads[index].name, index);
-  snprintf(checker->owner, 200, "the signal of %.180s", thing);
-}
-
-/*
- * Finds for each signal 1 + the number of the actuator that uses it, loads and moving supports counted
- * on; 0: none.
- */
-static void find_users(const strut_scene *scene, size_t *user) {
-  for (size_t i = scene->support_motion_count; i-- > 0;) {
-    const strut_support_motion *motion = &scene->support_motions[i];
-    if (motion->signal >= 0 && (size_t)motion->signal < scene->signal_count && motion->node >= 0 &&
-        (size_t)motion->node < scene->node_count)
-      user[motion->signal] = 1 + scene->actuator_count + scene->load_count + i;
-  }
-  for (size_t i = scene->load_count; i-- > 0;)
-    if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
-      user[scene->loads[i].signal] = 1 + scene->actuator_count + i;
-  for (size_t i = scene->actuator_count; i-- > 0;)
-    if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
-      user[scene->actuators[i].signal] = 1 + i;
-  for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
-    for (size_t t = 0; t < part_count(&scene->signals[i]); t++) {
-      int32_t term = part_of(&scene->signals[i], t);
-      if (term >= 0 && (size_t)term < i && !user[term]) user[term] = user[i];
-    }
-}
-
-void strut_check_signals(strut_checker *checker) {
-  const strut_scene *scene = checker->scene;
-  uint32_t *size = strut_allocate(scene->signal_count, sizeof *size);
-  uint32_t *depth = strut_allocate(scene->signal_count, sizeof *depth);
-  size_t *user = strut_allocate(scene->signal_count, sizeof *user);
-  if (!size || !depth || !user) checker->out_of_memory = true;
-  if (!checker->out_of_memory) find_users(scene, user);
-  for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++) {
-    const strut_signal *signal = &scene->signals[i];
-    call_signal(checker, user, i);
-    size[i] = depth[i] = 1;
-    if ((unsigned)signal->kind >= STRUT_SIGNAL_KINDS) {
-      strut_fault(checker, NULL, "is of an unknown kind");
-      checker->wild[i] = true;
-      continue;
-    }
-    bool modified = strut_check_modifiers(checker);
-    checker->wild[i] = !modified || (strut_signal_has_points(signal) ? !check_table(checker)
-                                     : signal->kind == STRUT_SUM || strut_signal_has_program(signal)
-                                         ? !check_sum(checker, size, depth)
-                                         : !check_wave(checker));
-    if (!checker->wild[i]) check_jumps(checker);
-  }
-  for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++)
-    if (scene->signals[i].kind == STRUT_DATA && !checker->wild[i]) {
-      call_signal(checker, user, i);
-      check_data(checker);
-    }
-  strut_release(size);
-  strut_release(depth);
-  strut_release(user);
-}
-
 /* ---- sensors, programs, relays and internal states ---- */
 
 void strut_check_maxwell(strut_checker *checker) {
@@ -349,12 +126,12 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
   return true;
 }
 
-bool strut_check_program(strut_checker *checker) {
+static bool check_own_program(strut_checker *checker) {
   return check_program(checker, &checker->scene->signals[checker->index].program, checker->index,
                        "expression");
 }
 
-bool strut_check_relay(strut_checker *checker) {
+static bool check_relay(strut_checker *checker) {
   const strut_signal *signal = &checker->scene->signals[checker->index];
   const strut_relay *relay = &signal->relay;
   if (!isfinite(relay->upper) || !isfinite(relay->lower) || !isfinite(relay->on) ||
@@ -409,7 +186,7 @@ static bool check_trigger(strut_checker *checker) {
   return true;
 }
 
-bool strut_check_modifiers(strut_checker *checker) {
+static bool check_modifiers(strut_checker *checker) {
   bool trigger = check_trigger(checker);
   return strut_check_thing(checker) && trigger;
 }
@@ -440,4 +217,226 @@ void strut_check_driven_rate(strut_checker *checker) {
                    "member with a damper, which follows such rates; sample the signal "
                    "('every')",
                    what, checker->owner, scene->sensors[traits.damped].name);
+}
+
+/* ---- signals ---- */
+
+enum { MOST_TERMS = 10000, DEEPEST_SUM = 64 };
+
+static bool check_table(strut_checker *checker) {
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  if (signal->point_count < (signal->kind == STRUT_DATA ? 2 : 1))
+    return strut_fault_of(checker, "table", "the table of %s has %s", checker->owner,
+                          signal->point_count ? "one point" : "no points");
+  for (size_t i = 0; i < signal->point_count; i++) {
+    if (!isfinite(signal->time[i]) || !isfinite(signal->value[i]))
+      strut_fault_of(checker, "table", "point %zu in the table of %s is not finite", i + 1,
+                     checker->owner);
+    else if (i && signal->time[i] < signal->time[i - 1])
+      strut_fault_of(
+          checker, "table",
+          "the times in the table of %s must increase, but point %zu at %g s follows %g s",
+          checker->owner, i + 1, signal->time[i], signal->time[i - 1]);
+    else if (i > 1 && signal->time[i] <= signal->time[i - 2])
+      strut_fault_of(
+          checker, "table",
+          "the table of %s has three points at %g s, expected at most two, between which it jumps",
+          checker->owner, signal->time[i]);
+    else
+      continue;
+    return false;
+  }
+  return true;
+}
+
+/* How long a run takes [s]; 0 where that is not known, or nothing runs. */
+static double run_time(const strut_checker *checker) {
+  const strut_experiment *experiment = checker->experiment;
+  int32_t period = experiment->period_signal;
+  bool known = experiment->periods == 0.0 ||
+               (strut_exists(period, checker->scene->signal_count) && !checker->wild[period]);
+  if (checker->purpose != STRUT_FOR_RUN || !known) return 0.0;
+  return strut_experiment_span(experiment, checker->scene).duration;
+}
+
+/* Do data last from t = 0 to the end of a run, where they must? */
+static void check_data(strut_checker *checker) {
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  double first = signal->time[0], last = signal->time[signal->point_count - 1],
+         end = run_time(checker);
+  if (signal->outside != STRUT_OUTSIDE_ERROR) return;
+  if (signal->trigger.kind != STRUT_TRIGGER_NONE)
+    strut_fault_of(checker, "data",
+                   "the time of %s begins later, so that its data need 'outside: hold' or 'repeat'",
+                   checker->owner);
+  else if (first > 0.0 || last < end)
+    strut_fault_of(checker, "data",
+                   "the data of %s last from %g s to %g s, expected all times from 0 to %g s; or "
+                   "say what they are 'outside': hold or repeat",
+                   checker->owner, first, last, end);
+}
+
+/* Signal that part i of a sum or an expression refers to; -1: it refers to none. */
+static int32_t part_of(const strut_signal *signal, size_t i) {
+  if (signal->kind == STRUT_SUM) return signal->terms[i];
+  const strut_instruction *instruction = &signal->program.instruction[i];
+  bool refers = instruction->operation == STRUT_OPERATION_COLUMN &&
+                instruction->column.kind == STRUT_COLUMN_SIGNAL;
+  return refers ? instruction->column.item : -1;
+}
+
+static size_t part_count(const strut_signal *signal) {
+  if (signal->kind == STRUT_SUM) return signal->term_count;
+  return strut_signal_has_program(signal) ? signal->program.length : 0;
+}
+
+/* Counts parts and depth of a sum or an expression, whose signals have been checked before. */
+static bool check_sum(strut_checker *checker, uint32_t *size, uint32_t *depth) {
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  uint64_t terms = 1;
+  size_t index = checker->index;
+  if (strut_signal_has_program(signal) && !check_own_program(checker)) return false;
+  if (signal->kind == STRUT_RELAY && !check_relay(checker)) return false;
+  if (signal->kind == STRUT_SUM && !signal->term_count)
+    return strut_fault_of(checker, "sum", "the sum of %s has no terms", checker->owner);
+  for (size_t i = 0; i < part_count(signal); i++) {
+    int32_t term = part_of(signal, i);
+    if (term < 0 && strut_signal_has_program(signal)) continue;
+    if (term < 0 || (size_t)term >= index)
+      return strut_fault_of(checker, "sum", "term %zu of %s is not a signal that comes before it",
+                            i + 1, checker->owner);
+    if (checker->wild[term]) return false; /* reported there */
+    terms += size[term];
+    if (depth[term] >= depth[index]) depth[index] = depth[term] + 1;
+  }
+  size[index] = terms > MOST_TERMS ? MOST_TERMS + 1 : (uint32_t)terms;
+  if (terms <= MOST_TERMS && depth[index] <= DEEPEST_SUM) return true;
+  return strut_fault(checker, NULL, "has more than %d terms, or sums within sums more than %d deep",
+                     MOST_TERMS, DEEPEST_SUM);
+}
+
+static bool check_wave(strut_checker *checker) {
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  bool wave =
+      signal->kind == STRUT_SINE || signal->kind == STRUT_HALF_SINE || signal->kind == STRUT_SQUARE;
+  const struct {
+    const char *key;
+    double value;
+  } numbers[] = {
+      {"amplitude", signal->amplitude}, {"phase", signal->phase}, {"start", signal->start}};
+  bool valid = true; /* as of a sine, whatever the wave */
+  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+    valid =
+        strut_check_number(checker, STRUT_FIELDS_SINE, numbers[i].key, numbers[i].value) && valid;
+  if (wave)
+    valid = strut_check_number(checker, STRUT_FIELDS_SINE, "frequency", signal->frequency) && valid;
+  if (!valid) return false;
+  if (signal->kind == STRUT_RAMP && !isfinite(signal->stop))
+    return strut_fault(checker, "stop", "needs a stop");
+  if (!(signal->stop > signal->start))
+    return strut_fault_of(checker, "stop",
+                          "the stop of %s must come after its start, found %g s after %g s",
+                          checker->owner, signal->stop, signal->start);
+  return true;
+}
+
+/* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
+static double jump_rate(const strut_signal *signal) {
+  double rate = signal->kind == STRUT_SQUARE ? 2.0 * signal->frequency : 0.0;
+  return signal->every > 0.0 ? fmax(rate, 1.0 / signal->every) : rate;
+}
+
+/* A run stops at each jump: more of them than this in a step, or in a run without one, are a mistake. */
+static const double MOST_JUMPS_OF_STEP = 1e3, MOST_JUMPS_OF_RUN = 1e9;
+
+static void check_jumps(strut_checker *checker) {
+  const strut_experiment *experiment = checker->experiment;
+  const strut_signal *signal = &checker->scene->signals[checker->index];
+  bool step = experiment->step > 0.0 && isfinite(experiment->step);
+  double rate = jump_rate(signal), span = step ? experiment->step : experiment->duration;
+  if (checker->purpose != STRUT_FOR_RUN || !(span > 0.0 && isfinite(span))) return;
+  if (rate * span <= (step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN)) return;
+  bool sampled = signal->every > 0.0 && signal->every * rate <= 1.0;
+  strut_fault(checker, sampled ? "every" : "frequency",
+              "jumps %.3g times within %s of %g s, expected at most %g; give %s%s", rate * span,
+              step ? "a step" : "the run", span, step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN,
+              sampled ? "a longer 'every'" : "a lower frequency", step ? " or a smaller step" : "");
+}
+
+/* Begins with a signal, by a name for messages: its own, or that of its first user. */
+static void call_signal(strut_checker *checker, const size_t *user, size_t i) {
+  const strut_scene *scene = checker->scene;
+  char thing[200];
+  size_t u = user[i];
+  strut_check_begin(checker, STRUT_THING_SIGNAL, i);
+  if (scene->signals[i].name || !u) return;
+  size_t drives = scene->actuator_count + scene->load_count;
+  if (u > drives) {
+    int32_t node = scene->support_motions[u - 1 - drives].node;
+    strut_format_name(thing, "node", scene->nodes[node].name, (size_t)node);
+    snprintf(checker->owner, 200, "the signal of %.180s", thing);
+    return;
+  }
+  bool actuator = u <= scene->actuator_count;
+  size_t index = actuator ? u - 1 : u - 1 - scene->actuator_count;
+  strut_format_name(thing, actuator ? "actuator" : "load",
+                    actuator ? scene->actuators[index].name : scene->loads[index].name, index);
+  snprintf(checker->owner, 200, "the signal of %.180s", thing);
+}
+
+/*
+ * Finds for each signal 1 + the number of the actuator that uses it, loads and moving supports counted
+ * on; 0: none.
+ */
+static void find_users(const strut_scene *scene, size_t *user) {
+  for (size_t i = scene->support_motion_count; i-- > 0;) {
+    const strut_support_motion *motion = &scene->support_motions[i];
+    if (motion->signal >= 0 && (size_t)motion->signal < scene->signal_count && motion->node >= 0 &&
+        (size_t)motion->node < scene->node_count)
+      user[motion->signal] = 1 + scene->actuator_count + scene->load_count + i;
+  }
+  for (size_t i = scene->load_count; i-- > 0;)
+    if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
+      user[scene->loads[i].signal] = 1 + scene->actuator_count + i;
+  for (size_t i = scene->actuator_count; i-- > 0;)
+    if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
+      user[scene->actuators[i].signal] = 1 + i;
+  for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
+    for (size_t t = 0; t < part_count(&scene->signals[i]); t++) {
+      int32_t term = part_of(&scene->signals[i], t);
+      if (term >= 0 && (size_t)term < i && !user[term]) user[term] = user[i];
+    }
+}
+
+void strut_check_signals(strut_checker *checker) {
+  const strut_scene *scene = checker->scene;
+  uint32_t *size = strut_allocate(scene->signal_count, sizeof *size);
+  uint32_t *depth = strut_allocate(scene->signal_count, sizeof *depth);
+  size_t *user = strut_allocate(scene->signal_count, sizeof *user);
+  if (!size || !depth || !user) checker->out_of_memory = true;
+  if (!checker->out_of_memory) find_users(scene, user);
+  for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++) {
+    const strut_signal *signal = &scene->signals[i];
+    call_signal(checker, user, i);
+    size[i] = depth[i] = 1;
+    if ((unsigned)signal->kind >= STRUT_SIGNAL_KINDS) {
+      strut_fault(checker, NULL, "is of an unknown kind");
+      checker->wild[i] = true;
+      continue;
+    }
+    bool modified = check_modifiers(checker);
+    checker->wild[i] = !modified || (strut_signal_has_points(signal) ? !check_table(checker)
+                                     : signal->kind == STRUT_SUM || strut_signal_has_program(signal)
+                                         ? !check_sum(checker, size, depth)
+                                         : !check_wave(checker));
+    if (!checker->wild[i]) check_jumps(checker);
+  }
+  for (size_t i = 0; !checker->out_of_memory && i < scene->signal_count; i++)
+    if (scene->signals[i].kind == STRUT_DATA && !checker->wild[i]) {
+      call_signal(checker, user, i);
+      check_data(checker);
+    }
+  strut_release(size);
+  strut_release(depth);
+  strut_release(user);
 }

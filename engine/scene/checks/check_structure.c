@@ -30,7 +30,6 @@ static const char *fault_of_lists(const strut_law *law) {
   return fault;
 }
 
-/* The law of `owner` by itself. */
 static bool check_law_numbers(strut_checker *checker, const strut_law *law) {
   bool unknown = (unsigned)law->kind >= STRUT_LAW_COUNT || law->kind == STRUT_LAW_AXIAL;
   const char *fault = unknown                            ? "is of an unknown kind"
@@ -41,11 +40,12 @@ static bool check_law_numbers(strut_checker *checker, const strut_law *law) {
   if (fault) return strut_fault_of(checker, "law", "the law of %s %s", checker->owner, fault);
   bool valid = true;
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
+    const strut_law_parameter *row = strut_law_parameter_at(p);
     double value = strut_law_value(law, p);
-    bool needed = strut_law_needs(law->kind, p);
-    if (isfinite(value) && !(needed && strut_law_above_zero(p) && !(value > 0.0))) continue;
-    valid = strut_fault_of(checker, "law", "the law of %s needs a %s%s", checker->owner,
-                           strut_law_key(p), strut_law_above_zero(p) ? " above zero" : "");
+    bool positive = strut_law_needs(law->kind, p) && row->above_zero;
+    if (isfinite(value) && (!positive || value > 0.0)) continue;
+    valid = strut_fault_of(checker, "law", "the law of %s needs a %s%s", checker->owner, row->key,
+                           row->above_zero ? " above zero" : "");
   }
   return valid;
 }
@@ -168,7 +168,6 @@ bool strut_check_member_law(strut_checker *checker) {
          check_stops(checker);
 }
 
-/* Do all nodes exist, each named but once? */
 static bool check_nodes(strut_checker *checker, const char *key, const int32_t *node, size_t count,
                         const char *expected) {
   const strut_scene *scene = checker->scene;
@@ -193,7 +192,6 @@ bool strut_check_apart(strut_checker *checker, const char *key, int32_t first, i
                         b->name, drawn ? "are drawn" : "start", what, checker->owner);
 }
 
-/* Are the nodes of a hinge three, and do both arms have a direction? */
 static bool check_arms(strut_checker *checker) {
   const int32_t *node = checker->scene->hinges[checker->index].node;
   return check_nodes(checker, "nodes", node, 3, "three different nodes") &&
@@ -224,7 +222,6 @@ void strut_check_hinges(strut_checker *checker) {
 /* A cell with a smaller share of the area of a square of the same circumference has no area. */
 static const double THIN = 1e-9;
 
-/* Do the corners exist, each but once? */
 static bool check_corners(strut_checker *checker) {
   const strut_cell *cell = &checker->scene->cells[checker->index];
   if (cell->node_count < 3 || cell->node_count > STRUT_MOST_ELEMENT_NODES)
@@ -417,7 +414,6 @@ void strut_check_collisions(strut_checker *checker) {
 
 /* ---- distances ---- */
 
-/* Do its nodes exist, and differ where they must? */
 static bool check_ends(strut_checker *checker) {
   const strut_distance_spring *spring = &checker->scene->distances[checker->index];
   bool line = spring->line[0] != -1 || spring->line[1] != -1;

@@ -47,7 +47,6 @@ static bool drives_length_of(const strut_actuator *actuator, size_t member) {
   return !actuator->force && actuator->member >= 0 && (size_t)actuator->member == member;
 }
 
-/* Rest length of a member at time t, drives included. */
 static double rest_length_at(const strut_scene *scene, size_t member, double rest, double t) {
   for (size_t i = 0; i < scene->actuator_count; i++) {
     double value, rate;
@@ -104,7 +103,6 @@ static void warn_of_rest_lengths(strut_checker *checker) {
                        below.count > 1 ? list_names(&below) : "");
 }
 
-/* Warns of nodes that start deeper in the ground than they could rest. */
 static void warn_of_depths(strut_checker *checker) {
   const strut_scene *scene = checker->scene;
   const strut_ground *ground = &scene->ground;

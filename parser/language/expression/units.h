@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 #include "engine/base/status.h"
-#include "engine/scene/dimension.h"
+#include "engine/scene/observables.h"
 
 /** The dimensions that keys of the language expect. */
 #define STRUT_DIM_NONE ((strut_dimension){0, 0, 0, 0})

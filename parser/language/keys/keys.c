@@ -17,27 +17,20 @@
                       description) \
   {STRUT_SECTION_##section, name, STRUT_TYPE_##type, STRUT_MEASURE_##measure, \
    STRUT_LIMITS_##range, fallback, STRUT_##need, set, words, {STRUT_FIELD_OF_##field}, description},
-static const strut_key table[] = {STRUT_KEY_TABLE(STRUT_KEY_ROW)};
+#define STRUT_ROWS_OF(NAME, name, rows, ...) rows(STRUT_KEY_ROW)
+static const strut_key table[] = {STRUT_SECTIONS(STRUT_ROWS_OF)};
 /* clang-format on */
 
-/* First key of each section, and one more that ends the last; a test compares it with the table. */
-static const int first[] = {
-#define STRUT_SECTION_ROW(NAME, name, first, ...) STRUT_KEY_##first,
+/* One more ends the last. */
+static const struct {
+  int first; /* key */
+  const char *name, *introduction;
+} sections[] = {
+#define STRUT_SECTION_ROW(NAME, name, rows, introduction)                                          \
+  {STRUT_FIRST_OF_##NAME, name, introduction},
     STRUT_SECTIONS(STRUT_SECTION_ROW)
 #undef STRUT_SECTION_ROW
-        STRUT_KEY_COUNT};
-
-static const char *const section_names[] = {
-#define STRUT_SECTION_ROW(NAME, name, ...) name,
-    STRUT_SECTIONS(STRUT_SECTION_ROW)
-#undef STRUT_SECTION_ROW
-};
-
-static const char *const introductions[] = {
-#define STRUT_SECTION_ROW(NAME, name, first, introduction) introduction,
-    STRUT_SECTIONS(STRUT_SECTION_ROW)
-#undef STRUT_SECTION_ROW
-};
+        {STRUT_KEY_COUNT, NULL, NULL}};
 
 const strut_section strut_group_sections[STRUT_GROUP_SECTIONS] = {
     STRUT_SECTION_MEMBER, STRUT_SECTION_NODE, STRUT_SECTION_CONTACT, STRUT_SECTION_HINGE};
@@ -49,14 +42,18 @@ const strut_key *strut_key_at(int key) {
 
 int strut_section_first(strut_section section) {
   assert((unsigned)section < STRUT_SECTION_COUNT);
-  return first[section];
+  return sections[section].first;
 }
-int strut_section_size(strut_section section) { return first[section + 1] - first[section]; }
-const char *strut_section_name(strut_section section) { return section_names[section]; }
-const char *strut_section_introduction(strut_section section) { return introductions[section]; }
+int strut_section_size(strut_section section) {
+  return sections[section + 1].first - sections[section].first;
+}
+const char *strut_section_name(strut_section section) { return sections[section].name; }
+const char *strut_section_introduction(strut_section section) {
+  return sections[section].introduction;
+}
 
 int strut_key_find(strut_section section, const char *name) {
-  for (int key = first[section]; key < first[section + 1]; key++)
+  for (int key = sections[section].first; key < sections[section + 1].first; key++)
     if (strcmp(table[key].name, name) == 0) return key;
   return -1;
 }
@@ -130,7 +127,7 @@ const char *strut_key_current(strut_section section, const char *name) {
 
 strut_section strut_section_find(const char *name) {
   int section = 0;
-  while (section < STRUT_SECTION_COUNT && strcmp(section_names[section], name) != 0) section++;
+  while (section < STRUT_SECTION_COUNT && strcmp(sections[section].name, name) != 0) section++;
   return (strut_section)section;
 }
 

@@ -199,7 +199,10 @@ typedef struct strut_key {
 /** STRUT_KEY_MEMBER_STIFFNESS, ...; the keys of one section follow each other. */
 enum {
 #define STRUT_KEY_ENUM(section, id, ...) STRUT_KEY_##section##_##id,
-  STRUT_KEY_TABLE(STRUT_KEY_ENUM)
+#define STRUT_KEYS_OF(NAME, name, rows, ...)                                                       \
+  STRUT_FIRST_OF_##NAME, STRUT_BEFORE_##NAME = STRUT_FIRST_OF_##NAME - 1, rows(STRUT_KEY_ENUM)
+  STRUT_SECTIONS(STRUT_KEYS_OF)
+#undef STRUT_KEYS_OF
 #undef STRUT_KEY_ENUM
       STRUT_KEY_COUNT
 };

@@ -330,163 +330,84 @@
   X(FOLLOW, STEPS, "steps", NUMBER, NONE, WHOLE(1, 100000), STRUT_TEXT_OF(STRUT_FOLLOW_USUAL_STEPS), OPTIONAL, 0, "", FIELD(strut_study_follow, steps), "Maximum number of steps of a branch in each direction.") \
   X(FOLLOW, BASINS, "basins", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study_follow, basins), "Kicks the stable motions at the values of `at`, to find how far they may be pushed.")
 
-/** All rows, in the order of the sections. */
-#define STRUT_KEY_TABLE(X) \
-  STRUT_SCENE_FIELDS(X) \
-  STRUT_PART_KEYS(X) \
-  STRUT_PLACE_KEYS(X) \
-  STRUT_REPEAT_KEYS(X) \
-  STRUT_NEXT_KEYS(X) \
-  STRUT_NODE_FIELDS(X) \
-  STRUT_MOVES_FIELDS(X) \
-  STRUT_MEMBER_FIELDS(X) \
-  STRUT_HINGE_FIELDS(X) \
-  STRUT_CELL_FIELDS(X) \
-  STRUT_GAS_FIELDS(X) \
-  STRUT_COLLISION_FIELDS(X) \
-  STRUT_DISTANCE_FIELDS(X) \
-  STRUT_FOOT_FIELDS(X) \
-  STRUT_BEAM_KEYS(X) \
-  STRUT_CLAMPED_TO_KEYS(X) \
-  STRUT_LAW_FIELDS(X) \
-  STRUT_RAYLEIGH_FIELDS(X) \
-  STRUT_GROUND_FIELDS(X) \
-  STRUT_CIRCLE_FIELDS(X) \
-  STRUT_MOTION_FIELDS(X) \
-  STRUT_FRICTION_FIELDS(X) \
-  STRUT_CONTACT_FIELDS(X) \
-  STRUT_ACTUATOR_FIELDS(X) \
-  STRUT_LOAD_FIELDS(X) \
-  STRUT_UNBALANCE_FIELDS(X) \
-  STRUT_SLIDER_FIELDS(X) \
-  STRUT_SIGNAL_FIELDS(X) \
-  STRUT_SINE_FIELDS(X) \
-  STRUT_HALF_SINE_FIELDS(X) \
-  STRUT_SQUARE_FIELDS(X) \
-  STRUT_RAMP_FIELDS(X) \
-  STRUT_SENSOR_FIELDS(X) \
-  STRUT_STATE_FIELDS(X) \
-  STRUT_OSCILLATOR_KEYS(X) \
-  STRUT_CONTROLLER_KEYS(X) \
-  STRUT_RELAY_FIELDS(X) \
-  STRUT_PIPE_KEYS(X) \
-  STRUT_NETWORK_KEYS(X) \
-  STRUT_RUBBING_FIELDS(X) \
-  STRUT_MAXWELL_FIELDS(X) \
-  STRUT_STARTS_FIELDS(X) \
-  STRUT_CONFIGURATION_FIELDS(X) \
-  STRUT_INITIAL_FIELDS(X) \
-  STRUT_SETTLE_FIELDS(X) \
-  STRUT_EQUILIBRIA_FIELDS(X) \
-  STRUT_SCENE_PATH_KEYS(X) \
-  STRUT_STAGE_KEYS(X) \
-  STRUT_SOLVER_FIELDS(X) \
-  STRUT_RUN_FIELDS(X) \
-  STRUT_MEASURE_FIELDS(X) \
-  STRUT_QUANTITY_FIELDS(X) \
-  STRUT_STEADY_FIELDS(X) \
-  STRUT_OUTPUT_FIELDS(X) \
-  STRUT_DATA_KEYS(X) \
-  STRUT_ROW_KEYS(X) \
-  STRUT_STUDY_KEYS(X) \
-  STRUT_RANGE_KEYS(X) \
-  STRUT_VARIANT_KEYS(X) \
-  STRUT_CHECK_KEYS(X) \
-  STRUT_FIGURE_KEYS(X) \
-  STRUT_PATH_KEYS(X) \
-  STRUT_FORM_KEYS(X) \
-  STRUT_POINTS_KEYS(X) \
-  STRUT_SAMPLE_KEYS(X) \
-  STRUT_DISTRIBUTION_KEYS(X) \
-  STRUT_LIMIT_KEYS(X) \
-  STRUT_REFINE_KEYS(X) \
-  STRUT_SENSITIVITY_KEYS(X) \
-  STRUT_STIFFNESS_AT_KEYS(X) \
-  STRUT_SEARCH_KEYS(X) \
-  STRUT_VARIABLE_KEYS(X) \
-  STRUT_FOLLOW_KEYS(X) \
-  STRUT_FIT_KEYS(X) \
-  STRUT_MATCH_KEYS(X) \
-  STRUT_ALIGN_KEYS(X)
-
-/** The sections: X(NAME, name, its first key, the text above their table in the reference). */
+/** The sections: X(NAME, name, its rows, the text above their table in the reference). */
 #define STRUT_SECTIONS(X) \
-  X(SCENE, "scene", SCENE_VERSION, "The keys at the top level of a model.") \
-  X(PART, "part", PART_USE, "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the scene's parameters, groups and signals, but only its own nodes.") \
-  X(PLACE, "place", PLACE_PART, "`place: {NAME: {...}}`: one or several copies of a part, with names such as `NAME.node` or `NAME.3.node`.") \
-  X(REPEAT, "repeat", REPEAT_COUNT, "`repeat: {...}` of a placement. Copy k results from copy 0 by k motions, each a scaling and rotation about `about`, then a displacement by `step` in its own frame.") \
-  X(NEXT, "next", NEXT_MERGE, "`next: {...}` of `repeat`: what a copy shares with the next one. Names are those of the copy; `next.NAME` belongs to the next copy.") \
-  X(NODE, "node", NODE_POSITION, "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.") \
-  X(MOVES, "moves", MOVES_ALONG_X, "`nodes: {NAME: {moves: {...}}}`: the node's position is the drawn one plus the signal, which must not jump. Statics and settling keep it where it is at t = 0.") \
-  X(MEMBER, "member", MEMBER_GROUP, "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. An own rest length, in whichever of its four keys, replaces that of the group; so does an own stiffness.") \
-  X(HINGE, "hinge", HINGE_NODES, "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a law that brings its own stiffness.") \
-  X(CELL, "cell", CELL_NODES, "`cells: {NAME: {...}}` with `pressure`, `gas` or `stiffness`. In the plane a pressure is a force per length.") \
-  X(GAS, "gas", GAS_KIND, "`cells: {NAME: {gas: {...}}}`.") \
-  X(COLLISION, "collision", COLLISION_NODE, "`collisions: {NAME: {...}}` with `node` and `member`, `nodes`, `members`, or `between`. Things pass through each other unless a collision names them.") \
-  X(DISTANCE, "distance", DISTANCE_NODES, "`distances: {NAME: {...}}` with `nodes` and `along`, or `node` and `line`. A distance needs a stiffness, a damping, or a law that brings its own stiffness.") \
-  X(FOOT, "foot", FOOT_MEMBER, "`feet: {NAME: {member, node, radius}}`: a circular arc at the end of a member, which rolls on straight grounds at rest. Friction acts at the point of contact, with its moment on the member. Karnopp's law becomes smooth within its stick band, so that a loaded foot creeps. Statics ignore the friction.") \
-  X(BEAM, "beam", BEAM_NODES, "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its ends, bars `NAME.1`, ..., and hinges `NAME.1`, ... at these nodes; at a clamp also for a fixed node and the hinge `NAME.start` or `NAME.end`. `strut export` writes these.") \
-  X(CLAMPED_TO, "clamped_to", CLAMPED_TO_START, "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a member or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. Several beams at one node also get hinges between each other, such as `NAME.start.OTHER`.") \
-  X(LAW, "law", LAW_KIND, "`law: {...}` of a member, a hinge or a distance, or only its kind, such as `law: logarithmic`; `law: tension_only` and `law: compression_only` are linear and carry one sign. For a hinge read angle for length and moment for force. `polynomial`, `table` and `curve` bring their own stiffness, so that the member must not give one.") \
-  X(RAYLEIGH, "rayleigh", RAYLEIGH_MASS, "`rayleigh: {...}`: adds the damping ratio alpha / (2 w) + beta w / 2 to a mode of angular frequency w.") \
-  X(GROUND, "ground", GROUND_HEIGHT, "`ground: {...}`: the line, profile or circle that nodes may touch; or several, `grounds: {NAME: {...}}`.") \
-  X(CIRCLE, "circle", CIRCLE_CENTRE, "`circle: {...}` of a ground.") \
-  X(MOTION, "motion", MOTION_IN_X, "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, which must not jump. The energy balance includes its work on the structure.") \
-  X(FRICTION, "friction", FRICTION_LAW, "`friction: {...}` of the ground, a group or a contact. A contact's keys override those of its groups, and these those of the ground. Every law needs `mu`, or `mu_static` and `mu_kinetic`; for `smooth` `mu_kinetic` is enough. If friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`.") \
-  X(CONTACT, "contact", CONTACT_GROUP, "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.") \
-  X(ACTUATOR, "actuator", ACTUATOR_MEMBER, "`actuators: {NAME: {...}}` with a `signal`, a `force` of a member or a `moment` of a hinge.") \
-  X(LOAD, "load", LOAD_NODE, "`loads: {NAME: {...}}`.") \
-  X(UNBALANCE, "unbalance", UNBALANCE_NODE, "`unbalances: {NAME: {...}}` with a `speed` or an `angle`. An unbalance exerts m r w^2 outwards, plus the effect of a changing speed. In statics and settling its mass is at the node.") \
-  X(SLIDER, "slider", SLIDER_MEMBER, "`sliders: {NAME: {...}}`. In statics and settling a slider stays where it is at t = 0.") \
-  X(SIGNAL, "signal", SIGNAL_CONSTANT, "A signal is a mapping with one of these keys, or the name of an entry of `signals`. Its use determines its unit: a length, angle, pressure, force or moment for an actuator, a length for the motion of a ground or node, no unit for a load.") \
-  X(SINE, "sine", SINE_AMPLITUDE, "`{sine: {...}}`.") \
-  X(HALF_SINE, "half_sine", HALF_SINE_AMPLITUDE, "`{half_sine: {...}}`: a single pulse.") \
-  X(SQUARE, "square", SQUARE_AMPLITUDE, "`{square: {...}}`.") \
-  X(RAMP, "ramp", RAMP_AMPLITUDE, "`{ramp: {...}}`.") \
-  X(SENSOR, "sensor", SENSOR_LENGTH, "`sensors: {NAME: {...}}` with one of these keys. Expressions of signals and measured quantities use the name. In an expression, `rate(NAME)` is the rate of a length, angle, position, area or distance.") \
-  X(STATE, "state", STATE_RATE, "`states: {NAME: {...}}`.") \
-  X(OSCILLATOR, "oscillator", OSCILLATOR_FREQUENCY, "`oscillators: {NAME: {...}}`. In expressions the name is the phase, an angle: `2 mm * sin(NAME)`. `strut export` writes oscillators as states.") \
-  X(CONTROLLER, "controller", CONTROLLER_SENSOR, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut export` writes PID controllers as signals and states.") \
-  X(RELAY, "relay", RELAY_KIND, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values, with `on_above` and `off_below`, or `on_below` and `off_above`.") \
-  X(PIPE, "pipe", PIPE_CELLS, "`pipes: {NAME: {cells: [a, b], conductance}}`: gas that flows between two cells. The name is a state: the amount that has flowed, pressure times area. `strut export` writes a pipe as sensors, signals and actuators.") \
-  X(NETWORK, "network", NETWORK_FILE, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. `strut export` writes its neurons as signals `NAME_1_1` and so on.") \
-  X(RUBBING, "friction of a collision", RUBBING_MU, "`collisions: {NAME: {friction: {...}}}`: friction of two bodies in contact, smooth in the speed, so that loaded contacts creep. It acts on nodes and axes, without a moment due to the thickness.") \
-  X(MAXWELL, "maxwell", MAXWELL_STIFFNESS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the elongation u. In statics it is 0.") \
-  X(STARTS, "starts", STARTS_CONTACT, "`{sine: {...}, starts: {...}}` of any signal: begins its time at the touchdown of a node, which methods with events locate, or when a sensor passes a level.") \
-  X(CONFIGURATION, "configuration", CONFIGURATION_CONTACTS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, write contacts as a list of lists; if one is called `shape`, a mapping under that key is the shape.") \
-  X(INITIAL, "initial", INITIAL_CONFIGURATION, "`initial: {...}`.") \
-  X(SETTLE, "settle", SETTLE_SPEED, "`initial: {settle: {...}}`.") \
-  X(EQUILIBRIA, "equilibria", EQUILIBRIA_SUPPORTS, "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: NAME}`.") \
-  X(SCENE_PATH, "path in stages", SCENE_PATH_STAGES, "`path: {stages: [{...}, ...]}` of a model. [Stages](statics.md#stages) has an example.") \
-  X(STAGE, "stage", STAGE_LOAD, "`path: {stages: [{...}]}`, each with one of `load`, `over`, `release`.") \
-  X(SOLVER, "solver", SOLVER_INTEGRATOR, "`solver: {...}`.") \
-  X(RUN, "run", RUN_DURATION, "`run: {...}`: either `duration`, or `periods` and `of`.") \
-  X(MEASURE, "measure", MEASURE_LAST, "`run: {measure: {...}}`.") \
-  X(QUANTITY, "quantity", QUANTITY_OF, "`run: {measure: {quantities: {NAME: {...}}}}`.") \
-  X(STEADY, "steady", STEADY_TOLERANCE, "`run: {measure: {steady: {...}}}`.") \
-  X(OUTPUT, "output", OUTPUT_EVERY, "`output: {...}`.") \
-  X(DATA, "data", DATA_FILE, "`data: {NAME: {file: FILE, ...}}` of a scene or a study. `NAME.COLUMN` is a column; its unit stands in the header, `x [mm]` or `Force (N)`, on a line below it, or under `units`. [Measured data](language.md#measured-data) has examples. Parameters are not known here: a file is read once for all points of a study.") \
-  X(ROW, "row of data", ROW_IN_X, "`{NODE: {x: film.x1, y: film.y1, row: 1}}` in place of `[x, y]` of a [configuration](#configuration) or an initial position.") \
-  X(STUDY, "study", STUDY_VERSION, "The keys at the top level of a study, a file for `strut sweep`. Expressions in `set` and `derive` may use the model's parameters.") \
-  X(RANGE, "range", RANGE_FROM, "`axes: [{NAME: {...}}]`: values of a parameter, by `step` or `count`.") \
-  X(VARIANT, "variant", VARIANT_SOLVER, "`variants: {NAME: {...}}` of a study.") \
-  X(CHECK, "check", CHECK_HALF_STEP, "`check: {...}` of a study.") \
-  X(FIGURE, "figure", FIGURE_KIND, "`figures: {NAME: {...}}` of a study.") \
-  X(PATH, "path", PATH_LOAD, "`path: {...}` of a study with `compute: path`, as the options of `strut path`.") \
-  X(FORM, "form", FORM_FROM, "`form: {...}` of a study with `compute: form`, as the options of `strut form` (`from` is `--given`).") \
-  X(POINTS, "points", POINTS_FILE, "`axes: [{points: {...}}]` of a study, or short `{points: FILE}`.") \
-  X(SAMPLE, "sample", SAMPLE_COUNT, "`axes: [{sample: {...}}]` of a study: parameters from distributions.") \
-  X(DISTRIBUTION, "distribution", DISTRIBUTION_UNIFORM, "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.") \
-  X(LIMIT, "limit", LIMIT_EVALUATIONS, "`limit: {...}` of a study.") \
-  X(REFINE, "refine", REFINE_WHERE, "`refine: {...}` of a study.") \
-  X(SENSITIVITY, "sensitivity", SENSITIVITY_OF, "`sensitivity: {...}` of a study. The results are in `sensitivity.csv` beside the table.") \
-  X(STIFFNESS_AT, "stiffness_at", STIFFNESS_AT_NODE, "`stiffness_at: {...}` of a study.") \
-  X(SEARCH, "search", SEARCH_MAXIMISE, "`search: {...}` of a study, with `maximise` or `minimise`. [Searches](search.md) has examples.") \
-  X(VARIABLE, "variable", VARIABLE_FROM, "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or texts.") \
-  X(FOLLOW, "follow", FOLLOW_OVER, "`follow: {...}` of a study, as the options of `strut path --periodic`. [Branches of motions](follow.md#studies-of-branches) has an example.") \
-  X(FIT, "fit", FIT_OVER, "`fit: {...}` of a study. [From a film to a model](fit.md) has an example.") \
-  X(MATCH, "match", MATCH_TIME, "`match: {NAME: {...}}` of a fit: with `time`, a motion; with `displacement`, a curve of a path; with `compute`, columns of a table; otherwise a shape, where the run starts. The other keys are what the model has, such as `n1.x` or `m3.force`, and their values columns of `data`, or numbers.") \
-  X(ALIGN, "align", ALIGN_SHIFT, "`align: {...}` of a match.")
+  X(SCENE, "scene", STRUT_SCENE_FIELDS, "The keys at the top level of a model.") \
+  X(PART, "part", STRUT_PART_KEYS, "`parts: {NAME: {...}}`: a piece of structure, which `place` copies. It sees the scene's parameters, groups and signals, but only its own nodes.") \
+  X(PLACE, "place", STRUT_PLACE_KEYS, "`place: {NAME: {...}}`: one or several copies of a part, with names such as `NAME.node` or `NAME.3.node`.") \
+  X(REPEAT, "repeat", STRUT_REPEAT_KEYS, "`repeat: {...}` of a placement. Copy k results from copy 0 by k motions, each a scaling and rotation about `about`, then a displacement by `step` in its own frame.") \
+  X(NEXT, "next", STRUT_NEXT_KEYS, "`next: {...}` of `repeat`: what a copy shares with the next one. Names are those of the copy; `next.NAME` belongs to the next copy.") \
+  X(NODE, "node", STRUT_NODE_FIELDS, "`nodes: {NAME: [x, y]}`, or `nodes: {NAME: {position: [x, y], ...}}` with these keys.") \
+  X(MOVES, "moves", STRUT_MOVES_FIELDS, "`nodes: {NAME: {moves: {...}}}`: the node's position is the drawn one plus the signal, which must not jump. Statics and settling keep it where it is at t = 0.") \
+  X(MEMBER, "member", STRUT_MEMBER_FIELDS, "`members: {NAME: {...}}`. A member needs a stiffness, a damping, or both. An own rest length, in whichever of its four keys, replaces that of the group; so does an own stiffness.") \
+  X(HINGE, "hinge", STRUT_HINGE_FIELDS, "`hinges: {NAME: {...}}`. A hinge needs a stiffness, a damping, or a law that brings its own stiffness.") \
+  X(CELL, "cell", STRUT_CELL_FIELDS, "`cells: {NAME: {...}}` with `pressure`, `gas` or `stiffness`. In the plane a pressure is a force per length.") \
+  X(GAS, "gas", STRUT_GAS_FIELDS, "`cells: {NAME: {gas: {...}}}`.") \
+  X(COLLISION, "collision", STRUT_COLLISION_FIELDS, "`collisions: {NAME: {...}}` with `node` and `member`, `nodes`, `members`, or `between`. Things pass through each other unless a collision names them.") \
+  X(DISTANCE, "distance", STRUT_DISTANCE_FIELDS, "`distances: {NAME: {...}}` with `nodes` and `along`, or `node` and `line`. A distance needs a stiffness, a damping, or a law that brings its own stiffness.") \
+  X(FOOT, "foot", STRUT_FOOT_FIELDS, "`feet: {NAME: {member, node, radius}}`: a circular arc at the end of a member, which rolls on straight grounds at rest. Friction acts at the point of contact, with its moment on the member. Karnopp's law becomes smooth within its stick band, so that a loaded foot creeps. Statics ignore the friction.") \
+  X(BEAM, "beam", STRUT_BEAM_KEYS, "`beams: {NAME: {...}}`. A beam is short for nodes `NAME.1`, `NAME.2`, ... between its ends, bars `NAME.1`, ..., and hinges `NAME.1`, ... at these nodes; at a clamp also for a fixed node and the hinge `NAME.start` or `NAME.end`. `strut export` writes these.") \
+  X(CLAMPED_TO, "clamped_to", STRUT_CLAMPED_TO_KEYS, "`clamped_to: {start: NAME, end: NAME}` of a beam: the end keeps its drawn angle to a member or to another beam that has the node, too, by the hinge `NAME.start` or `NAME.end`. Several beams at one node also get hinges between each other, such as `NAME.start.OTHER`.") \
+  X(LAW, "law", STRUT_LAW_FIELDS, "`law: {...}` of a member, a hinge or a distance, or only its kind, such as `law: logarithmic`; `law: tension_only` and `law: compression_only` are linear and carry one sign. For a hinge read angle for length and moment for force. `polynomial`, `table` and `curve` bring their own stiffness, so that the member must not give one.") \
+  X(RAYLEIGH, "rayleigh", STRUT_RAYLEIGH_FIELDS, "`rayleigh: {...}`: adds the damping ratio alpha / (2 w) + beta w / 2 to a mode of angular frequency w.") \
+  X(GROUND, "ground", STRUT_GROUND_FIELDS, "`ground: {...}`: the line, profile or circle that nodes may touch; or several, `grounds: {NAME: {...}}`.") \
+  X(CIRCLE, "circle", STRUT_CIRCLE_FIELDS, "`circle: {...}` of a ground.") \
+  X(MOTION, "motion", STRUT_MOTION_FIELDS, "`motion: {x: SIGNAL, y: SIGNAL}` of a ground: its displacement, which must not jump. The energy balance includes its work on the structure.") \
+  X(FRICTION, "friction", STRUT_FRICTION_FIELDS, "`friction: {...}` of the ground, a group or a contact. A contact's keys override those of its groups, and these those of the ground. Every law needs `mu`, or `mu_static` and `mu_kinetic`; for `smooth` `mu_kinetic` is enough. If friction depends on the direction, `mu_forward` and `mu_backward` replace `mu`.") \
+  X(CONTACT, "contact", STRUT_CONTACT_FIELDS, "`ground: {contacts: {NODE: {...}}}`: settings of a single contact.") \
+  X(ACTUATOR, "actuator", STRUT_ACTUATOR_FIELDS, "`actuators: {NAME: {...}}` with a `signal`, a `force` of a member or a `moment` of a hinge.") \
+  X(LOAD, "load", STRUT_LOAD_FIELDS, "`loads: {NAME: {...}}`.") \
+  X(UNBALANCE, "unbalance", STRUT_UNBALANCE_FIELDS, "`unbalances: {NAME: {...}}` with a `speed` or an `angle`. An unbalance exerts m r w^2 outwards, plus the effect of a changing speed. In statics and settling its mass is at the node.") \
+  X(SLIDER, "slider", STRUT_SLIDER_FIELDS, "`sliders: {NAME: {...}}`. In statics and settling a slider stays where it is at t = 0.") \
+  X(SIGNAL, "signal", STRUT_SIGNAL_FIELDS, "A signal is a mapping with one of these keys, or the name of an entry of `signals`. Its use determines its unit: a length, angle, pressure, force or moment for an actuator, a length for the motion of a ground or node, no unit for a load.") \
+  X(SINE, "sine", STRUT_SINE_FIELDS, "`{sine: {...}}`.") \
+  X(HALF_SINE, "half_sine", STRUT_HALF_SINE_FIELDS, "`{half_sine: {...}}`: a single pulse.") \
+  X(SQUARE, "square", STRUT_SQUARE_FIELDS, "`{square: {...}}`.") \
+  X(RAMP, "ramp", STRUT_RAMP_FIELDS, "`{ramp: {...}}`.") \
+  X(SENSOR, "sensor", STRUT_SENSOR_FIELDS, "`sensors: {NAME: {...}}` with one of these keys. Expressions of signals and measured quantities use the name. In an expression, `rate(NAME)` is the rate of a length, angle, position, area or distance.") \
+  X(STATE, "state", STRUT_STATE_FIELDS, "`states: {NAME: {...}}`.") \
+  X(OSCILLATOR, "oscillator", STRUT_OSCILLATOR_KEYS, "`oscillators: {NAME: {...}}`. In expressions the name is the phase, an angle: `2 mm * sin(NAME)`. `strut export` writes oscillators as states.") \
+  X(CONTROLLER, "controller", STRUT_CONTROLLER_KEYS, "`controllers: {NAME: {...}}`. The integral is the state `NAME_integral`. `strut export` writes PID controllers as signals and states.") \
+  X(RELAY, "relay", STRUT_RELAY_FIELDS, "`controllers: {NAME: {kind: relay, ...}}`: a signal with two values, with `on_above` and `off_below`, or `on_below` and `off_above`.") \
+  X(PIPE, "pipe", STRUT_PIPE_KEYS, "`pipes: {NAME: {cells: [a, b], conductance}}`: gas that flows between two cells. The name is a state: the amount that has flowed, pressure times area. `strut export` writes a pipe as sensors, signals and actuators.") \
+  X(NETWORK, "network", STRUT_NETWORK_KEYS, "`controllers: {NAME: {network: FILE, ...}}`: a signal from a neural network. `strut export` writes its neurons as signals `NAME_1_1` and so on.") \
+  X(RUBBING, "friction of a collision", STRUT_RUBBING_FIELDS, "`collisions: {NAME: {friction: {...}}}`: friction of two bodies in contact, smooth in the speed, so that loaded contacts creep. It acts on nodes and axes, without a moment due to the thickness.") \
+  X(MAXWELL, "maxwell", STRUT_MAXWELL_FIELDS, "`members: {NAME: {maxwell: {...}}}`: the force of the branch follows F' = k (u' - F/c), with the elongation u. In statics it is 0.") \
+  X(STARTS, "starts", STRUT_STARTS_FIELDS, "`{sine: {...}, starts: {...}}` of any signal: begins its time at the touchdown of a node, which methods with events locate, or when a sensor passes a level.") \
+  X(CONFIGURATION, "configuration", STRUT_CONFIGURATION_FIELDS, "`configurations: {NAME: {NODE: [x, y], ...}}`, or `configurations: {NAME: {...}}` with these keys. `{}` is the drawn shape. If a node is called `contacts`, write contacts as a list of lists; if one is called `shape`, a mapping under that key is the shape.") \
+  X(INITIAL, "initial", STRUT_INITIAL_FIELDS, "`initial: {...}`.") \
+  X(SETTLE, "settle", STRUT_SETTLE_FIELDS, "`initial: {settle: {...}}`.") \
+  X(EQUILIBRIA, "equilibria", STRUT_EQUILIBRIA_FIELDS, "`equilibria: {...}`: the search of `strut equilibria` and of `initial: {equilibrium: NAME}`.") \
+  X(SCENE_PATH, "path in stages", STRUT_SCENE_PATH_KEYS, "`path: {stages: [{...}, ...]}` of a model. [Stages](statics.md#stages) has an example.") \
+  X(STAGE, "stage", STRUT_STAGE_KEYS, "`path: {stages: [{...}]}`, each with one of `load`, `over`, `release`.") \
+  X(SOLVER, "solver", STRUT_SOLVER_FIELDS, "`solver: {...}`.") \
+  X(RUN, "run", STRUT_RUN_FIELDS, "`run: {...}`: either `duration`, or `periods` and `of`.") \
+  X(MEASURE, "measure", STRUT_MEASURE_FIELDS, "`run: {measure: {...}}`.") \
+  X(QUANTITY, "quantity", STRUT_QUANTITY_FIELDS, "`run: {measure: {quantities: {NAME: {...}}}}`.") \
+  X(STEADY, "steady", STRUT_STEADY_FIELDS, "`run: {measure: {steady: {...}}}`.") \
+  X(OUTPUT, "output", STRUT_OUTPUT_FIELDS, "`output: {...}`.") \
+  X(DATA, "data", STRUT_DATA_KEYS, "`data: {NAME: {file: FILE, ...}}` of a scene or a study. `NAME.COLUMN` is a column; its unit stands in the header, `x [mm]` or `Force (N)`, on a line below it, or under `units`. [Measured data](language.md#measured-data) has examples. Parameters are not known here: a file is read once for all points of a study.") \
+  X(ROW, "row of data", STRUT_ROW_KEYS, "`{NODE: {x: film.x1, y: film.y1, row: 1}}` in place of `[x, y]` of a [configuration](#configuration) or an initial position.") \
+  X(STUDY, "study", STRUT_STUDY_KEYS, "The keys at the top level of a study, a file for `strut sweep`. Expressions in `set` and `derive` may use the model's parameters.") \
+  X(RANGE, "range", STRUT_RANGE_KEYS, "`axes: [{NAME: {...}}]`: values of a parameter, by `step` or `count`.") \
+  X(VARIANT, "variant", STRUT_VARIANT_KEYS, "`variants: {NAME: {...}}` of a study.") \
+  X(CHECK, "check", STRUT_CHECK_KEYS, "`check: {...}` of a study.") \
+  X(FIGURE, "figure", STRUT_FIGURE_KEYS, "`figures: {NAME: {...}}` of a study.") \
+  X(PATH, "path", STRUT_PATH_KEYS, "`path: {...}` of a study with `compute: path`, as the options of `strut path`.") \
+  X(FORM, "form", STRUT_FORM_KEYS, "`form: {...}` of a study with `compute: form`, as the options of `strut form` (`from` is `--given`).") \
+  X(POINTS, "points", STRUT_POINTS_KEYS, "`axes: [{points: {...}}]` of a study, or short `{points: FILE}`.") \
+  X(SAMPLE, "sample", STRUT_SAMPLE_KEYS, "`axes: [{sample: {...}}]` of a study: parameters from distributions.") \
+  X(DISTRIBUTION, "distribution", STRUT_DISTRIBUTION_KEYS, "`over: {NAME: {...}}` of a sample or a sensitivity analysis, with one of these keys.") \
+  X(LIMIT, "limit", STRUT_LIMIT_KEYS, "`limit: {...}` of a study.") \
+  X(REFINE, "refine", STRUT_REFINE_KEYS, "`refine: {...}` of a study.") \
+  X(SENSITIVITY, "sensitivity", STRUT_SENSITIVITY_KEYS, "`sensitivity: {...}` of a study. The results are in `sensitivity.csv` beside the table.") \
+  X(STIFFNESS_AT, "stiffness_at", STRUT_STIFFNESS_AT_KEYS, "`stiffness_at: {...}` of a study.") \
+  X(SEARCH, "search", STRUT_SEARCH_KEYS, "`search: {...}` of a study, with `maximise` or `minimise`. [Searches](search.md) has examples.") \
+  X(VARIABLE, "variable", STRUT_VARIABLE_KEYS, "`over: {NAME: {...}}` of a search. `{NAME: [...]}` is a list of choices, numbers or texts.") \
+  X(FOLLOW, "follow", STRUT_FOLLOW_KEYS, "`follow: {...}` of a study, as the options of `strut path --periodic`. [Branches of motions](follow.md#studies-of-branches) has an example.") \
+  X(FIT, "fit", STRUT_FIT_KEYS, "`fit: {...}` of a study. [From a film to a model](fit.md) has an example.") \
+  X(MATCH, "match", STRUT_MATCH_KEYS, "`match: {NAME: {...}}` of a fit: with `time`, a motion; with `displacement`, a curve of a path; with `compute`, columns of a table; otherwise a shape, where the run starts. The other keys are what the model has, such as `n1.x` or `m3.force`, and their values columns of `data`, or numbers.") \
+  X(ALIGN, "align", STRUT_ALIGN_KEYS, "`align: {...}` of a match.")
 /* clang-format on */
 
 #endif

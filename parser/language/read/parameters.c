@@ -21,14 +21,11 @@ strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *na
 
 /* The place of the expression that is being evaluated, for errors that its text does not show. */
 static strut_place asking_place(strut_reader *reader) {
-  if (reader->asking_set) {
-    const strut_parameter_state *parameters = strut_parameter_find(reader, reader->asking_set);
-    return parameters->set->place.line ? parameters->set->place : parameters->key->place;
-  }
-  return reader->asking->place;
+  if (!reader->asking_set) return reader->asking->place;
+  const strut_parameter_state *parameters = strut_parameter_find(reader, reader->asking_set);
+  return parameters->set->place.line ? parameters->set->place : parameters->key->place;
 }
 
-/* The place for messages about the parameters as a whole. */
 static strut_place section_place(strut_reader *reader) {
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   return slot->key ? slot->key->place : strut_root_place(reader);
@@ -59,14 +56,6 @@ static void report_setting(strut_reader *reader, const strut_setting *set, strut
                        strut_sanitised_text(reader, set->text), message);
 }
 
-/* The expression of a parameter in the file. */
-static bool evaluate(strut_reader *reader, strut_parameter_state *parameters,
-                     strut_quantity *quantity) {
-  return strut_read_quantity(reader, parameters->value, parameters->name,
-                             (strut_owner){"the parameters", NULL}, quantity);
-}
-
-/* The value that is given from outside. */
 static bool evaluate_set(strut_reader *reader, strut_parameter_state *parameters) {
   if (parameters->set->known) {
     parameters->quantity = (strut_quantity){.value = parameters->set->value,
@@ -180,7 +169,7 @@ static bool read_given(strut_reader *reader, strut_parameter_state *parameters,
   return fine;
 }
 
-static void resolve_parameter(strut_reader *reader, strut_parameter_state *parameters) {
+void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parameters) {
   if (parameters->state != STRUT_UNREAD) return;
   if (reader->parameter_depth >= STRUT_DEEPEST_PARAMETER) {
     strut_report_error(reader, parameters->key->place,
@@ -190,12 +179,12 @@ static void resolve_parameter(strut_reader *reader, strut_parameter_state *param
     return;
   }
   reader->parameter_stack[reader->parameter_depth++] = parameters;
-  assert(reader->parameter_depth <= STRUT_DEEPEST_PARAMETER);
   parameters->state = STRUT_READING;
   strut_quantity declared;
   strut_copy *before = reader->scope;
   reader->scope = parameters->of_part ? parameters->of_part->scope : NULL;
-  bool fine = evaluate(reader, parameters, &declared);
+  bool fine = strut_read_quantity(reader, parameters->value, parameters->name,
+                                  (strut_owner){"the parameters", NULL}, &declared);
   reader->scope = before;
   if (parameters->of_part && parameters->of_part->given) {
     fine = fine && read_given(reader, parameters, &declared);
@@ -207,10 +196,6 @@ static void resolve_parameter(strut_reader *reader, strut_parameter_state *param
   }
   if (parameters->state == STRUT_READING) parameters->state = fine ? STRUT_READ : STRUT_FAILED;
   reader->parameter_depth--;
-}
-
-void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parameters) {
-  resolve_parameter(reader, parameters);
 }
 
 static int look_up_parameter(void *context, const char *name, size_t length,
@@ -237,7 +222,7 @@ static int look_up_parameter(void *context, const char *name, size_t length,
                        "parameter '%s' is a text, expected a number here", parameters->name);
     return -1;
   }
-  resolve_parameter(reader, parameters);
+  strut_resolve_parameter(reader, parameters);
   if (parameters->state == STRUT_READING) {
     report_cycle(reader, parameters);
     parameters->state = STRUT_FAILED;
@@ -311,7 +296,7 @@ static void apply_setting(strut_reader *reader, const strut_setting *setting) {
 void strut_read_parameters(strut_reader *reader, const strut_setting *settings, size_t count) {
   const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   bool known = slot->state != STRUT_BROKEN;
-  const strut_tree *map = slot->state == STRUT_GIVEN ? slot->value : NULL;
+  const strut_tree *map = strut_given(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
   reader->parameters = strut_reader_allocate(reader, &reader->scratch, map ? map->count : 0,
                                              sizeof *reader->parameters);
   if (!reader->parameters) return;
@@ -321,7 +306,7 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
   }
   for (size_t i = 0; known && i < count; i++) apply_setting(reader, &settings[i]);
   for (size_t i = 0; i < reader->parameter_count; i++)
-    resolve_parameter(reader, &reader->parameters[i]);
+    strut_resolve_parameter(reader, &reader->parameters[i]);
 }
 
 void strut_keep_parameters(strut_reader *reader) {

@@ -118,7 +118,7 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
       odd->key->text);
 }
 
-void strut_frame_turn(strut_frame *frame, double angle) {
+static void turn_frame(strut_frame *frame, double angle) {
   double s, c;
   strut_sincos_turns(angle / STRUT_TAU, &s, &c);
   frame->axes[0][0] = c, frame->axes[0][1] = -s;
@@ -148,7 +148,7 @@ strut_frame strut_repeated_frame(const strut_repetition *repetition, const int64
     return f;
   }
   double s = power(repetition->scale, number[0]), origin[2] = {0.0, 0.0};
-  strut_frame_turn(&f, k * repetition->turn);
+  turn_frame(&f, k * repetition->turn);
   f.scale = s;
   if (repetition->step[0][0] == 0.0 &&
       repetition->step[0][1] == 0.0) { /* `about` stays where it is */
@@ -160,7 +160,7 @@ strut_frame strut_repeated_frame(const strut_repetition *repetition, const int64
   /* The images of the origin under S, S^2, S^4, ..., those of the bits of k. */
   double once_away[2] = {repetition->scale * repetition->about[0],
                          repetition->scale * repetition->about[1]};
-  strut_frame_turn(&once, repetition->turn);
+  turn_frame(&once, repetition->turn);
   once.scale = repetition->scale;
   strut_frame_vector(&once, once_away);
   for (int c = 0; c < 2; c++)
@@ -169,7 +169,7 @@ strut_frame strut_repeated_frame(const strut_repetition *repetition, const int64
     if (bits & 1) move_point(&once, origin);
     double squared[2] = {once.at[0], once.at[1]};
     move_point(&once, squared);
-    strut_frame_turn(&once, (double)(2 * n) * repetition->turn);
+    turn_frame(&once, (double)(2 * n) * repetition->turn);
     once.scale *= once.scale;
     memcpy(once.at, squared, sizeof squared);
   }
@@ -242,8 +242,12 @@ static const char *read_copy_numbers(const strut_repetition *repetition, const c
   return text;
 }
 
-bool strut_find_in_copy(strut_expansion *expansion, strut_copy *copy, const char *name,
-                        double position[2]) {
+/*
+ * Where the node of a copy lies that `name` means, one of a part placed within it too, in the coordinates that the
+ * copy's frame leads to. False: it has no such node, or a part on the way is laid onto others.
+ */
+static bool find_in_copy(strut_expansion *expansion, strut_copy *copy, const char *name,
+                         double position[2]) {
   strut_part *part = copy->placement->part;
   const strut_slot *nodes = strut_slot_of(&part->fields, STRUT_KEY_PART_NODES);
   const strut_slot *place = strut_slot_of(&part->fields, STRUT_KEY_PART_PLACE);
@@ -270,7 +274,7 @@ bool strut_find_in_copy(strut_expansion *expansion, strut_copy *copy, const char
       inner = strut_make_copy(expansion, &p, number, &base, &scope);
     if (!inner) return false;
     expansion->copies->depth++;
-    bool found = strut_find_in_copy(expansion, inner, rest, position);
+    bool found = find_in_copy(expansion, inner, rest, position);
     expansion->copies->depth--;
     return found;
   }
@@ -282,7 +286,7 @@ static bool find_inside(strut_expansion *expansion, strut_copy *copy, const stru
                         double position[2]) {
   strut_copy *before = expansion->reader->scope;
   bool failed = expansion->reader->failed,
-       found = strut_find_in_copy(expansion, copy, name->text, position);
+       found = find_in_copy(expansion, copy, name->text, position);
   expansion->reader->scope = before;
   if (!found && expansion->reader->failed == failed)
     strut_report_error(
@@ -339,7 +343,7 @@ bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_
   const strut_tree *scale = placing->keys.scale, *onto = placing->keys.onto;
   bool fit = scale && scale->kind == STRUT_TREE_SCALAR && strcmp(scale->text, "fit") == 0;
   *frame = strut_frame_of_scene;
-  if (turn->state == STRUT_GIVEN) strut_frame_turn(frame, placing->keys.turn);
+  if (turn->state == STRUT_GIVEN) turn_frame(frame, placing->keys.turn);
   memcpy(frame->at, placing->keys.at, sizeof frame->at);
   for (int c = 0; c < 2; c++)
     for (int row = 0; row < 2 && placing->keys.flip >> c & 1; row++) frame->axes[row][c] *= -1.0;

@@ -26,10 +26,6 @@ enum { THINGS_OF_PART = 3 }; /* a node, a bar and a hinge */
 
 enum { CLAMPED_START = 1, CLAMPED_END = 2 }; /* the words of the key, as bits */
 
-static size_t count_clamps(const strut_beam *beam) {
-  return (size_t)(beam->clamped & 1u) + (size_t)(beam->clamped >> 1);
-}
-
 static double part_length(const strut_reader *reader, const strut_beam *beam) {
   const strut_node *nodes = reader->scene->nodes;
   return strut_distance(nodes[beam->node[0]].position, nodes[beam->node[1]].position) /
@@ -38,16 +34,11 @@ static double part_length(const strut_reader *reader, const strut_beam *beam) {
 
 /* "rod.3" */
 static const char *part_name(strut_reader *reader, const strut_beam *beam, size_t part) {
-  const char *name = strut_arena_format(&reader->scene->arena, "%s.%zu", beam->name, part);
-  if (!name) reader->out_of_memory = true;
-  return name ? name : "";
+  return strut_formatted(reader, &reader->scene->arena, "%s.%zu", beam->name, part);
 }
 
 static const char *clamp_name(strut_reader *reader, const strut_beam *beam, bool end) {
-  const char *name =
-      strut_arena_format(&reader->scene->arena, "%s.%s", beam->name, end ? "end" : "start");
-  if (!name) reader->out_of_memory = true;
-  return name ? name : "";
+  return strut_formatted(reader, &reader->scene->arena, "%s.%s", beam->name, end ? "end" : "start");
 }
 
 /* A thing of the beam; NULL where its name is taken, which is reported once for the beam. */
@@ -141,7 +132,7 @@ void strut_read_beams(strut_reader *reader) {
       reader->ends_unknown = true;
       continue;
     }
-    parts += (size_t)beam->parts, clamps += count_clamps(beam);
+    parts += (size_t)beam->parts, clamps += (beam->clamped & 1u) + (beam->clamped >> 1);
     reader->beam_count++;
   }
   double most = floor(reader->limit_things / THINGS_OF_PART);
@@ -301,12 +292,10 @@ static bool find_target(strut_reader *reader, const strut_beam *beam, int end,
   return true;
 }
 
-/* Stiffness of the half part at an end. */
 static double half_stiffness(const strut_reader *reader, const strut_beam *beam) {
   return 2.0 * beam->bending_stiffness / part_length(reader, beam);
 }
 
-/* The node next to an end. */
 static int32_t inner_node(const strut_beam *beam, int end) {
   return node_of(beam, end ? beam->parts - 1 : 1);
 }
@@ -355,7 +344,6 @@ static bool make_couplings(strut_reader *reader, joints *self) {
   return true;
 }
 
-/* Resolves what ends are clamped to. */
 static void join_all(const joints *self) {
   strut_reader *reader = self->reader;
   for (int32_t e = 0; e < 2 * (int32_t)reader->beam_count; e++) {
@@ -389,11 +377,10 @@ static void add_coupling_hinge(const joints *self, int32_t end, int32_t other_no
                                const char *other, double stiffness, double time) {
   strut_beam *beam = beam_of(self, end);
   const char *name =
-      strut_arena_format(&self->reader->scene->arena, "%s.%s%s%s", beam->name,
-                         end % 2 ? "end" : "start", other ? "." : "", other ? other : "");
+      strut_formatted(self->reader, &self->reader->scene->arena, "%s.%s%s%s", beam->name,
+                      end % 2 ? "end" : "start", other ? "." : "", other ? other : "");
   const int32_t node[3] = {other_node, beam->node[end % 2], inner_node(beam, end % 2)};
-  if (!name) self->reader->out_of_memory = true;
-  if (!name || beam->broken) return;
+  if (beam->broken) return;
   put_hinge(self->reader, beam, name, node, stiffness, time * stiffness, (double)NAN);
 }
 

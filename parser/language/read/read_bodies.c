@@ -9,11 +9,6 @@
 
 enum { MOST_PAIRS = 100000 };
 
-/* `all`, or members of a group. */
-typedef struct body_set {
-  const char *group; /* NULL: all */
-} body_set;
-
 static bool names_group(const strut_tree *value, const char *group) {
   if (!value) return false;
   if (value->kind == STRUT_TREE_SCALAR) return strcmp(value->text, group) == 0;
@@ -22,25 +17,23 @@ static bool names_group(const strut_tree *value, const char *group) {
   return false;
 }
 
-static bool belongs(const strut_reader *reader, size_t member, body_set set) {
+/* `all`, or members of a group: is it one of these? */
+static bool belongs(const strut_reader *reader, size_t member, const char *group) {
   const strut_source *source = reader->things[STRUT_THING_MEMBER].source;
   const strut_tree *value = source ? source[member].value : NULL;
   if (reader->scene->members[member].guide_count) return false;
-  if (!set.group) return true;
-  return value && value->kind == STRUT_TREE_MAP &&
-         names_group(strut_tree_find(value, "group", NULL), set.group);
+  return !group || (value && names_group(strut_tree_find(value, "group", NULL), group));
 }
 
-/* One of the two sets; false where it was reported that there is no such group. */
+/* The group of one of the two sets, NULL of all; false where it was reported that there is no such group. */
 static bool read_set(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                     body_set *set) {
-  *set = (body_set){NULL};
+                     const char **group) {
   if (value->kind != STRUT_TREE_SCALAR)
     return strut_refuse_form(reader, STRUT_KEY_COLLISION_BETWEEN, value, owner);
-  if (strcmp(value->text, "all") == 0) return true;
-  set->group = value->text;
-  for (size_t j = 0; j < reader->scene->member_count; j++)
-    if (belongs(reader, j, *set)) return true;
+  *group = strcmp(value->text, "all") == 0 ? NULL : value->text;
+  for (size_t j = 0; *group && j < reader->scene->member_count; j++)
+    if (belongs(reader, j, *group)) return true;
+  if (!*group) return true;
   return strut_report_error(
       reader, value->place, "no straight member is of group '%s', which %s names",
       strut_sanitised_text(reader, value->text), strut_owner_text(reader, owner));
@@ -65,21 +58,19 @@ static bool apart(const strut_scene *scene, size_t i, size_t j, double thickness
 }
 
 /* The collisions that one stands for, added to `to` (room for all) unless that is NULL; returns how many. */
-static size_t add_pairs(strut_reader *reader, const strut_collision *like, const body_set set[2],
-                        strut_collision *to) {
+static size_t add_pairs(strut_reader *reader, const strut_collision *like,
+                        const char *const group[2], strut_collision *to) {
   const strut_scene *scene = reader->scene;
   size_t count = 0;
   for (size_t i = 0; i < scene->member_count && count <= MOST_PAIRS; i++)
     for (size_t j = i + 1; j < scene->member_count; j++) {
-      bool one = belongs(reader, i, set[0]) && belongs(reader, j, set[1]);
-      bool other = belongs(reader, i, set[1]) && belongs(reader, j, set[0]);
+      bool one = belongs(reader, i, group[0]) && belongs(reader, j, group[1]);
+      bool other = belongs(reader, i, group[1]) && belongs(reader, j, group[0]);
       if (!(one || other) || !apart(scene, i, j, like->thickness)) continue;
       if (to) {
-        const char *name = strut_arena_format(&reader->scratch, "%s_%s_%s", like->name,
-                                              scene->members[i].name, scene->members[j].name);
-        if (!name) reader->out_of_memory = true;
         to[count] = *like;
-        to[count].name = name ? strut_keep_text(reader, name) : like->name;
+        to[count].name = strut_formatted(reader, reader->keep, "%s_%s_%s", like->name,
+                                         scene->members[i].name, scene->members[j].name);
         to[count].member[0] = (int32_t)i, to[count].member[1] = (int32_t)j;
       }
       count++;
@@ -111,16 +102,15 @@ static strut_collision usual_collision(const strut_scene *scene) {
 typedef struct body_pairs {
   strut_collision like;
   const strut_tree *key;
-  body_set set[2];
+  const char *group[2];
   bool many;
   size_t count;
 } body_pairs;
 
 static bool find_pairs(strut_reader *reader, const strut_source *source,
                        const strut_collision *collision, body_pairs *pairs) {
-  const strut_tree *value = source->value;
   const strut_tree *between =
-      value && value->kind == STRUT_TREE_MAP ? strut_tree_find(value, "between", NULL) : NULL;
+      source->value ? strut_tree_find(source->value, "between", NULL) : NULL;
   strut_owner owner = {"collision", collision->name};
   *pairs =
       (body_pairs){.like = *collision, .key = source->key, .many = between != NULL, .count = 1};
@@ -134,9 +124,9 @@ static bool find_pairs(strut_reader *reader, const strut_source *source,
                   !list ? between
                   : k   ? between->first->next
                         : between->first,
-                  owner, &pairs->set[k]))
+                  owner, &pairs->group[k]))
       return false;
-  pairs->count = add_pairs(reader, collision, pairs->set, NULL);
+  pairs->count = add_pairs(reader, collision, pairs->group, NULL);
   if (pairs->count <= MOST_PAIRS) return true;
   return strut_report_error(reader, between->place, "%s stands for more than %d pairs of members",
                             strut_owner_text(reader, owner), (int)MOST_PAIRS);
@@ -153,7 +143,7 @@ static void replace_collisions(strut_reader *reader, const body_pairs *pairs, si
   size_t count = 0;
   for (size_t i = 0; i < given; i++) {
     if (pairs[i].many)
-      add_pairs(reader, &pairs[i].like, pairs[i].set, all + count);
+      add_pairs(reader, &pairs[i].like, pairs[i].group, all + count);
     else
       all[count] = pairs[i].like;
     for (size_t k = 0; k < pairs[i].count; k++)
@@ -180,7 +170,7 @@ void strut_read_bodies(strut_reader *reader) {
     if (!find_pairs(reader, &reader->things[STRUT_THING_COLLISION].source[i], &scene->collisions[i],
                     &pairs[i])) {
       reader->failed = true;
-      pairs[i].count = 0, pairs[i].many = true, pairs[i].set[0] = pairs[i].set[1] = (body_set){""};
+      pairs[i].count = 0, pairs[i].many = true, pairs[i].group[0] = pairs[i].group[1] = "";
     }
     many = many || pairs[i].many;
     total += pairs[i].count;
@@ -190,7 +180,7 @@ void strut_read_bodies(strut_reader *reader) {
     body_pairs *last = &pairs[given - 1];
     *last = (body_pairs){.like = usual_collision(scene), .key = slot->key, .many = true};
     if (last->like.stiffness > 0.0 && last->like.thickness > 0.0)
-      last->count = add_pairs(reader, &last->like, last->set, NULL);
+      last->count = add_pairs(reader, &last->like, last->group, NULL);
     if (last->count > MOST_PAIRS)
       strut_report_error(reader, slot->key->place, "these are more than %d pairs of members",
                          (int)MOST_PAIRS);

@@ -13,14 +13,10 @@ enum { MOST_POSITIONS = 20000000 };
 
 static const strut_owner search_owner = {"the search for equilibria", NULL};
 
-static bool nodes_known(strut_reader *reader) {
-  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
-}
-
 /* The configuration that is being read, which is the last one. */
 static void take_position(strut_reader *reader, int32_t node, const double pair[2],
                           const strut_tree *value) {
-  strut_scene *scene = reader->scene;
+  const strut_scene *scene = reader->scene;
   (void)value;
   memcpy(scene->configurations[scene->configuration_count - 1].position[node], pair,
          2 * sizeof *pair);
@@ -64,7 +60,7 @@ bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_ow
         reader, list->place,
         "expected nodes such as [n1, n2], or a list of such lists, for '%s' of %s, found %s", key,
         strut_owner_text(reader, owner), lists ? "a list of both" : strut_found(reader, list));
-  if (!nodes_known(reader)) return false;
+  if (!strut_entries(reader, STRUT_KEY_SCENE_NODES)) return false;
   alternatives = lists ? lists : 1;
   *sets = strut_reader_allocate(reader, &reader->scene->arena, alternatives, sizeof **sets);
   if (!*sets) return false;
@@ -112,13 +108,11 @@ static bool read_keys(strut_reader *reader, const strut_tree *map, strut_owner o
   strut_fields fields;
   if (!keys_only(reader, map, owner)) return false;
   strut_read_fields(reader, STRUT_SECTION_CONFIGURATION, map, owner, &fields);
-  const strut_slot *shape = strut_slot_of(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
+  const strut_tree *shape = strut_given(&fields, STRUT_KEY_CONFIGURATION_SHAPE);
   bool fine = strut_store(reader, &fields, owner, configuration) && !fields.broken;
-  configuration->shaped = shape->state == STRUT_GIVEN;
-  if (configuration->shaped)
-    fine =
-        strut_read_node_pairs(reader, shape->value, owner, STRUT_DIM_LENGTH, take_position) && fine;
-  return fine;
+  configuration->shaped = shape != NULL;
+  return (!shape || strut_read_node_pairs(reader, shape, owner, STRUT_DIM_LENGTH, take_position)) &&
+         fine;
 }
 
 bool strut_read_configuration(strut_reader *reader, const strut_tree *key, void *object) {
@@ -186,11 +180,10 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
 }
 
 void strut_read_search(strut_reader *reader) {
-  strut_search *search = &reader->experiment->search;
-  if (!strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
-                          search_owner.kind, &reader->search))
-    return;
-  if (!strut_store(reader, &reader->search, search_owner, search)) reader->search.broken = true;
+  if (strut_read_section(reader, STRUT_KEY_SCENE_EQUILIBRIA, STRUT_SECTION_EQUILIBRIA,
+                         search_owner.kind, &reader->search) &&
+      !strut_store(reader, &reader->search, search_owner, &reader->experiment->search))
+    reader->search.broken = true;
 }
 
 /* ---- the initial state; solver, run and output ---- */
@@ -208,12 +201,12 @@ static void store_velocity(strut_reader *reader, int32_t node, const double pair
 }
 
 /* `settle` and `steady` are true, false or a mapping of their own, whose values are of `within`. */
-static void read_switch(strut_reader *reader, const strut_slot *slot, int key, const char *owner,
+static void read_switch(strut_reader *reader, strut_fields *of, int key, const char *owner,
                         strut_owner within, strut_fields *fields) {
   char expected[100], *e = (char *)reader->experiment;
   const strut_key *k = strut_key_at(key);
-  const strut_tree *value = slot->value;
-  if (slot->state != STRUT_GIVEN) return;
+  const strut_tree *value = strut_given(of, key);
+  if (!value) return;
   bool map = value->kind == STRUT_TREE_MAP;
   int found = map ? 1 : value->quoted ? -1 : strut_switch_find(value->text);
   if (found == 1) strut_store_choice(k, e);
@@ -230,24 +223,24 @@ static void read_switch(strut_reader *reader, const strut_slot *slot, int key, c
 /* Positions and velocities: of all nodes first, then of single ones. */
 static void read_state(strut_reader *reader, int32_t configuration) {
   strut_scene *scene = reader->scene;
-  const strut_slot *positions = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_POSITIONS);
-  const strut_slot *velocities = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
+  const strut_tree *positions = strut_given(&reader->initial, STRUT_KEY_INITIAL_POSITIONS),
+                   *velocities = strut_given(&reader->initial, STRUT_KEY_INITIAL_VELOCITIES);
   const strut_slot *velocity = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_VELOCITY);
   for (size_t i = 0; configuration >= 0 && i < scene->node_count; i++)
     memcpy(scene->nodes[i].start, scene->configurations[configuration].position[i],
            sizeof scene->nodes[i].start);
-  if (positions->state == STRUT_GIVEN)
-    strut_read_node_pairs(reader, positions->value,
+  if (positions)
+    strut_read_node_pairs(reader, positions,
                           (strut_owner){"'positions' of the initial state", NULL}, STRUT_DIM_LENGTH,
                           store_start);
   if (velocity->state == STRUT_GIVEN)
     for (size_t i = 0; i < scene->node_count; i++)
       for (int c = 0; c < 2; c++)
         scene->nodes[i].velocity[c] = scene->nodes[i].fixed[c] ? 0.0 : velocity->number[c];
-  if (velocities->state != STRUT_GIVEN) return;
+  if (!velocities) return;
   reader->velocity_source = strut_reader_allocate(reader, &reader->scratch, scene->node_count,
                                                   sizeof *reader->velocity_source);
-  strut_read_node_pairs(reader, velocities->value,
+  strut_read_node_pairs(reader, velocities,
                         (strut_owner){"'velocities' of the initial state", NULL},
                         STRUT_DIM_VELOCITY, store_velocity);
 }
@@ -275,9 +268,8 @@ void strut_read_initial(strut_reader *reader) {
     return;
   read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
-  read_switch(reader, strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_SETTLE),
-              STRUT_KEY_INITIAL_SETTLE, "the initial state", (strut_owner){"the settling", NULL},
-              &reader->settle);
+  read_switch(reader, &reader->initial, STRUT_KEY_INITIAL_SETTLE, "the initial state",
+              (strut_owner){"the settling", NULL}, &reader->settle);
 }
 
 /* Actuators, loads and signals, one after the other, for suggestions. */
@@ -335,18 +327,18 @@ static int32_t find_signal_of(strut_reader *reader, const strut_tree *value, boo
 
 static void read_of(strut_reader *reader) {
   strut_experiment *experiment = reader->experiment;
-  const strut_slot *of = strut_slot_of(&reader->run, STRUT_KEY_RUN_OF);
-  const strut_slot *periods = strut_slot_of(&reader->run, STRUT_KEY_RUN_PERIODS);
+  const strut_tree *of = strut_given(&reader->run, STRUT_KEY_RUN_OF);
   strut_slot *top = strut_slot_of(&reader->top, STRUT_KEY_SCENE_RUN);
   bool broken = false;
-  if (of->state == STRUT_ABSENT && periods->state == STRUT_GIVEN) {
+  if (!strut_mentions(&reader->run, STRUT_KEY_RUN_OF) &&
+      strut_given(&reader->run, STRUT_KEY_RUN_PERIODS)) {
     strut_report_error(
         reader, top->key->place,
         "the run lacks 'of', expected the actuator, load or signal whose periods count");
     reader->run.broken = true;
-  } else if (of->state == STRUT_GIVEN && periods->state != STRUT_ABSENT) {
-    experiment->period_signal = find_signal_of(reader, of->value, &broken);
-    experiment->period_of = strut_keep_text(reader, of->value->text);
+  } else if (of && strut_mentions(&reader->run, STRUT_KEY_RUN_PERIODS)) {
+    experiment->period_signal = find_signal_of(reader, of, &broken);
+    experiment->period_of = strut_keep_text(reader, of->text);
     if (broken) reader->run.broken = true;
   }
 }
@@ -380,13 +372,11 @@ static void read_run(strut_reader *reader) {
     return;
   read_of(reader);
   strut_store(reader, &reader->run, run, experiment);
-  const strut_slot *measure = strut_slot_of(&reader->run, STRUT_KEY_RUN_MEASURE);
-  if (measure->state == STRUT_GIVEN) {
-    strut_read_fields(reader, STRUT_SECTION_MEASURE, measure->value,
-                      (strut_owner){"the measurement", NULL}, &reader->measure);
-    read_switch(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_STEADY),
-                STRUT_KEY_MEASURE_STEADY, owner.kind, (strut_owner){"the steady state", NULL},
-                &reader->steady);
+  const strut_tree *measure = strut_given(&reader->run, STRUT_KEY_RUN_MEASURE);
+  if (measure) {
+    strut_read_fields(reader, STRUT_SECTION_MEASURE, measure, owner, &reader->measure);
+    read_switch(reader, &reader->measure, STRUT_KEY_MEASURE_STEADY, owner.kind,
+                (strut_owner){"the steady state", NULL}, &reader->steady);
     read_last(reader, &reader->measure, STRUT_KEY_MEASURE_LAST, owner, &experiment->measure_last);
     strut_store(reader, &reader->measure, owner, experiment);
     strut_read_quantities(reader, strut_slot_of(&reader->measure, STRUT_KEY_MEASURE_QUANTITIES));

@@ -63,7 +63,6 @@ static bool turn_sensor(strut_reader *reader, const strut_tree *place, strut_sen
   return false;
 }
 
-/* What `of` names, if a sensor may see it. */
 static bool read_of(strut_reader *reader, const strut_tree *value, strut_owner owner,
                     strut_sensor *sensor) {
   strut_column seen;
@@ -81,9 +80,8 @@ bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner o
                        void *object) {
   strut_sensor *sensor = object;
   const strut_slot *along = strut_slot_of(fields, STRUT_KEY_SENSOR_ALONG);
-  const strut_slot *of = strut_slot_of(fields, STRUT_KEY_SENSOR_OF);
-  if (fields->broken) return false;
-  if (of->state == STRUT_GIVEN && !read_of(reader, of->value, owner, sensor)) return false;
+  const strut_tree *of = strut_given(fields, STRUT_KEY_SENSOR_OF);
+  if (fields->broken || (of && !read_of(reader, of, owner, sensor))) return false;
   strut_column_kind kind = strut_sensor_column(sensor).kind;
   bool directed = kind >= STRUT_COLUMN_NODE_X && kind <= STRUT_COLUMN_NODE_VY;
   if (kind == STRUT_COLUMN_TIME)
@@ -96,7 +94,7 @@ bool strut_read_sensor(strut_reader *reader, strut_fields *fields, strut_owner o
     strut_report_error(reader, fields->key->place, "sensor '%s' needs 'along': x or y",
                        fields->key->text);
   else
-    return !directed || turn_sensor(reader, sensor->length ? of->value : along->value, sensor);
+    return !directed || turn_sensor(reader, sensor->length ? of : along->value, sensor);
   return false;
 }
 
@@ -121,8 +119,8 @@ bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *col
 
 int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column *column,
                            strut_dimension *dimension, strut_refusal *refusal) {
-  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
-  int32_t i = name ? strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) : -1;
+  const char *name = strut_piece_text(reader, piece);
+  int32_t i = strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name);
   bool broken = i >= 0 && reader->things[STRUT_THING_SENSOR].source[i].broken;
   if (i >= 0 && (broken || strut_sensor_has_rate(&reader->scene->sensors[i]))) {
     column->kind = STRUT_COLUMN_SENSOR_RATE, column->item = i;
@@ -139,15 +137,13 @@ int strut_find_sensor_rate(strut_reader *reader, strut_piece piece, strut_column
   else
     snprintf(refusal->text, sizeof refusal->text, "unknown sensor '%.*s'%s",
              piece.length > 40 ? 40 : (int)piece.length, piece.text,
-             name ? strut_hint_of_things(reader, name, STRUT_THING_SENSOR) : "");
+             strut_hint_of_things(reader, name, STRUT_THING_SENSOR));
   return -1;
 }
 
 bool strut_find_variable(strut_reader *reader, strut_piece piece, strut_column *column,
                          strut_dimension *dimension) {
-  const char *name = strut_arena_text(&reader->scratch, piece.text, piece.length);
-  if (!name) reader->out_of_memory = true;
-  if (!name) return false;
+  const char *name = strut_piece_text(reader, piece);
   if (strut_find_sensed(reader, name, column, dimension)) return true;
   if (strut_find_named(reader, &reader->signal_names, NULL, name) < 0) return false;
   column->kind = STRUT_COLUMN_SIGNAL;
@@ -162,9 +158,7 @@ strut_piece strut_whole_name(strut_piece owner, strut_piece field) {
 /* A word of an expression that is no parameter. */
 static int find_word(strut_reader *reader, strut_piece word, strut_column *column,
                      strut_dimension *dimension, strut_refusal *refusal) {
-  const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
-  if (!name) reader->out_of_memory = true;
-  if (!name) return -1;
+  const char *name = strut_piece_text(reader, word);
   if (strcmp(name, "t") == 0 || strcmp(name, "time") == 0) {
     column->kind = STRUT_COLUMN_TIME;
     *dimension = STRUT_DIM_TIME;
@@ -203,9 +197,9 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
 static int claims_word(void *context, strut_piece word) {
   strut_reader *reader = context;
   if (word.length == 1 && *word.text == 't') return 1;
-  const char *name = strut_arena_text(&reader->scratch, word.text, word.length);
-  if (!name) reader->out_of_memory = true;
-  return name && strut_find_thing(reader, STRUT_THING_SENSOR, NULL, name) >= 0 ? -1 : 0;
+  int32_t sensor =
+      strut_find_thing(reader, STRUT_THING_SENSOR, NULL, strut_piece_text(reader, word));
+  return sensor >= 0 ? -1 : 0;
 }
 
 bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, const char *key,
@@ -224,117 +218,95 @@ bool strut_read_signal_program(strut_reader *reader, const strut_tree *value, co
 
 int32_t strut_add_state(strut_reader *reader, const strut_tree *key, const char *name,
                         strut_dimension dimension, double start) {
-  strut_scene *scene = reader->scene;
-  char unit[STRUT_SUFFIX_TEXT];
-  size_t i = strut_next_entry(reader, &scene->state_count);
-  strut_dimension_suffix(dimension, unit, sizeof unit);
-  scene->states[i] = (strut_internal_state){.name = strut_keep_text(reader, name),
-                                            .start = start,
-                                            .unit = *unit ? strut_keep_text(reader, unit) : NULL};
-  strut_add_name(reader, &reader->things[STRUT_THING_STATE].names, scene->states[i].name, i);
+  strut_internal_state *state =
+      strut_add_thing(reader, STRUT_THING_STATE, key, strut_keep_text(reader, name));
+  size_t i = (size_t)(state - reader->scene->states);
+  state->start = start;
+  state->unit = strut_keep_unit(reader, dimension, NULL);
   reader->state_dimension[i] = dimension;
-  reader->things[STRUT_THING_STATE].source[i] = (strut_source){key, key->next, false};
   return (int32_t)i;
 }
 
-static size_t entries_of(strut_reader *reader, int key) {
-  const strut_slot *slot = strut_slot_of(&reader->top, key);
-  return slot->state == STRUT_GIVEN ? slot->value->count : 0;
-}
-
 /* The value at t = 0, whose unit is that of the state. */
-static void list_state(strut_reader *reader, const strut_tree *key) {
+static bool read_start(strut_reader *reader, const strut_tree *key, strut_quantity *start) {
   strut_owner owner = {"state", key->text};
   strut_fields fields;
-  strut_quantity q = {.bare = true};
-  bool fine = strut_check_variable_name(reader, key, "state");
   strut_read_fields(reader, STRUT_SECTION_STATE, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  const strut_slot *start = strut_slot_of(&fields, STRUT_KEY_STATE_START);
-  if (fields.broken || start->state != STRUT_GIVEN)
-    fine = false;
-  else if (!strut_read_scalar(reader, start->value, "start", owner, "a number such as '0 rad'") ||
-           !strut_read_quantity(reader, start->value, "start", owner, &q))
-    fine = false;
-  int32_t i =
-      strut_add_state(reader, key, key->text, q.bare ? STRUT_DIM_NONE : q.dimension, q.value);
-  reader->things[STRUT_THING_STATE].source[i].broken = !fine;
+  return !fields.broken &&
+         strut_read_any_quantity(reader, strut_given(&fields, STRUT_KEY_STATE_START), "start",
+                                 owner, "a number such as '0 rad'", start);
 }
 
-/* An oscillator's phase at t = 0. */
-static void list_oscillator(strut_reader *reader, const strut_tree *key) {
+static bool read_phase(strut_reader *reader, const strut_tree *key, strut_quantity *start) {
   strut_owner owner = {"oscillator", key->text};
   strut_fields fields;
   strut_oscillator o = {.phase = 0.0};
-  bool fine = strut_check_variable_name(reader, key, "oscillator");
   strut_read_fields_of(reader, STRUT_SECTION_OSCILLATOR, key, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  if (fields.broken) fine = false;
-  fine = fine && strut_store_fields(reader, &fields, owner, &reader->scratch, &o, sizeof o);
-  int32_t i = strut_add_state(reader, key, key->text, STRUT_DIM_ANGLE, o.phase);
-  reader->things[STRUT_THING_STATE].source[i].broken = !fine;
+  bool fine = !fields.broken && strut_store(reader, &fields, owner, &o);
+  *start = (strut_quantity){.value = o.phase, .dimension = STRUT_DIM_ANGLE};
+  return fine;
+}
+
+static void list_states(strut_reader *reader, int of, bool oscillators) {
+  const strut_tree *map = strut_entries(reader, of);
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    strut_quantity q = {.bare = true};
+    bool fine = strut_check_variable_name(reader, key, oscillators ? "oscillator" : "state");
+    fine = (oscillators ? read_phase(reader, key, &q) : read_start(reader, key, &q)) && fine;
+    int32_t i =
+        strut_add_state(reader, key, key->text, q.bare ? STRUT_DIM_NONE : q.dimension, q.value);
+    reader->things[STRUT_THING_STATE].source[i].broken = !fine;
+  }
 }
 
 void strut_list_states(strut_reader *reader) {
-  strut_scene *scene = reader->scene;
-  const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
-  const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
-  size_t most = entries_of(reader, STRUT_KEY_SCENE_STATES) +
-                entries_of(reader, STRUT_KEY_SCENE_OSCILLATORS) +
-                entries_of(reader, STRUT_KEY_SCENE_CONTROLLERS) +
-                entries_of(reader, STRUT_KEY_SCENE_PIPES) + 1;
-  strut_arena *scratch = &reader->scratch;
-  scene->states = strut_reader_allocate(reader, &scene->arena, most, sizeof *scene->states);
-  reader->things[STRUT_THING_STATE].source = strut_reader_allocate(
-      reader, scratch, most, sizeof *reader->things[STRUT_THING_STATE].source);
+  size_t most = strut_entry_count(reader, STRUT_KEY_SCENE_STATES) +
+                strut_entry_count(reader, STRUT_KEY_SCENE_OSCILLATORS) +
+                strut_entry_count(reader, STRUT_KEY_SCENE_CONTROLLERS) +
+                strut_entry_count(reader, STRUT_KEY_SCENE_PIPES) + 1;
   reader->state_dimension =
-      strut_reader_allocate(reader, scratch, most, sizeof *reader->state_dimension);
-  if (!scene->states || !reader->things[STRUT_THING_STATE].source || !reader->state_dimension)
-    return;
-  for (const strut_tree *key = strut_first_entry(reader, states); key;
-       key = strut_following_entry(reader, key))
-    list_state(reader, key);
-  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
-       key = strut_following_entry(reader, key))
-    list_oscillator(reader, key);
+      strut_reader_allocate(reader, &reader->scratch, most, sizeof *reader->state_dimension);
+  if (!strut_reserve_things(reader, STRUT_THING_STATE, most) || !reader->state_dimension) return;
+  list_states(reader, STRUT_KEY_SCENE_STATES, false);
+  list_states(reader, STRUT_KEY_SCENE_OSCILLATORS, true);
 }
 
 /* The rate of a state must have its unit per second; of an angle, an angle may be left out. */
-static bool check_rate(strut_reader *reader, const strut_tree *value, strut_owner owner,
-                       const char *key, strut_dimension wanted, const strut_quantity *quantity) {
-  char expected[80], found[80];
+static bool read_rate(strut_reader *reader, const strut_tree *key, size_t state) {
+  const strut_owner owner = {"state", key->text};
+  const strut_tree *rate = strut_tree_find(key->next, "rate", NULL);
+  strut_quantity q;
+  char expected[80];
+  if (!strut_read_signal_program(reader, rate, "rate", owner, &reader->scene->states[state].rate,
+                                 &q))
+    return false;
+  strut_dimension wanted = reader->state_dimension[state];
   wanted.s -= 1.0f;
   strut_dimension plain = wanted;
   plain.angle -= 1.0f;
-  bool angle = wanted.angle != 0.0f && strut_dimension_equal(quantity->dimension, plain);
-  if (quantity->bare || angle || strut_dimension_equal(quantity->dimension, wanted)) return true;
-  strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s",
-                     strut_dimension_name(wanted, expected, sizeof expected), key,
-                     strut_owner_text(reader, owner),
-                     strut_dimension_name(quantity->dimension, found, sizeof found));
-  return false;
+  bool angle = wanted.angle != 0.0f && strut_dimension_equal(q.dimension, plain);
+  return q.bare || angle || strut_dimension_equal(q.dimension, wanted) ||
+         strut_refuse_dimension(reader, rate, "rate", owner,
+                                strut_dimension_name(wanted, expected, sizeof expected),
+                                q.dimension);
+}
+
+static void read_rates(strut_reader *reader, int of, bool oscillators) {
+  const strut_tree *map = strut_entries(reader, of);
+  for (const strut_tree *key = strut_first_entry(reader, map); key;
+       key = strut_following_entry(reader, key)) {
+    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
+    strut_source *source = i < 0 ? NULL : &reader->things[STRUT_THING_STATE].source[i];
+    if (!source || source->broken) continue;
+    source->broken =
+        !(oscillators ? strut_read_oscillator(reader, key, i) : read_rate(reader, key, (size_t)i));
+  }
 }
 
 void strut_read_states(strut_reader *reader) {
-  const strut_tree *states = strut_entries(reader, STRUT_KEY_SCENE_STATES);
-  const strut_tree *oscillators = strut_entries(reader, STRUT_KEY_SCENE_OSCILLATORS);
-  strut_quantity q;
-  for (const strut_tree *key = strut_first_entry(reader, states); key;
-       key = strut_following_entry(reader, key)) {
-    strut_owner owner = {"state", key->text};
-    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
-    const strut_tree *rate =
-        key->next->kind == STRUT_TREE_MAP ? strut_tree_find(key->next, "rate", NULL) : NULL;
-    if (i < 0 || reader->things[STRUT_THING_STATE].source[i].broken || !rate) continue;
-    bool fine = strut_read_signal_program(reader, rate, "rate", owner,
-                                          &reader->scene->states[i].rate, &q) &&
-                check_rate(reader, rate, owner, "rate", reader->state_dimension[i], &q);
-    reader->things[STRUT_THING_STATE].source[i].broken = !fine;
-  }
-  for (const strut_tree *key = strut_first_entry(reader, oscillators); key;
-       key = strut_following_entry(reader, key)) {
-    int32_t i = strut_name_map_find(&reader->things[STRUT_THING_STATE].names, key->text);
-    if (i < 0 || reader->things[STRUT_THING_STATE].source[i].broken) continue;
-    reader->things[STRUT_THING_STATE].source[i].broken = !strut_read_oscillator(reader, key, i);
-  }
+  read_rates(reader, STRUT_KEY_SCENE_STATES, false);
+  read_rates(reader, STRUT_KEY_SCENE_OSCILLATORS, true);
 }

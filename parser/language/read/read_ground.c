@@ -247,7 +247,6 @@ static bool moves(const strut_reader *reader, int32_t node) {
   return reader->node_moves && reader->node_moves[node];
 }
 
-/* Marks the nodes whose names fit a pattern. */
 static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_owner owner,
                          unsigned char *touches) {
   bool any = false;
@@ -259,7 +258,6 @@ static bool mark_matches(strut_reader *reader, const strut_tree *item, strut_own
   return any;
 }
 
-/* Marks the nodes that may touch a ground. */
 static bool mark_nodes(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        unsigned char *touches) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_GROUND_NODES);
@@ -396,7 +394,6 @@ static void read_contacts(strut_reader *reader, strut_fields *fields, strut_owne
   }
 }
 
-/* What all contacts of a ground begin with. */
 static ground_defaults read_defaults(strut_reader *reader, strut_fields *fields,
                                      const strut_contact *contact, strut_owner owner) {
   ground_defaults defaults = {.contact = *contact, .broken = fields->broken};
@@ -467,10 +464,6 @@ static size_t pieces_of(const strut_ground *ground) {
   return strut_profile_check(ground, &segment, &other) ? 1 : strut_ground_pieces(ground);
 }
 
-static bool nodes_are_known(strut_reader *reader) {
-  return strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->state == STRUT_GIVEN;
-}
-
 /* Names of contacts where a node may have several: NODE, NODE.GROUND, NODE.PIECE or NODE.GROUND.PIECE. */
 static void name_contacts(strut_reader *reader) {
   strut_scene *scene = reader->scene;
@@ -481,14 +474,11 @@ static void name_contacts(strut_reader *reader) {
   for (size_t i = 0; surfaces > 1 && i < scene->contact_count; i++) {
     strut_contact *contact = &scene->contacts[i];
     const char *node = scene->nodes[contact->node].name,
-               *ground = scene->grounds[contact->ground].name;
-    size_t size = strlen(node) + strlen(ground) + 16, used;
-    char *name = strut_reader_allocate(reader, &scene->arena, size, 1);
-    if (!name) return;
-    used = (size_t)snprintf(name, size, "%s%s%s", node, *ground ? "." : "", ground);
-    if (pieces[contact->ground] > 1)
-      snprintf(name + used, size - used, ".%d", (int)contact->piece + 1);
-    contact->name = name;
+               *ground = scene->grounds[contact->ground].name, *dot = *ground ? "." : "";
+    contact->name = pieces[contact->ground] > 1
+                        ? strut_formatted(reader, &scene->arena, "%s%s%s.%d", node, dot, ground,
+                                          (int)contact->piece + 1)
+                        : strut_formatted(reader, &scene->arena, "%s%s%s", node, dot, ground);
   }
 }
 
@@ -520,7 +510,6 @@ static void check_belt(strut_reader *reader, const strut_slot *belt, const conta
                        "'belt_speed' has no meaning without 'friction' of a contact");
 }
 
-/* One ground of the scene: its fields, itself and its contacts. */
 static void read_one(strut_reader *reader, strut_fields *fields, strut_owner owner,
                      strut_place place, strut_ground *ground, contact_list *list) {
   strut_require(reader, fields, owner, place);
@@ -533,7 +522,7 @@ static void read_one(strut_reader *reader, strut_fields *fields, strut_owner own
   bool line = ground->shape == STRUT_GROUND_LINE;
   defaults.along[0] = line ? cos(ground->slope) : 1.0;
   defaults.along[1] = line ? sin(ground->slope) : 0.0;
-  if (nodes_are_known(reader))
+  if (strut_entries(reader, STRUT_KEY_SCENE_NODES))
     read_contacts(reader, fields, owner, &defaults, pieces_of(ground), list);
   else
     fields->broken = true;

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "parser/language/read/csv.h"
-#include "parser/language/read/program_builder.h"
 #include "parser/language/read/reuse/copies.h"
 #include "parser/language/read/reuse/used_files.h"
 
@@ -31,40 +30,26 @@ static bool fail_network(network *self, const char *what, const char *text) {
                             text ? strut_sanitised_text(self->reader, text) : "");
 }
 
-/* A signal of the network with a name of its own. */
-static int32_t add_neuron(network *self, const char *name, const strut_signal *signal) {
-  strut_reader *reader = self->reader;
+static int32_t add_neuron(network *self, const char *end, const strut_signal *signal) {
   strut_signal named = *signal;
-  if (!name) reader->out_of_memory = true;
-  if (!name) return -1;
-  if (strut_name_map_find(&reader->signal_names, name) >= 0 || strut_parameter_find(reader, name)) {
-    strut_report_error(reader, self->key->place,
-                       "a neuron of controller '%s' is called '%s', a name that is taken",
-                       self->key->text, name);
-    return -1;
-  }
-  named.name = strut_keep_text(reader, name);
-  return strut_add_controller_signal(reader, self->key, &named, STRUT_DIM_NONE, false, NULL);
+  named.name = strut_made_name(self->reader, self->key, "a neuron of controller", end, NULL);
+  return named.name ? strut_add_controller_signal(self->reader, self->key, &named, STRUT_DIM_NONE,
+                                                  false, NULL)
+                    : -1;
 }
 
 /* bias + w1 x1 + w2 x2 + ..., and its tanh unless it is `linear`. */
-static bool make_neuron(network *self, const double *weight, bool linear, strut_signal *signal) {
-  builder b;
-  if (!begin_program(self->reader, 4 * self->before + 2, &b)) return false;
-  put_number(&b, weight[self->before], STRUT_DIM_NONE);
-  for (size_t i = 0; i < self->before; i++) {
-    put_number(&b, weight[i], STRUT_DIM_NONE);
-    put_column(&b, STRUT_COLUMN_SIGNAL, self->first + (int32_t)i);
-    put_operation(&b, STRUT_OPERATION_MULTIPLY);
-    put_operation(&b, STRUT_OPERATION_ADD);
-  }
-  if (!linear) put_operation(&b, STRUT_OPERATION_TANH);
-  *signal = strut_signal_default(STRUT_EXPRESSION);
-  signal->program = end_program(&b);
-  return true;
+static strut_signal make_neuron(const network *self, bool linear) {
+  strut_program_builder b = {.reader = self->reader};
+  strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
+  strut_build(&b, "#", self->weight[self->before], STRUT_DIM_NONE);
+  for (size_t i = 0; i < self->before; i++)
+    strut_build(&b, "#v*+", self->weight[i], STRUT_DIM_NONE, self->first + (int32_t)i);
+  if (!linear) strut_build(&b, "t");
+  signal.program = strut_built(&b);
+  return signal;
 }
 
-/* The numbers of a line become a neuron's weights. */
 static bool read_weights(network *self, char *line) {
   size_t count = 0;
   char *rest = line;
@@ -138,16 +123,13 @@ static bool read_layers(network *self, char *text) {
     if (!first && !end_layer(self)) return false;
     if (!first || first == '#') continue;
     line[strcspn(line, "#")] = '\0';
-    strut_signal signal;
+    char end[60];
     bool linear = self->keys.last == 1 && self->layers + 1 == layers;
     if (self->neurons++ == MOST_NEURONS) return fail_network(self, "more than 1000 neurons", NULL);
-    if (!read_weights(self, line) || !make_neuron(self, self->weight, linear, &signal))
-      return false;
-    int32_t index =
-        add_neuron(self,
-                   strut_arena_format(&self->reader->scratch, "%s_%zu_%zu", self->key->text,
-                                      self->layers + 1, self->width + 1),
-                   &signal);
+    if (!read_weights(self, line)) return false;
+    strut_signal signal = make_neuron(self, linear);
+    snprintf(end, sizeof end, "%zu_%zu", self->layers + 1, self->width + 1);
+    int32_t index = add_neuron(self, end, &signal);
     if (index < 0) return false;
     if (self->width++ == 0) self->layer = index;
   }
@@ -165,19 +147,19 @@ static bool read_inputs(network *self, strut_owner owner) {
   for (const strut_tree *item = list->first; item; item = item->next) {
     strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
     strut_quantity q;
-    char found[80];
+    char end[60];
     if (!strut_read_scalar(reader, item, "inputs", owner, "an expression without unit") ||
         !strut_read_signal_program(reader, item, "inputs", owner, &signal.program, &q))
       return false;
-    if (!q.bare && !strut_dimension_equal(q.dimension, STRUT_DIM_NONE))
+    if (!q.bare && !strut_dimension_equal(q.dimension, STRUT_DIM_NONE)) {
+      char found[80];
       return strut_report_error(
           reader, item->place,
-          "expected a number without unit for 'inputs' of %s, found %s; divide it by "
-          "what is usual",
+          "expected a number without unit for 'inputs' of %s, found %s; divide it by what is usual",
           strut_owner_text(reader, owner), strut_dimension_name(q.dimension, found, sizeof found));
-    const char *name =
-        strut_arena_format(&reader->scratch, "%s_in_%zu", self->key->text, self->before + 1);
-    int32_t index = add_neuron(self, name, &signal);
+    }
+    snprintf(end, sizeof end, "in_%zu", self->before + 1);
+    int32_t index = add_neuron(self, end, &signal);
     if (index < 0) return false;
     if (self->before++ == 0) self->first = index;
   }
@@ -188,7 +170,7 @@ static bool read_inputs(network *self, strut_owner owner) {
 static int32_t add_output(network *self, strut_owner owner) {
   const strut_tree *value = self->keys.scale;
   strut_quantity scale = {.value = 1.0, .bare = true};
-  builder b;
+  strut_program_builder b = {.reader = self->reader};
   if (self->keys.output > (int64_t)self->before) {
     strut_report_error(self->reader, self->key->place,
                        "controller '%s' is output %d of a network that has %zu", self->key->text,
@@ -199,12 +181,9 @@ static int32_t add_output(network *self, strut_owner owner) {
                                         "a number such as '5 mm'", &scale))
     return -1;
   strut_dimension dimension = scale.bare ? STRUT_DIM_NONE : scale.dimension;
-  if (!begin_program(self->reader, 3, &b)) return -1;
-  put_number(&b, scale.value, dimension);
-  put_column(&b, STRUT_COLUMN_SIGNAL, self->first + (int32_t)self->keys.output - 1);
-  put_operation(&b, STRUT_OPERATION_MULTIPLY);
+  strut_build(&b, "#v*", scale.value, dimension, self->first + (int32_t)self->keys.output - 1);
   strut_signal signal = strut_signal_default(STRUT_EXPRESSION);
-  signal.program = end_program(&b);
+  signal.program = strut_built(&b);
   signal.every = self->keys.every;
   return strut_add_controller_signal(self->reader, self->key, &signal, dimension, scale.bare,
                                      scale.bare ? value : NULL);
@@ -217,11 +196,10 @@ int32_t strut_read_network(strut_reader *reader, const strut_tree *key) {
   strut_safe_text text = {0};
   strut_read_fields(reader, STRUT_SECTION_NETWORK, key->next, owner, &fields);
   strut_require(reader, &fields, owner, key->place);
-  const strut_slot *file = strut_slot_of(&fields, STRUT_KEY_NETWORK_FILE);
-  if (fields.broken || file->state != STRUT_GIVEN) return -1;
+  const strut_tree *file = strut_given(&fields, STRUT_KEY_NETWORK_FILE);
+  if (fields.broken || !file) return -1;
   strut_store(reader, &fields, owner, &n.keys);
-  if (!read_inputs(&n, owner) || !strut_read_file_of(reader, file->value, LARGEST_FILE, &text))
-    return -1;
+  if (!read_inputs(&n, owner) || !strut_read_file_of(reader, file, LARGEST_FILE, &text)) return -1;
   n.passes = (double)n.before;
   n.weight = strut_reader_allocate(reader, &reader->scratch, n.before + MOST_NEURONS + 1,
                                    sizeof *n.weight);

@@ -50,13 +50,6 @@ typedef struct found_owner {
 
 static int shown(size_t length) { return length > SHOWN_MOST ? SHOWN_MOST : (int)length; }
 
-/* A copy of the piece, in scratch. */
-static const char *text_of(strut_reader *reader, strut_piece piece) {
-  const char *text = strut_arena_text(&reader->scratch, piece.text, piece.length);
-  if (!text) reader->out_of_memory = true;
-  return text ? text : "";
-}
-
 /* Things of all kinds and the owners above, for suggestions. */
 static const char *owner_name(const void *context, size_t i) {
   const strut_reader *reader = context;
@@ -79,7 +72,7 @@ static bool all_known(strut_reader *reader) {
 
 static found_owner find_owner(strut_reader *reader, const char *kind, strut_piece name) {
   found_owner found = {.owners = 0};
-  const char *text = text_of(reader, name);
+  const char *text = strut_piece_text(reader, name);
   for (size_t k = 0; k < KIND_COUNT; k++) {
     const char *word = strut_thing_at(kinds[k])->word;
     if (kind && strcmp(kind, word) != 0) continue;
@@ -140,7 +133,7 @@ static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owne
            : reader->scene->hinge_count ? "node, member or hinge"
                                         : "node or member",
            shown(owner.length), owner.text,
-           strut_hint(reader, text_of(reader, owner), owner_name, reader, count));
+           strut_hint(reader, strut_piece_text(reader, owner), owner_name, reader, count));
   return -1;
 }
 
@@ -148,7 +141,7 @@ static int refuse_field(strut_reader *reader, const found_owner *found, strut_pi
                         strut_piece field, strut_refusal *refusal) {
   char list[200];
   bool thing = found->thing;
-  const char *hint = strut_hint(reader, text_of(reader, field), field_name, &found->owners,
+  const char *hint = strut_hint(reader, strut_piece_text(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
   snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
            found->what, thing ? " '" : "", thing ? shown(owner.length) : 0, owner.text,
@@ -163,7 +156,6 @@ static bool has_contact(const strut_scene *scene, int32_t node) {
   return false;
 }
 
-/* Does the node have the columns of the ground? If not, that is reported. */
 static bool touches(strut_reader *reader, strut_column_kind kind, int32_t node,
                     strut_refusal *refusal) {
   const strut_scene *scene = reader->scene;
@@ -268,7 +260,7 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
       *dimension = strut_column_dimension((strut_column_kind)k);
     }
   for (int k = 0; k < 2; k++) {
-    const char *name = text_of(reader, names[k]);
+    const char *name = strut_piece_text(reader, names[k]);
     node[k] = strut_find_thing(reader, STRUT_THING_NODE, NULL, name);
     if (node[k] >= 0) continue;
     if (all_known(reader))
@@ -286,16 +278,13 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
 }
 
 static strut_instruction *keep_program(strut_reader *reader, const strut_compiler *compiler) {
-  strut_scene *scene = reader->scene;
-  char unit[STRUT_SUFFIX_TEXT];
   strut_instruction *program =
-      strut_reader_allocate(reader, &scene->arena, compiler->length, sizeof *program);
+      strut_reader_allocate(reader, &reader->scene->arena, compiler->length, sizeof *program);
   for (size_t i = 0; i < compiler->length && program; i++) {
     const strut_compiled *from = &compiler->program[i];
     program[i] = from->instruction;
-    if (from->instruction.operation != STRUT_OPERATION_NUMBER) continue;
-    strut_dimension_suffix(from->dimension, unit, sizeof unit);
-    if (*unit) program[i].unit = strut_keep_text(reader, unit);
+    if (from->instruction.operation == STRUT_OPERATION_NUMBER)
+      program[i].unit = strut_keep_unit(reader, from->dimension, NULL);
   }
   return program;
 }
@@ -335,14 +324,12 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   strut_quantity q;
   definition->program = strut_compile(reader, value, "of", owner, &compiler, &q);
   if (!definition->program) return false;
-  if (!q.varies) {
-    strut_report_error(
+  if (!q.varies)
+    return strut_report_error(
         reader, value->place,
         "'of' of %s does not change in time, expected a column of the motion such as com.vy, "
         "NODE.y or MEMBER.force",
         strut_owner_text(reader, owner));
-    return false;
-  }
   definition->length = compiler.length;
   definition->depth = compiler.depth;
   *dimension = q.bare ? STRUT_DIM_NONE : q.dimension;
@@ -355,10 +342,9 @@ static void read_accuracy(strut_reader *reader, const strut_slot *slot, strut_ow
                           strut_quantity_definition *definition) {
   char expected[120], found[80];
   strut_quantity q;
-  if (slot->state != STRUT_GIVEN) return;
-  bool fine = strut_read_scalar(reader, slot->value, "accuracy", owner, "a number such as '1 %'") &&
-              strut_read_quantity(reader, slot->value, "accuracy", owner, &q);
-  if (!fine) return;
+  if (slot->state != STRUT_GIVEN || !strut_read_any_quantity(reader, slot->value, "accuracy", owner,
+                                                             "a number such as '1 %'", &q))
+    return;
   bool relative = q.bare || strut_dimension_equal(q.dimension, STRUT_DIM_NONE);
   bool plain = strut_dimension_equal(dimension, STRUT_DIM_NONE);
   if (!relative && known && !strut_dimension_equal(q.dimension, dimension))
@@ -380,7 +366,6 @@ static void read_target(strut_reader *reader, strut_fields *fields, strut_owner 
                         const strut_dimension *dimension, strut_quantity_definition *definition) {
   const strut_slot *slot = strut_slot_of(fields, STRUT_KEY_QUANTITY_TARGET);
   bool wanted = definition->take == STRUT_TAKE_ARRIVAL, given = slot->state == STRUT_GIVEN;
-  char unit[STRUT_SUFFIX_TEXT];
   if (slot->state == STRUT_BROKEN) return;
   if (!given && wanted)
     strut_report_error(reader, fields->key->place, "%s lacks 'target', the value that it waits for",
@@ -388,8 +373,7 @@ static void read_target(strut_reader *reader, strut_fields *fields, strut_owner 
   if (!given || !wanted || !dimension) return;
   strut_read_number(reader, slot->value, "target", owner, *dimension, STRUT_RANGE_ANY,
                     &definition->target);
-  strut_dimension_suffix(*dimension, unit, sizeof unit);
-  definition->target_unit = *unit ? strut_keep_text(reader, unit) : "1";
+  definition->target_unit = strut_keep_unit(reader, *dimension, "1");
 }
 
 bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char *key,
@@ -397,13 +381,12 @@ bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char 
   int open = 0;
   if (!of || of->kind != STRUT_TREE_SCALAR || of->quoted) return false;
   for (const char *c = of->text; *c; c++) open += *c == '(' ? 1 : *c == ')' ? -1 : 0;
-  if (open <= 0 || !of->next) return false;
-  strut_report_error(
-      reader, of->place,
-      "in '%s' of %s: the text ends here, since a comma ends it within '{...}'; put the whole "
-      "expression in quotes",
-      key, strut_owner_text(reader, owner));
-  return true;
+  return open > 0 && of->next &&
+         !strut_report_error(
+             reader, of->place,
+             "in '%s' of %s: the text ends here, since a comma ends it within '{...}'; put the "
+             "whole expression in quotes",
+             key, strut_owner_text(reader, owner));
 }
 
 /* A moment is no energy, though the dimension is that of one. */
@@ -416,7 +399,6 @@ static bool is_moment(const strut_quantity_definition *definition) {
 static void read_quantity(strut_reader *reader, const strut_tree *key,
                           strut_quantity_definition *definition) {
   strut_owner owner = {"quantity", key->text};
-  char unit[STRUT_SUFFIX_TEXT];
   strut_dimension dimension = STRUT_DIM_NONE;
   strut_fields fields = {.section = STRUT_SECTION_QUANTITY};
   const strut_tree *of = key->next;
@@ -425,8 +407,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   if (map) {
     strut_read_fields_of(reader, STRUT_SECTION_QUANTITY, key, owner, &fields);
     strut_require(reader, &fields, owner, key->place);
-    const strut_slot *slot = strut_slot_of(&fields, STRUT_KEY_QUANTITY_OF);
-    of = slot->state == STRUT_GIVEN ? slot->value : NULL;
+    of = strut_given(&fields, STRUT_KEY_QUANTITY_OF);
   } else if (!strut_read_scalar(reader, of, key->text, (strut_owner){"the quantities", NULL},
                                 "an expression such as com.vy, or a mapping such as {of: com.vy, "
                                 "take: max}")) {
@@ -437,8 +418,7 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
   if (of && map) read_target(reader, &fields, owner, known ? &dimension : NULL, definition);
   if (definition->take == STRUT_TAKE_RATE) dimension.s -= 1.0f;
   if (definition->take == STRUT_TAKE_ARRIVAL) dimension = STRUT_DIM_TIME;
-  strut_dimension_suffix(dimension, unit, sizeof unit);
-  definition->unit = is_moment(definition) ? "N m" : *unit ? strut_keep_text(reader, unit) : "1";
+  definition->unit = is_moment(definition) ? "N m" : strut_keep_unit(reader, dimension, "1");
   read_accuracy(reader, strut_slot_of(&fields, STRUT_KEY_QUANTITY_ACCURACY), owner, dimension,
                 known, definition);
 }
@@ -446,12 +426,11 @@ static void read_quantity(strut_reader *reader, const strut_tree *key,
 /* The name becomes a column of a study's table and a word of `keep`. */
 static bool may_be_called(strut_reader *reader, const strut_tree *key) {
   if (!strut_read_name(reader, key, "quantity")) return false;
-  if (strut_keep_find(key->text, STRUT_COMPUTE_RUN) < 0) return true;
-  strut_report_error(
-      reader, key->place,
-      "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
-      key->text);
-  return false;
+  return strut_keep_find(key->text, STRUT_COMPUTE_RUN) < 0 ||
+         strut_report_error(
+             reader, key->place,
+             "a quantity cannot be called '%s', since 'keep' of a study means something else by it",
+             key->text);
 }
 
 void strut_read_quantities(strut_reader *reader, const strut_slot *slot) {
@@ -480,7 +459,6 @@ static bool find_declared(strut_reader *reader, const strut_scene_source *source
   return of_source || own;
 }
 
-/* True where a derivative by the item can be made; if not, that is reported. */
 static bool check_derivative(strut_reader *reader, const strut_tree *list, const strut_tree *item,
                              strut_owner owner, const strut_scene_source *source,
                              strut_declared *declared) {
@@ -514,11 +492,10 @@ size_t strut_read_derivatives(strut_reader *reader, const strut_slot *slot, stru
   *list = strut_reader_allocate(reader, reader->keep, slot->value->count, sizeof **list);
   for (const strut_tree *item = slot->value->first; item && *list; item = item->next) {
     strut_declared declared = {0};
-    char unit[STRUT_SUFFIX_TEXT] = "";
     if (!check_derivative(reader, slot->value, item, owner, source, &declared)) continue;
-    if (!declared.bare) strut_dimension_suffix(declared.dimension, unit, sizeof unit);
-    (*list)[count++] = (strut_derived_by){strut_keep_text(reader, item->text),
-                                          *unit ? strut_keep_text(reader, unit) : "1"};
+    (*list)[count++] =
+        (strut_derived_by){strut_keep_text(reader, item->text),
+                           declared.bare ? "1" : strut_keep_unit(reader, declared.dimension, "1")};
   }
   return count;
 }

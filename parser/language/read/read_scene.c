@@ -127,7 +127,6 @@ static void clear_sections(strut_reader *reader) {
   reader->output.section = STRUT_SECTION_OUTPUT;
 }
 
-/* Does the file describe a run? */
 static bool describes_run(strut_reader *reader) {
   const strut_slot *solver = strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER);
   const char *step = strut_key_at(STRUT_KEY_SOLVER_STEP)->name;
@@ -147,7 +146,6 @@ void strut_reader_target(strut_reader *reader, strut_setup *setup) {
   reader->experiment = &setup->experiment;
 }
 
-/* Reads and checks the tree; reports all errors. */
 static void read_tree(strut_reader *reader, const strut_setting *settings, size_t count) {
   strut_owner owner = {"the scene", NULL};
   strut_findings findings = {0};
@@ -176,7 +174,17 @@ static void read_tree(strut_reader *reader, const strut_setting *settings, size_
   strut_findings_free(&findings);
 }
 
-static void free_reader(strut_reader *reader) {
+static strut_reader *open_reader(strut_setup *setup, strut_diagnostics *diagnostics) {
+  strut_reader *reader = strut_allocate(1, sizeof *reader);
+  strut_setup_init(setup);
+  if (!reader) return NULL;
+  strut_reader_target(reader, setup);
+  reader->diagnostics = diagnostics;
+  clear_sections(reader);
+  return reader;
+}
+
+static void close_reader(strut_reader *reader) {
   for (int k = 0; k < STRUT_THING_COUNT; k++) strut_name_map_free(&reader->things[k].names);
   strut_name_map_free(&reader->signal_names);
   strut_name_map_free(&reader->group_names);
@@ -186,6 +194,7 @@ static void free_reader(strut_reader *reader) {
   strut_release(reader->signal_state);
   strut_arena_free(&reader->scratch);
   strut_document_free(&reader->document);
+  strut_release(reader);
 }
 
 /* The tree of the text and of all files that it names. */
@@ -212,17 +221,10 @@ struct strut_scene_source {
 static strut_status read_from(const strut_scene_source *source, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
                               strut_setup *setup) {
-  strut_reader *reader = strut_allocate(1, sizeof *reader);
   strut_status status = STRUT_OK;
-  strut_setup_init(setup);
-  if (!reader) {
-    strut_setup_free(setup);
-    return STRUT_NO_MEMORY;
-  }
-  strut_reader_target(reader, setup);
-  reader->diagnostics = diagnostics;
+  strut_reader *reader = open_reader(setup, diagnostics);
+  if (!reader) return STRUT_NO_MEMORY;
   reader->purpose = purpose;
-  clear_sections(reader);
   strut_c_locale locale = strut_c_locale_enter();
   if (source) {
     reader->document.root = source->document.root;
@@ -237,8 +239,7 @@ static strut_status read_from(const strut_scene_source *source, const strut_sett
   strut_c_locale_leave(locale);
   if (!status && reader->failed) status = STRUT_BAD_SCENE;
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
-  free_reader(reader);
-  strut_release(reader);
+  close_reader(reader);
   if (status) strut_setup_free(setup);
   return status;
 }
@@ -257,7 +258,6 @@ strut_status strut_setup_read(strut_setup *setup, const char *file, const char *
   return status;
 }
 
-/* Takes over the texts of used files. */
 static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {
   if (!from->used_count) return STRUT_OK;
   source->used = strut_arena_allocate(&source->arena, from->used_count, sizeof *source->used);
@@ -300,12 +300,8 @@ static strut_status keep_declared(strut_reader *reader, strut_scene_source *sour
 /* Reads nothing but the parameters and the data. */
 static strut_status declare_parameters(strut_scene_source *source, strut_diagnostics *diagnostics) {
   strut_setup setup;
-  strut_reader *reader = strut_allocate(1, sizeof *reader);
+  strut_reader *reader = open_reader(&setup, diagnostics);
   if (!reader) return STRUT_NO_MEMORY;
-  strut_setup_init(&setup);
-  strut_reader_target(reader, &setup);
-  reader->diagnostics = diagnostics;
-  clear_sections(reader);
   reader->document.root = source->document.root;
   strut_read_fields(reader, STRUT_SECTION_SCENE, reader->document.root,
                     (strut_owner){"the scene", NULL}, &reader->top);
@@ -317,8 +313,7 @@ static strut_status declare_parameters(strut_scene_source *source, strut_diagnos
   source->tables = reader->tables, source->table_count = reader->table_count;
   strut_status status = reader->failed ? STRUT_BAD_SCENE : keep_declared(reader, source);
   if (reader->out_of_memory) status = STRUT_NO_MEMORY;
-  free_reader(reader);
-  strut_release(reader);
+  close_reader(reader);
   strut_setup_free(&setup);
   return status;
 }
@@ -485,11 +480,9 @@ static strut_group_item *group_item(strut_reader *reader, const strut_tree *map,
    value has a finding already. */
 static bool thing_place(strut_reader *reader, const strut_source *source, const char *key,
                         strut_place *place) {
-  const strut_tree *value = source->value;
-  bool map = value->kind == STRUT_TREE_MAP;
   strut_enter_scope(reader, source->key);
-  const strut_tree *own = key && map ? strut_tree_find(value, key, NULL) : NULL;
-  strut_group_item *item = key && map && !own ? group_item(reader, value, key) : NULL;
+  const strut_tree *own = key ? strut_tree_find(source->value, key, NULL) : NULL;
+  strut_group_item *item = key && !own ? group_item(reader, source->value, key) : NULL;
   *place = own ? own->place : item ? item->slot.value->place : source->key->place;
   if (!item) return true;
   bool first = !item->found;
@@ -497,11 +490,16 @@ static bool thing_place(strut_reader *reader, const strut_source *source, const 
   return first;
 }
 
+/* The slot of a finding's key, or NULL. */
+static strut_slot *slot_named(strut_fields *fields, const char *key) {
+  int found = key ? strut_key_find(fields->section, key) : -1;
+  return found < 0 ? NULL : strut_slot_of(fields, found);
+}
+
 /* The value of a key of the ground, the solver, ..., else the key of the whole section. */
 static strut_place field_place(strut_reader *reader, strut_fields *fields, const char *key,
                                int section) {
-  int found = key ? strut_key_find(fields->section, key) : -1;
-  const strut_slot *slot = found < 0 ? NULL : strut_slot_of(fields, found);
+  const strut_slot *slot = slot_named(fields, key);
   if (slot && slot->value) return slot->value->place;
   const strut_tree *whole = strut_slot_of(&reader->top, section)->key;
   return whole ? whole->place : strut_root_place(reader);
@@ -523,8 +521,7 @@ static bool node_place(strut_reader *reader, const strut_finding *finding, strut
 static strut_place ground_place(strut_reader *reader, size_t ground, const char *key) {
   if (!reader->things[STRUT_THING_GROUND].source)
     return field_place(reader, &reader->ground, key, STRUT_KEY_SCENE_GROUND);
-  int found = key ? strut_key_find(STRUT_SECTION_GROUND, key) : -1;
-  const strut_slot *slot = found < 0 ? NULL : strut_slot_of(&reader->grounds[ground], found);
+  const strut_slot *slot = slot_named(&reader->grounds[ground], key);
   return slot && slot->value ? slot->value->place
                              : reader->things[STRUT_THING_GROUND].source[ground].key->place;
 }
@@ -545,14 +542,11 @@ static bool contact_place(strut_reader *reader, const strut_finding *finding, st
 
 static bool signal_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_tree *value = reader->signal_state[finding->index].value;
-  const strut_tree *own = finding->key && value->kind == STRUT_TREE_MAP
-                              ? strut_tree_find(value, finding->key, NULL)
-                              : NULL;
+  const strut_tree *own = finding->key ? strut_tree_find(value, finding->key, NULL) : NULL;
   *place = own ? own->place : value->place;
   return true;
 }
 
-/* Findings about things of a scene. */
 static bool many_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const strut_source *source = &reader->things[finding->subject].source[finding->index];
   if (source->broken) return false;
@@ -564,7 +558,6 @@ static bool many_place(strut_reader *reader, const strut_finding *finding, strut
   return thing_place(reader, source, finding->key, place);
 }
 
-/* Findings about the ground, the initial state, the solver and other single mappings. */
 static bool single_place(strut_reader *reader, const strut_finding *finding, strut_place *place) {
   const struct {
     strut_fields *fields;
@@ -593,8 +586,8 @@ static bool single_place(strut_reader *reader, const strut_finding *finding, str
       strut_slot_of(fields, STRUT_KEY_GROUND_SLOPE)->state == STRUT_GIVEN)
     broken = false; /* it does not depend on other keys */
   if (subject == STRUT_ON_SCENE) {
-    int found = key ? strut_key_find(STRUT_SECTION_SCENE, key) : -1;
-    broken = found >= 0 && strut_slot_of(fields, found)->state == STRUT_BROKEN;
+    const strut_slot *slot = slot_named(fields, key);
+    broken = slot && slot->state == STRUT_BROKEN;
   }
   if (!broken) *place = field_place(reader, fields, key, section);
   return !broken;

@@ -143,7 +143,6 @@ static bool read_expression(strut_reader *reader, const strut_tree *value, strut
   return strut_refuse_dimension(reader, value, "expression", owner, wanted, q.dimension);
 }
 
-/* A column of data over time. */
 static bool read_data(strut_reader *reader, strut_fields *fields, strut_owner owner, meaning *self,
                       strut_signal *signal) {
   const strut_slot *data = strut_slot_of(fields, STRUT_KEY_SIGNAL_DATA);
@@ -155,18 +154,14 @@ static bool read_data(strut_reader *reader, strut_fields *fields, strut_owner ow
          check_unscaled(reader, data->value, "data");
 }
 
-/* The event with which the signal's time begins. */
 bool strut_read_trigger(strut_reader *reader, strut_fields *fields, strut_owner owner,
                         void *object) {
   strut_trigger *trigger = object;
-  const strut_slot *contact = strut_slot_of(fields, STRUT_KEY_STARTS_CONTACT);
-  const strut_slot *sensor = strut_slot_of(fields, STRUT_KEY_STARTS_SENSOR);
-  int key = STRUT_KEY_STARTS_ABOVE;
-  if (strut_slot_of(fields, key)->state != STRUT_GIVEN) key = STRUT_KEY_STARTS_BELOW;
-  bool level = strut_slot_of(fields, key)->state == STRUT_GIVEN;
-  bool sensed = sensor->state == STRUT_GIVEN;
+  int key =
+      strut_given(fields, STRUT_KEY_STARTS_ABOVE) ? STRUT_KEY_STARTS_ABOVE : STRUT_KEY_STARTS_BELOW;
+  bool level = strut_given(fields, key), sensed = strut_given(fields, STRUT_KEY_STARTS_SENSOR);
   if (fields->broken) return false;
-  if (contact->state != STRUT_GIVEN && !sensed)
+  if (!sensed && !strut_given(fields, STRUT_KEY_STARTS_CONTACT))
     return strut_report_error(
         reader, fields->map->place,
         "%s names no event; write {contact: NODE}, or {sensor: NAME, above: LEVEL}", owner.kind);
@@ -327,19 +322,19 @@ int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const c
   return read_signal(reader, value, key, within, expected);
 }
 
+void strut_list_signal(strut_reader *reader, const strut_tree *key, bool controller) {
+  reader->named[reader->named_count] =
+      (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1, controller};
+  strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
+}
+
 void strut_list_signals(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_SIGNALS);
-  const strut_slot *controllers = strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONTROLLERS);
-  size_t count = map ? map->count : 0;
-  if (controllers->state == STRUT_GIVEN) count += controllers->value->count;
+  size_t count = (map ? map->count : 0) + strut_entry_count(reader, STRUT_KEY_SCENE_CONTROLLERS);
   if (!count) return;
   reader->named = strut_reader_allocate(reader, &reader->scratch, count, sizeof *reader->named);
-  for (const strut_tree *key = map ? map->first : NULL; key && reader->named;
-       key = key->next->next) {
-    strut_named_signal *named = &reader->named[reader->named_count];
-    *named = (strut_named_signal){key->text, key, STRUT_SIGNAL_UNREAD, -1, false};
-    strut_add_name(reader, &reader->signal_names, key->text, reader->named_count++);
-  }
+  for (const strut_tree *key = map && reader->named ? map->first : NULL; key; key = key->next->next)
+    strut_list_signal(reader, key, false);
 }
 
 int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
@@ -392,14 +387,15 @@ static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner o
                                                : STRUT_DIM_LENGTH,
                                         STRUT_DIM_FORCE, STRUT_DIM_MOMENT};
   int k = 0;
-  while (k < 3 && strut_slot_of(fields, keys[k])->state == STRUT_ABSENT) k++;
-  const strut_slot *slot = strut_slot_of(fields, keys[k < 3 ? k : 0]);
-  if (k == 3 && !fields->broken)
-    strut_report_error(reader, fields->key->place,
-                       "%s lacks 'signal', expected a signal such as {sine: {amplitude: 1 mm, "
-                       "frequency: 10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
-                       strut_owner_text(reader, owner));
-  if (k == 3) return false;
+  while (k < 3 && !strut_mentions(fields, keys[k])) k++;
+  if (k == 3)
+    return !fields->broken &&
+           strut_report_error(
+               reader, fields->key->place,
+               "%s lacks 'signal', expected a signal such as {sine: {amplitude: 1 mm, frequency: "
+               "10 Hz}}, or a signal's name; or 'force' or 'moment' instead",
+               strut_owner_text(reader, owner));
+  const strut_slot *slot = strut_slot_of(fields, keys[k]);
   if (known && slot->key && k > 0 && cell)
     return strut_report_error(reader, slot->key->place,
                               "%s gives a '%s' to a cell, whose pressure a 'signal' drives",
@@ -421,19 +417,18 @@ static bool read_drive(strut_reader *reader, strut_fields *fields, strut_owner o
 bool strut_read_actuator(strut_reader *reader, strut_fields *fields, strut_owner owner,
                          void *object) {
   strut_actuator *actuator = object;
-  const strut_slot *member = strut_slot_of(fields, STRUT_KEY_ACTUATOR_MEMBER);
-  const strut_slot *hinge = strut_slot_of(fields, STRUT_KEY_ACTUATOR_HINGE);
-  const strut_slot *cell = strut_slot_of(fields, STRUT_KEY_ACTUATOR_CELL);
-  bool driven =
-      member->state != STRUT_ABSENT || hinge->state != STRUT_ABSENT || cell->state != STRUT_ABSENT;
-  bool fine = driven || fields->broken;
-  if (!fine)
-    strut_report_error(reader, fields->key->place,
-                       "%s lacks 'member', expected the name of a member, or "
-                       "'hinge' with the name of a hinge",
-                       strut_owner_text(reader, owner));
+  bool hinge = strut_slot_of(fields, STRUT_KEY_ACTUATOR_HINGE)->key,
+       cell = strut_slot_of(fields, STRUT_KEY_ACTUATOR_CELL)->key;
+  bool driven = strut_mentions(fields, STRUT_KEY_ACTUATOR_MEMBER) ||
+                strut_mentions(fields, STRUT_KEY_ACTUATOR_HINGE) ||
+                strut_mentions(fields, STRUT_KEY_ACTUATOR_CELL);
+  bool fine = driven || fields->broken ||
+              strut_report_error(reader, fields->key->place,
+                                 "%s lacks 'member', expected the name of a member, or 'hinge' "
+                                 "with the name of a hinge",
+                                 strut_owner_text(reader, owner));
   /* what it drives decides what the signal measures */
-  fine = read_drive(reader, fields, owner, hinge->key, cell->key, driven, actuator) && fine;
+  fine = read_drive(reader, fields, owner, hinge, cell, driven, actuator) && fine;
   return fine && (actuator->member >= 0 || actuator->hinge >= 0 || actuator->cell >= 0);
 }
 
@@ -497,11 +492,11 @@ static void turn_unbalance(strut_reader *reader, const strut_slot *signal,
 bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, strut_owner owner,
                           void *object) {
   strut_unbalance *unbalance = object;
-  const strut_slot *speed = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SPEED);
   const strut_slot *signal = strut_slot_of(fields, STRUT_KEY_UNBALANCE_SIGNAL);
-  bool fine =
-      speed->state != STRUT_GIVEN || read_speed(reader, speed->value, owner, &unbalance->speed);
-  if (speed->state == STRUT_ABSENT && signal->state == STRUT_ABSENT && !fields->broken)
+  const strut_tree *speed = strut_given(fields, STRUT_KEY_UNBALANCE_SPEED);
+  bool fine = !speed || read_speed(reader, speed, owner, &unbalance->speed);
+  if (!strut_mentions(fields, STRUT_KEY_UNBALANCE_SPEED) && signal->state == STRUT_ABSENT &&
+      !fields->broken)
     fine = strut_report_error(
         reader, fields->key->place,
         "%s lacks 'speed', expected one such as '30 Hz', or 'angle' with a signal",
@@ -512,16 +507,15 @@ bool strut_read_unbalance(strut_reader *reader, strut_fields *fields, strut_owne
 
 /* ---- sliders ---- */
 
-/* Reports the name of a beam, which is no member but makes some. */
+/* Is it the name of a beam, which is no member but makes some? Then that is reported. */
 static bool is_beam(strut_reader *reader, const strut_tree *value, strut_owner owner) {
-  for (size_t i = 0; i < reader->beam_count && value->kind == STRUT_TREE_SCALAR; i++) {
-    if (strcmp(reader->beams[i].name, value->text) != 0) continue;
-    strut_report_error(reader, value->place,
-                       "expected a member for 'member' of %s, found the beam '%s'; name one of its "
-                       "bars, such as '%s.1'",
-                       strut_owner_text(reader, owner), value->text, value->text);
-    return true;
-  }
+  for (size_t i = 0; i < reader->beam_count && value->kind == STRUT_TREE_SCALAR; i++)
+    if (strcmp(reader->beams[i].name, value->text) == 0)
+      return !strut_report_error(reader, value->place,
+                                 "expected a member for 'member' of %s, found the beam '%s'; name "
+                                 "one of its bars, such as "
+                                 "'%s.1'",
+                                 strut_owner_text(reader, owner), value->text, value->text);
   return false;
 }
 
@@ -550,10 +544,10 @@ static bool read_position(strut_reader *reader, const strut_tree *value, strut_o
 bool strut_read_slider(strut_reader *reader, strut_fields *fields, strut_owner owner,
                        void *object) {
   strut_sliding_mass *mass = object;
-  const strut_slot *member = strut_slot_of(fields, STRUT_KEY_SLIDER_MEMBER);
-  const strut_slot *position = strut_slot_of(fields, STRUT_KEY_SLIDER_POSITION);
-  if (member->state == STRUT_GIVEN && !is_beam(reader, member->value, owner))
-    mass->member = strut_read_reference(reader, member->value, "member", owner, STRUT_THING_MEMBER);
-  bool fine = position->state != STRUT_GIVEN || read_position(reader, position->value, owner, mass);
+  const strut_tree *member = strut_given(fields, STRUT_KEY_SLIDER_MEMBER),
+                   *position = strut_given(fields, STRUT_KEY_SLIDER_POSITION);
+  if (member && !is_beam(reader, member, owner))
+    mass->member = strut_read_reference(reader, member, "member", owner, STRUT_THING_MEMBER);
+  bool fine = !position || read_position(reader, position, owner, mass);
   return fine && mass->member >= 0;
 }

@@ -47,24 +47,22 @@ static const char *read_loads(strut_reader *reader, const strut_tree *value, str
 /* What the stage follows, and the dimension of its value; false: reported. */
 static bool read_followed(strut_reader *reader, strut_fields *fields, strut_owner owner,
                           strut_path_stage *stage, strut_dimension *dimension) {
-  const strut_slot *load = strut_slot_of(fields, STRUT_KEY_STAGE_LOAD);
-  const strut_slot *over = strut_slot_of(fields, STRUT_KEY_STAGE_OVER);
-  const strut_slot *release = strut_slot_of(fields, STRUT_KEY_STAGE_RELEASE);
+  const strut_tree *load = strut_given(fields, STRUT_KEY_STAGE_LOAD),
+                   *over = strut_given(fields, STRUT_KEY_STAGE_OVER),
+                   *release = strut_given(fields, STRUT_KEY_STAGE_RELEASE);
   *dimension = STRUT_DIM_NONE;
-  if (load->state == STRUT_GIVEN) return (stage->load = read_loads(reader, load->value, owner));
-  if (release->state == STRUT_GIVEN)
-    return strut_read_coordinate(reader, release->value, "release", owner) >= 0;
+  if (load) return (stage->load = read_loads(reader, load, owner));
+  if (release) return strut_read_coordinate(reader, release, "release", owner) >= 0;
   *dimension = STRUT_DIM_LENGTH;
-  int32_t actuator = strut_find_thing(reader, STRUT_THING_ACTUATOR, NULL, over->value->text);
-  if (actuator < 0) return strut_read_coordinate(reader, over->value, "over", owner) >= 0;
+  int32_t actuator = strut_find_thing(reader, STRUT_THING_ACTUATOR, NULL, over->text);
+  if (actuator < 0) return strut_read_coordinate(reader, over, "over", owner) >= 0;
   const strut_actuator *a = &reader->scene->actuators[actuator];
   if (a->member < 0) *dimension = a->hinge >= 0 ? STRUT_DIM_ANGLE : STRUT_DIM_STIFFNESS;
   if (!a->force) return true;
   return strut_report_error(
-      reader, over->value->place,
-      "actuator '%s' in 'over' of %s gives a force, which statics leaves out; use a "
-      "load",
-      a->name, strut_owner_text(reader, owner));
+      reader, over->place,
+      "actuator '%s' in 'over' of %s gives a force, which statics leaves out; use a load", a->name,
+      strut_owner_text(reader, owner));
 }
 
 /* Where it ends: 1 of a load, 0 of a release, else it must be given. */
@@ -87,11 +85,10 @@ static bool read_until(strut_reader *reader, strut_fields *fields, strut_owner o
 }
 
 /* `stop: {NODE.x: LENGTH}` */
-static bool read_stop(strut_reader *reader, const strut_slot *slot, strut_owner owner,
+static bool read_stop(strut_reader *reader, const strut_tree *map, strut_owner owner,
                       strut_path_stage *stage) {
   stage->stop = -1;
-  if (slot->state != STRUT_GIVEN) return true;
-  const strut_tree *map = slot->value;
+  if (!map) return true;
   if (map->kind != STRUT_TREE_MAP || map->count != 1)
     return strut_report_error(reader, map->place,
                               "expected {NODE.x: LENGTH} for 'stop' of %s, found %s",
@@ -109,24 +106,21 @@ static bool read_stop(strut_reader *reader, const strut_slot *slot, strut_owner 
 
 static bool read_stage(strut_reader *reader, const strut_tree *item, int number,
                        strut_path_stage *stage) {
-  char name[40];
   strut_fields fields;
   strut_dimension dimension;
-  snprintf(name, sizeof name, "stage %d", number);
-  strut_owner owner = {strut_keep_text(reader, name), NULL};
+  strut_owner owner = {strut_formatted(reader, &reader->scratch, "stage %d", number), NULL};
   if (item->kind != STRUT_TREE_MAP)
     return strut_report_error(reader, item->place,
                               "expected a stage such as {load: NAME}, found %s",
                               strut_found(reader, item));
   bool fine = strut_read_object(reader, STRUT_SECTION_STAGE, item, owner, &fields, stage);
   if (fields.broken) return false;
-  bool loads = strut_slot_of(&fields, STRUT_KEY_STAGE_LOAD)->state == STRUT_GIVEN;
-  if (!loads && !stage->over && !stage->release)
+  if (!strut_given(&fields, STRUT_KEY_STAGE_LOAD) && !stage->over && !stage->release)
     return strut_report_error(reader, item->place, "%s lacks 'load', 'over' or 'release'",
                               owner.kind);
   fine = read_followed(reader, &fields, owner, stage, &dimension) &&
          read_until(reader, &fields, owner, dimension, stage) && fine;
-  return read_stop(reader, strut_slot_of(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
+  return read_stop(reader, strut_given(&fields, STRUT_KEY_STAGE_STOP), owner, stage) && fine;
 }
 
 /* A release needs a coordinate that supports or earlier stages hold, and a stage before. */
@@ -174,39 +168,37 @@ void strut_read_stages(strut_reader *reader) {
   strut_experiment *experiment = reader->experiment;
   strut_fields path;
   strut_owner owner = {"the path", NULL};
-  bool fine = true;
-  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PATH);
-  if (slot->state != STRUT_GIVEN) return;
-  if (slot->value->kind != STRUT_TREE_MAP) {
-    strut_report_error(reader, slot->value->place, "expected {stages: [...]} for 'path', found %s",
-                       strut_found(reader, slot->value));
+  const strut_tree *value = strut_given(&reader->top, STRUT_KEY_SCENE_PATH);
+  if (!value) return;
+  if (value->kind != STRUT_TREE_MAP) {
+    strut_report_error(reader, value->place, "expected {stages: [...]} for 'path', found %s",
+                       strut_found(reader, value));
     return;
   }
-  strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, slot->value, owner, &path);
+  strut_read_fields(reader, STRUT_SECTION_SCENE_PATH, value, owner, &path);
   if (path.broken) return;
   strut_store(reader, &path, owner, experiment);
-  const strut_slot *stages = strut_slot_of(&path, STRUT_KEY_SCENE_PATH_STAGES);
-  if (stages->state == STRUT_ABSENT &&
-      strut_slot_of(&path, STRUT_KEY_SCENE_PATH_FRICTION)->state == STRUT_ABSENT)
-    strut_report_error(reader, slot->value->place,
+  const strut_tree *stages = strut_given(&path, STRUT_KEY_SCENE_PATH_STAGES);
+  if (!strut_mentions(&path, STRUT_KEY_SCENE_PATH_STAGES) &&
+      !strut_mentions(&path, STRUT_KEY_SCENE_PATH_FRICTION))
+    strut_report_error(reader, value->place,
                        "the path lacks 'stages', expected a list of stages such as [{load: NAME}]");
-  if (stages->state != STRUT_GIVEN) return;
-  if (stages->value->kind != STRUT_TREE_LIST || !stages->value->count) {
-    strut_report_error(reader, stages->value->place,
+  if (!stages) return;
+  if (stages->kind != STRUT_TREE_LIST || !stages->count) {
+    strut_report_error(reader, stages->place,
                        "expected a list of stages such as [{load: NAME}, {over: NODE.x, until: 1 "
                        "mm}], found %s",
-                       strut_found(reader, stages->value));
+                       strut_found(reader, stages));
     return;
   }
-  experiment->stages = strut_reader_allocate(reader, &reader->scene->arena, stages->value->count,
+  experiment->stages = strut_reader_allocate(reader, &reader->scene->arena, stages->count,
                                              sizeof *experiment->stages);
+  bool fine = experiment->stages;
   int number = 0;
-  for (const strut_tree *item = stages->value->first; item && experiment->stages;
-       item = item->next) {
+  for (const strut_tree *item = stages->first; item && experiment->stages; item = item->next) {
     fine = read_stage(reader, item, number + 1, &experiment->stages[number]) && fine;
     number++;
   }
-  fine = fine && experiment->stages && check_releases(reader, stages->value->first) &&
-         check_ends(reader, stages->value->first);
+  fine = fine && check_releases(reader, stages->first) && check_ends(reader, stages->first);
   experiment->stage_count = fine ? (size_t)number : 0;
 }

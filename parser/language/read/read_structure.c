@@ -165,9 +165,11 @@ static bool read_numbers(strut_reader *reader, strut_fields *fields, strut_owner
                          strut_dimension strain, strut_dimension force, strut_law *law) {
   bool fine = true;
   for (int p = 0; p < STRUT_LAW_NUMBER_COUNT; p++) {
-    int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p)), power = strut_law_power(p);
-    strut_dimension dimension = power < 0 ? strain : per_strain(force, strain, power);
-    fine = strut_store_number(reader, fields, key, owner, dimension, law) && fine;
+    const strut_law_parameter *row = strut_law_parameter_at(p);
+    fine =
+        strut_store_number(reader, fields, strut_key_find(STRUT_SECTION_LAW, row->key), owner,
+                           row->power < 0 ? strain : per_strain(force, strain, row->power), law) &&
+        fine;
   }
   return fine;
 }
@@ -220,32 +222,28 @@ static bool read_points(strut_reader *reader, const strut_slot *slot, strut_owne
 /* Reports a number that the law needs and does not have, or has and does not need. */
 static bool check_needs(strut_reader *reader, strut_fields *fields, strut_owner owner,
                         const strut_law *law) {
-  bool fine = true, data = strut_slot_of(fields, STRUT_KEY_LAW_DATA)->state != STRUT_ABSENT;
-  if (data && strut_slot_of(fields, STRUT_KEY_LAW_OVER)->state == STRUT_ABSENT)
+  const char *kind = strut_law_at(law->kind)->word, *text = strut_owner_text(reader, owner);
+  bool fine = true, data = strut_mentions(fields, STRUT_KEY_LAW_DATA);
+  if (data && !strut_mentions(fields, STRUT_KEY_LAW_OVER))
     fine = strut_report_error(reader, fields->map->place,
-                              "%s lacks 'over', expected the column of x, such as tensile.x",
-                              strut_owner_text(reader, owner));
+                              "%s lacks 'over', expected the column of x, such as tensile.x", text);
   for (int p = 0; p < STRUT_LAW_PARAMETER_COUNT; p++) {
-    int key = strut_key_find(STRUT_SECTION_LAW, strut_law_key(p));
-    const strut_slot *slot = strut_slot_of(fields, key);
+    const char *name = strut_law_parameter_at(p)->key;
+    int key = strut_key_find(STRUT_SECTION_LAW, name);
     bool needed = strut_law_needs(law->kind, p) && !(data && key == STRUT_KEY_LAW_POINTS);
-    if (slot->state == STRUT_ABSENT ? !needed : strut_law_allows(law->kind, p)) continue;
-    fine = false;
-    if (needed)
-      strut_report_error(reader, fields->map->place, "%s lacks '%s', which the kind %s needs",
-                         strut_owner_text(reader, owner), strut_law_key(p),
-                         strut_law_at(law->kind)->word);
-    else
-      strut_report_error(reader, slot->key->place, "%s gives '%s', which the kind %s does not have",
-                         strut_owner_text(reader, owner), strut_law_key(p),
-                         strut_law_at(law->kind)->word);
+    if (!strut_mentions(fields, key) && needed)
+      fine = strut_report_error(reader, fields->map->place,
+                                "%s lacks '%s', which the kind %s needs", text, name, kind);
+    else if (strut_mentions(fields, key) && !strut_law_allows(law->kind, p))
+      fine = strut_report_error(reader, strut_slot_of(fields, key)->key->place,
+                                "%s gives '%s', which the kind %s does not have", text, name, kind);
   }
-  bool points = strut_slot_of(fields, STRUT_KEY_LAW_POINTS)->state != STRUT_ABSENT;
-  bool control = strut_slot_of(fields, STRUT_KEY_LAW_CONTROL_POINTS)->state != STRUT_ABSENT;
-  if (law->kind == STRUT_LAW_FOLDING && points == control)
-    fine = strut_report_error(
-        reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
-        strut_owner_text(reader, owner), points ? "not both" : "and has neither");
+  bool points = strut_mentions(fields, STRUT_KEY_LAW_POINTS);
+  if (law->kind == STRUT_LAW_FOLDING &&
+      points == strut_mentions(fields, STRUT_KEY_LAW_CONTROL_POINTS))
+    fine =
+        strut_report_error(reader, fields->map->place, "%s needs 'points' or 'control_points', %s",
+                           text, points ? "not both" : "and has neither");
   return fine;
 }
 
@@ -278,25 +276,21 @@ bool strut_read_law(strut_reader *reader, const strut_slot *slot, strut_owner ow
   snprintf(text, sizeof text, "the law of %.150s", strut_owner_text(reader, owner));
   strut_owner within = {text, NULL};
   strut_read_fields(reader, STRUT_SECTION_LAW, slot->value, within, &fields);
-  const strut_slot *coefficients = strut_slot_of(&fields, STRUT_KEY_LAW_COEFFICIENTS);
-  const strut_slot *control = strut_slot_of(&fields, STRUT_KEY_LAW_CONTROL_POINTS);
+  const strut_tree *coefficients = strut_given(&fields, STRUT_KEY_LAW_COEFFICIENTS),
+                   *data = strut_given(&fields, STRUT_KEY_LAW_DATA);
   const strut_slot *points = strut_slot_of(&fields, STRUT_KEY_LAW_POINTS);
-  const strut_slot *data = strut_slot_of(&fields, STRUT_KEY_LAW_DATA);
   strut_store(reader, &fields, within, law);
   bool fine = !fields.broken && check_needs(reader, &fields, within, law);
-  fine = read_numbers(reader, &fields, within, strain, force, law) && fine;
-  if (!fine) return false;
-  if (coefficients->state == STRUT_GIVEN)
-    return read_coefficients(reader, coefficients->value, within, strain, force, law);
-  if (data->state == STRUT_GIVEN)
-    return strut_read_data_law(reader, data->value,
-                               strut_slot_of(&fields, STRUT_KEY_LAW_OVER)->value, within,
+  if (!read_numbers(reader, &fields, within, strain, force, law) || !fine) return false;
+  if (coefficients) return read_coefficients(reader, coefficients, within, strain, force, law);
+  if (data)
+    return strut_read_data_law(reader, data, strut_given(&fields, STRUT_KEY_LAW_OVER), within,
                                (const strut_dimension[]){strain, force}, law);
-  law->source = control->state == STRUT_GIVEN ? STRUT_LAW_CONTROL_POINTS : STRUT_LAW_POINTS;
-  if (law->source == STRUT_LAW_CONTROL_POINTS || points->state == STRUT_GIVEN)
-    return read_points(reader, points->state == STRUT_GIVEN ? points : control, within, strain,
-                       force, law);
-  return true;
+  if (strut_given(&fields, STRUT_KEY_LAW_CONTROL_POINTS)) {
+    law->source = STRUT_LAW_CONTROL_POINTS;
+    points = strut_slot_of(&fields, STRUT_KEY_LAW_CONTROL_POINTS);
+  }
+  return points->state != STRUT_GIVEN || read_points(reader, points, within, strain, force, law);
 }
 
 /* ---- members ---- */
@@ -354,78 +348,70 @@ bool strut_read_hinge(strut_reader *reader, strut_fields *fields, strut_owner ow
 }
 
 bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner owner, void *object) {
-  const strut_slot *gas = strut_slot_of(fields, STRUT_KEY_CELL_GAS);
-  const strut_slot *pressure = strut_slot_of(fields, STRUT_KEY_CELL_PRESSURE);
-  strut_cell *cell = object;
   static const int own[] = {STRUT_KEY_CELL_STIFFNESS, STRUT_KEY_CELL_LAW, STRUT_KEY_CELL_DAMPING,
                             STRUT_KEY_CELL_REST_AREA};
-  const strut_slot *elastic = NULL;
-  for (size_t k = 0; k < sizeof own / sizeof own[0] && !elastic; k++)
-    if (strut_slot_of(fields, own[k])->key) elastic = strut_slot_of(fields, own[k]);
-  bool other = gas->state != STRUT_ABSENT || pressure->state != STRUT_ABSENT;
-  if (elastic && other)
-    return strut_report_error(
-        reader, elastic->key->place,
-        "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
-        strut_owner_text(reader, owner), elastic->key->text,
-        gas->state != STRUT_ABSENT ? "gas" : "pressure");
-  if (elastic) {
+  const strut_slot *gas = strut_slot_of(fields, STRUT_KEY_CELL_GAS);
+  strut_cell *cell = object;
+  const char *other = gas->state != STRUT_ABSENT                        ? "gas"
+                      : strut_mentions(fields, STRUT_KEY_CELL_PRESSURE) ? "pressure"
+                                                                        : NULL;
+  for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) {
+    const strut_tree *elastic = strut_slot_of(fields, own[k])->key;
+    if (!elastic) continue;
     cell->law = STRUT_LAW_LINEAR;
-    return true;
+    return !other ||
+           strut_report_error(
+               reader, elastic->place,
+               "%s gives '%s' beside '%s'; a cell is elastic, or has a pressure, or a gas",
+               strut_owner_text(reader, owner), elastic->text, other);
   }
   if (gas->state == STRUT_GIVEN)
     return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), gas, owner, object,
                              sizeof(strut_cell));
-  if (other || fields->broken) return true;
-  return strut_report_error(
-      reader, fields->key->place,
-      "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
-      "'stiffness' of its area",
-      strut_owner_text(reader, owner));
+  return other || fields->broken ||
+         strut_report_error(
+             reader, fields->key->place,
+             "%s lacks 'pressure', expected a pressure such as '500 N/m', or 'gas', or the "
+             "'stiffness' of its area",
+             strut_owner_text(reader, owner));
 }
 
-/* Is there one of the three forms? If not, that is reported. */
 bool strut_read_collision(strut_reader *reader, strut_fields *fields, strut_owner owner,
                           void *object) {
   const strut_slot *node = strut_slot_of(fields, STRUT_KEY_COLLISION_NODE);
-  bool member = strut_slot_of(fields, STRUT_KEY_COLLISION_MEMBER)->state != STRUT_ABSENT;
-  bool pair = strut_slot_of(fields, STRUT_KEY_COLLISION_NODES)->state != STRUT_ABSENT ||
-              strut_slot_of(fields, STRUT_KEY_COLLISION_MEMBERS)->state != STRUT_ABSENT ||
-              strut_slot_of(fields, STRUT_KEY_COLLISION_BETWEEN)->state != STRUT_ABSENT;
+  bool pair = strut_mentions(fields, STRUT_KEY_COLLISION_NODES) ||
+              strut_mentions(fields, STRUT_KEY_COLLISION_MEMBERS) ||
+              strut_mentions(fields, STRUT_KEY_COLLISION_BETWEEN);
   bool alone = node->state != STRUT_ABSENT;
+  bool member = strut_mentions(fields, STRUT_KEY_COLLISION_MEMBER);
   (void)object;
-  if (fields->broken) fields->unresolved = true;
+  fields->unresolved = fields->unresolved || fields->broken;
   if (fields->broken || (pair && !alone) || (member && alone && !pair)) return true;
-  strut_report_error(reader, alone && pair ? node->key->place : fields->key->place,
-                     "%s %s, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' "
-                     "with two members, or 'between'",
-                     strut_owner_text(reader, owner),
-                     alone && pair ? "names a node beside a pair" : "does not name two things");
   fields->unresolved = true;
-  return false;
+  return strut_report_error(
+      reader, alone && pair ? node->key->place : fields->key->place,
+      "%s %s, expected 'node' and 'member', or 'nodes' with two nodes, or 'members' with two "
+      "members, or 'between'",
+      strut_owner_text(reader, owner),
+      alone && pair ? "names a node beside a pair" : "does not name two things");
 }
 
-/* Is it one of the two forms? If not, that is reported. */
 bool strut_read_distance(strut_reader *reader, strut_fields *fields, strut_owner owner,
                          void *object) {
   strut_distance_spring *spring = object;
-  const strut_slot *along = strut_slot_of(fields, STRUT_KEY_DISTANCE_ALONG);
-  bool pair = strut_slot_of(fields, STRUT_KEY_DISTANCE_NODES)->state != STRUT_ABSENT;
-  bool node = strut_slot_of(fields, STRUT_KEY_DISTANCE_NODE)->state != STRUT_ABSENT;
-  bool line = strut_slot_of(fields, STRUT_KEY_DISTANCE_LINE)->state != STRUT_ABSENT;
+  bool along = strut_mentions(fields, STRUT_KEY_DISTANCE_ALONG);
+  bool pair = strut_mentions(fields, STRUT_KEY_DISTANCE_NODES);
+  bool node = strut_mentions(fields, STRUT_KEY_DISTANCE_NODE);
+  bool line = strut_mentions(fields, STRUT_KEY_DISTANCE_LINE);
   if (strut_scope_flips(reader)) { /* left is the other side */
     int32_t first = spring->line[0];
     spring->line[0] = spring->line[1], spring->line[1] = first;
   }
-  if (fields->broken) fields->unresolved = true;
-  if (fields->broken) return true;
-  bool directed = pair && !line && !node && along->state != STRUT_ABSENT;
-  if (!directed && (pair || !node || !line || along->state != STRUT_ABSENT)) {
-    strut_report_error(reader, fields->key->place,
-                       "%s must have 'nodes' and 'along', or 'node' and 'line'",
-                       strut_owner_text(reader, owner));
-    fields->unresolved = true;
-    return false;
-  }
-  return true;
+  fields->unresolved = fields->unresolved || fields->broken;
+  if (fields->broken || (pair && along && !node && !line) || (node && line && !pair && !along))
+    return true;
+  fields->unresolved = true;
+  return strut_report_error(reader, fields->key->place,
+                            "%s must have 'nodes' and 'along', or 'node' and 'line'",
+                            strut_owner_text(reader, owner));
 }

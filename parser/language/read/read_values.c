@@ -60,6 +60,25 @@ static const char *kept(strut_reader *reader, const char *text) {
   return "?";
 }
 
+const char *strut_formatted(strut_reader *reader, strut_arena *arena, const char *format, ...) {
+  char text[1200];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return kept(reader, strut_arena_text(arena, text, strlen(text)));
+}
+
+const char *strut_piece_text(strut_reader *reader, strut_piece piece) {
+  return kept(reader, strut_arena_text(&reader->scratch, piece.text, piece.length));
+}
+
+const char *strut_keep_unit(strut_reader *reader, strut_dimension dimension, const char *none) {
+  char unit[STRUT_SUFFIX_TEXT];
+  strut_dimension_suffix(dimension, unit, sizeof unit);
+  return *unit ? strut_keep_text(reader, unit) : none;
+}
+
 const char *strut_sanitised_text(strut_reader *reader, const char *text) {
   size_t length = strlen(text), end = length;
   if (strut_diagnostics_full(reader->diagnostics)) return "";

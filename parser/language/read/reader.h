@@ -207,6 +207,13 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
 bool strut_hints_left(const strut_reader *reader);
 /** "a list of 3", "a mapping", "nothing", "'text'": the value in a message; lives in scratch. */
 const char *strut_found(strut_reader *reader, const strut_tree *value);
+/** A text of at most 1199 bytes in the arena; never NULL, since the reader remembers when memory is out. */
+const char *strut_formatted(strut_reader *reader, strut_arena *arena, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/** A copy of the piece, in scratch. */
+const char *strut_piece_text(strut_reader *reader, strut_piece piece);
+/** The unit of a dimension, "kg m s^-2", where it is kept; `none` of one without. */
+const char *strut_keep_unit(strut_reader *reader, strut_dimension dimension, const char *none);
 /** The beginning of the file, for what is about all of it. */
 strut_place strut_root_place(const strut_reader *reader);
 /** "a -> b -> a" from the names of a stack, shortened in the middle; lives in scratch. */
@@ -331,6 +338,12 @@ void strut_read_slot(strut_reader *reader, int key, const strut_tree *key_tree,
 int strut_key_named(strut_reader *reader, strut_section section, const strut_tree *key);
 /** The slot of a key: fields->section must be the key's. */
 strut_slot *strut_slot_of(strut_fields *fields, int key);
+/** The value of a key that is given and could be read, else NULL. */
+const strut_tree *strut_given(strut_fields *fields, int key);
+/** Is the key there, whether or not its value could be read? */
+static inline bool strut_mentions(strut_fields *fields, int key) {
+  return strut_slot_of(fields, key)->state != STRUT_ABSENT;
+}
 /** Reports an unknown key; returns the key of the sections that was probably meant, or -1. */
 int strut_unknown_key(strut_reader *reader, const strut_tree *key, const strut_section *sections,
                       size_t count, strut_owner owner);
@@ -344,8 +357,7 @@ bool strut_read_section(strut_reader *reader, int key, strut_section section, co
                         strut_fields *fields);
 /** The mapping of names to things that is the value of a key of the scene, or NULL. */
 const strut_tree *strut_entries(strut_reader *reader, int key);
-
-/* companions.c */
+size_t strut_entry_count(strut_reader *reader, int key);
 
 /** Reports keys that mean nothing without another one; those of a group or of a base become absent. */
 bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_owner owner);
@@ -540,7 +552,7 @@ strut_instruction *strut_read_column(strut_reader *reader, const strut_tree *val
                                      strut_owner owner, strut_column *column);
 /** Of the values of an observable. */
 strut_dimension strut_column_dimension(strut_column_kind kind);
-/** Finds a sensor as a column and its dimension. */
+/** Finds a sensor or a state as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension);
 /**
@@ -575,6 +587,27 @@ int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
 /** Is the controller a relay? */
 bool strut_is_relay(const strut_tree *map);
 int32_t strut_read_network(strut_reader *reader, const strut_tree *key);
+/** Enters a signal, or controller, by its name. */
+void strut_list_signal(strut_reader *reader, const strut_tree *key, bool controller);
+/** A program under construction: instructions in postfix order. */
+typedef struct strut_program_builder {
+  strut_reader *reader;
+  strut_instruction *code; /* in scratch */
+  size_t length, room, stacked, most;
+} strut_program_builder;
+/**
+ * Appends instructions, a letter each: # a number with its dimension, s a sensor, r its rate, x a state, v a signal
+ * (whose numbers follow as arguments); the operations + - * / and < the lesser, > the greater, i sine, t tanh.
+ */
+void strut_build(strut_program_builder *self, const char *postfix, ...);
+/** The whole, in the scene's memory. */
+strut_program strut_built(const strut_program_builder *self);
+/**
+ * "NAME_END" of a part of what the key names, where no `taken` name or, with NULL, no variable is called so; NULL:
+ * that is reported as one of `what`, such as "a part of pipe".
+ */
+const char *strut_made_name(strut_reader *reader, const strut_tree *key, const char *what,
+                            const char *end, const strut_name_map *taken);
 /** Most sensors, and most actuators, that pipes stand for. */
 size_t strut_pipes_most(strut_reader *reader);
 /** Their sensors, states and signals; and after actuators those that they stand for. */

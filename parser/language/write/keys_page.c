@@ -11,25 +11,20 @@ static void put_words(strut_writer *writer, const char *words) {
   char word[40], next[40];
   for (int i = 0; strut_word_at(words, i, word, sizeof word); i++) {
     bool last = !strut_word_at(words, i + 1, next, sizeof next);
-    strut_put(writer, i == 0 ? "`" : last ? " or `" : ", `");
-    strut_put(writer, word);
-    strut_put(writer, "`");
+    strut_buffer_add(&writer->out, "%s`%s`", i == 0 ? "" : last ? " or " : ", ", word);
   }
 }
 
 static void put_unit(strut_writer *writer, const strut_key *key) {
   bool number = key->type == STRUT_TYPE_NUMBER || key->type == STRUT_TYPE_PAIR;
   if (!number || key->measure == STRUT_MEASURE_NONE) return;
-  if (key->measure == STRUT_MEASURE_CONTEXT) {
+  if (key->measure == STRUT_MEASURE_CONTEXT)
     strut_put(writer, " in a unit that depends on its use");
-    return;
-  }
-  strut_put(writer, " [");
-  strut_put(writer, strut_dimension_unit(strut_measure_dimension(key->measure)));
-  strut_put(writer, "]");
+  else
+    strut_buffer_add(&writer->out, " [%s]",
+                     strut_dimension_unit(strut_measure_dimension(key->measure)));
 }
 
-/* A link to the heading of a section. */
 static void put_section_link(strut_writer *writer, const char *name) {
   char letter[2] = "";
   strut_put(writer, "[mapping](#");
@@ -41,22 +36,13 @@ static void put_section_link(strut_writer *writer, const char *name) {
 }
 
 static void put_limits(strut_writer *writer, strut_key_limits limits) {
-  switch (limits.range) {
-    case STRUT_RANGE_NOT_NEGATIVE: strut_put(writer, ", not negative"); break;
-    case STRUT_RANGE_ABOVE_ZERO: strut_put(writer, ", positive"); break;
-    case STRUT_RANGE_WHOLE:
-      strut_put(writer, " from ");
-      strut_put_number(writer, limits.least);
-      strut_put(writer, " to ");
-      strut_put_number(writer, limits.most);
-      break;
-    case STRUT_RANGE_ANY: break;
-  }
-}
-
-static void put_expression_type(strut_writer *writer, const strut_key *key) {
-  bool signal = key->measure == STRUT_MEASURE_CONTEXT;
-  strut_put(writer, signal ? "expression of `t` and sensors" : "expression of columns");
+  if (limits.range == STRUT_RANGE_NOT_NEGATIVE) strut_put(writer, ", not negative");
+  if (limits.range == STRUT_RANGE_ABOVE_ZERO) strut_put(writer, ", positive");
+  if (limits.range != STRUT_RANGE_WHOLE) return;
+  strut_put(writer, " from ");
+  strut_put_number(writer, limits.least);
+  strut_put(writer, " to ");
+  strut_put_number(writer, limits.most);
 }
 
 void strut_put_key_type(strut_writer *writer, const strut_key *key) {
@@ -64,7 +50,9 @@ void strut_put_key_type(strut_writer *writer, const strut_key *key) {
     put_section_link(writer, strut_section_name(strut_section_below(key)));
     return;
   }
-  if (key->type == STRUT_TYPE_EXPRESSION) put_expression_type(writer, key);
+  bool signal = key->measure == STRUT_MEASURE_CONTEXT;
+  if (key->type == STRUT_TYPE_EXPRESSION)
+    strut_put(writer, signal ? "expression of `t` and sensors" : "expression of columns");
   if (key->limits.range == STRUT_RANGE_WHOLE) strut_put(writer, "whole ");
   strut_put(writer, strut_type_reference(key->type));
   if (key->type == STRUT_TYPE_THINGS || key->type == STRUT_TYPE_FREE) {
@@ -101,35 +89,24 @@ static bool has_many_words(const strut_key *key) {
 }
 
 static void put_section(strut_writer *writer, strut_section section) {
-  strut_put(writer, "\n## ");
-  strut_put(writer, strut_section_name(section));
-  strut_put(writer, "\n\n");
-  strut_put(writer, strut_section_introduction(section));
-  strut_put(writer, "\n\n| key | value | default | meaning |\n|---|---|---|---|\n");
-  for (int i = 0; i < strut_section_size(section); i++) {
-    const strut_key *key = strut_key_at(strut_section_first(section) + i);
-    bool words = strut_default_is_described(key);
-    strut_put(writer, "| `");
-    strut_put(writer, key->name);
-    strut_put(writer, "` | ");
+  const strut_key *keys = strut_key_at(strut_section_first(section));
+  const strut_key *end = keys + strut_section_size(section);
+  strut_buffer_add(&writer->out, "\n## %s\n\n%s\n\n", strut_section_name(section),
+                   strut_section_introduction(section));
+  strut_put(writer, "| key | value | default | meaning |\n|---|---|---|---|\n");
+  for (const strut_key *key = keys; key < end; key++) {
+    const char *tick = !*key->fallback || strut_default_is_described(key) ? "" : "`";
+    strut_buffer_add(&writer->out, "| `%s` | ", key->name);
     if (has_many_words(key))
       strut_put(writer, "list of quantities, or of the words below");
     else
       strut_put_key_type(writer, key);
-    strut_put(writer, key->need == STRUT_REQUIRED ? " | required"
-                      : *key->fallback            ? words ? " | " : " | `"
-                                                  : " |");
-    strut_put(writer, key->fallback);
-    strut_put(writer, *key->fallback && !words ? "` | " : " | ");
-    strut_put(writer, key->description);
-    strut_put(writer, " |\n");
+    strut_put(writer, key->need == STRUT_REQUIRED ? " | required" : *key->fallback ? " | " : " |");
+    strut_buffer_add(&writer->out, "%s%s%s | %s |\n", tick, key->fallback, tick, key->description);
   }
-  for (int i = 0; i < strut_section_size(section); i++) {
-    const strut_key *key = strut_key_at(strut_section_first(section) + i);
+  for (const strut_key *key = keys; key < end; key++) {
     if (!has_many_words(key)) continue;
-    strut_put(writer, "\nWords of `");
-    strut_put(writer, key->name);
-    strut_put(writer, "`: ");
+    strut_buffer_add(&writer->out, "\nWords of `%s`: ", key->name);
     put_words(writer, key->words);
     strut_put(writer, ".\n");
   }
@@ -176,12 +153,10 @@ static void put_wrapped(strut_writer *writer, const char *markdown, int indent) 
 
 static void put_key(strut_writer *writer, const strut_key *key) {
   strut_writer head = {.scene = NULL};
-  strut_put(&head, key->name);
-  strut_put(&head, ": ");
+  strut_buffer_add(&head.out, "%s: ", key->name);
   strut_put_key_type(&head, key);
-  if (key->need == STRUT_REQUIRED) strut_put(&head, "; required");
-  if (*key->fallback) strut_put(&head, "; default ");
-  strut_put(&head, key->fallback);
+  strut_buffer_add(&head.out, "%s%s%s", key->need == STRUT_REQUIRED ? "; required" : "",
+                   *key->fallback ? "; default " : "", key->fallback);
   if (head.out.failed) writer->out.failed = true;
   strut_put(writer, "\n");
   if (!head.out.failed) put_wrapped(writer, head.out.text, 0);
@@ -202,9 +177,8 @@ char *strut_keys_named(const char *name) {
   for (int i = 0; i < STRUT_SECTION_COUNT; i++) {
     int key = strut_key_find((strut_section)i, name);
     if (key < 0) continue;
-    strut_put(&result, result.out.length ? "\nin " : "in ");
-    strut_put(&result, strut_section_name((strut_section)i));
-    strut_put(&result, ":\n");
+    strut_buffer_add(&result.out, "%sin %s:\n", result.out.length ? "\n" : "",
+                     strut_section_name((strut_section)i));
     put_key(&result, strut_key_at(key));
   }
   return strut_buffer_take(&result.out);

@@ -17,10 +17,8 @@ static bool same(const double a[2], const double b[2]) { return memcmp(a, b, 2 *
 static void put_search(strut_writer *writer) {
   const strut_search *search = &writer->experiment->search,
                      *usual = &writer->usual.experiment.search;
-  if (!strut_fields_differ(STRUT_SECTION_EQUILIBRIA, search, usual)) return;
-  strut_put(writer, "equilibria: ");
-  strut_put_mapping(writer, STRUT_SECTION_EQUILIBRIA, search, usual, NULL);
-  strut_put(writer, "\n");
+  if (strut_fields_differ(STRUT_SECTION_EQUILIBRIA, search, usual))
+    strut_put_line(writer, "equilibria", STRUT_SECTION_EQUILIBRIA, search, usual, NULL);
 }
 
 static bool is_configuration(const strut_scene *scene, const char *name) {
@@ -62,13 +60,6 @@ static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int 
   strut_put_number(writer, settle->step);
 }
 
-static void put_settle(strut_writer *writer, const strut_settle *settle) {
-  strut_put(writer, "  settle: ");
-  strut_put_mapping(writer, STRUT_SECTION_SETTLE, settle, &writer->usual.experiment.settle,
-                    put_settling_step);
-  strut_put(writer, "\n");
-}
-
 static void put_initial(strut_writer *writer) {
   static const double rest[2] = {0.0, 0.0};
   const strut_scene *scene = writer->scene;
@@ -91,8 +82,9 @@ static void put_initial(strut_writer *writer) {
       put_initial_pair(writer, &begun, &velocities, "  velocities:\n", node->name, node->velocity);
   }
   if (!writer->experiment->settle.wanted) return;
-  if (!begun) strut_put(writer, "initial:\n");
-  put_settle(writer, &writer->experiment->settle);
+  strut_put(writer, begun ? "  " : "initial:\n  ");
+  strut_put_line(writer, "settle", STRUT_SECTION_SETTLE, &writer->experiment->settle,
+                 &writer->usual.experiment.settle, put_settling_step);
 }
 
 static void put_stage_by_hand(strut_writer *writer, strut_mapping *mapping, int key,
@@ -139,7 +131,7 @@ static void put_path(strut_writer *writer) {
 }
 
 void strut_put_shapes(strut_writer *writer) {
-  strut_put_things(writer, STRUT_THING_CONFIGURATION, STRUT_SECTION_CONFIGURATION, NULL, NULL);
+  strut_put_things(writer, STRUT_THING_CONFIGURATION, STRUT_SECTION_CONFIGURATION, NULL);
   put_search(writer);
   put_path(writer);
   put_initial(writer);
@@ -156,7 +148,6 @@ static int32_t signal_of(const strut_scene *scene, strut_thing kind, size_t i) {
   return kind == STRUT_THING_LOAD ? scene->loads[i].signal : scene->actuators[i].signal;
 }
 
-/* Would `of: name` refer to this signal? */
 static bool refers_to(const strut_scene *scene, const char *name, int32_t signal) {
   bool found = false;
   for (size_t k = 0; k < DRIVERS; k++)
@@ -206,13 +197,10 @@ static void put_run_by_hand(strut_writer *writer, strut_mapping *mapping, int ke
   }
 }
 
-/* One of the scene's mappings, on a line of its own. */
 static void put_section(strut_writer *writer, int key, strut_section section,
                         strut_put_by_hand *by_hand) {
-  strut_mapping top = STRUT_MAPPING_INLINE;
-  strut_put_key_name(writer, &top, key);
-  strut_put_mapping(writer, section, writer->experiment, &writer->usual.experiment, by_hand);
-  strut_put(writer, "\n");
+  strut_put_line(writer, strut_key_at(key)->name, section, writer->experiment,
+                 &writer->usual.experiment, by_hand);
 }
 
 void strut_put_experiment(strut_writer *writer) {
@@ -266,9 +254,10 @@ static void put_owner(strut_writer *writer, const char *kind, const char *name) 
     const char *group = strut_owner_row_of((strut_channel_owner)owner)->group;
     plain = !group || strcmp(group, name) != 0;
   }
-  if (!plain) strut_put(writer, kind), strut_put(writer, "(");
-  strut_put(writer, name);
-  if (!plain) strut_put(writer, ")");
+  if (plain)
+    strut_put(writer, name);
+  else
+    strut_buffer_add(&writer->out, "%s(%s)", kind, name);
 }
 
 static void put_column(strut_writer *writer, strut_column column) {
@@ -278,18 +267,13 @@ static void put_column(strut_writer *writer, strut_column column) {
   strut_thing thing = strut_thing_of_owner(owner);
   if (owner == STRUT_OWNER_SENSOR || owner == STRUT_OWNER_SIGNAL || owner == STRUT_OWNER_STATE) {
     bool rate = column.kind == STRUT_COLUMN_SENSOR_RATE;
-    strut_put(writer, rate ? "rate(" : "");
-    strut_put(writer, strut_thing_name(scene, thing, (size_t)column.item));
-    strut_put(writer, rate ? ")" : "");
+    strut_buffer_add(&writer->out, rate ? "rate(%s)" : "%s",
+                     strut_thing_name(scene, thing, (size_t)column.item));
     return;
   }
   if (owner == STRUT_OWNER_PAIR) {
-    strut_put(writer, word);
-    strut_put(writer, "(");
-    strut_put(writer, scene->nodes[column.item].name);
-    strut_put(writer, ", ");
-    strut_put(writer, scene->nodes[column.other].name);
-    strut_put(writer, ")");
+    strut_buffer_add(&writer->out, "%s(%s, %s)", word, scene->nodes[column.item].name,
+                     scene->nodes[column.other].name);
     return;
   }
   if (thing < STRUT_THING_COUNT)
@@ -297,8 +281,7 @@ static void put_column(strut_writer *writer, strut_column column) {
               strut_thing_name(scene, thing, (size_t)column.item));
   else if (owner != STRUT_OWNER_RUN)
     strut_put(writer, strut_owner_row_of(owner)->group);
-  if (owner != STRUT_OWNER_RUN) strut_put(writer, ".");
-  strut_put(writer, word);
+  strut_buffer_add(&writer->out, "%s%s", owner != STRUT_OWNER_RUN ? "." : "", word);
 }
 
 static void put_number(strut_writer *writer, const strut_instruction *instruction) {
@@ -312,8 +295,7 @@ static void put_operand(strut_writer *writer, const strut_instruction *program, 
 static void put_call(strut_writer *writer, const strut_instruction *program, size_t end) {
   size_t operands = operations[program[end - 1].operation].operands;
   size_t second = end - 1, first = operands > 1 ? begin_of(program, second) : second;
-  strut_put(writer, operations[program[end - 1].operation].word);
-  strut_put(writer, "(");
+  strut_buffer_add(&writer->out, "%s(", operations[program[end - 1].operation].word);
   put_operand(writer, program, first, OF_SUM);
   if (operands > 1) strut_put(writer, ", "), put_operand(writer, program, second, OF_SUM);
   strut_put(writer, ")");
@@ -328,12 +310,10 @@ static void put_operator(strut_writer *writer, const strut_instruction *program,
     return;
   }
   size_t second = end - 1, first = begin_of(program, second);
-  bool power = level == OF_POWER;
-  put_operand(writer, program, first, power ? OF_PRIMARY : level);
-  strut_put(writer, power ? "" : " ");
-  strut_put(writer, word);
-  strut_put(writer, power ? "" : " ");
-  put_operand(writer, program, second, power ? OF_PRIMARY : level + 1);
+  const char *space = level == OF_POWER ? "" : " ";
+  put_operand(writer, program, first, level == OF_POWER ? OF_PRIMARY : level);
+  strut_buffer_add(&writer->out, "%s%s%s", space, word, space);
+  put_operand(writer, program, second, level == OF_POWER ? OF_PRIMARY : level + 1);
 }
 
 /* The operand that ends before `end`, in parentheses where it binds less tightly than `least`. */
@@ -369,9 +349,8 @@ void strut_put_quantities(strut_writer *writer, strut_mapping *mapping) {
   const strut_quantity_definition usual = {0};
   if (!experiment->quantity_count) return;
   strut_put_key_name(writer, mapping, STRUT_KEY_MEASURE_QUANTITIES);
-  strut_put(writer, "{");
   for (size_t i = 0; i < experiment->quantity_count; i++) {
-    strut_put(writer, i ? ", " : "");
+    strut_put(writer, i ? ", " : "{");
     strut_put_name(writer, experiment->quantities[i].name);
     strut_put(writer, ": ");
     strut_put_mapping(writer, STRUT_SECTION_QUANTITY, &experiment->quantities[i], &usual, NULL);

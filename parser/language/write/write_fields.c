@@ -74,7 +74,7 @@ void strut_put_name(strut_writer *writer, const char *name) {
     strut_put_quoted(writer, name);
 }
 
-void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key) {
+static void put_key_text(strut_writer *writer, strut_mapping *mapping, const char *key) {
   strut_put(writer, mapping->separator);
   mapping->separator = mapping->next;
   strut_put(writer, key);
@@ -82,7 +82,7 @@ void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key
 }
 
 void strut_put_key_name(strut_writer *writer, strut_mapping *mapping, int key) {
-  strut_put_key(writer, mapping, strut_key_at(key)->name);
+  put_key_text(writer, mapping, strut_key_at(key)->name);
 }
 
 /* ---- values ---- */
@@ -130,9 +130,7 @@ static void put_number(strut_writer *writer, const strut_field *field, const cha
   if (unit && strcmp(unit, "1") == 0) unit = NULL;
   strut_put(writer, unit ? "\"" : "");
   strut_put_number(writer, field->turns ? radians(number) : number);
-  strut_put(writer, unit ? " " : "");
-  strut_put(writer, unit ? unit : "");
-  strut_put(writer, unit ? "\"" : "");
+  if (unit) strut_buffer_add(&writer->out, " %s\"", unit);
 }
 
 static void put_value(strut_writer *writer, const strut_key *key, const char *object) {
@@ -371,13 +369,13 @@ void strut_put_fields(strut_writer *writer, strut_mapping *mapping, strut_sectio
     bool word = key->field.role == STRUT_FIELD_NONE && key->need == STRUT_REQUIRED;
     bool kept = key->field.role == STRUT_FIELD_VALUE && !key->field.chosen;
     if (word) { /* the only one that there is */
-      strut_put_key(writer, mapping, key->name);
+      put_key_text(writer, mapping, key->name);
       strut_put(writer, key->words);
     } else if (key->field.role == STRUT_FIELD_BY_HAND || key->field.role == STRUT_FIELD_SECTION ||
                key->field.role == STRUT_FIELD_THINGS || key->field.role == STRUT_FIELD_NONE) {
       if (by_hand) by_hand(writer, mapping, index, object);
     } else if ((kept && key->need != STRUT_OPTIONAL) || differs(key, object, usual)) {
-      strut_put_key(writer, mapping, key->name);
+      put_key_text(writer, mapping, key->name);
       put_key(writer, key, object, usual);
     }
   }
@@ -391,18 +389,20 @@ void strut_put_mapping(strut_writer *writer, strut_section section, const void *
   strut_put(writer, "}");
 }
 
+void strut_put_line(strut_writer *writer, const char *name, strut_section section,
+                    const void *object, const void *usual, strut_put_by_hand *by_hand) {
+  strut_put_name(writer, name);
+  strut_put(writer, ": ");
+  strut_put_mapping(writer, section, object, usual, by_hand);
+  strut_put(writer, "\n");
+}
+
 void strut_put_things(strut_writer *writer, strut_thing kind, strut_section section,
-                      const void *usual, strut_put_by_hand *by_hand) {
+                      const void *usual) {
   const strut_thing_row *row = strut_thing_at(kind);
-  size_t count = strut_thing_count(writer->scene, kind);
-  if (count) strut_put(writer, row->things);
-  if (count) strut_put(writer, ":\n");
-  for (size_t i = 0; i < count; i++) {
-    strut_put(writer, "  ");
-    put_thing_name(writer, kind, (int32_t)i);
-    strut_put(writer, ": ");
-    strut_put_mapping(writer, section, strut_thing_object(writer->scene, kind, i),
-                      usual ? usual : row->usual, by_hand);
-    strut_put(writer, "\n");
+  for (size_t i = 0; i < strut_thing_count(writer->scene, kind); i++) {
+    strut_buffer_add(&writer->out, i ? "  " : "%s:\n  ", row->things);
+    strut_put_line(writer, strut_thing_name(writer->scene, kind, i), section,
+                   strut_thing_object(writer->scene, kind, i), usual ? usual : row->usual, NULL);
   }
 }

@@ -12,71 +12,60 @@
 
 /* ---- signals, and what they drive ---- */
 
-/* The name of the signal in the file; NULL if it is written where it is used. */
 const char *strut_signal_name(const strut_writer *writer, int32_t index) {
   assert(index >= 0 && (size_t)index < writer->scene->signal_count);
   const char *name = writer->scene->signals[index].name;
   return name ? name : index == writer->period_signal ? "signal_of_the_period" : NULL;
 }
 
-static void put_signal(strut_writer *writer, int32_t index);
-
 void strut_put_signal_reference(strut_writer *writer, int32_t index) {
+  const strut_signal *signal = &writer->scene->signals[index];
+  const strut_signal usual = strut_signal_default(signal->kind);
   const char *name = strut_signal_name(writer, index);
   if (name)
     strut_put_name(writer, name);
   else
-    put_signal(writer, index);
-}
-
-static void put_signal(strut_writer *writer, int32_t index) {
-  const strut_signal *signal = &writer->scene->signals[index];
-  const strut_signal usual = strut_signal_default(signal->kind);
-  strut_put_mapping(writer, STRUT_SECTION_SIGNAL, signal, &usual, NULL);
+    strut_put_mapping(writer, STRUT_SECTION_SIGNAL, signal, &usual, NULL);
 }
 
 static void put_named_signals(strut_writer *writer) {
   bool any = false;
   for (size_t i = 0; i < writer->scene->signal_count; i++) {
+    const strut_signal *signal = &writer->scene->signals[i];
+    const strut_signal usual = strut_signal_default(signal->kind);
     const char *name = strut_signal_name(writer, (int32_t)i);
-    if (!name || writer->scene->signals[i].kind == STRUT_RELAY) continue;
+    if (!name || signal->kind == STRUT_RELAY) continue;
     strut_put(writer, any ? "  " : "signals:\n  ");
     any = true;
-    strut_put_name(writer, name);
-    strut_put(writer, ": ");
-    put_signal(writer, (int32_t)i);
-    strut_put(writer, "\n");
+    strut_put_line(writer, name, STRUT_SECTION_SIGNAL, signal, &usual, NULL);
   }
 }
 
 /* PID controllers have become signals and states. */
 static void put_relays(strut_writer *writer) {
   bool any = false;
+  strut_signal usual = strut_signal_default(STRUT_RELAY);
+  usual.relay.off = (double)NAN; /* it is always written */
   for (size_t i = 0; i < writer->scene->signal_count; i++) {
     const strut_signal *signal = &writer->scene->signals[i];
-    strut_signal usual = strut_signal_default(STRUT_RELAY);
-    usual.relay.off = (double)NAN; /* it is always written */
     if (signal->kind != STRUT_RELAY) continue;
     strut_put(writer, any ? "  " : "controllers:\n  ");
     any = true;
-    strut_put_name(writer, signal->name);
-    strut_put(writer, ": ");
-    strut_put_mapping(writer, STRUT_SECTION_RELAY, signal, &usual, NULL);
-    strut_put(writer, "\n");
+    strut_put_line(writer, signal->name, STRUT_SECTION_RELAY, signal, &usual, NULL);
   }
 }
 
 void strut_put_drives(strut_writer *writer) {
   const strut_sliding_mass placed = {.member = -1,
                                      .share = (double)NAN}; /* the position is always written */
-  strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL, NULL);
-  strut_put_things(writer, STRUT_THING_STATE, STRUT_SECTION_STATE, NULL, NULL);
+  strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL);
+  strut_put_things(writer, STRUT_THING_STATE, STRUT_SECTION_STATE, NULL);
   put_named_signals(writer);
   put_relays(writer);
-  strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL, NULL);
-  strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL, NULL);
-  strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed, NULL);
-  strut_put_things(writer, STRUT_THING_LOAD, STRUT_SECTION_LOAD, NULL, NULL);
+  strut_put_things(writer, STRUT_THING_ACTUATOR, STRUT_SECTION_ACTUATOR, NULL);
+  strut_put_things(writer, STRUT_THING_UNBALANCE, STRUT_SECTION_UNBALANCE, NULL);
+  strut_put_things(writer, STRUT_THING_SLIDER, STRUT_SECTION_SLIDER, &placed);
+  strut_put_things(writer, STRUT_THING_LOAD, STRUT_SECTION_LOAD, NULL);
 }
 
 /* ---- the whole file ---- */
@@ -146,10 +135,8 @@ static void put_data(strut_writer *writer) {
   static const strut_data_table usual = STRUT_DATA_USUAL;
   for (size_t i = 0; i < writer->scene->table_count; i++) {
     strut_put(writer, i ? "  " : "data:\n  ");
-    strut_put_name(writer, writer->scene->tables[i].name);
-    strut_put(writer, ": ");
-    strut_put_mapping(writer, STRUT_SECTION_DATA, &writer->scene->tables[i], &usual, put_units);
-    strut_put(writer, "\n");
+    strut_put_line(writer, writer->scene->tables[i].name, STRUT_SECTION_DATA,
+                   &writer->scene->tables[i], &usual, put_units);
   }
 }
 
@@ -213,10 +200,9 @@ void strut_put_law(strut_writer *writer, const strut_law *law) {
 }
 
 static void put_rayleigh(strut_writer *writer) {
-  if (!strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene)) return;
-  strut_put(writer, "rayleigh: ");
-  strut_put_mapping(writer, STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene, NULL);
-  strut_put(writer, "\n");
+  if (strut_fields_differ(STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene))
+    strut_put_line(writer, "rayleigh", STRUT_SECTION_RAYLEIGH, writer->scene, &writer->usual.scene,
+                   NULL);
 }
 
 /* With these a friction is written: all its coefficients, of one with a signal none. */
@@ -381,12 +367,12 @@ char *strut_setup_write(const strut_setup *setup) {
   put_head(&writer);
   put_data(&writer);
   put_nodes(&writer);
-  strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL, NULL);
-  strut_put_things(&writer, STRUT_THING_FOOT, STRUT_SECTION_FOOT, NULL, NULL);
+  strut_put_things(&writer, STRUT_THING_MEMBER, STRUT_SECTION_MEMBER, NULL);
+  strut_put_things(&writer, STRUT_THING_HINGE, STRUT_SECTION_HINGE, NULL);
+  strut_put_things(&writer, STRUT_THING_CELL, STRUT_SECTION_CELL, NULL);
+  strut_put_things(&writer, STRUT_THING_COLLISION, STRUT_SECTION_COLLISION, NULL);
+  strut_put_things(&writer, STRUT_THING_DISTANCE, STRUT_SECTION_DISTANCE, NULL);
+  strut_put_things(&writer, STRUT_THING_FOOT, STRUT_SECTION_FOOT, NULL);
   put_rayleigh(&writer);
   put_ground(&writer);
   strut_put_drives(&writer);

@@ -236,7 +236,6 @@ static char *write_flat(const strut_setup *setup) {
   return text;
 }
 
-/* Reads a text of strut_setup_write. */
 static strut_tree *read_flat(short_writer *self, const char *text) {
   strut_diagnostics diagnostics = {0};
   strut_diagnostics_source(&diagnostics, "scene", text, strlen(text));
@@ -305,7 +304,6 @@ static strut_tree *whole_tree(short_writer *self, const strut_override *override
   return whole && drop_unused_groups(self, whole) ? whole : NULL;
 }
 
-/* Does the text read as this flat one? */
 static strut_status reads_as(const char *text, const char *flat, bool *same) {
   strut_setup setup;
   strut_diagnostics diagnostics = {0};

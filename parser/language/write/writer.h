@@ -44,9 +44,7 @@ typedef struct strut_mapping {
 /** One line per key, each begun by a line break. */
 #define STRUT_MAPPING_LINES(indent) ((strut_mapping){"\n" indent, "\n" indent})
 
-/** Appends the separator and "key: ". */
-void strut_put_key(strut_writer *writer, strut_mapping *mapping, const char *key);
-/** As strut_put_key, with the key's name in the language. */
+/** Appends the separator and "key: ", with the key's name in the language. */
 void strut_put_key_name(strut_writer *writer, strut_mapping *mapping, int key);
 
 /** Writes a key that rows do not write, if the object has a value for it. */
@@ -70,7 +68,10 @@ bool strut_fields_differ(strut_section section, const void *object, const void *
  * the defaults of the kind.
  */
 void strut_put_things(strut_writer *writer, strut_thing kind, strut_section section,
-                      const void *usual, strut_put_by_hand *by_hand);
+                      const void *usual);
+/** "NAME: {...}" and a line break. */
+void strut_put_line(strut_writer *writer, const char *name, strut_section section,
+                    const void *object, const void *usual, strut_put_by_hand *by_hand);
 /** write_scene.c: a law as a mapping. */
 void strut_put_law(strut_writer *writer, const strut_law *law);
 

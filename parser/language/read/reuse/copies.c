@@ -36,10 +36,6 @@ strut_frame strut_frame_within(const strut_frame *outer, const strut_frame *inne
   return f;
 }
 
-bool strut_frame_flips(const strut_frame *frame) {
-  return frame->axes[0][0] * frame->axes[1][1] - frame->axes[0][1] * frame->axes[1][0] < 0.0;
-}
-
 /* ---- scopes ---- */
 
 strut_copy *strut_scope_of(const strut_reader *reader, const strut_tree *tree) {
@@ -81,7 +77,8 @@ void strut_place_vector(const strut_reader *reader, const strut_tree *value, dou
 }
 
 bool strut_scope_flips(const strut_reader *reader) {
-  return reader->scope && strut_frame_flips(&reader->scope->frame);
+  const strut_frame *frame = reader->scope ? &reader->scope->frame : &strut_frame_of_scene;
+  return frame->axes[0][0] * frame->axes[1][1] - frame->axes[0][1] * frame->axes[1][0] < 0.0;
 }
 
 int strut_scope_axis(const strut_reader *reader, int axis, bool *reversed) {
@@ -200,7 +197,6 @@ static int32_t find_resolved(const strut_reader *reader, const strut_name_map *m
   return strut_name_resolve_last(reader, name, &full) ? strut_name_map_find(map, full.text) : -1;
 }
 
-/* Does the name lead past the ports of a copy that is not around the scope? */
 bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name) {
   const struct strut_copies *copies = reader->copies;
   strut_full_name prefix;
@@ -272,11 +268,11 @@ static const char *count_hint(strut_reader *reader, const strut_placement *place
   long long number = strtoll(name, &end, 10);
   bool counted = length && end == name + length && number >= placement->count[which];
   if (!counted) return "";
-  return strut_arena_format(&reader->scratch, "; '%s' has the copies 0 to %lld%s", placement->name,
-                            (long long)placement->count[which] - 1,
-                            placement->numbers == 1 ? ""
-                            : which                 ? " along its second count"
-                                                    : " along its first count");
+  return strut_formatted(reader, &reader->scratch, "; '%s' has the copies 0 to %lld%s",
+                         placement->name, (long long)placement->count[which] - 1,
+                         placement->numbers == 1 ? ""
+                         : which                 ? " along its second count"
+                                                 : " along its first count");
 }
 
 const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
@@ -294,7 +290,6 @@ const char *strut_copy_hint_of(strut_reader *reader, const char *name) {
       bool number = length && strspn(piece, "0123456789") == length;
       if (placement->numbers || number || strncmp(piece, "last.", 5) == 0)
         hint = count_hint(reader, placement, piece, length, k);
-      if (!hint) return "";
       piece += length + (piece[length] == '.');
     }
   }

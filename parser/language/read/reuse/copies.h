@@ -24,7 +24,6 @@ strut_frame strut_frame_within(const strut_frame *outer, const strut_frame *inne
 void strut_frame_point(const strut_frame *frame,
                        double point[2]); /* of lengths that are scaled already */
 void strut_frame_vector(const strut_frame *frame, double vector[2]);
-bool strut_frame_flips(const strut_frame *frame);
 
 /** A part as the file describes it. */
 typedef struct strut_part {
@@ -123,12 +122,6 @@ typedef struct strut_merger {
   struct strut_merger *next;
 } strut_merger;
 
-/**
- * The scene's own entries of a key without those that name entries of copies, which are laid over these.
- * A new chain; *count: their number, and *placed_count: that of the copies' entries that stay.
- */
-strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, strut_tree **placed,
-                                  size_t *placed_count, uint32_t *count, int key);
 /** The section of the things in a mapping of the scene, or STRUT_SECTION_COUNT. */
 strut_section strut_section_of_things(int scene_key);
 
@@ -224,8 +217,6 @@ strut_copy *strut_make_copy(strut_expansion *expansion, strut_placing *placing,
 /** Reads `repeat` of the placement of that name; absent: one copy without a number. */
 bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char *name,
                        strut_repetition *repeat);
-/** Turns the axes of the scene by an angle [rad]. */
-void strut_frame_turn(strut_frame *frame, double angle);
 /** The frame of a copy by its numbers, within that of the first. */
 strut_frame strut_repeated_frame(const strut_repetition *repeat, const int64_t number[2]);
 
@@ -245,14 +236,6 @@ void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut
 /** Lays the scene's own entries of a key over those of the copies, and joins both. */
 void strut_join_entries(strut_expansion *expansion, int key);
 
-/* place_frame.c */
-
-/**
- * Where the node of a copy lies that `name` means, one of a part placed within it too, in the coordinates
- * that the copy's frame leads to. False: it has no such node, or a part on the way is laid onto others.
- */
-bool strut_find_in_copy(strut_expansion *expansion, strut_copy *copy, const char *name,
-                        double position[2]);
 /** The frame of the first copy by the placement's own keys; false: it was reported. */
 bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_copy *copy,
                       strut_frame *frame);

@@ -51,22 +51,19 @@ static void copy_entries(strut_expansion *expansion, const strut_tree *map, stru
   if (!pairs) expansion->stopped = true;
   for (const strut_tree *from = map->first; from && !expansion->stopped; from = from->next->next) {
     struct pair *pair = pairs++;
-    const char *name = strut_arena_format(&reader->scratch, "%s%s", scope->prefix, from->text);
-    if (!name) reader->out_of_memory = expansion->stopped = true;
+    const char *name = strut_formatted(reader, &reader->scratch, "%s%s", scope->prefix, from->text);
     pair->key = (strut_placed_tree){*from, scope};
     pair->key.tree.placed = true;
     pair->key.tree.text = name;
     pair->value = *from->next;
     pair->key.tree.next = &pair->value;
     pair->value.next = NULL;
-    if (expansion->stopped) return;
     append(list, &pair->key.tree);
     if (nodes) strut_remember_node(expansion, &pair->key.tree);
   }
   expansion->copies->things += map->count;
 }
 
-/* All that a part, or `next`, holds. */
 void strut_copy_things(strut_expansion *expansion, strut_fields *fields, strut_copy *scope) {
   int first = strut_section_first(fields->section);
   for (int k = 0; k < strut_section_size(fields->section) && !expansion->stopped; k++) {
@@ -99,7 +96,6 @@ void strut_add_merger(strut_expansion *expansion, strut_copy *scope, const strut
   expansion->copies->mergers_end = &merger->next;
 }
 
-/* `touching`, or a mapping of names. */
 void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut_copy *scope,
                       int key) {
   if (!value || expansion->weighing) return;
@@ -116,30 +112,6 @@ void strut_read_merge(strut_expansion *expansion, const strut_tree *value, strut
                           "the name of a node"))
       strut_add_merger(expansion, scope, tree, tree->next, value);
   expansion->reader->scope = NULL;
-}
-
-/* The scene's own entries of a key, then those of the copies. */
-void strut_join_entries(strut_expansion *expansion, int key) {
-  strut_reader *reader = expansion->reader;
-  strut_slot *slot = strut_slot_of(&reader->top, key);
-  strut_entry_list *list = &expansion->list[key - strut_section_first(STRUT_SECTION_SCENE)];
-  if (!list->count || slot->state == STRUT_BROKEN) return;
-  strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
-  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
-  if (!map) return;
-  *map = slot->state == STRUT_GIVEN ? *slot->value : *place->value;
-  uint32_t count = 0;
-  strut_tree *first = NULL;
-  if (slot->state == STRUT_GIVEN)
-    first = strut_lay_over_copies(reader, slot->value, &list->first, &list->count, &count, key);
-  map->count = (count + (uint32_t)list->count) & STRUT_TREE_COUNT_MASK;
-  map->first = first ? first : list->first;
-  strut_tree *last = first;
-  while (last && last->next->next) last = last->next->next;
-  if (last) last->next->next = list->first;
-  if (!slot->key) slot->key = place->key;
-  slot->value = map;
-  slot->state = STRUT_GIVEN;
 }
 
 /* ---- what the scene says about single things of copies ---- */
@@ -206,7 +178,6 @@ static int32_t find_placed(const strut_reader *reader, const placed_index *all, 
   return node < 0 ? -1 : strut_name_map_find(&all->names, reader->copies->nodes[node]->text);
 }
 
-/* Does a full name begin with that of a placement? */
 static bool is_of_placement(const strut_reader *reader, const char *name) {
   strut_full_name full;
   strcpy(full.text, name);
@@ -257,7 +228,6 @@ static bool apply(strut_reader *reader, const strut_tree *own, placed_index *all
   return found || pattern || lost;
 }
 
-/* Takes the removed entries out of the chain. */
 static void unlink_removed(placed_index *all, strut_tree **placed, size_t *placed_count) {
   strut_tree **link = placed;
   *placed_count = 0;
@@ -270,8 +240,12 @@ static void unlink_removed(placed_index *all, strut_tree **placed, size_t *place
   *link = NULL;
 }
 
-strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, strut_tree **placed,
-                                  size_t *placed_count, uint32_t *count, int key) {
+/*
+ * The scene's own entries of a key without those that name entries of copies, which are laid over these. A new chain;
+ * *count: their number, and *placed_count: that of the copies' entries that stay.
+ */
+static strut_tree *lay_over_copies(strut_reader *reader, const strut_tree *own, strut_tree **placed,
+                                   size_t *placed_count, uint32_t *count, int key) {
   strut_tree_builder rest = strut_tree_begin(&reader->scratch, own);
   placed_index all = {0};
   bool indexed = false;
@@ -286,4 +260,28 @@ strut_tree *strut_lay_over_copies(strut_reader *reader, const strut_tree *own, s
   if (indexed) unlink_removed(&all, placed, placed_count);
   strut_name_map_free(&all.names);
   return rest.map ? rest.map->first : NULL;
+}
+
+/* The scene's own entries of a key, then those of the copies. */
+void strut_join_entries(strut_expansion *expansion, int key) {
+  strut_reader *reader = expansion->reader;
+  strut_slot *slot = strut_slot_of(&reader->top, key);
+  strut_entry_list *list = &expansion->list[key - strut_section_first(STRUT_SECTION_SCENE)];
+  if (!list->count || slot->state == STRUT_BROKEN) return;
+  strut_tree *map = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *map);
+  const strut_slot *place = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE);
+  if (!map) return;
+  *map = slot->state == STRUT_GIVEN ? *slot->value : *place->value;
+  uint32_t count = 0;
+  strut_tree *first = NULL;
+  if (slot->state == STRUT_GIVEN)
+    first = lay_over_copies(reader, slot->value, &list->first, &list->count, &count, key);
+  map->count = (count + (uint32_t)list->count) & STRUT_TREE_COUNT_MASK;
+  map->first = first ? first : list->first;
+  strut_tree *last = first;
+  while (last && last->next->next) last = last->next->next;
+  if (last) last->next->next = list->first;
+  if (!slot->key) slot->key = place->key;
+  slot->value = map;
+  slot->state = STRUT_GIVEN;
 }

@@ -111,7 +111,6 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   return count;
 }
 
-/* Marks the groups that the things of a mapping name. */
 static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
   strut_group *groups[STRUT_MOST_GROUPS];
   if (!map || map->kind != STRUT_TREE_MAP) return;
@@ -125,8 +124,7 @@ static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges)
 }
 
 static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
-  if (ground && ground->kind == STRUT_TREE_MAP)
-    mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
+  if (ground) mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
 }
 
 static void find_users(strut_reader *reader) {
@@ -163,7 +161,6 @@ void strut_read_groups(strut_reader *reader) {
     read_group(reader, key, &reader->groups[i++]);
 }
 
-/* Does every name in `group:` name a group? Unknown ones are reported. */
 static bool check_names(strut_reader *reader, const strut_tree *value, const char *key,
                         strut_owner owner) {
   bool fine = true,

@@ -55,7 +55,6 @@ static strut_place drawn_place(const merging *self, int32_t node) {
   return self->reader->things[STRUT_THING_NODE].source[node].key->place;
 }
 
-/* Reports two nodes that are apart, and where each is drawn. */
 static void report_apart(merging *self, const strut_merger *merger, int32_t a, int32_t b,
                          double apart) {
   strut_reader *reader = self->reader;
@@ -270,11 +269,11 @@ static void merge_touching(merging *self, const strut_merger *merger) {
 
 /* The name of a port means the node behind it. */
 static void name_port(strut_reader *reader, const strut_port *port) {
-  const char *name =
-      strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
-  if (!name) reader->out_of_memory = true;
-  if (port->node >= 0 && name)
-    strut_add_name(reader, &reader->things[STRUT_THING_NODE].names, name, (size_t)port->node);
+  if (port->node >= 0)
+    strut_add_name(
+        reader, &reader->things[STRUT_THING_NODE].names,
+        strut_formatted(reader, &reader->scratch, "%s%s", port->scope->prefix, port->key->text),
+        (size_t)port->node);
 }
 
 /* Is a node other than the port's own called by its name? */

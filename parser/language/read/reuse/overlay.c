@@ -291,39 +291,6 @@ static void compare(comparison *self, const char *where, const strut_tree *first
     add(self, where, first, second);
 }
 
-static strut_status read(const char *text, strut_document *document,
-                         strut_diagnostics *diagnostics) {
-  strut_diagnostics_source(diagnostics, "", text, strlen(text));
-  strut_status status = strut_document_read(document, diagnostics);
-  return status == STRUT_OK && !document->root ? STRUT_BAD_SCENE : status;
-}
-
-strut_status strut_text_differences(const char *first, const char *second, strut_arena *arena,
-                                    strut_difference **list, size_t *count) {
-  comparison c = {.arena = arena};
-  strut_document a = {0}, b = {0};
-  strut_diagnostics about_a = {0}, about_b = {0};
-  *list = NULL;
-  *count = 0;
-  strut_status status = read(first, &a, &about_a);
-  if (status == STRUT_OK) status = read(second, &b, &about_b);
-  if (status == STRUT_OK) {
-    compare(&c, "", a.root, b.root);
-    if (c.failed) status = STRUT_NO_MEMORY;
-    if (status == STRUT_OK && c.count)
-      status = strut_differences_join_copies(a.root, b.root, arena, c.list, &c.count);
-  }
-  if (status == STRUT_OK) {
-    *list = c.list;
-    *count = c.count;
-  }
-  strut_document_free(&a);
-  strut_document_free(&b);
-  strut_diagnostics_free(&about_a);
-  strut_diagnostics_free(&about_b);
-  return status;
-}
-
 /* ---- copies of parts ---- */
 
 enum { MOST_SECTIONS = 16 };
@@ -367,7 +334,6 @@ static thing read_thing(const strut_difference *difference) {
   return t;
 }
 
-/* Does a scene have things of that copy? */
 static bool has_copy(const strut_tree *map, const char *copy, size_t length, int depth) {
   for (const strut_tree *key = map->first; key; key = key->next->next) {
     if (depth > 0 && strncmp(key->text, copy, length) == 0 && key->text[length] == '.') return true;
@@ -449,9 +415,12 @@ static size_t join_runs(strut_arena *arena, strut_difference *list, const bool *
   return kept;
 }
 
-strut_status strut_differences_join_copies(const strut_tree *first, const strut_tree *second,
-                                           strut_arena *arena, strut_difference *list,
-                                           size_t *count) {
+/*
+ * Joins what only one of two scenes has and belongs to one copy that the other lacks: "cell.5", with the value
+ * "2 nodes, 5 members"; copies in a row that are alike become "cell.5 to cell.9". Shortens the list.
+ */
+static strut_status join_copies(const strut_tree *first, const strut_tree *second,
+                                strut_arena *arena, strut_difference *list, size_t *count) {
   strut_arena scratch = {0};
   size_t all = *count, kept = 0;
   thing *things = strut_arena_allocate(&scratch, all, sizeof *things);
@@ -480,5 +449,40 @@ strut_status strut_differences_join_copies(const strut_tree *first, const strut_
   }
   if (status == STRUT_OK) *count = join_runs(arena, list, copies, kept);
   strut_arena_free(&scratch);
+  return status;
+}
+
+/* ---- two texts ---- */
+
+static strut_status read(const char *text, strut_document *document,
+                         strut_diagnostics *diagnostics) {
+  strut_diagnostics_source(diagnostics, "", text, strlen(text));
+  strut_status status = strut_document_read(document, diagnostics);
+  return status == STRUT_OK && !document->root ? STRUT_BAD_SCENE : status;
+}
+
+strut_status strut_text_differences(const char *first, const char *second, strut_arena *arena,
+                                    strut_difference **list, size_t *count) {
+  comparison c = {.arena = arena};
+  strut_document a = {0}, b = {0};
+  strut_diagnostics about_a = {0}, about_b = {0};
+  *list = NULL;
+  *count = 0;
+  strut_status status = read(first, &a, &about_a);
+  if (status == STRUT_OK) status = read(second, &b, &about_b);
+  if (status == STRUT_OK) {
+    compare(&c, "", a.root, b.root);
+    if (c.failed) status = STRUT_NO_MEMORY;
+    if (status == STRUT_OK && c.count)
+      status = join_copies(a.root, b.root, arena, c.list, &c.count);
+  }
+  if (status == STRUT_OK) {
+    *list = c.list;
+    *count = c.count;
+  }
+  strut_document_free(&a);
+  strut_document_free(&b);
+  strut_diagnostics_free(&about_a);
+  strut_diagnostics_free(&about_b);
   return status;
 }

@@ -60,13 +60,4 @@ STRUT_API strut_status strut_text_differences(const char *first, const char *sec
                                               strut_arena *arena, strut_difference **list,
                                               size_t *count);
 
-/**
- * Joins what only one of two scenes has and belongs to one copy that the other lacks: "cell.5", with the
- * value "2 nodes, 5 members"; copies in a row that are alike become "cell.5 to cell.9". Shortens the
- * list. STRUT_OK or STRUT_NO_MEMORY.
- */
-strut_status strut_differences_join_copies(const strut_tree *first, const strut_tree *second,
-                                           strut_arena *arena, strut_difference *list,
-                                           size_t *count);
-
 #endif

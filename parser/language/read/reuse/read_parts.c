@@ -84,16 +84,13 @@ static strut_copy *new_scope(strut_expansion *expansion, strut_scope_kind kind,
 /* "cell.3." */
 static const char *make_prefix(strut_expansion *expansion, const strut_placement *placement,
                                const int64_t number[2]) {
-  strut_arena *arena = &expansion->reader->scratch;
-  const char *text =
-      placement->numbers == 2 ? strut_arena_format(arena, "%s.%lld.%lld.", placement->name,
-                                                   (long long)number[0], (long long)number[1])
-      : placement->numbers == 1
-          ? strut_arena_format(arena, "%s.%lld.", placement->name, (long long)number[0])
-          : strut_arena_format(arena, "%s.", placement->name);
-  if (text) return text;
-  expansion->reader->out_of_memory = expansion->stopped = true;
-  return "";
+  strut_reader *reader = expansion->reader;
+  strut_arena *arena = &reader->scratch;
+  long long i = (long long)number[0], j = (long long)number[1];
+  return placement->numbers == 2
+             ? strut_formatted(reader, arena, "%s.%lld.%lld.", placement->name, i, j)
+         : placement->numbers == 1 ? strut_formatted(reader, arena, "%s.%lld.", placement->name, i)
+                                   : strut_formatted(reader, arena, "%s.", placement->name);
 }
 
 static const char *copy_parameter_name(const void *context, size_t i) {
@@ -153,7 +150,6 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
 
 /* ---- one placement ---- */
 
-/* Does an expression of the mapping mention i or j? */
 static bool mentions_number(const strut_tree *tree) {
   if (tree->kind != STRUT_TREE_SCALAR) {
     for (const strut_tree *k = tree->first; k; k = k->next)
@@ -211,12 +207,14 @@ static void enter_port(strut_expansion *expansion, const strut_port *port) {
   strut_reader *reader = expansion->reader;
   const strut_tree *inner = port->key->next;
   if (inner->kind != STRUT_TREE_SCALAR) return;
-  const char *own = strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, inner->text);
-  const char *seen =
-      strut_arena_format(&reader->scratch, "%s%s", port->scope->prefix, port->key->text);
-  if (!own || !seen) reader->out_of_memory = true;
-  int32_t node = own && seen ? strut_name_map_find(&expansion->copies->node_entries, own) : -1;
-  if (node >= 0) strut_add_name(reader, &expansion->copies->node_entries, seen, (size_t)node);
+  const char *prefix = port->scope->prefix;
+  int32_t node =
+      strut_name_map_find(&expansion->copies->node_entries,
+                          strut_formatted(reader, &reader->scratch, "%s%s", prefix, inner->text));
+  if (node >= 0)
+    strut_add_name(reader, &expansion->copies->node_entries,
+                   strut_formatted(reader, &reader->scratch, "%s%s", prefix, port->key->text),
+                   (size_t)node);
 }
 
 /* The names by which the copy is seen from outside. */
@@ -245,7 +243,6 @@ static void add_ports(strut_expansion *expansion, strut_copy *copy) {
   }
 }
 
-/* The entries of a copy, and of the parts that it places. */
 static void fill_copy(strut_expansion *expansion, strut_copy *copy) {
   strut_part *part = copy->placement->part;
   expansion->reader->scope = NULL;
@@ -395,14 +392,12 @@ static void make_copies(strut_expansion *expansion, strut_placing *placing) {
     if (!other) return;
     *other = (strut_placed_tree){*tree->next, link};
     other->tree.placed = true;
-    other->tree.text = strut_arena_format(&reader->scratch, "next.%s", tree->next->text);
-    if (!other->tree.text) return;
+    other->tree.text = strut_formatted(reader, &reader->scratch, "next.%s", tree->next->text);
     strut_add_merger(expansion, link, tree, &other->tree,
                      strut_slot_of(&placing->fields, STRUT_KEY_PLACE_ONTO)->key);
   }
 }
 
-/* Reports a part that contains itself. */
 static bool enter_part(strut_expansion *expansion, const strut_part *part, const strut_tree *name) {
   struct strut_copies *copies = expansion->copies;
   char chain[600] = "";
@@ -441,8 +436,7 @@ bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, str
   if (!placement || !scope) return false;
   *placement = (strut_placement){.key = key, .count = {1, 1}};
   placement->name =
-      strut_arena_format(&reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
-  if (!placement->name) return false;
+      strut_formatted(reader, &reader->scratch, "%s%s", outer ? outer->prefix : "", key->text);
   scope->numbers = count_numbers(key->next); /* as in the first copy */
   reader->scope = scope;
   bool fine = strut_read_name(reader, key, "placement");

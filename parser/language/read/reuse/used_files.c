@@ -162,7 +162,6 @@ static void leave(loader *self, text_file *f) {
   if (outer->height < f->height + 1) outer->height = f->height + 1;
 }
 
-/* Is it a scene of this version of the language? */
 static bool is_scene(loader *self, const text_file *f, const strut_tree *name) {
   const char *expected = "expected a scene";
   strut_place place = name->place;
@@ -403,7 +402,6 @@ char *strut_folder_of(const char *path, strut_arena *arena) {
   return strut_arena_text(arena, path, slash == path ? 1 : (size_t)(slash - path));
 }
 
-/* Is one of the parts of the path ".."? */
 static bool climbs(const char *name) {
   for (const char *at = name; *at;) {
     size_t length = strcspn(at, "/");
