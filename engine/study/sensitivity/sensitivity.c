@@ -55,6 +55,13 @@ static size_t find_column(const strut_slot_column *columns, size_t count, const 
   return i;
 }
 
+/* The cell of a row in a column of the table, which has it among its numbers or words. */
+static size_t place_of(const strut_slot_column *columns, size_t column) {
+  size_t place = 0;
+  for (size_t k = 0; k < column; k++) place += columns[k].word == columns[column].word;
+  return place;
+}
+
 bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
                              size_t count, const char **missing) {
   const strut_study_sensitivity *sensitivity = &study->sensitivity;
@@ -128,7 +135,7 @@ static bool list_targets(analysis *self) {
   for (size_t i = 0; i < self->s->of_count && fine && self->targets; i++) {
     target t = {.column = find_column(self->columns, self->column_count, self->s->of[i])};
     const strut_slot_column *column = &self->columns[t.column];
-    for (size_t k = 0; k < t.column; k++) t.place += self->columns[k].word == column->word;
+    t.place = place_of(self->columns, t.column);
     if (column->word) {
       fine = add_texts(self, t);
       continue;
@@ -175,32 +182,36 @@ static strut_estimate scaled(strut_estimate e, double factor) {
                           fmax(low, high)};
 }
 
-/* "m/s/(N/m)", "m/kg", "1/s" */
-static const char *quotient_unit(analysis *self, const char *of, const char *by) {
-  bool several = strpbrk(by, "/ ") != NULL;
-  if (strcmp(by, "1") == 0) return of;
-  return strut_arena_format(&self->result->arena, several ? "%s/(%s)" : "%s/%s", of, by);
-}
-
+/* What the sweep has found at the medians. */
 static bool add_derivatives(analysis *self, int64_t first, const target *t) {
-  const double *f = self->values;
-  const char *of = self->columns[t->column].unit;
+  const strut_slot_column *columns = self->columns;
+  strut_result_slot slot;
+  bool there = strut_slots_get(self->slots, first, &slot) && slot.status == STRUT_OK;
   for (size_t k = 0; k < self->axis->column_count; k++) {
     const strut_study_column *column = &self->axis->columns[k];
-    int64_t at = strut_sensitivity_moved(k, 0);
-    const double *x = column->number, moved[] = {f[at], f[at + 1], f[at + 2], f[at + 3]};
-    size_t used = 0;
-    for (int i = 0; i < 4; i++) used += isfinite(moved[i]) ? 1 : 0;
-    strut_estimate d = strut_sensitivity_derivative(moved, x[at] - x[at + 1], x[at + 2] - x[at + 3],
-                                                    self->s->accuracy * fabs(f[0]));
-    strut_sensitivity_row row = {
-        .point = first, .of = t->name, .parameter = column->name, .used = used};
-    row.measure = STRUT_SENSITIVITY_DERIVATIVE;
-    row.estimate = d;
-    row.unit = quotient_unit(self, of, column->unit);
-    if (!add_row(self, row)) return false;
+    const char *name = strut_arena_format(&self->scratch, "%s.d.%s", t->name, column->name);
+    size_t at = name ? find_column(columns, self->column_count, name) : self->column_count;
+    if (!name) return false;
+    if (at + 2 >= self->column_count) continue; /* a result of the check, which is no function */
+    strut_sensitivity_row row = {.point = first,
+                                 .of = t->name,
+                                 .parameter = column->name,
+                                 .measure = STRUT_SENSITIVITY_DERIVATIVE,
+                                 .estimate = MISSING,
+                                 .unit = columns[at].unit};
+    row.verdict = strut_derivative_words(STRUT_DERIVATIVE_UNKNOWN);
+    if (there) {
+      const double *found = &slot.numbers[place_of(columns, at)];
+      row.estimate = (strut_estimate){found[0], found[1], found[0] - found[1], found[0] + found[1]};
+      row.verdict =
+          strut_arena_format(&self->result->arena, "%s", slot.words[place_of(columns, at + 2)]);
+    }
+    row.used = isfinite(row.estimate.value) ? 2 : 0;
+    if (!row.verdict || !add_row(self, row)) return false;
     row.measure = STRUT_SENSITIVITY_ELASTICITY;
-    row.estimate = f[0] != 0.0 ? scaled(d, x[0] / f[0]) : MISSING;
+    row.estimate = self->values[0] != 0.0
+                       ? scaled(row.estimate, column->number[0] / self->values[0])
+                       : MISSING;
     row.unit = "1";
     if (!add_row(self, row)) return false;
   }
@@ -308,8 +319,7 @@ static strut_value axis_value(const strut_result_object *of, size_t i) {
   const strut_slot_column *columns = strut_slots_description_of(result->slots)->columns;
   strut_result_slot row;
   strut_value value = STRUT_VALUE_AS_TEXT(NULL);
-  size_t place = 0;
-  for (size_t k = 0; k < i; k++) place += columns[k].word == columns[i].word;
+  size_t place = place_of(columns, i);
   if (strut_slots_get(result->slots, ((const strut_sensitivity_row *)of->at)->point, &row))
     value = columns[i].word ? STRUT_VALUE_AS_TEXT(row.words[place])
                             : STRUT_VALUE_AS_NUMBER(row.numbers[place]);
@@ -339,7 +349,8 @@ static bool is_shown(const strut_result_object *of, size_t i) {
   X(NULL, "", NUMBER(finite(e->low)), "", .column = {"low"}, .label = {"low"})                     \
   X(NULL, "", NUMBER(finite(e->high)), "", .column = {"high"}, .label = {"high"})                  \
   X(NULL, "", TEXT(r->unit &&strcmp(r->unit, "1") != 0 ? r->unit : ""), "", .column = {"unit"})    \
-  X(NULL, "", COUNT(r->used), "", .column = {"used"}, .label = {"used"})
+  X(NULL, "", COUNT(r->used), "", .column = {"used"}, .label = {"used"})                           \
+  X(NULL, "", TEXT(r->verdict), "", .column = {"verdict"}, .label = {"verdict"})
 STRUT_VALUES_HERE(
     effect_values, EFFECT,
     const strut_study *study = ((const strut_sensitivity_result *)of->outer->at)->study;
@@ -495,13 +506,4 @@ strut_estimate strut_sensitivity_share(const double *values, size_t count) {
   double half = z * sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
   return (strut_estimate){p, sqrt(p * (1.0 - p) / n), fmax(0.0, middle - half),
                           fmin(1.0, middle + half)};
-}
-
-strut_estimate strut_sensitivity_derivative(const double result[4], double width, double half_width,
-                                            double noise) {
-  double whole = (result[0] - result[1]) / width, half = (result[2] - result[3]) / half_width;
-  double error = fmax(fabs(whole - half), sqrt(2.0) * noise / fabs(half_width));
-  if (!isfinite(half)) return MISSING;
-  if (!isfinite(error)) return (strut_estimate){half, (double)NAN, (double)NAN, (double)NAN};
-  return (strut_estimate){half, error, half - error, half + error};
 }

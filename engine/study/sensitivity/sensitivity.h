@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/base/derivatives.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/output/draw/chart.h"
@@ -41,14 +42,6 @@ STRUT_API strut_estimate strut_sensitivity_mean(const double *values, size_t cou
 STRUT_API double strut_sensitivity_deviation(const double *values, size_t count);
 /** Share of ones among values (count) that are 0 or 1, with Wilson's interval; NANs are left out. */
 STRUT_API strut_estimate strut_sensitivity_share(const double *values, size_t count);
-
-/**
- * Derivative from results at a step up and down, and at half a step up and down, whose parameters differ
- * by width and half_width. The value is that of half the step; the error the larger of the difference of
- * both, which curvature and kinks cause, and of what `noise`, the error of each result, causes.
- */
-STRUT_API strut_estimate strut_sensitivity_derivative(const double result[4], double width,
-                                                      double half_width, double noise);
 
 /* The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
  *
@@ -81,7 +74,8 @@ typedef struct strut_sensitivity_row {
   const char *parameter; /* NULL: of all together */
   const char *unit;      /* "1": none */
   strut_estimate estimate;
-  size_t used; /* base samples, samples or points that it is made of */
+  size_t used;         /* base samples, samples or points that it is made of */
+  const char *verdict; /* of a derivative, "differentiable", ...; else NULL */
 } strut_sensitivity_row;
 
 typedef struct strut_sensitivity_result {
@@ -108,7 +102,7 @@ STRUT_API strut_status strut_sensitivity_find(const strut_study *study, strut_sl
                                               strut_sensitivity_result *result, strut_error *error);
 /**
  * Writes directory/sensitivity.csv: the other axes, of, measure, parameter, value, error, low, high, unit,
- * used.
+ * used, verdict.
  */
 STRUT_API strut_status strut_sensitivity_write(const strut_sensitivity_result *result,
                                                const char *directory, strut_error *error);

@@ -94,10 +94,13 @@ strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep
 
 /* sweep_derivatives.c */
 
-/** Adds the columns of derivatives of the smooth numbers so far. STRUT_USAGE: a parameter is missing. */
+/**
+ * Adds the columns of derivatives of the numbers so far, by the scene of the first point and its values. STRUT_USAGE: a
+ * parameter is missing, or nothing uses it.
+ */
 strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
-                                            strut_error *error);
-/** Appends the derivatives of the job's row, whose scene is still there. */
+                                            const strut_study_value *values, strut_error *error);
+/** Appends the derivatives of the job's row, whose scene is still there, and adds a warning of what has none. */
 strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job);
 
 /* statics_point.c */
