@@ -68,12 +68,9 @@ typedef struct strut_sweep_job {
   strut_row_buffer cells;
   strut_setup setup;
   strut_run_options options;
-  strut_sink *sinks[1];
-  struct strut_sweep_record *files;
+  strut_sink *sink;              /* of the run's files, if it has some */
   strut_derivative *derivatives; /* (derived numbers, parameters) */
-  char first[STRUT_SLOT_WORD];   /* outcome of the first run, during the second */
-  bool second;
-  size_t warning_count; /* of the first run */
+  size_t warning_count;          /* of the first run */
   strut_warning warnings[STRUT_MOST_WARNINGS];
   strut_status
       status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */

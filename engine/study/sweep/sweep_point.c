@@ -41,77 +41,21 @@ static strut_status explain_interrupt(const strut_sweep_worker *worker, strut_sw
                     worker->plan->study->limit.time);
 }
 
-/* Ends the point with its row, or with an error that stops the sweep. */
-static void finish_point(const strut_sweep_worker *worker, strut_sweep_job *job,
-                         strut_status status) {
-  strut_row_buffer *cells = &job->cells;
-  status = explain_interrupt(worker, job, status);
-  job->status = strut_sweep_stops(status) ? status : STRUT_OK;
-  if (job->status) return;
-  if (status) pad_cells(worker->plan, cells);
-  strut_sweep_end_row(cells, status, status ? &job->error : NULL);
-}
-
-/* The same where the point has a scene. */
-static void finish_with_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
-                              strut_status status) {
-  strut_setup_free(&job->setup);
-  finish_point(worker, job, status);
-}
-
-static void set_options(const strut_sweep_worker *worker, strut_sweep_job *job) {
-  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(worker, job),
-                                     .most_evaluations = worker->plan->study->limit.evaluations};
-}
-
 /* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
-static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_job *job) {
-  set_options(worker, job);
-  job->files = NULL;
+static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                 strut_sweep_record **record) {
+  *record = NULL;
   if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
   char *text = worker->plan->scenes.text(&job->setup);
-  if (!text) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
-  job->files = strut_sweep_record_begin(worker->options->directory, job->point, text,
-                                        &job->setup.scene, &job->error);
+  if (!text) return strut_no_memory(&job->error, "");
+  *record = strut_sweep_record_begin(worker->options->directory, job->point, text,
+                                     &job->setup.scene, &job->error);
   strut_release(text);
-  if (!job->files) return job->error.status;
-  job->sinks[0] = strut_sweep_record_sink(job->files);
-  job->options.sinks = job->sinks;
+  if (!*record) return job->error.status;
+  job->sink = strut_sweep_record_sink(*record);
+  job->options.sinks = &job->sink;
   job->options.sink_count = 1;
   return STRUT_OK;
-}
-
-/* False: the point has ended already. True: it has a scene to be run with its options. */
-static bool begin_job(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
-  const strut_sweep_plan *plan = worker->plan;
-  strut_row_buffer *cells = &job->cells;
-  cells->number_count = cells->word_count = 0;
-  cells->message[0] = '\0';
-  job->point = point;
-  job->warning_count = 0;
-  job->error = (strut_error){0};
-  strut_sweep_watch_begin(worker->watch, job);
-  const strut_sweep_options *options = worker->options;
-  strut_grid_values(plan->study, point, cells->values);
-  if (options->values) options->values(options->point_context, point, cells->values);
-  strut_sweep_axes(plan, cells->values, cells);
-  strut_status status =
-      plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
-  if (status) {
-    finish_point(worker, job, status);
-    return false;
-  }
-  bool run = plan->study->compute == STRUT_COMPUTE_RUN;
-  if (options->adjust) options->adjust(options->point_context, point, &job->setup);
-  if (!run)
-    status = strut_statics_point(worker, job);
-  else
-    status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
-  if (!run && !status) status = strut_sweep_derive(worker, job);
-  if (run && !status) status = begin_record(worker, job);
-  if (run && !status) return true;
-  finish_with_scene(worker, job, status);
-  return false;
 }
 
 /* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
@@ -127,66 +71,9 @@ static strut_status name_outcome(const strut_sweep_worker *worker, strut_sweep_j
   return status;
 }
 
-/* Refines the experiment for the check. */
-static void refine_experiment(const strut_study *study, strut_experiment *experiment) {
-  if (study->check_accuracy > 0.0) {
-    experiment->accuracy = study->check_accuracy;
-  } else if (experiment->accuracy > 0.0) {
-    experiment->accuracy /= 2.0;
-  } else {
-    experiment->step /= 2.0;
-    experiment->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
-  }
-}
-
-static const char *outcome_word(const strut_sweep_worker *worker, const strut_summary *summary,
+static const char *outcome_word(const strut_sweep_plan *plan, const strut_summary *summary,
                                 const char *outcome) {
-  return worker->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
-}
-
-/* True: another run is to check it. */
-static bool finish_first_run(const strut_sweep_worker *worker, strut_sweep_job *job,
-                             strut_status status, const strut_summary *summary) {
-  char outcome[STRUT_SLOT_WORD] = "";
-  bool began = status == STRUT_OK || status == STRUT_DIVERGED;
-  if (job->files) {
-    strut_error late = {0};
-    strut_status written =
-        strut_sweep_record_end(job->files, &job->setup.scene, summary, began, &late);
-    if (written) status = strut_fail(&job->error, written, "%s", late.message);
-  }
-  if (!status) status = name_outcome(worker, job, summary, outcome);
-  if (!status) {
-    job->warning_count = summary->warning_count;
-    memcpy(job->warnings, summary->warnings, sizeof job->warnings);
-    strut_sweep_fill(worker->plan, &job->setup, summary, outcome, &job->cells);
-    status = strut_sweep_derive(worker, job);
-  }
-  if (status || !worker->plan->check) {
-    finish_with_scene(worker, job, status);
-    return false;
-  }
-  snprintf(job->first, sizeof job->first, "%s", outcome_word(worker, summary, outcome));
-  refine_experiment(worker->plan->study, &job->setup.experiment);
-  set_options(worker, job);
-  job->error = (strut_error){0};
-  return true;
-}
-
-/* A second run that fails counts as another outcome. */
-static void finish_second_run(const strut_sweep_worker *worker, strut_sweep_job *job,
-                              strut_status status, const strut_summary *summary) {
-  char outcome[STRUT_SLOT_WORD] = "";
-  strut_row_buffer *cells = &job->cells;
-  status = explain_interrupt(worker, job, status);
-  if (!status) status = name_outcome(worker, job, summary, outcome);
-  const char *word = status ? "failed" : outcome_word(worker, summary, outcome);
-  bool same = !status && strcmp(job->first, word) == 0;
-  strut_sweep_number(cells, status ? (double)NAN : summary->velocity);
-  strut_sweep_word(cells, word);
-  strut_sweep_number(cells, same ? 0.0 : 1.0);
-  if (strut_sweep_stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
-  finish_with_scene(worker, job, strut_sweep_stops(status) ? status : STRUT_OK);
+  return plan->flips ? outcome : strut_motion_name(summary->steady.kind);
 }
 
 strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
@@ -201,16 +88,103 @@ strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep
   return status;
 }
 
-void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
-  strut_summary summary = {0}, second = {0};
-  if (!begin_job(worker, point, job)) return;
-  strut_status status = strut_sweep_run_scene(worker, job, true, &summary);
-  if (finish_first_run(worker, job, status, &summary)) {
-    status = strut_sweep_run_scene(worker, job, false, &second);
-    finish_second_run(worker, job, status, &second);
+/* The run of a point; word (STRUT_SLOT_WORD): what a second one is to repeat. */
+static strut_status run_first(const strut_sweep_worker *worker, strut_sweep_job *job, char *word) {
+  char outcome[STRUT_SLOT_WORD] = "";
+  strut_summary summary = {0};
+  strut_sweep_record *record = NULL;
+  strut_status status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
+  if (!status) status = begin_record(worker, job, &record);
+  if (status) return status;
+  status = strut_sweep_run_scene(worker, job, true, &summary);
+  if (record) {
+    strut_error late = {0};
+    bool began = status == STRUT_OK || status == STRUT_DIVERGED;
+    strut_status written =
+        strut_sweep_record_end(record, &job->setup.scene, &summary, began, &late);
+    if (written) status = strut_fail(&job->error, written, "%s", late.message);
+  }
+  if (!status) status = name_outcome(worker, job, &summary, outcome);
+  if (!status) {
+    job->warning_count = summary.warning_count;
+    memcpy(job->warnings, summary.warnings, sizeof job->warnings);
+    strut_sweep_fill(worker->plan, &job->setup, &summary, outcome, &job->cells);
+    status = strut_sweep_derive(worker, job);
+    snprintf(word, STRUT_SLOT_WORD, "%s", outcome_word(worker->plan, &summary, outcome));
   }
   strut_summary_free(&summary);
-  strut_summary_free(&second);
+  return status;
+}
+
+/* Refines the experiment for the check. */
+static void refine_experiment(const strut_study *study, strut_experiment *experiment) {
+  if (study->check_accuracy > 0.0) {
+    experiment->accuracy = study->check_accuracy;
+  } else if (experiment->accuracy > 0.0) {
+    experiment->accuracy /= 2.0;
+  } else {
+    experiment->step /= 2.0;
+    experiment->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
+  }
+}
+
+/* Repeats the run more exactly. A second run that fails counts as another outcome. */
+static strut_status run_again(const strut_sweep_worker *worker, strut_sweep_job *job,
+                              const char *first) {
+  char outcome[STRUT_SLOT_WORD] = "";
+  strut_summary summary = {0};
+  refine_experiment(worker->plan->study, &job->setup.experiment);
+  job->options.sink_count = 0;
+  job->error = (strut_error){0};
+  strut_status status = strut_sweep_run_scene(worker, job, false, &summary);
+  status = explain_interrupt(worker, job, status);
+  if (!status) status = name_outcome(worker, job, &summary, outcome);
+  const char *word = status ? "failed" : outcome_word(worker->plan, &summary, outcome);
+  bool same = !status && strcmp(first, word) == 0;
+  strut_sweep_number(&job->cells, status ? (double)NAN : summary.velocity);
+  strut_sweep_word(&job->cells, word);
+  strut_sweep_number(&job->cells, same ? 0.0 : 1.0);
+  strut_summary_free(&summary);
+  if (!strut_sweep_stops(status)) return STRUT_OK;
+  return strut_fail(&job->error, status, "%s", strut_status_text(status));
+}
+
+static strut_status compute(const strut_sweep_worker *worker, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = worker->plan;
+  char first[STRUT_SLOT_WORD] = "";
+  bool run = plan->study->compute == STRUT_COMPUTE_RUN;
+  strut_status status = run ? run_first(worker, job, first) : strut_statics_point(worker, job);
+  if (!run && !status) status = strut_sweep_derive(worker, job);
+  return run && !status && plan->check ? run_again(worker, job, first) : status;
+}
+
+void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = worker->plan;
+  const strut_sweep_options *options = worker->options;
+  strut_row_buffer *cells = &job->cells;
+  cells->number_count = cells->word_count = 0;
+  cells->message[0] = '\0';
+  job->point = point;
+  job->warning_count = 0;
+  job->error = (strut_error){0};
+  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(worker, job),
+                                     .most_evaluations = plan->study->limit.evaluations};
+  strut_sweep_watch_begin(worker->watch, job);
+  strut_grid_values(plan->study, point, cells->values);
+  if (options->values) options->values(options->point_context, point, cells->values);
+  strut_sweep_axes(plan, cells->values, cells);
+  strut_status status =
+      plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
+  if (!status) {
+    if (options->adjust) options->adjust(options->point_context, point, &job->setup);
+    status = compute(worker, job);
+    strut_setup_free(&job->setup);
+  }
+  status = explain_interrupt(worker, job, status);
+  job->status = strut_sweep_stops(status) ? status : STRUT_OK;
+  if (job->status) return;
+  if (status) pad_cells(plan, cells);
+  strut_sweep_end_row(cells, status, status ? &job->error : NULL);
 }
 
 /* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
