@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
@@ -16,6 +17,8 @@
 
 /* Time between two reports [s]. */
 static const double OFTEN = 0.1;
+/* Times between two looks at what other workers have done, which grow [ns]. */
+enum { SHORTEST_PAUSE = 2000000, LONGEST_PAUSE = 500000000 };
 
 int strut_sweep_threads(void) {
 #ifdef _OPENMP
@@ -137,6 +140,19 @@ strut_status strut_points_run(strut_points *points, int64_t count) {
     if (!points->nested) omp_set_num_threads(1); /* the points are what goes side by side */
 #endif
     for (int64_t point; next_point(points, &point);) run_point(points, &points->jobs[t], point);
+  }
+  return points->status;
+}
+
+strut_status strut_points_complete(strut_points *points, int64_t (*left)(void *context)) {
+  struct timespec pause = {.tv_nsec = SHORTEST_PAUSE};
+  while (!points->status) {
+    if (points->interrupt && *points->interrupt)
+      return points->status = strut_fail(points->error, STRUT_INTERRUPTED, "interrupted");
+    int64_t count = left(points->context);
+    if (count == 0 || strut_points_run(points, count) || left(points->context) == 0) break;
+    nanosleep(&pause, NULL); /* others compute the rest; the claims of those that are killed end */
+    if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
   }
   return points->status;
 }
