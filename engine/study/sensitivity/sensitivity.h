@@ -36,13 +36,6 @@ STRUT_API strut_status strut_sensitivity_indices(const double *result, size_t sa
                                                  uint32_t seed, strut_estimate *first,
                                                  strut_estimate *total, size_t *used);
 
-/** Mean of values (count), and its standard error as of independent ones; NANs are left out. */
-STRUT_API strut_estimate strut_sensitivity_mean(const double *values, size_t count);
-/** Standard deviation of the values themselves; NANs are left out. */
-STRUT_API double strut_sensitivity_deviation(const double *values, size_t count);
-/** Share of ones among values (count) that are 0 or 1, with Wilson's interval; NANs are left out. */
-STRUT_API strut_estimate strut_sensitivity_share(const double *values, size_t count);
-
 /* The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
  *
  * A result is a column of numbers; whether such a column is above 0, or above,
@@ -88,8 +81,6 @@ typedef struct strut_sensitivity_result {
 
 /** The list "effects" of a strut_sensitivity_result, while its study and slots are there. */
 STRUT_API extern const strut_value_rows strut_sensitivity_values;
-
-STRUT_API const char *strut_sensitivity_word(strut_sensitivity_measure measure);
 
 /** Does every result of the analysis name a column? If not, *missing is the first that does not. */
 STRUT_API bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,

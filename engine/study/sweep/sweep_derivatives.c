@@ -32,9 +32,8 @@ static const char *unit_of(strut_arena *arena, const char *of, const char *by) {
 static void take_numbers(const derivation *self, const strut_sweep_job *job, double *outputs,
                          double *errors) {
   const strut_sweep_plan *plan = self->worker->plan;
-  for (size_t j = 0, c = 0, at = 0; j < plan->derived_count; j++) {
-    for (; c < plan->derived[j]; c++) at += !plan->columns[c].word;
-    outputs[j] = job->cells.numbers[at];
+  for (size_t j = 0; j < plan->derived_count; j++) {
+    outputs[j] = job->cells.numbers[strut_slot_place(plan->columns, plan->derived[j])];
     errors[j] = self->noise * fabs(outputs[j]);
   }
 }

@@ -123,9 +123,6 @@ strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_j
 struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,
                                                    size_t count, const strut_flag *interrupt);
 void strut_sweep_watch_free(struct strut_sweep_watch *watch);
-/** The job's time begins, and ends; the latter true if it had passed. A NULL watch does nothing. */
-void strut_sweep_watch_begin(struct strut_sweep_watch *watch, strut_sweep_job *job);
-bool strut_sweep_watch_end(struct strut_sweep_watch *watch, strut_sweep_job *job);
 
 /* sweep.c */
 
@@ -174,18 +171,8 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
                                        size_t count);
 /* sweep_point.c */
 
-/** A directory of results for a run of a sweep. Zero-initialise. */
-typedef struct strut_sweep_record strut_sweep_record;
-/** Takes results of a point into directory/runs/POINT. NULL with the error. */
-strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
-                                             const char *scene_text, const strut_scene *scene,
-                                             strut_error *error);
 /** Removes what killed processes left of unfinished runs below the directory, and nothing else. */
 void strut_sweep_records_clear(const char *directory);
-strut_sink *strut_sweep_record_sink(strut_sweep_record *record);
-/** Ends it: complete, or with a run that never began not at all. Frees it. */
-strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scene *scene,
-                                    const strut_summary *summary, bool keep, strut_error *error);
 
 /* Refinement of a map: which points of the finest grid are to be computed.
  *

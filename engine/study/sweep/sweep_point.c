@@ -17,6 +17,155 @@
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
+/* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
+
+typedef struct strut_sweep_record {
+  strut_results results;
+  strut_sink *hdf5;
+  strut_sink outer;
+} strut_sweep_record;
+
+static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
+  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
+  strut_status status;
+#ifdef _OPENMP
+#pragma omp critical(strut_sweep_hdf5)
+#endif
+  status = hdf5->begin(hdf5->context, layout, error);
+  return status;
+}
+
+static strut_status take(void *context, const double *rows, size_t count, strut_error *error) {
+  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
+  strut_status status;
+#ifdef _OPENMP
+#pragma omp critical(strut_sweep_hdf5)
+#endif
+  status = hdf5->rows(hdf5->context, rows, count, error);
+  return status;
+}
+
+static strut_status end(void *context, strut_status run_status, strut_error *error) {
+  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
+  strut_status status;
+#ifdef _OPENMP
+#pragma omp critical(strut_sweep_hdf5)
+#endif
+  status = hdf5->end(hdf5->context, run_status, error);
+  return status;
+}
+
+static void discard(strut_sweep_record *record) {
+#ifdef _OPENMP
+#pragma omp critical(strut_sweep_hdf5)
+#endif
+  strut_hdf5_free(record->hdf5);
+  strut_results_abandon(&record->results); /* does nothing once it is complete */
+  strut_release(record);
+}
+
+void strut_sweep_records_clear(const char *directory) {
+  strut_arena arena = {0};
+  char *runs = strut_arena_format(&arena, "%s/runs", directory);
+  DIR *entries = runs ? opendir(runs) : NULL;
+  for (struct dirent *entry = entries ? readdir(entries) : NULL; entry; entry = readdir(entries)) {
+    if (entry->d_name[0] == '.') continue;
+    char *path = strut_arena_format(&arena, "%s/%s", runs, entry->d_name);
+    if (path && strut_stage_sweep(path)) rmdir(path); /* fails unless it is empty */
+  }
+  if (entries) closedir(entries);
+  strut_arena_free(&arena);
+}
+
+/* Ends it: complete, or with a run that never began not at all. Frees it. */
+static strut_status end_record(strut_sweep_record *record, const strut_scene *scene,
+                               const strut_summary *summary, bool keep, strut_error *error) {
+  strut_status status = STRUT_OK;
+  if (keep) {
+    char *json = strut_summary_json(summary, scene, false);
+    if (!json) status = strut_no_memory(error, "");
+    if (!status) status = strut_file_write_text(record->results.stage, "summary.json", json, error);
+    if (!status) status = strut_results_commit(&record->results, error);
+    strut_release(json);
+  }
+  discard(record);
+  return status;
+}
+
+/* The clock of points: a thread that interrupts those that take longer than their study allows. */
+
+typedef struct strut_sweep_watch {
+  pthread_t thread;
+  pthread_mutex_t lock; /* of `over` and of the jobs' deadlines */
+  bool over;
+  double seconds;
+  strut_sweep_job *jobs; /* (count) */
+  size_t count;
+  const strut_flag *interrupt; /* of the sweep, or NULL */
+} strut_sweep_watch;
+
+/* True when the sweep is over. */
+static bool look_at_jobs(strut_sweep_watch *watch) {
+  pthread_mutex_lock(&watch->lock);
+  bool over = watch->over, interrupted = watch->interrupt && *watch->interrupt;
+  double now = strut_run_clock();
+  for (size_t i = 0; i < watch->count; i++)
+    if (interrupted || (watch->jobs[i].deadline > 0.0 && now > watch->jobs[i].deadline))
+      watch->jobs[i].stop = 1;
+  pthread_mutex_unlock(&watch->lock);
+  return over;
+}
+
+static void *watch_jobs(void *context) {
+  const struct timespec pause = {.tv_nsec = 20000000};
+  while (!look_at_jobs(context)) nanosleep(&pause, NULL);
+  return NULL;
+}
+
+strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs, size_t count,
+                                            const strut_flag *interrupt) {
+  strut_sweep_watch *watch = strut_allocate(1, sizeof *watch);
+  if (!watch) return NULL;
+  watch->seconds = seconds, watch->jobs = jobs, watch->count = count, watch->interrupt = interrupt;
+  if (pthread_mutex_init(&watch->lock, NULL) == 0) {
+    if (pthread_create(&watch->thread, NULL, watch_jobs, watch) == 0) return watch;
+    pthread_mutex_destroy(&watch->lock);
+  }
+  strut_release(watch);
+  return NULL;
+}
+
+void strut_sweep_watch_free(strut_sweep_watch *watch) {
+  if (!watch) return;
+  pthread_mutex_lock(&watch->lock);
+  watch->over = true;
+  pthread_mutex_unlock(&watch->lock);
+  pthread_join(watch->thread, NULL);
+  pthread_mutex_destroy(&watch->lock);
+  strut_release(watch);
+}
+
+/* The time of a job begins. A NULL watch does nothing. */
+static void begin_time(strut_sweep_watch *watch, strut_sweep_job *job) {
+  if (!watch) return;
+  pthread_mutex_lock(&watch->lock);
+  job->stop = 0;
+  job->deadline = strut_run_clock() + watch->seconds;
+  pthread_mutex_unlock(&watch->lock);
+}
+
+/* It ends; true: it had passed. */
+static bool end_time(strut_sweep_watch *watch, strut_sweep_job *job) {
+  if (!watch) return false;
+  pthread_mutex_lock(&watch->lock);
+  bool passed = job->stop && !(watch->interrupt && *watch->interrupt);
+  job->deadline = 0.0;
+  pthread_mutex_unlock(&watch->lock);
+  return passed;
+}
+
+/* ---- a point ---- */
+
 /* The columns that a failed point leaves empty. */
 static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
   size_t words = 0;
@@ -33,7 +182,7 @@ const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
 /* What an interrupted computation means: its own time has passed, or the sweep is interrupted. */
 static strut_status explain_interrupt(const strut_sweep_worker *worker, strut_sweep_job *job,
                                       strut_status status) {
-  bool passed = strut_sweep_watch_end(worker->watch, job);
+  bool passed = end_time(worker->watch, job);
   if (status != STRUT_INTERRUPTED || !passed) return status;
   return strut_fail(&job->error, STRUT_WORK_LIMIT,
                     "stopped after %.4g s by the clock, the study's limit: another machine may get "
@@ -41,18 +190,32 @@ static strut_status explain_interrupt(const strut_sweep_worker *worker, strut_sw
                     worker->plan->study->limit.time);
 }
 
-/* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
+/* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories; else *record is NULL. */
 static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_job *job,
                                  strut_sweep_record **record) {
+  const strut_scene *scene = &job->setup.scene;
+  strut_error *error = &job->error;
+  strut_arena arena = {0};
   *record = NULL;
   if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
+  strut_sweep_record *self = strut_allocate(1, sizeof *self);
   char *text = worker->plan->scenes.text(&job->setup);
-  if (!text) return strut_no_memory(&job->error, "");
-  *record = strut_sweep_record_begin(worker->options->directory, job->point, text,
-                                     &job->setup.scene, &job->error);
+  char *path = strut_arena_format(&arena, "%s/runs/%09lld", worker->options->directory,
+                                  (long long)job->point);
+  strut_status status = STRUT_OK;
+  if (!self || !text || !path) status = strut_no_memory(error, "");
+  if (!status) status = strut_results_begin(&self->results, path, error);
+  if (!status && !(self->hdf5 = strut_hdf5_create(self->results.stage, text)))
+    status = strut_no_memory(error, "");
+  if (!status) status = strut_file_write_text(self->results.stage, "scene.yaml", text, error);
+  if (!status) status = strut_data_copy(scene->tables, scene->table_count, path, error);
   strut_release(text);
-  if (!*record) return job->error.status;
-  job->sink = strut_sweep_record_sink(*record);
+  strut_arena_free(&arena);
+  if (status && self) discard(self);
+  if (status) return status;
+  *record = self;
+  self->outer = (strut_sink){self, begin, take, end, self->hdf5->channels};
+  job->sink = &self->outer;
   job->options.sinks = &job->sink;
   job->options.sink_count = 1;
   return STRUT_OK;
@@ -100,8 +263,7 @@ static strut_status run_first(const strut_sweep_worker *worker, strut_sweep_job 
   if (record) {
     strut_error late = {0};
     bool began = status == STRUT_OK || status == STRUT_DIVERGED;
-    strut_status written =
-        strut_sweep_record_end(record, &job->setup.scene, &summary, began, &late);
+    strut_status written = end_record(record, &job->setup.scene, &summary, began, &late);
     if (written) status = strut_fail(&job->error, written, "%s", late.message);
   }
   if (!status) status = name_outcome(worker, job, &summary, outcome);
@@ -169,7 +331,7 @@ void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_
   job->error = (strut_error){0};
   job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(worker, job),
                                      .most_evaluations = plan->study->limit.evaluations};
-  strut_sweep_watch_begin(worker->watch, job);
+  begin_time(worker->watch, job);
   strut_grid_values(plan->study, point, cells->values);
   if (options->values) options->values(options->point_context, point, cells->values);
   strut_sweep_axes(plan, cells->values, cells);
@@ -185,181 +347,4 @@ void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_
   if (job->status) return;
   if (status) pad_cells(plan, cells);
   strut_sweep_end_row(cells, status, status ? &job->error : NULL);
-}
-
-/* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
-
-struct strut_sweep_record {
-  strut_results results;
-  char *scene_text;
-  strut_sink *hdf5;
-  strut_sink outer;
-};
-
-static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
-  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  status = hdf5->begin(hdf5->context, layout, error);
-  return status;
-}
-
-static strut_status take(void *context, const double *rows, size_t count, strut_error *error) {
-  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  status = hdf5->rows(hdf5->context, rows, count, error);
-  return status;
-}
-
-static strut_status end(void *context, strut_status run_status, strut_error *error) {
-  strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
-  strut_status status;
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  status = hdf5->end(hdf5->context, run_status, error);
-  return status;
-}
-
-static void discard(strut_sweep_record *record) {
-#ifdef _OPENMP
-#pragma omp critical(strut_sweep_hdf5)
-#endif
-  strut_hdf5_free(record->hdf5);
-  strut_results_abandon(&record->results); /* does nothing once it is complete */
-  strut_release(record->scene_text);
-  strut_release(record);
-}
-
-strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
-                                             const char *scene_text, const strut_scene *scene,
-                                             strut_error *error) {
-  strut_arena arena = {0};
-  strut_sweep_record *record = strut_allocate(1, sizeof *record);
-  char *path = strut_arena_format(&arena, "%s/runs/%09lld", directory, (long long)point);
-  char *text = strut_arena_format(&arena, "%s", scene_text);
-  if (!record || !path || !text) {
-    strut_no_memory(error, "");
-    strut_release(record);
-    strut_arena_free(&arena);
-    return NULL;
-  }
-  strut_status status = strut_results_begin(&record->results, path, error);
-  if (!status) {
-    record->hdf5 = strut_hdf5_create(record->results.stage, text);
-    if (!record->hdf5) status = strut_no_memory(error, "");
-  }
-  if (!status) status = strut_file_write_text(record->results.stage, "scene.yaml", text, error);
-  if (!status) status = strut_data_copy(scene->tables, scene->table_count, path, error);
-  strut_arena_free(&arena);
-  if (status) {
-    discard(record);
-    return NULL;
-  }
-  record->outer = (strut_sink){record, begin, take, end, record->hdf5->channels};
-  return record;
-}
-
-void strut_sweep_records_clear(const char *directory) {
-  strut_arena arena = {0};
-  char *runs = strut_arena_format(&arena, "%s/runs", directory);
-  DIR *entries = runs ? opendir(runs) : NULL;
-  for (struct dirent *entry = entries ? readdir(entries) : NULL; entry; entry = readdir(entries)) {
-    if (entry->d_name[0] == '.') continue;
-    char *path = strut_arena_format(&arena, "%s/%s", runs, entry->d_name);
-    if (path && strut_stage_sweep(path)) rmdir(path); /* fails unless it is empty */
-  }
-  if (entries) closedir(entries);
-  strut_arena_free(&arena);
-}
-
-strut_sink *strut_sweep_record_sink(strut_sweep_record *record) { return &record->outer; }
-
-strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scene *scene,
-                                    const strut_summary *summary, bool keep, strut_error *error) {
-  strut_status status = STRUT_OK;
-  if (keep) {
-    char *json = strut_summary_json(summary, scene, false);
-    if (!json) status = strut_no_memory(error, "");
-    if (!status) status = strut_file_write_text(record->results.stage, "summary.json", json, error);
-    if (!status) status = strut_results_commit(&record->results, error);
-    strut_release(json);
-  }
-  discard(record);
-  return status;
-}
-
-/* The clock of points: a thread that interrupts those that take longer than their study allows. */
-
-typedef struct strut_sweep_watch {
-  pthread_t thread;
-  pthread_mutex_t lock; /* of `over` and of the jobs' deadlines */
-  bool over;
-  double seconds;
-  strut_sweep_job *jobs; /* (count) */
-  size_t count;
-  const strut_flag *interrupt; /* of the sweep, or NULL */
-} strut_sweep_watch;
-
-/* True when the sweep is over. */
-static bool look_at_jobs(strut_sweep_watch *watch) {
-  pthread_mutex_lock(&watch->lock);
-  bool over = watch->over, interrupted = watch->interrupt && *watch->interrupt;
-  double now = strut_run_clock();
-  for (size_t i = 0; i < watch->count; i++)
-    if (interrupted || (watch->jobs[i].deadline > 0.0 && now > watch->jobs[i].deadline))
-      watch->jobs[i].stop = 1;
-  pthread_mutex_unlock(&watch->lock);
-  return over;
-}
-
-static void *watch_jobs(void *context) {
-  const struct timespec pause = {.tv_nsec = 20000000};
-  while (!look_at_jobs(context)) nanosleep(&pause, NULL);
-  return NULL;
-}
-
-strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs, size_t count,
-                                            const strut_flag *interrupt) {
-  strut_sweep_watch *watch = strut_allocate(1, sizeof *watch);
-  if (!watch) return NULL;
-  watch->seconds = seconds, watch->jobs = jobs, watch->count = count, watch->interrupt = interrupt;
-  if (pthread_mutex_init(&watch->lock, NULL) == 0) {
-    if (pthread_create(&watch->thread, NULL, watch_jobs, watch) == 0) return watch;
-    pthread_mutex_destroy(&watch->lock);
-  }
-  strut_release(watch);
-  return NULL;
-}
-
-void strut_sweep_watch_free(strut_sweep_watch *watch) {
-  if (!watch) return;
-  pthread_mutex_lock(&watch->lock);
-  watch->over = true;
-  pthread_mutex_unlock(&watch->lock);
-  pthread_join(watch->thread, NULL);
-  pthread_mutex_destroy(&watch->lock);
-  strut_release(watch);
-}
-
-void strut_sweep_watch_begin(strut_sweep_watch *watch, strut_sweep_job *job) {
-  if (!watch) return;
-  pthread_mutex_lock(&watch->lock);
-  job->stop = 0;
-  job->deadline = strut_run_clock() + watch->seconds;
-  pthread_mutex_unlock(&watch->lock);
-}
-
-bool strut_sweep_watch_end(strut_sweep_watch *watch, strut_sweep_job *job) {
-  if (!watch) return false;
-  pthread_mutex_lock(&watch->lock);
-  bool passed = job->stop && !(watch->interrupt && *watch->interrupt);
-  job->deadline = 0.0;
-  pthread_mutex_unlock(&watch->lock);
-  return passed;
 }
