@@ -115,6 +115,14 @@ static void run_point(strut_points *points, strut_sweep_job *job, int64_t point)
   }
 }
 
+/* A point of the file without a result that is wanted. */
+static bool choose_point(const strut_points *points, int64_t i, int64_t *point) {
+  const strut_sweep_options *options = points->worker.options;
+  *point = strut_slots_point(points->slots, i);
+  return !(options->wants && !options->wants(options->wants_context, *point)) &&
+         !strut_slots_done(points->slots, *point);
+}
+
 /* False: none is left, or all is being stopped. */
 static bool next_point(strut_points *points, int64_t *point) {
   int64_t i = 0;
@@ -124,7 +132,8 @@ static bool next_point(strut_points *points, int64_t *point) {
 #endif
     i = points->next++;
     if (i >= points->count) return false;
-    if (points->choose(points->context, i, point)) return true;
+    if (points->choose ? points->choose(points->context, i, point) : choose_point(points, i, point))
+      return true;
   }
   return false;
 }
@@ -182,15 +191,6 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
   return jobs;
 }
 
-/* A point without a result that is wanted. */
-static bool choose_point(void *context, int64_t i, int64_t *point) {
-  const strut_points *points = context;
-  const strut_sweep_options *options = points->worker.options;
-  *point = strut_slots_point(points->slots, i);
-  return !(options->wants && !options->wants(options->wants_context, *point)) &&
-         !strut_slots_done(points->slots, *point);
-}
-
 static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
   strut_sweep_compute(&((const strut_points *)context)->worker, point, job);
 }
@@ -224,9 +224,9 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   strut_points points = {.slots = slots,
                          .state = state,
                          .error = error ? error : &own,
-                         .context = &points,
-                         .choose = choose_point,
-                         .compute = compute_point};
+                         .context = options->compute ? options->compute_context : &points,
+                         .compute = options->compute ? options->compute : compute_point,
+                         .nested = options->nested};
   strut_points_begin(&points);
   if (options->wants) state->points = options->wanted, state->done = options->wanted_done;
   if (options->directory) strut_sweep_records_clear(options->directory);

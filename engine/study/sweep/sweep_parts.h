@@ -131,8 +131,8 @@ typedef struct strut_points {
   strut_slots *slots;
   strut_sweep_state *state;
   strut_error *error;
-  void *context; /* of both: */
-  /** The i-th point to be looked at; false: it is not computed. */
+  void *context; /* of both functions: */
+  /** The i-th point to be looked at; false: it is not computed. NULL: that of the file, as the options want. */
   bool (*choose)(void *context, int64_t i, int64_t *point);
   /** Computes it into the job's row, or leaves the status that stops everything and its error. */
   void (*compute)(void *context, strut_sweep_job *job, int64_t point);
