@@ -191,6 +191,9 @@ static void conclude(const differences *self, size_t j, strut_derivative *to) {
     if (bent && lasts && fabs(bend) > 32.0 * noise) to[i].verdict = STRUT_DERIVATIVE_NONE;
     if (!isfinite(to[i].value + to[i].error)) to[i].verdict = STRUT_DERIVATIVE_UNKNOWN;
     if (to[i].verdict != STRUT_DERIVATIVE_THERE) to[i].value = to[i].error = (double)NAN;
+    const pair *along = &self->pairs[i];
+    if (along->values[0][j] == self->outputs[j] && along->values[1][j] == self->outputs[j])
+      to[i] = (strut_derivative){0.0, 0.0, STRUT_DERIVATIVE_THERE}; /* it does not depend on it */
   }
 }
 

@@ -5,7 +5,8 @@
  * Of k parameters the function is evaluated 2k + 2 times besides the point itself: a pair along each parameter,
  * and a pair along all of them together with an eighth of the steps, which must agree with the sum of the others.
  * By how much it does not is the error. Where the values on both sides of the point lie on two different lines, as
- * where a contact only just grazes, there is no derivative.
+ * where a contact only just grazes, there is no derivative. What a pair does not change by a bit has the derivative 0,
+ * with an error of 0.
  */
 #ifndef STRUT_ENGINE_BASE_DERIVATIVES_H
 #define STRUT_ENGINE_BASE_DERIVATIVES_H

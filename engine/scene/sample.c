@@ -159,37 +159,13 @@ bool strut_sample_make(strut_sample_scheme scheme, uint32_t seed, int64_t count,
 
 /* ---- designs of sensitivity analyses ---- */
 
-/* Points of a parameter's derivative. */
-enum { MOVED = 4 };
-/* Accuracy of results whose error is rounding, and most of a step: half a deviation. */
-static const double FINEST = 1e-9, WIDEST = 0.5, DEVIATION = 0.8413447460685429;
-
-static int64_t derivative_points(const strut_study_sensitivity *sensitivity, size_t count) {
-  return sensitivity->derivatives ? 1 + MOVED * (int64_t)count : 0;
+int64_t strut_sensitivity_sample(const strut_study_sensitivity *sensitivity, size_t count,
+                                 int64_t j) {
+  return sensitivity->derivatives + j * ((int64_t)count + 2);
 }
 
 int64_t strut_sensitivity_points(const strut_study_sensitivity *sensitivity, size_t count) {
-  return derivative_points(sensitivity, count) + sensitivity->samples * ((int64_t)count + 2);
-}
-
-int64_t strut_sensitivity_sample(const strut_study_sensitivity *sensitivity, size_t count,
-                                 int64_t j) {
-  return derivative_points(sensitivity, count) + j * ((int64_t)count + 2);
-}
-
-int64_t strut_sensitivity_moved(size_t i, int k) { return 1 + MOVED * (int64_t)i + k; }
-
-static void fill_derivatives(const strut_study_sensitivity *sensitivity, size_t count,
-                             const strut_distribution *distribution, double *const *values) {
-  static const double steps[MOVED] = {1.0, -1.0, 0.5, -0.5};
-  double part = fmin(WIDEST, cbrt(fmax(sensitivity->accuracy, FINEST)));
-  for (size_t k = 0; k < count; k++) {
-    double middle = strut_distribution_value(&distribution[k], 0.5);
-    double step = part * (strut_distribution_value(&distribution[k], DEVIATION) - middle);
-    for (int64_t p = 0; p < derivative_points(sensitivity, count); p++) values[k][p] = middle;
-    for (int m = 0; m < MOVED; m++)
-      values[k][strut_sensitivity_moved(k, m)] = middle + steps[m] * step;
-  }
+  return strut_sensitivity_sample(sensitivity, count, sensitivity->samples);
 }
 
 static void fill_samples(const strut_study_sensitivity *sensitivity, size_t count,
@@ -211,7 +187,8 @@ bool strut_sensitivity_fill(const strut_study_sensitivity *sensitivity, size_t c
   strut_arena arena = {0};
   bool fine = true;
   assert(count > 0 && count <= STRUT_SENSITIVITY_MOST);
-  if (sensitivity->derivatives) fill_derivatives(sensitivity, count, distributions, values);
+  for (size_t k = 0; k < count && sensitivity->derivatives; k++)
+    values[k][0] = strut_distribution_value(&distributions[k], 0.5);
   for (size_t k = 0; k < 2 * count && sensitivity->samples > 0; k++) {
     twice[k] = distributions[k % count];
     both[k] = strut_arena_allocate(&arena, (size_t)sensitivity->samples, sizeof *both[k]);

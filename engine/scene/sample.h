@@ -69,14 +69,8 @@ STRUT_API int64_t strut_sensitivity_points(const strut_study_sensitivity *sensit
 STRUT_API int64_t strut_sensitivity_sample(const strut_study_sensitivity *sensitivity, size_t count,
                                            int64_t j);
 /**
- * Point at which parameter `i` is moved: k 0 a step up, 1 a step down, 2 and 3 half a step. Point 0 is
- * that between them.
- */
-STRUT_API int64_t strut_sensitivity_moved(size_t i, int k);
-/**
- * values[i] (strut_sensitivity_points) from distribution i. A step is accuracy^(1/3) of the distance
- * between the median and the 84th percentile, at which the error of a difference of numbers with that
- * relative accuracy balances the curvature of the curve. False: memory is out.
+ * values[i] (strut_sensitivity_points) from distribution i; with derivatives point 0 has the medians. False: memory is
+ * out.
  */
 STRUT_API bool strut_sensitivity_fill(const strut_study_sensitivity *sensitivity, size_t count,
                                       const strut_distribution *distributions,

@@ -407,8 +407,8 @@ typedef struct strut_study_sensitivity {
   uint32_t seed;   /* of samples and of bootstraps */
   uint32_t scheme; /* strut_sample_scheme */
   bool derivatives;
-  double accuracy;  /* relative, that of the runs; 0: rounding */
-  double threshold; /* numbers up to this have no sign; in the unit of their column */
+  const double *scales; /* (parameters) from the median of each to its 84th percentile */
+  double threshold;     /* numbers up to this have no sign; in the unit of their column */
 } strut_study_sensitivity;
 
 /** How many energies, barriers and frequencies a row lists, unless the study says. */

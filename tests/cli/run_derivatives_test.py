@@ -55,6 +55,32 @@ holds(found["y", "stiffness"], by_w * w / 2 / 1e4, 1e-4, "height after a bounce 
 holds(found["lands", "height"], 0.5 * math.sqrt(2 / g / h), 1e-6, "time of arrival")
 check(derivatives("ball.yaml", "--threads", "1") == derivatives("ball.yaml", "--threads", "4"), "threads change bits")
 
+# ---- a parameter that nothing uses, and one that has no neighbours ----
+
+unused = BALL.replace("derivatives: [height, stiffness]", "derivatives: [height, unused]")
+write("unused.yaml", unused)
+run("run", "unused.yaml", code=1, err="derivatives by 'unused'")
+write("drops.yaml", """strut: 1
+parameters: {height: 100 mm, count: 2}
+gravity: [0, -9.81 m/s^2]
+parts: {drop: {nodes: {ball: {position: [0, height], mass: 1 kg}}}}
+place: {d: {part: drop, repeat: {count: count, step: [1 m, 0]}}}
+solver: {step: 0.1 ms}
+run: {duration: 0.1 s, measure: {derivatives: [count, height], quantities: {y: {of: d.1.ball.y, take: final}}}}
+""")
+done = json.loads(run("run", "drops.yaml", "--json").stdout)
+found = {row["by"]: row for row in done["derivatives"] if row["of"] == "y"}
+holds(found["height"], 1.0, 1e-8, "beside one that is not known")
+check(found["count"]["verdict"] == "not known", str(found))
+said = [w["text"] for w in done["warnings"] if w["code"] == "derivatives"]
+check(len(said) == 1 and "there are no derivatives by 'count'" in said[0], f"no warning: {done['warnings']}")
+write("drops-study.yaml", "strut: 1\nstudy: s\nmodel: drops.yaml\nkeep: [y]\naxes: [{height: [100 mm, 200 mm]}]\n")
+done = run("sweep", "-o", "drops", "drops-study.yaml")
+check("there are no derivatives by 'count'" in done.stderr, f"no warning of a sweep: {done.stderr}")
+row = rows("drops", "table.csv")[0]
+check(cell(row, "y", "count")["value"] is None, str(row))
+holds(cell(row, "y", "height"), 1.0, 1e-8, "in a sweep, beside one that is not known")
+
 # ---- a mass that swings to the ground and only just touches it: its damper makes a kink ----
 
 write("graze.yaml", """strut: 1

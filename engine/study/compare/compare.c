@@ -16,6 +16,7 @@
 #include "engine/statics/potential.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
+#include "engine/study/sweep/evaluation.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* What is computed at once: counts of parts; rigidity as drawn; states; at rest; the step; the motion; its window. */
@@ -145,13 +146,9 @@ static double largest_force(const facts *f, double sign) {
   return f->scene->member_count ? most : (double)NAN;
 }
 
-static double frequency(const facts *f, int i) {
-  for (size_t k = 0; k < f->modes.count; k++) {
-    const strut_mode *mode = &f->modes.list[k];
-    if ((mode->kind == STRUT_MODE_ELASTIC || mode->kind == STRUT_MODE_UNKNOWN) && i-- == 0)
-      return mode->angular_frequency / STRUT_TAU;
-  }
-  return (double)NAN;
+static double frequency(const facts *f, size_t i) {
+  const strut_mode *mode = strut_elastic_mode(&f->modes, i);
+  return mode ? mode->angular_frequency / STRUT_TAU : (double)NAN;
 }
 
 static double least_stiffness(const strut_compare_column *c, int axis) {

@@ -96,9 +96,8 @@ static const strut_study_column *last_numbers(const strut_study *study, size_t *
 static double axis_value(strut_slots *slots, int64_t point, size_t column) {
   const strut_slots_description *plan = strut_slots_description_of(slots);
   strut_result_slot row;
-  size_t at = 0;
-  for (size_t i = 0; i < column; i++) at += !plan->columns[i].word;
-  return strut_slots_get(slots, point, &row) ? row.numbers[at] : (double)NAN;
+  return strut_slots_get(slots, point, &row) ? row.numbers[strut_slot_place(plan->columns, column)]
+                                             : (double)NAN;
 }
 
 /* The curve of a row's parameter in the panel of its result. */

@@ -40,18 +40,12 @@ bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *va
  * how many there are, and what they reach. A point is done once its row is there, which is written last.
  */
 
-typedef struct strut_follow_points_options {
-  /** The scene of the axes' values where the followed parameter has the value [SI]; from any thread. */
+/** The scene of the axes' values where the followed parameter has the value [SI]; from any thread. */
+typedef struct strut_follow_points {
   strut_status (*setup)(void *context, const strut_study_value *values, double value,
                         strut_setup *setup, strut_error *error);
   void *context;
-  const char *directory;
-  int threads;                 /* 0: strut_sweep_threads */
-  const strut_flag *interrupt; /* may be NULL */
-  /** After each point, one thread at a time; may be NULL. */
-  void (*progress)(void *context, const strut_sweep_state *state);
-  void *progress_context;
-} strut_follow_points_options;
+} strut_follow_points;
 
 /** Adds the columns of a point's row behind those of the axes. */
 STRUT_API strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error);
@@ -60,15 +54,16 @@ STRUT_API strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut
  * or a memory.
  */
 STRUT_API strut_status strut_follow_points_check(const strut_sweep_plan *plan,
-                                                 const strut_follow_points_options *options,
+                                                 const strut_follow_points *points,
                                                  strut_error *error);
 /**
- * Follows at every point that has no row yet. A failed point gets a row with the reason. With
+ * Follows at every point that has no row yet, as strut_sweep_run. A failed point gets a row with the reason. With
  * STRUT_INTERRUPTED what was followed of points under way is in branches/POINT-partial.csv. Files and rows
  * depend on their point alone.
  */
 STRUT_API strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *slots,
-                                               const strut_follow_points_options *options,
+                                               const strut_follow_points *points,
+                                               const strut_sweep_options *options,
                                                strut_sweep_state *state, strut_error *error);
 
 /* follow_points_files.c */

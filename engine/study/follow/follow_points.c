@@ -49,21 +49,14 @@ typedef struct counts {
 /* A point of the study, and what is made of it. */
 typedef struct point_work {
   const strut_sweep_plan *plan;
-  const strut_follow_points_options *options;
+  const strut_follow_points *points;
+  const strut_sweep_options *options;
   int64_t point;
   strut_study_value *values;
   strut_follow_result *result;
   strut_arena *arena;
   strut_error error;
 } point_work;
-
-/* All points. */
-typedef struct all_points {
-  const strut_sweep_plan *plan;
-  const strut_follow_points_options *options;
-  strut_points points;
-  int inner; /* threads of a point */
-} all_points;
 
 strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *error) {
   const strut_study_follow *follow = plan->study->follow;
@@ -81,7 +74,7 @@ strut_status strut_follow_points_columns(strut_sweep_plan *plan, strut_error *er
 static strut_status setup_at(void *context, const double value[2], strut_setup *setup,
                              strut_error *error) {
   const point_work *self = context;
-  return self->options->setup(self->options->context, self->values, value[0], setup, error);
+  return self->points->setup(self->points->context, self->values, value[0], setup, error);
 }
 
 static double own_value(const strut_study_follow *follow, const strut_scene *scene) {
@@ -133,11 +126,10 @@ static strut_status follow_point(point_work *self, int threads) {
 }
 
 strut_status strut_follow_points_check(const strut_sweep_plan *plan,
-                                       const strut_follow_points_options *options,
-                                       strut_error *error) {
+                                       const strut_follow_points *points, strut_error *error) {
   const strut_study_follow *follow = plan->study->follow;
   strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
-  point_work w = {.plan = plan, .options = options, .values = values};
+  point_work w = {.plan = plan, .points = points, .values = values};
   const strut_follow_options o = {.scenes = {setup_at, &w},
                                   .low = follow->from,
                                   .high = follow->to,
@@ -230,14 +222,26 @@ static strut_status follow_into(point_work *self, strut_row_buffer *cells, int t
   return STRUT_OK;
 }
 
+/* All points. */
+typedef struct all_points {
+  const strut_sweep_plan *plan;
+  const strut_follow_points *points;
+  const strut_sweep_options *options;
+  int inner; /* threads of a point */
+} all_points;
+
 static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
   const all_points *all = context;
   strut_arena arena = {0};
-  point_work w = {.plan = all->plan, .options = all->options, .point = point, .arena = &arena};
+  point_work w = {.plan = all->plan,
+                  .points = all->points,
+                  .options = all->options,
+                  .point = point,
+                  .values = job->cells.values,
+                  .result = strut_allocate(1, sizeof *w.result),
+                  .arena = &arena};
   job->point = point;
   job->cells.number_count = job->cells.word_count = 0;
-  w.values = job->cells.values;
-  w.result = strut_allocate(1, sizeof *w.result);
   job->status = w.result ? STRUT_OK : strut_no_memory(&w.error, "");
   if (!job->status) {
     strut_grid_values(all->plan->study, point, w.values);
@@ -249,38 +253,17 @@ static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
   strut_arena_free(&arena);
 }
 
-static bool choose_point(void *context, int64_t i, int64_t *point) {
-  const all_points *all = context;
-  *point = strut_slots_point(all->points.slots, i);
-  return !strut_slots_done(all->points.slots, *point);
-}
-
 strut_status strut_follow_points_run(const strut_sweep_plan *plan, strut_slots *slots,
-                                     const strut_follow_points_options *options,
-                                     strut_sweep_state *state, strut_error *error) {
-  strut_error own = {0};
-  strut_arena arena = {0};
+                                     const strut_follow_points *points,
+                                     const strut_sweep_options *options, strut_sweep_state *state,
+                                     strut_error *error) {
   int threads = options->threads > 0 ? options->threads : strut_sweep_threads();
   int64_t missing = strut_slots_missing(slots);
-  all_points all = {.plan = plan,
-                    .options = options,
-                    .points = {.slots = slots,
-                               .state = state,
-                               .error = error ? error : &own,
-                               .context = &all,
-                               .choose = choose_point,
-                               .compute = compute_point,
-                               .threads = missing < threads ? (int)missing : threads,
-                               .interrupt = options->interrupt,
-                               .progress = options->progress,
-                               .progress_context = options->progress_context}};
-  bool side = all.points.threads > 1;
-  all.inner = side ? 1 : threads; /* points go side by side, else the columns of derivatives */
-  all.points.nested = !side;
-  all.points.jobs = strut_sweep_make_jobs(plan, &arena, (size_t)all.points.threads + 1);
-  strut_points_begin(&all.points);
-  if (!all.points.jobs) all.points.status = strut_no_memory(all.points.error, "");
-  if (!all.points.status) strut_points_run(&all.points, strut_slots_description_of(slots)->count);
-  strut_arena_free(&arena);
-  return strut_points_end(&all.points);
+  bool side = threads > 1 && missing > 1; /* points go, else the columns of derivatives */
+  all_points all = {plan, points, options, side ? 1 : threads};
+  strut_sweep_options how = *options;
+  how.threads = !side ? 1 : missing < threads ? (int)missing : threads;
+  how.compute = compute_point, how.compute_context = &all;
+  how.nested = !side;
+  return strut_sweep_run(plan, slots, &how, state, error);
 }

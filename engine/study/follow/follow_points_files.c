@@ -4,40 +4,31 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/json_value.h"
 #include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/results/study_table.h"
 
 enum { MOST_BLOCK = 1 << 28 };
 
-/* A text as a cell of a CSV file. */
-static char *quote_cell(const char *text, strut_arena *arena) {
-  size_t length = strlen(text);
-  char *cell = strut_arena_allocate(arena, 2 * length + 3, 1);
-  if (cell) strut_csv_quote(text, length, cell);
-  return cell;
-}
-
 bool strut_follow_axes(const strut_sweep_plan *plan, const strut_study_value *values,
                        strut_arena *arena, const char *before[2]) {
-  before[0] = before[1] = "";
-  for (size_t i = 0; i < plan->axis_columns && before[0] && before[1]; i++) {
-    const strut_slot_column *column = &plan->columns[i];
-    char number[STRUT_NUMBER_TEXT] = "";
-    bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
-    const char *header = strut_arena_format(arena, plain ? "%s" : "%s [%s]", column->name,
-                                            plain ? "" : column->unit);
-    if (!values[i].word && isfinite(values[i].number)) strut_number_text(values[i].number, number);
-    const char *name = header ? quote_cell(header, arena) : NULL;
-    const char *cell = quote_cell(values[i].word ? values[i].word : number, arena);
-    if (!name || !cell) return false;
-    before[0] = strut_arena_format(arena, "%s%s,", before[0], name);
-    before[1] = strut_arena_format(arena, "%s%s,", before[1], cell);
+  strut_buffer names = {0}, cells = {0};
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    strut_study_table_add_name(&names, &plan->columns[i]);
+    if (values[i].word)
+      strut_csv_add_text(&cells, "%s", values[i].word);
+    else
+      strut_csv_add_number(&cells, isfinite(values[i].number) ? values[i].number : (double)NAN);
+    strut_buffer_add(&cells, ",");
   }
+  bool fine = !names.failed && !cells.failed;
+  before[0] = fine ? strut_arena_format(arena, "%s", names.text ? names.text : "") : NULL;
+  before[1] = fine ? strut_arena_format(arena, "%s", cells.text ? cells.text : "") : NULL;
+  strut_release(names.text);
+  strut_release(cells.text);
   return before[0] && before[1];
 }
 
@@ -141,13 +132,10 @@ static const char *cell_name(const strut_result_object *of, size_t i) {
 /* A cell of the point's row. */
 static strut_value cell_value(const strut_result_object *of, size_t i) {
   const point_rows *rows = of->outer->at;
-  const strut_slot_column *columns = rows->plan->columns;
   strut_result_slot row;
-  size_t place = 0;
-  for (size_t k = 0; k < i; k++) place += columns[k].word == columns[i].word;
-  if (!strut_slots_get(rows->slots, (int64_t)of->index, &row)) return STRUT_VALUE_AS_TEXT(NULL);
-  return columns[i].word ? STRUT_VALUE_AS_TEXT(row.words[place])
-                         : STRUT_VALUE_AS_CALLED(NULL, columns[i].unit, row.numbers[place]);
+  return strut_slots_get(rows->slots, (int64_t)of->index, &row)
+             ? strut_slot_value(rows->plan->columns, &row, i)
+             : STRUT_VALUE_AS_TEXT(NULL);
 }
 
 static const char *result_name(const strut_result_object *of, size_t i) {

@@ -393,15 +393,34 @@ bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row) 
   return true;
 }
 
+size_t strut_slot_place(const strut_slot_column *columns, size_t column) {
+  size_t place = 0;
+  for (size_t k = 0; k < column; k++) place += columns[k].word == columns[column].word;
+  return place;
+}
+
+size_t strut_slot_named(const strut_slot_column *columns, size_t count, const char *name) {
+  size_t column = 0;
+  while (column < count && strcmp(columns[column].name, name) != 0) column++;
+  return column;
+}
+
+strut_value strut_slot_value(const strut_slot_column *columns, const strut_result_slot *row,
+                             size_t column) {
+  const size_t place = strut_slot_place(columns, column);
+  const char *unit = columns[column].unit;
+  return columns[column].word
+             ? STRUT_VALUE_AS_TEXT(row->words[place])
+             : STRUT_VALUE_AS_CALLED(NULL, strcmp(unit, "1") == 0 ? "" : unit, row->numbers[place]);
+}
+
 bool strut_slots_is_inaccurate(strut_slots *slots, int64_t point) {
   const strut_slots_description *plan = &slots->plan;
-  size_t column = 0, number = 0;
+  const size_t column = strut_slot_named(plan->columns, plan->column_count, STRUT_KEPT_COLUMN);
   strut_result_slot row;
-  while (column < plan->column_count && strcmp(plan->columns[column].name, STRUT_KEPT_COLUMN) != 0)
-    number += !plan->columns[column++].word;
   return column < plan->column_count && strut_slots_done(slots, point) &&
          strut_slots_get(slots, point, &row) && row.status == STRUT_OK &&
-         row.numbers[number] == 0.0;
+         row.numbers[strut_slot_place(plan->columns, column)] == 0.0;
 }
 
 int64_t strut_slots_inaccurate(strut_slots *slots) {

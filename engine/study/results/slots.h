@@ -20,6 +20,7 @@
 #include <stdint.h>
 
 #include "engine/base/status.h"
+#include "engine/scene/value_rows.h"
 
 enum {
   STRUT_SLOT_MESSAGE = 160, /* bytes of a message, its NUL included */
@@ -33,6 +34,11 @@ typedef struct strut_slot_column {
   const char *name, *unit; /* unit "" or "1": none */
   bool word;               /* STRUT_SLOT_WORD bytes in place of a number */
 } strut_slot_column;
+
+/** The place of a column's cell among the numbers of a row, or among its words. */
+STRUT_API size_t strut_slot_place(const strut_slot_column *columns, size_t column);
+/** The column of that name; `count`: there is none. */
+STRUT_API size_t strut_slot_named(const strut_slot_column *columns, size_t count, const char *name);
 
 /** Everything that must agree before results may be combined. */
 typedef struct strut_slots_description {
@@ -53,6 +59,10 @@ typedef struct strut_result_slot {
   const char (*words)[STRUT_SLOT_WORD]; /* (columns that are words) */
   const char *message;                  /* of a failed point, or NULL; cut at STRUT_SLOT_MESSAGE */
 } strut_result_slot;
+
+/** A cell of a row, with the unit of its column. */
+STRUT_API strut_value strut_slot_value(const strut_slot_column *columns,
+                                       const strut_result_slot *row, size_t column);
 
 /** An open file of slots. */
 typedef struct strut_slots strut_slots;

@@ -22,14 +22,16 @@ static strut_status write_line(strut_file *file, strut_buffer *line, strut_error
   return written ? STRUT_OK : strut_file_trouble(file, error);
 }
 
+void strut_study_table_add_name(strut_buffer *line, const strut_slot_column *column) {
+  bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
+  strut_csv_add_text(line, plain ? "%s%s" : "%s [%s]", column->name, plain ? "" : column->unit);
+  strut_buffer_add(line, ",");
+}
+
 static void add_header(strut_buffer *line, const strut_slots_description *plan) {
   strut_buffer_add(line, "point,");
-  for (size_t i = 0; i < plan->column_count; i++) {
-    const strut_slot_column *column = &plan->columns[i];
-    bool plain = strcmp(column->unit, "1") == 0 || !*column->unit;
-    strut_csv_add_text(line, plain ? "%s%s" : "%s [%s]", column->name, plain ? "" : column->unit);
-    strut_buffer_add(line, ",");
-  }
+  for (size_t i = 0; i < plan->column_count; i++)
+    strut_study_table_add_name(line, &plan->columns[i]);
   strut_buffer_add(line, "status,message\n");
 }
 

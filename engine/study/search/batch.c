@@ -2,15 +2,12 @@
 /* Points that searches ask for at the same time, on all threads. See search_parts.h. */
 #include <math.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <stdlib.h>
-#include <time.h>
 
 #include "engine/base/memory.h"
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/grid.h"
-
-/* Times between two looks at what other workers have done, which grow [ns]. */
-enum { SHORTEST_PAUSE = 2000000, LONGEST_PAUSE = 500000000 };
 
 static int by_point(const void *a, const void *b) {
   int64_t first = ((const strut_batch_point_wanted *)a)->point;
@@ -118,73 +115,54 @@ bool strut_search_batch_add(strut_search_batch *batch, int64_t outer, int64_t ro
   return fine;
 }
 
-/* Leaves only the points that are still without a row. */
-static void forget_done(strut_search_batch *batch) {
-  size_t left = 0;
+/* Leaves only the points that are still without a row, and begins with this worker's share of them. */
+static int64_t forget_done(void *context) {
+  strut_search_batch *batch = context;
+  size_t workers = batch->options.workers > 0 ? (size_t)batch->options.workers : 1, left = 0;
   for (size_t i = 0; i < batch->count; i++)
     if (!strut_slots_done(batch->points.slots, batch->wanted[i].point))
       batch->wanted[left++] = batch->wanted[i];
   batch->count = left;
+  batch->first = (size_t)batch->options.worker * ((left + workers - 1) / workers);
   strut_points_count(&batch->points);
+  return (int64_t)left;
 }
 
 strut_status strut_search_batch_run(strut_search_batch *batch) {
-  const strut_flag *interrupt = batch->options.interrupt;
-  struct timespec pause = {.tv_nsec = SHORTEST_PAUSE};
-  size_t workers = batch->options.workers > 0 ? (size_t)batch->options.workers : 1;
   if (batch->count > 1) qsort(batch->wanted, batch->count, sizeof *batch->wanted, by_point);
-  while (batch->count > 0 && !batch->points.status && !(interrupt && *interrupt)) {
-    batch->first =
-        (size_t)batch->options.worker * ((batch->count + workers - 1) / workers); /* its share */
-    strut_points_run(&batch->points, (int64_t)batch->count);
-    forget_done(batch);
-    if (batch->count == 0) break;
-    nanosleep(&pause, NULL); /* others compute the rest; the claims of those that are killed end */
-    if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
-  }
-  if (!batch->points.status && interrupt && *interrupt)
-    batch->points.status = strut_fail(batch->points.error, STRUT_INTERRUPTED, "interrupted");
+  strut_status status = strut_points_complete(&batch->points, forget_done);
   batch->count = 0;
-  return batch->points.status;
+  return status;
 }
-
-typedef enum turn { TURN_OPTIMISER, TURN_CALLER, TURN_NONE } turn;
 
 struct strut_dialogue {
   const strut_search_task *task;
   pthread_t thread;
-  pthread_mutex_t lock; /* of all below */
-  pthread_cond_t changed;
-  turn turn; /* NONE: the optimiser has ended */
-  bool stop, fine;
+  sem_t asked, answered; /* a question, or the end; an answer */
+  bool pending;          /* the caller has the question */
+  bool ended, stop, fine;
   strut_question question;
 };
 
-static void give_turn(strut_dialogue *dialogue, turn next) {
-  pthread_mutex_lock(&dialogue->lock);
-  dialogue->turn = next;
-  pthread_cond_broadcast(&dialogue->changed);
-  pthread_mutex_unlock(&dialogue->lock);
+static void await(sem_t *event) {
+  while (sem_wait(event) != 0) continue; /* a signal came */
 }
 
 /* In the optimiser's thread: waits for the answer. */
 static bool ask(void *context, size_t count, const double *points, double *values, double *broken) {
   strut_dialogue *dialogue = context;
-  pthread_mutex_lock(&dialogue->lock);
   dialogue->question = (strut_question){count, points, values, broken};
-  dialogue->turn = TURN_CALLER;
-  pthread_cond_broadcast(&dialogue->changed);
-  while (dialogue->turn != TURN_OPTIMISER) pthread_cond_wait(&dialogue->changed, &dialogue->lock);
-  bool go_on = !dialogue->stop;
-  pthread_mutex_unlock(&dialogue->lock);
-  return go_on;
+  sem_post(&dialogue->asked);
+  await(&dialogue->answered);
+  return !dialogue->stop;
 }
 
 static void *optimise(void *context) {
   strut_dialogue *dialogue = context;
   const strut_search_asker asker = {dialogue, ask};
   dialogue->fine = strut_search_optimise(dialogue->task, &asker);
-  give_turn(dialogue, TURN_NONE);
+  dialogue->ended = true;
+  sem_post(&dialogue->asked);
   return NULL;
 }
 
@@ -192,40 +170,36 @@ strut_dialogue *strut_dialogue_begin(const strut_search_task *task) {
   strut_dialogue *dialogue = strut_allocate(1, sizeof *dialogue);
   if (!dialogue) return NULL;
   dialogue->task = task;
-  dialogue->turn = TURN_OPTIMISER;
-  if (pthread_mutex_init(&dialogue->lock, NULL) == 0) {
-    if (pthread_cond_init(&dialogue->changed, NULL) == 0) {
-      if (pthread_create(&dialogue->thread, NULL, optimise, dialogue) == 0) return dialogue;
-      pthread_cond_destroy(&dialogue->changed);
-    }
-    pthread_mutex_destroy(&dialogue->lock);
-  }
+  sem_init(&dialogue->asked, 0, 0);
+  sem_init(&dialogue->answered, 0, 0);
+  if (pthread_create(&dialogue->thread, NULL, optimise, dialogue) == 0) return dialogue;
   strut_release(dialogue);
   return NULL;
 }
 
 bool strut_dialogue_question(strut_dialogue *dialogue, strut_question *question) {
-  pthread_mutex_lock(&dialogue->lock);
-  while (dialogue->turn == TURN_OPTIMISER) pthread_cond_wait(&dialogue->changed, &dialogue->lock);
-  bool asked = dialogue->turn == TURN_CALLER;
+  if (!dialogue->pending) await(&dialogue->asked);
+  dialogue->pending = true;
   *question = dialogue->question;
-  pthread_mutex_unlock(&dialogue->lock);
-  return asked;
+  return !dialogue->ended;
 }
 
-void strut_dialogue_answer(strut_dialogue *dialogue) { give_turn(dialogue, TURN_OPTIMISER); }
+void strut_dialogue_answer(strut_dialogue *dialogue) {
+  dialogue->pending = false;
+  sem_post(&dialogue->answered);
+}
 
 bool strut_dialogue_end(strut_dialogue *dialogue) {
   strut_question question;
   if (!dialogue) return true;
   while (strut_dialogue_question(dialogue, &question)) {
-    dialogue->stop = true; /* it waits for the lock */
+    dialogue->stop = true; /* it waits for the answer */
     strut_dialogue_answer(dialogue);
   }
   pthread_join(dialogue->thread, NULL);
   bool fine = dialogue->fine;
-  pthread_cond_destroy(&dialogue->changed);
-  pthread_mutex_destroy(&dialogue->lock);
+  sem_destroy(&dialogue->asked);
+  sem_destroy(&dialogue->answered);
   strut_release(dialogue);
   return fine;
 }

@@ -1,8 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/*
+ * CMA-ES, the evolution strategy with covariance matrix adaptation (N. Hansen, The CMA evolution strategy: a tutorial,
+ * arXiv 1604.00772), with negative weights.
+ *
+ * Bounds: the strategy lives in all of space; a number beyond the box is mirrored into it, and next to each bound the
+ * map is a parabola, so that a minimum on a bound is a smooth one for the strategy. Values only have to be comparable;
+ * one that is not finite is worst.
+ */
 #include "engine/study/search/optimisers.h"
 
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -16,17 +25,19 @@ static const double MARGIN = 0.05;
 /* Widest standard deviation: beyond it mirrored points fill the box evenly. */
 static const double WIDEST = 1.0;
 static const double MOST_CONDITION = 1e14; /* of the covariance matrix */
+/* A narrower distribution ends the search, in widths of the box. */
+static const double NARROWEST = 1e-9;
 
 typedef struct ranked {
   double value;
   size_t index;
 } ranked;
 
-struct strut_cma {
+typedef struct strut_cma {
   strut_arena arena;
   gsl_rng *rng;
   size_t n, population, parents;
-  int64_t evaluations, most_evaluations, generation;
+  int64_t generation;
   /* constants of the strategy */
   double *weight; /* (population) of the best first; those of the worse half are negative */
   double mass;    /* variance effective parents */
@@ -39,17 +50,11 @@ struct strut_cma {
   /* the generation */
   double *steps, *points; /* (population, n): in the strategy's space by sigma; in the box */
   ranked *order;          /* (population) */
-  double *mean_step, *scratch, *work; /* (n); (n); (n) */
-  bool asked;
-  /* what is known */
-  double best_value, *best;
-  double point_tolerance, value_tolerance, target;
-  bool has_target;
+  double *mean_step, *scratch, *work;     /* (n); (n); (n) */
   size_t history_count, history_capacity; /* best values of generations, the latest last */
   double *history;
-  strut_cma_stop stop;
-  bool *wraps; /* (n) */
-};
+  const bool *wraps; /* (n) */
+} strut_cma;
 
 /* Maps a number of the strategy's space into [0, 1]; even about both ends, with a slope everywhere
  * continuous. Inside the margins it is the identity. */
@@ -106,7 +111,7 @@ static void choose_constants(strut_cma *cma) {
 static bool allocate(strut_cma *cma) {
   size_t n = cma->n, m = cma->population;
   double **vectors[] = {&cma->mean,      &cma->length,  &cma->sigma_path, &cma->path,
-                        &cma->mean_step, &cma->scratch, &cma->work,       &cma->best};
+                        &cma->mean_step, &cma->scratch, &cma->work};
   bool fine = true;
   for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
     *vectors[i] = strut_arena_allocate(&cma->arena, n, sizeof(double));
@@ -121,87 +126,18 @@ static bool allocate(strut_cma *cma) {
   /* As many generations as stagnation is judged by, and half as many again. */
   cma->history_capacity = 120 + 30 * n / m + 20;
   cma->history = strut_arena_allocate(&cma->arena, cma->history_capacity, sizeof *cma->history);
-  cma->wraps = strut_arena_allocate(&cma->arena, n, sizeof *cma->wraps);
   cma->rng = gsl_rng_alloc(gsl_rng_mt19937);
-  return fine && cma->wraps && cma->weight && cma->order && cma->steps && cma->points &&
-         cma->covariance && cma->axes && cma->history && cma->rng;
+  return fine && cma->weight && cma->order && cma->steps && cma->points && cma->covariance &&
+         cma->axes && cma->history && cma->rng;
 }
 
-static strut_status check_options(const strut_cma_options *options, strut_error *error) {
-  if (options->dimension < 1 || options->dimension > STRUT_CMA_MOST_NUMBERS)
-    return strut_fail(error, STRUT_USAGE, "CMA-ES searches over 1 to %d numbers, not %zu",
-                      STRUT_CMA_MOST_NUMBERS, options->dimension);
-  if (options->population == 1 || options->population == 2 || options->population == 3 ||
-      options->population > STRUT_CMA_MOST_POPULATION ||
-      options->multiple > STRUT_CMA_MOST_POPULATION)
-    return strut_fail(error, STRUT_USAGE, "the population of CMA-ES must be 4 to %d, not %zu",
-                      STRUT_CMA_MOST_POPULATION, options->population);
-  for (size_t i = 0; i < options->dimension && options->start; i++)
-    if (!(options->start[i] >= 0.0 && options->start[i] <= 1.0))
-      return strut_fail(error, STRUT_USAGE, "the start of CMA-ES must lie in the box");
-  if (options->spread < 0.0 || !isfinite(options->spread))
-    return strut_fail(error, STRUT_USAGE, "the spread of CMA-ES must be positive");
-  return STRUT_OK;
-}
-
-strut_status strut_cma_create(const strut_cma_options *options, strut_cma **cma,
-                              strut_error *error) {
-  *cma = NULL;
-  strut_status status = check_options(options, error);
-  if (status) return status;
-  strut_cma *c = strut_allocate(1, sizeof *c);
-  if (!c) return strut_no_memory(error, "");
-  size_t n = c->n = options->dimension, multiple = options->multiple ? options->multiple : 1;
-  size_t usual = 4 + (size_t)floor(3.0 * log((double)n));
-  c->population = options->population ? options->population : usual;
-  c->population = (c->population + multiple - 1) / multiple * multiple;
-  c->parents = c->population / 2;
-  c->most_evaluations = options->evaluations > 0 ? options->evaluations : INT64_MAX;
-  c->point_tolerance = options->point_tolerance > 0.0 ? options->point_tolerance : 1e-9;
-  c->value_tolerance = options->value_tolerance;
-  c->target = options->target;
-  c->has_target = options->has_target;
-  c->best_value = (double)NAN;
-  if (!allocate(c)) {
-    strut_cma_free(c);
-    return strut_no_memory(error, "");
-  }
-  choose_constants(c);
-  gsl_rng_set(c->rng, options->seed ? options->seed : UINT32_MAX); /* 0 is the default of GSL */
-  c->sigma = options->spread > 0.0 ? fmin(options->spread, WIDEST) : 0.3;
-  for (size_t i = 0; i < n; i++) {
-    double start = options->start ? options->start[i] : 0.5;
-    c->wraps[i] = options->wraps && options->wraps[i];
-    c->mean[i] = c->wraps[i] ? start : from_box(start);
-    c->covariance[i * n + i] = c->axes[i * n + i] = c->length[i] = 1.0;
-  }
-  *cma = c;
-  return STRUT_OK;
-}
-
-void strut_cma_free(strut_cma *cma) {
-  if (!cma) return;
-  gsl_rng_free(cma->rng);
-  strut_arena_free(&cma->arena);
-  strut_release(cma);
-}
-
-size_t strut_cma_population(const strut_cma *cma) { return cma->population; }
-strut_cma_stop strut_cma_stopped(const strut_cma *cma) { return cma->stop; }
-int64_t strut_cma_evaluations(const strut_cma *cma) { return cma->evaluations; }
-
-double strut_cma_deviation(const strut_cma *cma, size_t k) {
+static double deviation(const strut_cma *cma, size_t k) {
   return cma->sigma * sqrt(fmax(cma->covariance[k * cma->n + k], 0.0));
 }
 
-const double *strut_cma_best(const strut_cma *cma, double *value) {
-  *value = cma->best_value;
-  return isfinite(cma->best_value) ? cma->best : NULL;
-}
-
-const double *strut_cma_ask(strut_cma *cma) {
+static void draw_points(strut_cma *cma) {
   size_t n = cma->n;
-  for (size_t p = 0; p < cma->population && !cma->asked; p++) {
+  for (size_t p = 0; p < cma->population; p++) {
     double *step = &cma->steps[p * n];
     memset(step, 0, n * sizeof *step);
     for (size_t k = 0; k < n; k++) {
@@ -213,8 +149,6 @@ const double *strut_cma_ask(strut_cma *cma) {
       cma->points[p * n + i] = cma->wraps[i] ? y - floor(y) : into_box(y);
     }
   }
-  cma->asked = true;
-  return cma->points;
 }
 
 /* Equal values in the order of the points. */
@@ -228,11 +162,6 @@ static void rank_points(strut_cma *cma, const double *values) {
   for (size_t p = 0; p < cma->population; p++)
     cma->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
   qsort(cma->order, cma->population, sizeof *cma->order, by_value);
-  const ranked *first = &cma->order[0];
-  if (isfinite(first->value) && !(cma->best_value <= first->value)) {
-    cma->best_value = first->value;
-    memcpy(cma->best, &cma->points[first->index * cma->n], cma->n * sizeof *cma->best);
-  }
 }
 
 /* to = C^(-1/2) from. */
@@ -318,24 +247,19 @@ static bool decompose(strut_cma *cma) {
 /* Bounds what mirrored points cannot show: a distribution wider than the box. */
 static void limit_width(strut_cma *cma) {
   double widest = 0.0;
-  for (size_t i = 0; i < cma->n; i++) widest = fmax(widest, strut_cma_deviation(cma, i));
+  for (size_t i = 0; i < cma->n; i++) widest = fmax(widest, deviation(cma, i));
   if (widest > WIDEST) cma->sigma *= WIDEST / widest;
 }
 
 static double median(const double *values, size_t count, double *sorted) {
   memcpy(sorted, values, count * sizeof *sorted);
-  for (size_t i = 1; i < count; i++) {
-    double value = sorted[i];
-    size_t k = i;
-    for (; k > 0 && sorted[k - 1] > value; k--) sorted[k] = sorted[k - 1];
-    sorted[k] = value;
-  }
+  gsl_sort(sorted, 1, count);
   return sorted[count / 2];
 }
 
 static bool is_narrow(const strut_cma *cma) {
   for (size_t i = 0; i < cma->n; i++)
-    if (strut_cma_deviation(cma, i) > cma->point_tolerance) return false;
+    if (deviation(cma, i) > NARROWEST) return false;
   return true;
 }
 
@@ -348,7 +272,7 @@ static bool is_flat(const strut_cma *cma) {
     low = fmin(low, cma->history[i]);
     high = fmax(high, cma->history[i]);
   }
-  return low == high || high - low <= cma->value_tolerance; /* also where all are infinite */
+  return low == high; /* also where all are infinite */
 }
 
 /* Have the medians of the first and the last twenty generations of a long stretch come no closer to a
@@ -368,20 +292,10 @@ static void remember(strut_cma *cma) {
   cma->history[cma->history_count++] = cma->order[0].value;
 }
 
-static strut_cma_stop find_stop(const strut_cma *cma, bool decomposed) {
-  if (cma->has_target && cma->best_value <= cma->target) return STRUT_CMA_TARGET;
-  if (cma->evaluations >= cma->most_evaluations) return STRUT_CMA_EVALUATIONS;
-  if (!decomposed) return STRUT_CMA_CONDITION;
-  if (is_narrow(cma)) return STRUT_CMA_POINT;
-  if (is_flat(cma)) return STRUT_CMA_FLAT;
-  return is_stagnant(cma) ? STRUT_CMA_STAGNANT : STRUT_CMA_GOES_ON;
-}
-
-void strut_cma_tell(strut_cma *cma, const double *values) {
+/* Adapts to the values of a generation. False: it cannot go on, or need not. */
+static bool learn(strut_cma *cma, const double *values) {
   bool decomposed = true;
-  strut_cma_ask(cma);
   rank_points(cma, values);
-  cma->evaluations += (int64_t)cma->population;
   remember(cma);
   if (isfinite(cma->order[0].value)) { /* else nothing is known of this generation */
     double open = move_mean(cma);
@@ -390,6 +304,32 @@ void strut_cma_tell(strut_cma *cma, const double *values) {
     limit_width(cma);
   }
   cma->generation++;
-  cma->asked = false;
-  cma->stop = find_stop(cma, decomposed);
+  return decomposed && !is_narrow(cma) && !is_flat(cma) && !is_stagnant(cma);
+}
+
+bool strut_search_optimise_by_cma(const strut_search_task *task, const strut_search_asker *asker,
+                                  size_t population, double spread) {
+  size_t n = task->dimension;
+  strut_cma cma = {.n = n,
+                   .population = population,
+                   .parents = population / 2,
+                   .sigma = spread,
+                   .wraps = task->wraps};
+  double *values = strut_arena_allocate(&cma.arena, population, sizeof *values);
+  bool fine = values && allocate(&cma), more = fine;
+  if (fine) {
+    choose_constants(&cma);
+    gsl_rng_set(cma.rng, task->seed ? task->seed : UINT32_MAX); /* 0 is the default of GSL */
+    for (size_t i = 0; i < n; i++) {
+      cma.mean[i] = cma.wraps[i] ? task->start[i] : from_box(task->start[i]);
+      cma.covariance[i * n + i] = cma.axes[i * n + i] = cma.length[i] = 1.0;
+    }
+  }
+  while (more) {
+    draw_points(&cma);
+    more = asker->ask(asker->context, population, cma.points, values, NULL) && learn(&cma, values);
+  }
+  if (cma.rng) gsl_rng_free(cma.rng);
+  strut_arena_free(&cma.arena);
+  return fine;
 }

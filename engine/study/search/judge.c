@@ -13,20 +13,14 @@
 /* Numbers on the stack of a program and its columns, at most: the reader bounds the text. */
 enum { MOST = 1024 };
 
-/* Rank of a column among those with numbers, or among those with words. */
-static size_t rank_of(const strut_sweep_plan *plan, size_t column) {
-  size_t rank = 0;
-  for (size_t i = 0; i < column; i++) rank += plan->columns[i].word == plan->columns[column].word;
-  return rank;
-}
-
 /* The columns of a program become ranks, once the table is known. */
 static bool resolve(const strut_sweep_plan *plan, strut_search_formula *formula) {
   if (formula->program.length > MOST || formula->program.depth > MOST) return false;
   for (size_t i = 0; i < formula->program.length; i++) {
     strut_instruction *instruction = &formula->program.program[i];
     if (instruction->operation != STRUT_OPERATION_COLUMN) continue;
-    instruction->column.item = (int32_t)rank_of(plan, (size_t)instruction->column.item);
+    instruction->column.item =
+        (int32_t)strut_slot_place(plan->columns, (size_t)instruction->column.item);
   }
   return true;
 }
@@ -38,7 +32,7 @@ strut_status strut_search_add_columns(strut_sweep_plan *plan, strut_error *error
   for (size_t i = 0; i < search->condition_count && fine; i++) {
     strut_search_condition *condition = &search->conditions[i];
     if (condition->word)
-      condition->column = rank_of(plan, condition->column);
+      condition->column = strut_slot_place(plan->columns, condition->column);
     else
       fine = resolve(plan, &condition->left) && resolve(plan, &condition->right);
   }
@@ -170,10 +164,11 @@ static double goal_along(const strut_sweep_plan *plan, const double *numbers, si
                          double way, double *moved) {
   const strut_study_search *search = plan->study->search;
   memcpy(moved, numbers, plan->column_count * sizeof *moved);
-  moved[rank_of(plan, search->column + variable)] += way;
+  moved[strut_slot_place(plan->columns, search->column + variable)] += way;
   for (size_t j = 0; j < plan->derived_count; j++) {
-    size_t at = rank_of(plan, plan->first_derivative) + 2 * (j * plan->by_count + variable);
-    moved[rank_of(plan, plan->derived[j])] += way * numbers[at];
+    size_t at = strut_slot_place(plan->columns, plan->first_derivative) +
+                2 * (j * plan->by_count + variable);
+    moved[strut_slot_place(plan->columns, plan->derived[j])] += way * numbers[at];
   }
   return evaluate(&search->goal, moved);
 }
@@ -186,7 +181,8 @@ strut_status strut_search_gradient(const strut_sweep_plan *plan, strut_slots *sl
   double *numbers = strut_allocate(2 * plan->column_count, sizeof *numbers);
   bool there = strut_slots_get(slots, point->worst, &slot) && !slot.status;
   if (!numbers) return strut_no_memory(error, "");
-  size_t count = rank_of(plan, plan->column_count - 1) + 1; /* the last one is a number */
+  size_t count =
+      strut_slot_place(plan->columns, plan->column_count - 1) + 1; /* the last one is a number */
   if (there) memcpy(numbers, slot.numbers, count * sizeof *numbers);
   for (size_t i = 0; i < search->variable_count; i++) {
     const strut_search_variable *variable = &search->variables[i];

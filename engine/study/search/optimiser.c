@@ -11,26 +11,11 @@
 /* Generations are multiples of this, on any machine, so that they fill processors. */
 enum { SIDE_BY_SIDE = 8 };
 
-/* CMA-ES: asks for a generation at a time. */
-static bool optimise_by_cma(const strut_search_task *task, const strut_search_asker *asker) {
-  const strut_cma_options options = {.dimension = task->dimension,
-                                     .start = task->start,
-                                     .multiple = SIDE_BY_SIDE,
-                                     .seed = task->seed,
-                                     .wraps = task->wraps};
-  strut_cma *cma = NULL;
-  if (strut_cma_create(&options, &cma, NULL)) return false;
-  size_t count = strut_cma_population(cma);
-  double *values = strut_allocate(count, sizeof *values);
-  bool more = values != NULL;
-  while (more && !strut_cma_stopped(cma)) {
-    more = asker->ask(asker->context, count, strut_cma_ask(cma), values, NULL);
-    if (more) strut_cma_tell(cma, values);
-  }
-  bool fine = values != NULL;
-  strut_release(values);
-  strut_cma_free(cma);
-  return fine;
+static const double SPREAD = 0.3; /* of CMA-ES at the start */
+
+static size_t generation_of(size_t dimension) {
+  size_t usual = 4 + (size_t)floor(3.0 * log((double)dimension));
+  return (usual + SIDE_BY_SIDE - 1) / SIDE_BY_SIDE * SIDE_BY_SIDE;
 }
 
 bool strut_search_has_generations(strut_search_method method) {
@@ -39,7 +24,8 @@ bool strut_search_has_generations(strut_search_method method) {
 
 bool strut_search_optimise(const strut_search_task *task, const strut_search_asker *asker) {
   switch (task->method) {
-    case STRUT_SEARCH_CMA: return optimise_by_cma(task, asker);
+    case STRUT_SEARCH_CMA:
+      return strut_search_optimise_by_cma(task, asker, generation_of(task->dimension), SPREAD);
     case STRUT_SEARCH_NSGA2: return strut_search_optimise_by_nsga2(task, asker);
     case STRUT_SEARCH_CRS2:
     case STRUT_SEARCH_DIRECT:

@@ -20,8 +20,6 @@ static const char *const words[] = {
 #define WORD(name, word) word,
     STRUT_SENSITIVITY_MEASURES(WORD)};
 
-const char *strut_sensitivity_word(strut_sensitivity_measure measure) { return words[measure]; }
-
 /* What is analysed: a column, or a condition on it, which is 0 or 1. */
 typedef struct target {
   const char *name;
@@ -49,17 +47,11 @@ typedef struct analysis {
   strut_arena scratch;
 } analysis;
 
-static size_t find_column(const strut_slot_column *columns, size_t count, const char *name) {
-  size_t i = 0;
-  while (i < count && strcmp(columns[i].name, name) != 0) i++;
-  return i;
-}
-
 bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
                              size_t count, const char **missing) {
   const strut_study_sensitivity *sensitivity = &study->sensitivity;
   for (size_t i = 0; i < sensitivity->of_count; i++)
-    if (find_column(columns, count, sensitivity->of[i]) == count) {
+    if (strut_slot_named(columns, count, sensitivity->of[i]) == count) {
       *missing = sensitivity->of[i];
       return false;
     }
@@ -126,9 +118,9 @@ static bool list_targets(analysis *self) {
   self->targets =
       strut_arena_allocate(&self->scratch, self->target_room + 1, sizeof *self->targets);
   for (size_t i = 0; i < self->s->of_count && fine && self->targets; i++) {
-    target t = {.column = find_column(self->columns, self->column_count, self->s->of[i])};
+    target t = {.column = strut_slot_named(self->columns, self->column_count, self->s->of[i])};
     const strut_slot_column *column = &self->columns[t.column];
-    for (size_t k = 0; k < t.column; k++) t.place += self->columns[k].word == column->word;
+    t.place = strut_slot_place(self->columns, t.column);
     if (column->word) {
       fine = add_texts(self, t);
       continue;
@@ -175,36 +167,78 @@ static strut_estimate scaled(strut_estimate e, double factor) {
                           fmax(low, high)};
 }
 
-/* "m/s/(N/m)", "m/kg", "1/s" */
-static const char *quotient_unit(analysis *self, const char *of, const char *by) {
-  bool several = strpbrk(by, "/ ") != NULL;
-  if (strcmp(by, "1") == 0) return of;
-  return strut_arena_format(&self->result->arena, several ? "%s/(%s)" : "%s/%s", of, by);
-}
-
+/* What the sweep has found at the medians. */
 static bool add_derivatives(analysis *self, int64_t first, const target *t) {
-  const double *f = self->values;
-  const char *of = self->columns[t->column].unit;
+  const strut_slot_column *columns = self->columns;
+  strut_result_slot slot;
+  bool there = strut_slots_get(self->slots, first, &slot) && slot.status == STRUT_OK;
   for (size_t k = 0; k < self->axis->column_count; k++) {
     const strut_study_column *column = &self->axis->columns[k];
-    int64_t at = strut_sensitivity_moved(k, 0);
-    const double *x = column->number, moved[] = {f[at], f[at + 1], f[at + 2], f[at + 3]};
-    size_t used = 0;
-    for (int i = 0; i < 4; i++) used += isfinite(moved[i]) ? 1 : 0;
-    strut_estimate d = strut_sensitivity_derivative(moved, x[at] - x[at + 1], x[at + 2] - x[at + 3],
-                                                    self->s->accuracy * fabs(f[0]));
-    strut_sensitivity_row row = {
-        .point = first, .of = t->name, .parameter = column->name, .used = used};
-    row.measure = STRUT_SENSITIVITY_DERIVATIVE;
-    row.estimate = d;
-    row.unit = quotient_unit(self, of, column->unit);
-    if (!add_row(self, row)) return false;
+    const char *name = strut_arena_format(&self->scratch, "%s.d.%s", t->name, column->name);
+    size_t at = name ? strut_slot_named(columns, self->column_count, name) : self->column_count;
+    if (!name) return false;
+    if (at + 2 >= self->column_count) continue; /* a result of the check, which is no function */
+    strut_sensitivity_row row = {.point = first,
+                                 .of = t->name,
+                                 .parameter = column->name,
+                                 .measure = STRUT_SENSITIVITY_DERIVATIVE,
+                                 .estimate = MISSING,
+                                 .unit = columns[at].unit};
+    row.verdict = strut_derivative_words(STRUT_DERIVATIVE_UNKNOWN);
+    if (there) {
+      const double *found = &slot.numbers[strut_slot_place(columns, at)];
+      row.estimate = (strut_estimate){found[0], found[1], found[0] - found[1], found[0] + found[1]};
+      row.verdict = strut_arena_format(&self->result->arena, "%s",
+                                       slot.words[strut_slot_place(columns, at + 2)]);
+    }
+    row.used = isfinite(row.estimate.value) ? 2 : 0;
+    if (!row.verdict || !add_row(self, row)) return false;
     row.measure = STRUT_SENSITIVITY_ELASTICITY;
-    row.estimate = f[0] != 0.0 ? scaled(d, x[0] / f[0]) : MISSING;
+    row.estimate = self->values[0] != 0.0
+                       ? scaled(row.estimate, column->number[0] / self->values[0])
+                       : MISSING;
     row.unit = "1";
     if (!add_row(self, row)) return false;
   }
   return true;
+}
+
+static const double NORMAL_95 = 1.959963984540054;
+
+/* Standard deviation of the values themselves; NANs are left out. */
+static double deviation_of(const double *values, size_t count) {
+  double sum = 0.0, square = 0.0;
+  size_t known = 0;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(values[i])) sum += values[i], known++;
+  if (known < 2) return (double)NAN;
+  double mean = sum / (double)known;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(values[i])) square += (values[i] - mean) * (values[i] - mean);
+  return sqrt(square / (double)(known - 1));
+}
+
+/* Mean of values, and its standard error as of independent ones; NANs are left out. */
+static strut_estimate mean_of(const double *values, size_t count) {
+  double sum = 0.0, deviation = deviation_of(values, count);
+  size_t known = 0;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(values[i])) sum += values[i], known++;
+  if (!known) return MISSING;
+  double mean = sum / (double)known, error = deviation / sqrt((double)known);
+  return (strut_estimate){mean, error, mean - NORMAL_95 * error, mean + NORMAL_95 * error};
+}
+
+/* Share of ones among values that are 0 or 1, with Wilson's interval; NANs are left out. */
+static strut_estimate share_of(const double *values, size_t count) {
+  double n = 0.0, ones = 0.0, z = NORMAL_95;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(values[i])) n += 1.0, ones += values[i] != 0.0;
+  if (n == 0.0) return MISSING;
+  double p = ones / n, scale = 1.0 + z * z / n, middle = (p + z * z / (2.0 * n)) / scale;
+  double half = z * sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
+  return (strut_estimate){p, sqrt(p * (1.0 - p) / n), fmax(0.0, middle - half),
+                          fmin(1.0, middle + half)};
 }
 
 /* Mean and deviation, or the share, of the independent samples A and B. */
@@ -220,16 +254,16 @@ static bool add_statistics(analysis *self, int64_t first, const target *t) {
   strut_sensitivity_row row = {.point = first, .of = t->name, .unit = "1", .used = used};
   if (is_condition(t)) {
     row.measure = STRUT_SENSITIVITY_SHARE;
-    row.estimate = strut_sensitivity_share(self->design, n);
+    row.estimate = share_of(self->design, n);
     return add_row(self, row);
   }
   row.unit = self->columns[t->column].unit;
   row.measure = STRUT_SENSITIVITY_MEAN;
-  row.estimate = strut_sensitivity_mean(self->design, n);
+  row.estimate = mean_of(self->design, n);
   if (!add_row(self, row)) return false;
   row.measure = STRUT_SENSITIVITY_DEVIATION;
   row.estimate = MISSING;
-  row.estimate.value = strut_sensitivity_deviation(self->design, n);
+  row.estimate.value = deviation_of(self->design, n);
   return add_row(self, row);
 }
 
@@ -305,16 +339,10 @@ static const char *axis_name(const strut_result_object *of, size_t i) {
 
 static strut_value axis_value(const strut_result_object *of, size_t i) {
   const strut_sensitivity_result *result = of->outer->at;
-  const strut_slot_column *columns = strut_slots_description_of(result->slots)->columns;
   strut_result_slot row;
-  strut_value value = STRUT_VALUE_AS_TEXT(NULL);
-  size_t place = 0;
-  for (size_t k = 0; k < i; k++) place += columns[k].word == columns[i].word;
-  if (strut_slots_get(result->slots, ((const strut_sensitivity_row *)of->at)->point, &row))
-    value = columns[i].word ? STRUT_VALUE_AS_TEXT(row.words[place])
-                            : STRUT_VALUE_AS_NUMBER(row.numbers[place]);
-  value.own_unit = strcmp(columns[i].unit, "1") == 0 ? "" : columns[i].unit;
-  return value;
+  return strut_slots_get(result->slots, ((const strut_sensitivity_row *)of->at)->point, &row)
+             ? strut_slot_value(strut_slots_description_of(result->slots)->columns, &row, i)
+             : STRUT_VALUE_AS_TEXT(NULL);
 }
 
 static double finite(double value) { return isfinite(value) ? value : (double)NAN; }
@@ -329,8 +357,7 @@ static bool is_shown(const strut_result_object *of, size_t i) {
 #define EFFECT(X)                                                                                  \
   X(NULL, "", MAP(other_columns(study), axis_name, axis_value), "", .column = {""}, .label = {""}) \
   X(NULL, "", TEXT(r->of), "", .column = {"of"}, .label = {"of"})                                  \
-  X(NULL, "", TEXT(strut_sensitivity_word(r->measure)), "", .column = {"measure"},                 \
-    .label = {"measure"})                                                                          \
+  X(NULL, "", TEXT(words[r->measure]), "", .column = {"measure"}, .label = {"measure"})            \
   X(NULL, "", TEXT(r->parameter), "", .column = {"parameter"}, .label = {"parameter"})             \
   X(NULL, "", NUMBER(finite(e->value)), "", .column = {"value"})                                   \
   X(NULL, "", CALLED("value", r->unit, e->value), "", .label = {"value"})                          \
@@ -339,7 +366,8 @@ static bool is_shown(const strut_result_object *of, size_t i) {
   X(NULL, "", NUMBER(finite(e->low)), "", .column = {"low"}, .label = {"low"})                     \
   X(NULL, "", NUMBER(finite(e->high)), "", .column = {"high"}, .label = {"high"})                  \
   X(NULL, "", TEXT(r->unit &&strcmp(r->unit, "1") != 0 ? r->unit : ""), "", .column = {"unit"})    \
-  X(NULL, "", COUNT(r->used), "", .column = {"used"}, .label = {"used"})
+  X(NULL, "", COUNT(r->used), "", .column = {"used"}, .label = {"used"})                           \
+  X(NULL, "", TEXT(r->verdict), "", .column = {"verdict"}, .label = {"verdict"})
 STRUT_VALUES_HERE(
     effect_values, EFFECT,
     const strut_study *study = ((const strut_sensitivity_result *)of->outer->at)->study;
@@ -357,7 +385,6 @@ strut_status strut_sensitivity_write(const strut_sensitivity_result *result, con
 }
 
 enum { BOOTSTRAPS = 500 };
-static const double NORMAL_95 = 1.959963984540054;
 
 /* One base sample after the other, without missing ones, and less their mean. */
 typedef struct samples {
@@ -462,46 +489,4 @@ strut_status strut_sensitivity_indices(const double *result, size_t all, size_t 
   }
   strut_arena_free(&arena);
   return ready ? STRUT_OK : STRUT_NO_MEMORY;
-}
-
-strut_estimate strut_sensitivity_mean(const double *values, size_t count) {
-  double sum = 0.0, deviation = strut_sensitivity_deviation(values, count);
-  size_t known = 0;
-  for (size_t i = 0; i < count; i++)
-    if (isfinite(values[i])) sum += values[i], known++;
-  if (!known) return MISSING;
-  double mean = sum / (double)known, error = deviation / sqrt((double)known);
-  return (strut_estimate){mean, error, mean - NORMAL_95 * error, mean + NORMAL_95 * error};
-}
-
-double strut_sensitivity_deviation(const double *values, size_t count) {
-  double sum = 0.0, square = 0.0;
-  size_t known = 0;
-  for (size_t i = 0; i < count; i++)
-    if (isfinite(values[i])) sum += values[i], known++;
-  if (known < 2) return (double)NAN;
-  double mean = sum / (double)known;
-  for (size_t i = 0; i < count; i++)
-    if (isfinite(values[i])) square += (values[i] - mean) * (values[i] - mean);
-  return sqrt(square / (double)(known - 1));
-}
-
-strut_estimate strut_sensitivity_share(const double *values, size_t count) {
-  double n = 0.0, ones = 0.0, z = NORMAL_95;
-  for (size_t i = 0; i < count; i++)
-    if (isfinite(values[i])) n += 1.0, ones += values[i] != 0.0;
-  if (n == 0.0) return MISSING;
-  double p = ones / n, scale = 1.0 + z * z / n, middle = (p + z * z / (2.0 * n)) / scale;
-  double half = z * sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
-  return (strut_estimate){p, sqrt(p * (1.0 - p) / n), fmax(0.0, middle - half),
-                          fmin(1.0, middle + half)};
-}
-
-strut_estimate strut_sensitivity_derivative(const double result[4], double width, double half_width,
-                                            double noise) {
-  double whole = (result[0] - result[1]) / width, half = (result[2] - result[3]) / half_width;
-  double error = fmax(fabs(whole - half), sqrt(2.0) * noise / fabs(half_width));
-  if (!isfinite(half)) return MISSING;
-  if (!isfinite(error)) return (strut_estimate){half, (double)NAN, (double)NAN, (double)NAN};
-  return (strut_estimate){half, error, half - error, half + error};
 }

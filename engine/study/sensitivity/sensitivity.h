@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/base/derivatives.h"
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/output/draw/chart.h"
@@ -34,21 +35,6 @@ typedef struct strut_estimate {
 STRUT_API strut_status strut_sensitivity_indices(const double *result, size_t samples, size_t count,
                                                  uint32_t seed, strut_estimate *first,
                                                  strut_estimate *total, size_t *used);
-
-/** Mean of values (count), and its standard error as of independent ones; NANs are left out. */
-STRUT_API strut_estimate strut_sensitivity_mean(const double *values, size_t count);
-/** Standard deviation of the values themselves; NANs are left out. */
-STRUT_API double strut_sensitivity_deviation(const double *values, size_t count);
-/** Share of ones among values (count) that are 0 or 1, with Wilson's interval; NANs are left out. */
-STRUT_API strut_estimate strut_sensitivity_share(const double *values, size_t count);
-
-/**
- * Derivative from results at a step up and down, and at half a step up and down, whose parameters differ
- * by width and half_width. The value is that of half the step; the error the larger of the difference of
- * both, which curvature and kinks cause, and of what `noise`, the error of each result, causes.
- */
-STRUT_API strut_estimate strut_sensitivity_derivative(const double result[4], double width,
-                                                      double half_width, double noise);
 
 /* The sensitivity analysis of a study, from the rows of its points: see scene/sensitivity_design.h.
  *
@@ -81,7 +67,8 @@ typedef struct strut_sensitivity_row {
   const char *parameter; /* NULL: of all together */
   const char *unit;      /* "1": none */
   strut_estimate estimate;
-  size_t used; /* base samples, samples or points that it is made of */
+  size_t used;         /* base samples, samples or points that it is made of */
+  const char *verdict; /* of a derivative, "differentiable", ...; else NULL */
 } strut_sensitivity_row;
 
 typedef struct strut_sensitivity_result {
@@ -95,8 +82,6 @@ typedef struct strut_sensitivity_result {
 /** The list "effects" of a strut_sensitivity_result, while its study and slots are there. */
 STRUT_API extern const strut_value_rows strut_sensitivity_values;
 
-STRUT_API const char *strut_sensitivity_word(strut_sensitivity_measure measure);
-
 /** Does every result of the analysis name a column? If not, *missing is the first that does not. */
 STRUT_API bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
                                        size_t count, const char **missing);
@@ -108,7 +93,7 @@ STRUT_API strut_status strut_sensitivity_find(const strut_study *study, strut_sl
                                               strut_sensitivity_result *result, strut_error *error);
 /**
  * Writes directory/sensitivity.csv: the other axes, of, measure, parameter, value, error, low, high, unit,
- * used.
+ * used, verdict.
  */
 STRUT_API strut_status strut_sensitivity_write(const strut_sensitivity_result *result,
                                                const char *directory, strut_error *error);

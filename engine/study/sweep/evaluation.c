@@ -119,6 +119,14 @@ strut_status strut_goals_stiffness(const strut_study *study, const strut_model *
   return STRUT_OK;
 }
 
+const strut_mode *strut_elastic_mode(const strut_modes *modes, size_t i) {
+  for (size_t k = 0; k < modes->count; k++)
+    if ((modes->list[k].kind == STRUT_MODE_ELASTIC || modes->list[k].kind == STRUT_MODE_UNKNOWN) &&
+        i-- == 0)
+      return &modes->list[k];
+  return NULL;
+}
+
 /* Maximum number of cached structures; beyond that each point searches for itself. */
 enum { MOST_KEPT = 256 };
 static const double NEAR = 0.1; /* of the structure's size */

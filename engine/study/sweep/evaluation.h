@@ -7,6 +7,7 @@
 
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
+#include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"
 
 /* How far a point is from what a study wants: a shape, a curve of force over displacement; and what a
@@ -37,6 +38,9 @@ double strut_goals_curve_distance(const strut_study *study, const strut_path *pa
 /** Stiffness at the study's node along its direction, at the equilibrium q [N/m]; NAN: none. */
 strut_status strut_goals_stiffness(const strut_study *study, const strut_model *model,
                                    const double *positions, double *stiffness, strut_error *error);
+
+/** The i-th lowest elastic mode, or NULL; unknown ones count. */
+const strut_mode *strut_elastic_mode(const strut_modes *modes, size_t i);
 
 /* Equilibria of a study's scenes, found once for all points with the same statics.
  *

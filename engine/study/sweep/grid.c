@@ -110,16 +110,12 @@ static int64_t stride_of(const strut_study *study, size_t axis) {
 
 static strut_status find_column(strut_refinement *refinement, strut_error *error) {
   const strut_sweep_plan *plan = refinement->plan;
-  size_t words = 0, numbers = 0;
-  for (size_t i = 0; i < plan->column_count; i++) {
-    const strut_slot_column *column = &plan->columns[i];
-    if (strcmp(column->name, plan->study->refine.where) == 0) {
-      refinement->word = column->word;
-      refinement->cell = column->word ? words : numbers;
-      return STRUT_OK;
-    }
-    words += column->word;
-    numbers += !column->word;
+  const size_t column =
+      strut_slot_named(plan->columns, plan->column_count, plan->study->refine.where);
+  if (column < plan->column_count) {
+    refinement->word = plan->columns[column].word;
+    refinement->cell = strut_slot_place(plan->columns, column);
+    return STRUT_OK;
   }
   return strut_fail(error, STRUT_BAD_SCENE,
                     "refine: the table has no column '%.60s'; 'keep' chooses the columns",

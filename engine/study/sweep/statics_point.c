@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Points of a study that computes what is at rest: the columns, and their cells by the functions of the
  * commands. */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
 #include "engine/scene/things.h"
@@ -76,18 +75,8 @@ static double count_modes(const strut_modes *modes, strut_mode_kind kind) {
   return count;
 }
 
-/* The i-th lowest elastic mode, or NULL; unknown ones count. */
-static const strut_mode *elastic_mode(const strut_modes *modes, size_t i) {
-  for (size_t k = 0; k < modes->count; k++)
-    if ((modes->list[k].kind == STRUT_MODE_ELASTIC || modes->list[k].kind == STRUT_MODE_UNKNOWN) &&
-        i-- == 0)
-      return &modes->list[k];
-  return NULL;
-}
-
 static double frequency_of(const strut_mode *mode) {
-  static const double turn = 6.283185307179586;
-  return mode ? mode->angular_frequency / turn : (double)NAN;
+  return mode ? mode->angular_frequency / STRUT_TAU : (double)NAN;
 }
 
 static bool is_limit(const strut_path_event *event) {
@@ -130,95 +119,81 @@ typedef enum column_shape {
   WORDS
 } column_shape;
 
-/* Columns of each computation: word, name, unit, shape, value of a number (the i-th). */
-#define EQUILIBRIA_COLUMNS(X)                                                                      \
-  X(STABLE, "stable_count", "1", NUMBER, (double)result->stable_count)                             \
-  X(FOUND, "equilibrium_count", "1", NUMBER, (double)result->equilibria.count)                     \
-  X(STATES, "state", "1", WORDS, (double)NAN)                                                      \
-  X(ENERGIES, "energy", "J", NUMBERS, state_energy(result, i))                                     \
-  X(BARRIERS, "barrier", "J", NUMBERS, state_barrier(result, i))                                   \
-  X(STARTS, "starts", "1", NUMBER, (double)result->equilibria.starts)                              \
-  X(MISSED, "missed_probability", "1", NUMBER, result->equilibria.missed.probability)              \
-  X(LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(result))                         \
-  X(SHAPE, "shape_distance", "m", NUMBER, nearest_shape(result))
-#define MODES_COLUMNS(X)                                                                           \
-  X(AT, "at", "1", WORD, (double)NAN)                                                              \
-  X(FREQUENCIES, "frequency", "Hz", NUMBERS, frequency_of(elastic_mode(&result->modes, i)))        \
-  X(DAMPING_RATIOS, "damping_ratio", "1", NUMBERS,                                                 \
-    elastic_mode(&result->modes, i) ? elastic_mode(&result->modes, i)->damping_ratio               \
-                                    : (double)NAN)                                                 \
-  X(MODE_COUNTS, "rigid_body_modes", "1", NUMBER, count_modes(&result->modes, STRUT_MODE_RIGID))   \
-  X(MODE_COUNTS, "mechanism_modes", "1", NUMBER,                                                   \
+/* The columns: computation, word, name, unit (NULL: that of a path's parameter), shape, value of a number (the i-th). */
+#define COLUMN_TABLE(X)                                                                            \
+  X(EQUILIBRIA, STABLE, "stable_count", "1", NUMBER, (double)result->stable_count)                 \
+  X(EQUILIBRIA, FOUND, "equilibrium_count", "1", NUMBER, (double)result->equilibria.count)         \
+  X(EQUILIBRIA, STATES, "state", "1", WORDS, (double)NAN)                                          \
+  X(EQUILIBRIA, ENERGIES, "energy", "J", NUMBERS, state_energy(result, i))                         \
+  X(EQUILIBRIA, BARRIERS, "barrier", "J", NUMBERS, state_barrier(result, i))                       \
+  X(EQUILIBRIA, STARTS, "starts", "1", NUMBER, (double)result->equilibria.starts)                  \
+  X(EQUILIBRIA, MISSED, "missed_probability", "1", NUMBER, result->equilibria.missed.probability)  \
+  X(EQUILIBRIA, LOWEST_BARRIER, "lowest_barrier", "J", NUMBER, lowest_barrier(result))             \
+  X(EQUILIBRIA, SHAPE, "shape_distance", "m", NUMBER, nearest_shape(result))                       \
+  X(MODES, AT, "at", "1", WORD, (double)NAN)                                                       \
+  X(MODES, FREQUENCIES, "frequency", "Hz", NUMBERS,                                                \
+    frequency_of(strut_elastic_mode(&result->modes, i)))                                           \
+  X(MODES, DAMPING_RATIOS, "damping_ratio", "1", NUMBERS,                                          \
+    strut_elastic_mode(&result->modes, i) ? strut_elastic_mode(&result->modes, i)->damping_ratio   \
+                                          : (double)NAN)                                           \
+  X(MODES, MODE_COUNTS, "rigid_body_modes", "1", NUMBER,                                           \
+    count_modes(&result->modes, STRUT_MODE_RIGID))                                                 \
+  X(MODES, MODE_COUNTS, "mechanism_modes", "1", NUMBER,                                            \
     count_modes(&result->modes, STRUT_MODE_MECHANISM))                                             \
-  X(MODE_COUNTS, "unstable_modes", "1", NUMBER, count_modes(&result->modes, STRUT_MODE_UNSTABLE))  \
-  X(CONDITION, "condition", "1", NUMBER, result->modes.condition)                                  \
-  X(STIFFNESS, "stiffness", "N/m", NUMBER, result->stiffness)                                      \
-  X(SHAPE, "shape_distance", "m", NUMBER, shape_distance(result, result->modes.q))
-#define RIGIDITY_COLUMNS(X)                                                                        \
-  X(RANK, "rank", "1", NUMBER, (double)result->rigidity.spaces.rank)                               \
-  X(SELF_STRESS, "self_stress_count", "1", NUMBER, (double)result->rigidity.states.count)          \
-  X(MECHANISMS, "mechanism_count", "1", NUMBER, (double)result->rigidity.mechanisms.count)         \
-  X(MECHANISM_KINDS, "rigid_body", "1", NUMBER, (double)result->rigidity.mechanisms.rigid_body)    \
-  X(MECHANISM_KINDS, "infinitesimal", "1", NUMBER,                                                 \
+  X(MODES, MODE_COUNTS, "unstable_modes", "1", NUMBER,                                             \
+    count_modes(&result->modes, STRUT_MODE_UNSTABLE))                                              \
+  X(MODES, CONDITION, "condition", "1", NUMBER, result->modes.condition)                           \
+  X(MODES, STIFFNESS, "stiffness", "N/m", NUMBER, result->stiffness)                               \
+  X(MODES, SHAPE, "shape_distance", "m", NUMBER, shape_distance(result, result->modes.q))          \
+  X(RIGIDITY, RANK, "rank", "1", NUMBER, (double)result->rigidity.spaces.rank)                     \
+  X(RIGIDITY, SELF_STRESS, "self_stress_count", "1", NUMBER,                                       \
+    (double)result->rigidity.states.count)                                                         \
+  X(RIGIDITY, MECHANISMS, "mechanism_count", "1", NUMBER,                                          \
+    (double)result->rigidity.mechanisms.count)                                                     \
+  X(RIGIDITY, MECHANISM_KINDS, "rigid_body", "1", NUMBER,                                          \
+    (double)result->rigidity.mechanisms.rigid_body)                                                \
+  X(RIGIDITY, MECHANISM_KINDS, "infinitesimal", "1", NUMBER,                                       \
     (double)result->rigidity.mechanisms.infinitesimal)                                             \
-  X(MECHANISM_KINDS, "finite", "1", NUMBER, (double)result->rigidity.mechanisms.finite)            \
-  X(MECHANISM_KINDS, "undecided", "1", NUMBER, (double)result->rigidity.mechanisms.undecided)      \
-  X(SUPER_STABLE, "super_stable", "1", NUMBER, super_stability(&result->rigidity))                 \
-  X(LABEL, "label", "1", WORD, (double)NAN)                                                        \
-  X(RESIDUAL, "residual", "N", NUMBER, result->rigidity.residual)
-#define PATH_COLUMNS(X)                                                                            \
-  X(LIMIT, "limit_factor", NULL, NUMBER, first_factor(&result->path, is_limit))                    \
-  X(BIFURCATION, "bifurcation_factor", NULL, NUMBER, first_factor(&result->path, is_bifurcation))  \
-  X(CRITICAL, "critical_factor", NULL, NUMBER, first_factor(&result->path, loses_stability))       \
-  X(LAST_FACTOR, "last_factor", NULL, NUMBER, last_factor(&result->path))                          \
-  X(PATH_EVENTS, "event_count", "1", NUMBER, (double)result->path.event_count)                     \
-  X(END, "end", "1", WORD, (double)NAN)                                                            \
-  X(CURVE, "curve_distance", "N", NUMBER, strut_goals_curve_distance(result->study, &result->path))
-#define FORM_COLUMNS(X)                                                                            \
-  X(MOVED, "moved", "m", NUMBER, result->form.moved)                                               \
-  X(RESIDUAL, "residual", "N", NUMBER, result->form.residual)                                      \
-  X(DENSITY_CHANGE, "density_change", "1", NUMBER, result->form.density_change)                    \
-  X(LEAST_TENSION, "least_tension", "N", NUMBER, result->form.least_tension)                       \
-  X(LARGEST_FORCE, "largest_force", "N", NUMBER, result->form.largest_force)
+  X(RIGIDITY, MECHANISM_KINDS, "finite", "1", NUMBER, (double)result->rigidity.mechanisms.finite)  \
+  X(RIGIDITY, MECHANISM_KINDS, "undecided", "1", NUMBER,                                           \
+    (double)result->rigidity.mechanisms.undecided)                                                 \
+  X(RIGIDITY, SUPER_STABLE, "super_stable", "1", NUMBER, super_stability(&result->rigidity))       \
+  X(RIGIDITY, LABEL, "label", "1", WORD, (double)NAN)                                              \
+  X(RIGIDITY, RESIDUAL, "residual", "N", NUMBER, result->rigidity.residual)                        \
+  X(PATH, LIMIT, "limit_factor", NULL, NUMBER, first_factor(&result->path, is_limit))              \
+  X(PATH, BIFURCATION, "bifurcation_factor", NULL, NUMBER,                                         \
+    first_factor(&result->path, is_bifurcation))                                                   \
+  X(PATH, CRITICAL, "critical_factor", NULL, NUMBER, first_factor(&result->path, loses_stability)) \
+  X(PATH, LAST_FACTOR, "last_factor", NULL, NUMBER, last_factor(&result->path))                    \
+  X(PATH, PATH_EVENTS, "event_count", "1", NUMBER, (double)result->path.event_count)               \
+  X(PATH, END, "end", "1", WORD, (double)NAN)                                                      \
+  X(PATH, CURVE, "curve_distance", "N", NUMBER,                                                    \
+    strut_goals_curve_distance(result->study, &result->path))                                      \
+  X(FORM, MOVED, "moved", "m", NUMBER, result->form.moved)                                         \
+  X(FORM, RESIDUAL, "residual", "N", NUMBER, result->form.residual)                                \
+  X(FORM, DENSITY_CHANGE, "density_change", "1", NUMBER, result->form.density_change)              \
+  X(FORM, LEAST_TENSION, "least_tension", "N", NUMBER, result->form.least_tension)                 \
+  X(FORM, LARGEST_FORCE, "largest_force", "N", NUMBER, result->form.largest_force)
 
 typedef struct column {
   strut_compute compute;
   strut_keep keep;
-  const char *name, *unit; /* unit NULL: that of a path's parameter */
+  const char *name, *unit;
   column_shape shape;
 } column;
 
-#define IN_EQUILIBRIA(keep, name, unit, shape, value)                                              \
-  {STRUT_COMPUTE_EQUILIBRIA, STRUT_KEEP_##keep, name, unit, shape},
-#define IN_MODES(keep, name, unit, shape, value)                                                   \
-  {STRUT_COMPUTE_MODES, STRUT_KEEP_##keep, name, unit, shape},
-#define IN_RIGIDITY(keep, name, unit, shape, value)                                                \
-  {STRUT_COMPUTE_RIGIDITY, STRUT_KEEP_##keep, name, unit, shape},
-#define IN_PATH(keep, name, unit, shape, value)                                                    \
-  {STRUT_COMPUTE_PATH, STRUT_KEEP_##keep, name, unit, shape},
-#define IN_FORM(keep, name, unit, shape, value)                                                    \
-  {STRUT_COMPUTE_FORM, STRUT_KEEP_##keep, name, unit, shape},
+static const column columns[] = {
+#define COLUMN(compute, keep, name, unit, shape, value)                                            \
+  {STRUT_COMPUTE_##compute, STRUT_KEEP_##keep, name, unit, shape},
+    COLUMN_TABLE(COLUMN)};
+enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
-static const column columns[] = {EQUILIBRIA_COLUMNS(IN_EQUILIBRIA) MODES_COLUMNS(
-    IN_MODES) RIGIDITY_COLUMNS(IN_RIGIDITY) PATH_COLUMNS(IN_PATH) FORM_COLUMNS(IN_FORM)};
-enum { COLUMNS = sizeof columns / sizeof columns[0], MOST_OF_ONE = 16 };
-
-/* The i-th value of the k-th column of the computation. */
-static double value_of(const rest_result *result, strut_compute compute, size_t k, size_t i) {
-  double values[MOST_OF_ONE] = {0};
-  size_t n = 0;
-#define STORE(keep, name, unit, shape, value) values[n++] = value;
-  switch (compute) {
-    case STRUT_COMPUTE_RUN:
-    case STRUT_COMPUTE_COUNT: break;
-    case STRUT_COMPUTE_EQUILIBRIA: EQUILIBRIA_COLUMNS(STORE) break;
-    case STRUT_COMPUTE_MODES: MODES_COLUMNS(STORE) break;
-    case STRUT_COMPUTE_RIGIDITY: RIGIDITY_COLUMNS(STORE) break;
-    case STRUT_COMPUTE_PATH: PATH_COLUMNS(STORE) break;
-    case STRUT_COMPUTE_FORM: FORM_COLUMNS(STORE) break;
-  }
-  assert(k < n);
-  return values[k];
+/* The i-th value of the k-th column. */
+static double value_of(const rest_result *result, size_t k, size_t i) {
+#define VALUE(compute, keep, name, unit, shape, value)                                             \
+  if (k-- == 0) return value;
+  COLUMN_TABLE(VALUE)
+  return (double)NAN;
 }
 
 /* "class 1" of "structure with tensegrity features of class 1"; reasons are left out. */
@@ -357,29 +332,19 @@ bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup) {
 
 /* ---- computing ---- */
 
-/* An equilibrium by energy; equal ones in the order of the list. */
-typedef struct ranked {
-  double energy;
-  int32_t index;
-} ranked;
-
-static int by_energy(const void *a, const void *b) {
-  const ranked *first = a, *second = b;
-  if (first->energy != second->energy) return first->energy < second->energy ? -1 : 1;
-  return (first->index > second->index) - (first->index < second->index);
-}
-
+/* Lists what stands by energy; equal ones in the order of the list. */
 static bool rank_states(rest_result *result) {
   const strut_equilibria *all = &result->equilibria;
-  ranked *list = strut_arena_allocate(&result->arena, all->count, sizeof *list);
   result->stable = strut_arena_allocate(&result->arena, all->count, sizeof *result->stable);
-  if (!list || !result->stable) return false;
-  for (size_t i = 0; i < all->count; i++)
-    if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
-      list[result->stable_count++] = (ranked){all->list[i].energy, (int32_t)i};
-  if (result->stable_count) qsort(list, result->stable_count, sizeof *list, by_energy);
-  for (size_t i = 0; i < result->stable_count; i++) result->stable[i] = list[i].index;
-  return true;
+  for (size_t i = 0; i < all->count && result->stable; i++) {
+    size_t k = result->stable_count;
+    if (all->list[i].outcome != STRUT_OUTCOME_STANDS) continue;
+    for (; k > 0 && state_energy(result, k - 1) > all->list[i].energy; k--)
+      result->stable[k] = result->stable[k - 1];
+    result->stable[k] = (int32_t)i;
+    result->stable_count++;
+  }
+  return result->stable != NULL;
 }
 
 /* Warns where something carries more than it can, as the commands do. */
@@ -485,10 +450,7 @@ static strut_status compute(const strut_sweep_worker *worker, strut_sweep_job *j
 
 static void fill_columns(const strut_sweep_plan *plan, const rest_result *result,
                          strut_row_buffer *cells) {
-  strut_compute computed = (strut_compute)plan->study->compute;
-  size_t first = 0;
-  while (first < COLUMNS && columns[first].compute != computed) first++;
-  for (size_t k = first; k < COLUMNS; k++) {
+  for (size_t k = 0; k < COLUMNS; k++) {
     const column *self = &columns[k];
     size_t count = self->shape == NUMBERS || self->shape == WORDS ? lowest_of(plan->study) : 1;
     char word[STRUT_SLOT_WORD];
@@ -496,7 +458,7 @@ static void fill_columns(const strut_sweep_plan *plan, const rest_result *result
       if (self->shape == WORD || self->shape == WORDS)
         strut_sweep_word(cells, word_of(result, self->keep, i, word));
       else
-        strut_sweep_number(cells, value_of(result, computed, k - first, i));
+        strut_sweep_number(cells, value_of(result, k, i));
     }
   }
 }

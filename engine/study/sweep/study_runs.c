@@ -10,6 +10,7 @@
 
 #include "engine/base/number_text.h"
 #include "engine/output/figures/run_figure.h"
+#include "engine/output/trajectory.h"
 #include "engine/study/sweep/grid.h"
 
 /* ---- the recorded runs of a study ---- */
@@ -18,21 +19,31 @@ static const struct {
   const char *name, *unit;
 } columns[] = {{"node", ""}, {"time", "s"}, {"elapsed", "s"}, {"x", "m"},
                {"y", "m"},   {"dx", "m"},   {"dy", "m"}};
-enum { COLUMNS = sizeof columns / sizeof columns[0], NUMBERS = COLUMNS - 1 };
+enum { COLUMNS = sizeof columns / sizeof columns[0] };
 static const size_t MOST_ROWS = 20000000;
 
 const char *strut_study_motion_column(size_t i) { return i < COLUMNS ? columns[i].name : NULL; }
 
-bool strut_study_shows(const strut_study_figure *figure, const char *column, const char *text) {
+/* Does the figure's `only` select this text of a column? */
+static bool shows(const strut_study_figure *figure, const char *column, const char *text) {
   if (!figure->only) return true;
   size_t length = strcspn(figure->only, "=");
   if (strlen(column) != length || memcmp(column, figure->only, length) != 0) return true;
   return strcmp(figure->only + length + 1, text) == 0;
 }
 
+/* An opened run, from which pictures and motions are drawn. */
+typedef struct opened_run {
+  strut_study_value *values; /* (axis columns of the plan) */
+  const char **texts;        /* the same as texts */
+  strut_setup setup;
+  strut_trajectory motion;
+  strut_arena arena;
+} opened_run;
+
 /* Values of the axes at a point. */
 static strut_status read_values(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                int64_t point, strut_study_opened *opened, bool *shown,
+                                int64_t point, opened_run *opened, bool *shown,
                                 strut_error *error) {
   size_t count = plan->axis_columns;
   opened->values = strut_arena_allocate(&opened->arena, count + 1, sizeof *opened->values);
@@ -46,16 +57,20 @@ static strut_status read_values(const strut_sweep_plan *plan, const strut_study_
                            ? opened->values[i].word
                            : strut_arena_text(&opened->arena, number, strlen(number));
     if (!opened->texts[i]) return strut_no_memory(error, "while drawing");
-    *shown = *shown && strut_study_shows(figure, plan->columns[i].name, opened->texts[i]);
+    *shown = *shown && shows(figure, plan->columns[i].name, opened->texts[i]);
   }
   return STRUT_OK;
 }
 
-strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *directory,
-                                  const strut_study_figure *figure, int64_t point,
-                                  strut_study_opened *opened, bool *there, strut_error *error) {
+/*
+ * Opens the run of a point. *there is false where it recorded nothing, or the figure leaves it out; nothing is open
+ * then. Close it after a failure too.
+ */
+static strut_status open_run(const strut_sweep_plan *plan, const char *directory,
+                             const strut_study_figure *figure, int64_t point, opened_run *opened,
+                             bool *there, strut_error *error) {
   struct stat found;
-  *opened = (strut_study_opened){.motion = {0}};
+  *opened = (opened_run){.motion = {0}};
   *there = false;
   bool shown = true;
   strut_status status = read_values(plan, figure, point, opened, &shown, error);
@@ -74,129 +89,112 @@ strut_status strut_study_run_open(const strut_sweep_plan *plan, const char *dire
                         "figure '%.60s' of the study: the runs recorded no "
                         "positions ('output: {channels: [position]}')",
                         figure->name);
-  opened->run = (strut_study_run){.point = point,
-                                  .values = opened->values,
-                                  .texts = opened->texts,
-                                  .scene = &opened->setup.scene,
-                                  .motion = &opened->motion};
   *there = !status && opened->motion.frames > 0;
   return status;
 }
 
-void strut_study_run_close(strut_study_opened *opened) {
+static void close_run(opened_run *opened) {
   strut_trajectory_free(&opened->motion);
   strut_setup_free(&opened->setup);
   strut_arena_free(&opened->arena);
-  *opened = (strut_study_opened){.motion = {0}};
+  *opened = (opened_run){.motion = {0}};
 }
 
-/* The table being built. */
+/* The table being built, in whose arena all is. */
 typedef struct builder {
   const strut_sweep_plan *plan;
   const strut_study_figure *figure;
   strut_table *table;
-  const char **texts[64]; /* (axis columns and node) in blocks of strut_allocate */
-  double *axes[64];       /* (axis columns) of numbers */
-  double *numbers[NUMBERS];
-  size_t rows, capacity;
+  size_t capacity; /* of rows */
 } builder;
 
-static bool grow_texts(const char ***column, size_t capacity) {
-  const char **more = strut_reallocate(*column, capacity, sizeof *more);
-  if (more) *column = more;
-  return more != NULL;
+static bool has_text(const builder *self, size_t column) {
+  return column <= self->plan->axis_columns;
 }
 
-static bool grow_numbers(double **column, size_t capacity) {
-  double *more = strut_reallocate(*column, capacity, sizeof *more);
-  if (more) *column = more;
-  return more != NULL;
+static bool has_value(const builder *self, size_t column) {
+  size_t axes = self->plan->axis_columns;
+  return column < axes ? !self->plan->columns[column].word : column > axes;
+}
+
+static bool make_columns(builder *self) {
+  strut_table *table = self->table;
+  const strut_slot_column *axes = self->plan->columns;
+  size_t count = self->plan->axis_columns;
+  table->columns = strut_arena_allocate(&table->arena, count + COLUMNS, sizeof *table->columns);
+  for (size_t i = 0; i < count + COLUMNS && table->columns; i++) {
+    const char *unit = i < count ? axes[i].unit : columns[i - count].unit;
+    table->columns[table->column_count++] =
+        (strut_table_column){.name = i < count ? axes[i].name : columns[i - count].name,
+                             .unit = strcmp(unit, "1") == 0 ? "" : unit};
+  }
+  return table->columns != NULL;
+}
+
+/* A larger block with what another has. */
+static const void *larger(builder *self, const void *block, size_t capacity, size_t size) {
+  void *to = strut_arena_allocate(&self->table->arena, capacity, size);
+  if (to && self->table->row_count) memcpy(to, block, self->table->row_count * size);
+  return to;
 }
 
 static bool reserve(builder *self, size_t rows) {
-  if (rows <= self->capacity) return true;
-  size_t capacity = rows + rows / 2, axes = self->plan->axis_columns;
+  strut_table *table = self->table;
   bool fine = true;
-  for (size_t i = 0; i <= axes && fine; i++) fine = grow_texts(&self->texts[i], capacity);
-  for (size_t i = 0; i < axes && fine; i++) fine = grow_numbers(&self->axes[i], capacity);
-  for (size_t i = 0; i < NUMBERS && fine; i++) fine = grow_numbers(&self->numbers[i], capacity);
-  if (fine) self->capacity = capacity;
+  if (rows <= self->capacity) return true;
+  self->capacity = 2 * rows;
+  for (size_t i = 0; i < table->column_count && fine; i++) {
+    strut_table_column *column = &table->columns[i];
+    if (has_text(self, i))
+      column->text = larger(self, column->text, self->capacity, sizeof(char *));
+    if (has_value(self, i))
+      column->value = larger(self, column->value, self->capacity, sizeof(double));
+    fine = (column->text || !has_text(self, i)) && (column->value || !has_value(self, i));
+  }
   return fine;
 }
 
-static void add_row(builder *self, const strut_study_run *run, const char *const *texts,
-                    size_t frame, size_t node, const char *name) {
-  const strut_trajectory *trajectory = run->motion;
+/* A row for a node in a frame; texts (axes and node): those of the table's arena. */
+static void add_row(builder *self, const opened_run *run, const char *const *texts, size_t frame,
+                    size_t node) {
+  const strut_trajectory *trajectory = &run->motion;
   const double *at = trajectory->position + 2 * (frame * trajectory->node_count + node);
   const double *from = trajectory->position + 2 * node;
-  const double numbers[NUMBERS] = {trajectory->time[frame],
-                                   trajectory->time[frame] - trajectory->time[0],
-                                   at[0],
-                                   at[1],
-                                   at[0] - from[0],
-                                   at[1] - from[1]};
-  size_t row = self->rows++;
-  for (size_t i = 0; i < self->plan->axis_columns; i++) {
-    self->texts[i][row] = texts[i];
-    self->axes[i][row] = run->values[i].number;
+  const double time = trajectory->time[frame];
+  const double numbers[] = {
+      time, time - trajectory->time[0], at[0], at[1], at[0] - from[0], at[1] - from[1]};
+  size_t row = self->table->row_count++, axes = self->plan->axis_columns;
+  for (size_t i = 0; i < self->table->column_count; i++) {
+    const strut_table_column *column = &self->table->columns[i];
+    if (has_text(self, i)) ((const char **)column->text)[row] = texts[i];
+    if (has_value(self, i))
+      ((double *)column->value)[row] = i < axes ? run->values[i].number : numbers[i - axes - 1];
   }
-  self->texts[self->plan->axis_columns][row] = name;
-  for (size_t i = 0; i < NUMBERS; i++) self->numbers[i][row] = numbers[i];
 }
 
-/* Texts that outlive the run, in the table's arena. */
-static const char *kept(builder *self, const char *text) {
-  return strut_arena_text(&self->table->arena, text, strlen(text));
-}
-
-static strut_status add_run(builder *self, const strut_study_run *run, strut_error *error) {
-  const strut_trajectory *trajectory = run->motion;
-  const char *texts[64];
-  for (size_t i = 0; i < self->plan->axis_columns; i++) {
-    texts[i] = kept(self, run->texts[i]);
+static strut_status add_run(builder *self, const opened_run *run, strut_error *error) {
+  const strut_trajectory *trajectory = &run->motion;
+  strut_table *table = self->table;
+  size_t axes = self->plan->axis_columns;
+  const char **texts = strut_arena_allocate(&table->arena, axes + 1, sizeof *texts);
+  for (size_t i = 0; i < axes && texts; i++) {
+    texts[i] = strut_arena_text(&table->arena, run->texts[i], strlen(run->texts[i]));
     if (!texts[i]) return strut_no_memory(error, "while drawing");
   }
   if (trajectory->frames > MOST_ROWS / trajectory->node_count ||
-      self->rows > MOST_ROWS - trajectory->frames * trajectory->node_count)
+      table->row_count > MOST_ROWS - trajectory->frames * trajectory->node_count)
     return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: more than %zu rows",
                       self->figure->name, MOST_ROWS);
   for (size_t node = 0; node < trajectory->node_count; node++) {
-    if (!strut_study_shows(self->figure, "node", run->scene->nodes[node].name)) continue;
-    const char *name = kept(self, run->scene->nodes[node].name);
-    if (!name || !reserve(self, self->rows + trajectory->frames))
+    const char *name = run->setup.scene.nodes[node].name;
+    if (!shows(self->figure, "node", name)) continue;
+    if (!texts || !reserve(self, table->row_count + trajectory->frames))
       return strut_no_memory(error, "while drawing");
+    texts[axes] = strut_arena_text(&table->arena, name, strlen(name));
+    if (!texts[axes]) return strut_no_memory(error, "while drawing");
     for (size_t f = 0; f < trajectory->frames; f++)
       if (trajectory->time[f] >= self->figure->from && trajectory->time[f] <= self->figure->to)
-        add_row(self, run, texts, f, node, name);
-  }
-  return STRUT_OK;
-}
-
-/* Copies into the table's arena, which owns all of it. */
-static const void *owned(builder *self, const void *block, size_t size) {
-  void *copy = strut_arena_allocate(&self->table->arena, self->rows, size);
-  if (copy && self->rows) memcpy(copy, block, self->rows * size); /* no rows: block may be NULL */
-  return copy;
-}
-
-static strut_status finish(builder *self, strut_error *error) {
-  strut_table *table = self->table;
-  size_t axes = self->plan->axis_columns;
-  table->row_count = self->rows;
-  table->columns = strut_arena_allocate(&table->arena, axes + COLUMNS, sizeof *table->columns);
-  if (!table->columns) return strut_no_memory(error, "while drawing");
-  for (size_t i = 0; i < axes + COLUMNS; i++) {
-    bool axis = i < axes, word = axis ? self->plan->columns[i].word : i == axes;
-    strut_table_column *column = &table->columns[table->column_count++];
-    const char *unit = axis ? self->plan->columns[i].unit : columns[i - axes].unit;
-    column->name = axis ? self->plan->columns[i].name : columns[i - axes].name;
-    column->unit = strcmp(unit, "1") == 0 ? "" : unit;
-    if (i <= axes) column->text = owned(self, self->texts[i], sizeof(char *));
-    if (!word)
-      column->value =
-          owned(self, axis ? self->axes[i] : self->numbers[i - axes - 1], sizeof(double));
-    if ((i <= axes && !column->text) || (!word && !column->value))
-      return strut_no_memory(error, "while drawing");
+        add_row(self, run, texts, f, node);
   }
   return STRUT_OK;
 }
@@ -205,24 +203,18 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
                                 const strut_study_figure *figure, strut_table *table,
                                 strut_error *error) {
   builder b = {.plan = plan, .figure = figure, .table = table};
-  strut_status status = STRUT_OK;
   *table = (strut_table){0};
-  if (plan->axis_columns >= 64)
-    return strut_fail(error, STRUT_USAGE, "motion is drawn of studies with up to 63 axes");
+  strut_status status = make_columns(&b) ? STRUT_OK : strut_no_memory(error, "while drawing");
   for (int64_t point = 0; point < plan->points && !status; point++) {
-    strut_study_opened opened;
+    opened_run opened;
     bool there;
-    status = strut_study_run_open(plan, directory, figure, point, &opened, &there, error);
-    if (!status && there) status = add_run(&b, &opened.run, error);
-    strut_study_run_close(&opened);
+    status = open_run(plan, directory, figure, point, &opened, &there, error);
+    if (!status && there) status = add_run(&b, &opened, error);
+    close_run(&opened);
   }
-  if (!status && !b.rows)
+  if (!status && !table->row_count)
     status = strut_fail(error, STRUT_USAGE,
                         "figure '%.60s' of the study: no run recorded any of this", figure->name);
-  if (!status) status = finish(&b, error);
-  for (size_t i = 0; i <= plan->axis_columns; i++) strut_release(b.texts[i]);
-  for (size_t i = 0; i < plan->axis_columns; i++) strut_release(b.axes[i]);
-  for (size_t i = 0; i < NUMBERS; i++) strut_release(b.numbers[i]);
   if (status) strut_arena_free(&table->arena);
   return status;
 }
@@ -253,7 +245,7 @@ static int64_t partner(const strut_study *study, size_t axis, int64_t point) {
 
 /* NAME-TEXT-TEXT.svg, with texts made valid as file names. */
 static const char *file_of(const strut_sweep_plan *plan, const char *directory,
-                           const strut_study_figure *figure, strut_study_opened *opened) {
+                           const strut_study_figure *figure, opened_run *opened) {
   char *name = strut_arena_format(&opened->arena, "%s", figure->name);
   for (size_t i = 0; name && i < plan->axis_columns; i++) {
     const char *column = plan->columns[i].name;
@@ -282,9 +274,8 @@ typedef struct pictures {
   bool drawn;  /* some are */
 } pictures;
 
-static strut_status draw(const pictures *self, strut_study_opened *opened,
-                         const strut_study_opened *other, const char *other_name,
-                         strut_error *error) {
+static strut_status draw(const pictures *self, opened_run *opened, const opened_run *other,
+                         const char *other_name, strut_error *error) {
   const strut_study_figure *figure = self->figure;
   strut_model *model = NULL;
   const strut_run_figure picture = {
@@ -307,25 +298,23 @@ static strut_status draw(const pictures *self, strut_study_opened *opened,
 /* Draws the figure of one point, if it has one. */
 static strut_status draw_point(pictures *self, int64_t point, strut_error *error) {
   const strut_sweep_plan *plan = self->plan;
-  strut_study_opened o, other;
+  opened_run o, other;
   bool there = false, beside = false, pairs = self->axis < plan->study->axis_count;
   int64_t with = pairs ? partner(plan->study, self->axis, point) : point;
   if (pairs && with == point) return STRUT_OK; /* drawn over its partner */
-  strut_status status =
-      strut_study_run_open(plan, self->directory, self->figure, point, &o, &there, error);
+  strut_status status = open_run(plan, self->directory, self->figure, point, &o, &there, error);
   if (!status && there && pairs) {
-    status =
-        strut_study_run_open(plan, self->directory, self->figure, with, &other, &beside, error);
+    status = open_run(plan, self->directory, self->figure, with, &other, &beside, error);
     const char *name = NULL;
     for (size_t i = 0; i < plan->axis_columns && !status; i++)
       if (strcmp(plan->columns[i].name, self->figure->difference) == 0) name = other.texts[i];
     if (!status) status = draw(self, &o, beside ? &other : NULL, name, error);
-    strut_study_run_close(&other);
+    close_run(&other);
   } else if (!status && there) {
     status = draw(self, &o, NULL, NULL, error);
   }
   self->drawn = self->drawn || there;
-  strut_study_run_close(&o);
+  close_run(&o);
   return status;
 }
 

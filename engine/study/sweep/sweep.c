@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
@@ -16,6 +17,8 @@
 
 /* Time between two reports [s]. */
 static const double OFTEN = 0.1;
+/* Times between two looks at what other workers have done, which grow [ns]. */
+enum { SHORTEST_PAUSE = 2000000, LONGEST_PAUSE = 500000000 };
 
 int strut_sweep_threads(void) {
 #ifdef _OPENMP
@@ -112,6 +115,14 @@ static void run_point(strut_points *points, strut_sweep_job *job, int64_t point)
   }
 }
 
+/* A point of the file without a result that is wanted. */
+static bool choose_point(const strut_points *points, int64_t i, int64_t *point) {
+  const strut_sweep_options *options = points->worker.options;
+  *point = strut_slots_point(points->slots, i);
+  return !(options->wants && !options->wants(options->wants_context, *point)) &&
+         !strut_slots_done(points->slots, *point);
+}
+
 /* False: none is left, or all is being stopped. */
 static bool next_point(strut_points *points, int64_t *point) {
   int64_t i = 0;
@@ -121,7 +132,8 @@ static bool next_point(strut_points *points, int64_t *point) {
 #endif
     i = points->next++;
     if (i >= points->count) return false;
-    if (points->choose(points->context, i, point)) return true;
+    if (points->choose ? points->choose(points->context, i, point) : choose_point(points, i, point))
+      return true;
   }
   return false;
 }
@@ -137,6 +149,19 @@ strut_status strut_points_run(strut_points *points, int64_t count) {
     if (!points->nested) omp_set_num_threads(1); /* the points are what goes side by side */
 #endif
     for (int64_t point; next_point(points, &point);) run_point(points, &points->jobs[t], point);
+  }
+  return points->status;
+}
+
+strut_status strut_points_complete(strut_points *points, int64_t (*left)(void *context)) {
+  struct timespec pause = {.tv_nsec = SHORTEST_PAUSE};
+  while (!points->status) {
+    if (points->interrupt && *points->interrupt)
+      return points->status = strut_fail(points->error, STRUT_INTERRUPTED, "interrupted");
+    int64_t count = left(points->context);
+    if (count == 0 || strut_points_run(points, count) || left(points->context) == 0) break;
+    nanosleep(&pause, NULL); /* others compute the rest; the claims of those that are killed end */
+    if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
   }
   return points->status;
 }
@@ -164,15 +189,6 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
   for (size_t i = 0; i < count && jobs; i++)
     if (!allocate_cells(plan, arena, &jobs[i])) return NULL;
   return jobs;
-}
-
-/* A point without a result that is wanted. */
-static bool choose_point(void *context, int64_t i, int64_t *point) {
-  const strut_points *points = context;
-  const strut_sweep_options *options = points->worker.options;
-  *point = strut_slots_point(points->slots, i);
-  return !(options->wants && !options->wants(options->wants_context, *point)) &&
-         !strut_slots_done(points->slots, *point);
 }
 
 static void compute_point(void *context, strut_sweep_job *job, int64_t point) {
@@ -208,9 +224,9 @@ strut_status strut_sweep_run(const strut_sweep_plan *plan, strut_slots *slots,
   strut_points points = {.slots = slots,
                          .state = state,
                          .error = error ? error : &own,
-                         .context = &points,
-                         .choose = choose_point,
-                         .compute = compute_point};
+                         .context = options->compute ? options->compute_context : &points,
+                         .compute = options->compute ? options->compute : compute_point,
+                         .nested = options->nested};
   strut_points_begin(&points);
   if (options->wants) state->points = options->wanted, state->done = options->wanted_done;
   if (options->directory) strut_sweep_records_clear(options->directory);

@@ -49,8 +49,10 @@ typedef struct strut_sweep_plan {
   bool smooth; /* do the columns that are added follow parameters smoothly? */
   size_t by_count, derived_count, first_derivative; /* column of the first derivative, if any */
   strut_derived_by *by; /* (by_count) parameters that the derived numbers are differentiated by */
-  size_t *derived;      /* (derived_count) smooth columns among those that are kept */
-  bool *names_member;   /* (quantity_count) a word beside it: the member of the largest force */
+  size_t
+      own_by_count; /* the first of them, at all points; the others where all have their medians */
+  size_t *derived;  /* (derived_count) columns that are differentiated */
+  bool *names_member; /* (quantity_count) a word beside it: the member of the largest force */
 } strut_sweep_plan;
 
 /**
@@ -84,6 +86,8 @@ typedef struct strut_sweep_state {
   double best;                                             /* the best objective so far */
 } strut_sweep_state;
 
+struct strut_sweep_job;
+
 typedef struct strut_sweep_options {
   int threads;                 /* 0: strut_sweep_threads */
   const strut_flag *interrupt; /* may be NULL */
@@ -99,6 +103,10 @@ typedef struct strut_sweep_options {
   void (*values)(const void *context, int64_t point, strut_study_value *values);
   void (*adjust)(const void *context, int64_t point, strut_setup *setup);
   const void *point_context;
+  /** Computes a point into the job's row, or leaves what stops everything; NULL: as its scene says. */
+  void (*compute)(void *context, struct strut_sweep_job *job, int64_t point);
+  void *compute_context;
+  bool nested; /* that may use threads itself */
   /** Of a search whose slots are shared: this process is `worker`, from 0, of `workers`; 0: alone. */
   int64_t worker, workers;
 } strut_sweep_options;

@@ -246,7 +246,7 @@ static void choose_of_run(strut_sweep_plan *plan, const strut_setup *setup, bool
 }
 
 static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *setup,
-                                   strut_error *error) {
+                                   const strut_study_value *values, strut_error *error) {
   const strut_scene *scene = &setup->scene;
   const strut_study *study = plan->study;
   bool usual = strut_keep_is_empty(&study->keep) && !study->quantity_count && !study->follow;
@@ -265,17 +265,18 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
                 2 * quantities;
   size_t by =
       study->derivative_count ? study->derivative_count : setup->experiment.derivative_count;
-  if (plan->scenes.vary) most += 2 * by * most;
+  if (study->sensitivity.wanted) by += study->axes[study->sensitivity.axis].column_count;
+  if (plan->scenes.vary) most += 3 * by * most;
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
-  plan->derived = strut_arena_allocate(&plan->arena, most, sizeof *plan->derived);
+  plan->derived = strut_arena_allocate(&plan->arena, 2 * most, sizeof *plan->derived);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
   plan->names_member = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->names_member);
   if (!plan->columns || !plan->derived || !plan->quantities || !plan->names_member ||
       !add_kept(plan, setup))
     return strut_no_memory(error, "");
   plan->smooth = false;
-  strut_status status = strut_sweep_derivative_columns(plan, setup, error);
+  strut_status status = strut_sweep_derivative_columns(plan, setup, values, error);
   return status || add_check(plan) ? status : strut_no_memory(error, "");
 }
 
@@ -285,15 +286,15 @@ strut_status strut_sweep_plan_make(const strut_study *study, const strut_sweep_s
   *plan = (strut_sweep_plan){.study = study, .scenes = *scenes};
   if (strut_grid_points(study) < 0)
     return strut_fail(error, STRUT_USAGE, "a study may have at most 1e9 points");
-  strut_study_value *values = strut_allocate(strut_grid_columns(study) + 1, sizeof *values);
+  strut_study_value *values =
+      strut_arena_allocate(&plan->arena, strut_grid_columns(study) + 1, sizeof *values);
   if (!values) return strut_no_memory(error, "");
   strut_grid_values(study, 0, values);
   strut_status status = scenes->setup(scenes->context, values, &setup, error);
-  strut_release(values);
   if (status) return status;
   plan->points = strut_grid_points(study);
   plan->axis_columns = strut_grid_columns(study);
-  status = choose_columns(plan, &setup, error);
+  status = choose_columns(plan, &setup, values, error);
   strut_setup_free(&setup);
   return status;
 }

@@ -16,7 +16,9 @@ static const double REST_NOISE = 1e-12, ORBIT_NOISE = 1e-10;
 typedef struct derivation {
   const strut_sweep_worker *worker;
   const strut_sweep_job *job;
-  double noise; /* relative; NAN: not known */
+  double noise;         /* relative; NAN: not known */
+  strut_derived_by *by; /* what its scene uses */
+  size_t by_count;
 } derivation;
 
 /* "m/s" by "N/m": "m/s/(N/m)" */
@@ -30,11 +32,15 @@ static const char *unit_of(strut_arena *arena, const char *of, const char *by) {
 static void take_numbers(const derivation *self, const strut_sweep_job *job, double *outputs,
                          double *errors) {
   const strut_sweep_plan *plan = self->worker->plan;
-  for (size_t j = 0, c = 0, at = 0; j < plan->derived_count; j++) {
-    for (; c < plan->derived[j]; c++) at += !plan->columns[c].word;
-    outputs[j] = job->cells.numbers[at];
+  for (size_t j = 0; j < plan->derived_count; j++) {
+    outputs[j] = job->cells.numbers[strut_slot_place(plan->columns, plan->derived[j])];
     errors[j] = self->noise * fabs(outputs[j]);
   }
+}
+
+/* Does a sensitivity analysis want derivatives, at the medians? */
+static bool analyses_derivatives(const strut_study *study) {
+  return study->sensitivity.wanted && study->sensitivity.derivatives;
 }
 
 static bool add_columns(strut_sweep_plan *plan, const strut_slot_column *of) {
@@ -45,30 +51,81 @@ static bool add_columns(strut_sweep_plan *plan, const strut_slot_column *of) {
     const char *unit = unit_of(&plan->arena, of->unit, plan->by[i].unit);
     fine = name && error && unit && strut_sweep_add_column(plan, "", name, unit, false) &&
            strut_sweep_add_column(plan, "", error, unit, false);
+    if (!fine || !analyses_derivatives(plan->study)) continue;
+    const char *verdict = strut_arena_format(&plan->arena, "%s.verdict", name);
+    fine = verdict && strut_sweep_add_column(plan, "", verdict, "1", true);
   }
   return fine;
 }
 
+/* Adds a parameter to those that numbers are differentiated by, unless it is there. */
+static bool add_parameter(strut_sweep_plan *plan, const char *name, const char *unit) {
+  for (size_t i = 0; i < plan->by_count; i++)
+    if (strcmp(plan->by[i].name, name) == 0) return true;
+  strut_derived_by *by = &plan->by[plan->by_count++];
+  by->name = strut_arena_text(&plan->arena, name, strlen(name));
+  by->unit = strut_arena_text(&plan->arena, unit, strlen(unit));
+  return by->name && by->unit;
+}
+
+/* Fails unless the scene of the first point has the parameter and uses it. */
+static strut_status check_parameter(const strut_sweep_plan *plan, const strut_setup *setup,
+                                    const strut_study_value *values, const strut_derived_by *by,
+                                    strut_error *error) {
+  const strut_parameter *parameter = strut_parameter_named(&setup->scene, by->name);
+  strut_setup same;
+  strut_error why = {0};
+  if (!parameter)
+    return strut_fail(error, STRUT_USAGE, "derivatives: the model has no parameter '%.60s'",
+                      by->name);
+  strut_status status =
+      plan->scenes.vary(plan->scenes.context, values, by, 1, &parameter->value, &same, &why);
+  if (status)
+    return strut_fail(error, status == STRUT_NO_MEMORY ? status : STRUT_USAGE,
+                      "derivatives by '%.60s': %s", by->name, why.message);
+  strut_setup_free(&same);
+  return STRUT_OK;
+}
+
+/* The numbers that are differentiated: of what is smooth, where that is asked for, and of what is analysed. */
+static void choose_derived(strut_sweep_plan *plan) {
+  const strut_study_sensitivity *analysis = &plan->study->sensitivity;
+  size_t smooth = plan->own_by_count ? plan->derived_count : 0, k = 0;
+  const size_t *all = plan->derived;
+  size_t *chosen = plan->derived + plan->column_capacity;
+  plan->derived = chosen, plan->derived_count = 0;
+  for (size_t i = plan->axis_columns; i < plan->column_count; i++) {
+    while (k < smooth && all[k] < i) k++;
+    bool wanted = k < smooth && all[k] == i;
+    for (size_t n = 0; analyses_derivatives(plan->study) && n < analysis->of_count; n++)
+      wanted = wanted || strcmp(analysis->of[n], plan->columns[i].name) == 0;
+    if (wanted && !plan->columns[i].word) chosen[plan->derived_count++] = i;
+  }
+}
+
 strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
-                                            strut_error *error) {
+                                            const strut_study_value *values, strut_error *error) {
   const strut_study *study = plan->study;
   const strut_experiment *experiment = &setup->experiment;
-  bool own = study->derivative_count > 0;
+  bool own = study->derivative_count > 0, fine = true;
   const strut_derived_by *from = own ? study->derivatives : experiment->derivatives;
-  plan->by_count = own ? study->derivative_count : experiment->derivative_count;
-  if (!plan->scenes.vary || study->follow) plan->by_count = 0;
-  if (!plan->by_count) return STRUT_OK;
-  plan->by = strut_arena_allocate(&plan->arena, plan->by_count, sizeof *plan->by);
-  bool fine = plan->by != NULL;
-  plan->first_derivative = plan->column_count;
-  for (size_t i = 0; i < plan->by_count && fine; i++) {
-    if (!strut_parameter_named(&setup->scene, from[i].name))
-      return strut_fail(error, STRUT_USAGE, "derivatives: the model has no parameter '%.60s'",
-                        from[i].name);
-    plan->by[i].name = strut_arena_text(&plan->arena, from[i].name, strlen(from[i].name));
-    plan->by[i].unit = strut_arena_text(&plan->arena, from[i].unit, strlen(from[i].unit));
-    fine = plan->by[i].name && plan->by[i].unit;
+  size_t count = own ? study->derivative_count : experiment->derivative_count;
+  const strut_study_axis *analysed =
+      analyses_derivatives(study) ? &study->axes[study->sensitivity.axis] : NULL;
+  size_t more = analysed ? analysed->column_count : 0;
+  if (!plan->scenes.vary || study->follow || count + more == 0) return STRUT_OK;
+  plan->by = strut_arena_allocate(&plan->arena, count + more, sizeof *plan->by);
+  if (!plan->by) return strut_no_memory(error, "");
+  for (size_t i = 0; i < count && fine; i++) {
+    strut_status status = check_parameter(plan, setup, values, &from[i], error);
+    if (status) return status;
+    fine = add_parameter(plan, from[i].name, from[i].unit);
   }
+  plan->own_by_count = plan->by_count;
+  for (size_t i = 0; i < more && fine; i++)
+    fine = add_parameter(plan, analysed->columns[i].name, analysed->columns[i].unit);
+  plan->first_derivative = plan->column_count;
+  choose_derived(plan);
   for (size_t j = 0; j < plan->derived_count && fine; j++)
     fine = add_columns(plan, &plan->columns[plan->derived[j]]);
   return fine ? STRUT_OK : strut_no_memory(error, "");
@@ -121,8 +178,8 @@ static strut_status evaluate(void *context, const double *parameters, double *ou
   strut_status status = job ? STRUT_OK : strut_no_memory(error, "");
   worker.watch = NULL;
   if (!status)
-    status = plan->scenes.vary(plan->scenes.context, self->job->cells.values, plan->by,
-                               plan->by_count, parameters, &job->setup, error);
+    status = plan->scenes.vary(plan->scenes.context, self->job->cells.values, self->by,
+                               self->by_count, parameters, &job->setup, error);
   if (!status) {
     job->options = (strut_run_options){.interrupt = interrupt,
                                        .most_evaluations = plan->study->limit.evaluations};
@@ -135,56 +192,121 @@ static strut_status evaluate(void *context, const double *parameters, double *ou
   return status;
 }
 
-/* A parameter of the job's scene; where a scene cannot have a little less or more of it, that is its range. */
-static strut_derivatives_parameter parameter_of(const derivation *self, size_t i,
-                                                strut_error *error) {
-  const strut_sweep_plan *plan = self->worker->plan;
-  const strut_parameter *parameter =
-      strut_parameter_named(&self->job->setup.scene, plan->by[i].name);
-  const double value = parameter ? parameter->value : (double)NAN;
-  double limit[2] = {-INFINITY, INFINITY};
-  for (int side = 0; side < 2; side++) {
-    const double away = (side ? 1e-4 : -1e-4) * (value != 0.0 ? fabs(value) : 1.0);
-    const double beside = value + away;
-    strut_setup setup;
-    strut_error why = {0};
-    strut_status status = plan->scenes.vary(plan->scenes.context, self->job->cells.values,
-                                            &plan->by[i], 1, &beside, &setup, &why);
-    if (status) limit[side] = value;
-    if (limit[0] == limit[1]) *error = why; /* neither */
-    if (!status) strut_setup_free(&setup);
-  }
-  return (strut_derivatives_parameter){.value = value, .low = limit[0], .high = limit[1]};
+/* A change of a parameter that matters; 0: not known. */
+static double scale_of(const strut_sweep_plan *plan, const char *name) {
+  const strut_study_sensitivity *analysis = &plan->study->sensitivity;
+  for (size_t i = 0; analysis->wanted && i < plan->study->axes[analysis->axis].column_count; i++)
+    if (strcmp(plan->study->axes[analysis->axis].columns[i].name, name) == 0)
+      return analysis->scales[i];
+  return 0.0;
 }
 
-strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job) {
+/*
+ * A parameter of the job's scene; where a scene cannot have a little less or more of it, that is its range. Low is high
+ * where it can have neither, with the reason; *used: unless nothing in this scene uses it.
+ */
+static strut_derivatives_parameter parameter_of(const derivation *self, const strut_derived_by *by,
+                                                bool *used, strut_error *error) {
+  const strut_sweep_plan *plan = self->worker->plan;
+  const strut_parameter *parameter = strut_parameter_named(&self->job->setup.scene, by->name);
+  const double value = parameter ? parameter->value : (double)NAN;
+  double limit[2] = {-INFINITY, INFINITY};
+  *used = true;
+  for (int side = 0; side < 3; side++) { /* below, above, and if there is neither, here */
+    const double away = 1e-4 * (value != 0.0 ? fabs(value) : 1.0);
+    const double beside = value + (side == 0 ? -away : side == 1 ? away : 0.0);
+    strut_setup setup;
+    strut_error why = {0};
+    if (side == 2 && limit[0] < limit[1]) break;
+    strut_status status = plan->scenes.vary(plan->scenes.context, self->job->cells.values, by, 1,
+                                            &beside, &setup, &why);
+    if (!status) strut_setup_free(&setup);
+    if (status && side < 2) limit[side] = value, *error = why;
+    if (status && side == 2) *used = false;
+  }
+  const double scale = scale_of(plan, by->name);
+  return (strut_derivatives_parameter){.value = value,
+                                       .low = limit[0],
+                                       .high = limit[1],
+                                       .scale = scale > 0.0 ? fmax(fabs(value), scale) : 0.0};
+}
+
+/* Lists what the scene of the job has scenes beside it for; derivatives by others are not known, or 0. */
+static void choose_parameters(derivation *self, strut_sweep_job *job, size_t count,
+                              strut_derivatives_parameter *parameters, size_t *place) {
+  const strut_sweep_plan *plan = self->worker->plan;
+  for (size_t i = 0; i < count; i++) {
+    strut_error why = {0};
+    bool used;
+    parameters[self->by_count] = parameter_of(self, &plan->by[i], &used, &why);
+    if (parameters[self->by_count].low < parameters[self->by_count].high) {
+      place[self->by_count] = i;
+      self->by[self->by_count++] = plan->by[i];
+      continue;
+    }
+    for (size_t j = 0; j < plan->derived_count && !used; j++)
+      job->derivatives[j * plan->by_count + i] =
+          (strut_derivative){0.0, 0.0, STRUT_DERIVATIVE_THERE};
+    if (!used || job->warning_count == STRUT_MOST_WARNINGS) continue;
+    strut_warning *warning = &job->warnings[job->warning_count++];
+    warning->code = "derivatives";
+    snprintf(warning->text, sizeof warning->text, "there are no derivatives by '%.60s': %.500s",
+             plan->by[i].name, why.message);
+  }
+}
+
+/* The derivatives by the first `count` parameters of the plan into those of the job. */
+static strut_status find_derivatives(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                     size_t count, strut_arena *arena) {
   const strut_sweep_plan *plan = worker->plan;
-  strut_arena arena = {0};
-  if (!plan->by_count) return STRUT_OK;
   strut_experiment experiment = job->setup.experiment;
   bool rest = plan->study->compute != STRUT_COMPUTE_RUN, steady = experiment.steady.wanted;
   bool known = make_exact(&experiment, &job->setup.scene) || rest;
-  derivation self = {worker, job, rest ? REST_NOISE : steady ? ORBIT_NOISE : (double)NAN};
-  strut_derivatives_parameter *by = strut_arena_allocate(&arena, plan->by_count, sizeof *by);
-  double *outputs = strut_arena_allocate(&arena, plan->derived_count, sizeof *outputs);
-  double *errors = strut_arena_allocate(&arena, plan->derived_count, sizeof *errors);
-  strut_status status = by && outputs && errors ? STRUT_OK : strut_no_memory(&job->error, "");
-  for (size_t i = 0; i < plan->by_count && !status; i++)
-    by[i] = parameter_of(&self, i, &job->error);
-  if (!status) take_numbers(&self, job, outputs, errors);
+  derivation self = {worker, job, rest ? REST_NOISE : steady ? ORBIT_NOISE : (double)NAN, NULL, 0};
+  strut_derivatives_parameter *parameters = strut_arena_allocate(arena, count, sizeof *parameters);
+  double *outputs = strut_arena_allocate(arena, plan->derived_count, sizeof *outputs);
+  double *errors = strut_arena_allocate(arena, plan->derived_count, sizeof *errors);
+  size_t *place = strut_arena_allocate(arena, count, sizeof *place);
+  strut_derivative *found =
+      strut_arena_allocate(arena, count * plan->derived_count + 1, sizeof *found);
+  self.by = strut_arena_allocate(arena, count, sizeof *self.by);
+  if (!parameters || !outputs || !errors || !place || !found || !self.by)
+    return strut_no_memory(&job->error, "");
+  choose_parameters(&self, job, count, parameters, place);
+  if (!self.by_count) return STRUT_OK;
+  take_numbers(&self, job, outputs, errors);
   const strut_derivatives_task task = {
-      .parameter_count = plan->by_count,
+      .parameter_count = self.by_count,
       .output_count = plan->derived_count,
-      .parameters = by,
+      .parameters = parameters,
       .evaluate = evaluate,
       .context = &self,
       .outputs = known ? outputs : NULL,
       .errors = errors,
       .threads = worker->options->threads > 0 ? worker->options->threads : strut_sweep_threads()};
-  if (!status) status = strut_derivatives_find(&task, job->derivatives, &job->error);
+  strut_status status = strut_derivatives_find(&task, found, &job->error);
+  for (size_t k = 0; k < plan->derived_count * self.by_count && !status; k++)
+    job->derivatives[k / self.by_count * plan->by_count + place[k % self.by_count]] = found[k];
+  return status;
+}
+
+strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = worker->plan;
+  const strut_study *study = plan->study;
+  bool analysed = analyses_derivatives(study);
+  bool medians = analysed && job->point % study->axes[study->sensitivity.axis].count == 0;
+  size_t count = medians ? plan->by_count : plan->own_by_count;
+  strut_arena arena = {0};
+  for (size_t k = 0; k < plan->derived_count * plan->by_count; k++)
+    job->derivatives[k] = (strut_derivative){(double)NAN, (double)NAN, STRUT_DERIVATIVE_UNKNOWN};
+  strut_status status = count ? find_derivatives(worker, job, count, &arena) : STRUT_OK;
   for (size_t k = 0; k < plan->derived_count * plan->by_count && !status; k++) {
-    strut_sweep_number(&job->cells, job->derivatives[k].value);
-    strut_sweep_number(&job->cells, job->derivatives[k].error);
+    const strut_derivative *derivative = &job->derivatives[k];
+    bool asked = k % plan->by_count < count;
+    strut_sweep_number(&job->cells, derivative->value);
+    strut_sweep_number(&job->cells, derivative->error);
+    if (analysed)
+      strut_sweep_word(&job->cells, asked ? strut_derivative_words(derivative->verdict) : "");
   }
   strut_arena_free(&arena);
   return status;
@@ -207,9 +329,8 @@ static strut_status store(const strut_sweep_plan *plan, const strut_setup *setup
     bool zero = j ? summary->measured[j - 1].zero : summary->velocity_zero;
     if (zero && to->is.verdict == STRUT_DERIVATIVE_NONE) to->is.verdict = STRUT_DERIVATIVE_UNKNOWN;
   }
-  if (job->error.message[0])
-    strut_summary_warn(summary, "derivatives", "there are no derivatives: %.500s",
-                       job->error.message);
+  for (size_t i = 0; i < job->warning_count; i++)
+    strut_summary_warn(summary, job->warnings[i].code, "%s", job->warnings[i].text);
   return STRUT_OK;
 }
 

@@ -68,12 +68,9 @@ typedef struct strut_sweep_job {
   strut_row_buffer cells;
   strut_setup setup;
   strut_run_options options;
-  strut_sink *sinks[1];
-  struct strut_sweep_record *files;
+  strut_sink *sink;              /* of the run's files, if it has some */
   strut_derivative *derivatives; /* (derived numbers, parameters) */
-  char first[STRUT_SLOT_WORD];   /* outcome of the first run, during the second */
-  bool second;
-  size_t warning_count; /* of the first run */
+  size_t warning_count;          /* of the first run */
   strut_warning warnings[STRUT_MOST_WARNINGS];
   strut_status
       status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */
@@ -94,10 +91,13 @@ strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep
 
 /* sweep_derivatives.c */
 
-/** Adds the columns of derivatives of the smooth numbers so far. STRUT_USAGE: a parameter is missing. */
+/**
+ * Adds the columns of derivatives of the numbers so far, by the scene of the first point and its values. STRUT_USAGE: a
+ * parameter is missing, or nothing uses it.
+ */
 strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
-                                            strut_error *error);
-/** Appends the derivatives of the job's row, whose scene is still there. */
+                                            const strut_study_value *values, strut_error *error);
+/** Appends the derivatives of the job's row, whose scene is still there, and adds a warning of what has none. */
 strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job);
 
 /* statics_point.c */
@@ -123,9 +123,6 @@ strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_j
 struct strut_sweep_watch *strut_sweep_watch_create(double seconds, strut_sweep_job *jobs,
                                                    size_t count, const strut_flag *interrupt);
 void strut_sweep_watch_free(struct strut_sweep_watch *watch);
-/** The job's time begins, and ends; the latter true if it had passed. A NULL watch does nothing. */
-void strut_sweep_watch_begin(struct strut_sweep_watch *watch, strut_sweep_job *job);
-bool strut_sweep_watch_end(struct strut_sweep_watch *watch, strut_sweep_job *job);
 
 /* sweep.c */
 
@@ -134,8 +131,8 @@ typedef struct strut_points {
   strut_slots *slots;
   strut_sweep_state *state;
   strut_error *error;
-  void *context; /* of both: */
-  /** The i-th point to be looked at; false: it is not computed. */
+  void *context; /* of both functions: */
+  /** The i-th point to be looked at; false: it is not computed. NULL: that of the file, as the options want. */
   bool (*choose)(void *context, int64_t i, int64_t *point);
   /** Computes it into the job's row, or leaves the status that stops everything and its error. */
   void (*compute)(void *context, strut_sweep_job *job, int64_t point);
@@ -160,6 +157,11 @@ strut_status strut_points_open(strut_points *points, const strut_sweep_plan *pla
 void strut_points_close(strut_points *points);
 /** Looks at `count` points. */
 strut_status strut_points_run(strut_points *points, int64_t count);
+/**
+ * Does so until all have rows, and waits for those that other workers compute. left(context): how many of them have
+ * none, which are looked at next. STRUT_INTERRUPTED.
+ */
+strut_status strut_points_complete(strut_points *points, int64_t (*left)(void *context));
 /** Done and failed points of the file, as it is now. */
 void strut_points_count(strut_points *points);
 /** The status, STRUT_INTERRUPTED where points are missing after an interrupt. */
@@ -169,18 +171,8 @@ strut_sweep_job *strut_sweep_make_jobs(const strut_sweep_plan *plan, strut_arena
                                        size_t count);
 /* sweep_point.c */
 
-/** A directory of results for a run of a sweep. Zero-initialise. */
-typedef struct strut_sweep_record strut_sweep_record;
-/** Takes results of a point into directory/runs/POINT. NULL with the error. */
-strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
-                                             const char *scene_text, const strut_scene *scene,
-                                             strut_error *error);
 /** Removes what killed processes left of unfinished runs below the directory, and nothing else. */
 void strut_sweep_records_clear(const char *directory);
-strut_sink *strut_sweep_record_sink(strut_sweep_record *record);
-/** Ends it: complete, or with a run that never began not at all. Frees it. */
-strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scene *scene,
-                                    const strut_summary *summary, bool keep, strut_error *error);
 
 /* Refinement of a map: which points of the finest grid are to be computed.
  *

@@ -17,210 +17,13 @@
 #include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/* The columns that a failed point leaves empty. */
-static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
-  size_t words = 0;
-  for (size_t i = 0; i < plan->column_count; i++) words += plan->columns[i].word;
-  while (cells->word_count < words) strut_sweep_word(cells, "");
-  while (cells->number_count < plan->column_count - words) strut_sweep_number(cells, (double)NAN);
-}
-
-const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
-                                           const strut_sweep_job *job) {
-  return worker->watch ? &job->stop : worker->options->interrupt;
-}
-
-/* What an interrupted computation means: its own time has passed, or the sweep is interrupted. */
-static strut_status explain_interrupt(const strut_sweep_worker *worker, strut_sweep_job *job,
-                                      strut_status status) {
-  bool passed = strut_sweep_watch_end(worker->watch, job);
-  if (status != STRUT_INTERRUPTED || !passed) return status;
-  return strut_fail(&job->error, STRUT_WORK_LIMIT,
-                    "stopped after %.4g s by the clock, the study's limit: another machine may get "
-                    "further",
-                    worker->plan->study->limit.time);
-}
-
-/* Ends the point with its row, or with an error that stops the sweep. */
-static void finish_point(const strut_sweep_worker *worker, strut_sweep_job *job,
-                         strut_status status) {
-  strut_row_buffer *cells = &job->cells;
-  status = explain_interrupt(worker, job, status);
-  job->status = strut_sweep_stops(status) ? status : STRUT_OK;
-  if (job->status) return;
-  if (status) pad_cells(worker->plan, cells);
-  strut_sweep_end_row(cells, status, status ? &job->error : NULL);
-}
-
-/* The same where the point has a scene. */
-static void finish_with_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
-                              strut_status status) {
-  strut_setup_free(&job->setup);
-  finish_point(worker, job, status);
-}
-
-static void set_options(const strut_sweep_worker *worker, strut_sweep_job *job) {
-  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(worker, job),
-                                     .most_evaluations = worker->plan->study->limit.evaluations};
-}
-
-/* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories. */
-static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_job *job) {
-  set_options(worker, job);
-  job->files = NULL;
-  if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
-  char *text = worker->plan->scenes.text(&job->setup);
-  if (!text) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
-  job->files = strut_sweep_record_begin(worker->options->directory, job->point, text,
-                                        &job->setup.scene, &job->error);
-  strut_release(text);
-  if (!job->files) return job->error.status;
-  job->sinks[0] = strut_sweep_record_sink(job->files);
-  job->options.sinks = job->sinks;
-  job->options.sink_count = 1;
-  return STRUT_OK;
-}
-
-/* False: the point has ended already. True: it has a scene to be run with its options. */
-static bool begin_job(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
-  const strut_sweep_plan *plan = worker->plan;
-  strut_row_buffer *cells = &job->cells;
-  cells->number_count = cells->word_count = 0;
-  cells->message[0] = '\0';
-  job->point = point;
-  job->warning_count = 0;
-  job->error = (strut_error){0};
-  strut_sweep_watch_begin(worker->watch, job);
-  const strut_sweep_options *options = worker->options;
-  strut_grid_values(plan->study, point, cells->values);
-  if (options->values) options->values(options->point_context, point, cells->values);
-  strut_sweep_axes(plan, cells->values, cells);
-  strut_status status =
-      plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
-  if (status) {
-    finish_point(worker, job, status);
-    return false;
-  }
-  bool run = plan->study->compute == STRUT_COMPUTE_RUN;
-  if (options->adjust) options->adjust(options->point_context, point, &job->setup);
-  if (!run)
-    status = strut_statics_point(worker, job);
-  else
-    status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
-  if (!run && !status) status = strut_sweep_derive(worker, job);
-  if (run && !status) status = begin_record(worker, job);
-  if (run && !status) return true;
-  finish_with_scene(worker, job, status);
-  return false;
-}
-
-/* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
-static strut_status name_outcome(const strut_sweep_worker *worker, strut_sweep_job *job,
-                                 const strut_summary *summary, char *name) {
-  const strut_scene *scene = &job->setup.scene;
-  int32_t index = -1;
-  if (!strut_keep_has(&worker->plan->keep, STRUT_KEEP_OUTCOME) || !scene->configuration_count)
-    return STRUT_OK;
-  strut_status status = strut_equilibrium_cache_nearest(
-      worker->standing, &job->setup, summary->end.positions, &index, &job->error);
-  snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
-  return status;
-}
-
-/* Refines the experiment for the check. */
-static void refine_experiment(const strut_study *study, strut_experiment *experiment) {
-  if (study->check_accuracy > 0.0) {
-    experiment->accuracy = study->check_accuracy;
-  } else if (experiment->accuracy > 0.0) {
-    experiment->accuracy /= 2.0;
-  } else {
-    experiment->step /= 2.0;
-    experiment->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
-  }
-}
-
-static const char *outcome_word(const strut_sweep_worker *worker, const strut_summary *summary,
-                                const char *outcome) {
-  return worker->plan->flips ? outcome : strut_motion_name(summary->steady.kind);
-}
-
-/* True: another run is to check it. */
-static bool finish_first_run(const strut_sweep_worker *worker, strut_sweep_job *job,
-                             strut_status status, const strut_summary *summary) {
-  char outcome[STRUT_SLOT_WORD] = "";
-  bool began = status == STRUT_OK || status == STRUT_DIVERGED;
-  if (job->files) {
-    strut_error late = {0};
-    strut_status written =
-        strut_sweep_record_end(job->files, &job->setup.scene, summary, began, &late);
-    if (written) status = strut_fail(&job->error, written, "%s", late.message);
-  }
-  if (!status) status = name_outcome(worker, job, summary, outcome);
-  if (!status) {
-    job->warning_count = summary->warning_count;
-    memcpy(job->warnings, summary->warnings, sizeof job->warnings);
-    strut_sweep_fill(worker->plan, &job->setup, summary, outcome, &job->cells);
-    status = strut_sweep_derive(worker, job);
-  }
-  if (status || !worker->plan->check) {
-    finish_with_scene(worker, job, status);
-    return false;
-  }
-  snprintf(job->first, sizeof job->first, "%s", outcome_word(worker, summary, outcome));
-  refine_experiment(worker->plan->study, &job->setup.experiment);
-  set_options(worker, job);
-  job->error = (strut_error){0};
-  return true;
-}
-
-/* A second run that fails counts as another outcome. */
-static void finish_second_run(const strut_sweep_worker *worker, strut_sweep_job *job,
-                              strut_status status, const strut_summary *summary) {
-  char outcome[STRUT_SLOT_WORD] = "";
-  strut_row_buffer *cells = &job->cells;
-  status = explain_interrupt(worker, job, status);
-  if (!status) status = name_outcome(worker, job, summary, outcome);
-  const char *word = status ? "failed" : outcome_word(worker, summary, outcome);
-  bool same = !status && strcmp(job->first, word) == 0;
-  strut_sweep_number(cells, status ? (double)NAN : summary->velocity);
-  strut_sweep_word(cells, word);
-  strut_sweep_number(cells, same ? 0.0 : 1.0);
-  if (strut_sweep_stops(status)) strut_fail(&job->error, status, "%s", strut_status_text(status));
-  finish_with_scene(worker, job, strut_sweep_stops(status) ? status : STRUT_OK);
-}
-
-strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
-                                   bool first, strut_summary *summary) {
-  const strut_experiment *experiment = &job->setup.experiment;
-  strut_model *model = NULL;
-  strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
-  if (!status)
-    status = strut_simulate_as_asked(model, experiment, &job->options, summary, &job->error);
-  if (first) strut_sweep_fill_counts(worker->plan, model, &job->cells);
-  strut_model_free(model);
-  return status;
-}
-
-void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
-  strut_summary summary = {0}, second = {0};
-  if (!begin_job(worker, point, job)) return;
-  strut_status status = strut_sweep_run_scene(worker, job, true, &summary);
-  if (finish_first_run(worker, job, status, &summary)) {
-    status = strut_sweep_run_scene(worker, job, false, &second);
-    finish_second_run(worker, job, status, &second);
-  }
-  strut_summary_free(&summary);
-  strut_summary_free(&second);
-}
-
 /* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
 
-struct strut_sweep_record {
+typedef struct strut_sweep_record {
   strut_results results;
-  char *scene_text;
   strut_sink *hdf5;
   strut_sink outer;
-};
+} strut_sweep_record;
 
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   strut_sink *hdf5 = ((strut_sweep_record *)context)->hdf5;
@@ -258,37 +61,7 @@ static void discard(strut_sweep_record *record) {
 #endif
   strut_hdf5_free(record->hdf5);
   strut_results_abandon(&record->results); /* does nothing once it is complete */
-  strut_release(record->scene_text);
   strut_release(record);
-}
-
-strut_sweep_record *strut_sweep_record_begin(const char *directory, int64_t point,
-                                             const char *scene_text, const strut_scene *scene,
-                                             strut_error *error) {
-  strut_arena arena = {0};
-  strut_sweep_record *record = strut_allocate(1, sizeof *record);
-  char *path = strut_arena_format(&arena, "%s/runs/%09lld", directory, (long long)point);
-  char *text = strut_arena_format(&arena, "%s", scene_text);
-  if (!record || !path || !text) {
-    strut_no_memory(error, "");
-    strut_release(record);
-    strut_arena_free(&arena);
-    return NULL;
-  }
-  strut_status status = strut_results_begin(&record->results, path, error);
-  if (!status) {
-    record->hdf5 = strut_hdf5_create(record->results.stage, text);
-    if (!record->hdf5) status = strut_no_memory(error, "");
-  }
-  if (!status) status = strut_file_write_text(record->results.stage, "scene.yaml", text, error);
-  if (!status) status = strut_data_copy(scene->tables, scene->table_count, path, error);
-  strut_arena_free(&arena);
-  if (status) {
-    discard(record);
-    return NULL;
-  }
-  record->outer = (strut_sink){record, begin, take, end, record->hdf5->channels};
-  return record;
 }
 
 void strut_sweep_records_clear(const char *directory) {
@@ -304,10 +77,9 @@ void strut_sweep_records_clear(const char *directory) {
   strut_arena_free(&arena);
 }
 
-strut_sink *strut_sweep_record_sink(strut_sweep_record *record) { return &record->outer; }
-
-strut_status strut_sweep_record_end(strut_sweep_record *record, const strut_scene *scene,
-                                    const strut_summary *summary, bool keep, strut_error *error) {
+/* Ends it: complete, or with a run that never began not at all. Frees it. */
+static strut_status end_record(strut_sweep_record *record, const strut_scene *scene,
+                               const strut_summary *summary, bool keep, strut_error *error) {
   strut_status status = STRUT_OK;
   if (keep) {
     char *json = strut_summary_json(summary, scene, false);
@@ -373,7 +145,8 @@ void strut_sweep_watch_free(strut_sweep_watch *watch) {
   strut_release(watch);
 }
 
-void strut_sweep_watch_begin(strut_sweep_watch *watch, strut_sweep_job *job) {
+/* The time of a job begins. A NULL watch does nothing. */
+static void begin_time(strut_sweep_watch *watch, strut_sweep_job *job) {
   if (!watch) return;
   pthread_mutex_lock(&watch->lock);
   job->stop = 0;
@@ -381,11 +154,197 @@ void strut_sweep_watch_begin(strut_sweep_watch *watch, strut_sweep_job *job) {
   pthread_mutex_unlock(&watch->lock);
 }
 
-bool strut_sweep_watch_end(strut_sweep_watch *watch, strut_sweep_job *job) {
+/* It ends; true: it had passed. */
+static bool end_time(strut_sweep_watch *watch, strut_sweep_job *job) {
   if (!watch) return false;
   pthread_mutex_lock(&watch->lock);
   bool passed = job->stop && !(watch->interrupt && *watch->interrupt);
   job->deadline = 0.0;
   pthread_mutex_unlock(&watch->lock);
   return passed;
+}
+
+/* ---- a point ---- */
+
+/* The columns that a failed point leaves empty. */
+static void pad_cells(const strut_sweep_plan *plan, strut_row_buffer *cells) {
+  size_t words = 0;
+  for (size_t i = 0; i < plan->column_count; i++) words += plan->columns[i].word;
+  while (cells->word_count < words) strut_sweep_word(cells, "");
+  while (cells->number_count < plan->column_count - words) strut_sweep_number(cells, (double)NAN);
+}
+
+const strut_flag *strut_sweep_interrupt_of(const strut_sweep_worker *worker,
+                                           const strut_sweep_job *job) {
+  return worker->watch ? &job->stop : worker->options->interrupt;
+}
+
+/* What an interrupted computation means: its own time has passed, or the sweep is interrupted. */
+static strut_status explain_interrupt(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                      strut_status status) {
+  bool passed = end_time(worker->watch, job);
+  if (status != STRUT_INTERRUPTED || !passed) return status;
+  return strut_fail(&job->error, STRUT_WORK_LIMIT,
+                    "stopped after %.4g s by the clock, the study's limit: another machine may get "
+                    "further",
+                    worker->plan->study->limit.time);
+}
+
+/* Records the run into its own folder, as `strut run -o` does, if the study keeps trajectories; else *record is NULL. */
+static strut_status begin_record(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                 strut_sweep_record **record) {
+  const strut_scene *scene = &job->setup.scene;
+  strut_error *error = &job->error;
+  strut_arena arena = {0};
+  *record = NULL;
+  if (!worker->plan->study->trajectories || !worker->options->directory) return STRUT_OK;
+  strut_sweep_record *self = strut_allocate(1, sizeof *self);
+  char *text = worker->plan->scenes.text(&job->setup);
+  char *path = strut_arena_format(&arena, "%s/runs/%09lld", worker->options->directory,
+                                  (long long)job->point);
+  strut_status status = STRUT_OK;
+  if (!self || !text || !path) status = strut_no_memory(error, "");
+  if (!status) status = strut_results_begin(&self->results, path, error);
+  if (!status && !(self->hdf5 = strut_hdf5_create(self->results.stage, text)))
+    status = strut_no_memory(error, "");
+  if (!status) status = strut_file_write_text(self->results.stage, "scene.yaml", text, error);
+  if (!status) status = strut_data_copy(scene->tables, scene->table_count, path, error);
+  strut_release(text);
+  strut_arena_free(&arena);
+  if (status && self) discard(self);
+  if (status) return status;
+  *record = self;
+  self->outer = (strut_sink){self, begin, take, end, self->hdf5->channels};
+  job->sink = &self->outer;
+  job->options.sinks = &job->sink;
+  job->options.sink_count = 1;
+  return STRUT_OK;
+}
+
+/* The configuration that the run ended near; name: (STRUT_SLOT_WORD) */
+static strut_status name_outcome(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                 const strut_summary *summary, char *name) {
+  const strut_scene *scene = &job->setup.scene;
+  int32_t index = -1;
+  if (!strut_keep_has(&worker->plan->keep, STRUT_KEEP_OUTCOME) || !scene->configuration_count)
+    return STRUT_OK;
+  strut_status status = strut_equilibrium_cache_nearest(
+      worker->standing, &job->setup, summary->end.positions, &index, &job->error);
+  snprintf(name, STRUT_SLOT_WORD, "%s", index >= 0 ? scene->configurations[index].name : "other");
+  return status;
+}
+
+static const char *outcome_word(const strut_sweep_plan *plan, const strut_summary *summary,
+                                const char *outcome) {
+  return plan->flips ? outcome : strut_motion_name(summary->steady.kind);
+}
+
+strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep_job *job,
+                                   bool first, strut_summary *summary) {
+  const strut_experiment *experiment = &job->setup.experiment;
+  strut_model *model = NULL;
+  strut_status status = strut_model_compile(&job->setup.scene, &model, &job->error);
+  if (!status)
+    status = strut_simulate_as_asked(model, experiment, &job->options, summary, &job->error);
+  if (first) strut_sweep_fill_counts(worker->plan, model, &job->cells);
+  strut_model_free(model);
+  return status;
+}
+
+/* The run of a point; word (STRUT_SLOT_WORD): what a second one is to repeat. */
+static strut_status run_first(const strut_sweep_worker *worker, strut_sweep_job *job, char *word) {
+  char outcome[STRUT_SLOT_WORD] = "";
+  strut_summary summary = {0};
+  strut_sweep_record *record = NULL;
+  strut_status status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
+  if (!status) status = begin_record(worker, job, &record);
+  if (status) return status;
+  status = strut_sweep_run_scene(worker, job, true, &summary);
+  if (record) {
+    strut_error late = {0};
+    bool began = status == STRUT_OK || status == STRUT_DIVERGED;
+    strut_status written = end_record(record, &job->setup.scene, &summary, began, &late);
+    if (written) status = strut_fail(&job->error, written, "%s", late.message);
+  }
+  if (!status) status = name_outcome(worker, job, &summary, outcome);
+  if (!status) {
+    job->warning_count = summary.warning_count;
+    memcpy(job->warnings, summary.warnings, sizeof job->warnings);
+    strut_sweep_fill(worker->plan, &job->setup, &summary, outcome, &job->cells);
+    status = strut_sweep_derive(worker, job);
+    snprintf(word, STRUT_SLOT_WORD, "%s", outcome_word(worker->plan, &summary, outcome));
+  }
+  strut_summary_free(&summary);
+  return status;
+}
+
+/* Refines the experiment for the check. */
+static void refine_experiment(const strut_study *study, strut_experiment *experiment) {
+  if (study->check_accuracy > 0.0) {
+    experiment->accuracy = study->check_accuracy;
+  } else if (experiment->accuracy > 0.0) {
+    experiment->accuracy /= 2.0;
+  } else {
+    experiment->step /= 2.0;
+    experiment->tolerance /= 10.0; /* of the adaptive method, which has its steps from it */
+  }
+}
+
+/* Repeats the run more exactly. A second run that fails counts as another outcome. */
+static strut_status run_again(const strut_sweep_worker *worker, strut_sweep_job *job,
+                              const char *first) {
+  char outcome[STRUT_SLOT_WORD] = "";
+  strut_summary summary = {0};
+  refine_experiment(worker->plan->study, &job->setup.experiment);
+  job->options.sink_count = 0;
+  job->error = (strut_error){0};
+  strut_status status = strut_sweep_run_scene(worker, job, false, &summary);
+  status = explain_interrupt(worker, job, status);
+  if (!status) status = name_outcome(worker, job, &summary, outcome);
+  const char *word = status ? "failed" : outcome_word(worker->plan, &summary, outcome);
+  bool same = !status && strcmp(first, word) == 0;
+  strut_sweep_number(&job->cells, status ? (double)NAN : summary.velocity);
+  strut_sweep_word(&job->cells, word);
+  strut_sweep_number(&job->cells, same ? 0.0 : 1.0);
+  strut_summary_free(&summary);
+  if (!strut_sweep_stops(status)) return STRUT_OK;
+  return strut_fail(&job->error, status, "%s", strut_status_text(status));
+}
+
+static strut_status compute(const strut_sweep_worker *worker, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = worker->plan;
+  char first[STRUT_SLOT_WORD] = "";
+  bool run = plan->study->compute == STRUT_COMPUTE_RUN;
+  strut_status status = run ? run_first(worker, job, first) : strut_statics_point(worker, job);
+  if (!run && !status) status = strut_sweep_derive(worker, job);
+  return run && !status && plan->check ? run_again(worker, job, first) : status;
+}
+
+void strut_sweep_compute(const strut_sweep_worker *worker, int64_t point, strut_sweep_job *job) {
+  const strut_sweep_plan *plan = worker->plan;
+  const strut_sweep_options *options = worker->options;
+  strut_row_buffer *cells = &job->cells;
+  cells->number_count = cells->word_count = 0;
+  cells->message[0] = '\0';
+  job->point = point;
+  job->warning_count = 0;
+  job->error = (strut_error){0};
+  job->options = (strut_run_options){.interrupt = strut_sweep_interrupt_of(worker, job),
+                                     .most_evaluations = plan->study->limit.evaluations};
+  begin_time(worker->watch, job);
+  strut_grid_values(plan->study, point, cells->values);
+  if (options->values) options->values(options->point_context, point, cells->values);
+  strut_sweep_axes(plan, cells->values, cells);
+  strut_status status =
+      plan->scenes.setup(plan->scenes.context, cells->values, &job->setup, &job->error);
+  if (!status) {
+    if (options->adjust) options->adjust(options->point_context, point, &job->setup);
+    status = compute(worker, job);
+    strut_setup_free(&job->setup);
+  }
+  status = explain_interrupt(worker, job, status);
+  job->status = strut_sweep_stops(status) ? status : STRUT_OK;
+  if (job->status) return;
+  if (status) pad_cells(plan, cells);
+  strut_sweep_end_row(cells, status, status ? &job->error : NULL);
 }

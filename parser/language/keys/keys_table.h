@@ -260,7 +260,7 @@
   X(SENSITIVITY, SAMPLES, "samples", NUMBER, NONE, WHOLE(0, 100000), "256", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, samples), "Base samples of Saltelli's design; n parameters need n + 2 points each. 0: derivatives only.") \
   X(SENSITIVITY, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, seed), "Seed of the points; the same seed gives the same points.") \
   X(SENSITIVITY, SCHEME, "scheme", WORD, NONE, ANY, "sobol", OPTIONAL, 0, "sobol|lhs|random", FIELD(strut_study_sensitivity, scheme), "As of a [sample](#sample).") \
-  X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", FIELD(strut_study_sensitivity, derivatives), "Central differences about the medians with two steps: four points for each parameter.") \
+  X(SENSITIVITY, DERIVATIVES, "derivatives", WORD, NONE, ANY, "yes", OPTIONAL, 0, "no|yes", FIELD(strut_study_sensitivity, derivatives), "[Derivatives](numerics.md#derivatives) at the medians, one further point.") \
   X(SENSITIVITY, THRESHOLD, "threshold", NUMBER, NONE, NOT_NEGATIVE, "0", OPTIONAL, 0, "", FIELD(strut_study_sensitivity, threshold), "Reports the shares of samples above it, within it in size, and below its negative, in the SI unit of the columns. 0: only the share above 0.")
 
 #define STRUT_STIFFNESS_AT_KEYS(X) \

@@ -427,35 +427,9 @@ void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value
 
 static const strut_owner sensitivity_owner = {"the sensitivity analysis", NULL};
 
-/* The accuracy of the runs at the first point; 0 for that of rounding, or where no point can be read yet. */
-static double find_accuracy(strut_study_reader *reader) {
-  const strut_study *study = &reader->file->study;
-  strut_setup setup;
-  strut_error error = {0};
-  size_t k = 0;
-  if (study->compute != STRUT_COMPUTE_RUN || reader->reader->failed) return 0.0;
-  strut_study_value *values = strut_allocate(reader->file->column_count + 1, sizeof *values);
-  if (!values) {
-    reader->reader->out_of_memory = true;
-    return 0.0;
-  }
-  for (size_t i = 0; i < study->axis_count; i++)
-    for (size_t c = 0; c < study->axes[i].column_count; c++, k++) {
-      const strut_study_column *column = &study->axes[i].columns[c];
-      bool list = column->kind == STRUT_RANGE_LIST;
-      values[k].number = column->word ? (double)NAN : list ? column->number[0] : column->from;
-      values[k].word = column->word ? column->words[0] : NULL;
-    }
-  double accuracy = 0.0;
-  if (strut_study_setup(reader->file, values, &setup, &error) == STRUT_OK) {
-    accuracy = setup.experiment.accuracy;
-    strut_setup_free(&setup);
-  }
-  strut_release(values);
-  return accuracy;
-}
+static const double DEVIATION = 0.8413447460685429; /* the 84th percentile */
 
-/* Gives the axis its points; first the medians alone, at which the accuracy is found. */
+/* Gives the axis its points. */
 static void make_points(strut_study_reader *reader, const strut_slot *slot, strut_study_axis *axis,
                         const strut_distribution *distributions) {
   strut_study *study = &reader->file->study;
@@ -470,13 +444,15 @@ static void make_points(strut_study_reader *reader, const strut_slot *slot, stru
                        points);
     return;
   }
+  double *scales = strut_study_allocate(reader, axis->column_count, sizeof *scales);
   for (size_t i = 0; i < axis->column_count; i++) {
     values[i] = strut_study_allocate(reader, (size_t)axis->count, sizeof *values[i]);
-    if (!values[i]) return;
-    values[i][0] = strut_distribution_value(&distributions[i], 0.5);
+    if (!values[i] || !scales) return;
     axis->columns[i].number = values[i];
+    scales[i] = fabs(strut_distribution_value(&distributions[i], DEVIATION) -
+                     strut_distribution_value(&distributions[i], 0.5));
   }
-  sensitivity->accuracy = find_accuracy(reader);
+  sensitivity->scales = scales;
   if (!strut_sensitivity_fill(sensitivity, axis->column_count, distributions, values))
     reader->reader->out_of_memory = true;
 }

@@ -163,7 +163,7 @@ static strut_status setup_at(void *context, const strut_study_value *values, dou
 }
 
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error) {
-  const strut_follow_points_options how = {.setup = setup_at, .context = &study->file};
+  const strut_follow_points how = {setup_at, &study->file};
   strut_status status = strut_follow_points_columns(&study->plan, error);
   return status ? status : strut_follow_points_check(&study->plan, &how, error);
 }
@@ -183,16 +183,10 @@ static void write_partial(const strut_study_job *job) {
 
 static strut_status run_points(strut_study_job *job, const strut_sweep_options *options,
                                void *context, strut_error *error) {
-  const strut_follow_points_options how = {.setup = setup_at,
-                                           .context = &job->study->file,
-                                           .directory = options->directory,
-                                           .threads = options->threads,
-                                           .interrupt = options->interrupt,
-                                           .progress = options->progress,
-                                           .progress_context = options->progress_context};
+  const strut_follow_points how = {setup_at, &job->study->file};
   (void)context;
   strut_status status =
-      strut_follow_points_run(&job->study->plan, job->slots, &how, &job->state, error);
+      strut_follow_points_run(&job->study->plan, job->slots, &how, options, &job->state, error);
   if (status == STRUT_INTERRUPTED) write_partial(job);
   return status;
 }
