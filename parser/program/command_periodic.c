@@ -7,30 +7,9 @@
 #include "engine/base/number_text.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
+#include "parser/program/command/analyses.h"
 #include "parser/program/command/follow_options.h"
-#include "parser/program/open_model.h"
 #include "parser/program/options.h"
-#include "parser/program/outputs.h"
-#include "parser/program/progress.h"
-#include "parser/program/streams.h"
-
-enum { BRANCHES, CURVES };
-
-static strut_status draw(const strut_plot *plot, const void *result, size_t index,
-                         strut_error *error) {
-  return index == CURVES ? strut_follow_curves_figure(plot, result, error)
-                         : strut_follow_figure(plot, result, error);
-}
-
-/* With those of curves the last two. */
-static const strut_output_file all_files[] = {
-    {.name = "branches.csv", .list = "branches.points"},
-    {.name = "branches.json"},
-    {.name = "branches.svg", .draw = draw},
-    {.name = "curves.csv", .list = "curves.points", .rows = &strut_follow_curves_values},
-    {.name = "curves.svg", .draw = draw, .index = CURVES},
-    {.name = NULL}};
-enum { FILES = sizeof all_files / sizeof *all_files, CURVES_CSV = 3, CURVES_SVG };
 
 #define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
 
@@ -67,61 +46,78 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
-                           const strut_follow_result *result) {
-  bool curves = result->second.name && result->curve_count;
-  strut_output_file files[FILES];
-  memcpy(files, all_files, sizeof files);
-  files[CURVES_CSV].absent = !result->second.name;
-  files[CURVES_SVG].absent = !curves;
-  return strut_outputs_make(arguments, plot,
-                            &(strut_outputs){.rows = &strut_follow_values,
-                                             .result = result,
-                                             .files = files,
-                                             .draw = draw,
-                                             .index = curves ? CURVES : BRANCHES});
+/* What is followed, and what was found. */
+typedef struct followed {
+  strut_follow_source source;
+  strut_follow_result result;
+} followed;
+
+static void free_followed(strut_analysis *analysis) {
+  followed *self = analysis->result.own;
+  if (!self) return;
+  strut_follow_free(&self->result);
+  strut_follow_source_free(&self->source);
+  strut_release(self);
 }
 
-static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
-                           strut_follow_options *wanted) {
-  strut_error error = {0};
-  strut_follow_result *result = strut_allocate(1, sizeof *result);
-  if (!result) return strut_print_out_of_memory();
-  strut_progress progress = strut_progress_begin(arguments->quiet);
-  wanted->interrupt = strut_interrupt_watch();
-  wanted->progress = progress.wanted ? strut_progress_show : NULL;
-  wanted->progress_context = &progress;
-  wanted->threads = strut_sweep_threads();
-  strut_status status = strut_follow_make(wanted, result, &error);
-  strut_progress_end(&progress);
-  strut_print_failure(status, &error);
-  if (!status)
-    status = report(arguments, plot, result);
-  else if (status == STRUT_INTERRUPTED && result->count > 0)
-    report(arguments, plot, result);
-  strut_follow_free(result);
-  strut_release(result);
+static strut_status compute(strut_analysis *analysis, strut_error *error) {
+  followed *self = analysis->result.own = strut_allocate(1, sizeof *self);
+  if (!self) return strut_no_memory(error, "");
+  strut_follow_options wanted = {.threads = strut_sweep_threads(),
+                                 .interrupt = analysis->interrupt,
+                                 .progress = analysis->progress,
+                                 .progress_context = analysis->progress_context};
+  self->source.scenes = analysis->scenes;
+  analysis->found = &self->result;
+  analysis->scene = NULL;
+  strut_status status = strut_follow_options_read(analysis->arguments, &analysis->setup->scene,
+                                                  &self->source, &wanted);
+  if (!status) status = strut_follow_make(&wanted, &self->result, error);
+  analysis->partial = status == STRUT_INTERRUPTED && self->result.count > 0;
   return status;
 }
 
-static strut_status run_follow(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_plot plot;
-  strut_follow_source source = {.scenes = {.file = strut_model_name(arguments)}};
-  strut_follow_options wanted = {0};
-  char *text = NULL;
-  strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (!status) status = strut_outputs_check(arguments, all_files);
-  if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
-  if (status) return status;
-  source.scenes.text = text;
-  status = strut_follow_options_read(arguments, &setup.scene, &source, &wanted);
-  strut_setup_free(&setup);
-  if (!status) status = follow(arguments, &plot, &wanted);
-  strut_follow_source_free(&source);
-  strut_release(text);
-  return status;
+enum { FIGURE, BRANCHES, CURVES };
+
+static const strut_follow_result *result_of(const strut_analysis *analysis) {
+  return &((const followed *)analysis->result.own)->result;
 }
+
+static bool has_curves(const strut_analysis *analysis, size_t number) {
+  const strut_follow_result *result = result_of(analysis);
+  return result->second.name && (result->curve_count || number != CURVES);
+}
+
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+                         strut_error *error) {
+  bool curves = number == CURVES || (number == FIGURE && has_curves(analysis, CURVES));
+  return (curves ? strut_follow_curves_figure : strut_follow_figure)(plot, result_of(analysis),
+                                                                     error);
+}
+
+static strut_status draw_figure(const strut_analysis *analysis, const strut_plot *plot,
+                                strut_error *error) {
+  return draw(analysis, plot, FIGURE, error);
+}
+
+static const strut_output_file files[] = {
+    {.name = "branches.csv", .list = "branches.points"},
+    {.name = "branches.json"},
+    {.name = "branches.svg", .draw = draw, .number = BRANCHES},
+    {.name = "curves.csv",
+     .list = "curves.points",
+     .rows = &strut_follow_curves_values,
+     .there = has_curves},
+    {.name = "curves.svg", .draw = draw, .number = CURVES, .there = has_curves},
+    {.name = NULL}};
+
+static const strut_analysis_kind periodic_analysis = {.files = files,
+                                                      .rows = &strut_follow_values,
+                                                      .uncompiled = true,
+                                                      .asks = true,
+                                                      .compute = compute,
+                                                      .draw = draw_figure,
+                                                      .release = free_followed};
 
 static const strut_refused_option refused[] = {
     {"step", "it follows from --accuracy and the method's stability limit"},
@@ -143,7 +139,7 @@ const strut_command strut_command_periodic = {
     .summary = "follows periodic motions, stable or not, as a parameter changes",
     .details = periodic_details,
     .options = options,
-    .run = run_follow,
+    .analysis = &periodic_analysis,
     .refused = refused,
     .timed = true,
 };
