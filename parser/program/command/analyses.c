@@ -8,6 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/forces/history.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/path_csv.h"
 #include "engine/output/result_values.h"
@@ -202,6 +203,67 @@ static strut_status read_followed(const strut_arguments *arguments, const strut_
   return status ? status : read_stop(arguments, scene, &wanted->stop);
 }
 
+/* ---- warnings of structures at rest in which something carries more than it can (forces/history.h) ---- */
+
+/* Of the shape, at `where`. */
+static void warn_of_overload(const strut_listener *listener, const strut_model *model,
+                             const double *positions, const char *where) {
+  strut_overload worst;
+  if (!strut_history_overload(model, positions, &worst)) return;
+  const char *unit = worst.hinge ? "N m" : "N";
+  strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+             "%s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take it as %s",
+             where, worst.kind, worst.name, worst.force, unit, worst.limit, unit,
+             worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
+}
+
+/* Says what a search has left out: on a curve that folds one branch is taken at each elongation. */
+static void warn_of_folds(const strut_listener *listener, const strut_model *model) {
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *element = &model->elements.element[i];
+    if (element->law != STRUT_LAW_FOLDING) continue;
+    strut_tell(
+        listener, STRUT_MESSAGE_WARNING, NULL,
+        "the law of '%s' may fold back: a search takes it as it is when it comes from the rest "
+        "length, and finds no state on another branch; strut path follows them",
+        strut_element_name(model->scene, element));
+    return;
+  }
+}
+
+/* Does something carry more than it can? What that is. */
+static const char *overloaded_at(const strut_scene *scene, const strut_path_point *at) {
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *member = &scene->members[j];
+    bool yields =
+        member->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->at.force[j]) > member->law.yield;
+    if (yields || (member->breaks_at > 0.0 && at->at.force[j] > member->breaks_at))
+      return member->name;
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *hinge = &scene->hinges[i];
+    double moment = fabs(at->at.moment[i]);
+    bool yields = hinge->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > hinge->law.yield;
+    if (yields || (hinge->breaks_at > 0.0 && moment > hinge->breaks_at)) return hinge->name;
+  }
+  return NULL;
+}
+
+/* Warns of the first point where something carries more than it can; false: there is none. */
+static bool warn_of_points(const strut_listener *listener, const strut_scene *scene,
+                           const strut_path *path) {
+  for (size_t i = 0; i < path->point_count; i++) {
+    const char *name = overloaded_at(scene, &path->points[i]);
+    if (!name) continue;
+    strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+               "from the factor %.4g on '%s' carries more than it can; paths take what "
+               "breaks as whole and what yields as elastic",
+               path->points[i].at.factor, name);
+    return true;
+  }
+  return false;
+}
+
 /* ---- equilibria ---- */
 
 static strut_status compute_equilibria(strut_analysis *analysis, strut_error *error) {
@@ -227,7 +289,15 @@ static strut_status judge_equilibria(const strut_analysis *analysis, strut_error
 }
 
 static void warn_of_equilibria(const strut_analysis *analysis, const strut_listener *listener) {
-  strut_warn_of_equilibria(listener, analysis->model, &analysis->result.equilibria);
+  const strut_equilibria *all = &analysis->result.equilibria;
+  warn_of_folds(listener, analysis->model);
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *equilibrium = &all->list[i];
+    char where[200];
+    if (equilibrium->point.label != STRUT_STABLE) continue;
+    snprintf(where, sizeof where, "in %.180s", equilibrium->name);
+    warn_of_overload(listener, analysis->model, equilibrium->point.q, where);
+  }
 }
 
 static strut_status draw_equilibria(const strut_analysis *analysis, const strut_plot *plot,
@@ -265,7 +335,7 @@ const strut_analysis_kind strut_equilibria_analysis = {.files = FILES({.name = "
 /* ---- modes ---- */
 
 static void warn_of_modes(const strut_analysis *analysis, const strut_listener *listener) {
-  strut_warn_of_overload(listener, analysis->model, analysis->result.modes.q, "in this shape");
+  warn_of_overload(listener, analysis->model, analysis->result.modes.q, "in this shape");
 }
 
 static strut_status draw_modes(const strut_analysis *analysis, const strut_plot *plot,
@@ -276,7 +346,7 @@ static strut_status draw_modes(const strut_analysis *analysis, const strut_plot 
 static void free_modes(strut_analysis *analysis) { strut_modes_free(&analysis->result.modes); }
 
 static void warn_of_waves(const strut_analysis *analysis, const strut_listener *listener) {
-  strut_warn_of_overload(listener, analysis->model, analysis->result.waves.q, "in this shape");
+  warn_of_overload(listener, analysis->model, analysis->result.waves.q, "in this shape");
 }
 
 static strut_status draw_waves(const strut_analysis *analysis, const strut_plot *plot,
@@ -449,7 +519,18 @@ static char *path_csv(const strut_analysis *analysis) {
 }
 
 static void warn_of_path(const strut_analysis *analysis, const strut_listener *listener) {
-  strut_warn_of_path(listener, &analysis->setup->scene, &analysis->result.path);
+  const strut_scene *scene = &analysis->setup->scene;
+  const strut_path *path = &analysis->result.path;
+  bool warned = false;
+  if (path->friction && !path->grips)
+    strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+               "friction is kept, but no contact has a static coefficient, and no cable rubs: "
+               "the laws 'smooth' and 'stribeck' vanish at rest");
+  for (size_t i = 0; i < path->stage_count && !warned; i++)
+    warned = warn_of_points(listener, scene, &path->stages[i]);
+  warned = warned || warn_of_points(listener, scene, path);
+  for (size_t i = 0; i < path->branch_count && !warned; i++)
+    warned = warn_of_points(listener, scene, &path->branches[i]);
 }
 
 static strut_status draw_path(const strut_analysis *analysis, const strut_plot *plot,

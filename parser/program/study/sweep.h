@@ -114,7 +114,7 @@ typedef struct strut_study_form {
   strut_status (*report)(const strut_study_job *job, const void *result, const char *table);
   void (*release)(void *result); /* may be NULL */
 } strut_study_form;
-extern const strut_study_form strut_search_form, strut_fit_form, strut_follow_form;
+extern const strut_study_form strut_search_form, strut_follow_form;
 
 /** Draws each figure as DIR/NAME.svg, of the table at `path` or of the runs beside it. */
 strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path);

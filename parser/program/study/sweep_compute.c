@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes a study that is open, and writes its results; those of single points and of refinements are here. */
+/* Computes a study that is open, and writes its results; those of single points, of refinements and of fits are here. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/output/file.h"
+#include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/study/sweep.h"
@@ -97,6 +98,43 @@ static strut_status report_points(const strut_study_job *job, const void *result
 static const strut_study_form points_form = {
     .size = 1, .compute = run_points, .report = report_points};
 
+/* ---- fits ---- */
+
+static strut_status run_fit(strut_study_job *job, const strut_sweep_options *options, void *context,
+                            strut_error *error) {
+  strut_sweep_options how = *options;
+  how.directory = NULL;
+  how.worker = job->shard.index, how.workers = job->shard.count;
+  return strut_fit_run(&job->study->plan, job->slots, &how, &job->state, context, error);
+}
+
+static strut_status write_fit(const strut_study_job *job, void *result, strut_error *error) {
+  strut_status status = strut_fit_write(result, job->arguments->output, "model.yaml", error);
+  return status ? status : strut_fit_figures(result, job->arguments->output, error);
+}
+
+static strut_status report_fit(const strut_study_job *job, const void *of, const char *table) {
+  const strut_fit_result *result = of;
+  (void)table;
+  strut_status status = job->report(job, &strut_fit_values, result, NULL);
+  if (status) return status;
+  if (!result->found) {
+    strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "the model cannot be computed at any start: see 'message' of the table, or 'strut "
+               "run' with values of the ranges");
+    return STRUT_DIVERGED;
+  }
+  if (strut_fit_is_identified(result)) return STRUT_OK;
+  strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+             "not all parameters are identified%s%s", *result->reason ? ": " : "", result->reason);
+  return STRUT_INACCURATE;
+}
+
+static void free_fit(void *result) { strut_fit_result_free(result); }
+
+static const strut_study_form fit_form = {sizeof(strut_fit_result), run_fit, write_fit, report_fit,
+                                          free_fit};
+
 /* ---- any study ---- */
 
 /* Writes the files, the table last as a sign that they are there, draws and reports. */
@@ -161,6 +199,6 @@ strut_status strut_study_job_compute(strut_study_job *job) {
   if (status) return strut_tell_failure(job->arguments->listener, status, &error);
   return compute(job, study->search   ? &strut_search_form
                       : study->follow ? &strut_follow_form
-                      : study->fit    ? &strut_fit_form
+                      : study->fit    ? &fit_form
                                       : &points_form);
 }
