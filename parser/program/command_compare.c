@@ -3,7 +3,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
@@ -11,10 +10,8 @@
 #include "parser/language/read/read_scene.h"
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/write_scene.h"
-#include "parser/program/command/varied_scenes.h"
+#include "parser/program/command/analyses.h"
 #include "parser/program/options.h"
-#include "parser/program/outputs.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
 /* ---- reading the models ---- */
@@ -26,6 +23,7 @@ typedef struct compared_models {
   strut_setup *setups;         /* (count) */
   strut_arena arena;           /* of names and differences */
   const char *notes;           /* on --set, as printed so far; or NULL */
+  strut_compare result;
 } compared_models;
 
 enum { MOST_MESSAGES = 50 };
@@ -215,33 +213,38 @@ static strut_status check_models(const strut_arguments *arguments) {
   return STRUT_OK;
 }
 
-static void free_compared(compared_models *compared) {
-  for (size_t i = 0; i < compared->count; i++) strut_setup_free(&compared->setups[i]);
-  strut_arena_free(&compared->arena);
-  *compared = (compared_models){0};
-}
-
-static strut_status open_compared(const strut_arguments *arguments, compared_models *compared) {
+static strut_status open_compared(strut_analysis *analysis, char **text) {
+  const strut_arguments *arguments = analysis->arguments;
   size_t count = arguments->model_count;
+  compared_models *compared = strut_allocate(1, sizeof *compared);
+  (void)text;
+  analysis->setup = NULL;
+  analysis->result.own = compared;
+  if (!compared) return strut_print_out_of_memory();
   strut_status status = check_models(arguments);
-  *compared = (compared_models){.count = 0};
-  if (status != STRUT_OK) return status;
+  if (status) return status;
   compared->inputs = strut_arena_allocate(&compared->arena, count, sizeof *compared->inputs);
   compared->setups = strut_arena_allocate(&compared->arena, count, sizeof *compared->setups);
-  if (!compared->inputs || !compared->setups) status = strut_print_out_of_memory();
+  if (!compared->inputs || !compared->setups) return strut_print_out_of_memory();
   for (size_t i = 0; i < count && status != STRUT_NO_MEMORY; i++) {
     strut_status here = open_one(arguments, compared, i);
     compared->count = i + 1;
     if (status == STRUT_OK || here == STRUT_NO_MEMORY) status = here;
   }
   if (status == STRUT_OK) status = check_settings(arguments, compared);
-  if (status == STRUT_OK) status = find_differences(compared);
-  if (status != STRUT_OK) free_compared(compared);
-  return status;
+  return status ? status : find_differences(compared);
 }
 
-enum { FIXED_FILES = 3, FILE_NAME = 24 };
-static const double PAGE = 510.24, ONE = 249.45; /* 180 mm, 88 mm [pt] */
+static void free_compared(strut_analysis *analysis) {
+  compared_models *compared = analysis->result.own;
+  if (!compared) return;
+  strut_compare_free(&compared->result);
+  for (size_t i = 0; i < compared->count; i++) strut_setup_free(&compared->setups[i]);
+  strut_arena_free(&compared->arena);
+  strut_release(compared);
+}
+
+/* ---- comparing ---- */
 
 static const strut_option options[] = {
     {STRUT_FILLS(overrides), "set", "NAME=VALUE",
@@ -260,41 +263,46 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static strut_status draw(const strut_plot *plot, const void *result, size_t index,
+static const strut_compare *result_of(const strut_analysis *analysis) {
+  return &((const compared_models *)analysis->result.own)->result;
+}
+
+static bool is_compared(const strut_analysis *analysis, size_t number) {
+  return number <= result_of(analysis)->count;
+}
+
+/* All models, or one, counted from 1. */
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
                          strut_error *error) {
-  return strut_compare_figure(plot, result, index, ((const strut_compare *)result)->count, error);
+  const strut_compare *result = result_of(analysis);
+  return number ? strut_compare_figure(plot, result, number - 1, 1, error)
+                : strut_compare_figure(plot, result, 0, result->count, error);
 }
 
-static strut_status draw_one(const strut_plot *plot, const void *result, size_t index,
-                             strut_error *error) {
-  return strut_compare_figure(plot, result, index, 1, error);
+static strut_status draw_figure(const strut_analysis *analysis, const strut_plot *plot,
+                                strut_error *error) {
+  return draw(analysis, plot, 0, error);
 }
 
-/* All files that a comparison may write. */
-typedef struct compare_files {
-  char pictures[STRUT_COMPARE_MOST][FILE_NAME];
-  strut_output_file list[STRUT_COMPARE_MOST + FIXED_FILES + 1];
-} compare_files;
-
-static void list_files(compare_files *files, size_t count) {
-  *files = (compare_files){.list = {{.name = "compare.csv", .list = "models"},
-                                    {.name = "compare.json"},
-                                    {.name = "compare.svg", .draw = draw, .width = PAGE}}};
-  for (size_t i = 0; i < STRUT_COMPARE_MOST; i++) {
-    snprintf(files->pictures[i], FILE_NAME, "model-%zu.svg", i + 1);
-    files->list[FIXED_FILES + i] = (strut_output_file){.name = files->pictures[i],
-                                                       .draw = draw_one,
-                                                       .index = i,
-                                                       .width = ONE,
-                                                       .absent = i >= count};
-  }
-}
+static const strut_output_file files[] = {
+    {.name = "compare.csv", .list = "models"},
+    {.name = "compare.json"},
+    {.name = "compare.svg", .draw = draw, .width = 510.24}, /* 180 mm */
+    {.name = "model",
+     .draw = draw,
+     .number = 1,
+     .most = STRUT_COMPARE_MOST,
+     .width = 249.45, /* 88 mm */
+     .there = is_compared},
+    {.name = NULL}};
 
 /* Repeats on stderr what could not be computed, or not as accurately as requested. */
-static strut_status report_failures(const strut_compare *result) {
+static strut_status report_failures(const strut_analysis *analysis, strut_error *unused) {
+  const strut_compare *result = result_of(analysis);
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < result->count; i++) {
     const strut_compare_column *column = &result->columns[i];
+    (void)unused;
     strut_error error = {0};
     if (column->inaccurate) {
       fprintf(stderr, "strut: warning: %s: the velocity is less accurate than requested: %s\n",
@@ -309,47 +317,27 @@ static strut_status report_failures(const strut_compare *result) {
   return status;
 }
 
-static strut_status compare_models(const strut_arguments *arguments, const strut_plot *plot,
-                                   const strut_output_file *files, const compared_models *models) {
-  strut_compare result = {0};
-  strut_error error = {0};
-  strut_progress progress = strut_progress_begin(arguments->quiet);
-  const strut_compare_options wanted = {.accuracy = arguments->accuracy.value,
-                                        .no_motion = arguments->no_motion,
-                                        .no_states = arguments->no_states,
-                                        .interrupt = strut_interrupt_watch(),
-                                        .progress = progress.wanted ? strut_progress_show : NULL,
-                                        .progress_context = &progress};
-  strut_status status = strut_compare_make(models->inputs, models->count, &wanted, &result, &error);
-  strut_progress_end(&progress);
-  strut_print_failure(status, &error);
-  if (!status)
-    status = strut_outputs_make(arguments, plot,
-                                &(strut_outputs){.rows = &strut_compare_values,
-                                                 .result = &result,
-                                                 .files = files,
-                                                 .draw = draw,
-                                                 .printed = "models"});
-  if (!status) status = report_failures(&result);
-  strut_compare_free(&result);
-  return status;
+static strut_status compare(strut_analysis *analysis, strut_error *error) {
+  compared_models *models = analysis->result.own;
+  const strut_compare_options wanted = {.accuracy = analysis->arguments->accuracy.value,
+                                        .no_motion = analysis->arguments->no_motion,
+                                        .no_states = analysis->arguments->no_states,
+                                        .interrupt = analysis->interrupt,
+                                        .progress = analysis->progress,
+                                        .progress_context = analysis->progress_context};
+  analysis->found = &models->result;
+  return strut_compare_make(models->inputs, models->count, &wanted, &models->result, error);
 }
 
-static strut_status run_compare(const strut_arguments *arguments) {
-  compared_models models;
-  compare_files files;
-  strut_plot plot;
-  strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (status == STRUT_OK && arguments->json && arguments->csv)
-    status = strut_usage_error(arguments, "give either --json or --csv, not both");
-  list_files(&files, arguments->model_count);
-  if (status == STRUT_OK) status = strut_outputs_check(arguments, files.list);
-  if (status == STRUT_OK) status = open_compared(arguments, &models);
-  if (status != STRUT_OK) return status;
-  status = compare_models(arguments, &plot, files.list, &models);
-  free_compared(&models);
-  return status;
-}
+static const strut_analysis_kind compare_analysis = {.files = files,
+                                                     .rows = &strut_compare_values,
+                                                     .printed = "models",
+                                                     .uncompiled = true,
+                                                     .asks = true,
+                                                     .compute = compare,
+                                                     .verdict = report_failures,
+                                                     .draw = draw_figure,
+                                                     .release = free_compared};
 
 static const strut_refused_option refused[] = {
     {"integrator", "every model is run to --accuracy, by the method that this takes"},
@@ -374,7 +362,8 @@ const strut_command strut_command_compare = {
     .summary = "compares models side by side: structure, statics and motion",
     .details = compare_details,
     .options = options,
-    .run = run_compare,
+    .analysis = &compare_analysis,
+    .open = open_compared,
     .refused = refused,
     .timed = true,
 };

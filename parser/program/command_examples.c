@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* `strut examples`: models that come with strut. */
+#include <errno.h>
 #include <glob.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/file.h"
@@ -54,6 +56,19 @@ static strut_status print_model(const char *path, size_t root, strut_error *erro
   return STRUT_OK;
 }
 
+/* A file that exists stays as it is. */
+static strut_status create_file(const char *path, const char *text, size_t length,
+                                strut_error *error) {
+  FILE *file = fopen(path, "wx");
+  int code = !file || fwrite(text, 1, length, file) != length ? errno : 0;
+  if (file && fclose(file) != 0 && !code) code = errno;
+  if (!code) return STRUT_OK;
+  if (file) unlink(path);
+  if (code == EEXIST)
+    return strut_fail(error, STRUT_FILE_TROUBLE, "'%s' exists already, and is left as it is", path);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", path, strerror(code));
+}
+
 /* Copies a model, and those that it names: the model of a study, the base of a scene. */
 static strut_status copy_model(const strut_arguments *arguments, const char *path,
                                strut_error *error) {
@@ -66,7 +81,7 @@ static strut_status copy_model(const strut_arguments *arguments, const char *pat
   if (status != STRUT_OK) return status;
   snprintf(copy, sizeof copy, "%s%s%s", directory ? directory : "", directory ? "/" : "", base);
   bool same = strut_file_read(copy, &there, &size, &unused) == STRUT_OK && strcmp(there, text) == 0;
-  if (!same) status = strut_create_file(copy, text, length, error);
+  if (!same) status = create_file(copy, text, length, error);
   if (!same && status == STRUT_OK && !arguments->quiet) printf("%s\n", copy);
   for (size_t k = 0; k < sizeof keys / sizeof keys[0] && status == STRUT_OK; k++) {
     find_key(text, keys[k], name);

@@ -4,9 +4,11 @@
 #include <string.h>
 
 #include "engine/output/result_values.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/modes/waves.h"
+#include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/fit/fit.h"

@@ -1,36 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/commands.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/scene/things.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
-#include "parser/program/command/follow_options.h"
-#include "parser/program/open_model.h"
+#include "parser/program/command/analyses.h"
 #include "parser/program/options.h"
-#include "parser/program/outputs.h"
-#include "parser/program/progress.h"
-#include "parser/program/streams.h"
-
-enum { BRANCHES, CURVES };
-
-static strut_status draw(const strut_plot *plot, const void *result, size_t index,
-                         strut_error *error) {
-  return index == CURVES ? strut_follow_curves_figure(plot, result, error)
-                         : strut_follow_figure(plot, result, error);
-}
-
-/* With those of curves the last two. */
-static const strut_output_file all_files[] = {
-    {.name = "branches.csv", .list = "branches.points"},
-    {.name = "branches.json"},
-    {.name = "branches.svg", .draw = draw},
-    {.name = "curves.csv", .list = "curves.points", .rows = &strut_follow_curves_values},
-    {.name = "curves.svg", .draw = draw, .index = CURVES},
-    {.name = NULL}};
-enum { FILES = sizeof all_files / sizeof *all_files, CURVES_CSV = 3, CURVES_SVG };
 
 #define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
 
@@ -67,65 +48,250 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static strut_status report(const strut_arguments *arguments, const strut_plot *plot,
-                           const strut_follow_result *result) {
-  bool curves = result->second.name && result->curve_count;
-  strut_output_file files[FILES];
-  memcpy(files, all_files, sizeof files);
-  files[CURVES_CSV].absent = !result->second.name;
-  files[CURVES_SVG].absent = !curves;
-  return strut_outputs_make(arguments, plot,
-                            &(strut_outputs){.rows = &strut_follow_values,
-                                             .result = result,
-                                             .files = files,
-                                             .draw = draw,
-                                             .index = curves ? CURVES : BRANCHES});
+enum { MOST_AT = 8, MOST_STARTS = 64 };
+
+/* Scenes over the parameter, and the options that refer to them. Must not move. */
+typedef struct follow_source {
+  strut_varied_scenes scenes;
+  char from[1024]; /* names of configurations, each ended by NUL */
+  strut_follow_start starts[MOST_STARTS];
+} follow_source;
+
+static const char *parameter_at(const void *context, size_t i) {
+  const strut_scene *scene = context;
+  return i < scene->parameter_count ? scene->parameters[i].name : NULL;
 }
 
-static strut_status follow(const strut_arguments *arguments, const strut_plot *plot,
-                           strut_follow_options *wanted) {
-  strut_error error = {0};
-  strut_follow_result *result = strut_allocate(1, sizeof *result);
-  if (!result) return strut_print_out_of_memory();
-  strut_progress progress = strut_progress_begin(arguments->quiet);
-  wanted->interrupt = strut_interrupt_watch();
-  wanted->progress = progress.wanted ? strut_progress_show : NULL;
-  wanted->progress_context = &progress;
-  wanted->threads = strut_sweep_threads();
-  strut_status status = strut_follow_make(wanted, result, &error);
-  strut_progress_end(&progress);
-  strut_print_failure(status, &error);
-  if (!status)
-    status = report(arguments, plot, result);
-  else if (status == STRUT_INTERRUPTED && result->count > 0)
-    report(arguments, plot, result);
-  strut_follow_free(result);
-  strut_release(result);
-  return status;
+/* A range whose ends may be those of --from and --until. */
+typedef struct followed {
+  const char *option; /* "--over" */
+  const strut_given_range *given;
+  const char *low, *high;
+} followed;
+
+/* The name must be that of a number of the scene. */
+static strut_status check_range(const strut_arguments *arguments, const strut_scene *scene,
+                                const followed *self) {
+  const bool apart = self->given == &arguments->over && (arguments->from || arguments->until);
+  const char *name = self->given->name;
+  if (!self->given->text || !self->low || !self->high || (apart && self->given->high))
+    return strut_usage_error(
+        arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", self->option,
+        self->option, apart ? ", or --over NAME, --from and --until" : "");
+  const strut_parameter *parameter = strut_parameter_named(scene, name);
+  const char *near = parameter ? NULL : strut_did_you_mean(name, parameter_at, scene);
+  if (!parameter)
+    return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", self->option,
+                             name, near ? "; did you mean '" : "", near ? near : "",
+                             near ? "'?" : "");
+  if (!isfinite(parameter->value))
+    return strut_usage_error(arguments, "%s: parameter '%s' is a text, expected a number",
+                             self->option, name);
+  return STRUT_OK;
 }
 
-static strut_status run_follow(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_plot plot;
-  strut_follow_source source = {.scenes = {.file = strut_model_name(arguments)}};
-  strut_follow_options wanted = {0};
-  char *text = NULL;
-  strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (!status) status = strut_outputs_check(arguments, all_files);
-  if (!status) status = strut_open_model_text(arguments, &text, &source.scenes.length, &setup);
+static strut_status read_ends(const strut_arguments *arguments, const followed *self,
+                              strut_dimension dimension, double *low, double *high) {
+  if (strut_quantities_read(self->low, dimension, low, 1) == 1 &&
+      strut_quantities_read(self->high, dimension, high, 1) == 1 && *low < *high &&
+      isfinite(*low) && isfinite(*high))
+    return STRUT_OK;
+  const char *example = strut_dimension_example(dimension);
+  return strut_usage_error(
+      arguments, "%s %s: expected two values LOW..HIGH, the lower one first%s%s", self->option,
+      self->given->name, example ? ", each such as " : "", example ? example : "");
+}
+
+static strut_status setup_at(void *context, const double values[2], strut_setup *setup,
+                             strut_error *error) {
+  const strut_study_value both[] = {{.number = values[0]}, {.number = values[1]}};
+  return strut_varied_scenes_read(&((follow_source *)context)->scenes, both, setup, error);
+}
+
+/* The scene's own value where it is within the range, or the middle. */
+static double own_value(const strut_scene *scene, const char *name, double low, double high) {
+  double own = strut_parameter_named(scene, name)->value;
+  return own >= low && own <= high ? own : 0.5 * (low + high);
+}
+
+/* --over and --and */
+static strut_status read_ranges(const strut_arguments *arguments, const strut_scene *scene,
+                                follow_source *source, strut_follow_options *wanted,
+                                strut_dimension *dimension) {
+  const strut_given_range *over = &arguments->over, *and_over = &arguments->and_over;
+  const bool both = and_over->text;
+  const followed first = {"--over", over, over->high ? over->low : arguments->from,
+                          over->high ? over->high : arguments->until};
+  const followed other = {"--and", and_over, and_over->low, and_over->high};
+  const char *const names[2] = {over->name, and_over->name};
+  strut_dimension dimensions[2] = {STRUT_DIM_NONE};
+  strut_follow_second *second = &wanted->second;
+  strut_status status = check_range(arguments, scene, &first);
+  if (!status && both) status = check_range(arguments, scene, &other);
+  if (!status && both && strcmp(names[0], names[1]) == 0)
+    status =
+        strut_usage_error(arguments, "--over and --and name the same parameter '%s'", names[0]);
   if (status) return status;
-  source.scenes.text = text;
-  status = strut_follow_options_read(arguments, &setup.scene, &source, &wanted);
-  strut_setup_free(&setup);
-  if (!status) status = follow(arguments, &plot, &wanted);
-  strut_follow_source_free(&source);
-  strut_release(text);
+  source->scenes.purpose = STRUT_FOR_RUN_STEP_LATER;
+  status = strut_varied_scenes_open(arguments, names, both ? 2 : 1, &source->scenes, dimensions);
+  if (!status) status = read_ends(arguments, &first, dimensions[0], &wanted->low, &wanted->high);
+  if (!status && both)
+    status = read_ends(arguments, &other, dimensions[1], &second->low, &second->high);
+  if (status) return status;
+  *dimension = dimensions[0];
+  wanted->name = names[0];
+  wanted->unit = strut_unit_of(dimensions[0]);
+  wanted->scenes = (strut_follow_scenes){setup_at, source};
+  if (!both) return STRUT_OK;
+  second->name = names[1];
+  second->unit = strut_unit_of(dimensions[1]);
+  second->value = own_value(scene, names[1], second->low, second->high);
+  return STRUT_OK;
+}
+
+/* Values of --values, or the scene's own where it is within the range, or the middle. */
+static strut_status read_values(const strut_arguments *arguments, const strut_scene *scene,
+                                strut_dimension dimension, const strut_follow_options *wanted,
+                                double values[MOST_AT], size_t *count) {
+  const char *at = arguments->values;
+  *count = 1;
+  values[0] = own_value(scene, wanted->name, wanted->low, wanted->high);
+  if (!at) return STRUT_OK;
+  *count = strut_quantities_read(at, dimension, values, MOST_AT);
+  bool good = *count > 0;
+  for (size_t i = 0; i < *count; i++)
+    good = good && values[i] >= wanted->low && values[i] <= wanted->high;
+  if (good) return STRUT_OK;
+  return strut_usage_error(arguments,
+                           "--values expects values of %s within the range, with commas between",
+                           wanted->name);
+}
+
+/* Names of --at into source->from; returns how many, 0 where there are none. */
+static size_t read_names(const strut_arguments *arguments, follow_source *source,
+                         const char *names[MOST_STARTS]) {
+  const char *from = arguments->at;
+  size_t count = 0, used = 0;
+  while (from && *from && count < MOST_STARTS / MOST_AT) {
+    while (*from == ' ') from++;
+    size_t length = strcspn(from, ","), kept = length;
+    while (kept > 0 && from[kept - 1] == ' ') kept--;
+    if (used + kept + 1 > sizeof source->from) break;
+    memcpy(source->from + used, from, kept);
+    source->from[used + kept] = '\0';
+    names[count++] = source->from + used;
+    used += kept + 1;
+    from += length + (from[length] == ',');
+  }
+  return count;
+}
+
+static strut_status check_names(const strut_arguments *arguments, const strut_scene *scene,
+                                const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
+      return strut_usage_error(arguments, "--at: the model has no configuration '%s'", names[i]);
+  return STRUT_OK;
+}
+
+/* What is followed, of the scene as it was read: --over, --and, --values, --at and others. STRUT_USAGE. */
+static strut_status read_options(const strut_arguments *arguments, const strut_scene *scene,
+                                 follow_source *source, strut_follow_options *wanted) {
+  strut_dimension dimension = STRUT_DIM_NONE;
+  const char *names[MOST_STARTS] = {NULL};
+  double values[MOST_AT];
+  size_t value_count = 0, name_count = read_names(arguments, source, names);
+  strut_status status = read_ranges(arguments, scene, source, wanted, &dimension);
+  if (!status) status = read_values(arguments, scene, dimension, wanted, values, &value_count);
+  if (!status) status = check_names(arguments, scene, names, name_count);
+  if (status) return status;
+  for (size_t v = 0; v < value_count; v++)
+    for (size_t k = 0; k < (name_count ? name_count : 1); k++)
+      source->starts[wanted->start_count++] = (strut_follow_start){values[v], names[k]};
+  wanted->starts = source->starts;
+  wanted->steps = (int32_t)arguments->steps.value;
+  wanted->accuracy = arguments->accuracy.value;
+  wanted->basins = arguments->basins;
+  wanted->method = arguments->integrator.text;
+  return STRUT_OK;
+}
+
+/* What is followed, and what was found. */
+typedef struct followed_study {
+  follow_source source;
+  strut_follow_result result;
+} followed_study;
+
+static void free_study(strut_analysis *analysis) {
+  followed_study *self = analysis->result.own;
+  if (!self) return;
+  strut_follow_free(&self->result);
+  strut_varied_scenes_free(&self->source.scenes);
+  strut_release(self);
+}
+
+static strut_status compute(strut_analysis *analysis, strut_error *error) {
+  followed_study *self = analysis->result.own = strut_allocate(1, sizeof *self);
+  if (!self) return strut_no_memory(error, "");
+  strut_follow_options wanted = {.threads = strut_sweep_threads(),
+                                 .interrupt = analysis->interrupt,
+                                 .progress = analysis->progress,
+                                 .progress_context = analysis->progress_context};
+  self->source.scenes = analysis->scenes;
+  analysis->found = &self->result;
+  analysis->scene = NULL;
+  strut_status status =
+      read_options(analysis->arguments, &analysis->setup->scene, &self->source, &wanted);
+  if (!status) status = strut_follow_make(&wanted, &self->result, error);
+  analysis->partial = status == STRUT_INTERRUPTED && self->result.count > 0;
   return status;
 }
+
+enum { FIGURE, BRANCHES, CURVES };
+
+static const strut_follow_result *result_of(const strut_analysis *analysis) {
+  return &((const followed_study *)analysis->result.own)->result;
+}
+
+static bool has_curves(const strut_analysis *analysis, size_t number) {
+  const strut_follow_result *result = result_of(analysis);
+  return result->second.name && (result->curve_count || number != CURVES);
+}
+
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+                         strut_error *error) {
+  bool curves = number == CURVES || (number == FIGURE && has_curves(analysis, CURVES));
+  return (curves ? strut_follow_curves_figure : strut_follow_figure)(plot, result_of(analysis),
+                                                                     error);
+}
+
+static strut_status draw_figure(const strut_analysis *analysis, const strut_plot *plot,
+                                strut_error *error) {
+  return draw(analysis, plot, FIGURE, error);
+}
+
+static const strut_output_file files[] = {
+    {.name = "branches.csv", .list = "branches.points"},
+    {.name = "branches.json"},
+    {.name = "branches.svg", .draw = draw, .number = BRANCHES},
+    {.name = "curves.csv",
+     .list = "curves.points",
+     .rows = &strut_follow_curves_values,
+     .there = has_curves},
+    {.name = "curves.svg", .draw = draw, .number = CURVES, .there = has_curves},
+    {.name = NULL}};
+
+static const strut_analysis_kind periodic_analysis = {.files = files,
+                                                      .rows = &strut_follow_values,
+                                                      .uncompiled = true,
+                                                      .asks = true,
+                                                      .compute = compute,
+                                                      .draw = draw_figure,
+                                                      .release = free_study};
 
 static const strut_refused_option refused[] = {
     {"step", "it follows from --accuracy and the method's stability limit"},
-    {"load", "periodic motions are followed over parameters: --over NAME=LOW..HIGH"},
+    {"load", "periodic motions are followed_study over parameters: --over NAME=LOW..HIGH"},
     {NULL, NULL}};
 
 static const char periodic_details[] =
@@ -143,7 +309,7 @@ const strut_command strut_command_periodic = {
     .summary = "follows periodic motions, stable or not, as a parameter changes",
     .details = periodic_details,
     .options = options,
-    .run = run_follow,
+    .analysis = &periodic_analysis,
     .refused = refused,
     .timed = true,
 };

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/commands.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
+#include "engine/output/figures/run_figure.h"
+#include "engine/output/figures/run_film.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "engine/output/results.h"
@@ -14,9 +18,120 @@
 #include "parser/program/command/run_settings.h"
 #include "parser/program/command/varied_scenes.h"
 #include "parser/program/open_model.h"
+#include "parser/program/options.h"
 #include "parser/program/progress.h"
-#include "parser/program/run_pictures.h"
 #include "parser/program/streams.h"
+
+/* What is drawn and filmed of a run. Zero-initialise. */
+typedef struct run_pictures {
+  strut_plot plot;
+  strut_run_figure figure;
+  strut_film film;
+  bool quiet, silent; /* no progress bar; no report of the film on stdout */
+  double times[STRUT_MOST_TIMES];
+  strut_trajectory motion;
+  strut_sink *sink; /* fills the motion; NULL if nothing is drawn */
+} run_pictures;
+
+static const strut_option film_options[] = {
+    {STRUT_FILLS(animate), "animate", "FILE", "make a film: FILE ends with .mp4, .webm or .gif"},
+    {STRUT_FILLS(speed), "speed", "SPEED",
+     "speed of the film, such as 1/10 or 5 (default 1, real time)", .low = 1e-9, .high = 1e6},
+    {STRUT_FILLS(fps), "fps", "NUMBER",
+     "frames per second (default " STRUT_TEXT_OF(STRUT_FILM_FPS) "; gif: " STRUT_TEXT_OF(
+         STRUT_FILM_GIF_FPS) ")",
+     .low = 1, .high = 120},
+    {.name = NULL}};
+
+static strut_status read_pictures(const strut_arguments *arguments, run_pictures *pictures) {
+  strut_status status = strut_plot_read(arguments, 0, &pictures->plot);
+  if (!status)
+    status = strut_run_figure_read(arguments, &pictures->plot, &pictures->figure, pictures->times);
+  pictures->quiet = arguments->quiet;
+  pictures->silent = arguments->quiet || arguments->json;
+  pictures->film = (strut_film){.path = arguments->animate,
+                                .speed = arguments->speed.text ? arguments->speed.value : 1,
+                                .fps = arguments->fps.value};
+  if (!status && !pictures->film.path && (arguments->speed.text || arguments->fps.text))
+    return strut_usage_error(arguments, "--speed and --fps need --animate FILE");
+  return status;
+}
+
+/* Checks before the run that it will record what is to be drawn; STRUT_USAGE if not. */
+static strut_status check_pictures(run_pictures *pictures, const strut_experiment *experiment,
+                                   const strut_model *model, strut_error *error) {
+  pictures->figure.experiment = pictures->film.experiment = experiment;
+  strut_span span = strut_experiment_span(experiment, model->scene);
+  strut_status status = STRUT_OK;
+  if (pictures->film.path)
+    status = strut_film_check(&pictures->film, span.duration - span.record_start, error);
+  if (status != STRUT_OK || !pictures->plot.path) return status;
+  return strut_run_figure_check(&pictures->figure, model, error);
+}
+
+/* The sink that collects the motion, or NULL where none is needed or *status is an error. */
+static strut_sink *create_pictures_sink(run_pictures *pictures, const strut_scene *scene,
+                                        strut_status *status) {
+  *status = STRUT_OK;
+  if (!pictures->plot.path && !pictures->film.path) return NULL;
+  strut_channels channels =
+      pictures->plot.path ? strut_run_figure_channels(pictures->figure.view) : 0;
+  if (scene->table_count) channels |= pictures->figure.experiment->channels; /* beside data */
+  if (pictures->film.path) channels |= strut_run_figure_channels(STRUT_RUN_SNAPSHOTS);
+  pictures->sink = strut_trajectory_sink(&pictures->motion, scene, channels, STRUT_TRAJECTORY_ROOM);
+  if (!pictures->sink) *status = STRUT_NO_MEMORY;
+  return pictures->sink;
+}
+
+static strut_status draw_picture(run_pictures *pictures, const strut_model *model,
+                                 const strut_summary *summary, strut_error *error) {
+  if (!pictures->plot.path) return STRUT_OK;
+  return strut_run_figure_draw(pictures->plot.path, &pictures->figure, model, &pictures->motion,
+                               summary, error);
+}
+
+/* And what would make it better: a speed at which it lasts five seconds, more recorded frames. */
+static void print_film(const strut_film *film) {
+  enum { SHORT = 2, WATCHED = 5 /* [s] */, DIGITS = 4 };
+  double slower = ceil(WATCHED / film->motion), shown = film->speed / film->fps;
+  printf("\n  film %s: %d x %d, %zu frames, %s", film->path, film->width, film->height,
+         film->frames, strut_quantity_of((double)film->frames / film->fps, DIGITS, "s").text);
+  printf(film->speed == 1 ? " at real speed\n" : " at %.4g times real speed\n", film->speed);
+  if (film->motion < SHORT * film->speed && film->motion > 0)
+    printf("  the recording lasts only %s; --speed 1/%.0f makes a film of %s\n",
+           strut_quantity_of(film->motion, DIGITS, "s").text, slower,
+           strut_quantity_of(film->motion * slower, 2, "s").text);
+  if (film->every > 1.5 * shown)
+    printf(
+        "  recorded every %s but shown every %s; with a shorter output.every motion is smoother\n",
+        strut_quantity_of(film->every, DIGITS, "s").text,
+        strut_quantity_of(shown, DIGITS, "s").text);
+}
+
+/* Last, as it takes longest: the results are on the screen by then. */
+static strut_status make_film(run_pictures *pictures, const strut_model *model) {
+  strut_error error = {0};
+  if (!pictures->film.path) return STRUT_OK;
+  fflush(stdout);
+  strut_progress progress = strut_progress_begin(pictures->quiet);
+  /* After an interrupted run the film still shows what was recorded. */
+  const strut_flag *interrupt = strut_interrupt_watch();
+  pictures->film.interrupt = *interrupt ? NULL : interrupt;
+  pictures->film.progress = progress.wanted ? strut_progress_show : NULL;
+  pictures->film.progress_context = &progress;
+  strut_status status = strut_film_make(&pictures->film, model, &pictures->motion, &error);
+  strut_progress_end(&progress);
+  if (status != STRUT_OK) strut_print_error(&error);
+  if (status == STRUT_OK && !pictures->silent) print_film(&pictures->film);
+  return status;
+}
+
+static void free_pictures(run_pictures *pictures) {
+  strut_trajectory_sink_free(pictures->sink);
+  strut_trajectory_free(&pictures->motion);
+}
+
+/* ---- the run ---- */
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,
@@ -27,7 +142,7 @@ static const strut_option options[] = {
     STRUT_THREADS_OPTION,
     {.table = strut_plot_options},
     {.table = strut_run_figure_options},
-    {.table = strut_film_options},
+    {.table = film_options},
     {.name = NULL},
 };
 
@@ -79,12 +194,11 @@ static void free_results(run_files *keep) {
 
 static strut_status simulate(const strut_model *model, const strut_setup *setup,
                              const strut_arguments *arguments, run_files *keep,
-                             strut_run_pictures *pictures, strut_summary *summary,
-                             strut_error *error) {
+                             run_pictures *pictures, strut_summary *summary, strut_error *error) {
   const strut_flag *interrupt = strut_interrupt_watch(); /* before there are files */
   strut_status status = begin_results(arguments, setup, keep, error);
   if (status != STRUT_OK) return status;
-  strut_sink *pictures_sink = strut_run_pictures_sink(pictures, model->scene, &status);
+  strut_sink *pictures_sink = create_pictures_sink(pictures, model->scene, &status);
   if (status != STRUT_OK) return strut_fail(error, status, "out of memory");
   if (pictures_sink) keep->sinks[keep->sink_count++] = pictures_sink;
   strut_progress progress = strut_progress_begin(arguments->quiet);
@@ -118,7 +232,7 @@ static void print_warnings(const strut_summary *summary) {
 
 static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
                               const strut_model *model, strut_varied_scenes *scenes,
-                              strut_run_pictures *pictures) {
+                              run_pictures *pictures) {
   run_files keep = {.scene_text = NULL};
   strut_summary summary = {0};
   strut_error error = {0}, late = {0};
@@ -130,14 +244,14 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
   if (strut_run_has_results(status)) {
     print_warnings(&summary);
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
-    if (written == STRUT_OK) written = strut_run_pictures_draw(pictures, model, &summary, &late);
+    if (written == STRUT_OK) written = draw_picture(pictures, model, &summary, &late);
     if (written != STRUT_OK) strut_print_error(&late);
     /* The failure of the run is reported, not the missing figure. */
     if (written == STRUT_USAGE && status != STRUT_OK) written = status;
     if (written != STRUT_OK) status = written;
     strut_status printed = print_summary(arguments, &summary, model->scene);
     if (status == STRUT_OK) status = printed;
-    if (written == STRUT_OK) written = strut_run_pictures_film(pictures, model);
+    if (written == STRUT_OK) written = make_film(pictures, model);
     if (written != STRUT_OK) status = written;
     if (status == STRUT_OK && strut_summary_is_inaccurate(&summary)) status = STRUT_INACCURATE;
   }
@@ -150,11 +264,11 @@ static strut_status run_run(const strut_arguments *arguments) {
   strut_setup setup;
   strut_model *model = NULL;
   strut_error error = {0};
-  strut_run_pictures pictures = {0};
+  run_pictures pictures = {0};
   char *text = NULL;
   strut_varied_scenes scenes = {.file = strut_model_name(arguments),
                                 .purpose = strut_run_options_purpose(arguments)};
-  strut_status status = strut_run_pictures_read(arguments, &pictures);
+  strut_status status = read_pictures(arguments, &pictures);
   if (status == STRUT_OK)
     status = strut_open_model_kept(arguments, STRUT_OPEN_FOR_RUN, &text, &scenes.length, &setup);
   scenes.text = text;
@@ -165,21 +279,20 @@ static strut_status run_run(const strut_arguments *arguments) {
   status = strut_run_options_apply(arguments, &setup);
   if (status != STRUT_OK) {
     strut_release(text);
-    strut_run_pictures_free(&pictures);
+    free_pictures(&pictures);
     strut_setup_free(&setup);
     return status;
   }
   if (status == STRUT_OK) status = strut_warn_of_scene(&setup);
   if (status != STRUT_OK) error.status = status;
   if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &error);
-  if (status == STRUT_OK)
-    status = strut_run_pictures_check(&pictures, &setup.experiment, model, &error);
+  if (status == STRUT_OK) status = check_pictures(&pictures, &setup.experiment, model, &error);
   if (status == STRUT_OK)
     status = run_model(arguments, &setup, model, &scenes, &pictures);
   else
     strut_print_error(&error);
   strut_release(text);
-  strut_run_pictures_free(&pictures);
+  free_pictures(&pictures);
   strut_model_free(model);
   strut_setup_free(&setup);
   return status;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The commands of statics: equilibria, modes, rigidity, path, form, and what they have in common. */
+/* The commands of statics: equilibria, modes, rigidity, path, form. */
 #include "parser/program/open_model.h"
 
 #include "engine/base/memory.h"
@@ -8,81 +8,7 @@
 #include "parser/program/command/analyses.h"
 #include "parser/program/commands.h"
 #include "parser/program/options.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
-
-static strut_status write_files(const char *directory, const char *const *names, const char *json,
-                                const char *csv, strut_error *error) {
-  strut_status status = strut_directory_create(directory, error);
-  if (status == STRUT_OK && (!json || (names[1] && !csv)))
-    status = strut_no_memory(error, "while writing files");
-  if (status == STRUT_OK) status = strut_file_write_text(directory, names[0], json, error);
-  if (status == STRUT_OK && csv) status = strut_file_write_text(directory, names[1], csv, error);
-  return status;
-}
-
-/* Writes the files of -o and prints the JSON or the table. */
-static strut_status report(const strut_arguments *arguments, const strut_analysis *analysis,
-                           strut_error *error) {
-  const strut_analysis_kind *kind = analysis->kind;
-  strut_status status = STRUT_OK;
-  /* Of large structures the JSON takes long to make. */
-  char *json = arguments->json || arguments->output ? strut_analysis_json(analysis) : NULL,
-       *csv = NULL;
-  if (arguments->output && kind->csv) csv = kind->csv(analysis);
-  if (arguments->output) status = write_files(arguments->output, kind->files, json, csv, error);
-  strut_release(csv);
-  if (status == STRUT_OK && arguments->json) return strut_print_report(arguments, json);
-  strut_release(json);
-  return status == STRUT_OK
-             ? strut_print_report(arguments, strut_analysis_text(analysis, strut_report_width()))
-             : status;
-}
-
-static strut_status compute_and_report(const strut_arguments *arguments, const strut_plot *plot,
-                                       strut_analysis *analysis, strut_error *error) {
-  const strut_analysis_kind *kind = analysis->kind;
-  strut_progress *progress = analysis->setup->experiment.progress_context;
-  strut_status status = strut_analysis_compute(analysis, error);
-  strut_progress_end(progress);
-  analysis->setup->experiment.progress = NULL;
-  if (status == STRUT_OK) status = report(arguments, analysis, error);
-  if (status == STRUT_OK && kind->warn) kind->warn(analysis, arguments->listener);
-  if (status == STRUT_OK && plot->path) status = kind->draw(analysis, plot, error);
-  if (status == STRUT_OK && kind->verdict) status = kind->verdict(analysis, error);
-  return status;
-}
-
-strut_status strut_analysis_run(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_plot plot;
-  strut_model *model = NULL;
-  char *text = NULL;
-  strut_error error = {0};
-  strut_analysis a = {.kind = arguments->command->analysis,
-                      .arguments = arguments,
-                      .setup = &setup,
-                      .scenes = {.file = strut_model_name(arguments)}};
-  strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (status == STRUT_OK) status = strut_check_output_writable(arguments, a.kind->files);
-  if (status == STRUT_OK)
-    status = strut_open_model_text(arguments, &text, &a.scenes.length, &setup);
-  if (status != STRUT_OK) return status;
-  a.scenes.text = text;
-  if (a.kind->asks) setup.experiment.interrupt = strut_interrupt_watch();
-  strut_progress progress = strut_progress_begin(arguments->quiet);
-  setup.experiment.progress = progress.wanted ? strut_progress_show : NULL;
-  setup.experiment.progress_context = &progress;
-  status = strut_model_compile(&setup.scene, &model, &error);
-  a.model = model;
-  if (status == STRUT_OK) status = compute_and_report(arguments, &plot, &a, &error);
-  if (status != STRUT_OK && error.message[0]) strut_print_error(&error);
-  strut_analysis_free(&a);
-  strut_model_free(model);
-  strut_release(text);
-  strut_setup_free(&setup);
-  return status;
-}
 
 /* The first is refused by form alone. */
 static const strut_refused_option refused[] = {
@@ -192,12 +118,18 @@ static const strut_option form_options[] = {
     {.name = NULL},
 };
 
-/* The new model, in the words of the file where that can be; `flat`: the model before. NULL: it was reported. */
-static char *write_model(const strut_arguments *arguments, const strut_analysis *analysis,
-                         const char *flat) {
+static strut_status open_form(strut_analysis *analysis, char **text) {
+  strut_status status = strut_analysis_open(analysis, text);
+  if (status) return status;
+  analysis->result.form.before = strut_setup_write(analysis->setup);
+  return analysis->result.form.before ? STRUT_OK : strut_print_out_of_memory();
+}
+
+/* The new model, in the words of the file where that can be; NULL: it was reported. */
+static char *write_model(const strut_arguments *arguments, const strut_analysis *analysis) {
   char *model;
-  if (strut_write_short(arguments, analysis->scenes.text, analysis->scenes.length, flat,
-                        analysis->setup, false, &model))
+  if (strut_write_short(arguments, analysis->scenes.text, analysis->scenes.length,
+                        analysis->result.form.before, analysis->setup, false, &model))
     return NULL;
   if (!model) model = strut_setup_write(analysis->setup);
   if (!model) strut_print_out_of_memory();
@@ -205,47 +137,19 @@ static char *write_model(const strut_arguments *arguments, const strut_analysis 
 }
 
 /* With -o the model goes there, and a report to stdout, else the model. */
-static strut_status report_form(const strut_arguments *arguments, const strut_analysis *analysis,
-                                const char *flat, strut_error *error) {
-  bool silent = arguments->quiet && arguments->output && !arguments->json;
-  bool wanted = arguments->output || !arguments->json;
-  char *model = wanted ? write_model(arguments, analysis, flat) : NULL, *text = NULL;
+static strut_status report_form(const strut_analysis *analysis, const strut_arguments *arguments,
+                                strut_error *error) {
+  const char *output = arguments->output;
+  const bool wanted = output || !arguments->json;
+  char *model = wanted ? write_model(arguments, analysis) : NULL;
   strut_status status = wanted && !model ? STRUT_NO_MEMORY : STRUT_OK;
-  if (status == STRUT_OK && arguments->output)
-    status = strut_file_write_path(arguments->output, model, error);
-  if (arguments->json || arguments->output)
-    text = arguments->json ? strut_analysis_json(analysis)
-                           : strut_analysis_text(analysis, strut_report_width());
-  if (status == STRUT_OK && !text && (arguments->json || arguments->output))
-    status = strut_print_out_of_memory();
-  if (status == STRUT_OK && !silent) status = strut_print(text ? text : model);
+  if (model && output) status = strut_file_write_path(output, model, error);
+  if (model && !status && !output) status = strut_print(model);
   strut_release(model);
-  strut_release(text);
-  return status;
-}
-
-static strut_status run_form(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_plot plot;
-  strut_error error = {0};
-  strut_status status = strut_plot_read(arguments, 0, &plot);
-  if (status == STRUT_OK) status = strut_try_file(arguments->output);
-  if (status != STRUT_OK) return status;
-  char *text = NULL;
-  strut_analysis a = {.kind = &strut_form_analysis, .arguments = arguments, .setup = &setup};
-  status = strut_open_model_text(arguments, &text, &a.scenes.length, &setup);
-  if (status != STRUT_OK) return status;
-  a.scenes.text = text;
-  char *flat = strut_setup_write(&setup);
-  status = flat ? strut_analysis_compute(&a, &error) : strut_print_out_of_memory();
-  if (status == STRUT_OK) status = report_form(arguments, &a, flat, &error);
-  if (status == STRUT_OK && plot.path) status = a.kind->draw(&a, &plot, &error);
-  if (error.message[0]) strut_print_error(&error);
-  strut_analysis_free(&a);
-  strut_release(text);
-  strut_release(flat);
-  strut_setup_free(&setup);
-  return status;
+  if (status || !(output || arguments->json)) return status;
+  return strut_print_report(arguments, arguments->json
+                                           ? strut_analysis_json(analysis)
+                                           : strut_analysis_text(analysis, strut_report_width()));
 }
 
 static const char form_details[] =
@@ -263,6 +167,8 @@ const strut_command strut_command_form = {
     .summary = "finds an equilibrium shape or prestress, and writes that model",
     .details = form_details,
     .options = form_options,
-    .run = run_form,
+    .analysis = &strut_form_analysis,
+    .open = open_form,
+    .report = report_form,
     .refused = refused,
 };

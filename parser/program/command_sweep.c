@@ -288,21 +288,34 @@ static strut_status plot_table(const strut_arguments *arguments, const strut_swe
   return strut_command_plot.run(&own);
 }
 
+/* Refuses what would have no effect beside the options that only print. */
+static strut_status check_combination(const strut_arguments *arguments) {
+  const char *only = arguments->plan           ? "--plan"
+                     : arguments->count_points ? "--count"
+                     : arguments->status       ? "--status"
+                     : arguments->emit.text    ? "--emit"
+                                               : NULL;
+  const char *extra = arguments->output ? "-o" : arguments->shard ? "--shard" : NULL;
+  if (arguments->plot && (only || arguments->shard))
+    return strut_usage_error(arguments, "--plot needs the table of all points");
+  if (arguments->retry && only)
+    return strut_usage_error(arguments,
+                             "--retry cannot be combined with --count, --status, --emit or --plan");
+  if (arguments->plan && extra)
+    return strut_usage_error(arguments, "--plan only prints: %s has no effect on it", extra);
+  return STRUT_OK;
+}
+
 static strut_status run_sweep(const strut_arguments *given) {
   strut_arguments own = *given, *arguments = &own;
   char results[PATH_MAX];
   strut_sweep_study study = {0};
-  if (arguments->plot &&
-      (arguments->count_points || arguments->status || arguments->emit.text || arguments->shard))
-    return strut_usage_error(arguments, "--plot needs the table of all points");
-  strut_status status = strut_try_file(arguments->plot);
+  strut_status status = check_combination(arguments);
+  if (!status) status = strut_try_file(arguments->plot);
   if (status) return status;
   if (!arguments->output && name_results(arguments->model, results)) own.output = results;
   if (!arguments->output && !arguments->count_points && !arguments->plan)
     return strut_usage_error(arguments, "missing -o DIR, the results directory");
-  if (arguments->retry && (arguments->count_points || arguments->status || arguments->emit.text))
-    return strut_usage_error(arguments,
-                             "--retry cannot be combined with --count, --status or --emit");
   status = strut_sweep_study_open(arguments, &study);
   if (!status && arguments->plot &&
       (strut_study_has_stages(study.plan.study) || study.plan.study->follow))

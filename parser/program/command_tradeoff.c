@@ -9,22 +9,28 @@
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/study/tradeoff/tradeoff.h"
+#include "parser/program/command/analyses.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
-#include "parser/program/outputs.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
 /* ---- operating points: parameters drawn at random, the same from the same seed ---- */
 
-/* Scenes of one model. Zero-initialise. */
-typedef struct operating_points {
-  strut_setup *setups;      /* (count) */
+enum { MOST_TEXT = 400, MOST_METHODS = 64 };
+#define USUAL_POINTS 40
+#define USUAL_SEED 1
+#define PAGE 510.24 /* 180 mm [pt] */
+
+/* A study, and the scenes of one model that it is of. */
+typedef struct tradeoff_study {
+  strut_tradeoff_options options;
+  const strut_integrator *methods[MOST_METHODS];
+  strut_setup *setups;      /* (count) in the arena, as below */
   const strut_setup **list; /* (count) them */
   size_t count;
-} operating_points;
-
-enum { MOST_TEXT = 400 };
+  strut_arena arena;
+  strut_tradeoff result;
+} tradeoff_study;
 
 /* Vigna's splitmix64: any seed works, and all machines draw the same numbers. */
 static double draw_uniform(uint64_t *seed) {
@@ -100,38 +106,26 @@ static strut_status open_point(const strut_arguments *arguments, uint64_t *seed,
   return status;
 }
 
-static void free_points(operating_points *points) {
-  for (size_t p = 0; p < points->count; p++) strut_setup_free(&points->setups[p]);
-  strut_release(points->setups);
-  strut_release(points->list);
-  *points = (operating_points){.count = 0};
-}
-
-static strut_status open_points(const strut_arguments *arguments, size_t count, uint64_t seed,
-                                operating_points *points) {
+static strut_status open_points(const strut_arguments *arguments, tradeoff_study *study) {
+  uint64_t seed = arguments->seed.text ? (uint64_t)arguments->seed.value : USUAL_SEED;
+  const size_t given = arguments->points.text ? (size_t)arguments->points.value : USUAL_POINTS;
+  const size_t count = arguments->varied_count ? given : 1;
   strut_status status = STRUT_OK;
   for (size_t i = 0; i < arguments->varied_count && status == STRUT_OK; i++)
     status = check_varied(arguments, &arguments->varied[i]);
   if (status == STRUT_OK && count > 1 && strcmp(arguments->model, "-") == 0)
     status = strut_usage_error(arguments, "operating points need a model file, not standard input");
-  *points = (operating_points){.count = 0};
   if (status != STRUT_OK) return status;
-  points->setups = strut_allocate(count, sizeof *points->setups);
-  points->list = strut_allocate(count, sizeof *points->list);
-  if (!points->setups || !points->list) status = strut_print_out_of_memory();
+  study->setups = strut_arena_allocate(&study->arena, count, sizeof *study->setups);
+  study->list = strut_arena_allocate(&study->arena, count, sizeof *study->list);
+  if (!study->setups || !study->list) return strut_print_out_of_memory();
   for (size_t p = 0; p < count && status == STRUT_OK; p++) {
-    status = open_point(arguments, &seed, p, &points->setups[p]);
-    points->list[p] = &points->setups[p];
-    if (status == STRUT_OK) points->count++;
+    status = open_point(arguments, &seed, p, &study->setups[p]);
+    study->list[p] = &study->setups[p];
+    if (status == STRUT_OK) study->count++;
   }
-  if (status != STRUT_OK) free_points(points);
   return status;
 }
-
-enum { MOST_METHODS = 64 };
-#define USUAL_POINTS 40
-#define USUAL_SEED 1
-#define PAGE 510.24 /* 180 mm [pt] */
 
 static const strut_option options[] = {
     {STRUT_FILLS(accuracy), "accuracy", "X",
@@ -169,26 +163,24 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static strut_status draw(const strut_plot *plot, const void *result, size_t index,
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                          strut_error *error) {
-  (void)index;
-  return strut_tradeoff_figure(plot, result, error);
+  return strut_tradeoff_figure(plot, analysis->found, error);
 }
 
-static const strut_output_file files[] = {{.name = "tradeoff.csv", .list = "settings"},
-                                          {.name = "tradeoff.json"},
-                                          {.name = "tradeoff.svg", .draw = draw, .width = PAGE},
-                                          {.name = NULL}};
+static strut_status draw_file(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+                              strut_error *error) {
+  (void)number;
+  return draw(analysis, plot, error);
+}
 
-/* Options as read. */
-typedef struct tradeoff_request {
-  strut_tradeoff_options study;
-  const strut_integrator *methods[MOST_METHODS];
-  size_t points;
-  uint64_t seed;
-} tradeoff_request;
+static const strut_output_file files[] = {
+    {.name = "tradeoff.csv", .list = "settings"},
+    {.name = "tradeoff.json"},
+    {.name = "tradeoff.svg", .draw = draw_file, .width = PAGE},
+    {.name = NULL}};
 
-static strut_status read_methods(const strut_arguments *arguments, tradeoff_request *self) {
+static strut_status read_methods(const strut_arguments *arguments, tradeoff_study *self) {
   const char *text = arguments->integrator.text;
   char list[500];
   while (text) {
@@ -199,70 +191,66 @@ static strut_status read_methods(const strut_arguments *arguments, tradeoff_requ
       if (strlen(name) == length && strncmp(name, text, length) == 0)
         found = strut_integrator_at(i);
     }
-    if (!found || self->study.method_count == MOST_METHODS)
+    if (!found || self->options.method_count == MOST_METHODS)
       return strut_usage_error(arguments, "--integrator: unknown method '%.*s'; expected %s",
                                (int)length, text,
                                strut_words_text(STRUT_INTEGRATOR_WORDS, list, sizeof list));
-    self->methods[self->study.method_count++] = found;
+    self->methods[self->options.method_count++] = found;
     text = text[length] ? text + length + 1 : NULL;
   }
-  self->study.methods = self->methods;
+  self->options.methods = self->methods;
   return STRUT_OK;
 }
 
-static strut_status read_options(const strut_arguments *arguments, tradeoff_request *self) {
-  self->study.steps = (int)arguments->step_sizes.value;
-  self->study.measure =
+static strut_status read_options(const strut_arguments *arguments, tradeoff_study *self) {
+  self->options.steps = (int)arguments->step_sizes.value;
+  self->options.measure =
       (strut_tradeoff_measure)(arguments->measure.text ? arguments->measure.index + 1 : 0);
-  self->study.periods = arguments->periods.value;
-  self->study.budget = arguments->cpu_time.value;
-  self->study.accuracy = arguments->accuracy.value;
-  self->study.own_model = arguments->own_model;
-  self->points = arguments->varied_count == 0 ? 1
-                 : arguments->points.text     ? (size_t)arguments->points.value
-                                              : USUAL_POINTS;
-  self->seed = arguments->seed.text ? (uint64_t)arguments->seed.value : USUAL_SEED;
+  self->options.periods = arguments->periods.value;
+  self->options.budget = arguments->cpu_time.value;
+  self->options.accuracy = arguments->accuracy.value;
+  self->options.own_model = arguments->own_model;
   if (arguments->varied_count == 0 && (arguments->points.text || arguments->seed.text))
     return strut_usage_error(arguments, "--points and --seed need --vary");
   return read_methods(arguments, self);
 }
 
-static strut_status run_study(const strut_arguments *arguments, const strut_plot *plot,
-                              tradeoff_request *self, const operating_points *points) {
-  strut_tradeoff result = {.name = ""};
-  strut_error error = {0};
-  strut_progress progress = strut_progress_begin(arguments->quiet);
-  self->study.interrupt = strut_interrupt_watch();
-  self->study.progress = progress.wanted ? strut_progress_show : NULL;
-  self->study.progress_context = &progress;
-  strut_status status =
-      strut_tradeoff_make(points->list, points->count, &self->study, &result, &error);
-  strut_progress_end(&progress);
-  strut_print_failure(status, &error);
-  if (!status)
-    status = strut_outputs_make(arguments, plot,
-                                &(strut_outputs){.rows = &strut_tradeoff_values,
-                                                 .result = &result,
-                                                 .scene = &result.setups[0]->scene,
-                                                 .files = files,
-                                                 .draw = draw});
-  strut_tradeoff_free(&result);
-  return status;
+static strut_status open_study(strut_analysis *analysis, char **text) {
+  tradeoff_study *study = analysis->result.own = strut_allocate(1, sizeof *study);
+  (void)text;
+  analysis->setup = NULL;
+  if (!study) return strut_print_out_of_memory();
+  strut_status status = read_options(analysis->arguments, study);
+  return status ? status : open_points(analysis->arguments, study);
 }
 
-static strut_status run_tradeoff(const strut_arguments *arguments) {
-  tradeoff_request w = {.points = 1};
-  operating_points points = {0};
-  strut_plot plot;
-  strut_status status = read_options(arguments, &w);
-  if (status == STRUT_OK) status = strut_plot_read(arguments, PAGE, &plot);
-  if (status == STRUT_OK) status = strut_outputs_check(arguments, files);
-  if (status == STRUT_OK) status = open_points(arguments, w.points, w.seed, &points);
-  if (status != STRUT_OK) return status;
-  status = run_study(arguments, &plot, &w, &points);
-  free_points(&points);
-  return status;
+static strut_status measure(strut_analysis *analysis, strut_error *error) {
+  tradeoff_study *study = analysis->result.own;
+  study->options.interrupt = analysis->interrupt;
+  study->options.progress = analysis->progress;
+  study->options.progress_context = analysis->progress_context;
+  analysis->found = &study->result;
+  analysis->scene = &study->setups[0].scene;
+  return strut_tradeoff_make(study->list, study->count, &study->options, &study->result, error);
 }
+
+static void free_study(strut_analysis *analysis) {
+  tradeoff_study *study = analysis->result.own;
+  if (!study) return;
+  for (size_t p = 0; p < study->count; p++) strut_setup_free(&study->setups[p]);
+  strut_tradeoff_free(&study->result);
+  strut_arena_free(&study->arena);
+  strut_release(study);
+}
+
+static const strut_analysis_kind tradeoff_analysis = {.files = files,
+                                                      .rows = &strut_tradeoff_values,
+                                                      .width = PAGE,
+                                                      .uncompiled = true,
+                                                      .asks = true,
+                                                      .compute = measure,
+                                                      .draw = draw,
+                                                      .release = free_study};
 
 static const strut_refused_option refused[] = {
     {"step", "it runs each method with many steps; --step-sizes says how many"}, {NULL, NULL}};
@@ -285,7 +273,8 @@ const strut_command strut_command_tradeoff = {
     .summary = "measures error against cost of methods, steps and model variants",
     .details = tradeoff_details,
     .options = options,
-    .run = run_tradeoff,
+    .analysis = &tradeoff_analysis,
+    .open = open_study,
     .refused = refused,
     .timed = true,
 };

@@ -52,6 +52,14 @@ int strut_report_width(void);
 strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *rows,
                                 const void *result, const struct strut_scene *scene);
 
+/**
+ * Runs a command by its analysis: finds out whether all results can be written, opens and compiles the model,
+ * computes, writes, prints and draws. Messages go to stderr.
+ */
+strut_status strut_analysis_run(const strut_arguments *arguments);
+/** Opens the model that the arguments name for statics. */
+strut_status strut_analysis_open(struct strut_analysis *analysis, char **text);
+
 /** Prints the words that complete the last of `words` (count >= 0), which may be empty. */
 strut_status strut_complete(int count, char **words);
 

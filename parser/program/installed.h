@@ -7,9 +7,6 @@
 #define STRUT_PARSER_PROGRAM_INSTALLED_H
 
 #include <stdbool.h>
-#include <stddef.h>
-
-#include "engine/base/status.h"
 
 enum { STRUT_LONGEST_PATH = 4096 };
 
@@ -20,8 +17,5 @@ enum { STRUT_LONGEST_PATH = 4096 };
 bool strut_find_installed(const char *name, const char *built, char path[STRUT_LONGEST_PATH]);
 /** The path of a module of the program: below lib/strut, or in modules beside a program that is not installed. */
 bool strut_find_module(const char *name, char path[STRUT_LONGEST_PATH]);
-/** Creates a file with this text. STRUT_FILE_TROUBLE where one of this name exists, which stays as it is. */
-strut_status strut_create_file(const char *path, const char *text, size_t length,
-                               strut_error *error);
 
 #endif

@@ -89,10 +89,4 @@ strut_status strut_open_run(const strut_arguments *arguments, size_t room, strut
 /** A zeroed struct is allowed. */
 void strut_opened_free(strut_opened *opened);
 
-/**
- * Runs a command by its analysis: finds out whether all results can be written, opens and compiles the model,
- * computes, writes, prints and draws. Messages go to stderr.
- */
-strut_status strut_analysis_run(const strut_arguments *arguments);
-
 #endif

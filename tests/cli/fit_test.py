@@ -248,6 +248,7 @@ fit:
     identified(found, "k", k)
     identified(found, "height", h)
     check([o["without"] for o in said["omissions"]] == ["curve", "hammer", "shape"], "fits without each match")
+    run("sweep", "truss-fit.yaml", "--plan", "-o", "planned", code=1, err="-o has no effect")
     plan = answer("sweep", "truss-fit.yaml", "--plan")["candidates"]
     check(plan[0]["name"] == "all" and plan[-1]["standard_errors"]["k"] is None, f"plan: {plan}")
 

@@ -234,7 +234,7 @@ refuse("axes: [{mass: [1, 2]}]\nrefine: {where: at, depth: 1}\nsearch: {" + GOAL
 refuse("trajectories: yes\ncompute: run\nsearch: {" + GOAL + ", " + OVER + "}\n", "refused.yaml")
 write("fine.yaml", "strut: 1\nstudy: x\nmodel: spring.yaml\ncompute: modes\nsearch: {" + GOAL + ", " + OVER + "}\n")
 run("sweep", "fine.yaml", "-o", "fine", "--retry", code=1, err="depends on those before")
-check(run("sweep", "fine.yaml", "--count").stdout.startswith("  points   203\n"), "--count")
+check(run("sweep", "fine.yaml", "--count").stdout.startswith("  points at most  203\n"), "--count")
 check("are finished" in run("sweep", "--merge", "one").stdout, "a finished search")
 done = answer("sweep", "one.yaml", "-o", "one", "--status")
 check(done["finished"] and 0 < done["done"] <= done["points"] == 303, f"the status is {done}")

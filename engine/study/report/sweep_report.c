@@ -12,12 +12,15 @@ static strut_value column_of(const strut_result_object *of, size_t i) {
 }
 
 #define COUNTED(X)                                                                                 \
-  X("points", "", COUNT(refined ? strut_refinement_coarse(plan) : plan->points),                   \
-    "at most, of searches and of maps before they are refined", .label = {""})                     \
+  X("points", "", IF(!open, COUNT(refined ? strut_refinement_coarse(plan) : plan->points)),        \
+    "of a map before it is refined", .label = {""})                                                \
+  X("points", "", IF(open, COUNT(plan->points)), "at most, of a search or a fit",                  \
+    .label = {"points at most"})                                                                   \
   X("most_points", "", IF(refined, COUNT(plan->points)), "of the finest grid", .label = {""})      \
   X("columns", "", ARRAY(plan->column_count, column_of), "of the table", .label = {""})
 STRUT_VALUES(strut_sweep_count_values, COUNTED, const strut_sweep_plan *plan = of->at;
-             bool refined = plan->study->refine.depth > 0)
+             bool refined = plan->study->refine.depth > 0;
+             bool open = plan->study->search || plan->study->fit)
 
 /* ---- how far it is ---- */
 

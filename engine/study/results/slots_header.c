@@ -252,7 +252,7 @@ const char *strut_slots_difference(const strut_slots_description *first,
   if (first->points != second->points) return "the number of points";
   if (!same_columns(first, second)) return "the columns";
   if (memcmp(first->hash, second->hash, sizeof first->hash) != 0)
-    return "the model, its parameters or the axes";
+    return "the model, its data, its parameters or the axes";
   return NULL;
 }
 

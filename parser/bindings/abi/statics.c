@@ -52,14 +52,16 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
                                .arguments = &call->arguments,
                                .setup = &result->setup,
                                .model = result->model,
+                               .interrupt = abi_interrupt_of(call->control),
                                .scenes = {.file = source->name,
                                           .text = source->text,
                                           .length = source->length,
                                           .source = source->tree}};
   strut_status status = strut_analysis_compute(analysis, what);
-  if (status == STRUT_OK && kind->verdict) status = kind->verdict(analysis, what);
+  if (status == STRUT_OK && analysis->kind->verdict)
+    status = analysis->kind->verdict(analysis, what);
   if (status != STRUT_OK) return status;
-  if (kind->warn) kind->warn(analysis, &call->listener);
+  if (analysis->kind->warn) analysis->kind->warn(analysis, &call->listener);
   result->json = strut_analysis_json(analysis);
   result->table = strut_analysis_text(analysis, STRUT_REPORT_WIDTH);
   bool complete = result->json && result->table && !result->messages.out_of_memory;
@@ -192,9 +194,10 @@ static strut_status build_matrices(abi_call *call, strutlib_result *result, stru
   strut_arena arena = {0};
   strut_equilibrium_matrix equilibrium;
   strut_linear_matrices linear;
-  strut_named_shape shape;
-  strut_status status = strut_named_shape_find(&call->arguments, model, &result->setup.experiment,
-                                               &arena, &shape, what);
+  strut_rest_state shape;
+  const char *at = call->arguments.at;
+  strut_status status = strut_rest_state_find(model, &result->setup.experiment, at ? at : "drawn",
+                                              &arena, &shape, what);
   if (status == STRUT_OK)
     status = strut_equilibrium_matrix_build(model, shape.q, &arena, &equilibrium);
   if (status == STRUT_OK) status = strut_linear_matrices_build(model, shape.q, &arena, &linear);

@@ -8,6 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/forces/history.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/path_csv.h"
 #include "engine/output/result_values.h"
@@ -15,7 +16,16 @@
 #include "parser/language/yaml/diagnostics.h"
 
 strut_status strut_analysis_compute(strut_analysis *analysis, strut_error *error) {
+  strut_experiment *experiment = analysis->setup ? &analysis->setup->experiment : NULL;
+  analysis->found = &analysis->result;
+  if (experiment) {
+    analysis->scene = &analysis->setup->scene;
+    experiment->interrupt = analysis->interrupt;
+    experiment->progress = analysis->progress;
+    experiment->progress_context = analysis->progress_context;
+  }
   strut_status status = analysis->kind->compute(analysis, error);
+  if (experiment) experiment->progress = NULL;
   analysis->arguments = NULL;
   return status;
 }
@@ -25,6 +35,9 @@ void strut_analysis_free(strut_analysis *analysis) {
   strut_varied_scenes_free(&analysis->scenes);
   strut_arena_free(&analysis->arena);
 }
+
+/* The files of a kind. */
+#define FILES(...) ((const strut_output_file[]){__VA_ARGS__, {.name = NULL}})
 
 /* ---- options ---- */
 
@@ -67,18 +80,6 @@ static strut_status read_supports(const strut_arguments *arguments, strut_scene 
     if (!*at) break;
   }
   *set = to;
-  return STRUT_OK;
-}
-
-strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_experiment *experiment, strut_arena *arena,
-                                    strut_named_shape *shape, strut_error *error) {
-  const char *name = arguments->at;
-  strut_rest_state stand = {0};
-  strut_status status =
-      strut_rest_state_find(model, experiment, name ? name : "drawn", arena, &stand, error);
-  if (status != STRUT_OK) return status;
-  *shape = (strut_named_shape){.name = stand.name, .q = stand.q};
   return STRUT_OK;
 }
 
@@ -202,6 +203,67 @@ static strut_status read_followed(const strut_arguments *arguments, const strut_
   return status ? status : read_stop(arguments, scene, &wanted->stop);
 }
 
+/* ---- warnings of structures at rest in which something carries more than it can (forces/history.h) ---- */
+
+/* Of the shape, at `where`. */
+static void warn_of_overload(const strut_listener *listener, const strut_model *model,
+                             const double *positions, const char *where) {
+  strut_overload worst;
+  if (!strut_history_overload(model, positions, &worst)) return;
+  const char *unit = worst.hinge ? "N m" : "N";
+  strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+             "%s %s '%s' carries %.4g %s, above the %.4g %s at which it %s; statics take it as %s",
+             where, worst.kind, worst.name, worst.force, unit, worst.limit, unit,
+             worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
+}
+
+/* Says what a search has left out: on a curve that folds one branch is taken at each elongation. */
+static void warn_of_folds(const strut_listener *listener, const strut_model *model) {
+  for (int32_t i = 0; i < model->elements.count; i++) {
+    const strut_element *element = &model->elements.element[i];
+    if (element->law != STRUT_LAW_FOLDING) continue;
+    strut_tell(
+        listener, STRUT_MESSAGE_WARNING, NULL,
+        "the law of '%s' may fold back: a search takes it as it is when it comes from the rest "
+        "length, and finds no state on another branch; strut path follows them",
+        strut_element_name(model->scene, element));
+    return;
+  }
+}
+
+/* Does something carry more than it can? What that is. */
+static const char *overloaded_at(const strut_scene *scene, const strut_path_point *at) {
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *member = &scene->members[j];
+    bool yields =
+        member->law.kind == STRUT_LAW_ELASTIC_PLASTIC && fabs(at->at.force[j]) > member->law.yield;
+    if (yields || (member->breaks_at > 0.0 && at->at.force[j] > member->breaks_at))
+      return member->name;
+  }
+  for (size_t i = 0; i < scene->hinge_count; i++) {
+    const strut_hinge *hinge = &scene->hinges[i];
+    double moment = fabs(at->at.moment[i]);
+    bool yields = hinge->law.kind == STRUT_LAW_ELASTIC_PLASTIC && moment > hinge->law.yield;
+    if (yields || (hinge->breaks_at > 0.0 && moment > hinge->breaks_at)) return hinge->name;
+  }
+  return NULL;
+}
+
+/* Warns of the first point where something carries more than it can; false: there is none. */
+static bool warn_of_points(const strut_listener *listener, const strut_scene *scene,
+                           const strut_path *path) {
+  for (size_t i = 0; i < path->point_count; i++) {
+    const char *name = overloaded_at(scene, &path->points[i]);
+    if (!name) continue;
+    strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+               "from the factor %.4g on '%s' carries more than it can; paths take what "
+               "breaks as whole and what yields as elastic",
+               path->points[i].at.factor, name);
+    return true;
+  }
+  return false;
+}
+
 /* ---- equilibria ---- */
 
 static strut_status compute_equilibria(strut_analysis *analysis, strut_error *error) {
@@ -226,14 +288,16 @@ static strut_status judge_equilibria(const strut_analysis *analysis, strut_error
   return all->count > 0 ? STRUT_OK : strut_fail(error, STRUT_NOT_SETTLED, "%s", all->remark);
 }
 
-static const strut_value_rows *equilibria_values(const strut_analysis *analysis,
-                                                 const void **result) {
-  *result = &analysis->result.equilibria;
-  return &strut_equilibria_values;
-}
-
 static void warn_of_equilibria(const strut_analysis *analysis, const strut_listener *listener) {
-  strut_warn_of_equilibria(listener, analysis->model, &analysis->result.equilibria);
+  const strut_equilibria *all = &analysis->result.equilibria;
+  warn_of_folds(listener, analysis->model);
+  for (size_t i = 0; i < all->count; i++) {
+    const strut_equilibrium *equilibrium = &all->list[i];
+    char where[200];
+    if (equilibrium->point.label != STRUT_STABLE) continue;
+    snprintf(where, sizeof where, "in %.180s", equilibrium->name);
+    warn_of_overload(listener, analysis->model, equilibrium->point.q, where);
+  }
 }
 
 static strut_status draw_equilibria(const strut_analysis *analysis, const strut_plot *plot,
@@ -259,65 +323,62 @@ const strut_option strut_equilibria_analysis_options[] = {
      "list every equilibrium, and the positions of those that stand"},
     {.name = NULL}};
 
-const strut_analysis_kind strut_equilibria_analysis = {.files = {"equilibria.json"},
+const strut_analysis_kind strut_equilibria_analysis = {.files = FILES({.name = "equilibria.json"}),
+                                                       .rows = &strut_equilibria_values,
                                                        .asks = true,
                                                        .compute = compute_equilibria,
                                                        .verdict = judge_equilibria,
-                                                       .values = equilibria_values,
                                                        .warn = warn_of_equilibria,
                                                        .draw = draw_equilibria,
                                                        .release = free_equilibria};
 
 /* ---- modes ---- */
 
-static strut_status compute_modes(strut_analysis *analysis, strut_error *error) {
-  const strut_arguments *arguments = analysis->arguments;
-  const int32_t count = (int32_t)arguments->count.value;
-  if (arguments->wave && arguments->stuck)
-    return strut_usage_error(arguments,
-                             "--stuck holds contacts with the ground; --wave knows no ground");
-  analysis->result.modes.count = (size_t)count;
-  analysis->result.modes.wave = arguments->wave;
-  const strut_waves_options waves = {.at = arguments->at, .count = count};
-  const strut_modes_options modes = {
-      .at = arguments->at, .count = count, .stuck = arguments->stuck};
-  if (arguments->wave)
-    return strut_waves_find(analysis->model, &analysis->setup->experiment, &waves,
-                            &analysis->result.modes.waves, error);
-  return strut_modes_find(analysis->model, &analysis->setup->experiment, &modes,
-                          &analysis->result.modes.found, error);
-}
-
-static const strut_value_rows *modes_values(const strut_analysis *analysis, const void **result) {
-  bool wave = analysis->result.modes.wave;
-  *result = wave ? (const void *)&analysis->result.modes.waves : &analysis->result.modes.found;
-  return wave ? &strut_waves_values : &strut_modes_values;
-}
-
-static char *modes_csv(const strut_analysis *analysis) {
-  const void *result;
-  const strut_value_rows *rows = modes_values(analysis, &result);
-  bool wave = analysis->result.modes.wave;
-  return strut_values_csv(rows, wave ? "waves" : "modes", NULL, result, &analysis->setup->scene);
-}
-
 static void warn_of_modes(const strut_analysis *analysis, const strut_listener *listener) {
-  const double *q =
-      analysis->result.modes.wave ? analysis->result.modes.waves.q : analysis->result.modes.found.q;
-  strut_warn_of_overload(listener, analysis->model, q, "in this shape");
+  warn_of_overload(listener, analysis->model, analysis->result.modes.q, "in this shape");
 }
 
 static strut_status draw_modes(const strut_analysis *analysis, const strut_plot *plot,
                                strut_error *error) {
-  if (analysis->result.modes.wave)
-    return strut_waves_figure(plot, analysis->model, &analysis->result.modes.waves, error);
-  return strut_modes_figure(plot, analysis->model, &analysis->result.modes.found,
-                            analysis->result.modes.count, error);
+  return strut_modes_figure(plot, analysis->model, &analysis->result.modes, analysis->count, error);
 }
 
-static void free_modes(strut_analysis *analysis) {
-  strut_modes_free(&analysis->result.modes.found);
-  strut_waves_free(&analysis->result.modes.waves);
+static void free_modes(strut_analysis *analysis) { strut_modes_free(&analysis->result.modes); }
+
+static void warn_of_waves(const strut_analysis *analysis, const strut_listener *listener) {
+  warn_of_overload(listener, analysis->model, analysis->result.waves.q, "in this shape");
+}
+
+static strut_status draw_waves(const strut_analysis *analysis, const strut_plot *plot,
+                               strut_error *error) {
+  return strut_waves_figure(plot, analysis->model, &analysis->result.waves, error);
+}
+
+static void free_waves(strut_analysis *analysis) { strut_waves_free(&analysis->result.waves); }
+
+/* What modes are with --wave. */
+static const strut_analysis_kind waves_analysis = {
+    .files = FILES({.name = "modes.json"}, {.name = "modes.csv", .list = "waves"}),
+    .rows = &strut_waves_values,
+    .warn = warn_of_waves,
+    .draw = draw_waves,
+    .release = free_waves};
+
+static strut_status compute_modes(strut_analysis *analysis, strut_error *error) {
+  const strut_arguments *arguments = analysis->arguments;
+  const strut_experiment *experiment = &analysis->setup->experiment;
+  const int32_t count = (int32_t)arguments->count.value;
+  const strut_waves_options waves = {.at = arguments->at, .count = count};
+  const strut_modes_options modes = {
+      .at = arguments->at, .count = count, .stuck = arguments->stuck};
+  analysis->count = (size_t)count;
+  if (!arguments->wave)
+    return strut_modes_find(analysis->model, experiment, &modes, &analysis->result.modes, error);
+  if (arguments->stuck)
+    return strut_usage_error(arguments,
+                             "--stuck holds contacts with the ground; --wave knows no ground");
+  analysis->kind = &waves_analysis;
+  return strut_waves_find(analysis->model, experiment, &waves, &analysis->result.waves, error);
 }
 
 const strut_option strut_modes_analysis_options[] = {
@@ -330,37 +391,30 @@ const strut_option strut_modes_analysis_options[] = {
     {STRUT_FILLS(stuck), "stuck", NULL, "treat closed contacts as stuck instead of frictionless"},
     {.name = NULL}};
 
-const strut_analysis_kind strut_modes_analysis = {.files = {"modes.json", "modes.csv"},
-                                                  .compute = compute_modes,
-                                                  .values = modes_values,
-                                                  .csv = modes_csv,
-                                                  .warn = warn_of_modes,
-                                                  .draw = draw_modes,
-                                                  .release = free_modes};
+const strut_analysis_kind strut_modes_analysis = {
+    .files = FILES({.name = "modes.json"}, {.name = "modes.csv", .list = "modes"}),
+    .rows = &strut_modes_values,
+    .compute = compute_modes,
+    .warn = warn_of_modes,
+    .draw = draw_modes,
+    .release = free_modes};
 
 /* ---- rigidity ---- */
 
 static strut_status compute_rigidity(strut_analysis *analysis, strut_error *error) {
-  const strut_named_shape *shape = &analysis->result.rigidity.shape;
-  strut_status status =
-      strut_named_shape_find(analysis->arguments, analysis->model, &analysis->setup->experiment,
-                             &analysis->arena, &analysis->result.rigidity.shape, error);
-  if (status != STRUT_OK) return status;
-  strut_status found =
-      strut_rigidity_find(analysis->model, shape->q, &analysis->result.rigidity.found, error);
-  analysis->result.rigidity.found.at = shape->name;
-  return found;
-}
-
-static const strut_value_rows *rigidity_values(const strut_analysis *analysis,
-                                               const void **result) {
-  *result = &analysis->result.rigidity.found;
-  return &strut_rigidity_values;
+  const char *at = analysis->arguments->at;
+  strut_rest_state *shape = &analysis->result.rigidity.shape;
+  strut_rigidity *found = &analysis->result.rigidity.found;
+  strut_status status = strut_rest_state_find(analysis->model, &analysis->setup->experiment,
+                                              at ? at : "drawn", &analysis->arena, shape, error);
+  if (!status) status = strut_rigidity_find(analysis->model, shape->q, found, error);
+  found->at = shape->name;
+  return status;
 }
 
 static strut_status draw_rigidity(const strut_analysis *analysis, const strut_plot *plot,
                                   strut_error *error) {
-  const strut_named_shape *shape = &analysis->result.rigidity.shape;
+  const strut_rest_state *shape = &analysis->result.rigidity.shape;
   return strut_rigidity_figure(plot, analysis->model, shape->q, shape->name,
                                &analysis->result.rigidity.found, error);
 }
@@ -373,9 +427,9 @@ const strut_option strut_rigidity_analysis_options[] = {
     {STRUT_FILLS(at), "at", "NAME", "the shape: drawn (default), start, or an equilibrium"},
     {.name = NULL}};
 
-const strut_analysis_kind strut_rigidity_analysis = {.files = {"rigidity.json"},
+const strut_analysis_kind strut_rigidity_analysis = {.files = FILES({.name = "rigidity.json"}),
+                                                     .rows = &strut_rigidity_values,
                                                      .compute = compute_rigidity,
-                                                     .values = rigidity_values,
                                                      .draw = draw_rigidity,
                                                      .release = free_rigidity};
 
@@ -402,11 +456,6 @@ static strut_status compute_form(strut_analysis *analysis, strut_error *error) {
   return strut_form_find(analysis->setup, &wanted, &analysis->result.form.found, error);
 }
 
-static const strut_value_rows *form_values(const strut_analysis *analysis, const void **result) {
-  *result = &analysis->result.form.found;
-  return &strut_form_values;
-}
-
 static strut_status draw_form(const strut_analysis *analysis, const strut_plot *plot,
                               strut_error *error) {
   strut_model *model = NULL;
@@ -416,6 +465,8 @@ static strut_status draw_form(const strut_analysis *analysis, const strut_plot *
   strut_model_free(model);
   return status;
 }
+
+static void free_form(strut_analysis *analysis) { strut_release(analysis->result.form.before); }
 
 const strut_option strut_form_analysis_options[] = {
     {STRUT_FILLS(given), "given", "WHAT",
@@ -429,8 +480,11 @@ const strut_option strut_form_analysis_options[] = {
      "which prestress: minimal largest (default), sum or squares", .words = "largest|sum|squares"},
     {.name = NULL}};
 
-const strut_analysis_kind strut_form_analysis = {
-    .uncompiled = true, .compute = compute_form, .values = form_values, .draw = draw_form};
+const strut_analysis_kind strut_form_analysis = {.rows = &strut_form_values,
+                                                 .uncompiled = true,
+                                                 .compute = compute_form,
+                                                 .draw = draw_form,
+                                                 .release = free_form};
 
 /* ---- path ---- */
 
@@ -460,17 +514,23 @@ static strut_status compute_path(strut_analysis *analysis, strut_error *error) {
                            &analysis->result.path, error);
 }
 
-static const strut_value_rows *path_values(const strut_analysis *analysis, const void **result) {
-  *result = &analysis->result.path;
-  return &strut_path_values;
-}
-
 static char *path_csv(const strut_analysis *analysis) {
   return strut_path_csv(&analysis->result.path, &analysis->setup->scene);
 }
 
 static void warn_of_path(const strut_analysis *analysis, const strut_listener *listener) {
-  strut_warn_of_path(listener, &analysis->setup->scene, &analysis->result.path);
+  const strut_scene *scene = &analysis->setup->scene;
+  const strut_path *path = &analysis->result.path;
+  bool warned = false;
+  if (path->friction && !path->grips)
+    strut_tell(listener, STRUT_MESSAGE_WARNING, NULL,
+               "friction is kept, but no contact has a static coefficient, and no cable rubs: "
+               "the laws 'smooth' and 'stribeck' vanish at rest");
+  for (size_t i = 0; i < path->stage_count && !warned; i++)
+    warned = warn_of_points(listener, scene, &path->stages[i]);
+  warned = warned || warn_of_points(listener, scene, path);
+  for (size_t i = 0; i < path->branch_count && !warned; i++)
+    warned = warn_of_points(listener, scene, &path->branches[i]);
 }
 
 static strut_status draw_path(const strut_analysis *analysis, const strut_plot *plot,
@@ -502,24 +562,20 @@ const strut_option strut_path_analysis_options[] = {
      .most = 1000000},
     {.name = NULL}};
 
-const strut_analysis_kind strut_path_analysis = {.files = {"path.json", "path.csv"},
-                                                 .compute = compute_path,
-                                                 .values = path_values,
-                                                 .csv = path_csv,
-                                                 .warn = warn_of_path,
-                                                 .draw = draw_path,
-                                                 .release = free_path};
+const strut_analysis_kind strut_path_analysis = {
+    .files = FILES({.name = "path.json"}, {.name = "path.csv", .csv = path_csv}),
+    .rows = &strut_path_values,
+    .compute = compute_path,
+    .warn = warn_of_path,
+    .draw = draw_path,
+    .release = free_path};
 
 char *strut_analysis_json(const strut_analysis *analysis) {
-  const void *result;
-  const strut_value_rows *rows = analysis->kind->values(analysis, &result);
-  return strut_values_json(rows, result, &analysis->setup->scene);
+  return strut_values_json(analysis->kind->rows, analysis->found, analysis->scene);
 }
 
 char *strut_analysis_text(const strut_analysis *analysis, int width) {
-  const void *result;
-  const strut_value_rows *rows = analysis->kind->values(analysis, &result);
   bool all = analysis->kind == &strut_equilibria_analysis && analysis->result.equilibria.shows_all;
-  return strut_values_text(rows, result, &analysis->setup->scene, width,
+  return strut_values_text(analysis->kind->rows, analysis->found, analysis->scene, width,
                            all ? SIZE_MAX : STRUT_REPORT_ROWS);
 }

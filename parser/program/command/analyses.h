@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * Analyses: what `strut equilibria`, `modes`, `rigidity`, `form` and `path` compute of a model and report. The
- * program, the library and what is built on it do the same by these rows.
+ * program, the library and what is built on it do the same by these rows; the program has further kinds of its own.
  */
 #ifndef STRUT_PARSER_PROGRAM_COMMAND_ANALYSES_H
 #define STRUT_PARSER_PROGRAM_COMMAND_ANALYSES_H
@@ -16,37 +16,37 @@
 #include "parser/program/command/arguments.h"
 #include "parser/program/command/varied_scenes.h"
 
-/* ---- shapes ---- */
-
-typedef struct strut_named_shape {
-  const char *name; /* "drawn", or the value of --at */
-  const double *q;  /* (length) positions [m], in the arena */
-} strut_named_shape;
-
-/** Finds the shape that --at names, by default the drawn one; errors as strut_rest_state_find. */
-strut_status strut_named_shape_find(const strut_arguments *arguments, const strut_model *model,
-                                    const strut_experiment *experiment, strut_arena *arena,
-                                    strut_named_shape *shape, strut_error *error);
-
-/* ---- analyses ---- */
-
-/** ROW(name) for each analysis. */
+/** ROW(name) for each analysis of the library. */
 #define STRUT_ANALYSES(ROW) ROW(equilibria) ROW(modes) ROW(rigidity) ROW(form) ROW(path)
 
 typedef struct strut_analysis strut_analysis;
 
+/** A file that -o DIR receives: JSON of all, a CSV, or a picture. */
+typedef struct strut_output_file {
+  const char *name;             /* of numbered pictures "model" of model-1.svg, ... */
+  const char *list;             /* of a CSV: the path of its structs */
+  const strut_value_rows *rows; /* of a CSV; NULL: those of the result */
+  char *(*csv)(const strut_analysis *analysis); /* of a CSV: its text, instead of these */
+  /** Of a picture: draws it. */
+  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+                       strut_error *error);
+  size_t number, most; /* what it draws; of numbered pictures the first, and how many at most */
+  double width;        /* of a picture [pt]; 0: as --plot has it */
+  bool (*there)(const strut_analysis *analysis, size_t number); /* NULL: always */
+} strut_output_file;
+
 /** A kind of analysis. Texts are blocks of strut_allocate, NULL where memory is out. */
 struct strut_analysis_kind {
-  const char *files[3]; /* that -o DIR receives: JSON and, where there is `csv`, CSV; then NULL */
-  bool uncompiled;      /* compute needs no model */
-  bool asks;            /* compute soon notices an interrupt */
+  const strut_output_file *files; /* the last has no name; NULL: -o FILE is the command's own */
+  const strut_value_rows *rows;   /* of the result */
+  const char *printed;            /* the list that --csv prints */
+  double width;                   /* of the figure, where --width says none [pt]; 0: a page's */
+  bool uncompiled;                /* compute needs no model */
+  bool asks;                      /* compute soon notices an interrupt */
   /** Reads the options, whose faults the listener hears, and computes. */
   strut_status (*compute)(strut_analysis *analysis, strut_error *error);
   /** Fails where nothing was found, which is a result, too. May be NULL. */
   strut_status (*verdict)(const strut_analysis *analysis, strut_error *error);
-  /** Rows of the result and, into *result, what they are of; strut_analysis_json writes it. */
-  const strut_value_rows *(*values)(const strut_analysis *analysis, const void **result);
-  char *(*csv)(const strut_analysis *analysis); /* NULL: no such file */
   /** Tells the listener what is doubtful in the result. May be NULL. */
   void (*warn)(const strut_analysis *analysis, const strut_listener *listener);
   strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, strut_error *error);
@@ -60,31 +60,36 @@ struct strut_analysis_kind {
 STRUT_ANALYSES(STRUT_ANALYSIS_KIND)
 #undef STRUT_ANALYSIS_KIND
 
-/** An analysis under way. What stands before `all` is the caller's, and stays while there are results. */
+/** An analysis under way. What stands before `found` is the caller's, and stays while there are results. */
 struct strut_analysis {
-  const strut_analysis_kind *kind;
+  const strut_analysis_kind *kind;  /* a computation may put a nearer one in its place */
   const strut_arguments *arguments; /* while it computes */
-  strut_setup *setup;               /* its interrupt is asked */
-  const strut_model *model;         /* of the setup; NULL if uncompiled */
-  strut_varied_scenes scenes;       /* the setup's text, for those over a parameter */
+  strut_setup *setup;
+  const strut_model *model;    /* of the setup; NULL if uncompiled */
+  strut_varied_scenes scenes;  /* the setup's text, for those over a parameter */
+  const strut_flag *interrupt; /* may be NULL */
+  void (*progress)(void *context, double fraction); /* may be NULL */
+  void *progress_context;
+  const void *found;        /* what the rows are of */
+  const strut_scene *scene; /* of the result, or NULL */
+  size_t count;             /* of modes, as asked for; 0: as many as are usual */
+  bool partial;             /* what failed has found something all the same */
   strut_arena arena;
   union {
     strut_equilibria equilibria;
-    struct {
-      strut_modes found;
-      strut_waves waves; /* instead, where `wave` */
-      bool wave;
-      size_t count; /* asked for; 0: as many as are usual */
-    } modes;
+    strut_modes modes;
+    strut_waves waves;
     struct {
       strut_rigidity found;
-      strut_named_shape shape; /* in the arena */
+      strut_rest_state shape; /* in the arena */
     } rigidity;
     struct {
       strut_form found;
       double (*drawn)[2]; /* (nodes) positions before [m], in the arena */
+      char *before;       /* the caller's scene as it was read, or NULL; released with the rest */
     } form;
     strut_path path;
+    void *own; /* of other kinds */
   } result;
 };
 

@@ -122,6 +122,7 @@ typedef struct strut_option {
 
 /** What a command computes of one model: analyses.h. */
 typedef struct strut_analysis_kind strut_analysis_kind;
+struct strut_analysis;
 
 /** An option of other commands that a command has no use for, and why. */
 typedef struct strut_refused_option {
@@ -143,6 +144,11 @@ typedef struct strut_command {
   const char *details;         /* lines for its own help; may be NULL */
   const strut_option *options; /* besides --quiet and --help, which every command has; or NULL */
   const strut_analysis_kind *analysis; /* what it computes and reports, where `run` is NULL */
+  /** Opens what it computes, *text becoming the model's; NULL: a model for statics. */
+  strut_status (*open)(struct strut_analysis *analysis, char **text);
+  /** Instead of writing and printing what the kind says; may be NULL. */
+  strut_status (*report)(const struct strut_analysis *analysis, const strut_arguments *arguments,
+                         strut_error *error);
   strut_status (*run)(const strut_arguments *arguments);
   bool timed;                          /* print the elapsed time below the report */
   const strut_command_variant *forms;  /* NULL: none */

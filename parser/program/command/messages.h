@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Messages to a listener, and the warnings of members that carry too much. */
+/** Messages of a call to a listener: the program prints them, the library collects them. */
 #ifndef STRUT_PARSER_PROGRAM_COMMAND_MESSAGES_H
 #define STRUT_PARSER_PROGRAM_COMMAND_MESSAGES_H
 
-#include "engine/statics/equilibria/equilibria.h"
-#include "engine/statics/path/path.h"
-
-/* Where messages of a call go: the program prints them, the library collects them. */
+#include "engine/base/status.h"
 
 typedef enum strut_message_kind {
   STRUT_MESSAGE_USAGE,   /* an option is wrong */
@@ -35,17 +32,5 @@ strut_status strut_tell_failure(const strut_listener *listener, strut_status sta
                                 const strut_error *error);
 /** Tells lines; NULL: memory is out, which is told and returned. */
 strut_status strut_tell_lines(const strut_listener *listener, const char *lines);
-
-/* Warnings about structures at rest in which something carries more than it can (forces/history.h). */
-
-/** Of the shape q (length), at `where`. */
-void strut_warn_of_overload(const strut_listener *listener, const strut_model *model,
-                            const double *positions, const char *where);
-/** Of all stable equilibria. */
-void strut_warn_of_equilibria(const strut_listener *listener, const strut_model *model,
-                              const strut_equilibria *all);
-/** Of the first point of a path where that is so. */
-void strut_warn_of_path(const strut_listener *listener, const strut_scene *scene,
-                        const strut_path *path);
 
 #endif

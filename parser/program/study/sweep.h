@@ -85,6 +85,8 @@ struct strut_study_job {
   strut_shard shard;  /* of a search: which of its workers; count 0: none */
   strut_slots *slots; /* strut_slots_close closes them */
   strut_sweep_state state;
+  strut_refinement *refinement; /* of a refined map, or NULL */
+  int64_t others;               /* points of other shards that must be known before more can be */
 };
 
 /** Finds the shard that --shard names, and the file of its slots, which the workers of a search share. */
@@ -102,9 +104,20 @@ typedef strut_status strut_study_compute(strut_study_job *job, const strut_sweep
 strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *compute, void *context,
                                  strut_error *error);
 
+/** A form of studies: what it computes, and what it does with its result of `size` bytes, zero at first. */
+typedef struct strut_study_form {
+  size_t size;
+  strut_study_compute *compute; /* `context`: the result */
+  /** Writes files besides the table, before it. May be NULL. */
+  strut_status (*write)(const strut_study_job *job, void *result, strut_error *error);
+  /** Reports the result, whose table is there, and tells what failed or is inaccurate. */
+  strut_status (*report)(const strut_study_job *job, const void *result, const char *table);
+  void (*release)(void *result); /* may be NULL */
+} strut_study_form;
+extern const strut_study_form strut_search_form, strut_follow_form;
+
 /** Draws each figure as DIR/NAME.svg, of the table at `path` or of the runs beside it. */
-strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path,
-                                      const strut_refinement *refinement);
+strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path);
 /** Writes sensitivity.csv and sensitivity.svg into DIR, and reports what is in the former. */
 strut_status strut_sweep_sensitivity_complete(const strut_study_job *job);
 /** Tells each warning of the runs once, with its count. */
@@ -116,10 +129,6 @@ strut_status strut_sweep_judge(const strut_listener *listener, int64_t points, i
 /** STRUT_BAD_SCENE, which is told, where several workers could not share the search. */
 strut_status strut_sweep_search_check_workers(const strut_arguments *arguments,
                                               strut_sweep_study *study);
-/** Computes a study that searches, once its slots are open, and writes its results. */
-strut_status strut_sweep_search(strut_study_job *job);
-/** Does the same with a study that fits. */
-strut_status strut_sweep_fit(strut_study_job *job);
 /** Do points depend on those before, so that shards are workers that share one file? */
 static inline bool strut_study_has_stages(const strut_study *study) {
   return study->search || study->fit;
@@ -128,7 +137,5 @@ static inline bool strut_study_has_stages(const strut_study *study) {
 bool strut_sweep_search_is_finished(const char *directory);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
-/** Does the same with a study that follows motions. */
-strut_status strut_sweep_follow(strut_study_job *job);
 
 #endif

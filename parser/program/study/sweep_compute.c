@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Computes a study that is open, and writes its results; those of single points and of refinements are here. */
+/* Computes a study that is open, and writes its results; those of single points, of refinements and of fits are here. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/output/file.h"
+#include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/study/sweep.h"
 
 static const char table_name[] = "table.csv";
-
-/* DIR/name in the study's arena, or NULL. */
-static const char *inside(strut_sweep_study *study, const char *directory, const char *name) {
-  return strut_arena_format(&study->plan.arena, "%s/%s", directory, name);
-}
 
 strut_status strut_sweep_find_shard(const strut_arguments *arguments, strut_sweep_study *study,
                                     strut_shard *shard, const char **path) {
@@ -36,14 +32,16 @@ strut_status strut_sweep_find_shard(const strut_arguments *arguments, strut_swee
   return strut_tell_failure(arguments->listener, *path ? STRUT_OK : STRUT_NO_MEMORY, NULL);
 }
 
-/* `context`: the refinement, or NULL. */
+/* ---- single points, and refined maps of them ---- */
+
 static strut_status run_points(strut_study_job *job, const strut_sweep_options *given,
                                void *context, strut_error *error) {
   strut_sweep_options how = *given;
-  if (context) {
+  (void)context;
+  if (job->refinement) {
     how.wants = strut_refinement_wants;
-    how.wants_context = context;
-    strut_refinement_count(context, job->slots, &how.wanted, &how.wanted_done);
+    how.wants_context = job->refinement;
+    strut_refinement_count(job->refinement, job->slots, &how.wanted, &how.wanted_done);
   }
   return strut_sweep_run(&job->study->plan, job->slots, &how, &job->state, error);
 }
@@ -63,21 +61,17 @@ static void add_warnings(strut_sweep_state *all, const strut_sweep_state *round)
   }
 }
 
-/*
- * Computes what is wanted until that wants nothing further. *others: points of other shards that must be
- * known before more can be.
- */
-static strut_status run_refined(strut_study_job *job, strut_refinement *refinement, int64_t *others,
-                                strut_error *error) {
+/* Computes what is wanted until that wants nothing further. */
+static strut_status run_refined(strut_study_job *job, strut_error *error) {
   int64_t wanted, done;
   strut_sweep_state all = {0}, *state = &job->state;
   strut_status status = STRUT_OK;
   for (bool first = true; !status; first = false) {
-    strut_sweep_refine_learn(refinement, job->arguments->output, job->shard, job->slots);
-    *others = strut_refinement_choose(refinement);
-    strut_refinement_count(refinement, job->slots, &wanted, &done);
+    strut_sweep_refine_learn(job->refinement, job->arguments->output, job->shard, job->slots);
+    job->others = strut_refinement_choose(job->refinement);
+    strut_refinement_count(job->refinement, job->slots, &wanted, &done);
     if (wanted == done && !first) break;
-    status = strut_study_job_run(job, run_points, refinement, error);
+    status = strut_study_job_run(job, run_points, NULL, error);
     all.computed += state->computed;
     all.seconds += state->seconds;
     add_warnings(&all, state);
@@ -89,51 +83,105 @@ static strut_status run_refined(strut_study_job *job, strut_refinement *refineme
   return status;
 }
 
-/* Writes table and figures. Failed points do not stop a sweep, but change the exit code. */
-static strut_status complete_sweep(const strut_study_job *job, const strut_refinement *refinement) {
-  const strut_arguments *arguments = job->arguments;
-  const bool whole = !job->shard.count;
-  strut_error error = {0};
-  strut_slots *const sources[] = {job->slots};
-  const char *table = whole ? inside(job->study, arguments->output, table_name)
-                            : "one shard: 'strut sweep --merge' writes the table of all";
-  if (!table) return strut_tell_failure(arguments->listener, STRUT_NO_MEMORY, NULL);
-  strut_status status = STRUT_OK;
-  if (whole && refinement)
-    status =
-        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  else if (whole)
-    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
-  if (status) return strut_tell_failure(arguments->listener, status, &error);
-  if (whole) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
-  if (whole) status = strut_sweep_figures_draw(job, table, refinement);
-  if (status) return status;
-  status = job->report(job, &strut_sweep_end_values, &(strut_sweep_end){&job->state, table}, NULL);
-  if (!status && whole) status = strut_sweep_sensitivity_complete(job);
+/* Failed points do not stop a sweep, but change the exit code. */
+static strut_status report_points(const strut_study_job *job, const void *result,
+                                  const char *table) {
+  const strut_sweep_end end = {&job->state, table};
+  (void)result;
+  strut_status status = job->report(job, &strut_sweep_end_values, &end, NULL);
+  if (!status && !job->shard.count) status = strut_sweep_sensitivity_complete(job);
   return status ? status
-                : strut_sweep_judge(arguments->listener, job->state.points, job->state.failed,
+                : strut_sweep_judge(job->arguments->listener, job->state.points, job->state.failed,
                                     strut_slots_inaccurate(job->slots));
 }
 
-static strut_status sweep(strut_study_job *job) {
-  strut_error error = {0};
-  strut_refinement *refinement = NULL;
-  int64_t others = 0;
-  strut_status status = STRUT_OK;
-  if (job->study->plan.study->refine.depth)
-    status = strut_refinement_create(&job->study->plan, &refinement, &error);
-  if (!status)
-    status = refinement ? run_refined(job, refinement, &others, &error)
-                        : strut_study_job_run(job, run_points, NULL, &error);
-  strut_sweep_tell_warnings(job);
-  strut_tell_failure(job->arguments->listener, status, &error);
-  if (!status) status = complete_sweep(job, refinement);
-  if (others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
+static const strut_study_form points_form = {
+    .size = 1, .compute = run_points, .report = report_points};
+
+/* ---- fits ---- */
+
+static strut_status run_fit(strut_study_job *job, const strut_sweep_options *options, void *context,
+                            strut_error *error) {
+  strut_sweep_options how = *options;
+  how.directory = NULL;
+  how.worker = job->shard.index, how.workers = job->shard.count;
+  return strut_fit_run(&job->study->plan, job->slots, &how, &job->state, context, error);
+}
+
+static strut_status write_fit(const strut_study_job *job, void *result, strut_error *error) {
+  strut_status status = strut_fit_write(result, job->arguments->output, "model.yaml", error);
+  return status ? status : strut_fit_figures(result, job->arguments->output, error);
+}
+
+static strut_status report_fit(const strut_study_job *job, const void *of, const char *table) {
+  const strut_fit_result *result = of;
+  (void)table;
+  strut_status status = job->report(job, &strut_fit_values, result, NULL);
+  if (status) return status;
+  if (!result->found) {
     strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+               "the model cannot be computed at any start: see 'message' of the table, or 'strut "
+               "run' with values of the ranges");
+    return STRUT_DIVERGED;
+  }
+  if (strut_fit_is_identified(result)) return STRUT_OK;
+  strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+             "not all parameters are identified%s%s", *result->reason ? ": " : "", result->reason);
+  return STRUT_INACCURATE;
+}
+
+static void free_fit(void *result) { strut_fit_result_free(result); }
+
+static const strut_study_form fit_form = {sizeof(strut_fit_result), run_fit, write_fit, report_fit,
+                                          free_fit};
+
+/* ---- any study ---- */
+
+/* Writes the files, the table last as a sign that they are there, draws and reports. */
+static strut_status complete(const strut_study_job *job, const strut_study_form *form,
+                             void *result) {
+  const strut_arguments *arguments = job->arguments;
+  const strut_study *study = job->study->plan.study;
+  const bool stages = strut_study_has_stages(study), whole = stages || !job->shard.count;
+  strut_slots *const sources[] = {job->slots};
+  strut_error error = {0};
+  const char *table =
+      whole ? strut_arena_format(&job->study->plan.arena, "%s/%s", arguments->output, table_name)
+            : "one shard: 'strut sweep --merge' writes the table of all";
+  strut_status status = table ? STRUT_OK : STRUT_NO_MEMORY;
+  if (!status && form->write) status = form->write(job, result, &error);
+  if (!status && whole && (stages || job->refinement))
+    status =
+        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
+  else if (!status && whole)
+    status = strut_study_table_write(arguments->output, table_name, sources, 1, &error);
+  if (status) return strut_tell_failure(arguments->listener, status, &error);
+  if (whole) strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
+  if (whole) status = strut_sweep_figures_draw(job, table);
+  return status ? status : form->report(job, result, table);
+}
+
+static strut_status compute(strut_study_job *job, const strut_study_form *form) {
+  strut_error error = {0};
+  const strut_listener *listener = job->arguments->listener;
+  void *result = strut_allocate(1, form->size);
+  strut_status status = result ? STRUT_OK : strut_no_memory(&error, "");
+  if (!status && job->study->plan.study->refine.depth)
+    status = strut_refinement_create(&job->study->plan, &job->refinement, &error);
+  if (!status)
+    status = job->refinement ? run_refined(job, &error)
+                             : strut_study_job_run(job, form->compute, result, &error);
+  strut_sweep_tell_warnings(job);
+  strut_tell_failure(listener, status, &error);
+  if (!status) status = complete(job, form, result);
+  if (job->others && (!status || status == STRUT_DIVERGED || status == STRUT_INACCURATE))
+    strut_tell(listener, STRUT_MESSAGE_REMARK, NULL,
                "%lld points of other shards decide what is refined next: run this shard again when "
                "they are done",
-               (long long)others);
-  strut_refinement_free(refinement);
+               (long long)job->others);
+  if (result && form->release) form->release(result);
+  strut_refinement_free(job->refinement);
+  strut_release(result);
   return status;
 }
 
@@ -149,8 +197,8 @@ strut_status strut_study_job_compute(strut_study_job *job) {
   if (status) return status;
   status = strut_study_job_open(job, path, &error);
   if (status) return strut_tell_failure(job->arguments->listener, status, &error);
-  return study->search   ? strut_sweep_search(job)
-         : study->follow ? strut_sweep_follow(job)
-         : study->fit    ? strut_sweep_fit(job)
-                         : sweep(job);
+  return compute(job, study->search   ? &strut_search_form
+                      : study->follow ? &strut_follow_form
+                      : study->fit    ? &fit_form
+                                      : &points_form);
 }

@@ -128,31 +128,24 @@ strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const
   return status;
 }
 
-/* A figure of a winner is not of the table: sweep_search.c draws it. */
-static strut_status draw_figure(const strut_study_job *job, const strut_study_figure *figure,
-                                const strut_table *table, const strut_refinement *refinement) {
-  strut_error error = {0};
-  if (figure->kind == STRUT_FIGURE_WINNER) return STRUT_OK;
-  strut_status status = strut_sweep_figure(&job->study->plan, job->arguments->output, figure, table,
-                                           refinement, &error);
-  return strut_tell_failure(job->arguments->listener, status, &error);
-}
-
-strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path,
-                                      const strut_refinement *refinement) {
+strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *path) {
   const strut_study *study = job->study->plan.study;
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
   strut_status status = strut_table_read(job->arguments->listener, path, &table);
-  for (size_t i = 0; i < study->figure_count && !status; i++)
-    status = draw_figure(job, &study->figures[i], &table, refinement);
+  for (size_t i = 0; i < study->figure_count && !status; i++) {
+    strut_error error = {0};
+    if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
+    status = strut_sweep_figure(&job->study->plan, job->arguments->output, &study->figures[i],
+                                &table, job->refinement, &error);
+    strut_tell_failure(job->arguments->listener, status, &error);
+  }
   strut_arena_free(&table.arena);
   return status;
 }
 
 /* `strut sweep` of a study that follows motions. */
 
-static const char table_name[] = "table.csv";
 static const char branches_name[] = "branches.csv";
 static const char partial_branches_name[] = "branches-partial.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */
@@ -191,60 +184,48 @@ static strut_status run_points(strut_study_job *job, const strut_sweep_options *
   return status;
 }
 
-static strut_status draw_branches(const strut_arguments *arguments, strut_sweep_plan *plan,
-                                  strut_error *error) {
+static strut_status draw_branches(const strut_study_job *job, strut_error *error) {
+  strut_sweep_plan *plan = &job->study->plan;
+  const char *directory = job->arguments->output;
   strut_table table = {0};
-  const char *from = strut_arena_format(&plan->arena, "%s/%s", arguments->output, branches_name);
-  const strut_plot plot = {
-      .path = strut_arena_format(&plan->arena, "%s/branches.svg", arguments->output),
-      .width = PAGE};
+  const char *from = strut_arena_format(&plan->arena, "%s/%s", directory, branches_name);
+  const strut_plot plot = {.path = strut_arena_format(&plan->arena, "%s/branches.svg", directory),
+                           .width = PAGE};
   if (!from || !plot.path) return strut_no_memory(error, "");
-  strut_status status = strut_table_read(arguments->listener, from, &table);
+  strut_status status = strut_table_read(job->arguments->listener, from, &table);
   if (!status) status = strut_follow_points_figure(&plot, plan, &table, error);
   strut_arena_free(&table.arena);
   return status;
 }
 
-/* Writes branches.csv, branches.svg, report.json and the table; *report: the JSON text. */
-static strut_status write_results(const strut_arguments *arguments, strut_sweep_plan *plan,
-                                  strut_slots *slots, char **report, strut_error *error) {
-  strut_slots *const sources[] = {slots};
-  const char *directory = arguments->output;
+/* branches.csv, branches.svg and report.json, whose text becomes *result. */
+static strut_status write_branches(const strut_study_job *job, void *result, strut_error *error) {
+  strut_sweep_plan *plan = &job->study->plan;
+  const char *directory = job->arguments->output;
+  char **json = result;
   int64_t rows = 0;
   strut_status status =
-      strut_follow_points_combine(plan, slots, directory, branches_name, false, &rows, error);
-  if (!status && rows) status = draw_branches(arguments, plan, error);
-  if (!status) status = strut_follow_points_json(plan, slots, directory, report, error);
-  if (!status) status = strut_file_write_text(directory, "report.json", *report, error);
-  if (!status) status = strut_study_table_write(directory, table_name, sources, 1, error);
-  if (status) return status;
-  strut_file_remove(directory, STRUT_PARTIAL_TABLE);
-  strut_file_remove(directory, partial_branches_name);
-  return STRUT_OK;
+      strut_follow_points_combine(plan, job->slots, directory, branches_name, false, &rows, error);
+  if (!status && rows) status = draw_branches(job, error);
+  if (!status) status = strut_follow_points_json(plan, job->slots, directory, json, error);
+  if (!status) status = strut_file_write_text(directory, "report.json", *json, error);
+  if (!status) strut_file_remove(directory, partial_branches_name);
+  return status;
 }
 
-static strut_status complete(const strut_study_job *job) {
-  strut_error error = {0};
-  char *report = NULL;
-  strut_sweep_plan *plan = &job->study->plan;
-  const strut_arguments *arguments = job->arguments;
-  const strut_follow_points_rows rows = {plan, job->slots};
-  strut_status status = write_results(arguments, plan, job->slots, &report, &error);
-  const char *table = strut_arena_format(&plan->arena, "%s/%s", arguments->output, table_name);
-  if (!status && !table) status = STRUT_NO_MEMORY;
-  strut_tell_failure(arguments->listener, status, &error);
-  if (!status) status = strut_sweep_figures_draw(job, table, NULL);
-  if (!status) status = job->report(job, &strut_follow_points_values, &rows, report);
-  strut_release(report);
-  return status
-             ? status
-             : strut_sweep_judge(arguments->listener, plan->points, strut_slots_failed(job->slots),
-                                 strut_slots_inaccurate(job->slots));
+static strut_status report_branches(const strut_study_job *job, const void *result,
+                                    const char *table) {
+  const strut_follow_points_rows rows = {&job->study->plan, job->slots};
+  (void)table;
+  strut_status status =
+      job->report(job, &strut_follow_points_values, &rows, *(char *const *)result);
+  return status ? status
+                : strut_sweep_judge(job->arguments->listener, job->study->plan.points,
+                                    strut_slots_failed(job->slots),
+                                    strut_slots_inaccurate(job->slots));
 }
 
-strut_status strut_sweep_follow(strut_study_job *job) {
-  strut_error error = {0};
-  strut_status status = strut_study_job_run(job, run_points, NULL, &error);
-  strut_tell_failure(job->arguments->listener, status, &error);
-  return status ? status : complete(job);
-}
+static void free_branches(void *result) { strut_release(*(char **)result); }
+
+const strut_study_form strut_follow_form = {sizeof(char *), run_points, write_branches,
+                                            report_branches, free_branches};

@@ -15,14 +15,20 @@
 static const char table_name[] = "table.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-/* `context`: the result. */
+/* What was found, and its best point of all; NULL: none. */
+typedef struct searched {
+  strut_search_result found;
+  const strut_search_point *best;
+} searched;
+
 static strut_status run_search(strut_study_job *job, const strut_sweep_options *options,
                                void *context, strut_error *error) {
   strut_sweep_options how = *options;
   how.directory = NULL;
   how.worker = job->shard.index;
   how.workers = job->shard.count;
-  return strut_search_run(&job->study->plan, job->slots, &how, &job->state, context, error);
+  return strut_search_run(&job->study->plan, job->slots, &how, &job->state,
+                          &((searched *)context)->found, error);
 }
 
 /*
@@ -94,15 +100,12 @@ static const strut_search_point *pick(const strut_search_result *result, bool ma
   return &outcome->best;
 }
 
-/*
- * best.yaml of all, whose point is *of_all, and best-N.yaml of each point of the axes where there are
- * several.
- */
+/* best.yaml of all, and best-N.yaml of each point of the axes where there are several. */
 static strut_status write_best_scenes(const strut_arguments *arguments,
-                                      const strut_sweep_plan *plan,
-                                      const strut_search_result *result,
-                                      const strut_search_point **of_all, strut_error *error) {
+                                      const strut_sweep_plan *plan, searched *self,
+                                      strut_error *error) {
   const strut_study_search *search = plan->study->search;
+  const strut_search_result *result = &self->found;
   const strut_search_point *best = NULL;
   strut_status status = STRUT_OK;
   bool several = result->outcome_count > (size_t)search->starts;
@@ -117,8 +120,14 @@ static strut_status write_best_scenes(const strut_arguments *arguments,
     if (!best || strut_search_better(search, found, best)) best = found;
   }
   if (!status && best) status = write_scene(arguments, plan, best, "best.yaml", error);
-  *of_all = best;
+  self->best = best;
   return status;
+}
+
+static strut_status write_best(const strut_study_job *job, void *result, strut_error *error) {
+  searched *self = result;
+  strut_status status = write_best_rows(job->arguments, job->slots, &self->found, error);
+  return status ? status : write_best_scenes(job->arguments, &job->study->plan, self, error);
 }
 
 /* The figures of the best of all. A search that found none has none. */
@@ -138,25 +147,12 @@ static strut_status draw_winner(const strut_study_job *job, const strut_search_p
   return strut_tell_failure(job->arguments->listener, status, &error);
 }
 
-static strut_status complete(const strut_study_job *job, const strut_search_result *result) {
-  const strut_arguments *arguments = job->arguments;
-  strut_sweep_plan *plan = &job->study->plan;
-  strut_slots *slots = job->slots;
-  strut_error error = {0};
-  const strut_search_point *best = NULL;
-  strut_slots *const sources[] = {slots};
-  const char *table = strut_arena_format(&plan->arena, "%s/%s", arguments->output, table_name);
-  if (!table) return strut_tell_failure(arguments->listener, STRUT_NO_MEMORY, NULL);
-  strut_status status = write_best_rows(arguments, slots, result, &error);
-  if (!status) status = write_best_scenes(arguments, plan, result, &best, &error);
-  if (!status) /* last, as a sign that the searches are finished */
-    status =
-        strut_study_table_write_partial(arguments->output, table_name, sources, 1, NULL, &error);
-  if (status) return strut_tell_failure(arguments->listener, status, &error);
-  strut_file_remove(arguments->output, STRUT_PARTIAL_TABLE);
-  status = strut_sweep_figures_draw(job, table, NULL);
-  if (!status) status = draw_winner(job, best);
+static strut_status report_search(const strut_study_job *job, const void *of, const char *table) {
+  const searched *self = of;
+  const strut_search_result *result = &self->found;
+  const strut_sweep_plan *plan = &job->study->plan;
   const strut_search_report report = {plan, plan->study->search, result, {&job->state, table}};
+  strut_status status = draw_winner(job, self->best);
   if (!status) status = job->report(job, &strut_search_report_values, &report, NULL);
   if (status) return status;
   bool found = false;
@@ -164,15 +160,20 @@ static strut_status complete(const strut_study_job *job, const strut_search_resu
     found = found || result->outcomes[result->worths[i].best].best.violation <= 0.0;
   for (size_t i = 0; i < result->front_count; i++) found = found || result->fronts[i].count > 0;
   if (!found) {
-    strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+    strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
                "no point was found that is computed and meets all conditions");
     return STRUT_DIVERGED;
   }
-  if (!best || !strut_slots_is_inaccurate(slots, best->worst)) return STRUT_OK;
-  strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
+  if (!self->best || !strut_slots_is_inaccurate(job->slots, self->best->worst)) return STRUT_OK;
+  strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
              "the best point is less accurate than requested");
   return STRUT_INACCURATE;
 }
+
+static void free_searched(void *result) { strut_search_result_free(&((searched *)result)->found); }
+
+const strut_study_form strut_search_form = {sizeof(searched), run_search, write_best, report_search,
+                                            free_searched};
 
 /* The table is written at the end. */
 bool strut_sweep_search_is_finished(const char *directory) {
@@ -199,17 +200,6 @@ strut_status strut_sweep_search_check_workers(const strut_arguments *arguments,
                  "give 'starts' for several searches side by side, or the method 'cma'",
                  words[file->study.search->method]);
   return strut_sweep_study_report(arguments->listener, study, STRUT_BAD_SCENE, &(strut_error){0});
-}
-
-strut_status strut_sweep_search(strut_study_job *job) {
-  strut_search_result result = {0};
-  strut_error error = {0};
-  strut_status status = strut_study_job_run(job, run_search, &result, &error);
-  strut_sweep_tell_warnings(job);
-  strut_tell_failure(job->arguments->listener, status, &error);
-  if (!status) status = complete(job, &result);
-  strut_search_result_free(&result);
-  return status;
 }
 
 /* Refined studies: what the files of all shards hold, and their table. */

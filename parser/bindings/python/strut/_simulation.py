@@ -91,17 +91,17 @@ class Simulation(Frozen):
     @property
     def time(self) -> float:
         """Time reached [s]."""
-        return self._raw.time
+        return self._raw.time()
 
     @property
     def step(self) -> float:
         """The step [s]; of a method with error control the time between two stops."""
-        return self._raw.step
+        return self._raw.step()
 
     @property
     def input_work(self) -> float:
         """Work that changes of inputs have done [J]."""
-        return self._raw.input_work
+        return self._raw.input_work()
 
     def __getattr__(self, name: str) -> Named:
         # Only for arrays that were not read yet: they become attributes.

@@ -9,6 +9,8 @@ owns its numbers.
 from __future__ import annotations
 
 import ctypes
+import functools
+import itertools
 import operator
 import os
 import pathlib
@@ -17,7 +19,7 @@ import threading
 import time
 from array import array as doubles
 from ctypes import byref, c_char_p, c_double, c_int, c_long, c_size_t, c_void_p
-from typing import Any, Callable, Iterator, Sequence
+from typing import Any, Callable, Sequence
 
 from . import _errors
 
@@ -32,7 +34,9 @@ _NOTE = ctypes.CFUNCTYPE(c_int, c_void_p, c_double)
 # ---- calls ----
 
 
-def _bytes(text: str | None) -> bytes:
+def _bytes(text: str | bytes | None) -> bytes:
+    if isinstance(text, bytes):
+        return text
     if not isinstance(text, str):
         raise TypeError(f"a text is needed, not {text!r}")
     return _whole(text.encode())
@@ -60,11 +64,48 @@ def _decode(text: bytes | None) -> Any:
     return None if text is None else text.decode("utf-8", "surrogateescape")
 
 
+def _taken(text: int | None) -> Any:
+    """A copy of a text that belongs to the caller."""
+    copy = _decode(ctypes.string_at(text)) if text else None
+    _api.release(text)
+    return copy
+
+
+class _Function:
+    """A function of the library as abi.h declares it: texts are str, handles objects, and errors are raised."""
+
+    _TYPES = {"void": None, "int": c_int, "long": c_long, "size_t": c_size_t, "double": c_double, "const char *": c_char_p}
+
+    def __init__(self, returned: str, name: str, arguments: str) -> None:
+        self._words = [re.sub(r"\w+$", "", word).strip() for word in arguments.split(",") if word != "void"]
+        self._fails = self._words[-1:] == ["strutlib_error **"]
+        convert: dict[str, Callable[[Any], Any]] = {"const char *": _decode, "char *": _taken}
+        self._convert = convert.get(returned, lambda found: found)
+        self.function = getattr(_LIBRARY, "strutlib_" + name)
+        self.function.argtypes = [self._TYPES.get(word, c_void_p) for word in self._words]
+        self.function.restype = self._TYPES.get(returned, c_void_p)
+
+    def both(self, *given: Any) -> tuple[Any, int | None]:
+        """What it returns, and its error, which is to be freed."""
+        error = c_void_p()
+        plain = [
+            value.pointer() if isinstance(value, _Handle) else _bytes(value) if word == "const char *" else value
+            for word, value in zip(self._words, given)
+        ]
+        found = self.function(*plain, *[byref(error)] * self._fails)
+        return self._convert(found), error.value
+
+    def __call__(self, *given: Any) -> Any:
+        found, error = self.both(*given)
+        if error is not None:
+            raise _exception(error)
+        return found
+
+
 class _Api:
-    """The functions of the library without strutlib_, as abi.h declares them; texts of the library's as str."""
+    """The functions of the library without strutlib_."""
 
     _DECLARED = re.compile(r"STRUTLIB_API ([^;(]*?)strutlib_(\w+)\(([^)]*)\);")
-    _TYPES = {"void": None, "int": c_int, "long": c_long, "size_t": c_size_t, "double": c_double, "const char *": c_char_p}
 
     def __init__(self, header: str) -> None:
         version = int(header.partition("#define STRUTLIB_ABI_VERSION ")[2].split()[0])
@@ -72,47 +113,37 @@ class _Api:
             raise ImportError(f"libstrut.so.0 is older than this package: interface {found}, not {version}")
         self.calls = re.findall(r"\bX\((\w+)\)", header.partition("#define STRUTLIB_CALLS(X)")[2].partition("\n")[0])
         for returned, name, arguments in self._DECLARED.findall(header):
-            function = getattr(_LIBRARY, "strutlib_" + name)
-            words = [re.sub(r"\w+$", "", word).strip() for word in arguments.split(",") if word != "void"]
-            function.argtypes = [self._TYPES.get(word, c_void_p) for word in words]
-            function.restype = self._TYPES.get(returned.strip(), c_void_p)
-            wrap = {"const char *": _shown, "char *": _given}.get(returned.strip())
-            setattr(self, name, wrap(function) if wrap else function)
+            setattr(self, name, _Function(returned.strip(), name, arguments))
 
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(name)  # all others: for mypy
 
-    def ask(self, name: str, *given: Any) -> Any:
-        """What a function returns that takes an error last, which is raised."""
-        error = c_void_p()
-        found = getattr(self, name)(*given, byref(error))
-        if error:
-            raise _exception(error.value)
-        return found
 
-
-def _shown(function: Any) -> Any:
-    return lambda *given: _decode(function(*given))
-
-
-def _given(function: Any) -> Any:
-    """A function whose text belongs to the caller, who keeps a copy."""
-
-    def copied(*given: Any) -> Any:
-        text = function(*given)
-        copy = _decode(ctypes.string_at(text)) if text else None
-        _api.release(text)
-        return copy
-
-    return copied
-
-
-def _until_none(function: Callable[..., Any], *given: Any) -> Iterator[Any]:
+def _until_none(function: Callable[..., Any], *given: Any) -> list[Any]:
     """function(..., 0), function(..., 1), ... before None."""
-    i = 0
-    while (item := function(*given, i)) is not None:
-        yield item
-        i += 1
+    return list(iter(map(functools.partial(function, *given), itertools.count()).__next__, None))
+
+
+class _Handle:
+    """An object of the library, freed with this one. Its attributes are the library's functions of such objects."""
+
+    _of: str  #: what their names begin with
+    _free: Callable[[int | None], None]
+    _handle: int | None
+
+    def __init__(self, handle: int | None) -> None:
+        self._handle = handle
+
+    def __del__(self) -> None:
+        self._free(self.__dict__.get("_handle"))
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return functools.partial(getattr(_api, f"{self._of}_{name}"), self)
+
+    def pointer(self) -> int | None:
+        return self._handle
 
 
 _api = _Api(pathlib.Path(__file__).with_name("abi.h").read_text("utf-8"))
@@ -131,40 +162,33 @@ def _exception(error: int | None) -> BaseException:
     return exception
 
 
-class _Handle:
-    """An object of the library, freed with this one."""
-
-    _free: Callable[[int | None], None]
-    _handle: int | None
-
-    def __init__(self, handle: int | None) -> None:
-        self._handle = handle
-
-    def __del__(self) -> None:
-        self._free(self.__dict__.get("_handle"))
-
-
 class _Control(_Handle):
     """Interrupts calls and tells their progress."""
 
-    _free = _api.control_free
+    _of, _free = "control", _api.control_free
 
     def __init__(self) -> None:
         super().__init__(_api.control_create())
         if self._handle is None:
             raise MemoryError
 
-    def wait(self, call: Callable[[], Any], progress: Progress | None) -> BaseException | None:
-        """Makes the call in a thread of its own, and returns when it has; returns what signals or `progress` raised.
+    def call(
+        self, function: _Function, given: tuple[Any, ...], progress: Progress | None = None, result: Result | None = None
+    ) -> Any:
+        """What a function returns that takes a control last, called in a thread of its own; raises what it, signals or
+        `progress` did. What it returned also goes into `result`.
 
         Python runs the handlers of signals between two of its own instructions only, and only in the thread that
         began the program: so Ctrl-C ends everything within a moment, also what reports no progress.
         """
-        done, fraction, raised = threading.Event(), [0.0], None
+        done, fraction, answer = threading.Event(), [0.0], list[tuple[Any, int | None]]()
+        raised = list[BaseException]()
 
         def compute() -> None:
             try:
-                call()
+                answer.append(function.both(*given, self))
+            except BaseException as error:
+                raised.append(error)
             finally:
                 done.set()
 
@@ -174,19 +198,27 @@ class _Control(_Handle):
 
         callback = _NOTE(note)
         if progress is not None:
-            _api.control_on_progress(self._handle, callback, None)
+            self.on_progress(callback, None)
         thread = threading.Thread(target=compute)
         thread.start()
         while not done.is_set():
             try:
-                if not done.wait(_LOOK if raised is None else None) and progress is not None:
+                if not done.wait(None if raised else _LOOK) and progress is not None:
                     progress(fraction[0])
             except BaseException as error:
-                raised = raised or error
-                _api.interrupt(self._handle)
+                raised.append(error)
+                _api.interrupt(self)
         thread.join()
-        _api.control_on_progress(self._handle, None, None)
-        return raised
+        self.on_progress(None, None)
+        found, failure = answer[0] if answer else (None, None)
+        if result is not None:
+            result._handle = found
+        if raised:
+            _api.error_free(failure)
+            raise raised[0]
+        if failure is not None or found is None:
+            raise _exception(failure)
+        return found
 
 
 class Array:
@@ -219,7 +251,7 @@ class Array:
 
 def _array(function: Any, owner: _Handle, name: str, read_only: bool = True) -> Any:
     data, dimensions, shape, stride = c_void_p(), c_int(), (c_size_t * 4)(), (c_size_t * 4)()
-    if not function(owner._handle, _bytes(name), byref(data), byref(dimensions), shape, stride):
+    if not function(owner, name, byref(data), byref(dimensions), shape, stride):
         return None
     count = dimensions.value
     return Array(owner, data.value or 0, shape[:count], stride[:count], read_only)
@@ -231,64 +263,53 @@ def _array(function: Any, owner: _Handle, name: str, read_only: bool = True) -> 
 class Result(_Handle):
     """A strutlib_result: made empty, filled by a scene's call."""
 
-    _free = _api.result_free
+    json: Callable[[], str]
+    table: Callable[[], str]
+    yaml: Callable[[], str]
+    html: Callable[[], str]
+    _of, _free = "result", _api.result_free
+
     def __init__(self) -> None:
         super().__init__(None)
 
     def __bool__(self) -> bool:
         return self._handle is not None
 
-    def _filled(self) -> int:
+    def pointer(self) -> int:
         if self._handle is None:
             raise ValueError("there is no result")
         return self._handle
 
-    def command(self) -> str:
-        return _api.result_command(self._filled())  # type: ignore[no-any-return]
-
     def status(self) -> str:
-        return _api.status_name(_api.result_status(self._filled()))  # type: ignore[no-any-return]
-
-    def json(self) -> str:
-        return _api.result_json(self._filled())  # type: ignore[no-any-return]
-
-    def table(self) -> str:
-        return _api.result_table(self._filled())  # type: ignore[no-any-return]
+        return _api.status_name(_api.result_status(self))  # type: ignore[no-any-return]
 
     def warnings(self) -> list[str]:
-        return list(_until_none(_api.result_warning, self._filled()))
+        return _until_none(_api.result_warning, self)
 
     def array(self, name: str) -> Any:
-        self._filled()
         return _array(_api.result_array, self, name)
 
     def array_names(self) -> list[str]:
-        return list(_until_none(_api.result_array_name, self._filled()))
+        return _until_none(_api.result_array_name, self)
 
     def columns(self) -> list[str]:
-        return list(_until_none(_api.result_column, self._filled()))
+        return _until_none(_api.result_column, self)
 
     def unit(self, name: str) -> str | None:
-        return _api.result_array_unit(self._filled(), _bytes(name))  # type: ignore[no-any-return]
+        return _api.result_array_unit(self, name)  # type: ignore[no-any-return]
 
     def words(self, column: str, count: int) -> list[str | None]:
         """The texts of a sweep's column, one per point."""
-        return [_api.result_cell(self._filled(), _bytes(column), i) for i in range(count)]
-
-    def yaml(self) -> str:
-        return _api.ask("result_yaml", self._filled())  # type: ignore[no-any-return]
+        return [_api.result_cell(self, column, i) for i in range(count)]
 
     def svg(self, names: tuple[str, ...], values: tuple[str, ...]) -> str:
-        return _api.ask("result_svg", self._filled(), *_pairs(names, values))  # type: ignore[no-any-return]
-
-    def html(self) -> str:
-        return _api.ask("result_html", self._filled())  # type: ignore[no-any-return]
+        return _api.result_svg(self, *_pairs(names, values))  # type: ignore[no-any-return]
 
 
 class Snapshot(_Handle):
     """A strutlib_snapshot."""
 
-    _free = _api.snapshot_free
+    _of, _free = "snapshot", _api.snapshot_free
 
     def __init__(self, handle: int, simulation: Simulation) -> None:
         super().__init__(handle)
@@ -299,20 +320,24 @@ class Simulation(_Handle):
     """A strutlib_simulation. Many steps are divided into pieces of some milliseconds, between which Python looks for
     signals; the bits do not depend on that."""
 
-    _free = _api.simulation_close
+    time: Callable[[], float]
+    step: Callable[[], float]
+    input_work: Callable[[], float]
+    _of, _free = "simulation", _api.simulation_close
+
     def __init__(self, handle: int, control: _Control) -> None:
         super().__init__(handle)
         self._control = control
         self._step_time = _PIECE  # s of one step as last measured: nothing is known, one step at first
         self._lock = threading.Lock()  # held while a thread advances it
 
-    def _idle(self) -> int | None:
+    def pointer(self) -> int | None:
         if self._lock.locked():
             raise RuntimeError(_BUSY)
         return self._handle
 
     def advance(self, steps: int, /) -> None:
-        left, error = operator.index(steps), c_void_p()
+        left, error, function = operator.index(steps), c_void_p(), _api.simulation_advance.function
         if left < 0:
             raise ValueError("the number of steps is negative")
         if left >= 2**63:
@@ -323,7 +348,7 @@ class Simulation(_Handle):
             while left > 0:
                 piece = max(1, min(left, int(_PIECE / self._step_time)))
                 begin = time.perf_counter()
-                failed = _api.simulation_advance(self._handle, piece, byref(error))
+                failed = function(self._handle, piece, byref(error))
                 # A step that met the scheduler shall not make all later pieces small: at most ten times as fast.
                 self._step_time = max((time.perf_counter() - begin) / piece, 0.1 * self._step_time)
                 if failed:
@@ -332,48 +357,19 @@ class Simulation(_Handle):
         finally:
             self._lock.release()
 
-    @property
-    def time(self) -> float:
-        return _api.simulation_time(self._idle())  # type: ignore[no-any-return]
-
-    @property
-    def step(self) -> float:
-        return _api.simulation_step(self._idle())  # type: ignore[no-any-return]
-
-    @property
-    def input_work(self) -> float:
-        return _api.simulation_input_work(self._idle())  # type: ignore[no-any-return]
-
     def array(self, name: str) -> Any:
-        self._idle()
         return _array(_api.simulation_array, self, name)
 
     def input(self, name: str) -> Any:
-        self._idle()
         return _array(_api.simulation_input, self, name, read_only=False)
 
     def snapshot(self) -> Snapshot:
-        return Snapshot(_api.ask("simulation_snapshot", self._idle()), self)
+        return Snapshot(_api.simulation_snapshot(self), self)
 
     def restore(self, snapshot: Snapshot, /) -> None:
         if not isinstance(snapshot, Snapshot):
             raise TypeError("restore takes what snapshot() returned")
-        _api.ask("simulation_restore", self._idle(), snapshot._handle)
-
-
-def _fill(result: Result, function: Any, given: tuple[Any, ...], progress: Progress | None) -> None:
-    """Puts what the call returns into `result`, also where it failed or was interrupted; then raises."""
-    control, error = _Control(), c_void_p()
-
-    def call() -> None:
-        result._handle = function(*given, control._handle, byref(error))
-
-    raised = control.wait(call, progress)
-    if raised is not None:
-        _api.error_free(error)
-        raise raised
-    if error or not result:
-        raise _exception(error.value)
+        _api.simulation_restore(self, snapshot)
 
 
 # ---- scenes ----
@@ -382,57 +378,35 @@ def _fill(result: Result, function: Any, given: tuple[Any, ...], progress: Progr
 class Scene(_Handle):
     """A strutlib_scene."""
 
-    _free = _api.close
+    yaml: Callable[[bool], str]
+    json: Callable[[], str]
+    svg: Callable[[], str]
+    _of, _free = "scene", _api.close
+
     def names(self, kind: str) -> tuple[str, ...]:
-        count = _api.name_count(self._handle, _bytes(kind))
-        return tuple(_api.name(self._handle, _bytes(kind), i) for i in range(count))
+        return tuple(_api.name(self, kind, i) for i in range(_api.name_count(self, kind)))
 
     def value(self, name: str) -> float | bool | str | None:
         """A number, a flag or a text by its dotted name, or None."""
-        key, number, flag = _bytes(name), c_double(), c_int()
-        if _api.scene_number(self._handle, key, byref(number)):
+        number, flag = c_double(), c_int()
+        if _api.scene_number(self, name, byref(number)):
             return number.value
-        if _api.scene_flag(self._handle, key, byref(flag)):
+        if _api.scene_flag(self, name, byref(flag)):
             return bool(flag.value)
-        return _api.scene_text(self._handle, key)  # type: ignore[no-any-return]
+        return _api.scene_text(self, name)  # type: ignore[no-any-return]
 
     def array(self, name: str) -> Any:
         return _array(_api.scene_array, self, name)
 
     def warnings(self) -> list[str]:
-        return list(_until_none(_api.scene_warning, self._handle))
-
-    def yaml(self, parts: bool) -> str:
-        return _api.ask("scene_yaml", self._handle, parts)  # type: ignore[no-any-return]
-
-    def json(self) -> str:
-        return _api.ask("scene_json", self._handle)  # type: ignore[no-any-return]
-
-    def svg(self) -> str:
-        return _api.ask("scene_svg", self._handle)  # type: ignore[no-any-return]
+        return _until_none(_api.scene_warning, self)
 
     def html(self, equilibria: bool) -> str:
-        return self._wait(_Control(), "scene_html", equilibria)  # type: ignore[no-any-return]
+        return _Control().call(_api.scene_html, (self, equilibria))  # type: ignore[no-any-return]
 
     def simulation(self, names: tuple[str, ...], values: tuple[str, ...]) -> Simulation:
         control = _Control()
-        return Simulation(self._wait(control, "simulation_open", *_pairs(names, values)), control)
-
-    def _wait(self, control: _Control, function: str, *given: Any) -> Any:
-        """What a function of the library returns that takes a control last; raises what it or a signal does."""
-        answer: list[Any] = []
-        failed: list[BaseException] = []
-
-        def call() -> None:
-            try:
-                answer.append(_api.ask(function, self._handle, *given, control._handle))
-            except BaseException as error:
-                failed.append(error)
-
-        raised = control.wait(call, None) or next(iter(failed), None)
-        if raised is not None:
-            raise raised
-        return answer[0]
+        return Simulation(control.call(_api.simulation_open, (self, *_pairs(names, values))), control)
 
     def call(
         self,
@@ -444,7 +418,7 @@ class Scene(_Handle):
     ) -> None:
         if command not in _api.calls:
             raise ValueError(f"no such command: {command}")
-        _fill(result, getattr(_api, command), (self._handle, *_pairs(names, values)), progress)
+        _Control().call(getattr(_api, command), (self, *_pairs(names, values)), progress, result)
 
     def sweep(
         self,
@@ -464,63 +438,56 @@ class Scene(_Handle):
         if words is not None and len(words) != count * len(axes):
             raise ValueError("a word or None is needed for each point and axis")
         spelled = None if words is None else _texts(words)
-        table = (self._handle, len(axes), _texts(axes), count, numbers.tobytes(), spelled, len(keep), _texts(keep))
-        _fill(result, _api.sweep, (*table, *_pairs(names, values), None, None), progress)
+        table = (self, len(axes), _texts(axes), count, numbers.tobytes(), spelled, len(keep), _texts(keep))
+        _Control().call(_api.sweep, (*table, *_pairs(names, values), None, None), progress, result)
 
 
 def open(path: str | os.PathLike[str], names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
-    return Scene(_api.ask("open", _whole(os.fsencode(path)), *_pairs(names, values)))
+    return Scene(_api.open(_whole(os.fsencode(path)), *_pairs(names, values)))
 
 
 def open_text(name: str, text: str, names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
     source = text.encode()
-    return Scene(_api.ask("open_text", _bytes(name), source, len(source), *_pairs(names, values)))
+    return Scene(_api.open_text(name, source, len(source), *_pairs(names, values)))
 
 
 def with_(scene: Scene, names: tuple[str, ...], values: tuple[str, ...]) -> Scene:
-    return Scene(_api.ask("scene_with", scene._handle, *_pairs(names, values)))
+    return Scene(_api.scene_with(scene, *_pairs(names, values)))
 
 
 def study(result: Result, path: Any, folder: Any, given: Any, pairs: Any, progress: Progress | None) -> None:
     """Computes a study's file with settings `given` and options."""
     files = (_whole(os.fsencode(path)), _whole(os.fsencode(folder)))
-    _fill(result, _api.study, (*files, *_pairs(*given), *_pairs(*pairs)), progress)
+    _Control().call(_api.study, (*files, *_pairs(*given), *_pairs(*pairs)), progress, result)
 
 
 # ---- the library as a whole ----
 
 version: str = _api.version()
 status_text: Callable[[int], str] = _api.status_text
+yaml_places: Callable[[str, str], str] = _api.yaml_places
 
 
 def options(command: str) -> list[tuple[str, str]]:
     """Options of a command and what they mean."""
-    word = _bytes(command)
-    return [(name, _api.option_help(word, i)) for i, name in enumerate(_until_none(_api.option_name, word))]
+    return list(zip(_until_none(_api.option_name, command), _until_none(_api.option_help, command)))
 
 
 def option_types(command: str) -> list[tuple[str, str | None]]:
     """Kind and words, such as "elastic|rigid", of each of them."""
-    word = _bytes(command)
-    return [(kind, _api.option_words(word, i)) for i, kind in enumerate(_until_none(_api.option_kind, word))]
+    return [(kind, _api.option_words(command, i)) for i, kind in enumerate(_until_none(_api.option_kind, command))]
 
 
 def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
     """(name, kind, components, columns) of each."""
+
+    def parts(function: _Function, name: str) -> tuple[str, ...]:
+        return tuple(_until_none(function, name))
+
     return [
-        (
-            name,
-            _api.channel_kind(_bytes(name)),
-            tuple(_until_none(_api.channel_component, _bytes(name))),
-            tuple(_until_none(_api.channel_column, _bytes(name))),
-        )
+        (name, _api.channel_kind(name), parts(_api.channel_component, name), parts(_api.channel_column, name))
         for name in _until_none(_api.channel)
     ]
-
-
-def yaml_places(name: str, text: str) -> str:
-    """A YAML text as JSON, with places."""
-    return _api.ask("yaml_places", _bytes(name), _bytes(text))  # type: ignore[no-any-return]
 
 
 for _call in (*_api.calls, "study"):
