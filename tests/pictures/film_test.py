@@ -91,8 +91,8 @@ def test_motion():
     call(0, "ball.yaml", "--quiet", "--animate", "ball.gif")
     pictures = frames("ball.gif", 640, 360)
     check(len(pictures) == 26, f"{len(pictures)} pictures")
-    # 0.6 m are drawn as wide as the page of 512 pt less 18 pt on both sides; 1.25 pixels are 1 pt.
-    span = 1.25 * (512 - 2 * 18)
+    # 0.6 m are drawn as wide as the page of 400 pt less 18 pt on both sides; 1.6 pixels are 1 pt.
+    span = 1.6 * (400 - 2 * 18)
     for k, picture in enumerate(pictures):
         wanted = 320 + span * (k / 25 - 0.5)
         check(abs(middle(picture) - wanted) < 1.0, f"picture {k}: ball at {middle(picture)}, not {wanted}")

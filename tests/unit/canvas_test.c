@@ -2,7 +2,7 @@
 /* The canvas: pixels where they belong, same bytes twice, whole files or none, colours that grow. */
 #include <unistd.h>
 
-#include "engine/output/draw/canvas.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/file.h"
 #include "tests/support/test.h"
 
@@ -53,13 +53,27 @@ static size_t read_all(const char *path, char *bytes, size_t room) {
   return count;
 }
 
-/* A quantity's ASCII u is drawn as micro, that of a word is not. */
-TEST(micro) {
+/* A quantity's ASCII u is drawn as micro, and the sign of a number as a minus; those of words are not. */
+TEST(signs) {
   static const struct {
     const char *written, *drawn;
     bool same;
   } cases[] = {{"50 us", "50 \xc2\xb5s", true},
                {"1 um/s, 2 uN", "1 \xc2\xb5m/s, 2 \xc2\xb5N", true},
+               {"-3.2 uJ",
+                "\xe2\x88\x92"
+                "3.2 \xc2\xb5J",
+                true},
+               {"from -1e-3, (-2)",
+                "from \xe2\x88\x92"
+                "1e\xe2\x88\x92"
+                "3, (\xe2\x88\x92"
+                "2)",
+                false},
+               {"n-1",
+                "n\xe2\x88\x92"
+                "1",
+                false},
                {"3 users", "3 \xc2\xb5sers", false},
                {"us", "\xc2\xb5s", false}};
   strut_canvas *c;
@@ -176,10 +190,10 @@ TEST(names) {
   static const char *const good[] = {"a.svg", "b/c.pdf", "./x.y.png"};
   static const char *const bad[] = {"a", "a.bmp", ".svg", "d.svg/file", "d/.png", "a.SVG", ""};
   strut_error error;
-  for (size_t i = 0; i < 3; i++) assert_int_equal(strut_canvas_check_name(good[i], &error), 0);
+  for (size_t i = 0; i < 3; i++) assert_int_equal(strut_figure_check_name(good[i], &error), 0);
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     error = (strut_error){0};
-    assert_int_equal(strut_canvas_check_name(bad[i], &error), STRUT_USAGE);
+    assert_int_equal(strut_figure_check_name(bad[i], &error), STRUT_USAGE);
     assert_non_null(strstr(error.message, ".pdf"));
   }
 }

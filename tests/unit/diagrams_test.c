@@ -54,11 +54,6 @@ TEST(prefixes) {
     assert_string_equal(strut_prefix(cases[i].largest, cases[i].unit, &factor), cases[i].prefix);
     assert_true(fabs(factor / cases[i].factor - 1) < 1e-12);
   }
-  /* The canvas draws the u as the Greek letter. */
-  assert_string_equal(strut_drawn_quantity(-3.2e-6, 2, "J").text,
-                      "\xe2\x88\x92"
-                      "3.2 uJ");
-  assert_string_equal(strut_drawn_quantity(20e-3, 3, "m").text, "20 mm");
 }
 
 static strut_tick_set ticks_of(const char *unit, bool logarithmic, double low, double high) {
@@ -94,9 +89,7 @@ TEST(outliers) {
 TEST(tick_texts) {
   strut_tick_set set = ticks_of("m/s", false, -0.011, 0.012);
   assert_string_equal(set.label, "error in mm/s");
-  assert_string_equal(set.text[0],
-                      "\xe2\x88\x92"
-                      "10");
+  assert_string_equal(set.text[0], "-10"); /* the canvas draws minus signs */
   set = ticks_of("m", true, 1e-9, 1e-3);
   assert_string_equal(set.label, "error in m");
   assert_string_equal(set.text[0], "10⁻⁸");
@@ -105,15 +98,11 @@ TEST(tick_texts) {
   assert_string_equal(set.text[1], "10");
   set = ticks_of("m", false, 1e9 - 1.07e-3, 1e9 + 1.07e-3); /* of few digits, not the lower end */
   assert_string_equal(set.label, "error \xe2\x88\x92 1000000000 m in mm");
-  assert_string_equal(set.text[0],
-                      "\xe2\x88\x92"
-                      "1.0");
+  assert_string_equal(set.text[0], "-1.0");
   set = ticks_of("m", false, 0, 9e-300);
   assert_string_equal(set.text[1], "2×10⁻³⁰⁰");
   set = ticks_of("", false, -9e299, 0);
-  assert_string_equal(set.text[0],
-                      "\xe2\x88\x92"
-                      "8×10²⁹⁹");
+  assert_string_equal(set.text[0], "-8×10²⁹⁹");
   set = ticks_of("", true, 2, 8);
   assert_string_equal(set.text[0], "2");
   assert_string_equal(set.text[1], "5");
@@ -198,23 +187,17 @@ TEST(front) {
 
 /* Two methods with the same step on the front: their labels differ. */
 TEST(labels_of_the_front) {
-  static const char *const groups[] = {"rk4", "verlet"};
-  static const strut_saving savings[] = {{0, "50 us", 1, 1e-3, (double)NAN, (double)NAN},
-                                         {1, "50 us", 2, 1e-4, (double)NAN, (double)NAN},
-                                         {1, "25 us", 3, 1e-5, (double)NAN, (double)NAN}};
+  static const strut_saving savings[] = {{"rk4", "50 us", 1, 1e-3, (double)NAN, (double)NAN},
+                                         {"verlet", "50 us", 2, 1e-4, (double)NAN, (double)NAN},
+                                         {"verlet", "25 us", 3, 1e-5, (double)NAN, (double)NAN}};
   static const char *const labels[] = {"50 \u00b5s, rk4", "50 \u00b5s, verlet", "25 \u00b5s"};
-  const strut_work_precision diagram = {.cost = strut_axis_of("cost", ""),
-                                        .error = strut_axis_of("error", "m"),
-                                        .group_count = 2,
-                                        .count = 3,
-                                        .groups = groups,
-                                        .bargains = savings};
   strut_error error;
   strut_figure figure = {0};
   char label[40];
   scratch_make();
   const char *path = scratch_path("front.svg");
-  strut_add_work_precision(&figure, &diagram);
+  strut_add_work_precision(&figure, strut_axis_of("cost", ""), strut_axis_of("error", "m"), savings,
+                           3);
   assert_int_equal(strut_figure_draw(&(strut_plot){.path = path}, &figure, &error), STRUT_OK);
   size_t length;
   FREED char *text = scratch_read(path, &length);

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/chart.h"
-
+/* Round numbers on axes, how they are written, and frames with them. */
 #include <assert.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/output/draw/canvas.h"
-#include "engine/output/draw/legend.h"
-
-/* Round numbers on axes, and how they are written. */
+#include "engine/output/draw/painter.h"
 
 /* Ticks with more significant digits get a common offset. */
 enum { MOST_DIGITS = 5 };
@@ -68,30 +63,15 @@ static void write_power(char *text, size_t size, int exponent) {
     used += snprintf(text + used, size - (size_t)used, "%s", raised[*d - '0']);
 }
 
-/* Copies a number with a real minus sign; returns how many bytes it has. */
-static size_t copy_number(char *text, size_t size, const char *plain) {
-  return (size_t)snprintf(text, size, "%s%s", plain[0] == '-' ? "\xe2\x88\x92" : "",
-                          plain + (plain[0] == '-'));
-}
-
-/* Likewise, and powers of ten as print writes them. */
+/* Powers of ten as print writes them. */
 static void write_number(char *text, size_t size, const char *format, int decimals, double value) {
-  char plain[64];
-  if (value == 0) value = 0; /* no minus zero */
-  snprintf(plain, sizeof plain, format, decimals, value);
-  char *power = strchr(plain, 'e');
-  int exponent = power ? atoi(power + 1) : 0;
-  if (power) *power = '\0';
-  size_t used = copy_number(text, size, plain);
+  snprintf(text, size, format, decimals, value == 0 ? 0 : value); /* no minus zero */
+  char *power = strchr(text, 'e');
   if (!power) return;
-  used += (size_t)snprintf(text + used, size - used, "×");
+  int exponent = atoi(power + 1);
+  size_t used = (size_t)(power - text);
+  used += (size_t)snprintf(power, size - used, "×");
   write_power(text + used, size - used, exponent);
-}
-
-strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit) {
-  strut_rounded_quantity drawn = {{0}};
-  copy_number(drawn.text, sizeof drawn.text, strut_quantity_of(value, digits, unit).text);
-  return drawn;
 }
 
 static void write_label(const strut_axis *axis, const char *prefix, const char *offset,
@@ -181,48 +161,6 @@ static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TICK = 2.5, GAP = 2.5;
 static const double RIGHT = 10;      /* half of the last tick's text */
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
 
-/* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's
-   size. */
-static const double ROUNDING = 1e-12, LEAST_LENGTH = 1e-13;
-
-bool strut_is_noise(double *low, double *high, const char *unit) {
-  double size = fmax(fabs(*low), fabs(*high));
-  bool length = unit && (strcmp(unit, "m") == 0 || strcmp(unit, "m/s") == 0);
-  if (length && size < LEAST_LENGTH) *low = *high = 0;
-  return !(*high - *low > ROUNDING * size);
-}
-
-void strut_axis_include(strut_axis *axis, double value) {
-  if (!isfinite(value) || (axis->logarithmic && !(value > 0))) return;
-  if (!(axis->low <= value)) axis->low = value;
-  if (!(axis->high >= value)) axis->high = value;
-}
-
-void strut_axis_settle(strut_axis *axis, double room) {
-  if (!isfinite(axis->low) || !isfinite(axis->high) || axis->low > axis->high) {
-    axis->low = axis->logarithmic ? 0.1 : 0;
-    axis->high = 1;
-  }
-  if (axis->logarithmic) {
-    if (!(axis->high > 0)) axis->high = 1;
-    if (!(axis->low > 0)) axis->low = 1e-3 * axis->high;
-    double wider = pow(axis->high / axis->low, room);
-    if (axis->high / axis->low < 1.5) wider = fmax(wider, 2);
-    axis->low = fmin(fmax(axis->low / wider, 1e-300), 1e299);
-    axis->high = fmax(fmin(axis->high * wider, 1e300), 2 * axis->low);
-    return;
-  }
-  bool constant = strut_is_noise(&axis->low, &axis->high, axis->unit);
-  double span = axis->high - axis->low;
-  double size = fmax(fabs(axis->low), fabs(axis->high));
-  if (constant || !isfinite(span)) { /* a constant is drawn in the middle */
-    span = size > 1e-300 ? fmin(size, 1e300) : 1;
-    room = isfinite(axis->high - axis->low) ? 0.1 : 0;
-  }
-  axis->low -= room * span;
-  axis->high += room * span;
-}
-
 static double widest_text(strut_canvas *canvas, const strut_tick_set *set) {
   double widest = 0;
   for (size_t i = 0; i < set->count; i++)
@@ -244,13 +182,6 @@ static strut_tick_set ticks_along_y(const strut_axis *axis, double height) {
   strut_tick_set set;
   strut_axis_ticks(axis, (int)fmax(1, fmin(10, height / 22)), &set);
   return set;
-}
-
-void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
-  if (choice->label) axis->name = choice->label;
-  if (!choice->limited) return;
-  axis->low = choice->low;
-  axis->high = choice->high;
 }
 
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y) {
@@ -279,11 +210,10 @@ void strut_axes_point(const strut_axes *axes, double x, double y, double point[2
 
 /* The label below the middle of the frame; a long one ends where the axes do, and is shortened if need be. */
 static void label_x(strut_canvas *canvas, const strut_box *box, double y, const char *label) {
-  const strut_font font = {.size = LABEL_SIZE, .across = 0.5};
+  strut_font font = {.size = LABEL_SIZE, .across = 0.5};
   double right = box->x + box->width + RIGHT, left = fmax(box->x - LEAST_LEFT - LABEL_SIZE, 0.0);
-  char fitted[STRUT_FITTED_TEXT];
-  label = strut_text_fit(canvas, label, font, right - left, 0.0, fitted);
   double width = strut_text_width(canvas, label, font);
+  if (width > right - left) width = font.width = right - left, font.lines = 1;
   strut_draw_text(canvas, fmin(box->x + 0.5 * box->width, right - 0.5 * width), y, label, font);
 }
 
@@ -320,73 +250,4 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
   strut_draw_text(canvas, box->x - TICK - 2 * GAP - left, box->y + 0.5 * box->height, y.label,
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
   strut_draw_box(canvas, *box, NULL, &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
-}
-
-/* The scale of colours beside a drawing. */
-
-enum { SHADES = 40 };
-
-static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2;
-
-void strut_draw_shades(strut_canvas *canvas, strut_box strip, strut_colours colours, double low,
-                       double high) {
-  bool upright = strip.height > strip.width;
-  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
-    double rest = (double)(SHADES - i) / SHADES, part = (i + 0.5) / SHADES;
-    const strut_fill fill = {.colour =
-                                 strut_palette_at(colours, low + part * (high - low), low, high)};
-    strut_box cell = strip;
-    if (upright)
-      cell.height *= rest;
-    else
-      cell.x += (1 - rest) * strip.width, cell.width *= rest;
-    strut_draw_box(canvas, cell, &fill, NULL);
-  }
-}
-
-void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
-  bool upright = box.height > box.width;
-  const strut_axis axis = {
-      .name = scale->name, .unit = scale->unit, .low = scale->low, .high = scale->high};
-  const strut_beyond *beyond = &scale->beyond;
-  const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
-  strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
-  strut_tick_set set;
-  double line = strut_text_height(canvas, "0", font);
-  strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
-  strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
-                            : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
-  double right = strip.x + strip.width, bottom = strip.y + strip.height;
-  strut_draw_shades(canvas, strip, scale->colours, scale->low, scale->high);
-  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
-  for (int end = 0; end < 2; end++) { /* values beyond the ends */
-    double x = upright ? strip.x + 0.5 * BAR : end ? right : strip.x;
-    double y = !upright ? strip.y + 0.5 * BAR : end ? strip.y : bottom;
-    strut_side side = upright ? end ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM
-                      : end   ? STRUT_SIDE_RIGHT
-                              : STRUT_SIDE_LEFT;
-    if (end ? beyond->above : beyond->below)
-      strut_draw_beyond(canvas, (const double[2]){x, y}, side, STRUT_BEYOND_SIZE);
-  }
-  for (size_t i = 0; i < set.count; i++) {
-    double part = (set.at[i] - scale->low) / (scale->high - scale->low);
-    double x = upright ? right : strip.x + strip.width * part;
-    double y = upright ? strip.y + strip.height * (1 - part) : bottom;
-    double end[2] = {upright ? x + BAR_TICK : x, upright ? y : y + BAR_TICK};
-    strut_draw_segment(canvas, x, y, end[0], end[1], pen);
-    strut_draw_text(canvas, end[0] + 2 * upright, end[1] + !upright, set.text[i], font);
-  }
-  if (beyond->below + beyond->above) {
-    size_t used = strlen(set.label);
-    snprintf(set.label + used, sizeof set.label - used, ", up to %s",
-             strut_drawn_quantity(beyond->farthest, 3, scale->unit).text);
-  }
-  /* A long name ends where the box does, rather than beyond the page. */
-  bool wide = strut_text_width(canvas, set.label, font) > box.width;
-  font = (strut_font){.size = BAR_TEXT,
-                      .across = !upright ? 0.5
-                                : wide   ? 1
-                                         : 0,
-                      .halo = strut_grey(1)};
-  strut_draw_text(canvas, box.x + font.across * box.width, box.y, set.label, font);
 }

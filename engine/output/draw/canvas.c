@@ -1,29 +1,54 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The canvas: all of strut that calls Cairo and Pango. */
 #include "engine/output/draw/canvas.h"
 
+#include <assert.h>
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
 #include <errno.h>
 #include <math.h>
+#include <pango/pangocairo.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/output/buffer.h"
-#include "engine/output/draw/cairo_page.h"
-#include "engine/output/draw/labels.h"
+#include "engine/output/draw/painter.h"
 #include "engine/output/file.h"
 
 struct strut_canvas {
-  const strut_cairo_library *cairo;
-  strut_cairo_page *page;
+  cairo_t *cairo;
+  cairo_t *ink;        /* the same without texts, a pixel for a point: what labels keep off */
+  PangoLayout *layout; /* used for every text in turn */
   strut_box box;
+  strut_picture_format format;
   strut_file file;    /* zero for pixels in memory */
   strut_buffer svg;   /* gathered; its surfaces are renumbered at the end */
   strut_buffer texts; /* of an SVG: where its texts are, which are drawn as outlines */
-  bool is_svg;
   strut_labels labels;
 };
+
+/* Limit of Cairo's fixed-point numbers; nothing on a page is as far away. Largest side with ink [pt]. */
+static const double FARTHEST = 1e6, LARGEST = 20000;
+
+/* Sets the colour of what is drawn next. */
+static void set_ink(cairo_t *cairo, strut_colour colour) {
+  if (colour.alpha >= 1.0) { /* an opaque source keeps SVG and PDF free of transparency */
+    cairo_set_source_rgb(cairo, colour.red, colour.green, colour.blue);
+  } else {
+    cairo_set_source_rgba(cairo, colour.red, colour.green, colour.blue, colour.alpha);
+  }
+}
+
+/* A coordinate that Cairo can take: the page's neighbourhood at most; NaN is far away. */
+static double clamp_coordinate(double coordinate) {
+  if (!(coordinate > -FARTHEST)) return -FARTHEST;
+  return coordinate < FARTHEST ? coordinate : FARTHEST;
+}
 
 /* ---- numbers in SVG files ---- */
 
@@ -65,227 +90,85 @@ static void renumber_surfaces(char *svg) {
   *out = '\0';
 }
 
-/* ---- files ---- */
+/* ---- texts, set by Pango: any script, either direction, taken literally ---- */
 
-/* Pixels of a PNG for each point: 300 to the inch, as printers ask for. */
-static const double PNG_SCALE = 300.0 / 72.0;
+/* A fixed family: pictures look alike on every machine that has it. */
+static const char *const FAMILY = "DejaVu Sans, Liberation Sans, sans-serif";
+static const double USUAL_SIZE = 8.0, HALO = 2.4;
 
-/* STRUT_PAGE_PIXELS: a name with another ending. */
-static strut_page_format read_ending(const char *path) {
-  static const char *const endings[] = {".svg", ".pdf", ".png"};
-  const char *dot = strrchr(path, '.');
-  bool name = dot && !strchr(dot, '/') && dot != path && dot[-1] != '/';
-  for (int i = 0; i < 3 && name; i++)
-    if (strcmp(dot, endings[i]) == 0) return (strut_page_format)i;
-  return STRUT_PAGE_PIXELS;
+static PangoLayout *create_layout(cairo_t *cairo) {
+  PangoLayout *layout = pango_cairo_create_layout(cairo);
+  if (!layout) return NULL;
+  PangoContext *context = pango_layout_get_context(layout);
+  cairo_font_options_t *options = cairo_font_options_create();
+  /* Letters keep their places whatever the resolution. */
+  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+  pango_cairo_context_set_font_options(context, options);
+  cairo_font_options_destroy(options);
+  pango_cairo_context_set_resolution(context, 72.0);
+  pango_context_set_round_glyph_positions(context, FALSE);
+  pango_layout_context_changed(layout);
+  return layout;
 }
 
-strut_status strut_canvas_check_name(const char *path, strut_error *error) {
-  if (read_ending(path) != STRUT_PAGE_PIXELS) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE,
-                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or "
-                    ".json for its data",
-                    path);
-}
-
-static strut_status gather_bytes(void *context, const void *bytes, size_t count) {
-  strut_canvas *canvas = context;
-  strut_buffer_add(&canvas->svg, "%.*s", (int)count, (const char *)bytes);
-  return canvas->svg.failed ? STRUT_NO_MEMORY : STRUT_OK;
-}
-
-static strut_status write_bytes(void *context, const void *bytes, size_t count) {
-  strut_canvas *canvas = context;
-  errno = 0;
-  return fwrite(bytes, 1, count, canvas->file.stream) == count ? STRUT_OK : STRUT_FILE_TROUBLE;
-}
-
-/* The canvas of a request whose context it becomes; with `path`, one that becomes that file. */
-static strut_status open_canvas(strut_page_request *request, const char *path,
-                                strut_canvas **canvas, strut_error *error) {
-  const strut_cairo_library *cairo = NULL;
-  *canvas = NULL;
-  strut_status status = strut_cairo_load(&cairo, error);
-  if (status != STRUT_OK) return status;
-  strut_canvas *c = strut_allocate(1, sizeof *c);
-  if (!c) return strut_no_memory(error, "");
-  *c = (strut_canvas){.cairo = cairo,
-                      .box = {0, 0, request->width, request->height},
-                      .is_svg = request->format == STRUT_PAGE_SVG};
-  request->context = c;
-  if (path) status = strut_file_open_path(&c->file, path, error);
-  if (status == STRUT_OK && !(c->page = cairo->open(request)))
-    status = strut_fail(error, STRUT_NO_MEMORY, "out of memory for a picture of %g by %g points",
-                        c->box.width, c->box.height);
-  if (status == STRUT_OK) {
-    strut_canvas_clear(c, (strut_colour){1, 1, 1, 1});
-    *canvas = c;
-  } else {
-    strut_canvas_free(c);
+/* The text with "50 us" and "-1", as terminals and tables write them, as "50 µs" and "−1". To be freed. */
+static gchar *write_signs(const gchar *text) {
+  static const struct {
+    const char *written, *drawn;
+  } signs[] = {{"(?<=[0-9] )u(?=(s|m|N|J|W|Hz|rad|Pa)(?![A-Za-z0-9]))", "\xc2\xb5"},
+               {"(?<![\\w.)-])-(?=[0-9])", "\xe2\x88\x92"}};
+  gchar *result = g_strdup(text);
+  for (size_t i = 0; i < 2 && strpbrk(text, "u-"); i++) {
+    GRegex *regex = g_regex_new(signs[i].written, 0, 0, NULL);
+    gchar *changed = g_regex_replace_literal(regex, result, -1, 0, signs[i].drawn, 0, NULL);
+    g_regex_unref(regex);
+    g_free(result);
+    result = changed;
   }
-  return status;
+  return result;
 }
 
-strut_status strut_canvas_open(const char *path, double width, double height, const char *title,
-                               strut_canvas **canvas, strut_error *error) {
-  strut_page_request request = {.width = width, .height = height, .title = title};
-  *canvas = NULL;
-  strut_status status = strut_canvas_check_name(path, error);
-  if (status != STRUT_OK) return status;
-  request.format = read_ending(path);
-  request.scale = request.format == STRUT_PAGE_PNG ? PNG_SCALE : 1.0;
-  request.write = request.format == STRUT_PAGE_SVG ? gather_bytes : write_bytes;
-  return open_canvas(&request, path, canvas, error);
+static void set_text(strut_canvas *canvas, const char *text, const strut_font *font) {
+  PangoFontDescription *wanted = pango_font_description_new();
+  pango_font_description_set_family_static(wanted, FAMILY);
+  pango_font_description_set_absolute_size(
+      wanted, (font->size > 0 ? font->size : USUAL_SIZE) * PANGO_SCALE);
+  if (font->bold) pango_font_description_set_weight(wanted, PANGO_WEIGHT_BOLD);
+  if (font->italic) pango_font_description_set_style(wanted, PANGO_STYLE_ITALIC);
+  pango_layout_set_font_description(canvas->layout, wanted);
+  pango_font_description_free(wanted);
+  pango_layout_set_width(canvas->layout, font->width > 0 ? (int)(font->width * PANGO_SCALE) : -1);
+  PangoAlignment side = font->across > 0.75   ? PANGO_ALIGN_RIGHT
+                        : font->across > 0.25 ? PANGO_ALIGN_CENTER
+                                              : PANGO_ALIGN_LEFT;
+  pango_layout_set_alignment(canvas->layout, side);
+  pango_layout_set_wrap(canvas->layout, PANGO_WRAP_WORD_CHAR);
+  pango_layout_set_ellipsize(canvas->layout,
+                             font->lines ? PANGO_ELLIPSIZE_END : PANGO_ELLIPSIZE_NONE);
+  pango_layout_set_height(canvas->layout, font->lines ? -font->lines : -1);
+  gchar *valid =
+      g_utf8_make_valid(text, -1); /* Pango complains of other texts on the error stream */
+  gchar *written = write_signs(valid);
+  pango_layout_set_text(canvas->layout, written, -1);
+  g_free(written);
+  g_free(valid);
 }
 
-strut_status strut_canvas_open_pixels(int width, int height, double scale, strut_canvas **canvas,
-                                      strut_error *error) {
-  strut_page_request request = {.format = STRUT_PAGE_PIXELS,
-                                .width = width / scale,
-                                .height = height / scale,
-                                .scale = scale};
-  return open_canvas(&request, NULL, canvas, error);
-}
-
-const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride) {
-  strut_labels_place(&canvas->labels, canvas);
-  return canvas->cairo->pixels(canvas->page, stride);
-}
-
-/* Notes a text and the box of its ink for the SVG's metadata, where programs find it. */
-static void note_text(strut_canvas *canvas, const strut_drawn_text *drawn) {
-  const strut_box *ink = &drawn->ink;
-  strut_buffer *out = &canvas->texts;
-  if (!canvas->is_svg || !isfinite(ink->x + ink->y)) return;
-  strut_c_locale locale = strut_c_locale_enter();
-  strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
-                   ink->height, drawn->whole ? "" : " cut=\"\"");
-  strut_c_locale_leave(locale);
-  for (const char *text = drawn->text; *text; text++) {
-    unsigned char letter = (unsigned char)*text;
-    if (*text == '<' || *text == '&' || *text == '>')
-      strut_buffer_add(out, "&#%d;", (int)letter);
-    else
-      strut_buffer_add(out, "%c", letter < ' ' ? ' ' : *text);
-  }
-  strut_buffer_add(out, "</t>\n");
-}
-
-/* The gathered SVG with its metadata before the last tag. */
-static strut_status write_svg(strut_canvas *canvas) {
-  static const char last[] = "</svg>", space[] = "urn:strut:texts";
-  char *svg = strut_buffer_take(&canvas->svg), *end = NULL;
-  if (svg) renumber_surfaces(svg);
-  if (svg) end = strstr(svg, last);
-  if (end) {
-    strut_buffer whole = {0};
-    strut_buffer_add(&whole, "%.*s", (int)(end - svg), svg);
-    if (canvas->texts.length)
-      strut_buffer_add(&whole, "<metadata><texts xmlns=\"%s\">\n%s</texts></metadata>\n", space,
-                       canvas->texts.text);
-    strut_buffer_add(&whole, "%s", end);
-    whole.failed = whole.failed || canvas->texts.failed;
-    strut_release(svg);
-    svg = strut_buffer_take(&whole);
-  }
-  strut_status status = end && svg ? write_bytes(canvas, svg, strlen(svg)) : STRUT_NO_MEMORY;
-  strut_release(svg);
-  return status;
-}
-
-strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error) {
-  const char *reason = NULL;
-  strut_labels_place(&canvas->labels, canvas);
-  strut_status status = canvas->cairo->finish(canvas->page, &reason);
-  if (status == STRUT_OK && canvas->labels.failed) status = STRUT_NO_MEMORY;
-  if (status == STRUT_OK && canvas->is_svg) status = write_svg(canvas);
-  if (status == STRUT_OK) return strut_file_commit(&canvas->file, error);
-  if (status == STRUT_NO_MEMORY)
-    status = strut_no_memory(error, "while drawing");
-  else if (!reason)
-    status = strut_file_trouble(&canvas->file, error);
-  else
-    status =
-        strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s", canvas->file.path, reason);
-  strut_file_abandon(&canvas->file);
-  return status;
-}
-
-void strut_canvas_free(strut_canvas *canvas) {
-  if (!canvas) return;
-  /* What an abandoned page still writes goes into the file that is removed next. */
-  canvas->cairo->free(canvas->page);
-  strut_release(strut_buffer_take(&canvas->svg));
-  strut_release(strut_buffer_take(&canvas->texts));
-  strut_labels_free(&canvas->labels);
-  strut_file_abandon(&canvas->file);
-  strut_release(canvas);
-}
-
-strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }
-
-/* ---- drawing ---- */
-
-static const double DOT = 2.7, RING = 3.4; /* radii [pt] */
-
-strut_box strut_canvas_box(const strut_canvas *canvas) { return canvas->box; }
-
-void strut_canvas_clear(strut_canvas *canvas, strut_colour colour) {
-  canvas->cairo->clear(canvas->page, colour);
-}
-
-void strut_canvas_clip(strut_canvas *canvas, strut_box box) {
-  canvas->cairo->clip(canvas->page, box);
-}
-
-void strut_canvas_unclip(strut_canvas *canvas) { canvas->cairo->unclip(canvas->page); }
-
-double strut_canvas_ink(strut_canvas *canvas, strut_box box) {
-  return canvas->cairo->ink(canvas->page, box);
-}
-
-void strut_draw_line(strut_canvas *canvas, const double (*points)[2], size_t count, strut_pen pen) {
-  const strut_outline line = {STRUT_OUTLINE_LINE, count, points, 0};
-  canvas->cairo->draw(canvas->page, &line, NULL, &pen);
-}
-
-void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
-                         strut_pen pen) {
-  const strut_outline segments = {STRUT_OUTLINE_SEGMENTS, 2 * count, ends, 0};
-  canvas->cairo->draw(canvas->page, &segments, NULL, &pen);
-}
-
-void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
-                        strut_pen pen) {
-  const double ends[2][2] = {{x1, y1}, {x2, y2}};
-  strut_draw_line(canvas, ends, 2, pen);
-}
-
-void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
-                        const strut_fill *fill, const strut_pen *pen) {
-  const strut_outline polygon = {STRUT_OUTLINE_CLOSED, count, points, 0};
-  canvas->cairo->draw(canvas->page, &polygon, fill, pen);
-}
-
-void strut_draw_box(strut_canvas *canvas, strut_box box, const strut_fill *fill,
-                    const strut_pen *pen) {
-  const double corners[4][2] = {{box.x, box.y},
-                                {box.x + box.width, box.y},
-                                {box.x + box.width, box.y + box.height},
-                                {box.x, box.y + box.height}};
-  strut_draw_polygon(canvas, corners, 4, fill, pen);
-}
-
-void strut_draw_circle(strut_canvas *canvas, double x, double y, double radius,
-                       const strut_fill *fill, const strut_pen *pen) {
-  const double centre[1][2] = {{x, y}};
-  const strut_outline circle = {STRUT_OUTLINE_CIRCLE, 1, centre, radius};
-  canvas->cairo->draw(canvas->page, &circle, fill, pen);
+/* The layout's own box, or that of its ink [pt]. */
+static strut_box measure_layout(strut_canvas *canvas, bool ink) {
+  PangoRectangle box;
+  pango_layout_get_extents(canvas->layout, ink ? &box : NULL, ink ? NULL : &box);
+  return (strut_box){(double)box.x / PANGO_SCALE, (double)box.y / PANGO_SCALE,
+                     (double)box.width / PANGO_SCALE, (double)box.height / PANGO_SCALE};
 }
 
 void strut_text_size(strut_canvas *canvas, const char *text, strut_font font, double *width,
                      double *height) {
-  canvas->cairo->text_size(canvas->page, text, font, width, height);
+  set_text(canvas, text, &font);
+  const strut_box box = measure_layout(canvas, false);
+  *width = box.width, *height = box.height;
 }
 
 double strut_text_width(strut_canvas *canvas, const char *text, strut_font font) {
@@ -300,12 +183,377 @@ double strut_text_height(strut_canvas *canvas, const char *text, strut_font font
   return height;
 }
 
+/* True if the box is on the page and inside the clip, but for a hair. */
+static bool is_unclipped(const strut_canvas *canvas, const strut_box *box) {
+  const double hair = 0.3; /* [pt] */
+  double x1, y1, x2, y2;
+  cairo_clip_extents(canvas->cairo, &x1, &y1, &x2, &y2);
+  return box->x >= x1 - hair && box->y >= y1 - hair && box->x + box->width <= x2 + hair &&
+         box->y + box->height <= y2 + hair;
+}
+
+/* Notes the text of the layout and the box of its ink for the SVG's metadata, where programs find it. */
+static void note_text(strut_canvas *canvas, const strut_box *ink) {
+  strut_buffer *out = &canvas->texts;
+  if (canvas->format != STRUT_PICTURE_SVG || !isfinite(ink->x + ink->y)) return;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
+                   ink->height, is_unclipped(canvas, ink) ? "" : " cut=\"\"");
+  strut_c_locale_leave(locale);
+  for (const char *text = pango_layout_get_text(canvas->layout); *text; text++) {
+    unsigned char letter = (unsigned char)*text;
+    if (*text == '<' || *text == '&' || *text == '>')
+      strut_buffer_add(out, "&#%d;", (int)letter);
+    else
+      strut_buffer_add(out, "%c", letter < ' ' ? ' ' : *text);
+  }
+  strut_buffer_add(out, pango_layout_is_ellipsized(canvas->layout) ? "\u2026</t>\n" : "</t>\n");
+}
+
 void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text, strut_font font) {
+  cairo_t *cairo = canvas->cairo;
   if (!text || !*text) return;
-  const strut_drawn_text drawn =
-      canvas->cairo->text(canvas->page, (const double[2]){x, y}, text, font);
-  strut_labels_avoid(&canvas->labels, drawn.ink);
-  note_text(canvas, &drawn);
+  set_text(canvas, text, &font);
+  const strut_box whole = measure_layout(canvas, false), own = measure_layout(canvas, true);
+  /* Where the layout's own origin is, before turning. */
+  const double corner[2] = {-font.across * whole.width - whole.x, -font.down * whole.height};
+  double left = corner[0] + own.x, top = corner[1] + own.y;
+  strut_box ink = {x + left, y + top, own.width, own.height};
+  if (font.upwards) ink = (strut_box){x + top, y - left - own.width, own.height, own.width};
+  note_text(canvas, &ink);
+  strut_labels_avoid(&canvas->labels, ink);
+  cairo_save(cairo);
+  cairo_translate(cairo, clamp_coordinate(x), clamp_coordinate(y));
+  if (font.upwards) cairo_rotate(cairo, -0.5 * STRUT_PI);
+  cairo_move_to(cairo, corner[0], corner[1]);
+  if (font.halo.alpha > 0) {
+    cairo_save(cairo);
+    set_ink(cairo, font.halo);
+    pango_cairo_layout_path(cairo, canvas->layout);
+    cairo_set_dash(cairo, NULL, 0, 0);
+    cairo_set_line_width(cairo, HALO);
+    cairo_stroke(cairo);
+    cairo_restore(cairo);
+    cairo_move_to(cairo, corner[0], corner[1]);
+  }
+  set_ink(cairo, font.colour.alpha > 0 ? font.colour : strut_grey(0));
+  pango_cairo_show_layout(cairo, canvas->layout);
+  cairo_new_path(cairo);
+  cairo_restore(cairo);
+}
+
+/* ---- files ---- */
+
+/* Pixels of a PNG for each point: 300 to the inch, as printers ask for. */
+static const double PNG_SCALE = 300.0 / 72.0;
+
+/* SVGs are gathered, since they are changed at the end. */
+static cairo_status_t write_bytes(void *context, const unsigned char *bytes, unsigned int count) {
+  strut_canvas *canvas = context;
+  if (canvas->format == STRUT_PICTURE_SVG) {
+    strut_buffer_add(&canvas->svg, "%.*s", (int)count, (const char *)bytes);
+    return canvas->svg.failed ? CAIRO_STATUS_NO_MEMORY : CAIRO_STATUS_SUCCESS;
+  }
+  errno = 0;
+  return fwrite(bytes, 1, count, canvas->file.stream) == count ? CAIRO_STATUS_SUCCESS
+                                                               : CAIRO_STATUS_WRITE_ERROR;
+}
+
+static cairo_surface_t *create_surface(strut_canvas *canvas, double scale, const char *title) {
+  double width = canvas->box.width, height = canvas->box.height;
+  if (canvas->format == STRUT_PICTURE_SVG)
+    return cairo_svg_surface_create_for_stream(write_bytes, canvas, width, height);
+  if (canvas->format != STRUT_PICTURE_PDF)
+    return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(width * scale + 0.5),
+                                      (int)(height * scale + 0.5));
+  cairo_surface_t *surface =
+      cairo_pdf_surface_create_for_stream(write_bytes, canvas, width, height);
+  cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title);
+  cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, "strut " STRUT_VERSION);
+  /* A fixed date keeps the bytes reproducible. */
+  cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "1970-01-01T00:00:00Z");
+  return surface;
+}
+
+static cairo_t *create_context(cairo_surface_t *surface) {
+  cairo_t *cairo = cairo_create(surface);
+  cairo_surface_destroy(surface); /* the context keeps it */
+  return cairo;
+}
+
+/* With `path`, a canvas that becomes that file. */
+static strut_status open_canvas(strut_canvas *wanted, const char *path, double scale,
+                                const char *title, strut_canvas **canvas, strut_error *error) {
+  assert(scale > 0);
+  strut_canvas *c = *canvas = strut_allocate(1, sizeof *c);
+  if (!c) return strut_no_memory(error, "");
+  *c = *wanted;
+  strut_status status = path ? strut_file_open_path(&c->file, path, error) : STRUT_OK;
+  if (status == STRUT_OK) {
+    c->cairo = create_context(create_surface(c, scale, title));
+    c->ink = create_context(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
+                                                       (int)ceil(fmin(c->box.width, LARGEST)),
+                                                       (int)ceil(fmin(c->box.height, LARGEST))));
+    cairo_scale(c->cairo, scale, scale);
+    cairo_set_line_join(c->cairo, CAIRO_LINE_JOIN_ROUND);
+    c->layout = create_layout(c->cairo);
+    if (!c->layout || cairo_status(c->cairo) || cairo_status(c->ink))
+      status = strut_fail(error, STRUT_NO_MEMORY, "out of memory for a picture of %g by %g points",
+                          c->box.width, c->box.height);
+  }
+  if (status == STRUT_OK) {
+    strut_canvas_clear(c, strut_grey(1));
+    return STRUT_OK;
+  }
+  strut_canvas_free(c);
+  *canvas = NULL;
+  return status;
+}
+
+strut_status strut_canvas_open(const char *path, double width, double height, const char *title,
+                               strut_canvas **canvas, strut_error *error) {
+  strut_canvas wanted = {.box = {0, 0, width, height}, .format = strut_picture_format_of(path)};
+  *canvas = NULL;
+  strut_status status = strut_figure_check_name(path, error);
+  if (status != STRUT_OK) return status;
+  return open_canvas(&wanted, path, wanted.format == STRUT_PICTURE_PNG ? PNG_SCALE : 1.0, title,
+                     canvas, error);
+}
+
+strut_status strut_canvas_open_pixels(int width, int height, double scale, strut_canvas **canvas,
+                                      strut_error *error) {
+  strut_canvas wanted = {.box = {0, 0, width / scale, height / scale},
+                         .format = STRUT_PICTURE_PIXELS};
+  return open_canvas(&wanted, NULL, scale, NULL, canvas, error);
+}
+
+const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride) {
+  cairo_surface_t *surface = cairo_get_target(canvas->cairo);
+  assert(canvas->format == STRUT_PICTURE_PIXELS);
+  strut_labels_place(&canvas->labels, canvas);
+  cairo_surface_flush(surface);
+  *stride = (size_t)cairo_image_surface_get_stride(surface);
+  return cairo_image_surface_get_data(surface);
+}
+
+/* Writes the gathered SVG with its metadata before the last tag; false with the reason in errno. */
+static bool write_svg(strut_canvas *canvas) {
+  char *svg = strut_buffer_take(&canvas->svg), *end = svg;
+  bool good = svg && !canvas->texts.failed;
+  errno = ENOMEM;
+  if (good) {
+    renumber_surfaces(svg);
+    end = strstr(svg, "</svg>");
+    errno = 0;
+    good = end && fprintf(canvas->file.stream, "%.*s", (int)(end - svg), svg) >= 0;
+    if (good && canvas->texts.length)
+      fprintf(canvas->file.stream,
+              "<metadata><texts xmlns=\"urn:strut:texts\">\n%s</texts></metadata>\n",
+              canvas->texts.text);
+    good = good && fputs(end, canvas->file.stream) >= 0;
+  }
+  strut_release(svg);
+  return good;
+}
+
+strut_status strut_canvas_commit(strut_canvas *canvas, strut_error *error) {
+  cairo_surface_t *surface = cairo_get_target(canvas->cairo);
+  strut_labels_place(&canvas->labels, canvas);
+  cairo_status_t found = cairo_status(canvas->cairo);
+  if (!found && canvas->format == STRUT_PICTURE_PNG)
+    found = cairo_surface_write_to_png_stream(surface, write_bytes, canvas);
+  cairo_surface_finish(surface);
+  if (!found) found = cairo_surface_status(surface);
+  if (!found && canvas->labels.failed) found = CAIRO_STATUS_NO_MEMORY;
+  if (!found && canvas->format == STRUT_PICTURE_SVG && !write_svg(canvas))
+    found = CAIRO_STATUS_WRITE_ERROR;
+  if (!found) return strut_file_commit(&canvas->file, error);
+  strut_status status = found == CAIRO_STATUS_NO_MEMORY ? strut_no_memory(error, "while drawing")
+                        : found == CAIRO_STATUS_WRITE_ERROR
+                            ? strut_file_trouble(&canvas->file, error)
+                            : strut_fail(error, STRUT_FILE_TROUBLE, "cannot draw '%s': %s",
+                                         canvas->file.path, cairo_status_to_string(found));
+  strut_file_abandon(&canvas->file);
+  return status;
+}
+
+void strut_canvas_free(strut_canvas *canvas) {
+  if (!canvas) return;
+  if (canvas->layout) g_object_unref(canvas->layout);
+  /* What an abandoned page still writes goes into the file that is removed next. */
+  if (canvas->cairo) cairo_surface_finish(cairo_get_target(canvas->cairo));
+  cairo_destroy(canvas->cairo);
+  cairo_destroy(canvas->ink);
+  strut_release(strut_buffer_take(&canvas->svg));
+  strut_release(strut_buffer_take(&canvas->texts));
+  strut_labels_free(&canvas->labels);
+  strut_file_abandon(&canvas->file);
+  strut_release(canvas);
+}
+
+strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }
+
+strut_box strut_canvas_box(const strut_canvas *canvas) { return canvas->box; }
+
+void strut_canvas_clear(strut_canvas *canvas, strut_colour colour) {
+  for (int k = 0; k < 2; k++) {
+    cairo_t *cairo = k ? canvas->ink : canvas->cairo;
+    set_ink(cairo, colour);
+    cairo_paint(cairo);
+  }
+}
+
+void strut_canvas_clip(strut_canvas *canvas, strut_box box) {
+  for (int k = 0; k < 2; k++) {
+    cairo_t *cairo = k ? canvas->ink : canvas->cairo;
+    cairo_save(cairo);
+    cairo_rectangle(cairo, box.x, box.y, box.width, box.height);
+    cairo_clip(cairo);
+  }
+}
+
+void strut_canvas_unclip(strut_canvas *canvas) {
+  cairo_restore(canvas->cairo);
+  cairo_restore(canvas->ink);
+}
+
+double strut_canvas_ink(strut_canvas *canvas, strut_box box) {
+  cairo_surface_t *surface = cairo_get_target(canvas->ink);
+  cairo_surface_flush(surface);
+  const unsigned char *bytes = cairo_image_surface_get_data(surface);
+  size_t stride = (size_t)cairo_image_surface_get_stride(surface);
+  int left = (int)fmax(floor(box.x), 0), top = (int)fmax(floor(box.y), 0);
+  int right = (int)fmin(ceil(box.x + box.width), cairo_image_surface_get_width(surface));
+  int bottom = (int)fmin(ceil(box.y + box.height), cairo_image_surface_get_height(surface));
+  long sum = 0; /* hundredths of darkness, from 0 to 255 */
+  for (int y = top; y < bottom; y++)
+    for (int x = left; x < right; x++) {
+      uint32_t rgb;
+      memcpy(&rgb, bytes + (size_t)y * stride + sizeof rgb * (size_t)x, sizeof rgb);
+      sum += 25500 - (long)(30 * (rgb >> 16 & 255) + 59 * (rgb >> 8 & 255) + 11 * (rgb & 255));
+    }
+  return (double)sum / 25500.0;
+}
+
+/* ---- lines, areas and their hatching ---- */
+
+static const double HATCH_DISTANCE = 4.0, HATCH_WIDTH = 0.6;
+static const double DOT = 2.7, RING = 3.4; /* radii of labels' marks [pt] */
+
+static void set_pen(cairo_t *cairo, const strut_pen *pen) {
+  int dashes = 0;
+  while (dashes < 4 && pen->dash[dashes] > 0) dashes++;
+  set_ink(cairo, pen->colour);
+  cairo_set_line_width(cairo, pen->width);
+  cairo_set_dash(cairo, pen->dash, dashes, 0);
+  cairo_set_line_cap(cairo, pen->butt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
+}
+
+/* Lines at every HATCH_DISTANCE within the path, anchored to the page so that areas side by side join. */
+static void hatch(cairo_t *cairo, const strut_fill *fill) {
+  static const double slants[] = {/* the line's rise for each point it runs to the right */
+                                  [STRUT_HATCH_RISING] = 1,
+                                  [STRUT_HATCH_FALLING] = -1,
+                                  [STRUT_HATCH_LEVEL] = 0};
+  const strut_pen pen = {.colour = fill->hatch_colour, .width = HATCH_WIDTH, .butt = true};
+  double x1, y1, x2, y2, slant = slants[fill->hatch];
+  double step = slant == 0 ? HATCH_DISTANCE : HATCH_DISTANCE * sqrt(2.0);
+  cairo_save(cairo);
+  cairo_clip_preserve(cairo);
+  cairo_path_t *outline = cairo_copy_path(cairo);
+  cairo_new_path(cairo);
+  set_pen(cairo, &pen);
+  cairo_clip_extents(cairo, &x1, &y1, &x2, &y2);
+  double low = y1 + fmin(slant * x1, slant * x2), high = y2 + fmax(slant * x1, slant * x2);
+  for (double k = floor(low / step); k * step <= high; k++) {
+    cairo_move_to(cairo, x1, k * step - slant * x1);
+    cairo_line_to(cairo, x2, k * step - slant * x2);
+  }
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+  cairo_append_path(cairo, outline);
+  cairo_path_destroy(outline);
+}
+
+typedef enum outline_kind {
+  LINE,
+  SEGMENTS, /* points 2 i and 2 i + 1 belong together */
+  CLOSED,
+  CIRCLE /* around its only point */
+} outline_kind;
+
+typedef struct outline {
+  outline_kind kind;
+  size_t count;
+  const double (*points)[2]; /* (count) */
+  double radius;
+} outline;
+
+static void trace(cairo_t *cairo, const outline *line) {
+  cairo_new_path(cairo);
+  for (size_t i = 0; i < line->count; i++) {
+    double x = clamp_coordinate(line->points[i][0]), y = clamp_coordinate(line->points[i][1]);
+    if (line->kind == CIRCLE)
+      cairo_arc(cairo, x, y, line->radius, 0, 2 * STRUT_PI);
+    else if (line->kind == SEGMENTS && i % 2 == 0)
+      cairo_move_to(cairo, x, y);
+    else
+      cairo_line_to(cairo, x, y);
+  }
+  if (line->kind >= CLOSED) cairo_close_path(cairo);
+}
+
+/* Nothing is drawn of what has a point that is nowhere. */
+static void draw(strut_canvas *canvas, outline line, const strut_fill *fill, const strut_pen *pen) {
+  for (size_t i = 0; i < line.count; i++)
+    if (!isfinite(line.points[i][0] + line.points[i][1])) return;
+  for (int k = 0; k < 2 && line.count; k++) {
+    cairo_t *cairo = k ? canvas->ink : canvas->cairo;
+    trace(cairo, &line);
+    if (fill && fill->colour.alpha > 0) {
+      set_ink(cairo, fill->colour);
+      cairo_fill_preserve(cairo);
+    }
+    if (fill && fill->hatch != STRUT_HATCH_NONE) hatch(cairo, fill);
+    if (pen && pen->colour.alpha > 0) {
+      set_pen(cairo, pen);
+      cairo_stroke_preserve(cairo);
+    }
+    cairo_new_path(cairo);
+  }
+}
+
+void strut_draw_line(strut_canvas *canvas, const double (*points)[2], size_t count, strut_pen pen) {
+  draw(canvas, (outline){LINE, count, points, 0}, NULL, &pen);
+}
+
+void strut_draw_segments(strut_canvas *canvas, const double (*ends)[2], size_t count,
+                         strut_pen pen) {
+  draw(canvas, (outline){SEGMENTS, 2 * count, ends, 0}, NULL, &pen);
+}
+
+void strut_draw_segment(strut_canvas *canvas, double x1, double y1, double x2, double y2,
+                        strut_pen pen) {
+  strut_draw_line(canvas, (const double[2][2]){{x1, y1}, {x2, y2}}, 2, pen);
+}
+
+void strut_draw_polygon(strut_canvas *canvas, const double (*points)[2], size_t count,
+                        const strut_fill *fill, const strut_pen *pen) {
+  draw(canvas, (outline){CLOSED, count, points, 0}, fill, pen);
+}
+
+void strut_draw_box(strut_canvas *canvas, strut_box box, const strut_fill *fill,
+                    const strut_pen *pen) {
+  double right = box.x + box.width, bottom = box.y + box.height;
+  strut_draw_polygon(
+      canvas,
+      (const double[4][2]){{box.x, box.y}, {right, box.y}, {right, bottom}, {box.x, bottom}}, 4,
+      fill, pen);
+}
+
+void strut_draw_circle(strut_canvas *canvas, double x, double y, double radius,
+                       const strut_fill *fill, const strut_pen *pen) {
+  draw(canvas, (outline){CIRCLE, 1, (const double[1][2]){{x, y}}, radius}, fill, pen);
 }
 
 void strut_draw_label(strut_canvas *canvas, const strut_label *label) {

@@ -2,7 +2,7 @@
 /**
  * A page to draw on: SVG, PDF or PNG, whichever its file's name ends with; or pixels in memory.
  *
- * Cairo and Pango draw it (cairo_page.h). Lengths are points, 1/72 inch; x runs right and y down
+ * Cairo and Pango draw it. Lengths are points, 1/72 inch; x runs right and y down
  * from the upper left corner. Drawing never fails: strut_canvas_commit reports errors. The same
  * drawing gives the same bytes; there is no date in them.
  */
@@ -59,10 +59,9 @@ typedef struct strut_font {
   double down;         /* part of its height above y: 0 top, 0.5 middle, 1 bottom */
   bool upwards;        /* turned by a quarter, read from below; across and down turn with it */
   double width;        /* breaks lines at this width [pt]; 0: never */
+  int lines;           /* at most, the last one with an ellipsis where it is cut; 0: any number */
 } strut_font;
 
-/** STRUT_OK if a picture of that name can be made, else STRUT_USAGE with the endings there are. */
-STRUT_API strut_status strut_canvas_check_name(const char *path, strut_error *error);
 /** A page that becomes the file `path`; `title` goes into the metadata of a PDF. */
 STRUT_API strut_status strut_canvas_open(const char *path, double width, double height,
                                          const char *title, strut_canvas **canvas,

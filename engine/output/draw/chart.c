@@ -14,18 +14,23 @@ static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP =
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
+/* A series on the page. */
+typedef struct line {
+  const strut_series *series;
+  size_t look, count;
+  strut_pen pen;
+  double (*at)[2]; /* (count) thinned, broken lines with NAN between; NULL before they are placed */
+} line;
+
 /** A chart being drawn. */
-typedef struct strut_chart {
+typedef struct chart {
   strut_canvas *canvas;
   const strut_panel *panel; /* axes and scale settled */
   strut_axes axes;
-  strut_box strip;      /* above the frame, for lost points; height 0: none */
-  double (**points)[2]; /* (series) on the page, broken lines with NAN between; thinned */
-  size_t *counts;       /* (series) */
+  strut_box strip; /* above the frame, for lost points; height 0: none */
+  line *lines;     /* (series) */
   strut_arena *arena;
-} strut_chart;
-
-static strut_fill band_fill(void) { return (strut_fill){.colour = strut_grey(0.86)}; }
+} chart;
 
 static size_t look_of(const strut_panel *panel, size_t i) {
   return panel->series[i].look >= 0 ? (size_t)panel->series[i].look : i;
@@ -106,6 +111,8 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
   return doubt ? add_area(items, count, fill, map->doubt ? map->doubt : "doubtful") : count;
 }
 
+static const strut_fill band_fill = {.colour = {0.86, 0.86, 0.86, 1}};
+
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
@@ -120,38 +127,37 @@ size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_
                                       .text = panel->series[i].label});
   }
   for (size_t i = 0; i < panel->band_count; i++)
-    count = add_area(items, count, band_fill(), panel->bands[i].label);
+    count = add_area(items, count, band_fill, panel->bands[i].label);
   return panel->map ? name_cells(panel->map, items, count) : count;
 }
 
-/* Counts samples of the lines that lie in a box. */
-static size_t covered(const strut_chart *chart, strut_box box) {
-  size_t count = 0;
-  for (size_t i = 0; i < chart->panel->series_count; i++)
-    for (size_t k = 0; k + 1 < chart->counts[i]; k++) {
-      const double *a = chart->points[i][k], *b = chart->points[i][k + 1];
+/* Whether samples of the lines lie in a box. */
+static bool covers(const chart *self, strut_box box) {
+  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++)
+    for (size_t k = 0; k + 1 < l->count; k++) {
+      const double *a = l->at[k], *b = l->at[k + 1];
       if (isnan(a[0])) continue;
       int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
       for (int m = 0; m <= pieces; m++) {
         double t = pieces ? (double)m / pieces : 0;
         double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0];
         double y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
-        count += x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height;
+        if (x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height) return true;
       }
     }
-  return count;
+  return false;
 }
 
 /* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
-static bool find_corner(const strut_chart *chart, strut_box *key) {
-  const strut_box *box = &chart->axes.frame;
-  if (chart->panel->map || key->width > 0.6 * box->width || key->height > 0.6 * box->height)
+static bool find_corner(const chart *self, strut_box *key) {
+  const strut_box *box = &self->axes.frame;
+  if (self->panel->map || key->width > 0.6 * box->width || key->height > 0.6 * box->height)
     return false;
   for (int k = 0; k < 6; k++) {
     double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
     key->x = box->x + INSET + across * (box->width - key->width - 2 * INSET);
     key->y = box->y + INSET + down * (box->height - key->height - 2 * INSET);
-    if (!covered(chart, (strut_box){key->x - 2, key->y - 2, key->width + 4, key->height + 4}))
+    if (!covers(self, (strut_box){key->x - 2, key->y - 2, key->width + 4, key->height + 4}))
       return true;
   }
   return false;
@@ -172,199 +178,187 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
       if (points[last][1] > points[high][1]) high = last;
     }
     size_t pick[4] = {first, low < high ? low : high, low < high ? high : low, last};
-    for (int k = 0; k < 4; k++) {
-      if (k > 0 && pick[k] == pick[k - 1]) continue;
-      points[kept][0] =
-          points[pick[k]][0]; /* kept <= pick[k]: nothing is overwritten that is read later */
-      points[kept++][1] = points[pick[k]][1];
-    }
+    for (int k = 0; k < 4; k++) /* kept <= pick[k]: nothing is overwritten that is read later */
+      if (k == 0 || pick[k] != pick[k - 1])
+        memmove(points[kept++], points[pick[k]], sizeof *points);
     first = last + 1;
   }
   return kept;
 }
 
-/* Where point k of a series is: lost ones in the strip, each series at its own height. */
-static void place(const strut_chart *chart, size_t i, size_t k, double at[2]) {
-  const strut_point *p = &chart->panel->series[i].points[k];
-  const strut_box *frame = &chart->axes.frame;
-  bool lost = chart->panel->lost && !isfinite(p->y);
-  bool zero = chart->axes.y.logarithmic && p->y == 0;
+/* Where point k of a line is: lost ones in the strip, each series at its own height. */
+static void place(const chart *self, const line *l, size_t k, double at[2]) {
+  const strut_point *p = &l->series->points[k];
+  const strut_box *frame = &self->axes.frame;
+  bool lost = self->panel->lost && !isfinite(p->y);
+  bool zero = self->axes.y.logarithmic && p->y == 0;
   at[0] = at[1] = (double)NAN;
   if (!isfinite(p->x) || (!isfinite(p->y) && !lost)) return;
-  if (chart->axes.x.logarithmic && !(p->x > 0)) return;
-  strut_axes_point(&chart->axes, p->x, lost || zero ? chart->axes.y.high : p->y, at);
+  if (self->axes.x.logarithmic && !(p->x > 0)) return;
+  strut_axes_point(&self->axes, p->x, lost || zero ? self->axes.y.high : p->y, at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
-  double part = ((double)look_of(chart->panel, i) + 0.5) / (double)chart->panel->series_count;
-  if (lost) at[1] = chart->strip.y + chart->strip.height * (0.2 + 0.6 * fmin(part, 1));
+  double part = ((double)l->look + 0.5) / (double)self->panel->series_count;
+  if (lost) at[1] = self->strip.y + self->strip.height * (0.2 + 0.6 * fmin(part, 1));
 }
 
-/* Fills the points of a series' line. Lines that change along them keep all points. */
-static void place_line(strut_chart *chart, size_t i) {
-  const strut_series *series = &chart->panel->series[i];
-  double(*points)[2] = chart->points[i];
+/* Fills the points of a line. Lines that change along them keep all points. */
+static void place_line(const chart *self, line *l) {
+  const strut_series *series = l->series;
   size_t used = 0, start = 0;
   bool whole = false;
   for (size_t k = 0; k < series->count; k++) whole = whole || series->points[k].unstable;
   for (size_t k = 0; k <= series->count; k++) {
     double at[2] = {(double)NAN, (double)NAN};
-    if (k < series->count && isfinite(series->points[k].y)) place(chart, i, k, at);
+    if (k < series->count && isfinite(series->points[k].y)) place(self, l, k, at);
     bool known = isfinite(at[0]) && isfinite(at[1]);
     if (!known && !whole && used == start) continue;
-    if (!known && !whole) used = start + strut_thin(points + start, used - start, GRAIN);
-    points[used][0] = known ? at[0] : (double)NAN;
-    points[used++][1] = at[1];
+    if (!known && !whole) used = start + strut_thin(l->at + start, used - start, GRAIN);
+    l->at[used][0] = known ? at[0] : (double)NAN;
+    l->at[used++][1] = at[1];
     if (!known) start = used;
   }
-  chart->counts[i] = used;
+  l->count = used;
 }
 
-/* Places frame, strip and lines in a box. */
-static void place_chart(strut_chart *chart, strut_box box) {
-  const strut_panel *panel = chart->panel;
+/* Places the frame in a box, with the strip above. */
+static void place_frame(chart *self, strut_box box) {
+  const strut_panel *panel = self->panel;
   bool lost = false;
   for (size_t i = 0; i < panel->series_count && panel->lost; i++)
     for (size_t k = 0; k < panel->series[i].count; k++)
       lost = lost || !isfinite(panel->series[i].points[k].y);
   double strip = lost ? STRIP : 0;
   const strut_box rest = {box.x, box.y + strip, box.width, box.height - strip};
-  chart->axes = strut_axes_place(chart->canvas, rest, panel->x, panel->y);
-  chart->strip = chart->axes.frame;
-  chart->strip.height = strip, chart->strip.y -= strip;
-  for (size_t i = 0; i < panel->series_count; i++) place_line(chart, i);
+  self->axes = strut_axes_place(self->canvas, rest, panel->x, panel->y);
+  self->strip = self->axes.frame;
+  self->strip.height = strip, self->strip.y -= strip;
 }
 
-static bool make_room(strut_chart *chart) {
-  size_t count = chart->panel->series_count;
-  chart->points = strut_arena_allocate(chart->arena, count + 1, sizeof *chart->points);
-  chart->counts = strut_arena_allocate(chart->arena, count + 1, sizeof *chart->counts);
-  for (size_t i = 0; chart->points && chart->counts && i < count; i++) {
-    chart->points[i] = strut_arena_allocate(chart->arena, chart->panel->series[i].count + 1,
-                                            sizeof **chart->points);
-    if (!chart->points[i]) return false;
+/* Places all lines. False: out of memory. */
+static bool place_lines(chart *self) {
+  const strut_panel *panel = self->panel;
+  if (!self->lines)
+    self->lines = strut_arena_allocate(self->arena, panel->series_count + 1, sizeof *self->lines);
+  for (size_t i = 0; self->lines && i < panel->series_count; i++) {
+    line *l = &self->lines[i];
+    l->series = &panel->series[i], l->look = look_of(panel, i), l->pen = pen_of(panel, i);
+    if (!l->at) l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
+    if (!l->at) return false;
+    place_line(self, l);
   }
-  return chart->points && chart->counts;
+  return self->lines != NULL;
 }
 
 /* ---- drawing ---- */
 
-static void draw_bands(const strut_chart *chart) {
-  const strut_fill fill = band_fill();
-  for (size_t i = 0; i < chart->panel->band_count; i++) {
-    const strut_band *band = &chart->panel->bands[i];
-    const strut_axis *x = &chart->axes.x, *y = &chart->axes.y, *axis = band->level ? y : x;
-    double from = fmax(band->low, axis->low), to = fmin(band->high, axis->high), low[2], high[2];
-    if (!(to > from)) continue;
-    strut_axes_point(&chart->axes, band->level ? x->low : from, band->level ? to : y->high, low);
-    strut_axes_point(&chart->axes, band->level ? x->high : to, band->level ? from : y->low, high);
-    strut_draw_box(chart->canvas, (strut_box){low[0], low[1], high[0] - low[0], high[1] - low[1]},
-                   &fill, NULL);
+/* The box between two places of the axes. */
+static strut_box box_between(const strut_axes *axes, const double from[2], const double to[2]) {
+  double a[2], b[2];
+  strut_axes_point(axes, from[0], from[1], a);
+  strut_axes_point(axes, to[0], to[1], b);
+  return (strut_box){a[0], b[1], b[0] - a[0], a[1] - b[1]};
+}
+
+static void draw_bands(const chart *self) {
+  const strut_axis *x = &self->axes.x, *y = &self->axes.y;
+  for (size_t i = 0; i < self->panel->band_count; i++) {
+    const strut_band *band = &self->panel->bands[i];
+    double from[2] = {x->low, y->low}, to[2] = {x->high, y->high};
+    int d = band->level;
+    from[d] = fmax(from[d], band->low), to[d] = fmin(to[d], band->high);
+    if (to[d] > from[d])
+      strut_draw_box(self->canvas, box_between(&self->axes, from, to), &band_fill, NULL);
   }
 }
 
 /* A note inside a box, where it is emptiest, near its upper right corner. */
-static void draw_note(const strut_chart *chart, const strut_box *box, const char *text,
-                      double wide) {
-  strut_draw_label(
-      chart->canvas,
-      &(strut_label){.text = text,
-                     .font = {.size = 7,
-                              .colour = strut_grey(0.3),
-                              .halo = strut_grey(1),
-                              .width = wide * box->width},
-                     .at = {box->x + box->width, box->y},
-                     .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
-                                box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
-                     .priority = 3,
-                     .loose = true});
+static void draw_note(const chart *self, const strut_box *box, const char *text, double wide) {
+  const strut_label note = {.text = text,
+                            .font = {.size = 7,
+                                     .colour = strut_grey(0.3),
+                                     .halo = strut_grey(1),
+                                     .width = wide * box->width},
+                            .at = {box->x + box->width, box->y},
+                            .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
+                                       box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
+                            .priority = 3,
+                            .loose = true};
+  strut_draw_label(self->canvas, &note);
 }
 
-static void draw_strip(const strut_chart *chart) {
-  const strut_fill grey = {.colour = strut_grey(0.94)};
-  const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
-  strut_draw_box(chart->canvas, chart->strip, &grey, &frame);
-  draw_note(chart, &chart->strip, chart->panel->lost, 1);
-}
-
-static void stroke(const strut_chart *chart, size_t i, size_t from, size_t to) {
-  const strut_series *series = &chart->panel->series[i];
-  const double(*at)[2] = (const double(*)[2])chart->points[i] + from;
-  strut_pen pen = pen_of(chart->panel, i);
-  bool own = series->pen.width > 0;
-  if (series->points[from].unstable)
+static void stroke(const chart *self, const line *l, size_t from, size_t to) {
+  strut_pen pen = l->pen;
+  bool own = l->series->pen.width > 0;
+  if (l->series->points[from].unstable)
     pen = (strut_pen){
         .colour = pen.colour, .width = (own ? 1.0 : 0.65) * pen.width, .dash = {3, 2}, .butt = own};
   if (to > from)
-    strut_draw_line(chart->canvas, at, to - from + 1, pen);
+    strut_draw_line(self->canvas, (const double(*)[2])l->at + from, to - from + 1, pen);
   else if (!own) /* a line of one point would be invisible */
-    strut_draw_marker(chart->canvas, look_of(chart->panel, i), at[0][0], at[0][1], LONE_MARKER);
+    strut_draw_marker(self->canvas, l->look, l->at[from][0], l->at[from][1], LONE_MARKER);
 }
 
 /* Stretches without a gap and of one stability, which share their ends. */
-static void draw_line(const strut_chart *chart, size_t i) {
-  const double(*at)[2] = (const double(*)[2])chart->points[i];
-  const strut_point *points = chart->panel->series[i].points;
-  for (size_t k = 0, from = 0; k < chart->counts[i]; k++) {
-    if (isnan(at[k][0])) {
+static void draw_line(const chart *self, const line *l) {
+  const strut_point *points = l->series->points;
+  for (size_t k = 0, from = 0; k < l->count; k++) {
+    if (isnan(l->at[k][0])) {
       from = k + 1;
       continue;
     }
-    bool last = k + 1 == chart->counts[i] || isnan(at[k + 1][0]);
-    bool turns = points[k].unstable != points[from].unstable;
-    if (!last && !turns) continue;
-    stroke(chart, i, from, k);
+    bool last = k + 1 == l->count || isnan(l->at[k + 1][0]);
+    if (!last && points[k].unstable == points[from].unstable) continue;
+    stroke(self, l, from, k);
     from = k;
   }
 }
 
 /* True on the frame's edge, too, and in the strip above it. */
-static bool is_inside(const strut_chart *chart, const double at[2]) {
+static bool is_inside(const chart *self, const double at[2]) {
   const double hair = 0.01; /* [pt] */
-  const strut_box *box = &chart->axes.frame;
+  const strut_box *box = &self->axes.frame;
   return at[0] >= box->x - hair && at[0] <= box->x + box->width + hair &&
-         at[1] >= chart->strip.y - hair && at[1] <= box->y + box->height + hair;
+         at[1] >= self->strip.y - hair && at[1] <= box->y + box->height + hair;
 }
 
-static void draw_whisker(const strut_chart *chart, size_t i, size_t k) {
-  const strut_point *p = &chart->panel->series[i].points[k];
-  const strut_pen bar = {.colour = pen_of(chart->panel, i).colour, .width = 0.7, .butt = true};
+static void draw_whisker(const chart *self, const strut_point *p, strut_colour colour) {
+  const strut_pen bar = {.colour = colour, .width = 0.7, .butt = true};
   double ends[2][2];
   if (!isfinite(p->low) || !isfinite(p->high)) return;
-  if (chart->axes.y.logarithmic && !(p->low > 0)) return;
-  strut_axes_point(&chart->axes, p->x, p->low, ends[0]);
-  strut_axes_point(&chart->axes, p->x, p->high, ends[1]);
-  strut_draw_line(chart->canvas, (const double(*)[2])ends, 2, bar);
+  if (self->axes.y.logarithmic && !(p->low > 0)) return;
+  strut_axes_point(&self->axes, p->x, p->low, ends[0]);
+  strut_axes_point(&self->axes, p->x, p->high, ends[1]);
+  strut_draw_line(self->canvas, (const double(*)[2])ends, 2, bar);
   for (int e = 0; e < 2; e++)
-    strut_draw_segment(chart->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+    strut_draw_segment(self->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
 }
 
-static void draw_point(const strut_chart *chart, size_t i, size_t k) {
-  const strut_series *series = &chart->panel->series[i];
-  const strut_colour_scale *scale = &chart->panel->scale;
+static void draw_point(const chart *self, const line *l, size_t k) {
+  const strut_colour_scale *scale = &self->panel->scale;
+  const strut_point *p = &l->series->points[k];
   double at[2];
-  place(chart, i, k, at);
-  if (!isfinite(at[0]) || !is_inside(chart, at)) return;
-  draw_whisker(chart, i, k);
-  if (!series->cloud) {
-    strut_draw_marker(chart->canvas, look_of(chart->panel, i), at[0], at[1], MARKER);
+  place(self, l, k, at);
+  if (!isfinite(at[0]) || !is_inside(self, at)) return;
+  draw_whisker(self, p, l->pen.colour);
+  if (!l->series->cloud) {
+    strut_draw_marker(self->canvas, l->look, at[0], at[1], MARKER);
     return;
   }
-  double value = series->points[k].value;
-  strut_fill fill = {.colour = scale->name ? strut_grey(0.75) : pen_of(chart->panel, i).colour};
-  if (scale->name && isfinite(value))
-    fill.colour = strut_palette_at(scale->colours, value, scale->low, scale->high);
-  strut_draw_circle(chart->canvas, at[0], at[1], CLOUD, &fill, NULL);
+  strut_fill fill = {.colour = scale->name ? strut_grey(0.75) : l->pen.colour};
+  if (scale->name && isfinite(p->value))
+    fill.colour = strut_palette_at(scale->colours, p->value, scale->low, scale->high);
+  strut_draw_circle(self->canvas, at[0], at[1], CLOUD, &fill, NULL);
 }
 
 /* Whole points, on the frame too. */
-static void draw_points(const strut_chart *chart, size_t i) {
-  const strut_series *series = &chart->panel->series[i];
-  size_t look = look_of(chart->panel, i);
+static void draw_points(const chart *self, const line *l) {
+  const strut_series *series = l->series;
   bool all = series->cloud || series->markers == STRUT_MARKERS_ALL || series->count <= FEW_POINTS;
-  if (!series->cloud && (!has_markers(chart->panel, series) || (!all && !series->label))) return;
+  if (!series->cloud && (!has_markers(self->panel, series) || (!all && !series->label))) return;
   /* A few markers, at other points than those of the other curves. */
   size_t every = all ? 1 : series->count / MARKERS;
-  size_t first = all ? 0 : (look * every / 3 + every / 2) % every;
-  for (size_t k = first; k < series->count; k += every) draw_point(chart, i, k);
+  size_t first = all ? 0 : (l->look * every / 3 + every / 2) % every;
+  for (size_t k = first; k < series->count; k += every) draw_point(self, l, k);
 }
 
 static strut_fill cell_fill(const strut_panel *panel, size_t k) {
@@ -376,154 +370,156 @@ static strut_fill cell_fill(const strut_panel *panel, size_t k) {
                           strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
 }
 
-/* The box of (count) cells of a row from `column` on. */
-static strut_box cell_box(const strut_chart *chart, size_t row, size_t column, size_t count) {
-  const strut_map *map = chart->panel->map;
-  double a[2], b[2];
-  strut_axes_point(&chart->axes, edge(map->xs, map->columns, column), edge(map->ys, map->rows, row),
-                   a);
-  strut_axes_point(&chart->axes, edge(map->xs, map->columns, column + count),
-                   edge(map->ys, map->rows, row + 1), b);
-  return (strut_box){a[0], b[1], b[0] - a[0], a[1] - b[1]};
+/* The box of (count) cells of a row from cell k on. */
+static strut_box cell_box(const chart *self, size_t k, size_t count) {
+  const strut_map *map = self->panel->map;
+  size_t row = k / map->columns, column = k % map->columns;
+  return box_between(
+      &self->axes,
+      (const double[2]){edge(map->xs, map->columns, column), edge(map->ys, map->rows, row)},
+      (const double[2]){edge(map->xs, map->columns, column + count),
+                        edge(map->ys, map->rows, row + 1)});
 }
-
-/* Cells of a map from which on neighbours in a row that look alike are drawn as one. */
-enum { MANY_CELLS = 10000 };
 
 static bool look_alike(const strut_map *map, size_t a, size_t b) {
   bool has = has_result(map, a);
-  if (has != has_result(map, b)) return false;
-  if (!has) return true;
+  if (!has || has != has_result(map, b)) return has == has_result(map, b);
   return map->category ? map->category[a] == map->category[b] : map->value[a] == map->value[b];
 }
 
 /* Hatching on a doubtful cell, a dot on one without a result. */
-static void mark_cell(const strut_chart *chart, size_t k) {
-  const strut_map *map = chart->panel->map;
+static void mark_cell(const chart *self, size_t k) {
+  const strut_map *map = self->panel->map;
   const strut_fill doubt = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.05)};
   const strut_fill dot = {.colour = strut_grey(0.5)};
-  strut_box box = cell_box(chart, k / map->columns, k % map->columns, 1);
-  if (map->doubtful && map->doubtful[k]) strut_draw_box(chart->canvas, box, &doubt, NULL);
+  strut_box box = cell_box(self, k, 1);
+  if (map->doubtful && map->doubtful[k]) strut_draw_box(self->canvas, box, &doubt, NULL);
   if (!has_result(map, k))
-    strut_draw_circle(chart->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height,
+    strut_draw_circle(self->canvas, box.x + 0.5 * box.width, box.y + 0.5 * box.height,
                       fmin(1.0, 0.25 * fmin(box.width, box.height)), &dot, NULL);
 }
 
-static void draw_map(const strut_chart *chart) {
-  const strut_map *map = chart->panel->map;
+/* Of a large map, neighbours in a row that look alike are drawn as one. */
+static void draw_map(const chart *self) {
+  enum { MANY_CELLS = 10000 };
+  const strut_map *map = self->panel->map;
   size_t cells = map->columns * map->rows, joined;
   for (size_t k = 0; k < cells; k += joined) {
-    size_t row = k / map->columns, column = k % map->columns;
-    for (joined = 1; cells >= MANY_CELLS && column + joined < map->columns; joined++)
+    for (joined = 1; cells >= MANY_CELLS && (k + joined) % map->columns; joined++)
       if (!look_alike(map, k, k + joined)) break;
-    strut_fill fill = cell_fill(chart->panel, k);
-    strut_box box = cell_box(chart, row, column, joined);
+    strut_fill fill = cell_fill(self->panel, k);
+    strut_box box = cell_box(self, k, joined);
     box.width += 0.4, box.y -= 0.4, box.height += 0.4;
-    strut_draw_box(chart->canvas, box, &fill, NULL);
+    strut_draw_box(self->canvas, box, &fill, NULL);
   }
-  for (size_t k = 0; k < cells; k++) mark_cell(chart, k);
+  for (size_t k = 0; k < cells; k++) mark_cell(self, k);
 }
 
 /* ---- marks ---- */
 
 /* A mark of the chart, or what stands for it at the frame's upper or lower edge. */
-static void draw_mark(const strut_chart *chart, const strut_label *mark) {
-  const strut_axes *axes = &chart->axes;
+static void draw_mark(const chart *self, const strut_label *mark) {
+  const strut_axes *axes = &self->axes;
   bool above = mark->at[1] > axes->y.high, below = mark->at[1] < axes->y.low;
   strut_label label = *mark;
   strut_axes_point(axes, mark->at[0], fmin(fmax(mark->at[1], axes->y.low), axes->y.high), label.at);
-  if (!is_inside(chart, label.at)) return;
+  if (!is_inside(self, label.at)) return;
   label.inside = axes->frame;
   if (above || below) {
     label.dot = label.ring = false;
     label.angle = (above ? -0.5 : 0.5) * STRUT_PI;
     label.gap = STRUT_BEYOND_SIZE + 1;
-    strut_draw_beyond(chart->canvas, label.at, above ? STRUT_SIDE_TOP : STRUT_SIDE_BOTTOM, 0);
+    strut_draw_beyond(self->canvas, label.at[0], label.at[1], (const double[2]){0, above ? -1 : 1},
+                      0);
   }
-  strut_draw_label(chart->canvas, &label);
+  strut_draw_label(self->canvas, &label);
 }
 
 /* Marks where curves leave the frame above or below, and says how many points are there. */
-static void mark_beyond(const strut_chart *chart) {
+static void mark_beyond(const chart *self) {
   strut_beyond beyond = {0};
-  const strut_axis *axis = &chart->axes.y;
+  const strut_axis *axis = &self->axes.y;
   char text[STRUT_BEYOND_TEXT];
   size_t labelled = 0;
-  for (size_t i = 0; i < chart->panel->series_count; i++) {
-    const strut_series *series = &chart->panel->series[i];
-    size_t farthest = SIZE_MAX; /* of the excursion that k is in */
+  for (size_t i = 0; i < self->panel->series_count; i++) {
+    const strut_series *series = &self->panel->series[i];
+    const strut_point *farthest = NULL; /* of the excursion that k is in */
     for (size_t k = 0; k <= series->count; k++) {
-      double y = k < series->count ? series->points[k].y : (double)NAN;
-      bool out = y > axis->high || y < axis->low;
-      if (out && (farthest == SIZE_MAX || fabs(y) > fabs(series->points[farthest].y))) farthest = k;
-      if (!out && farthest != SIZE_MAX) {
-        const strut_point *p = &series->points[farthest];
-        const strut_rounded_quantity value = strut_drawn_quantity(p->y, 3, axis->unit);
+      const strut_point *p = k < series->count ? &series->points[k] : NULL;
+      bool out = p && (p->y > axis->high || p->y < axis->low);
+      if (out && (!farthest || fabs(p->y) > fabs(farthest->y))) farthest = p;
+      if (out) {
+        beyond.above++;
+        if (fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
+      } else if (farthest) {
+        const strut_rounded_quantity value = strut_quantity_of(farthest->y, 3, axis->unit);
         strut_label mark =
-            strut_mark_of(p->x, p->y, labelled++ < MOST_LABELLED ? value.text : NULL);
+            strut_mark_of(farthest->x, farthest->y, labelled++ < MOST_LABELLED ? value.text : NULL);
         mark.steady = 0.2;
-        draw_mark(chart, &mark);
+        draw_mark(self, &mark);
+        farthest = NULL;
       }
-      if (!out) farthest = SIZE_MAX;
-      if (!out) continue;
-      beyond.above++;
-      if (fabs(y) > fabs(beyond.farthest)) beyond.farthest = y;
     }
   }
-  draw_note(chart, &chart->axes.frame, strut_beyond_text(&beyond, "point", axis->unit, text),
+  draw_note(self, &self->axes.frame, strut_beyond_text(&beyond, "point", axis->unit, text),
             NOTE_WIDTH);
 }
 
-static void draw_data(const strut_chart *chart) {
-  const strut_panel *panel = chart->panel;
-  strut_canvas_clip(chart->canvas, chart->axes.frame);
-  draw_bands(chart);
-  strut_canvas_unclip(chart->canvas);
-  strut_draw_axes(chart->canvas, &chart->axes);
-  if (chart->strip.height > 0) draw_strip(chart);
-  strut_canvas_clip(chart->canvas, chart->axes.frame);
-  if (panel->map) draw_map(chart);
-  strut_canvas_unclip(chart->canvas);
-  for (size_t i = 0; i < panel->series_count; i++)
-    if (panel->series[i].cloud) draw_points(chart, i);
-  strut_canvas_clip(chart->canvas, chart->axes.frame);
-  for (size_t i = 0; i < panel->series_count; i++)
-    if (!panel->series[i].cloud) draw_line(chart, i);
-  strut_canvas_unclip(chart->canvas);
-  if (panel->map)
-    strut_draw_box(chart->canvas, chart->axes.frame, NULL,
-                   &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});
-  for (size_t i = 0; i < panel->series_count; i++)
-    if (!panel->series[i].cloud) draw_points(chart, i);
-  if (panel->outliers) mark_beyond(chart);
-  for (size_t i = 0; i < panel->mark_count; i++) draw_mark(chart, &panel->marks[i]);
-  if (panel->remark) draw_note(chart, &chart->axes.frame, panel->remark, NOTE_WIDTH);
+static void draw_data(const chart *self) {
+  const strut_panel *panel = self->panel;
+  const strut_fill grey = {.colour = strut_grey(0.94)};
+  const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
+  const line *end = self->lines + panel->series_count;
+  strut_canvas_clip(self->canvas, self->axes.frame);
+  draw_bands(self);
+  strut_canvas_unclip(self->canvas);
+  strut_draw_axes(self->canvas, &self->axes);
+  if (self->strip.height > 0) {
+    strut_draw_box(self->canvas, self->strip, &grey, &frame);
+    draw_note(self, &self->strip, panel->lost, 1);
+  }
+  strut_canvas_clip(self->canvas, self->axes.frame);
+  if (panel->map) draw_map(self);
+  strut_canvas_unclip(self->canvas);
+  for (const line *l = self->lines; l < end; l++)
+    if (l->series->cloud) draw_points(self, l);
+  strut_canvas_clip(self->canvas, self->axes.frame);
+  for (const line *l = self->lines; l < end; l++)
+    if (!l->series->cloud) draw_line(self, l);
+  strut_canvas_unclip(self->canvas);
+  if (panel->map) strut_draw_box(self->canvas, self->axes.frame, NULL, &frame);
+  for (const line *l = self->lines; l < end; l++)
+    if (!l->series->cloud) draw_points(self, l);
+  if (panel->outliers) mark_beyond(self);
+  for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
+  if (panel->remark) draw_note(self, &self->axes.frame, panel->remark, NOTE_WIDTH);
 }
 
 /* A title, centred above the frame; returns its height. */
-static double draw_title(const strut_chart *chart, strut_box box, bool draw) {
-  const strut_box *f = &chart->axes.frame;
+static double draw_title(const chart *self, strut_box box, bool draw) {
+  const strut_box *f = &self->axes.frame;
   const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
-  if (!chart->panel->title || !*chart->panel->title) return 0;
-  if (draw) strut_draw_text(chart->canvas, f->x + 0.5 * f->width, box.y, chart->panel->title, font);
-  return strut_text_height(chart->canvas, chart->panel->title, font) + TITLE_GAP;
+  if (!self->panel->title || !*self->panel->title) return 0;
+  if (draw) strut_draw_text(self->canvas, f->x + 0.5 * f->width, box.y, self->panel->title, font);
+  return strut_text_height(self->canvas, self->panel->title, font) + TITLE_GAP;
 }
 
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
   const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
-  const strut_pen edge = {.colour = strut_grey(0.8), .width = 0.4};
-  strut_chart c = {.canvas = canvas, .panel = panel, .arena = arena};
+  const strut_pen rim = {.colour = strut_grey(0.8), .width = 0.4};
+  chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
-  if (!items || !make_room(&c)) return false;
+  if (!items) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
   strut_box rest = box, key = strut_draw_key(canvas, (strut_box){0, 0, 0, 0}, items, count, false);
   if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
-  place_chart(&c, rest);
+  place_frame(&c, rest);
   double title = draw_title(&c, box, false);
   rest.y += title, rest.height -= title;
-  if (title > 0) place_chart(&c, rest);
+  place_frame(&c, rest);
+  if (!place_lines(&c)) return false;
   key.width += 2 * PADDING, key.height += 2 * PADDING;
   bool inside = count && find_corner(&c, &key);
   if (count && !inside) {
@@ -531,12 +527,13 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
                       fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
     double height = strut_draw_key(canvas, key, items, count, false).height + 2 * PADDING;
     rest.y += height, rest.height -= height;
-    place_chart(&c, rest);
+    place_frame(&c, rest);
+    place_lines(&c);
   }
   draw_title(&c, box, true);
   draw_data(&c);
   if (inside) { /* on a white ground */
-    strut_draw_box(canvas, key, &white, &edge);
+    strut_draw_box(canvas, key, &white, &rim);
     key = (strut_box){key.x + PADDING, key.y + PADDING, 0, 0};
   }
   strut_draw_key(canvas, key, items, count, true);

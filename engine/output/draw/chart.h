@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** What charts are made of: axes with ticks, frames, scales of colours. figure.h describes whole ones. */
+/** What charts are described with: axes, scales of colours, values beyond them; and where a figure goes. */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 #define STRUT_ENGINE_OUTPUT_DRAW_CHART_H
 
@@ -7,8 +7,6 @@
 
 #include "engine/output/buffer.h"
 #include "engine/output/draw/canvas.h"
-
-/* Axes: from a quantity's range to ticks, labels and a place on the page, with no tuning. */
 
 /** One axis as wanted. Its label reads "name in prefix unit", such as "velocity in mm/s". */
 typedef struct strut_axis {
@@ -33,20 +31,12 @@ typedef struct strut_axis_choice {
   double low, high;
 } strut_axis_choice;
 
-/** A pair of axes laid out in a box. strut_axes_place makes it. */
-typedef struct strut_axes {
-  strut_axis x, y; /* ranges settled */
-  strut_box frame; /* where data go [pt] */
-} strut_axes;
-
 /**
  * Whether values from low to high [unit] differ by rounding noise only and are drawn as a constant;
  * a length or velocity far below an atom's size becomes zero.
  */
 STRUT_API bool strut_is_noise(double *low, double *high, const char *unit);
-/**
- * Widens an axis whose range is from the data by a value; values that are not finite are ignored.
- */
+/** Widens an axis whose range is from the data by a value; values that are not finite are ignored. */
 STRUT_API void strut_axis_include(strut_axis *axis, double value);
 /**
  * Turns the included values into a range that can be drawn: not empty, positive on a logarithmic
@@ -55,27 +45,6 @@ STRUT_API void strut_axis_include(strut_axis *axis, double value);
 STRUT_API void strut_axis_settle(strut_axis *axis, double room);
 /** Replaces the name and, after strut_axis_settle, the range of an axis where `choice` has one. */
 STRUT_API void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice);
-/** Lays out a frame for settled axes in `box`; panels side by side line up when their boxes do. */
-STRUT_API strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x,
-                                      strut_axis y);
-/** Frame, ticks, faint grid and labels: before the data, so that these lie above the grid. */
-STRUT_API void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes);
-/** Maps a pair of values to the page. */
-STRUT_API void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
-
-enum { STRUT_MOST_TICKS = 40 };
-/** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
-STRUT_API size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]);
-/**
- * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). The
- * units "", "%", "kg" and "deg" get no prefix.
- */
-STRUT_API const char *strut_prefix(double largest, const char *unit, double *factor);
-
-/**
- * A quantity as drawings write it: as strut_quantity_of, with a real minus sign.
- */
-STRUT_API strut_rounded_quantity strut_drawn_quantity(double value, int digits, const char *unit);
 
 /* Outliers: few values that would take most of a scale lie beyond it, marked and counted. */
 
@@ -100,28 +69,6 @@ enum { STRUT_BEYOND_TEXT = 120 };
 /** "3 points beyond the axis, up to 167 kJ" in `text`; "" where there are none. `what` is one of them. */
 STRUT_API const char *strut_beyond_text(const strut_beyond *beyond, const char *what,
                                         const char *unit, char text[STRUT_BEYOND_TEXT]);
-/** A side of a frame. */
-typedef enum strut_side {
-  STRUT_SIDE_TOP,
-  STRUT_SIDE_BOTTOM,
-  STRUT_SIDE_LEFT,
-  STRUT_SIDE_RIGHT
-} strut_side;
-/** A mark at a frame's edge for what lies beyond that side: a triangle STRUT_BEYOND_SIZE high, its tip so far outside. */
-STRUT_API void strut_draw_beyond(strut_canvas *canvas, const double at[2], strut_side side,
-                                 double outside);
-#define STRUT_BEYOND_SIZE 5.0
-enum { STRUT_TICK_TEXT = 64, STRUT_MOST_MINOR = 120 };
-/** The ticks of a settled axis and their texts. */
-typedef struct strut_tick_set {
-  size_t count, minor_count;
-  double at[STRUT_MOST_TICKS];                  /* [SI] */
-  double minor[STRUT_MOST_MINOR];               /* without text: logarithmic axes only */
-  char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" for no text */
-  char label[200]; /* "velocity in mm/s", with an offset where one was taken */
-} strut_tick_set;
-/** Fills `set` with about `wanted` ticks. */
-STRUT_API void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 
 /** A colour bar beside a drawing, with name, ticks and unit. */
 typedef struct strut_colour_scale {
@@ -130,24 +77,13 @@ typedef struct strut_colour_scale {
   strut_colours colours;
   strut_beyond beyond; /* values that have the colours of the ends */
 } strut_colour_scale;
-/** Its colours alone, without a frame. */
-STRUT_API void strut_draw_shades(strut_canvas *canvas, strut_box strip, strut_colours colours,
-                                 double low, double high);
-STRUT_API void strut_draw_colour_scale(strut_canvas *canvas, strut_box box,
-                                       const strut_colour_scale *scale);
 
-/* Where a figure goes, its width, and what replaces its title and axes. */
-
+/** Where a figure goes, its width, and what replaces its title and axes. */
 typedef struct strut_plot {
   const char *path;       /* ends with .svg, .pdf, .png or .json; NULL: no figure is wanted */
   double width;           /* [pt]; 0: 180 mm */
   const char *title;      /* replaces the figure's own; NULL: the model's name */
   strut_axis_choice x, y; /* of a figure with one pair of axes */
 } strut_plot;
-
-/** The title that was given, else `name`. */
-static inline const char *strut_plot_title(const strut_plot *plot, const char *name) {
-  return plot->title ? plot->title : name;
-}
 
 #endif

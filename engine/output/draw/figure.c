@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The painter of figures: heading, legend, panels in rows, foot, file. */
-#include "engine/output/draw/figure.h"
-
+/* The painter of figures: heading, legend, panels in rows, foot. */
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/output/draw/painter.h"
-#include "engine/output/file.h"
 
 static const double EDGE = 5, PAGE = 510.24, GAP = 12, INDENT = 30, WIDE = 330; /* [pt] */
 static const double ASPECT = 0.62, LOWEST = 165, HIGHEST = 260; /* of charts [1], [pt] */
@@ -22,28 +18,22 @@ typedef struct page {
   size_t item_count;
 } page;
 
-/* ---- what the figure leaves open ---- */
-
-/* Settles the panels, together or each by itself. */ static bool settle(strut_figure *figure,
-                                                                         const strut_plot *plot) {
-  size_t together = figure->shared_axes ? figure->panel_count : 1;
+/* Settles what the figure leaves open, panels together or each by itself. False: out of memory. */
+static bool begin_page(page *self, strut_figure *figure, const strut_plot *plot) {
+  size_t together = figure->shared_axes ? figure->panel_count : 1, room = 1;
+  bool fine = !figure->failed;
+  *self = (page){.figure = figure, .title = plot->title ? plot->title : figure->title};
   for (size_t i = 0; i < figure->panel_count; i++) {
     strut_axis_choose(&figure->panels[i].x, &plot->x);
     strut_axis_choose(&figure->panels[i].y, &plot->y);
+    room += strut_panel_legend_room(&figure->panels[i]);
   }
-  for (size_t i = 0; i < figure->panel_count; i += together)
-    if (!strut_panels_settle(&figure->panels[i], together, &figure->arena)) return false;
-  return !figure->failed;
-}
-
-static bool gather_legend(page *self) {
-  size_t room = 1;
-  for (size_t i = 0; i < self->figure->panel_count; i++)
-    room += strut_panel_legend_room(&self->figure->panels[i]);
-  self->items = strut_arena_allocate(&self->figure->arena, room, sizeof *self->items);
-  for (size_t i = 0; self->items && self->figure->one_legend && i < self->figure->panel_count; i++)
-    self->item_count = strut_panel_legend(&self->figure->panels[i], self->items, self->item_count);
-  return self->items != NULL;
+  for (size_t i = 0; i < figure->panel_count && fine; i += together)
+    fine = strut_panels_settle(&figure->panels[i], together, &figure->arena);
+  self->items = strut_arena_allocate(&figure->arena, room, sizeof *self->items);
+  for (size_t i = 0; self->items && figure->one_legend && i < figure->panel_count; i++)
+    self->item_count = strut_panel_legend(&figure->panels[i], self->items, self->item_count);
+  return fine && self->items;
 }
 
 /* ---- the page ---- */
@@ -134,54 +124,41 @@ static double put_page(page *self, strut_canvas *canvas, double width, bool *fin
   return box.y + (foot ? strut_draw_foot(canvas, box, figure, NULL, draw) : 0) + EDGE;
 }
 
-static strut_status write_page(page *self, const strut_plot *plot, strut_error *error) {
+static strut_status draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
+  page p;
   strut_canvas *canvas = NULL;
   double width = plot->width > 0 ? plot->width : PAGE;
-  bool fine = true;
-  self->title = strut_plot_title(plot, self->figure->title);
+  bool fine = begin_page(&p, figure, plot);
+  if (!fine) return strut_no_memory(error, "while drawing");
   strut_status status = strut_canvas_open_pixels(1, 1, 1.0, &canvas, error);
   if (status) return status;
-  double height = put_page(self, canvas, width, NULL);
+  double height = put_page(&p, canvas, width, NULL);
   strut_canvas_free(canvas);
-  status =
-      strut_canvas_open(plot->path, width, height, self->title ? self->title : "", &canvas, error);
+  status = strut_canvas_open(plot->path, width, height, p.title ? p.title : "", &canvas, error);
   if (status) return status;
-  put_page(self, canvas, width, &fine);
+  put_page(&p, canvas, width, &fine);
   status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
   strut_canvas_free(canvas);
   return status;
 }
 
-static strut_status write_json(const strut_plot *plot, const strut_figure *figure,
-                               strut_error *error) {
-  char *text = strut_figure_json(plot, figure);
-  strut_status status = text ? strut_file_write_path(plot->path, text, error)
-                             : strut_no_memory(error, "while drawing");
-  strut_release(text);
-  return status;
+static const unsigned char *paint(strut_canvas *canvas, strut_figure *figure, size_t *stride) {
+  page p;
+  bool fine = begin_page(&p, figure, &(strut_plot){.path = NULL});
+  strut_canvas_clear(canvas, strut_grey(1));
+  if (fine) put_page(&p, canvas, strut_canvas_box(canvas).width, &fine);
+  return fine ? strut_canvas_pixels(canvas, stride) : NULL;
 }
 
-/* True if a file of that name gets the figure's data. */
-static bool is_data(const char *path) {
-  const char *dot = strrchr(path, '.');
-  return dot && dot > path && dot[-1] != '/' && strcmp(dot, ".json") == 0;
-}
+extern STRUT_API const strut_cairo_library strut_cairo_table;
+const strut_cairo_library strut_cairo_table = {.stamp = STRUT_LIBRARY_STAMP(strut_cairo_library),
+                                               .draw = draw,
+                                               .open = strut_canvas_open_pixels,
+                                               .paint = paint,
+                                               .free = strut_canvas_free};
 
-strut_status strut_figure_check_name(const char *path, strut_error *error) {
-  return is_data(path) ? STRUT_OK : strut_canvas_check_name(path, error);
-}
-
-strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
-  page p = {.figure = figure};
-  strut_status status = STRUT_OK;
-  strut_c_locale locale = strut_c_locale_enter();
-  if (is_data(plot->path) && !figure->failed)
-    status = write_json(plot, figure, error);
-  else if (settle(figure, plot) && gather_legend(&p))
-    status = write_page(&p, plot, error);
-  else
-    status = strut_no_memory(error, "while drawing");
-  strut_arena_free(&figure->arena);
-  strut_c_locale_leave(locale);
-  return status;
+strut_status strut_cairo_load(const strut_cairo_library **library, strut_error *error) {
+  (void)error;
+  *library = &strut_cairo_table;
+  return STRUT_OK;
 }

@@ -13,8 +13,30 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/chart.h"
-#include "engine/output/draw/legend.h"
 #include "engine/output/draw/structure.h"
+
+/* ---- what things mean: legends beside data, the key below a figure ---- */
+
+typedef enum strut_key_sign {
+  STRUT_KEY_LINE,   /* a short line by `pen`, with the marker of a look if `marked` */
+  STRUT_KEY_ARROW,  /* an arrow by `pen` */
+  STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_CLOUD,  /* a dot by `fill`, in the middle of where lines are */
+  STRUT_KEY_AREA,   /* a box by `fill` */
+  STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
+  STRUT_KEY_WORDS   /* no sign */
+} strut_key_sign;
+
+typedef struct strut_key_item {
+  strut_key_sign sign;
+  strut_pen pen;
+  strut_fill fill;
+  bool marked;
+  size_t look;
+  const char *before; /* for STRUT_KEY_SIGNED */
+  const char *letter; /* for STRUT_KEY_DOT; or NULL */
+  const char *text;   /* NULL: the item is left out */
+} strut_key_item;
 
 /* ---- charts ---- */
 
@@ -118,6 +140,8 @@ typedef struct strut_panel {
   const strut_map *map;
   const char *lost; /* name of points whose y is not finite, which lie in a strip above; or NULL */
   double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
+  double least;     /* such a range of y is at least so large, */
+  bool zero;        /* and holds zero */
   /* Both. */
   size_t mark_count;
   strut_label
@@ -180,6 +204,10 @@ STRUT_API strut_shape *strut_add_forces(strut_figure *figure, strut_panel *panel
 STRUT_API strut_trail *strut_add_trail(strut_figure *figure, strut_panel *panel,
                                        strut_trail_kind kind, strut_pen pen);
 STRUT_API void strut_add_place(strut_figure *figure, strut_trail *trail, const double place[2]);
+/** One of two points. */
+STRUT_API strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel,
+                                         strut_trail_kind kind, strut_pen pen, const double from[2],
+                                         const double to[2]);
 /** An item of the key below the figure; without a text none. */
 STRUT_API strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                                         const char *text);
@@ -191,6 +219,12 @@ STRUT_API double *strut_figure_numbers(strut_figure *figure, size_t count);
 STRUT_API double *strut_figure_copy(strut_figure *figure, const double *from, size_t count);
 /** The scale of signed forces; without a name where the limit is 0. */
 STRUT_API strut_colour_scale strut_force_scale(double limit, const strut_beyond *beyond);
+/**
+ * Length of the longest prefix of `text` of at most `most` bytes that splits no UTF-8 character.
+ */
+STRUT_API int strut_text_bytes(const char *text, int most);
+/** The pen of the i-th series: its colour and dashes. */
+STRUT_API strut_pen strut_series_pen(size_t look);
 /** The largest magnitude of those that are finite; 0 of none. */
 STRUT_API double strut_largest(const double *values, size_t count);
 
@@ -200,6 +234,16 @@ STRUT_API double strut_largest(const double *values, size_t count);
  */
 STRUT_API strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure,
                                          strut_error *error);
+
+/** What a file becomes by the ending of its name. */
+typedef enum strut_picture_format {
+  STRUT_PICTURE_SVG,
+  STRUT_PICTURE_PDF,
+  STRUT_PICTURE_PNG,
+  STRUT_PICTURE_JSON,  /* its data */
+  STRUT_PICTURE_PIXELS /* of no file; an unknown ending */
+} strut_picture_format;
+STRUT_API strut_picture_format strut_picture_format_of(const char *path);
 /** STRUT_OK if a figure can be written into a file of that name, else STRUT_USAGE with the endings there are. */
 STRUT_API strut_status strut_figure_check_name(const char *path, strut_error *error);
 /** The data as JSON text, released by the caller; NULL: no memory. */

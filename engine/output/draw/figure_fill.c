@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Filling a figure in. See figure.h. */
+/* Filling a figure in, and its file. See figure.h. */
 #include <assert.h>
 #include <math.h>
 #include <stdarg.h>
@@ -7,7 +7,8 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
-#include "engine/output/draw/figure.h"
+#include "engine/output/draw/cairo_page.h"
+#include "engine/output/file.h"
 
 enum { TEXT = 800 };                /* bytes of a text at most */
 static const double MARK_GAP = 4.2; /* [pt] */
@@ -112,6 +113,14 @@ void strut_add_place(strut_figure *figure, strut_trail *trail, const double plac
   memcpy(ADD(figure, trail->at, trail->count), place, sizeof *trail->at);
 }
 
+strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel, strut_trail_kind kind,
+                               strut_pen pen, const double from[2], const double to[2]) {
+  strut_trail *trail = strut_add_trail(figure, panel, kind, pen);
+  strut_add_place(figure, trail, from);
+  strut_add_place(figure, trail, to);
+  return trail;
+}
+
 strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                               const char *text) {
   strut_key_item *item = ADD(figure, figure->keys, figure->key_count);
@@ -159,4 +168,46 @@ double strut_largest(const double *values, size_t count) {
   for (size_t i = 0; values && i < count; i++)
     if (isfinite(values[i])) most = fmax(most, fabs(values[i]));
   return most;
+}
+
+/* ---- files ---- */
+
+strut_picture_format strut_picture_format_of(const char *path) {
+  static const char *const endings[] = {".svg", ".pdf", ".png", ".json"};
+  const char *dot = strrchr(path, '.');
+  bool name = dot && !strchr(dot, '/') && dot != path && dot[-1] != '/';
+  for (int i = 0; i < STRUT_PICTURE_PIXELS && name; i++)
+    if (strcmp(dot, endings[i]) == 0) return (strut_picture_format)i;
+  return STRUT_PICTURE_PIXELS;
+}
+
+strut_status strut_figure_check_name(const char *path, strut_error *error) {
+  if (strut_picture_format_of(path) != STRUT_PICTURE_PIXELS) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE,
+                    "unknown picture format '%s': the name must end with .svg, .pdf or .png, or "
+                    ".json for its data",
+                    path);
+}
+
+static strut_status write_json(const strut_plot *plot, const strut_figure *figure,
+                               strut_error *error) {
+  char *text = strut_figure_json(plot, figure);
+  strut_status status = text ? strut_file_write_path(plot->path, text, error)
+                             : strut_no_memory(error, "while drawing");
+  strut_release(text);
+  return status;
+}
+
+strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
+  const strut_cairo_library *cairo = NULL;
+  strut_c_locale locale = strut_c_locale_enter();
+  strut_status status = strut_figure_check_name(plot->path, error);
+  if (!status && figure->failed) status = strut_no_memory(error, "while drawing");
+  if (!status && strut_picture_format_of(plot->path) == STRUT_PICTURE_JSON)
+    status = write_json(plot, figure, error);
+  else if (!status && !(status = strut_cairo_load(&cairo, error)))
+    status = cairo->draw(plot, figure, error);
+  strut_arena_free(&figure->arena);
+  strut_c_locale_leave(locale);
+  return status;
 }

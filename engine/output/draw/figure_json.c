@@ -131,6 +131,6 @@ STRUT_VALUES_HERE(figure_values, FIGURE, const strut_figure *f = of->at)
 
 char *strut_figure_json(const strut_plot *plot, const strut_figure *figure) {
   strut_figure own = *figure;
-  own.title = strut_plot_title(plot, figure->title);
+  if (plot->title) own.title = plot->title;
   return strut_values_json(&figure_values, &own, NULL);
 }

@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/labels.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/output/draw/legend.h"
+#include "engine/output/draw/painter.h"
 
 /* Distances from what is named at which a label is tried, beyond its own gap; from LED on with a line [pt]. */
 static const double RINGS[] = {0, 2, 5, 9, 14, 20, 27, 35, 45, 57, 72, 90, 115, 145};
@@ -187,11 +185,6 @@ static void draw_line(strut_canvas *canvas, const strut_label *label, const stru
                      (strut_pen){.colour = strut_grey(0.45), .width = 0.4});
 }
 
-static void draw_at(strut_canvas *canvas, const strut_box *box, const char *text, strut_font font) {
-  font.across = font.down = 0.5;
-  strut_draw_text(canvas, box->x + 0.5 * box->width, box->y + 0.5 * box->height, text, font);
-}
-
 /* The part of the page on which a label may be. */
 static strut_box find_inside(strut_canvas *canvas, const strut_label *label) {
   strut_box page = widened(strut_canvas_box(canvas), -1.0), wanted = label->inside;
@@ -210,15 +203,16 @@ static bool place_label(const strut_labels *labels, const strut_label *label,
                         strut_canvas *canvas) {
   search s = {
       .labels = labels, .canvas = canvas, .label = label, .inside = find_inside(canvas, label)};
-  char fitted[STRUT_FITTED_TEXT];
-  const char *text =
-      strut_text_fit(canvas, label->text, label->font,
-                     fmin(s.inside.width, label->loose ? HUGE_VAL : MOST_WIDTH), 0, fitted);
-  strut_text_size(canvas, text, label->font, &s.width, &s.height);
+  double most = fmin(s.inside.width, label->loose ? HUGE_VAL : MOST_WIDTH);
+  strut_font font = label->font;
+  if (strut_text_width(canvas, label->text, font) > most) font.width = most, font.lines = 1;
+  strut_text_size(canvas, label->text, font, &s.width, &s.height);
   s.height *= LETTERS;
   if (!find_place(&s)) return false;
   draw_line(canvas, label, &s.best);
-  draw_at(canvas, &s.best, text, label->font);
+  font.across = font.down = 0.5;
+  strut_draw_text(canvas, s.best.x + 0.5 * s.best.width, s.best.y + 0.5 * s.best.height,
+                  label->text, font);
   return true;
 }
 

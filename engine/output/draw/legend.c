@@ -1,76 +1,178 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/legend.h"
-
-#include <assert.h>
+/* What explains a figure: keys, markers of series, scales of colours, marks of what lies beyond them. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-#include "engine/output/draw/chart.h"
+#include "engine/output/draw/painter.h"
+
+void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size) {
+  enum { SHAPES = 5, CORNERS = 4 };
+  static const double corner[SHAPES][CORNERS][2] = {{{0}}, /* a circle */
+                                                    {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}},
+                                                    {{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}},
+                                                    {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}},
+                                                    {{0, 1.3}, {1.2, -0.9}, {-1.2, -0.9}}};
+  size_t shape = look % SHAPES, count = shape == 2 || shape == 4 ? 3 : 4;
+  bool hollow = look / SHAPES % 2 == 1;
+  const strut_colour own = strut_palette_thing(look), white = strut_grey(1);
+  const strut_fill fill = {.colour = hollow ? white : own};
+  const strut_pen edge = {.colour = hollow ? own : white, .width = hollow ? 0.8 : 0.4};
+  double at[CORNERS][2];
+  for (size_t i = 0; i < count; i++) {
+    at[i][0] = x + size * corner[shape][i][0];
+    at[i][1] = y + size * corner[shape][i][1];
+  }
+  if (shape == 0)
+    strut_draw_circle(canvas, x, y, size, &fill, &edge);
+  else
+    strut_draw_polygon(canvas, (const double(*)[2])at, count, &fill, &edge);
+}
+
+void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2],
+                       double outside) {
+  const double at[2] = {x, y}, size = STRUT_BEYOND_SIZE;
+  double tip[3][2];
+  for (int d = 0; d < 2; d++) {
+    double across = 0.45 * size * out[1 - d];
+    tip[0][d] = at[d] + outside * out[d];
+    tip[1][d] = tip[0][d] - size * out[d] + across;
+    tip[2][d] = tip[0][d] - size * out[d] - across;
+  }
+  strut_draw_polygon(canvas, (const double(*)[2])tip, 3, &(strut_fill){.colour = strut_grey(0.15)},
+                     &(strut_pen){.colour = strut_grey(1), .width = 0.4});
+}
+
+/* ---- scales of colours ---- */
+
+static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2; /* [pt] */
+
+/* The colours alone. */
+static void draw_shades(strut_canvas *canvas, strut_box strip, const strut_colour_scale *scale) {
+  enum { SHADES = 40 };
+  bool upright = strip.height > strip.width;
+  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
+    double rest = (double)(SHADES - i) / SHADES, part = (i + 0.5) / SHADES;
+    double value = scale->low + part * (scale->high - scale->low);
+    const strut_fill fill = {.colour =
+                                 strut_palette_at(scale->colours, value, scale->low, scale->high)};
+    strut_box cell = strip;
+    if (upright)
+      cell.height *= rest;
+    else
+      cell.x += (1 - rest) * strip.width, cell.width *= rest;
+    strut_draw_box(canvas, cell, &fill, NULL);
+  }
+}
+
+void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
+  bool upright = box.height > box.width;
+  const strut_axis axis = {
+      .name = scale->name, .unit = scale->unit, .low = scale->low, .high = scale->high};
+  const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
+  strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
+  strut_tick_set set;
+  double line = strut_text_height(canvas, "0", font);
+  strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
+  strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
+                            : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
+  double right = strip.x + strip.width, bottom = strip.y + strip.height;
+  draw_shades(canvas, strip, scale);
+  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
+  for (int end = -1; end < 2; end += 2) { /* values beyond the ends */
+    const double out[2] = {upright ? 0 : end, upright ? -end : 0};
+    double x = upright ? strip.x + 0.5 * BAR : end > 0 ? right : strip.x;
+    double y = !upright ? strip.y + 0.5 * BAR : end > 0 ? strip.y : bottom;
+    if (end > 0 ? scale->beyond.above : scale->beyond.below)
+      strut_draw_beyond(canvas, x, y, out, STRUT_BEYOND_SIZE);
+  }
+  for (size_t i = 0; i < set.count; i++) {
+    double part = (set.at[i] - scale->low) / (scale->high - scale->low);
+    double x = upright ? right : strip.x + strip.width * part;
+    double y = upright ? strip.y + strip.height * (1 - part) : bottom;
+    double end[2] = {upright ? x + BAR_TICK : x, upright ? y : y + BAR_TICK};
+    strut_draw_segment(canvas, x, y, end[0], end[1], pen);
+    strut_draw_text(canvas, end[0] + 2 * upright, end[1] + !upright, set.text[i], font);
+  }
+  if (scale->beyond.below + scale->beyond.above) {
+    size_t used = strlen(set.label);
+    snprintf(set.label + used, sizeof set.label - used, ", up to %s",
+             strut_quantity_of(scale->beyond.farthest, 3, scale->unit).text);
+  }
+  /* A long name ends where the box does, rather than beyond the page. */
+  bool wide = strut_text_width(canvas, set.label, font) > box.width;
+  font = (strut_font){.size = BAR_TEXT, .halo = strut_grey(1)};
+  font.across = upright ? wide : 0.5;
+  strut_draw_text(canvas, box.x + font.across * box.width, box.y, set.label, font);
+}
+
+/* ---- keys ---- */
 
 static const double LINE = 11.0, SIGN = 20.0, SCALE = 34.0, SIGN_GAP = 4.0,
                     BETWEEN = 13.0; /* [pt] */
 static const double DOT = 2.6, MARKER = 2.0, BAND = 5.0, AREA = 7.0;
-
-static strut_font letters(void) { return (strut_font){.size = 7.5, .down = 0.5}; }
+static const strut_font letters = {.size = 7.5, .down = 0.5};
 
 static double text_width(strut_canvas *canvas, const char *text) {
-  return text && *text ? strut_text_width(canvas, text, letters()) : 0;
+  return text && *text ? strut_text_width(canvas, text, letters) : 0;
 }
 
-/* The sign left of the text, which is drawn if `draw`. Returns how far right of it the text begins. */
-static double put_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y,
-                       bool draw) {
+/* How far right of the sign the text begins. */
+static double width_of_sign(strut_canvas *canvas, const strut_key_item *item) {
+  double letter = item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0;
+  return item->sign == STRUT_KEY_WORDS ? 0
+         : item->sign == STRUT_KEY_DOT ? 2 * DOT + SIGN_GAP + letter
+         : item->sign == STRUT_KEY_SIGNED
+             ? text_width(canvas, item->before) + SIGN_GAP + SCALE + SIGN_GAP
+             : SIGN + SIGN_GAP;
+}
+
+static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
   const strut_pen rim = {.colour = strut_grey(0.4), .width = 0.4};
-  double before = text_width(canvas, item->before) + SIGN_GAP;
-  strut_font font = letters();
+  strut_font bold = letters;
+  bold.bold = true;
   switch (item->sign) {
-    case STRUT_KEY_WORDS: return 0.0;
+    case STRUT_KEY_WORDS: break;
     case STRUT_KEY_DOT:
-      font.bold = true;
-      if (draw) strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
-      if (draw) strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, font);
-      return 2 * DOT + SIGN_GAP +
-             (item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0.0);
+      strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
+      strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, bold);
+      break;
     case STRUT_KEY_SIGNED:
-      if (draw) strut_draw_text(canvas, x, y, item->before, font);
-      if (draw)
-        strut_draw_shades(canvas, (strut_box){x + before, y - BAND / 2, SCALE, BAND},
-                          STRUT_COLOURS_SIGNED, -1, 1);
-      return before + SCALE + SIGN_GAP;
+      strut_draw_text(canvas, x, y, item->before, letters);
+      x += text_width(canvas, item->before) + SIGN_GAP;
+      draw_shades(canvas, (strut_box){x, y - BAND / 2, SCALE, BAND},
+                  &(strut_colour_scale){.low = -1, .high = 1, .colours = STRUT_COLOURS_SIGNED});
+      break;
     case STRUT_KEY_LINE:
-      if (draw) strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
-      if (draw && item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
+      strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
+      if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
       break;
     case STRUT_KEY_CLOUD:
-      if (draw) strut_draw_circle(canvas, x + 0.5 * SIGN, y, DOT, &item->fill, NULL);
+      strut_draw_circle(canvas, x + 0.5 * SIGN, y, DOT, &item->fill, NULL);
       break;
-    case STRUT_KEY_ARROW:
-      if (draw) strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen);
-      break;
+    case STRUT_KEY_ARROW: strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen); break;
     case STRUT_KEY_AREA:
-      if (draw)
-        strut_draw_box(canvas, (strut_box){x, y - 0.5 * AREA, SIGN, AREA}, &item->fill, &rim);
+      strut_draw_box(canvas, (strut_box){x, y - 0.5 * AREA, SIGN, AREA}, &item->fill, &rim);
   }
-  return SIGN + SIGN_GAP;
 }
 
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                          size_t count, bool draw) {
-  double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters());
+  double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters);
   strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
-    double sign = put_sign(canvas, &items[i], 0, 0, false), width, height;
-    strut_font font = letters();
+    double sign = width_of_sign(canvas, &items[i]), width, height;
+    strut_font font = letters;
     font.down = 0.0;
     if (box.width > 0 && sign + text_width(canvas, items[i].text) > box.width)
       font.width = box.width - sign;
     strut_text_size(canvas, items[i].text, font, &width, &height);
     if (x > 0 && x + sign + width > box.width) x = 0.0, y += row, row = LINE;
-    double top = y + 0.5 * (LINE - line);
     if (draw) {
-      put_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE, true);
-      strut_draw_text(canvas, box.x + x + sign, box.y + top, items[i].text, font);
+      draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
+      strut_draw_text(canvas, box.x + x + sign, box.y + y + 0.5 * (LINE - line), items[i].text,
+                      font);
     }
     row = fmax(row, height + LINE - line);
     whole.width = fmax(whole.width, x + sign + width);
@@ -78,131 +180,4 @@ strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_it
   }
   whole.height = x > 0.0 ? y + row : 0.0;
   return whole;
-}
-
-static bool fits(strut_canvas *canvas, const char *text, strut_font font, double width,
-                 double height) {
-  double wide, high;
-  strut_text_size(canvas, text, font, &wide, &high);
-  return wide <= width + 1e-6 && (height <= 0 || high <= height + 1e-6);
-}
-
-int strut_text_bytes(const char *text, int most) {
-  int length = (int)strnlen(text, (size_t)most), last = length;
-  while (last > 0 && ((unsigned char)text[last - 1] & 0xC0) == 0x80) last--;
-  if (last == 0) return 0;
-  unsigned char lead = (unsigned char)text[last - 1];
-  int wanted = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
-  return length - last + 1 < wanted ? last - 1 : length;
-}
-
-const char *strut_text_fit(strut_canvas *canvas, const char *text, strut_font font, double width,
-                           double height, char fitted[STRUT_FITTED_TEXT]) {
-  static const char ELLIPSIS[] = "\xE2\x80\xA6";
-  int length = strut_text_bytes(text, STRUT_FITTED_TEXT - (int)sizeof ELLIPSIS);
-  bool whole = text[length] == '\0';
-  for (;;) {
-    memcpy(fitted, text, (size_t)length);
-    memcpy(fitted + length, ELLIPSIS, sizeof ELLIPSIS);
-    if (whole) fitted[length] = '\0';
-    if (length == 0 || fits(canvas, fitted, font, width, height)) return fitted;
-    if (!whole) length = strut_text_bytes(text, length - 1);
-    whole = false;
-  }
-}
-
-/* ---- styles of series ---- */
-
-strut_pen strut_series_pen(size_t look) {
-  enum { DASHES = 7 };
-  static const double dashes[DASHES][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
-                                           {3, 1.5}, {8, 2}, {2, 3}};
-  strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
-  /* When colours repeat, dashes differ. */
-  size_t dash = (look + 3 * (look / STRUT_PALETTE_THINGS)) % DASHES;
-  for (int i = 0; i < 4; i++) pen.dash[i] = dashes[dash][i];
-  pen.butt = pen.dash[0] > 0;
-  return pen;
-}
-
-void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size) {
-  static const double diamond[4][2] = {{0, -1.3}, {1.3, 0}, {0, 1.3}, {-1.3, 0}};
-  static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-  static const double up[3][2] = {{0, -1.3}, {1.2, 0.9}, {-1.2, 0.9}};
-  static const double down[3][2] = {{0, 1.3}, {1.2, -0.9}, {-1.2, -0.9}};
-  static const struct {
-    const double (*corner)[2];
-    size_t count;
-  } shapes[] = {{NULL, 0}, {square, 4}, {up, 3}, {diamond, 4}, {down, 3}};
-  const strut_fill full = {.colour = strut_palette_thing(look)}, hollow = {.colour = strut_grey(1)};
-  const strut_pen edge = {.colour = strut_palette_thing(look), .width = 0.8};
-  const strut_pen rim = {.colour = strut_grey(1), .width = 0.4};
-  size_t shape = look % 5;
-  bool open = look / 5 % 2 == 1;
-  double corners[4][2];
-  if (shape == 0) {
-    strut_draw_circle(canvas, x, y, size, open ? &hollow : &full, open ? &edge : &rim);
-    return;
-  }
-  for (size_t i = 0; i < shapes[shape].count; i++) {
-    corners[i][0] = x + size * shapes[shape].corner[i][0];
-    corners[i][1] = y + size * shapes[shape].corner[i][1];
-  }
-  strut_draw_polygon(canvas, (const double(*)[2])corners, shapes[shape].count,
-                     open ? &hollow : &full, open ? &edge : &rim);
-}
-
-/* ---- colours ---- */
-
-/* Anchors at equal distances; the lightness of each row grows from left to right. */
-enum { ANCHORS = 5 };
-static const unsigned SIGNED[ANCHORS] = {0x0A1F66, 0x2F4A9E, 0x7D8390, 0xC98B45, 0xF5A31A};
-static const unsigned SEQUENCE[ANCHORS] = {0x2A0F54, 0x33508C, 0x1F8A8C, 0x55B567, 0xD3CB2F};
-static const unsigned DIVERGING[ANCHORS] = {0x1B4A9C, 0x7AA3D4, 0xEBEBEB, 0xE59A52, 0x9C430C};
-static const unsigned THINGS[STRUT_PALETTE_THINGS] = {0x0060A8, 0xD55E00, 0x009E73, 0xB0508F,
-                                                      0xE69F00, 0x4FAEE6, 0x333333};
-
-static strut_colour from(unsigned rgb) {
-  return (strut_colour){(double)(rgb >> 16) / 255.0, (double)(rgb >> 8 & 255) / 255.0,
-                        (double)(rgb & 255) / 255.0, 1.0};
-}
-
-/* value from 0 to 1 along the anchors. */
-static strut_colour between(const unsigned anchors[ANCHORS], double value) {
-  double place = (value > 0 ? value < 1 ? value : 1.0 : 0.0) * (ANCHORS - 1);
-  int i = (int)place < ANCHORS - 1 ? (int)place : ANCHORS - 2;
-  double t = place - i;
-  strut_colour a = from(anchors[i]), b = from(anchors[i + 1]);
-  return (strut_colour){a.red + t * (b.red - a.red), a.green + t * (b.green - a.green),
-                        a.blue + t * (b.blue - a.blue), 1.0};
-}
-
-strut_colour strut_palette_at(strut_colours colours, double value, double low, double high) {
-  static const unsigned *const anchors[] = {[STRUT_COLOURS_SEQUENTIAL] = SEQUENCE,
-                                            [STRUT_COLOURS_DIVERGING] = DIVERGING,
-                                            [STRUT_COLOURS_SIGNED] = SIGNED};
-  double part = (value - low) / (high - low), limit = fmax(fabs(low), fabs(high));
-  assert(colours != STRUT_COLOURS_AUTO && "a map decides what AUTO means");
-  if (colours == STRUT_COLOURS_GREY) return strut_grey(0.12 + 0.8 * fmax(0, fmin(1, part)));
-  return between(anchors[colours],
-                 colours == STRUT_COLOURS_SEQUENTIAL ? part : 0.5 + 0.5 * value / limit);
-}
-
-strut_colour strut_palette_signed(double value) {
-  return strut_palette_at(STRUT_COLOURS_SIGNED, value, -1, 1);
-}
-
-strut_colour strut_palette_sequence(double value) {
-  return strut_palette_at(STRUT_COLOURS_SEQUENTIAL, value, 0, 1);
-}
-
-strut_colour strut_palette_thing(size_t i) { return from(THINGS[i % STRUT_PALETTE_THINGS]); }
-
-strut_colour strut_grey(double brightness) {
-  return (strut_colour){brightness, brightness, brightness, 1.0};
-}
-
-strut_colour strut_faded(strut_colour colour, double alpha) {
-  colour.alpha *= alpha;
-  return colour;
 }

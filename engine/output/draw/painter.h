@@ -1,10 +1,87 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** The painter of charts and of views, panels with structures. For figure.c. */
+/** What the files of the painter share: labels, axes, keys, charts, views. For these files and their tests. */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
 #define STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/figure.h"
+#include "engine/output/draw/cairo_page.h"
+
+/* ---- labels (labels.c): the one place where texts are put beside what they name ---- */
+
+/** Labels that wait, and the boxes of all texts that are drawn. Zero-initialise. */
+typedef struct strut_labels {
+  strut_label *list;
+  size_t count, room;
+  strut_box *texts; /* (text_count) [pt] */
+  size_t text_count, text_room;
+  strut_arena arena; /* of their texts */
+  bool failed;       /* memory was out */
+} strut_labels;
+
+/** Keeps a label until strut_labels_place. */
+void strut_labels_add(strut_labels *labels, const strut_label *label);
+/** Notes the ink of a text that was drawn, which labels keep off. */
+void strut_labels_avoid(strut_labels *labels, strut_box ink);
+/**
+ * Draws all that wait: the most important first, each where it covers the least ink, never over another text, with a
+ * thin line to what it names where that is far. Where some find no place, a note on the page says how many.
+ */
+void strut_labels_place(strut_labels *labels, strut_canvas *canvas);
+void strut_labels_free(strut_labels *labels);
+
+/* ---- axes (axes.c): from a range to ticks, labels and a place on the page, with no tuning ---- */
+
+enum { STRUT_MOST_TICKS = 40, STRUT_TICK_TEXT = 64, STRUT_MOST_MINOR = 120 };
+/** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
+size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]);
+/**
+ * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). The
+ * units "", "%", "kg" and "deg" get no prefix.
+ */
+const char *strut_prefix(double largest, const char *unit, double *factor);
+/** The ticks of a settled axis and their texts. */
+typedef struct strut_tick_set {
+  size_t count, minor_count;
+  double at[STRUT_MOST_TICKS];                  /* [SI] */
+  double minor[STRUT_MOST_MINOR];               /* without text: logarithmic axes only */
+  char text[STRUT_MOST_TICKS][STRUT_TICK_TEXT]; /* in the prefixed unit; "" for no text */
+  char label[200]; /* "velocity in mm/s", with an offset where one was taken */
+} strut_tick_set;
+/** Fills `set` with about `wanted` ticks. */
+void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
+
+/** A pair of axes laid out in a box. */
+typedef struct strut_axes {
+  strut_axis x, y; /* ranges settled */
+  strut_box frame; /* where data go [pt] */
+} strut_axes;
+/** Lays out a frame for settled axes in `box`; panels side by side line up when their boxes do. */
+strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y);
+/** Frame, ticks, faint grid and labels: before the data, so that these lie above the grid. */
+void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes);
+/** Maps a pair of values to the page. */
+void strut_axes_point(const strut_axes *axes, double x, double y, double point[2]);
+
+/* ---- what explains (legend.c) ---- */
+
+/** Draws the marker of a series at x, y. */
+void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, double size);
+/**
+ * Lays a key out in lines that fill the width of `box`, or as a column of items where that is 0, from its upper left
+ * corner on; longer texts wrap. Draws it if `draw`. Returns the box that it takes.
+ */
+strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
+                         size_t count, bool draw);
+void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale);
+/**
+ * A mark at a frame's edge for what lies beyond the side towards `out`: a triangle STRUT_BEYOND_SIZE high, its tip so
+ * far outside.
+ */
+void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double out[2],
+                       double outside);
+#define STRUT_BEYOND_SIZE 5.0
+
+/* ---- charts (settle.c, chart.c) ---- */
 
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
@@ -19,21 +96,30 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
                       strut_arena *arena);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
-
 /**
  * Thins (count) points of ascending x in place to at most four in each `grain` of x, which leaves
  * the drawn line unchanged. Returns the number kept; points in another order are all kept.
  */
 size_t strut_thin(double (*points)[2], size_t count, double grain);
 
-/** Draws shapes, trails and marks of a view into a box: that of all its window, margins included. */
-strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view);
+/* ---- views, panels with structures (structure.c, view.c) ---- */
+
+/** A shape with its ground's forces and displacements, without its names. */
+void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape);
+/** Names beside nodes and, with `members`, beside members; none where there are more than 60 nodes. */
+void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_model *model,
+                      const double *positions, bool members);
+/** The lines and bodies of all grounds across the window, where those that are shaken are at `time` [s]; NAN: as drawn. */
+void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model,
+                       double time);
 /**
  * Lays (count) panels with views out from the upper left corner of `box` on, as many to a row as make the structures
  * largest, with the figure's foot below if `foot`; draws them if `draw`. Returns the height [pt].
  */
 double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,
                         const strut_panel *panels, size_t count, bool foot, bool draw);
+/** Draws shapes, trails and marks of a view into a box: that of all its window, margins included. */
+strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view);
 /**
  * The figure's scale bar (of a window, if there is one), keys and scale of colours; draws them if `draw`.
  * Returns their height [pt].

@@ -1,65 +1,30 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/structure.h"
-#include "engine/base/vec.h"
-
+/* Structures to scale: members and nodes, what stands beside them, supports, grounds, forces, names. */
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
+#include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/model/pose.h"
-#include "engine/output/draw/canvas.h"
-#include "engine/output/draw/chart.h"
-#include "engine/output/draw/structure_parts.h"
+#include "engine/output/draw/painter.h"
+#include "engine/scene/profile.h"
 #include "engine/scene/wrap.h"
 
-/* The window, members and nodes. */
-
-enum { SHADES = 16, BATCH = 256 }; /* of either sign; segments */
-
-static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* [pt] */
+static const double BAR = 2.4, SPRING = 1.3, CABLE = 0.8, CASING = 0.7; /* widths [pt] */
 static const double FULL_LENGTH = 28.0; /* members this long on the page have full width [pt] */
 static const double THINNEST = 0.06, FRINGE_DASH = 2.2; /* [1], [pt] */
 static const double SMALLEST = 0.3;                     /* more that is thinner is not drawn */
 
-strut_bounds strut_bounds_none(void) {
-  return (strut_bounds){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
-}
-
-void strut_bounds_widen(strut_bounds *bounds, const double low[2], const double high[2]) {
-  for (int d = 0; d < 2; d++) {
-    bounds->low[d] = fmin(bounds->low[d], low[d]);
-    bounds->high[d] = fmax(bounds->high[d], high[d]);
-  }
-}
-
-void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *positions) {
-  for (int32_t i = 0; i < 2 * model->node_count; i++) {
-    if (!isfinite(positions[i])) continue;
-    bounds->low[i % 2] = fmin(bounds->low[i % 2], positions[i]);
-    bounds->high[i % 2] = fmax(bounds->high[i % 2], positions[i]);
-  }
-  for (size_t m = 0; m < model->scene->member_count; m++) { /* circles of guides */
-    const strut_member *member = &model->scene->members[m];
-    double radius = member->guide_radius;
-    for (size_t k = 1; k <= member->guide_count && radius > 0.0; k++) {
-      const double *at = positions + 2 * strut_member_node(member, k);
-      strut_bounds_widen(bounds, (const double[2]){at[0] - radius, at[1] - radius},
-                         (const double[2]){at[0] + radius, at[1] + radius});
-    }
-  }
-}
-
-void strut_bounds_share(strut_bounds *bounds, const double size[2]) {
-  double middle = 0.5 * (bounds->low[0] + bounds->high[0]);
-  bounds->low[0] = middle - 0.5 * size[0], bounds->high[0] = middle + 0.5 * size[0];
-  bounds->high[1] = bounds->low[1] + size[1];
-}
-
-double strut_bounds_extent(const strut_bounds *bounds) {
-  return fmax(bounds->high[0] - bounds->low[0], bounds->high[1] - bounds->low[1]);
-}
+/* A structure being drawn. */
+typedef struct drawing {
+  strut_canvas *canvas;
+  const strut_window *window;
+  const strut_model *model;
+  const double *q;
+  const strut_structure_style *style;
+  double thin; /* factor of widths, from the mean length of the members on the page */
+} drawing;
 
 strut_window strut_window_fit(strut_box box, strut_bounds b, double margin) {
   assert(box.width > 0 && box.height > 0);
@@ -80,52 +45,75 @@ void strut_window_point(const strut_window *window, const double position[2], do
   point[1] = window->box.y + (window->top - position[1]) * window->scale;
 }
 
-static size_t count_segments(const strut_model *model, size_t member) {
-  return model->scene->members[member].guide_count + 1;
+/* ---- in places of the plane ---- */
+
+static void draw_places(const drawing *d, double (*places)[2], size_t count, strut_pen pen) {
+  for (size_t k = 0; k < count; k++) strut_window_point(d->window, places[k], places[k]);
+  strut_draw_line(d->canvas, (const double(*)[2])places, count, pen);
 }
 
-/*
- * The straight part of a wrapped member that leads over its way from node k to the next: from where it leaves one
- * circle to where it meets the other. Where a guide is left aside, the parts are divided beside its centre.
- */
-static void find_tangent(const strut_scene *scene, const strut_member *member,
-                         const double *positions, int k, double places[2][2]) {
+/* A circle, its radius in points. */
+static void draw_circle(const drawing *d, const double place[2], double radius, strut_colour fill,
+                        const strut_pen *pen) {
+  double at[2];
+  strut_window_point(d->window, place, at);
+  strut_draw_circle(d->canvas, at[0], at[1], radius, &(strut_fill){.colour = fill}, pen);
+}
+
+/* The colour of all but members and nodes, so opaque. */
+static strut_colour thing_colour(const drawing *d, double alpha) {
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  return strut_faded(one ? d->style->colour : strut_palette_thing(2), alpha);
+}
+
+/* ---- members ---- */
+
+/* A member's way: its straight parts from node to node or, of a wrapped one, from circle to circle. */
+typedef struct route {
+  const strut_member *member;
+  size_t count;    /* of parts */
+  uint32_t right;  /* guides passed on that side */
+  strut_wrap wrap; /* count 0: not wrapped */
+} route;
+
+static const double *node_of(const drawing *d, const route *r, size_t k) {
+  return d->q + 2 * strut_member_node(r->member, k);
+}
+
+static route find_route(const drawing *d, size_t member) {
+  route r = {.member = &d->model->scene->members[member]};
   double p[STRUT_MOST_WRAPPED][2];
-  int n = (int)member->guide_count + 2, at = 0;
-  uint32_t right = strut_member_right_guides(scene, member);
-  strut_wrap way;
-  for (int i = 0; i < n; i++)
-    memcpy(p[i], positions + 2 * strut_member_node(member, (size_t)i), sizeof p[i]);
-  strut_wrap_find((const double(*)[2])p, n, right, member->guide_radius, &way);
-  while (at + 2 < way.count && way.node[at + 1] <= k) at++;
-  int from = way.node[at];
-  double off = from > 0 ? member->guide_radius * strut_wrap_side(right, from) : 0.0;
-  const double ux = way.ux[at], uy = way.uy[at];
-  const double start[2] = {p[from][0] + off * uy, p[from][1] - off * ux};
-  for (int end = 0; end < 2; end++) {
-    double along = (p[k + end][0] - start[0]) * ux + (p[k + end][1] - start[1]) * uy;
-    along = fmax(0.0, fmin(along, way.free[at]));
-    places[end][0] = start[0] + along * ux, places[end][1] = start[1] + along * uy;
+  r.count = r.member->guide_count + 1;
+  if (!r.member->guide_count || !(r.member->guide_radius > 0.0)) return r;
+  for (size_t i = 0; i <= r.count; i++) memcpy(p[i], node_of(d, &r, i), sizeof p[i]);
+  r.right = strut_member_right_guides(d->model->scene, r.member);
+  strut_wrap_find((const double(*)[2])p, (int)r.count + 1, r.right, r.member->guide_radius,
+                  &r.wrap);
+  r.count = (size_t)r.wrap.count - 1;
+  return r;
+}
+
+/* The ends of a part on the page. */
+static void find_part(const drawing *d, const route *r, size_t k, double ends[2][2]) {
+  double place[2][2];
+  for (size_t end = 0; end < 2; end++) memcpy(place[end], node_of(d, r, k + end), sizeof *place);
+  if (r->wrap.count) {
+    int from = r->wrap.node[k];
+    double ux = r->wrap.ux[k], uy = r->wrap.uy[k], free = r->wrap.free[k];
+    double off = from > 0 ? r->member->guide_radius * strut_wrap_side(r->right, from) : 0.0;
+    memcpy(place[0], node_of(d, r, (size_t)from), sizeof *place);
+    place[0][0] += off * uy, place[0][1] -= off * ux;
+    place[1][0] = place[0][0] + free * ux, place[1][1] = place[0][1] + free * uy;
   }
+  for (int end = 0; end < 2; end++) strut_window_point(d->window, place[end], ends[end]);
 }
 
-void strut_window_segment(const strut_window *window, const strut_model *model,
-                          const double *positions, size_t member, size_t k, double ends[2][2]) {
-  const strut_member *m = &model->scene->members[member];
-  double places[2][2];
-  for (size_t end = 0; end < 2; end++)
-    memcpy(places[end], positions + 2 * strut_member_node(m, k + end), sizeof places[end]);
-  if (m->guide_count && m->guide_radius > 0.0)
-    find_tangent(model->scene, m, positions, (int)k, places);
-  for (int end = 0; end < 2; end++) strut_window_point(window, places[end], ends[end]);
-}
-
-/* The longest segment of a member, where its name and its stop stand. */
-void strut_longest_segment(const strut_window *window, const strut_model *model,
-                           const double *positions, size_t member, double longest[2][2]) {
+/* The longest part of a member, where its name and its stop stand. */
+static void find_longest(const drawing *d, size_t member, double longest[2][2]) {
+  const route r = find_route(d, member);
   double most = -1.0, ends[2][2];
-  for (size_t k = 0; k < count_segments(model, member); k++) {
-    strut_window_segment(window, model, positions, member, k, ends);
+  for (size_t k = 0; k < r.count; k++) {
+    find_part(d, &r, k, ends);
     double length = strut_settle_coordinate(strut_distance(ends[0], ends[1]));
     if (k && !(length > most)) continue;
     memcpy(longest, ends, sizeof ends);
@@ -133,11 +121,93 @@ void strut_longest_segment(const strut_window *window, const strut_model *model,
   }
 }
 
-/* Around a structure: supports, contact forces, the scale bar. */
+static double find_thinning(const drawing *d) {
+  double sum = 0, ends[2][2];
+  size_t finite = 0;
+  for (size_t j = 0; j < d->model->scene->member_count; j++) {
+    const route r = find_route(d, j);
+    for (size_t k = 0; k < r.count; k++) {
+      find_part(d, &r, k, ends);
+      double length = strut_distance(ends[0], ends[1]);
+      if (isfinite(length)) sum += length, finite++;
+    }
+  }
+  return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
+}
+
+static bool is_slack(const drawing *d, size_t j) {
+  if (d->model->scene->members[j].kind != STRUT_CABLE) return false;
+  if (d->style->slack_forces) return !(fabs(d->style->slack_forces[j]) > 0);
+  return strut_member_path_length(d->model, (int32_t)j, d->q) <
+         d->model->members.rest[j] * (1 - 1e-12);
+}
+
+static bool is_shaded(const strut_structure_style *style) {
+  return style->colouring == STRUT_COLOUR_FORCE && style->values;
+}
+
+static strut_colour colour_of(const drawing *d, size_t j, bool slack) {
+  enum { SHADES = 16 }; /* of either sign */
+  const strut_structure_style *style = d->style;
+  strut_member_kind kind = d->model->scene->members[j].kind;
+  if (style->colouring == STRUT_COLOUR_ONE) return style->colour;
+  if (slack) return strut_grey(0.55);
+  if (is_shaded(style)) {
+    double part = style->limit > 0 ? style->values[j] / style->limit : 0;
+    return strut_palette_signed(isfinite(part) ? round(SHADES * part) / SHADES : 0);
+  }
+  return kind == STRUT_BAR ? strut_grey(0.15) : strut_palette_thing(kind == STRUT_SPRING ? 0 : 1);
+}
+
+static strut_pen pen_of(const drawing *d, size_t j, double width, bool slack) {
+  bool fringe = d->style->fringe > 0.0;
+  strut_pen pen = {.colour = colour_of(d, j, slack), .width = width, .butt = slack || fringe};
+  if (fringe)
+    pen.dash[0] = pen.dash[1] = FRINGE_DASH;
+  else if (slack)
+    pen.dash[0] = 2.5 * d->thin, pen.dash[1] = 2.0 * d->thin;
+  return pen;
+}
+
+static bool is_same_pen(const strut_pen *one, const strut_pen *two) {
+  return memcmp(&one->colour, &two->colour, sizeof one->colour) == 0 && one->width == two->width &&
+         one->dash[0] == two->dash[0];
+}
+
+/*
+ * Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. Parts wait for
+ * the next one with another pen, since one piece makes a small file.
+ */
+static void draw_kind(const drawing *d, strut_member_kind kind, bool slack) {
+  enum { BATCH = 256 };
+  double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
+  width = width * d->thin / (1.0 + d->style->thinness) + d->style->fringe;
+  const strut_pen casing = {.colour = strut_grey(0.1), .width = width + CASING * d->thin};
+  double ends[2 * BATCH][2];
+  strut_pen last = casing;
+  size_t count = 0;
+  for (int pass = is_shaded(d->style) && kind != STRUT_CABLE ? 0 : 1; pass < 2; pass++)
+    for (size_t j = 0; j < d->model->scene->member_count; j++) {
+      if (d->model->scene->members[j].kind != kind || is_slack(d, j) != slack) continue;
+      const strut_pen pen = pass ? pen_of(d, j, width, slack) : casing;
+      const route r = find_route(d, j);
+      for (size_t k = 0; k < r.count; k++) {
+        if (count == BATCH || !is_same_pen(&pen, &last)) {
+          strut_draw_segments(d->canvas, (const double(*)[2])ends, count, last);
+          count = 0;
+        }
+        last = pen;
+        find_part(d, &r, k, ends + 2 * count++);
+      }
+    }
+  strut_draw_segments(d->canvas, (const double(*)[2])ends, count, last);
+}
+
+/* ---- supports ---- */
 
 /* A support's triangle, its tip at the node, its base towards `out`; rolling: on two wheels. */
 static void draw_support(strut_canvas *canvas, const double tip[2], const double out[2],
-                         bool rolling, double size, double opacity) {
+                         bool rolling, double size) {
   const double height = 7.0 * size, half = 4.2 * size, wheel = 1.1 * size;
   const double base = height + (rolling ? 2 * wheel : 0), below = base + 3.5 * size;
   const double place[][2] = {{0, 0}, /* outwards, across */
@@ -149,10 +219,9 @@ static void draw_support(strut_canvas *canvas, const double tip[2], const double
                              {below, 1.5 * half},
                              {height + wheel, 0.55 * half},
                              {height + wheel, -0.55 * half}};
-  const strut_pen pen = {.colour = strut_faded(strut_grey(0.25), opacity), .width = 0.7 * size};
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), opacity)};
-  const strut_fill hatched = {.hatch = STRUT_HATCH_RISING,
-                              .hatch_colour = strut_faded(strut_grey(0.45), opacity)};
+  const strut_pen pen = {.colour = strut_grey(0.25), .width = 0.7 * size};
+  const strut_fill white = {.colour = strut_grey(1)};
+  const strut_fill hatched = {.hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.45)};
   double at[9][2];
   for (int k = 0; k < 9; k++) {
     at[k][0] = tip[0] + place[k][0] * out[0] - place[k][1] * out[1];
@@ -166,74 +235,193 @@ static void draw_support(strut_canvas *canvas, const double tip[2], const double
 }
 
 /* Triangles below pinned nodes, on wheels where one direction is free. */
-static void draw_supports(strut_canvas *canvas, const strut_window *window,
-                          const strut_model *model, const double *positions, double size,
-                          double opacity) {
-  double centre[2] = {0.0, 0.0}, middle[2];
-  for (int32_t i = 0; i < 2 * model->node_count; i++)
-    centre[i % 2] += positions[i] / model->node_count;
-  strut_window_point(window, centre, middle);
-  for (int32_t i = 0; i < model->node_count; i++) {
-    const bool *fixed = model->scene->nodes[i].fixed;
-    double tip[2];
+static void draw_supports(const drawing *d) {
+  int32_t count = d->model->node_count;
+  double centre[2] = {0.0, 0.0}, middle[2], tip[2];
+  for (int32_t i = 0; i < 2 * count; i++) centre[i % 2] += d->q[i] / count;
+  strut_window_point(d->window, centre, middle);
+  for (int32_t i = 0; i < count; i++) {
+    const bool *fixed = d->model->scene->nodes[i].fixed;
     if (!fixed[0] && !fixed[1]) continue;
-    strut_window_point(window, positions + 2 * i, tip);
+    strut_window_point(d->window, d->q + 2 * i, tip);
     /* Fixed in x only: drawn from the side away from the structure. */
     bool left = strut_settle_coordinate(tip[0]) <= strut_settle_coordinate(middle[0]);
     const double below[2] = {0, 1}, side[2] = {left ? -1 : 1, 0};
-    draw_support(canvas, tip, fixed[1] ? below : side, !(fixed[0] && fixed[1]), size, opacity);
+    draw_support(d->canvas, tip, fixed[1] ? below : side, !(fixed[0] && fixed[1]),
+                 fmax(d->thin, SMALLEST));
   }
 }
 
-void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
-                               const strut_model *model, const double *positions,
-                               const double (*force)[2], double limit, double longest) {
-  const strut_contact_table *contacts = &model->contacts;
-  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
-  for (int32_t i = 0; i < contacts->count && limit > 0; i++) {
-    double at[2], normal = force[i][0] / limit * longest, along = force[i][1] / limit * longest;
-    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, positions, NULL, -1);
-    const double *n = pose.axes.normal, *t = pose.axes.tangent;
-    strut_window_point(window, positions + contacts->at[i], at);
-    if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
-      strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
-    if (fabs(along) > 0.3)
-      strut_draw_arrow(canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
+/* ---- what stands beside members ---- */
+
+static const double HINGE = 7.0, STOP = 4.0; /* radius of the arc, half a stop's bar [pt] */
+
+/* A hinge: an arc around its node, from the first arm to the second by its angle. */
+static void draw_hinge(const drawing *d, const strut_hinge *hinge, double angle, strut_pen pen) {
+  enum { ARC = 24 };
+  const double *at = d->q + 2 * hinge->node[1], *from = d->q + 2 * hinge->node[0];
+  double arc[ARC + 1][2],
+      arm = fmin(strut_distance(from, at), strut_distance(at, d->q + 2 * hinge->node[2]));
+  double radius = fmin(HINGE * d->thin / d->window->scale, 0.4 * arm);
+  double first = atan2(from[1] - at[1], from[0] - at[0]);
+  angle = fmax(-STRUT_TAU, fmin(STRUT_TAU, angle));
+  for (int i = 0; i <= ARC; i++) {
+    arc[i][0] = at[0] + radius * cos(first + angle * i / ARC);
+    arc[i][1] = at[1] + radius * sin(first + angle * i / ARC);
+  }
+  draw_places(d, arc, ARC + 1, pen);
+}
+
+/* A stop that acts: a bar across the middle of its member. */
+static void draw_stop(const drawing *d, size_t member, strut_pen pen) {
+  double ends[2][2];
+  find_longest(d, member, ends);
+  double half = STOP * d->thin / strut_distance(ends[0], ends[1]);
+  double x = half * (ends[1][0] - ends[0][0]), y = half * (ends[1][1] - ends[0][1]);
+  double middle[2] = {0.5 * (ends[0][0] + ends[1][0]), 0.5 * (ends[0][1] + ends[1][1])};
+  strut_draw_segment(d->canvas, middle[0] - y, middle[1] + x, middle[0] + y, middle[1] - x, pen);
+}
+
+/* Cells: filled polygons below all else. */
+static void draw_cells(const drawing *d) {
+  const strut_fill fill = {.colour = thing_colour(d, 0.15)};
+  const strut_pen pen = {.colour = thing_colour(d, 0.5), .width = 0.5 * d->thin};
+  double corner[STRUT_MOST_ELEMENT_NODES][2];
+  for (size_t i = 0; i < d->model->scene->cell_count; i++) {
+    const strut_cell *cell = &d->model->scene->cells[i];
+    for (size_t k = 0; k < cell->node_count; k++)
+      strut_window_point(d->window, d->q + 2 * cell->node[k], corner[k]);
+    strut_draw_polygon(d->canvas, (const double(*)[2])corner, cell->node_count, &fill, &pen);
   }
 }
 
-void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window) {
-  double room = 0.3 * window->box.width / window->scale, power = pow(10.0, floor(log10(room)));
-  /* The largest of 1, 2 or 5 times a power of ten that fits. */
-  double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
-  double x = window->box.x + 3, y = window->box.y + window->box.height - 4,
-         end = x + length * window->scale;
-  const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
-  if (!isfinite(length) || !(length > 0)) return;
-  strut_draw_segment(canvas, x, y, end, y, pen);
-  strut_draw_segment(canvas, x, y - 2, x, y + 2, pen);
-  strut_draw_segment(canvas, end, y - 2, end, y + 2, pen);
-  strut_draw_text(canvas, 0.5 * (x + end), y - 2, strut_drawn_quantity(length, 3, "m").text,
-                  (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
+/* Bodies that may collide: discs or rods with round ends, as thick as they are. */
+static void draw_collisions(const drawing *d) {
+  const strut_colour colour = thing_colour(d, 0.15);
+  double ends[2][2];
+  for (size_t i = 0; i < 2 * d->model->scene->collision_count; i++) {
+    const strut_collision *collision = &d->model->scene->collisions[i / 2];
+    int32_t node = collision->node[i % 2], member = collision->member[i % 2];
+    double width = collision->thickness * d->window->scale;
+    if (node >= 0) draw_circle(d, d->q + 2 * node, 0.5 * width, colour, NULL);
+    if (member < 0) continue;
+    const route r = find_route(d, (size_t)member);
+    find_part(d, &r, 0, ends);
+    strut_draw_line(d->canvas, (const double(*)[2])ends, 2,
+                    (strut_pen){.colour = colour, .width = width});
+  }
 }
 
-/* Names beside nodes and members. */
+/* A dashed line along which the distance is measured: to the first node's foot, then to the second. */
+static void draw_distance(const drawing *d, const strut_element *e, const uint32_t *at,
+                          const strut_element_pose *pose, strut_pen pen) {
+  bool line = e->strain == STRUT_STRAIN_OFFSET;
+  double side = line ? -pose->strain : pose->strain, way[3][2];
+  for (int c = 0; c < 2; c++) {
+    way[0][c] = d->q[at[0] + (uint32_t)c];
+    way[1][c] = way[0][c] + side * pose->b[line ? c : 2 + c];
+    way[2][c] = line ? way[1][c] : d->q[at[1] + (uint32_t)c];
+  }
+  pen.dash[0] = pen.dash[1] = 2.0 * pen.width;
+  draw_places(d, way, 3, pen);
+}
 
-enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
+/* The arc of a foot, as far as it may meet the ground while its member stands. */
+static void draw_foot(const drawing *d, const strut_element *e, const uint32_t *at, strut_pen pen) {
+  enum { POINTS = 33 };
+  const double *from = d->q + at[0], *to = d->q + at[1];
+  double length = strut_distance(from, to), way[POINTS][2];
+  double ux = (to[0] - from[0]) / length, uy = (to[1] - from[1]) / length;
+  for (int k = 0; k < POINTS; k++) {
+    double angle = STRUT_PI * (0.8 * k / (POINTS - 1) - 0.4), c = cos(angle), s = sin(angle);
+    way[k][0] = from[0] + e->radius * (ux - (c * ux - s * uy));
+    way[k][1] = from[1] + e->radius * (uy - (s * ux + c * uy));
+  }
+  draw_places(d, way, POINTS, pen);
+}
+
+/* Hinges, stops that act, distances, feet, and circles of guides. */
+static void draw_elements(const drawing *d) {
+  const strut_element_table *elements = &d->model->elements;
+  const strut_pen rim = {.colour = strut_grey(0.5), .width = 0.6 * d->thin};
+  strut_pen pen = {.colour = thing_colour(d, 1)};
+  strut_element_pose pose;
+  for (int32_t i = 0; i < elements->count; i++) {
+    const strut_element *e = &elements->element[i];
+    const uint32_t *at = elements->at + e->first;
+    if (e->strain == STRUT_STRAIN_WRAP && e->role == STRUT_ELEMENT_MEMBER)
+      for (int32_t k = 1; k + 1 < e->nodes; k++)
+        draw_circle(d, d->q + at[k], e->radius * d->window->scale, strut_grey(0.93), &rim);
+    if (e->role == STRUT_ELEMENT_MEMBER || e->role == STRUT_ELEMENT_CELL ||
+        e->role == STRUT_ELEMENT_COLLISION || e->role == STRUT_ELEMENT_CONTACT ||
+        e->role == STRUT_ELEMENT_LOAD)
+      continue;
+    strut_element_evaluate(d->model, i, d->model->members.rest, d->q, (double)NAN, &pose);
+    bool thin = e->role == STRUT_ELEMENT_HINGE || e->role == STRUT_ELEMENT_DISTANCE;
+    pen.width = (thin ? 1.0 : 1.6) * d->thin / (1 + d->style->thinness);
+    if (e->role == STRUT_ELEMENT_DISTANCE)
+      draw_distance(d, e, at, &pose, pen);
+    else if (e->role == STRUT_ELEMENT_FOOT)
+      draw_foot(d, e, at, pen);
+    else if (e->role == STRUT_ELEMENT_HINGE)
+      draw_hinge(d, &d->model->scene->hinges[e->item], pose.strain, pen);
+    else if (pose.acts)
+      draw_stop(d, (size_t)e->item, pen);
+  }
+}
+
+/* Nodes, and masses that slide along members: filled circles on them. */
+static void draw_masses(const drawing *d) {
+  const strut_scene *scene = d->model->scene;
+  bool one = d->style->colouring == STRUT_COLOUR_ONE;
+  double thin = d->thin / (1.0 + d->style->thinness), at[2];
+  const strut_pen edge = {.colour = one ? d->style->colour : strut_grey(0.1), .width = 0.8 * thin};
+  const strut_pen rim = {.colour = strut_grey(1), .width = 0.5 * thin};
+  for (int32_t i = 0; i < d->model->node_count && !d->style->no_nodes; i++)
+    draw_circle(d, d->q + 2 * i, 1.9 * thin, strut_grey(1), &edge);
+  for (size_t i = 0; i < scene->sliding_count; i++) {
+    const int32_t *node = scene->members[scene->sliding_masses[i].member].node;
+    double far = strut_sliding_mass_share(scene, i, d->style->time);
+    for (int c = 0; c < 2; c++)
+      at[c] = (1.0 - far) * d->q[2 * node[0] + c] + far * d->q[2 * node[1] + c];
+    draw_circle(d, at, 3.2 * thin, thing_colour(d, 1), &rim);
+  }
+}
+
+void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
+                          const strut_model *model, const double *positions,
+                          const strut_structure_style *style) {
+  drawing d = {canvas, window, model, positions, style, 1.0};
+  d.thin = find_thinning(&d);
+  if (!style->no_supports) draw_supports(&d);
+  draw_cells(&d);
+  draw_collisions(&d);
+  draw_kind(&d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
+  draw_kind(&d, STRUT_SPRING, false);
+  draw_kind(&d, STRUT_CABLE, true);
+  draw_kind(&d, STRUT_CABLE, false);
+  if (d.thin >= SMALLEST) {
+    draw_elements(&d);
+    draw_masses(&d);
+  }
+  if (style->node_names) strut_draw_names(canvas, window, model, positions, style->member_names);
+}
+
+/* ---- names ---- */
 
 static const double NODE_GAP = 3.6, MEMBER_GAP = 1.5, NAME_SIZE = 7.5, NEAR_MIDDLE = 6.0; /* [pt] */
 
-static void draw_name(strut_canvas *canvas, const strut_window *window, const double at[2],
-                      double angle, double gap, const char *name) {
-  strut_draw_label(canvas, &(strut_label){.text = name,
-                                          .font = {.size = NAME_SIZE,
-                                                   .italic = true,
-                                                   .halo = strut_faded(strut_grey(1), 0.85)},
-                                          .at = {at[0], at[1]},
-                                          .gap = gap,
-                                          .angle = angle,
-                                          .steady = 0.2,
-                                          .inside = window->box});
+static void draw_name(const drawing *d, const double at[2], double angle, double gap,
+                      const char *name) {
+  const strut_font font = {
+      .size = NAME_SIZE, .italic = true, .halo = strut_faded(strut_grey(1), 0.85)};
+  strut_draw_label(d->canvas, &(strut_label){.text = name,
+                                             .font = font,
+                                             .at = {at[0], at[1]},
+                                             .gap = gap,
+                                             .angle = angle,
+                                             .steady = 0.2,
+                                             .inside = d->window->box});
 }
 
 /* Names stand outside of a structure rather than inside: away from its middle, else at the upper right. */
@@ -245,170 +433,131 @@ static double find_outwards(const double at[2], const double middle[2]) {
 
 void strut_draw_names(strut_canvas *canvas, const strut_window *window, const strut_model *model,
                       const double *positions, bool members) {
+  enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
+  const drawing d = {canvas, window, model, positions, NULL, 1.0};
   const strut_scene *scene = model->scene;
-  double middle[2] = {0.0, 0.0}, at[2];
+  double middle[2] = {0.0, 0.0}, at[2], ends[2][2];
   if (scene->node_count > MOST_NAMED) return;
   for (size_t i = 0; i < scene->node_count; i++) {
     strut_window_point(window, positions + 2 * i, at);
-    for (int d = 0; d < 2; d++) middle[d] += at[d] / (double)scene->node_count;
+    for (int c = 0; c < 2; c++) middle[c] += at[c] / (double)scene->node_count;
   }
   for (size_t i = 0; i < scene->node_count; i++) {
     strut_window_point(window, positions + 2 * i, at);
-    draw_name(canvas, window, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
+    draw_name(&d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
   }
   for (size_t j = 0; j < scene->member_count && members; j++) {
-    double ends[2][2]; /* the name stands at the middle of the longest segment */
-    strut_longest_segment(window, model, positions, j, ends);
-    for (int d = 0; d < 2; d++) at[d] = 0.5 * (ends[0][d] + ends[1][d]);
-    draw_name(canvas, window, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
+    find_longest(&d, j, ends); /* the name stands at its middle */
+    for (int c = 0; c < 2; c++) at[c] = 0.5 * (ends[0][c] + ends[1][c]);
+    draw_name(&d, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
   }
 }
 
-/* Members and nodes. */
+/* ---- arrows ---- */
 
-/* Factor for line widths, from the mean length of the members on the page. */
-static double thinning(const strut_window *window, const strut_model *model,
-                       const double *positions) {
-  double sum = 0;
-  size_t count = model->scene->member_count, finite = 0;
-  for (size_t j = 0; j < count; j++)
-    for (size_t k = 0; k < count_segments(model, j); k++) {
-      double ends[2][2];
-      strut_window_segment(window, model, positions, j, k, ends);
-      double length = strut_distance(ends[0], ends[1]);
-      if (isfinite(length)) sum += length, finite++;
-    }
-  return finite ? fmax(THINNEST, fmin(1.0, sum / (double)finite / FULL_LENGTH)) : 1.0;
-}
+static const double NODE = 2.3; /* radius of a node as drawn [pt] */
 
-static bool is_slack(const strut_drawing *drawing, size_t j) {
-  if (drawing->model->scene->members[j].kind != STRUT_CABLE) return false;
-  if (drawing->style->slack_forces) return !(fabs(drawing->style->slack_forces[j]) > 0);
-  return strut_member_path_length(drawing->model, (int32_t)j, drawing->q) <
-         drawing->model->members.rest[j] * (1 - 1e-12);
-}
-
-static double width_of(const strut_drawing *drawing, strut_member_kind kind) {
-  double width = kind == STRUT_BAR ? BAR : kind == STRUT_SPRING ? SPRING : CABLE;
-  return width * drawing->thin / (1.0 + drawing->style->thinness) + drawing->style->fringe;
-}
-
-static bool is_shaded(const strut_structure_style *style) {
-  return style->colouring == STRUT_COLOUR_FORCE && style->values;
-}
-
-static strut_colour colour_of(const strut_drawing *drawing, size_t j, bool slack) {
-  const strut_structure_style *style = drawing->style;
-  strut_member_kind kind = drawing->model->scene->members[j].kind;
-  if (style->colouring == STRUT_COLOUR_ONE) return style->colour;
-  if (slack) return strut_grey(0.55);
-  if (is_shaded(style)) {
-    double part = style->limit > 0 ? style->values[j] / style->limit : 0;
-    return strut_palette_signed(isfinite(part) ? round(SHADES * part) / SHADES : 0);
-  }
-  return kind == STRUT_BAR      ? strut_grey(0.15)
-         : kind == STRUT_SPRING ? strut_palette_thing(0)
-                                : strut_palette_thing(1);
-}
-
-static strut_pen pen_of(const strut_drawing *drawing, size_t j, bool slack) {
-  strut_pen pen = {.colour = strut_faded(colour_of(drawing, j, slack), drawing->opacity),
-                   .width = width_of(drawing, drawing->model->scene->members[j].kind),
-                   .butt = slack || drawing->style->fringe > 0.0};
-  if (drawing->style->fringe > 0.0)
-    pen.dash[0] = pen.dash[1] = FRINGE_DASH;
-  else if (slack)
-    pen.dash[0] = 2.5 * drawing->thin, pen.dash[1] = 2.0 * drawing->thin;
-  return pen;
-}
-
-static bool is_same_pen(const strut_pen *one, const strut_pen *two) {
-  return memcmp(&one->colour, &two->colour, sizeof one->colour) == 0 && one->width == two->width &&
-         one->dash[0] == two->dash[0];
-}
-
-/*
- * Members of a kind; of shaded ones a dark edge first, which separates light colours from the paper. Segments wait for
- * the next one with another pen, since one piece makes a small file.
- */
-static void draw_kind(strut_canvas *canvas, const strut_drawing *drawing, strut_member_kind kind,
-                      bool slack) {
-  const strut_member *members = drawing->model->scene->members;
-  const strut_pen casing = {.colour = strut_faded(strut_grey(0.1), drawing->opacity),
-                            .width = width_of(drawing, kind) + CASING * drawing->thin};
-  double ends[2 * BATCH][2];
-  strut_pen last = casing;
-  size_t count = 0;
-  for (int pass = is_shaded(drawing->style) && kind != STRUT_CABLE ? 0 : 1; pass < 2; pass++)
-    for (size_t j = 0; j < drawing->model->scene->member_count; j++) {
-      if (members[j].kind != kind || is_slack(drawing, j) != slack) continue;
-      const strut_pen pen = pass ? pen_of(drawing, j, slack) : casing;
-      for (size_t k = 0; k < count_segments(drawing->model, j); k++) {
-        if (count == BATCH || !is_same_pen(&pen, &last)) {
-          strut_draw_segments(canvas, (const double(*)[2])ends, count, last);
-          count = 0;
-        }
-        last = pen;
-        strut_window_segment(drawing->window, drawing->model, drawing->q, j, k, ends + 2 * count++);
-      }
-    }
-  strut_draw_segments(canvas, (const double(*)[2])ends, count, last);
-}
-
-void strut_draw_round(strut_canvas *canvas, const strut_drawing *drawing, const double place[2],
-                      double radius, const strut_fill *fill, const strut_pen *pen) {
-  double at[2];
-  strut_window_point(drawing->window, place, at);
-  strut_draw_circle(canvas, at[0], at[1], radius, fill, pen);
-}
-
-/* Masses that slide along members: filled circles on them. */
-static void draw_sliding_masses(strut_canvas *canvas, const strut_drawing *drawing) {
-  const strut_scene *scene = drawing->model->scene;
-  double thin = drawing->thin / (1.0 + drawing->style->thinness), at[2];
-  const strut_fill fill = {.colour = strut_thing_colour(drawing, 1)};
-  const strut_pen pen = {.colour = strut_faded(strut_grey(1), drawing->opacity),
-                         .width = 0.5 * thin};
-  for (size_t i = 0; i < scene->sliding_count; i++) {
-    const int32_t *node = scene->members[scene->sliding_masses[i].member].node;
-    double far = strut_sliding_mass_share(scene, i, drawing->style->time);
-    for (int c = 0; c < 2; c++)
-      at[c] = (1.0 - far) * drawing->q[2 * node[0] + c] + far * drawing->q[2 * node[1] + c];
-    strut_draw_round(canvas, drawing, at, 3.2 * thin, &fill, &pen);
+/* From where a shape was to its nodes, unless there are many. */
+static void draw_displacements(strut_canvas *canvas, const strut_window *window,
+                               const strut_shape *shape) {
+  enum { LED = 200 };
+  for (int32_t i = 0; i < shape->model->node_count && shape->model->node_count <= LED; i++) {
+    double from[2], to[2];
+    strut_window_point(window, shape->from + 2 * i, from);
+    strut_window_point(window, shape->q + 2 * i, to);
+    double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
+    double part = length > 3.0 * NODE ? 1.0 - NODE / length : 1.0;
+    if (!(length < 2.0 * NODE))
+      strut_draw_arrow(canvas, from[0], from[1], to[0] - (1 - part) * x, to[1] - (1 - part) * y, 5,
+                       strut_displacement_pen());
   }
 }
 
-static void draw_nodes(strut_canvas *canvas, const strut_drawing *drawing) {
-  double thin = drawing->thin / (1.0 + drawing->style->thinness);
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), drawing->opacity)};
-  strut_colour edge =
-      drawing->style->colouring == STRUT_COLOUR_ONE ? drawing->style->colour : strut_grey(0.1);
-  const strut_pen pen = {.colour = strut_faded(edge, drawing->opacity), .width = 0.8 * thin};
-  for (int32_t i = 0; i < drawing->model->node_count; i++)
-    strut_draw_round(canvas, drawing, drawing->q + 2 * i, 1.9 * thin, &white, &pen);
+/* Forces of the ground on its contacts: normal and friction. */
+static void draw_forces(strut_canvas *canvas, const strut_window *window,
+                        const strut_shape *shape) {
+  const strut_contact_table *contacts = &shape->model->contacts;
+  const strut_pen pen = {.colour = strut_palette_thing(1), .width = 1.1};
+  for (int32_t i = 0; i < contacts->count && shape->force_limit > 0; i++) {
+    double at[2], normal = shape->forces[i][0] / shape->force_limit * shape->arrow;
+    double along = shape->forces[i][1] / shape->force_limit * shape->arrow;
+    const strut_contact_pose pose = strut_contact_pose_at(contacts, i, shape->q, NULL, -1);
+    const double *n = pose.axes.normal, *t = pose.axes.tangent;
+    strut_window_point(window, shape->q + contacts->at[i], at);
+    if (fabs(normal) > 0.3) /* the arrow's tip is at the node */
+      strut_draw_arrow(canvas, at[0] - normal * n[0], at[1] + normal * n[1], at[0], at[1], 5, pen);
+    if (fabs(along) > 0.3)
+      strut_draw_arrow(canvas, at[0], at[1], at[0] + along * t[0], at[1] - along * t[1], 5, pen);
+  }
 }
 
-void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
-                          const strut_model *model, const double *positions,
-                          const strut_structure_style *style) {
-  const strut_drawing d = {.window = window,
-                           .model = model,
-                           .q = positions,
-                           .style = style,
-                           .thin = thinning(window, model, positions),
-                           .opacity = style->opacity > 0 ? style->opacity : 1.0};
-  if (!style->no_supports)
-    draw_supports(canvas, window, model, positions, fmax(d.thin, SMALLEST), d.opacity);
-  strut_draw_cells(canvas, &d);
-  strut_draw_collisions(canvas, &d);
-  draw_kind(canvas, &d, STRUT_BAR, false); /* thin ones above thick ones, to be seen along a bar */
-  draw_kind(canvas, &d, STRUT_SPRING, false);
-  draw_kind(canvas, &d, STRUT_CABLE, true);
-  draw_kind(canvas, &d, STRUT_CABLE, false);
-  if (d.thin >= SMALLEST) {
-    strut_draw_elements(canvas, &d);
-    if (!style->no_nodes) draw_nodes(canvas, &d);
-    draw_sliding_masses(canvas, &d);
+void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
+  strut_draw_structure(canvas, window, shape->model, shape->q, &shape->style);
+  if (shape->from) draw_displacements(canvas, window, shape);
+  if (shape->forces) draw_forces(canvas, window, shape);
+}
+
+/* ---- grounds ---- */
+
+static const double DEPTH = 8.0; /* of the hatching below a surface [pt] */
+
+/* Hatching to the right of each segment of (count) points on the page. */
+static void hatch_below(strut_canvas *canvas, const double (*points)[2], size_t count) {
+  const strut_fill fill = {
+      .colour = strut_grey(0.95), .hatch = STRUT_HATCH_RISING, .hatch_colour = strut_grey(0.72)};
+  for (size_t k = 0; k + 1 < count; k++) {
+    const double *a = points[k], *b = points[k + 1];
+    double x = b[0] - a[0], y = b[1] - a[1], length = sqrt(x * x + y * y);
+    if (!(length > 0.0)) continue;
+    double across[2] = {-y / length * DEPTH, x / length * DEPTH}; /* the page's y points down */
+    const double strip[4][2] = {{a[0], a[1]},
+                                {b[0], b[1]},
+                                {b[0] + across[0], b[1] + across[1]},
+                                {a[0] + across[0], a[1] + across[1]}};
+    strut_draw_polygon(canvas, strip, 4, &fill, NULL);
   }
-  if (style->node_names) strut_draw_names(canvas, window, model, positions, style->member_names);
+}
+
+/* The belt's direction, within the solid below the middle of a line. */
+static void draw_belt(strut_canvas *canvas, const double (*points)[2], double speed) {
+  const double *a = points[0], *b = points[1];
+  double x = b[0] - a[0], y = b[1] - a[1], length = sqrt(x * x + y * y);
+  if (!(length > 0.0) || speed == 0.0) return;
+  double along[2] = {x / length, y / length}, sign = speed > 0.0 ? 12.0 : -12.0;
+  double at[2] = {0.5 * (a[0] + b[0]) - 1.9 * DEPTH * along[1],
+                  0.5 * (a[1] + b[1]) + 1.9 * DEPTH * along[0]};
+  strut_draw_arrow(canvas, at[0] - sign * along[0], at[1] - sign * along[1],
+                   at[0] + sign * along[0], at[1] + sign * along[1], 5,
+                   (strut_pen){.colour = strut_grey(0.3), .width = 0.9});
+}
+
+static void draw_one(strut_canvas *canvas, const strut_window *window, const strut_ground *ground,
+                     const double *place) {
+  double width = window->box.width / window->scale, height = window->box.height / window->scale;
+  const double middle[2] = {window->left + 0.5 * width, window->top - 0.5 * height};
+  strut_arena arena = {0};
+  double(*points)[2] = strut_arena_allocate(&arena, strut_outline_most(ground), sizeof *points);
+  if (points) {
+    size_t count = strut_outline_of(ground, place, middle, 0.7 * (width + height), points);
+    for (size_t k = 0; k < count; k++) strut_window_point(window, points[k], points[k]);
+    hatch_below(canvas, (const double(*)[2])points, count);
+    strut_draw_line(canvas, (const double(*)[2])points, count,
+                    (strut_pen){.colour = strut_grey(0.3), .width = 0.8});
+    if (ground->shape == STRUT_GROUND_LINE)
+      draw_belt(canvas, (const double(*)[2])points, ground->belt_speed);
+  }
+  strut_arena_free(&arena);
+}
+
+void strut_draw_ground(strut_canvas *canvas, const strut_window *window, const strut_model *model,
+                       double time) {
+  const strut_scene *scene = model->scene;
+  double place[2];
+  strut_canvas_clip(canvas, window->box);
+  if (scene->ground.present) draw_one(canvas, window, &scene->ground, NULL);
+  for (size_t g = 0; g < scene->ground_count; g++) {
+    if (!isnan(time)) strut_ground_place(scene, g, time, place);
+    draw_one(canvas, window, &scene->grounds[g], isnan(time) ? NULL : place);
+  }
+  strut_canvas_unclip(canvas);
 }

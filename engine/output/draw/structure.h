@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Structures drawn to scale: members, nodes, supports, ground, forces and node paths.
- */
+/** Structures drawn to scale: members, nodes, supports, and what they are seen through. */
 #ifndef STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
 #define STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
 
@@ -26,22 +24,17 @@ STRUT_API void strut_bounds_widen(strut_bounds *bounds, const double low[2], con
 /** Widens the bounds by all nodes of a shape q (model->length). */
 STRUT_API void strut_bounds_add(strut_bounds *bounds, const strut_model *model,
                                 const double *positions);
+/** The bounds of one shape. */
+STRUT_API strut_bounds strut_bounds_of(const strut_model *model, const double *positions);
 /** Makes the bounds as large as `size`, about their middle and from their foot on. */
 STRUT_API void strut_bounds_share(strut_bounds *bounds, const double size[2]);
 /** The larger extent [m]. */
 STRUT_API double strut_bounds_extent(const strut_bounds *bounds);
-/**
- * The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows.
- */
+/** The window in `box` that shows the bounds with `margin` [pt] around them for names and arrows. */
 STRUT_API strut_window strut_window_fit(strut_box box, strut_bounds bounds, double margin);
 /** Maps a point of the plane [m] to the page [pt]. */
 STRUT_API void strut_window_point(const strut_window *window, const double position[2],
                                   double point[2]);
-
-/** Where the ends of a member's segment k, which is one more than a running cable has guides, are on the page [pt]. */
-STRUT_API void strut_window_segment(const strut_window *window, const strut_model *model,
-                                    const double *positions, size_t member, size_t k,
-                                    double ends[2][2]);
 
 typedef enum strut_colouring {
   STRUT_COLOUR_KIND,  /* bars dark, springs and cables by kind */
@@ -57,7 +50,6 @@ typedef struct strut_structure_style {
   const double
       *slack_forces;   /* (member_count) [N]: a cable with 0 is drawn slack; NULL: by length */
   strut_colour colour; /* for STRUT_COLOUR_ONE */
-  double opacity;      /* 0: 1 */
   double thinness;     /* widths are divided by 1 + thinness */
   double fringe;       /* added to widths: members dashed, to be seen below the same ones [pt] */
   bool node_names, no_nodes, no_supports;
@@ -73,23 +65,5 @@ typedef struct strut_structure_style {
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *positions,
                                     const strut_structure_style *style);
-/**
- * Names beside nodes and, with `members`, beside members too, as the style's node_names and member_names
- * do, for callers that name a structure without drawing it. None where there are more than 60 nodes.
- */
-STRUT_API void strut_draw_names(strut_canvas *canvas, const strut_window *window,
-                                const strut_model *model, const double *positions, bool members);
-/** The lines and bodies of all grounds across the window, where those that are shaken are at `time` [s]; NAN: as drawn. */
-STRUT_API void strut_draw_ground(strut_canvas *canvas, const strut_window *window,
-                                 const strut_model *model, double time);
-/**
- * Forces of the ground on its contacts as arrows: (contacts, 2) normal and friction [N];
- * `longest` is the length [pt] of an arrow of `limit` [N].
- */
-STRUT_API void strut_draw_contact_forces(strut_canvas *canvas, const strut_window *window,
-                                         const strut_model *model, const double *positions,
-                                         const double (*force)[2], double limit, double longest);
-/** A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
-STRUT_API void strut_draw_yardstick(strut_canvas *canvas, const strut_window *window);
 
 #endif

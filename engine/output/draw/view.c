@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/draw/painter.h"
-
+/* Views: panels with structures to scale, and what stands below them. */
 #include <math.h>
 #include <string.h>
+
+#include "engine/output/draw/painter.h"
 
 static const double GAP = 12, LEAST = 46, CAPTION = 26; /* [pt] */
 static const double NARROWEST = 98, SMALLEST = 72;      /* panels [pt] */
 static const double COVERED = 0.22;                     /* of a view, by names */
 static const double TALLEST = 1.2,
                     LOWEST = 0.6; /* of drawings: height over width at most, at least */
-static const double DOT = 0.3,
-                    NODE = 2.3; /* a path seen as a dot; radius of a node as drawn [pt] */
-enum { LED = 200, COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
+static const double DOT = 0.3;    /* a path seen as a dot [pt] */
+enum { COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
 
 /* ---- one view ---- */
 
 /* True if names cover little of what is seen. */
 static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                       const strut_model *model) {
-  double covered = 0.0, seen = COVERED;
+  double covered = 0.0, seen = COVERED, width, height;
   for (int d = 0; d < 2; d++)
     seen *= (view->bounds.high[d] - view->bounds.low[d]) * window->scale + 2 * view->margin;
   for (int32_t i = 0; i < model->node_count; i++) {
-    double width, height;
     strut_text_size(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
                     &height);
     covered += width * height;
@@ -30,35 +29,23 @@ static bool names_fit(strut_canvas *canvas, const strut_window *window, const st
   return covered <= seen;
 }
 
-strut_pen strut_displacement_pen(void) {
-  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
-}
-
-/* Moves both ends of a line on the page towards each other; of an arrow its tip. */
-static void shorten(double ends[2][2], double by, bool arrow) {
-  double x = ends[1][0] - ends[0][0], y = ends[1][1] - ends[0][1], length = hypot(x, y);
-  if (!(length > 3.0 * by) || !(by > 0.0)) return;
-  const double step[2] = {by / length * x, by / length * y};
-  for (int d = 0; d < 2; d++) {
-    if (!arrow) ends[0][d] += step[d];
-    ends[1][d] -= step[d];
-  }
-}
-
-/* From a trail's first point to its last. */
+/* From a trail's first point to its last, shortened by its gap where there is room: at the tip of an arrow, else at both ends. */
 static void draw_straight(strut_canvas *canvas, const strut_window *window,
                           const strut_trail *trail) {
   bool arrow = trail->kind == STRUT_TRAIL_ARROW;
-  double ends[2][2];
-  strut_window_point(window, trail->at[0], ends[0]);
-  strut_window_point(window, trail->at[trail->count - 1], ends[1]);
-  if (arrow && hypot(ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]) < fmax(2 * trail->gap, 2))
-    return;
-  shorten(ends, trail->gap, arrow);
-  if (arrow)
-    strut_draw_arrow(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], 5, trail->pen);
-  else
-    strut_draw_segment(canvas, ends[0][0], ends[0][1], ends[1][0], ends[1][1], trail->pen);
+  double from[2], to[2];
+  strut_window_point(window, trail->at[0], from);
+  strut_window_point(window, trail->at[trail->count - 1], to);
+  double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
+  double part = trail->gap > 0.0 && length > 3.0 * trail->gap ? trail->gap / length : 0.0;
+  if (arrow && length < fmax(2 * trail->gap, 2)) return;
+  to[0] -= part * x, to[1] -= part * y;
+  if (arrow) {
+    strut_draw_arrow(canvas, from[0], from[1], to[0], to[1], 5, trail->pen);
+  } else {
+    from[0] += part * x, from[1] += part * y;
+    strut_draw_segment(canvas, from[0], from[1], to[0], to[1], trail->pen);
+  }
 }
 
 /* Through points [first, last], in pieces of the array's size. */
@@ -78,21 +65,20 @@ static void draw_part(strut_canvas *canvas, const strut_window *window, const st
 
 /* A path that is no longer than a dot is not drawn. */
 static bool is_visible(const strut_window *window, const strut_trail *trail) {
+  const double *at = trail->at[0];
   for (size_t i = 1; i < trail->count; i++)
-    if (hypot(trail->at[i][0] - trail->at[0][0], trail->at[i][1] - trail->at[0][1]) *
-            window->scale >
-        DOT)
-      return true;
+    if (hypot(trail->at[i][0] - at[0], trail->at[i][1] - at[1]) * window->scale > DOT) return true;
   return false;
 }
 
 static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *trail) {
-  size_t shades = trail->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1;
-  if (trail->kind == STRUT_TRAIL_ARROW || trail->count == 2) draw_straight(canvas, window, trail);
-  if (trail->kind == STRUT_TRAIL_ARROW || trail->count <= 2 || !is_visible(window, trail)) return;
-  for (size_t shade = 0; shade < shades; shade++) {
-    size_t first = shade * (trail->count - 1) / shades,
-           last = (shade + 1) * (trail->count - 1) / shades;
+  size_t shades = trail->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1, all = trail->count - 1;
+  if (trail->kind == STRUT_TRAIL_ARROW || trail->count == 2) {
+    draw_straight(canvas, window, trail);
+    return;
+  }
+  for (size_t shade = 0; trail->count && is_visible(window, trail) && shade < shades; shade++) {
+    size_t first = shade * all / shades, last = (shade + 1) * all / shades;
     strut_pen pen = trail->pen;
     if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
     if (last > first) draw_part(canvas, window, trail, first, last, pen);
@@ -105,18 +91,6 @@ static void draw_trails(strut_canvas *canvas, const strut_window *window, const 
     if (view->trails[i].below == below) draw_trail(canvas, window, &view->trails[i]);
 }
 
-/* From where a shape was to its nodes, unless there are many. */
-static void draw_arrows(strut_canvas *canvas, const strut_window *window,
-                        const strut_shape *shape) {
-  const strut_trail_kind kind = STRUT_TRAIL_ARROW;
-  for (int32_t i = 0;
-       shape->from && i < shape->model->node_count && shape->model->node_count <= LED; i++) {
-    double at[2][2] = {{shape->from[2 * i], shape->from[2 * i + 1]},
-                       {shape->q[2 * i], shape->q[2 * i + 1]}};
-    draw_trail(canvas, window, &(strut_trail){kind, 2, at, strut_displacement_pen(), NODE, false});
-  }
-}
-
 /* More than the margin takes below a view, for the forces of the ground [pt]. */
 static double room_for_arrows(const strut_panel *view) {
   double room = 0.0;
@@ -125,27 +99,34 @@ static double room_for_arrows(const strut_panel *view) {
   return room;
 }
 
+/* A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
+static void draw_yardstick(strut_canvas *canvas, const strut_window *window) {
+  double room = 0.3 * window->box.width / window->scale, power = pow(10.0, floor(log10(room)));
+  /* The largest of 1, 2 or 5 times a power of ten that fits. */
+  double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
+  double x = window->box.x + 3, y = window->box.y + window->box.height - 4,
+         end = x + length * window->scale;
+  const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
+  if (!isfinite(length) || !(length > 0)) return;
+  strut_draw_segment(canvas, x, y, end, y, pen);
+  strut_draw_segment(canvas, x, y - 2, x, y + 2, pen);
+  strut_draw_segment(canvas, end, y - 2, end, y + 2, pen);
+  strut_draw_text(canvas, 0.5 * (x + end), y - 2, strut_quantity_of(length, 3, "m").text,
+                  (strut_font){.size = 7, .across = 0.5, .down = 1, .halo = strut_grey(1)});
+}
+
 strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_panel *view) {
+  const strut_shape *end = view->shapes + view->shape_count;
   strut_box inside = box;
   inside.height -= room_for_arrows(view);
   strut_window window = strut_window_fit(inside, view->bounds, view->margin);
   window.box = box;
   strut_canvas_clip(canvas, box);
-  for (size_t i = 0; i < view->shape_count; i++) {
-    const strut_shape *shape = &view->shapes[i];
-    if (shape->ground)
-      strut_draw_ground(canvas, &window, shape->model,
-                        shape->moving ? shape->style.time : (double)NAN);
-  }
+  for (const strut_shape *s = view->shapes; s < end; s++)
+    if (s->ground)
+      strut_draw_ground(canvas, &window, s->model, s->moving ? s->style.time : (double)NAN);
   draw_trails(canvas, &window, view, true);
-  for (size_t i = 0; i < view->shape_count; i++) {
-    const strut_shape *s = &view->shapes[i];
-    strut_draw_structure(canvas, &window, s->model, s->q, &s->style);
-    draw_arrows(canvas, &window, s);
-    if (s->forces)
-      strut_draw_contact_forces(canvas, &window, s->model, s->q, s->forces, s->force_limit,
-                                s->arrow);
-  }
+  for (const strut_shape *s = view->shapes; s < end; s++) strut_draw_shape(canvas, &window, s);
   draw_trails(canvas, &window, view, false);
   for (size_t i = 0; i < view->mark_count; i++) {
     strut_label mark = view->marks[i];
@@ -154,16 +135,33 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
     strut_draw_label(canvas, &mark);
   }
   strut_canvas_unclip(canvas);
-  for (size_t i = 0; i < view->shape_count; i++) {
-    const strut_shape *s = &view->shapes[i];
+  for (const strut_shape *s = view->shapes; s < end; s++)
     if (s->names && names_fit(canvas, &window, view, s->model))
       strut_draw_names(canvas, &window, s->model, s->q, s->style.member_names);
-  }
-  if (view->yardstick) strut_draw_yardstick(canvas, &window);
+  if (view->yardstick) draw_yardstick(canvas, &window);
   return window;
 }
 
 /* ---- several, in rows ---- */
+
+/* What is written above a view; draws it if `draw`. */
+static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
+                            bool draw) {
+  const struct {
+    const char *text;
+    strut_font font;
+  } lines[] = {
+      {panel->title, {.size = 8.5, .bold = true, .width = box.width, .lines = 2}},
+      {panel->note && *panel->note ? panel->note : NULL,
+       {.size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4}}};
+  double y = 0.0;
+  for (int i = 0; i < 2; i++) {
+    if (!lines[i].text) continue;
+    if (draw) strut_draw_text(canvas, box.x, box.y + y, lines[i].text, lines[i].font);
+    y += strut_text_height(canvas, lines[i].text, lines[i].font) + 1;
+  }
+  return y;
+}
 
 /* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
 typedef struct rows {
@@ -171,46 +169,11 @@ typedef struct rows {
   double width, height, drawing, gap; /* [pt] */
 } rows;
 
-/* What is written above a view; draws it if `draw`. */
-static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
-                            bool draw) {
-  const strut_font bold = {.size = 8.5, .bold = true, .width = box.width};
-  const strut_font plain = {
-      .size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4};
-  char fitted[STRUT_FITTED_TEXT];
-  double width, line = 0.0, y = 0.0;
-  if (panel->title) {
-    strut_text_size(canvas, "0", bold, &width, &line);
-    strut_text_fit(canvas, panel->title, bold, box.width, 2 * line + 1, fitted);
-    strut_text_size(canvas, fitted, bold, &width, &line);
-    if (draw) strut_draw_text(canvas, box.x, box.y, fitted, bold);
-    y += line + 1;
-  }
-  if (panel->note && *panel->note) {
-    strut_text_size(canvas, panel->note, plain, &width, &line);
-    if (draw) strut_draw_text(canvas, box.x, box.y + y, panel->note, plain);
-    y += line + 1;
-  }
-  return y;
-}
-
 /* What the views of several panels have to show. */
 typedef struct extent {
   double size[2];       /* [m] */
   double margin, below; /* around it, and more for arrows [pt] */
 } extent;
-
-static extent extent_of(const strut_panel *panels, size_t count) {
-  extent e = {0};
-  for (size_t i = 0; i < count; i++) {
-    const strut_panel *view = &panels[i];
-    for (int d = 0; d < 2; d++)
-      e.size[d] = fmax(e.size[d], view->bounds.high[d] - view->bounds.low[d]);
-    e.margin = fmax(e.margin, view->margin);
-    e.below = fmax(e.below, room_for_arrows(view));
-  }
-  return e;
-}
 
 /* The scale in a drawing of that size [pt/m]. */
 static double scale_in(const extent *self, double width, double height) {
@@ -221,12 +184,18 @@ static double scale_in(const extent *self, double width, double height) {
 /* As many in a row as there is room for; or, on a page with a given aspect, as make the structures largest. */
 static rows arrange(strut_canvas *canvas, double width, const strut_figure *figure,
                     const strut_panel *panels, size_t count) {
-  const extent e = extent_of(panels, count);
   bool small = panels->small, all = small || !(figure->aspect > 0);
   size_t most = small ? SMALL_COLUMNS : figure->columns ? figure->columns : COLUMNS;
   double least = small ? SMALLEST : figure->least_width > 0 ? figure->least_width : NARROWEST;
   double largest = 0, tallest = 0, caption = 0;
   rows best = {.gap = small ? 0.5 * GAP : GAP};
+  extent e = {0};
+  for (const strut_panel *view = panels; view < panels + count; view++) {
+    for (int d = 0; d < 2; d++)
+      e.size[d] = fmax(e.size[d], view->bounds.high[d] - view->bounds.low[d]);
+    e.margin = fmax(e.margin, view->margin);
+    e.below = fmax(e.below, room_for_arrows(view));
+  }
   for (size_t columns = 1; columns <= most && columns <= count; columns++) {
     double deep = (double)((count + columns - 1) / columns);
     double cell = (width - (double)(columns - 1) * best.gap) / (double)columns;
@@ -277,7 +246,7 @@ double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *
     strut_window stick = *window;
     stick.box.x = box.x;
     stick.box.y = box.y + height - stick.box.height - (narrow ? BAR : 0);
-    strut_draw_yardstick(canvas, &stick);
+    draw_yardstick(canvas, &stick);
   }
   return height;
 }
@@ -291,8 +260,8 @@ double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure 
     strut_box cell = {box.x + (double)(i % r.columns) * (r.width + r.gap),
                       box.y + (double)(i / r.columns) * (r.height + r.gap), r.width, r.height};
     write_caption(canvas, cell, &panels[i], true);
-    strut_box drawing = {cell.x, cell.y + r.height - r.drawing, r.width, r.drawing};
-    window = strut_draw_view(canvas, drawing, &panels[i]);
+    cell.y += r.height - r.drawing, cell.height = r.drawing;
+    window = strut_draw_view(canvas, cell, &panels[i]);
   }
   box.y += height + 0.5 * GAP;
   return foot ? height + 0.5 * GAP + strut_draw_foot(canvas, box, figure, &window, draw) : height;

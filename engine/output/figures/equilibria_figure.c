@@ -1,174 +1,25 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Equilibria as cards; their energies as a ladder of levels with the barriers between them. */
 #include <math.h>
-#include <stdio.h>
 
 #include "engine/base/vec.h"
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/statics_figures.h"
 
-/* ---- the energy ladder: stable states as levels, with the barriers between them ---- */
-
-enum { ARC = 41, FEW = 4 };
-
-static const double LEVEL = 0.3;          /* half the width of a level, in places */
-static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie beyond the axis */
-
-/* A ladder being filled in. */
-typedef struct ladder {
-  const strut_equilibria *all;
-  const size_t *chosen; /* (count) states, in the order of their places */
-  size_t count, top_count;
-  double zero;  /* the lowest energy [J] */
-  double *tops; /* heights of the barriers drawn */
-  strut_figure *figure;
-  strut_panel *panel;
-} ladder;
-
-/* The barrier between the states at two places: its top above zero, its height from either side [J]. */
-typedef struct pass {
-  bool known;
-  double top, height[2]; /* NAN: not known from that side */
-} pass;
-
-static double level_energy(const ladder *self, size_t place) {
-  return self->all->list[self->chosen[place]].energy - self->zero;
-}
-
-static pass find_pass(const ladder *self, size_t left, size_t right) {
-  pass p = {.top = (double)NAN, .height = {(double)NAN, (double)NAN}};
-  for (size_t i = 0; i < self->all->barrier_count; i++) {
-    const strut_barrier *barrier = &self->all->barriers[i];
-    size_t from = (size_t)barrier->from, to = (size_t)barrier->to;
-    bool along = from == self->chosen[left] && to == self->chosen[right];
-    bool back = from == self->chosen[right] && to == self->chosen[left];
-    /* The direct pass where it is known, else the lowest path. */
-    double height = isfinite(barrier->direct) ? barrier->direct : barrier->height;
-    if ((!along && !back) || !isfinite(height)) continue;
-    p.known = true;
-    p.height[back] = height;
-    if (along || isnan(p.top)) p.top = height + level_energy(self, along ? left : right);
-  }
-  return p;
-}
-
-/* True if there are barriers between some of the (count) chosen equilibria. */
-static bool is_wanted(const strut_equilibria *all, const size_t *chosen, size_t count) {
-  const ladder l = {.all = all, .chosen = chosen, .count = count};
-  for (size_t left = 0; left < count; left++)
-    for (size_t right = left + 1; right < count; right++)
-      if (find_pass(&l, left, right).known) return true;
-  return false;
-}
-
-/* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
-static void add_arc(ladder *self, strut_series *arcs, size_t left, size_t right, double top) {
-  double most = self->panel->y.high;
-  top = top <= most ? top : 1.3 * most;
-  for (int i = 0; i < ARC; i++) {
-    double t = (double)i / (ARC - 1), low = level_energy(self, t < 0.5 ? left : right);
-    double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
-    strut_add_point(self->figure, arcs,
-                    (double)left + LEVEL + t * ((double)(right - left) - 2 * LEVEL),
-                    low + rise * (top - low));
-  }
-  strut_add_gap(self->figure, arcs);
-}
-
-/* The heights from either side, above the top. */
-static void name_pass(ladder *self, size_t left, const pass *p) {
-  char text[2][80] = {"", ""};
-  for (int back = 0; back < 2; back++)
-    if (isfinite(p->height[back]))
-      snprintf(text[back], sizeof text[back], back ? "\xe2\x86\x90 %s" : "%s \xe2\x86\x92",
-               strut_drawn_quantity(p->height[back], 3, "J").text);
-  strut_label *mark =
-      strut_add_mark(self->figure, self->panel, (double)left + 0.5, p->top,
-                     strut_figure_text(self->figure, "%s%s%s", text[0],
-                                       text[0][0] && text[1][0] ? "\n" : "", text[1]));
-  mark->gap = 2;
-  mark->angle = 0.5 * STRUT_PI;
-  mark->steady = mark->priority = 1;
-}
-
-/*
- * Gathers the tops of the barriers or, with a series, adds those between neighbours, or all others. Among many states,
- * only those between neighbours remain readable.
- */
-static void add_passes(ladder *self, strut_series *arcs, bool far) {
-  for (size_t left = 0; left < self->count; left++)
-    for (size_t right = left + 1; right < self->count; right++) {
-      if (right > left + 1 && self->count > FEW) continue;
-      const pass p = find_pass(self, left, right);
-      if (!p.known || (arcs && far != (right > left + 1))) continue;
-      if (arcs) add_arc(self, arcs, left, right, p.top);
-      if (arcs && !far) name_pass(self, left, &p);
-      if (!arcs) self->tops[self->top_count++] = p.top;
-    }
-}
-
-static void add_level(ladder *self, strut_series *levels, size_t place) {
-  double x = (double)place, energy = level_energy(self, place);
-  bool few = self->count <= FEW;
-  strut_add_point(self->figure, levels, x - LEVEL, energy);
-  strut_add_point(self->figure, levels, x + LEVEL, energy);
-  strut_add_gap(self->figure, levels);
-  strut_label *mark = strut_add_mark(self->figure, self->panel, x, energy,
-                                     self->all->list[self->chosen[place]].name);
-  mark->font.size = few ? 8 : 7, mark->font.bold = few;
-  mark->gap = 3;
-  mark->angle = -0.5 * STRUT_PI;
-  mark->steady = 1;
-  mark->priority = 2;
-}
-
-/* The energy axis, which leaves out single barriers far above all else. */
-static strut_axis find_axis(ladder *self, strut_beyond *beyond) {
-  strut_axis y = {.name = "energy above the lowest", .unit = "J", .low = 0.0, .high = 0.0};
-  for (size_t k = 0; k < self->count; k++) strut_axis_include(&y, level_energy(self, k));
-  strut_axis_include(
-      &y, strut_limit_without_outliers(self->tops, self->top_count, y.high, OUTLYING, beyond));
-  strut_axis_settle(&y, 0.2);
-  return y;
-}
-
-/* Adds a panel with them as levels in the order given, and the barriers between them. */
-static strut_panel *add_ladder(strut_figure *figure, const strut_equilibria *all,
-                               const size_t *chosen, size_t count) {
-  static const strut_pen pens[] = {
-      {.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9},
-      {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
-      {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
-  static const char *const no_names[] = {NULL};
-  ladder l = {.all = all, .chosen = chosen, .count = count, .zero = HUGE_VAL, .figure = figure};
-  strut_beyond beyond = {0};
-  char text[STRUT_BEYOND_TEXT];
-  double wider = count > FEW ? 0.8 : 0.5; /* names are wider than their levels */
-  for (size_t k = 0; k < count; k++) l.zero = fmin(l.zero, all->list[chosen[k]].energy);
-  l.panel = strut_add_panel(figure);
-  l.tops = strut_figure_numbers(figure, count * count);
-  if (!l.tops) return l.panel;
-  add_passes(&l, NULL, false);
-  l.panel->x = (strut_axis){"", "", false, -wider, (double)count - 1 + wider, no_names, 0};
-  l.panel->y = find_axis(&l, &beyond);
-  for (int i = 0; i < 3; i++) {
-    strut_series *series = strut_add_series(figure, l.panel, NULL);
-    series->pen = pens[i];
-    for (size_t k = 0; k < count && i == 2; k++) add_level(&l, series, k);
-    if (i < 2) add_passes(&l, series, i == 1);
-  }
-  l.panel->remark =
-      strut_figure_text(figure, "%s", strut_beyond_text(&beyond, "barrier", "J", text));
-  return l.panel;
-}
-
-/* ---- the figure ---- */
+enum {
+  MOST_CARDS = 12,
+  MOST_SMALL = 6,
+  MOST_PASSES = MOST_CARDS * MOST_CARDS / 2,
+  ARC = 41,
+  FEW = 4
+};
 
 static const double COLLAPSED = 1.0 / 3.0; /* most of the cards with forces beyond the scale */
 static const double ARROW = 20, MARGIN = 17, LEAST_MARGIN = 6, LADDER = 150; /* [pt] */
-static const double ROUNDING = 1e-12; /* of the largest energy: written as zero */
-enum { MOST_CARDS = 12, MOST_SMALL = 6 };
+static const double ROUNDING = 1e-12;     /* of the largest energy: written as zero */
+static const double LEVEL = 0.3;          /* half the width of a level, in places */
+static const double OUTLYING = 1.0 / 3.0; /* so many of the barriers may lie beyond the axis */
 
-/* The equilibria that are drawn. */
 typedef struct picture {
   const strut_model *model;
   const strut_equilibria *all;
@@ -180,6 +31,134 @@ typedef struct picture {
   strut_beyond beyond; /* force_limit */
   strut_figure figure;
 } picture;
+
+static const strut_equilibrium *card_of(const picture *self, size_t place) {
+  return &self->all->list[self->standing[place]];
+}
+
+/* ---- the ladder ---- */
+
+/* A barrier that is drawn between the cards at two places. */
+typedef struct pass {
+  size_t place[2];
+  double level[2], top; /* above the lowest card [J] */
+  const char *text;     /* its heights from either side */
+} pass;
+
+/* From card to card [J]: the direct pass where it is known, else the lowest path; NAN: not known. */
+static double find_height(const picture *self, size_t from, size_t to) {
+  double height = (double)NAN;
+  for (size_t i = 0; i < self->all->barrier_count; i++) {
+    const strut_barrier *b = &self->all->barriers[i];
+    double known = isfinite(b->direct) ? b->direct : b->height;
+    if ((size_t)b->from == self->standing[from] && (size_t)b->to == self->standing[to] &&
+        isfinite(known))
+      height = known;
+  }
+  return height;
+}
+
+/* Among many cards only barriers between neighbours remain readable. Returns how many there are. */
+static size_t find_passes(picture *self, const double *level, pass *passes) {
+  size_t count = 0;
+  for (size_t left = 0; left < self->cards; left++)
+    for (size_t right = left + 1; right < self->cards; right++) {
+      double up = find_height(self, left, right), down = find_height(self, right, left);
+      bool one = isfinite(up), two = isfinite(down);
+      if ((!one && !two) || (right > left + 1 && self->cards > FEW)) continue;
+      passes[count++] =
+          (pass){.place = {left, right},
+                 .level = {level[left], level[right]},
+                 .top = one ? level[left] + up : level[right] + down,
+                 .text = strut_figure_text(
+                     &self->figure, "%s%s%s%s", one ? strut_quantity_of(up, 3, "J").text : "",
+                     one ? two ? " \xe2\x86\x92\n" : " \xe2\x86\x92" : "",
+                     two ? "\xe2\x86\x90 " : "", two ? strut_quantity_of(down, 3, "J").text : "")};
+    }
+  return count;
+}
+
+/* A smooth curve from one level over the barrier to the other, which leaves the frame where it is higher. */
+static void add_arc(picture *self, strut_series *arcs, const pass *p, double most) {
+  double width = (double)(p->place[1] - p->place[0]) - 2 * LEVEL;
+  double top = p->top <= most ? p->top : 1.3 * most;
+  for (int i = 0; i < ARC; i++) {
+    double t = (double)i / (ARC - 1), low = p->level[t >= 0.5];
+    double rise = 0.5 - 0.5 * cos(STRUT_TAU * t); /* 0, 1, 0 */
+    strut_add_point(&self->figure, arcs, (double)p->place[0] + LEVEL + t * width,
+                    low + rise * (top - low));
+  }
+  strut_add_gap(&self->figure, arcs);
+}
+
+static void add_level(picture *self, strut_series *levels, double x, double energy) {
+  strut_add_point(&self->figure, levels, x - LEVEL, energy);
+  strut_add_point(&self->figure, levels, x + LEVEL, energy);
+  strut_add_gap(&self->figure, levels);
+}
+
+static void add_name(picture *self, strut_panel *panel, double x, double y, const char *text,
+                     bool level) {
+  strut_label *mark = strut_add_mark(&self->figure, panel, x, y, text);
+  bool large = level && self->cards <= FEW;
+  mark->font.size = large ? 8 : 7, mark->font.bold = large;
+  mark->gap = level ? 3 : 2;
+  mark->angle = (level ? -0.5 : 0.5) * STRUT_PI;
+  mark->steady = 1;
+  mark->priority = level ? 2 : 1;
+}
+
+/* The energy axis, which leaves out single barriers far above all else. */
+static strut_axis find_axis(const double *level, size_t cards, const pass *passes, size_t count,
+                            strut_beyond *beyond) {
+  strut_axis y = {.name = "energy above the lowest", .unit = "J"};
+  double tops[MOST_PASSES];
+  for (size_t k = 0; k < cards; k++) strut_axis_include(&y, level[k]);
+  for (size_t i = 0; i < count; i++) tops[i] = passes[i].top;
+  strut_axis_include(&y, strut_limit_without_outliers(tops, count, y.high, OUTLYING, beyond));
+  strut_axis_settle(&y, 0.2);
+  return y;
+}
+
+/* Adds a panel with the cards as levels and the barriers between them, if there are any. */
+static void add_ladder(picture *self) {
+  static const strut_pen pens[] = {
+      {.colour = {0.35, 0.35, 0.35, 1}, .width = 0.9}, /* of neighbours, of others, of levels */
+      {.colour = {0.65, 0.65, 0.65, 1}, .width = 0.6, .dash = {2.5, 2}},
+      {.colour = {0, 96 / 255.0, 168 / 255.0, 1}, .width = 2, .butt = true}};
+  static const char *const no_names[] = {NULL};
+  double level[MOST_CARDS], wider = self->cards > FEW ? 0.8 : 0.5; /* names are wider than levels */
+  pass passes[MOST_PASSES];
+  char text[STRUT_BEYOND_TEXT];
+  strut_beyond beyond = {0};
+  for (size_t k = 0; k < self->cards; k++)
+    level[k] = card_of(self, k)->energy - card_of(self, 0)->energy;
+  size_t count = find_passes(self, level, passes);
+  if (!count) return;
+  strut_panel *panel = strut_add_panel(&self->figure);
+  panel->height = LADDER;
+  panel->whole = true;
+  panel->x = (strut_axis){"", "", false, -wider, (double)self->cards - 1 + wider, no_names, 0};
+  panel->y = find_axis(level, self->cards, passes, count, &beyond);
+  for (int i = 0; i < 3; i++) {
+    strut_series *series = strut_add_series(&self->figure, panel, NULL);
+    series->pen = pens[i];
+    for (size_t k = 0; k < self->cards && i == 2; k++) {
+      add_level(self, series, (double)k, level[k]);
+      add_name(self, panel, (double)k, level[k], card_of(self, k)->name, true);
+    }
+    for (size_t k = 0; k < count && i < 2; k++) {
+      const pass *p = &passes[k];
+      if ((p->place[1] > p->place[0] + 1) != (i == 1)) continue;
+      add_arc(self, series, p, panel->y.high);
+      if (i == 0) add_name(self, panel, (double)p->place[0] + 0.5, p->top, p->text, false);
+    }
+  }
+  panel->remark =
+      strut_figure_text(&self->figure, "%s", strut_beyond_text(&beyond, "barrier", "J", text));
+}
+
+/* ---- cards ---- */
 
 /* The shape drawn of an equilibrium: at rest on the real ground if it comes to rest as itself. */
 static const double *drawn_shape(const picture *self, size_t i) {
@@ -207,9 +186,9 @@ static bool choose_equilibria(picture *self) {
     self->largest_energy = fmax(self->largest_energy, fabs(equilibrium->energy));
     if (equilibrium->point.label != STRUT_STABLE && equilibrium->point.label != STRUT_FLOPPY)
       continue;
+    self->floppy_count += floppy;
     if (equilibrium->outcome == STRUT_OUTCOME_STANDS || floppy)
-      add_by_energy(self->all, self->standing, &self->standing_count, i),
-          self->floppy_count += floppy;
+      add_by_energy(self->all, self->standing, &self->standing_count, i);
     else
       add_by_energy(self->all, self->aside, &self->aside_count, i);
   }
@@ -218,26 +197,19 @@ static bool choose_equilibria(picture *self) {
   return true;
 }
 
-static strut_bounds bounds_of(const picture *self, size_t i) {
-  strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, self->model, drawn_shape(self, i));
-  return b;
-}
-
 /* The scales that all cards share: of forces but for collapsed states with far larger ones. */
 static void find_scales(picture *self) {
   double most[MOST_CARDS] = {0};
   const size_t *shown = self->cards ? self->standing : self->aside;
   for (size_t k = 0; k < (self->cards ? self->cards : self->small); k++) {
-    const strut_bounds b = bounds_of(self, shown[k]);
+    const strut_bounds b = strut_bounds_of(self->model, drawn_shape(self, shown[k]));
     for (int d = 0; d < 2; d++) self->size[d] = fmax(self->size[d], b.high[d] - b.low[d]);
   }
   for (size_t k = 0; k < self->cards; k++) {
-    const strut_equilibrium *equilibrium = &self->all->list[self->standing[k]];
-    most[k] = strut_largest(equilibrium->member_force, self->model->scene->member_count);
+    const strut_equilibrium *card = card_of(self, k);
+    most[k] = strut_largest(card->member_force, self->model->scene->member_count);
     self->contact_limit =
-        fmax(self->contact_limit,
-             strut_largest(equilibrium->normal, (size_t)equilibrium->contact_count));
+        fmax(self->contact_limit, strut_largest(card->normal, (size_t)card->contact_count));
   }
   self->force_limit =
       strut_limit_without_outliers(most, self->cards, 0.0, COLLAPSED, &self->beyond);
@@ -250,52 +222,43 @@ static strut_panel *add_panel(picture *self, size_t i, double margin) {
   const strut_ground *ground = &self->model->scene->ground;
   bool zero = !(fabs(equilibrium->energy) > ROUNDING * self->largest_energy);
   strut_panel *panel = strut_add_panel(&self->figure);
-  panel->bounds = bounds_of(self, i);
+  panel->bounds = strut_bounds_of(self->model, drawn_shape(self, i));
   if (ground->present && ground->slope == 0)
     panel->bounds.low[1] = fmin(panel->bounds.low[1], ground->height);
   strut_bounds_share(&panel->bounds, self->size);
   panel->margin = margin;
   panel->note = strut_figure_text(&self->figure, "%s, %s",
-                                  strut_drawn_quantity(zero ? 0 : equilibrium->energy, 6, "J").text,
+                                  strut_quantity_of(zero ? 0 : equilibrium->energy, 6, "J").text,
                                   equilibrium->verdict);
   return panel;
 }
 
 /* An equilibrium that stands, with the forces in it and of the ground. */
 static void add_card(picture *self, size_t i) {
-  const strut_equilibrium *equilibrium = &self->all->list[i];
+  const strut_equilibrium *card = &self->all->list[i];
   const strut_contact_table *contacts = &self->model->contacts;
   double *force = strut_figure_numbers(&self->figure, 2 * (size_t)contacts->count);
-  for (int32_t k = 0; force && k < equilibrium->contact_count && equilibrium->normal; k++)
+  for (int32_t k = 0; force && k < card->contact_count && card->normal; k++)
     for (int32_t c = 0; c < contacts->count; c++)
-      if (contacts->entry[c].node == equilibrium->contacts[k])
-        force[2 * c] = equilibrium->normal[k];
+      if (contacts->entry[c].node == card->contacts[k]) force[2 * c] = card->normal[k];
   strut_panel *panel = add_panel(self, i, MARGIN);
-  panel->title = equilibrium->name;
+  panel->title = card->name;
   strut_shape *shape = strut_add_forces(&self->figure, panel, self->model, drawn_shape(self, i),
-                                        equilibrium->member_force, self->force_limit);
+                                        card->member_force, self->force_limit);
   shape->names = true;
   shape->forces = (const double(*)[2])force;
   shape->force_limit = self->contact_limit;
   shape->arrow = ARROW;
 }
 
-/* Cards, their energies with the barriers, and the others small. */
-static void add_panels(picture *self) {
-  for (size_t k = 0; k < self->cards; k++) add_card(self, self->standing[k]);
-  if (self->cards > 1 && is_wanted(self->all, self->standing, self->cards)) {
-    strut_panel *panel = add_ladder(&self->figure, self->all, self->standing, self->cards);
-    panel->height = LADDER;
-    panel->whole = true;
-  }
-  for (size_t k = 0; k < self->small; k++) {
-    strut_panel *panel = add_panel(self, self->aside[k], LEAST_MARGIN);
-    strut_shape *shape =
-        strut_add_ghost(&self->figure, panel, self->model, drawn_shape(self, self->aside[k]), 0.45);
-    shape->style.thinness = 0.4;
-    shape->style.no_supports = false;
-    shape->ground = panel->small = true;
-  }
+/* One that is stable but does not stand, small and grey. */
+static void add_small(picture *self, size_t i) {
+  strut_panel *panel = add_panel(self, i, LEAST_MARGIN);
+  strut_shape *shape =
+      strut_add_ghost(&self->figure, panel, self->model, drawn_shape(self, i), 0.45);
+  shape->style.thinness = 0.4;
+  shape->style.no_supports = false;
+  shape->ground = panel->small = true;
 }
 
 static const char *describe_all(picture *self) {
@@ -317,12 +280,11 @@ static const char *describe_all(picture *self) {
 strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
                                      const strut_equilibria *equilibria, strut_error *error) {
   picture p = {.model = model, .all = equilibria, .figure.title = model->scene->name};
-  if (choose_equilibria(&p)) {
-    find_scales(&p);
-    add_panels(&p);
-  } else {
-    p.figure.failed = true;
-  }
+  p.figure.failed = !choose_equilibria(&p);
+  find_scales(&p);
+  for (size_t k = 0; k < p.cards; k++) add_card(&p, p.standing[k]);
+  add_ladder(&p);
+  for (size_t k = 0; k < p.small; k++) add_small(&p, p.aside[k]);
   p.figure.note = describe_all(&p);
   p.figure.yardstick = p.cards > 0;
   p.figure.scale = strut_force_scale(p.force_limit, &p.beyond);

@@ -69,15 +69,15 @@ static void describe_mode(strut_figure *figure, const strut_mode *mode, size_t n
   else if (mode->kind == STRUT_MODE_ELASTIC && mode->damping_ratio > 0)
     rest = strut_figure_text(figure, ", \xCE\xB6 = %.2g", mode->damping_ratio);
   const strut_rounded_quantity frequency =
-      strut_drawn_quantity(mode->angular_frequency / STRUT_TAU, 4, "Hz");
+      strut_quantity_of(mode->angular_frequency / STRUT_TAU, 4, "Hz");
   to->title = strut_figure_text(
       figure, "mode %zu: %s%s", number,
       mode->kind == STRUT_MODE_ELASTIC ? frequency.text : kinds[mode->kind], rest);
   bool grows = mode->kind == STRUT_MODE_UNSTABLE;
-  to->note = strut_figure_text(
-      figure, "%s%s%s%.*s", grows ? "grows e-fold in " : "",
-      grows ? strut_drawn_quantity(1.0 / sqrt(-mode->eigenvalue), 3, "s").text : "",
-      grows ? ": " : "", length, mode->description);
+  to->note =
+      strut_figure_text(figure, "%s%s%s%.*s", grows ? "grows e-fold in " : "",
+                        grows ? strut_quantity_of(1.0 / sqrt(-mode->eigenvalue), 3, "s").text : "",
+                        grows ? ": " : "", length, mode->description);
 }
 
 /* The shape at rest, and displaced. */

@@ -323,7 +323,7 @@ static const char *describe_stop(path_picture *picture, const path_stop *stop) {
   const char *unit = reference > 0 ? "N" : picture->path->unit;
   if (*unit)
     return strut_figure_text(&picture->figure, "%s, %s", stop->text,
-                             strut_drawn_quantity(value, 5, unit).text);
+                             strut_quantity_of(value, 5, unit).text);
   return strut_figure_text(&picture->figure, "%s, %s%.5g", stop->text, value < 0 ? MINUS : "",
                            fabs(value));
 }

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Curves over time, one kind of quantity in each panel, and the overview that shows some below the shape. */
 #include <math.h>
 #include <string.h>
 
@@ -6,22 +7,18 @@
 #include "engine/forces/elements.h"
 #include "engine/output/figures/run_parts.h"
 
-/* Curves over time, one kind of quantity in each panel, and the overview that shows some below
-   the shape. */
-
-enum { MOST_CURVES = 6, CURVES_HEIGHT = 122 };
+enum { MOST_CURVES = 6, CURVES_HEIGHT = 122, STORED = 4 /* energies */ };
 
 static const double LEVEL = 1e-3;    /* of a force or an energy: smaller changes look level */
 static const double STANDING = 1e-6; /* of the model's size: smaller motion is none */
 static const double CLOSED = 1e-3;   /* of the model's size: closer to the ground is contact */
 static const double ROUNDING = 1e-9; /* of an energy */
-static const double ROOM = 0.06;     /* above and below the curves */
 
-/* What panels show: a channel, or what is derived from the motion. */
+/* What panels show: what is derived from the motion, or a channel. */
 typedef enum kind {
   DISPLACEMENT,
   NORMALS,
-  DRIVE, /* rest length and length of driven members: items 2 j and 2 j + 1 of member j */
+  DRIVE, /* rest length and length of driven members */
   HEIGHTS,
   FORCES,
   ANGLES,
@@ -32,50 +29,37 @@ typedef enum kind {
   KINDS     /* then each channel, for what is measured and in no panel above */
 } kind;
 
-static const struct kind_row {
-  strut_channels channel; /* 0: none */
+static const struct {
+  strut_channels channel; /* 0: derived */
   const char *name, *unit;
-  double factor;
-  bool change;  /* from the first frame */
-  double least; /* of the model's size: smaller ranges are rounding */
-} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1, true, STANDING},
-             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, false, 0},
-             [DRIVE] = {0, "change", "m", 1, true, STANDING},
-             [HEIGHTS] = {STRUT_CHANNEL_CONTACT, "height", "m", 1, false, STANDING},
-             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, false, 0},
-             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, false, 0},
-             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, false, 0},
-             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, false, 0},
-             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, false, 0},
-             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, true, 0}};
+  double factor, least; /* least, of the model's size: smaller ranges are rounding */
+  bool change;          /* from the first frame */
+} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1, 1e-6, true},
+             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, 0, false},
+             [DRIVE] = {0, "change", "m", 1, 1e-6, false},
+             [HEIGHTS] = {0, "height", "m", 1, 1e-6, false},
+             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, 0, false},
+             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, 0, false},
+             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, 0, false},
+             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, 0, false},
+             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, 0, false},
+             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, 0, true}};
 
-static struct kind_row row_of(kind of) {
-  const strut_channel_row *row = of < KINDS ? NULL : strut_channel_at((size_t)of - KINDS);
-  return row ? (struct kind_row){row->id, row->name, row->unit, 1, false, 0} : kinds[of];
-}
+/* The values of a kind: curve i is column `stride` * i. */
+typedef struct block {
+  const strut_run_scene *run;
+  kind of;
+  const strut_channel_row *row; /* NULL: derived */
+  const char *name, *unit;
+  const double *values; /* (frames, columns) */
+  size_t columns, stride, count, first;
+  double factor, least; /* smaller ranges are rounding */
+  bool change;
+  int32_t driven[MOST_CURVES / 2]; /* of DRIVE: members */
+} block;
 
-static size_t count_items(const strut_run_scene *run, kind of) {
-  static const size_t energies = 4;
-  const strut_scene *scene = run->model->scene;
-  if (of == DISPLACEMENT) return scene->ground.present ? 1 : 2;
-  if (of == HEIGHTS) return scene->ground.present ? run->motion->contact_count : 0;
-  if (of == DRIVE || !strut_trajectory_channel(run->motion, row_of(of).channel)) return 0;
-  if (of == ENERGIES) return energies;
-  const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
-  return strut_channel_items(row, scene) * (of < KINDS ? 1 : row->components);
-}
-
-/* Data beside the curve of an item from frame `first` on; `dots` may be NULL. Returns how many. */
-static size_t measured(const strut_run_scene *run, kind of, size_t item, size_t first,
-                       double (*dots)[2]) {
-  const double span[] = {run->motion->time[first], run->motion->time[run->frames - 1]};
-  const struct kind_row own = row_of(of);
-  if (!own.channel || of == HEIGHTS || own.change) return 0;
-  const strut_channel_row *row = strut_channel_row_of(own.channel);
-  for (int k = 0; k < KINDS && of >= KINDS && item % row->components == 0; k++)
-    if (kinds[k].channel == own.channel && !kinds[k].change) return 0;
-  return strut_data_dots(run->model->scene, row, of < KINDS ? item * row->components : item, span,
-                         dots);
+static double value_at(const block *self, size_t item, size_t f) {
+  return self->factor * self->values[f * self->columns + self->stride * item];
 }
 
 /* The actuated change of a member's rest length at a time [m]. */
@@ -90,167 +74,179 @@ static double driven_by(const strut_run_scene *run, int32_t member, double time)
   return sum;
 }
 
-/* One value of a kind at a frame: of a channel that has a panel the first component. */
-static double value_at(const strut_run_scene *run, kind of, size_t item, size_t f) {
-  const strut_trajectory *trajectory = run->motion;
-  if (of == DISPLACEMENT) return strut_run_measured(run, f, (int)item);
-  if (of == DRIVE && item % 2)
-    return strut_member_path_length(run->model, (int32_t)item / 2, strut_run_positions(run, f));
-  if (of == DRIVE) return driven_by(run, (int32_t)item / 2, trajectory->time[f]);
-  if (of == HEIGHTS) {
-    const double *at = strut_run_positions(run, f) + 2 * trajectory->contact_node[item];
+/* The first driven members whose change follows from the time alone; a driven hinge shows in its angle. */
+static void choose_driven(block *self) {
+  const strut_model *model = self->run->model;
+  for (int32_t i = 0; i < model->drives.count && self->count < MOST_CURVES; i++) {
+    int32_t member = model->drives.member[i];
+    if (!model->drives.first[i] || member >= model->members.count) continue;
+    if (isnan(driven_by(self->run, member, 0.0))) continue;
+    self->driven[self->count / 2] = member;
+    self->count += 2;
+  }
+}
+
+/* A value that is derived from the motion. */
+static double derive(const block *self, size_t item, size_t f) {
+  const strut_run_scene *run = self->run;
+  const double *q = strut_run_positions(run, f);
+  if (self->of == DISPLACEMENT) return strut_run_measured(run, f, (int)item);
+  if (self->of == HEIGHTS) {
+    const double *at = q + 2 * run->motion->contact_node[item];
     return (at[1] - strut_run_ground_at(run, at[0])) * cos(run->model->scene->ground.slope);
   }
-  const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
-  size_t step = of >= ENERGIES ? 1 : row->components;
-  size_t columns = row->components * strut_channel_items(row, run->model->scene);
-  return row_of(of).factor *
-         strut_trajectory_channel(trajectory, row->id)[f * columns + step * item];
+  int32_t member = self->driven[item / 2];
+  if (item % 2 == 0) return driven_by(run, member, run->motion->time[f]);
+  return strut_member_path_length(run->model, member, q) -
+         strut_member_path_length(run->model, member, strut_run_positions(run, self->first));
 }
 
-static const char *label_of(const strut_run_scene *run, kind of, size_t item) {
-  static const char *const energies[] = {"kinetic", "elastic", "gravity", "contact"};
+/* The values of a kind that begins at frame `first`; a count of 0 where there are none. */
+static block find_block(const strut_run_scene *run, kind of, size_t first) {
   const strut_scene *scene = run->model->scene;
-  if (of == DISPLACEMENT && count_items(run, of) == 1) return NULL;
-  if (of == DISPLACEMENT) return item ? "along y" : "along x";
-  if (of == ENERGIES) return energies[item];
-  if (of == DRIVE)
-    return strut_figure_text(run->page, item % 2 ? "length of %s" : "rest length of %s",
-                             scene->members[item / 2].name);
-  const strut_channel_row *row = strut_channel_row_of(row_of(of).channel);
-  if (of < KINDS) return strut_channel_item(row, scene, item);
-  const char *word = row->column_names[item % row->components];
-  const char *thing = strut_channel_item(row, scene, item / row->components);
-  return strut_channel_is_whole(row) ? word : strut_figure_text(run->page, "%s.%s", thing, word);
+  block b = {.run = run, .of = of, .first = first, .stride = 1, .factor = 1};
+  b.row = of >= KINDS         ? strut_channel_at((size_t)of - KINDS)
+          : kinds[of].channel ? strut_channel_row_of(kinds[of].channel)
+                              : NULL;
+  if (of < KINDS) {
+    b.name = kinds[of].name, b.unit = kinds[of].unit;
+    b.factor = kinds[of].factor, b.change = kinds[of].change;
+    b.least = of == ANGLES ? STANDING * b.factor : kinds[of].least * run->model->size;
+  } else {
+    b.name = b.row->name, b.unit = b.row->unit;
+  }
+  if (b.row) {
+    b.values = strut_trajectory_channel(run->motion, b.row->id);
+    b.columns = b.row->components * strut_channel_items(b.row, scene);
+    b.stride = of < ENERGIES ? b.row->components : 1;
+    b.count = !b.values ? 0 : of == ENERGIES ? STORED : b.columns / b.stride;
+  } else {
+    if (of == DISPLACEMENT) b.count = scene->ground.present ? 1 : 2;
+    if (of == HEIGHTS) b.count = scene->ground.present ? run->motion->contact_count : 0;
+    if (of == DRIVE) choose_driven(&b);
+    b.columns = b.count;
+    double *values = b.count ? strut_figure_numbers(run->page, run->frames * b.count) : NULL;
+    for (size_t k = 0; values && k < run->frames * b.count; k++)
+      values[k] = derive(&b, k % b.count, k / b.count);
+    b.values = values;
+    if (!values) b.count = 0;
+  }
+  for (size_t i = 0; i < b.count && of == ENERGIES; i++)
+    b.least = fmax(b.least, ROUNDING * fabs(value_at(&b, i, 0)));
+  return b;
 }
 
-/* Range of a curve, endless beside data; contact forces include zero, heights of what never comes down are omitted. */
-static double variation(const strut_run_scene *run, kind of, size_t item, size_t first) {
+/* Data beside a curve; `dots` may be NULL. Returns how many. */
+static size_t measured(const block *self, size_t item, double (*dots)[2]) {
+  const strut_run_scene *run = self->run;
+  const double span[] = {run->motion->time[self->first], run->motion->time[run->frames - 1]};
+  if (!self->row || self->change) return 0;
+  for (int k = 0; k < KINDS && self->of >= KINDS && item % self->row->components == 0; k++)
+    if (kinds[k].channel == self->row->id && !kinds[k].change) return 0;
+  return strut_data_dots(run->model->scene, self->row, self->stride * item, span, dots);
+}
+
+static const char *label_of(const block *self, size_t item) {
+  static const char *const energies[STORED] = {"kinetic", "elastic", "gravity", "contact"};
+  static const char *const directions[] = {"along x", "along y"};
+  const strut_scene *scene = self->run->model->scene;
+  const strut_channel_row *row = self->row;
+  if (self->of == ENERGIES) return energies[item];
+  if (self->of == DISPLACEMENT) return self->count > 1 ? directions[item] : NULL;
+  if (self->of == DRIVE)
+    return strut_figure_text(self->run->page, item % 2 ? "length of %s" : "rest length of %s",
+                             scene->members[self->driven[item / 2]].name);
+  if (self->of == HEIGHTS) row = strut_channel_row_of(STRUT_CHANNEL_CONTACT);
+  if (self->of < KINDS) return strut_channel_item(row, scene, item);
+  const char *word = row->column_names[item % row->components];
+  return strut_channel_is_whole(row)
+             ? word
+             : strut_figure_text(self->run->page, "%s.%s",
+                                 strut_channel_item(row, scene, item / row->components), word);
+}
+
+/* Range of a curve from a frame on, endless beside data; contact forces include zero, heights of what never comes down are omitted. */
+static double variation(const block *self, size_t item, size_t first) {
   double low = HUGE_VAL, high = -HUGE_VAL, lowest = HUGE_VAL;
-  if (measured(run, of, item, first, NULL)) return HUGE_VAL;
-  if (of >= KINDS) return 0;
-  for (size_t f = of == HEIGHTS ? 0 : first; f < run->frames; f++) {
-    double value = value_at(run, of, item, f);
+  if (measured(self, item, NULL)) return HUGE_VAL;
+  if (self->of >= KINDS) return 0;
+  for (size_t f = self->of == HEIGHTS ? 0 : first; f < self->run->frames; f++) {
+    double value = value_at(self, item, f);
     lowest = fmin(lowest, value);
     if (!isfinite(value) || f < first) continue;
     low = fmin(low, value);
     high = fmax(high, value);
   }
-  if (of == HEIGHTS && !(lowest < CLOSED * run->model->size)) return 0;
-  if (of == NORMALS) low = fmin(low, 0), high = fmax(high, 0);
+  if (self->of == HEIGHTS && !(lowest < CLOSED * self->run->model->size)) return 0;
+  if (self->of == NORMALS) low = fmin(low, 0), high = fmax(high, 0);
   return high > low ? high - low : 0;
 }
 
-/* Smaller changes are rounding. */
-static double least_range(const strut_run_scene *run, kind of) {
-  double most = 0;
-  if (of == ANGLES) return STANDING * kinds[of].factor;
-  for (size_t i = 0; i < count_items(run, of) && of == ENERGIES; i++)
-    most = fmax(most, fabs(value_at(run, of, i, 0)));
-  return row_of(of).least * run->model->size + ROUNDING * most;
-}
-
-/* The first driven members whose change follows from the time alone; a driven hinge shows in its angle. */
-static size_t choose_driven(const strut_run_scene *run, size_t chosen[MOST_CURVES]) {
-  const strut_drive_table *drives = &run->model->drives;
-  size_t count = 0;
-  for (int32_t i = 0; i < drives->count && count < MOST_CURVES; i++) {
-    double value, rate;
-    if (!drives->first[i] || drives->member[i] >= run->model->members.count) continue;
-    strut_signal_evaluate(run->model->scene->signals, drives->signal[i], 0.0, &value, &rate);
-    for (int k = 0; k < 2 && !isnan(value); k++)
-      chosen[count++] = 2 * (size_t)drives->member[i] + (size_t)k;
-  }
-  return count;
-}
-
 /* Chooses the items that vary most, in the scene's order. Returns how many. */
-static size_t choose_curves(const strut_run_scene *run, kind of, size_t first,
-                            size_t chosen[MOST_CURVES]) {
-  double lively[MOST_CURVES], least = least_range(run, of);
+static size_t choose_curves(const block *self, size_t chosen[MOST_CURVES + 1]) {
+  double lively[MOST_CURVES + 1];
   size_t count = 0;
-  if (of == DRIVE) return choose_driven(run, chosen);
-  for (size_t i = 0; i < count_items(run, of); i++) {
-    double value = variation(run, of, i, first);
-    size_t dullest = 0;
-    if (!(value > least) && !(of == DISPLACEMENT && i == 0)) continue;
-    if (count == MOST_CURVES) {
-      for (size_t k = 1; k < count; k++)
-        if (lively[k] < lively[dullest]) dullest = k;
-      if (!(value > lively[dullest])) continue;
-      count--;
-      for (size_t k = dullest; k < count; k++) chosen[k] = chosen[k + 1], lively[k] = lively[k + 1];
-    }
+  for (size_t i = 0; i < self->count; i++) {
+    double value = self->of == DRIVE ? HUGE_VAL : variation(self, i, self->first);
+    if (!(value > self->least) && !(self->of == DISPLACEMENT && i == 0)) continue;
     chosen[count] = i;
     lively[count++] = value;
+    if (count <= MOST_CURVES) continue;
+    size_t dullest = 0;
+    for (size_t k = 1; k < count; k++)
+      if (lively[k] <= lively[dullest]) dullest = k;
+    for (size_t k = dullest; k + 1 < count; k++)
+      chosen[k] = chosen[k + 1], lively[k] = lively[k + 1];
+    count--;
   }
   return count;
-}
-
-/* True if anything changes in the whole record. */
-static bool is_wanted(const strut_run_scene *run, kind of) {
-  size_t chosen[MOST_CURVES], count = choose_curves(run, of, 0, chosen);
-  for (size_t i = 0; i < count; i++)
-    if (of == DRIVE || variation(run, of, chosen[i], 0) > least_range(run, of)) return true;
-  return false;
-}
-
-/* The range of all curves, at least `least`. */
-static void find_range(const strut_panel *panel, double least, bool zero, strut_axis *axis) {
-  for (size_t i = 0; i < panel->series_count; i++)
-    for (size_t k = 0; k < panel->series[i].count; k++)
-      strut_axis_include(axis, panel->series[i].points[k].y);
-  if (zero) strut_axis_include(axis, 0);
-  if (!(axis->low <= axis->high)) return;
-  double missing = least - (axis->high - axis->low);
-  if (missing > 0) axis->low -= 0.5 * missing, axis->high += 0.5 * missing;
-  strut_axis_settle(axis, ROOM);
 }
 
 /* Adds the data beside a curve, in its colour, paler. */
-static void add_dots(strut_run_scene *run, strut_panel *panel, kind of, size_t item, size_t first,
-                     size_t look) {
+static void add_dots(const block *self, strut_panel *panel, size_t item, size_t look) {
+  strut_figure *page = self->run->page;
   double dots[STRUT_DATA_DOTS][2];
-  size_t count = measured(run, of, item, first, dots);
+  size_t count = measured(self, item, dots);
   if (!count) return;
-  strut_series *series = strut_add_series(
-      run->page, panel, strut_figure_text(run->page, "%s measured", label_of(run, of, item)));
+  strut_series *series =
+      strut_add_series(page, panel, strut_figure_text(page, "%s measured", label_of(self, item)));
   series->cloud = true;
   series->pen = (strut_pen){.colour = strut_faded(strut_series_pen(look).colour, 0.4), .width = 1};
   for (size_t k = 0; k < count; k++)
-    strut_add_point(run->page, series, dots[k][0], row_of(of).factor * dots[k][1]);
+    strut_add_point(page, series, dots[k][0], self->factor * dots[k][1]);
 }
 
-/* Adds the panel of a kind from frame `first` on, if it is wanted. */
+/* Adds the panel of a kind from frame `first` on, if anything changes in the whole record. */
 static void add_panel(strut_run_scene *run, kind of, size_t first, double height) {
-  size_t chosen[MOST_CURVES], last = run->frames - 1;
-  if (!is_wanted(run, of)) return;
-  size_t count = choose_curves(run, of, first, chosen);
-  strut_panel *panel = strut_add_panel(run->page);
+  const block b = find_block(run, of, first);
+  size_t chosen[MOST_CURVES + 1], last = run->frames - 1;
   double most = 0;
+  bool wanted = false;
+  for (size_t i = 0; i < b.count && !wanted; i++)
+    wanted = of == DRIVE || variation(&b, i, 0) > b.least;
+  if (!wanted) return;
+  size_t count = choose_curves(&b, chosen);
+  strut_panel *panel = strut_add_panel(run->page);
+  bool one = of == DISPLACEMENT && count == 1;
   for (size_t i = 0; i < count; i++) {
-    bool change = row_of(of).change && (of != DRIVE || chosen[i] % 2);
-    double start = change ? value_at(run, of, chosen[i], first) : 0;
-    strut_series *series = strut_add_series(run->page, panel, label_of(run, of, chosen[i]));
-    if (measured(run, of, chosen[i], first, NULL)) series->markers = STRUT_MARKERS_NONE;
+    double start = b.change ? value_at(&b, chosen[i], first) : 0;
+    strut_series *series = strut_add_series(run->page, panel, one ? NULL : label_of(&b, chosen[i]));
+    if (measured(&b, chosen[i], NULL)) series->markers = STRUT_MARKERS_NONE;
     for (size_t f = first; f <= last; f++) {
-      double value = value_at(run, of, chosen[i], f) - start;
+      double value = value_at(&b, chosen[i], f) - start;
       strut_add_point(run->page, series, run->motion->time[f], value);
       most = fmax(most, fabs(value));
     }
   }
-  for (size_t i = 0; i < count; i++) add_dots(run, panel, of, chosen[i], first, i);
-  bool one = of == DISPLACEMENT && count == 1;
-  if (one && count_items(run, of) > 1 && !run->page->failed) panel->series[0].label = NULL;
+  for (size_t i = 0; i < count; i++) add_dots(&b, panel, chosen[i], i);
   panel->x = (strut_axis){.name = "time",
                           .unit = "s",
                           .low = run->motion->time[first],
                           .high = run->motion->time[last]};
-  panel->y = strut_axis_of(one ? "x displacement" : row_of(of).name, row_of(of).unit);
+  panel->y = strut_axis_of(one ? "x displacement" : b.name, b.unit);
   panel->height = height;
-  if (!run->page->failed)
-    find_range(panel, fmax(least_range(run, of), row_of(of).change ? 0 : LEVEL * most),
-               of == NORMALS, &panel->y);
+  panel->zero = of == NORMALS;
+  panel->least = fmax(b.least, b.change ? 0 : LEVEL * most);
 }
 
 const char *strut_run_curves(strut_run_scene *run, strut_figure *figure) {
@@ -323,10 +319,10 @@ const char *strut_run_overview(strut_run_scene *run, strut_figure *figure) {
     strut_add_key(
         figure, STRUT_KEY_WORDS, (strut_pen){0},
         strut_figure_text(figure, "trajectories, last %s, dark to bright",
-                          strut_drawn_quantity(strut_run_time_from(run, first), 3, "s").text));
+                          strut_quantity_of(strut_run_time_from(run, first), 3, "s").text));
   figure->columns = 2;
   figure->least_width = COLUMN;
   figure->aspect = 0.62;
   return strut_figure_text(figure, "shape at %s",
-                           strut_drawn_quantity(run->motion->time[last], 5, "s").text);
+                           strut_quantity_of(run->motion->time[last], 5, "s").text);
 }

@@ -197,7 +197,7 @@ void strut_run_add_scales(const strut_run_scene *run) {
   if (run->contact_limit > 0)
     strut_add_key(run->page, STRUT_KEY_ARROW, pen,
                   strut_figure_text(run->page, "contact force, up to %s",
-                                    strut_drawn_quantity(run->contact_limit, 3, "N").text));
+                                    strut_quantity_of(run->contact_limit, 3, "N").text));
 }
 
 /* The measured velocity; 0 for a structure that stands still. */
@@ -247,11 +247,11 @@ static const char *describe_run(const strut_run_scene *run, const char *what) {
   if (summary && summary->status != STRUT_OK)
     return strut_figure_text(run->page, "%s at %s; %.400s",
                              summary->status == STRUT_DIVERGED ? "diverged" : "stopped",
-                             strut_drawn_quantity(summary->duration, 4, "s").text, what);
+                             strut_quantity_of(summary->duration, 4, "s").text, what);
   if (!views[run->figure->view].velocity || !summary || !isfinite(summary->velocity)) return what;
   double v = shown_velocity(run);
   return strut_figure_text(run->page, "%.400s; velocity of %.60s %s%s", what,
-                           strut_run_measured_name(run), strut_drawn_quantity(v, 4, "m/s").text,
+                           strut_run_measured_name(run), strut_quantity_of(v, 4, "m/s").text,
                            v > 0   ? " \xe2\x86\x92"
                            : v < 0 ? " \xe2\x86\x90"
                                    : "");

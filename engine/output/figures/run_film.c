@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/draw/canvas.h"
-#include "engine/output/draw/painter.h"
+#include "engine/output/draw/cairo_page.h"
 #include "engine/output/figures/run_parts.h"
 #include "engine/output/file.h"
 
@@ -71,7 +70,7 @@ static FILE *start_ffmpeg(const strut_film *film, const char *path) {
   return setenv("STRUT_FILM", path, 1) ? NULL : popen(command, "w");
 }
 
-static const double PAGE = 512, HEAD = 30, FOOT = 40, EDGE = 14, MARGIN = 18; /* [pt] */
+static const double PAGE = 400, HEIGHT = 163, MARGIN = 13; /* of the drawing [pt] */
 static const double FAR = 1; /* sizes of the structure over which the window moves along */
 
 typedef struct making {
@@ -116,65 +115,57 @@ static void find_view(making *self) {
 }
 
 /* Marks along the ground, which they show passing. */
-static void add_marks(const making *self, const strut_window *window, strut_figure *page,
-                      strut_panel *panel) {
+static void add_marks(const making *self, strut_figure *page, strut_panel *panel) {
   enum { MARKS = 40 };
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.9, .butt = true};
-  double step = pow(10.0, ceil(log10(20.0 / window->scale))),
-         right = window->left + window->box.width / window->scale;
   const strut_ground *ground = &self->run.model->scene->ground;
-  double x = step * ceil(window->left / step);
+  const double *low = panel->bounds.low, *high = panel->bounds.high;
+  double scale =
+      fmin((PAGE - 2 * MARGIN) / (high[0] - low[0]), (HEIGHT - 2 * MARGIN) / (high[1] - low[1]));
+  double step = pow(10.0, ceil(log10(20.0 / scale))), half = 0.5 * PAGE / scale;
+  double middle = 0.5 * (low[0] + high[0]), x = step * ceil((middle - half) / step);
   if (!ground->present || ground->belt_speed != 0) return;
-  for (int i = 0; x < right && i < MARKS; i++, x += step) {
-    strut_trail *trail = strut_add_trail(page, panel, STRUT_TRAIL_LINE, pen);
-    for (int end = 0; end < 2; end++)
-      strut_add_place(
-          page, trail,
-          (const double[2]){x, strut_run_ground_at(&self->run, x) - end * 9 / window->scale});
+  for (int i = 0; x < middle + half && i < MARKS; i++, x += step) {
+    double y = strut_run_ground_at(&self->run, x);
+    strut_add_segment(page, panel, STRUT_TRAIL_LINE, pen, (const double[2]){x, y},
+                      (const double[2]){x, y - 9 / scale});
   }
 }
 
-static bool draw(making *self, strut_canvas *canvas, size_t i) {
-  strut_box page = strut_canvas_box(canvas), box = {0, HEAD, PAGE, page.height - HEAD - FOOT};
-  strut_figure sheet = {0}; /* of this frame alone */
+/* Describes picture i. */
+static void fill(const making *self, size_t i, strut_figure *page) {
   strut_run_scene run = self->run;
   size_t frame = frame_at(self, i);
-  char text[160], fitted[STRUT_FITTED_TEXT];
-  const strut_font bold = {.size = 11, .bold = true};
-  strut_panel *panel = strut_add_panel(&sheet);
-  panel->bounds = move(self, i, 1, self->view);
-  panel->margin = MARGIN;
-  const strut_window window = strut_window_fit(box, panel->bounds, MARGIN);
-  run.page = &sheet;
-  strut_canvas_clear(canvas, strut_grey(1));
-  add_marks(self, &window, &sheet, panel);
-  strut_run_add_shape(&run, panel, frame);
-  if (!sheet.failed) strut_draw_view(canvas, box, panel);
-  strut_arena_free(&sheet.arena);
-  strut_text_fit(canvas, run.model->scene->name, bold, 0.7 * PAGE, 0, fitted);
-  strut_draw_text(canvas, EDGE, EDGE - 4, fitted, bold);
   double digits = fmin(fmax(ceil(-log10(self->film->speed / self->film->fps) - 1e-6), 0), 6);
   double moved = strut_run_measured(&run, frame, 0) - strut_run_measured(&run, 0, 0);
+  run.page = page;
+  strut_panel *panel = strut_add_panel(page);
+  panel->bounds = move(self, i, 1, self->view);
+  panel->margin = MARGIN;
+  panel->height = HEIGHT;
+  add_marks(self, page, panel);
+  strut_run_add_shape(&run, panel, frame);
   if (fabs(moved) < 1e-9 * run.model->size) moved = 0;
-  snprintf(text, sizeof text, "%.*f s   %.60s: x %s%s", (int)digits, run.motion->time[frame],
-           strut_run_measured_name(&run), moved < 0 ? "" : "+",
-           strut_drawn_quantity(moved, 3, "m").text);
-  strut_draw_text(canvas, EDGE, page.height - 25, text, (strut_font){.size = 11});
-  const strut_colour_scale scale =
-      strut_force_scale(run.motion->force ? run.force_limit : 0, &run.beyond);
-  if (scale.name)
-    strut_draw_colour_scale(canvas, (strut_box){PAGE - 190, page.height - 36, 180, 30}, &scale);
-  return !sheet.failed;
+  page->title = *run.model->scene->name ? run.model->scene->name : " "; /* its line stays */
+  page->scale = strut_force_scale(run.motion->force ? run.force_limit : 0, &run.beyond);
+  strut_add_key(page, STRUT_KEY_WORDS, (strut_pen){0},
+                strut_figure_text(page, "%.*f s   %.60s: x %s%s", (int)digits,
+                                  run.motion->time[frame], strut_run_measured_name(&run),
+                                  moved < 0 ? "" : "+", strut_quantity_of(moved, 3, "m").text));
 }
 
-static strut_status draw_all(making *self, strut_canvas *canvas, FILE *pipe, strut_error *error) {
+/* Draws all pictures and writes them to ffmpeg. */
+static strut_status draw_all(const making *self, const strut_cairo_library *cairo,
+                             strut_canvas *canvas, FILE *pipe, strut_error *error) {
   const strut_film *film = self->film;
   for (size_t i = 0; i < film->frames; i++) {
     size_t stride = 0;
+    strut_figure page = {0};
     if (film->interrupt && *film->interrupt)
       return strut_fail(error, STRUT_INTERRUPTED, "interrupted; no film was written");
-    const unsigned char *pixels =
-        draw(self, canvas, i) ? strut_canvas_pixels(canvas, &stride) : NULL;
+    fill(self, i, &page);
+    const unsigned char *pixels = cairo->paint(canvas, &page, &stride);
+    strut_arena_free(&page.arena);
     if (!pixels) return strut_no_memory(error, "while making a film");
     if (!fwrite(pixels, stride * (size_t)film->height, 1, pipe)) break; /* ffmpeg says why */
     if (film->progress) film->progress(film->progress_context, (double)i / (double)film->frames);
@@ -182,21 +173,23 @@ static strut_status draw_all(making *self, strut_canvas *canvas, FILE *pipe, str
   return STRUT_OK;
 }
 
-static strut_status encode(making *self, strut_error *error) {
+static strut_status encode(const making *self, strut_error *error) {
   const strut_film *film = self->film;
+  const strut_cairo_library *cairo = NULL;
   strut_canvas *canvas = NULL;
   strut_file file = {0};
+  strut_status status = strut_cairo_load(&cairo, error);
+  if (status != STRUT_OK) return status;
   void (*before)(int) = signal(SIGPIPE, SIG_IGN);
-  strut_status status =
-      strut_canvas_open_pixels(film->width, film->height, film->width / PAGE, &canvas, error);
+  status = cairo->open(film->width, film->height, film->width / PAGE, &canvas, error);
   if (status == STRUT_OK) status = strut_file_open_path(&file, film->path, error);
   FILE *pipe = status == STRUT_OK ? start_ffmpeg(film, file.part) : NULL;
-  if (pipe) status = draw_all(self, canvas, pipe, error);
+  if (pipe) status = draw_all(self, cairo, canvas, pipe, error);
   if ((!pipe || pclose(pipe) != 0) && status == STRUT_OK)
     status = strut_fail(error, STRUT_FILE_TROUBLE, "ffmpeg could not write '%s'", film->path);
   if (status == STRUT_OK) status = strut_file_commit(&file, error);
   strut_file_abandon(&file);
-  strut_canvas_free(canvas);
+  cairo->free(canvas);
   signal(SIGPIPE, before);
   return status;
 }

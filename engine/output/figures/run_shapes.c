@@ -70,10 +70,10 @@ static const char *describe_period(const strut_run_scene *run, bool grounded) {
   /* The period itself: the frames drawn of it span a whole number of samples. */
   double span =
       run->period > 0 ? run->period : strut_run_time_from(run, strut_run_first(run, 1, 1));
-  const char *note = strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s",
-                                       run->period > 0 ? "one period (" : "",
-                                       strut_drawn_quantity(span, 4, "s").text,
-                                       run->period > 0 ? ")" : "", strut_run_other_text(run));
+  const char *note =
+      strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s",
+                        run->period > 0 ? "one period (" : "", strut_quantity_of(span, 4, "s").text,
+                        run->period > 0 ? ")" : "", strut_run_other_text(run));
   if (!is_enlarged(run)) return note;
   return strut_figure_text(
       run->page,
@@ -247,10 +247,9 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
   double way = way_to(run, self, i), start = strut_run_measured(run, self->frame[0], 0);
   bool far = i > 0 && fabs(way) > 1e-6 * run->model->size;
   double time = run->motion->time[self->frame[i]];
-  panel->title = strut_figure_text(run->page, "%s%s%s%s",
-                                   strut_drawn_quantity(time, count_digits(run, self), "s").text,
-                                   far ? ", x " : "", far && way > 0 ? "+" : "",
-                                   far ? strut_drawn_quantity(way, 3, "m").text : "");
+  panel->title = strut_figure_text(
+      run->page, "%s%s%s%s", strut_quantity_of(time, count_digits(run, self), "s").text,
+      far ? ", x " : "", far && way > 0 ? "+" : "", far ? strut_quantity_of(way, 3, "m").text : "");
   strut_run_add_shape(run, panel, self->frame[i])->names = true;
   panel->bounds = bounds_of(self, panel->bounds);
   panel->margin = MARGIN;

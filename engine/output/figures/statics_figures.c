@@ -38,7 +38,7 @@ strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
   if (moved > 1e-9 * model->size) {
     strut_add_ghost(&figure, panel, model, before, 0.75)->style.thinness = 0.4;
     figure.note = strut_figure_text(&figure, "grey: drawn shape; nodes moved by up to %s",
-                                    strut_drawn_quantity(moved, 3, "m").text);
+                                    strut_quantity_of(moved, 3, "m").text);
   }
   add_forces(&figure, panel, model, model->start, force);
   figure.scale = strut_force_scale(strut_largest(force, members), NULL);
@@ -113,7 +113,7 @@ static int32_t add_panels(picture *self, int32_t columns) {
     double limit = strut_largest(rigidity->force, self->model->scene->member_count);
     add_forces(&self->figure,
                add_panel(self, strut_figure_text(&self->figure, "forces, up to %s",
-                                                 strut_drawn_quantity(limit, 3, "N").text)),
+                                                 strut_quantity_of(limit, 3, "N").text)),
                self->model, self->q, rigidity->force);
     room--;
   }

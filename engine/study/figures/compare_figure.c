@@ -65,15 +65,14 @@ static const char *words_of(sheet *self, const strut_compare_column *column) {
       strut_figure_text(figure, "%.0f nodes, %.0f members", cell[STRUT_COMPARE_NODES].value,
                         cell[STRUT_COMPARE_MEMBERS].value);
 #define ADD(FORMAT, ...) words = strut_figure_text(figure, "%s" FORMAT, words, __VA_ARGS__)
-  if (mass > 0) ADD(", %s", strut_drawn_quantity(1000 * mass, 3, "g").text);
+  if (mass > 0) ADD(", %s", strut_quantity_of(1000 * mass, 3, "g").text);
   if (states > 0) ADD("\n%.0f stable state%s", states, states > 1 ? "s" : "");
   if (isfinite(lowest))
-    ADD("%slowest frequency %s", states > 0 ? ", " : "\n",
-        strut_drawn_quantity(lowest, 3, "Hz").text);
+    ADD("%slowest frequency %s", states > 0 ? ", " : "\n", strut_quantity_of(lowest, 3, "Hz").text);
   if (column->still)
     ADD("%s", "\nno net motion");
   else if (isfinite(velocity))
-    ADD("\n%s", strut_drawn_quantity(velocity, 3, "m/s").text);
+    ADD("\n%s", strut_quantity_of(velocity, 3, "m/s").text);
   if (isfinite(transport))
     ADD("%scost of transport %.3g", column->still || isfinite(velocity) ? ", " : "\n", transport);
 #undef ADD

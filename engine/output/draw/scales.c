@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What figures are described with, and is the same wherever they are drawn: colours, ranges, quantities, bounds. */
+#include <assert.h>
+#include <gsl/gsl_sort_double.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/output/draw/figure.h"
+
+/* ---- colours ---- */
+
+/* Anchors at equal distances; the lightness of each row grows from left to right. */
+enum { ANCHORS = 5 };
+static const unsigned SIGNED[ANCHORS] = {0x0A1F66, 0x2F4A9E, 0x7D8390, 0xC98B45, 0xF5A31A};
+static const unsigned SEQUENCE[ANCHORS] = {0x2A0F54, 0x33508C, 0x1F8A8C, 0x55B567, 0xD3CB2F};
+static const unsigned DIVERGING[ANCHORS] = {0x1B4A9C, 0x7AA3D4, 0xEBEBEB, 0xE59A52, 0x9C430C};
+static const unsigned THINGS[STRUT_PALETTE_THINGS] = {0x0060A8, 0xD55E00, 0x009E73, 0xB0508F,
+                                                      0xE69F00, 0x4FAEE6, 0x333333};
+
+static strut_colour from(unsigned rgb) {
+  return (strut_colour){(double)(rgb >> 16) / 255.0, (double)(rgb >> 8 & 255) / 255.0,
+                        (double)(rgb & 255) / 255.0, 1.0};
+}
+
+/* value from 0 to 1 along the anchors. */
+static strut_colour between(const unsigned anchors[ANCHORS], double value) {
+  double place = (value > 0 ? value < 1 ? value : 1.0 : 0.0) * (ANCHORS - 1);
+  int i = (int)place < ANCHORS - 1 ? (int)place : ANCHORS - 2;
+  double t = place - i;
+  strut_colour a = from(anchors[i]), b = from(anchors[i + 1]);
+  return (strut_colour){a.red + t * (b.red - a.red), a.green + t * (b.green - a.green),
+                        a.blue + t * (b.blue - a.blue), 1.0};
+}
+
+strut_colour strut_palette_at(strut_colours colours, double value, double low, double high) {
+  static const unsigned *const anchors[] = {[STRUT_COLOURS_SEQUENTIAL] = SEQUENCE,
+                                            [STRUT_COLOURS_DIVERGING] = DIVERGING,
+                                            [STRUT_COLOURS_SIGNED] = SIGNED};
+  double part = (value - low) / (high - low), limit = fmax(fabs(low), fabs(high));
+  assert(colours != STRUT_COLOURS_AUTO && "a map decides what AUTO means");
+  if (colours == STRUT_COLOURS_GREY) return strut_grey(0.12 + 0.8 * fmax(0, fmin(1, part)));
+  return between(anchors[colours],
+                 colours == STRUT_COLOURS_SEQUENTIAL ? part : 0.5 + 0.5 * value / limit);
+}
+
+strut_colour strut_palette_signed(double value) {
+  return strut_palette_at(STRUT_COLOURS_SIGNED, value, -1, 1);
+}
+
+strut_colour strut_palette_sequence(double value) {
+  return strut_palette_at(STRUT_COLOURS_SEQUENTIAL, value, 0, 1);
+}
+
+strut_colour strut_palette_thing(size_t i) { return from(THINGS[i % STRUT_PALETTE_THINGS]); }
+
+strut_colour strut_grey(double brightness) {
+  return (strut_colour){brightness, brightness, brightness, 1.0};
+}
+
+strut_colour strut_faded(strut_colour colour, double alpha) {
+  colour.alpha *= alpha;
+  return colour;
+}
+
+strut_pen strut_series_pen(size_t look) {
+  enum { DASHES = 7 };
+  static const double dashes[DASHES][4] = {{0},      {5, 2}, {1.2, 1.8}, {6, 2, 1.2, 2},
+                                           {3, 1.5}, {8, 2}, {2, 3}};
+  strut_pen pen = {.colour = strut_palette_thing(look), .width = 1.2};
+  /* When colours repeat, dashes differ. */
+  size_t dash = (look + 3 * (look / STRUT_PALETTE_THINGS)) % DASHES;
+  for (int i = 0; i < 4; i++) pen.dash[i] = dashes[dash][i];
+  pen.butt = pen.dash[0] > 0;
+  return pen;
+}
+
+strut_pen strut_displacement_pen(void) {
+  return (strut_pen){.colour = strut_palette_thing(2), .width = 0.8};
+}
+
+/* ---- texts ---- */
+
+int strut_text_bytes(const char *text, int most) {
+  int length = (int)strnlen(text, (size_t)most), last = length;
+  while (last > 0 && ((unsigned char)text[last - 1] & 0xC0) == 0x80) last--;
+  if (last == 0) return 0;
+  unsigned char lead = (unsigned char)text[last - 1];
+  int wanted = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
+  return length - last + 1 < wanted ? last - 1 : length;
+}
+
+/* ---- ranges of axes ---- */
+
+/* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's
+   size. */
+static const double ROUNDING = 1e-12, LEAST_LENGTH = 1e-13;
+
+bool strut_is_noise(double *low, double *high, const char *unit) {
+  double size = fmax(fabs(*low), fabs(*high));
+  bool length = unit && (strcmp(unit, "m") == 0 || strcmp(unit, "m/s") == 0);
+  if (length && size < LEAST_LENGTH) *low = *high = 0;
+  return !(*high - *low > ROUNDING * size);
+}
+
+void strut_axis_include(strut_axis *axis, double value) {
+  if (!isfinite(value) || (axis->logarithmic && !(value > 0))) return;
+  if (!(axis->low <= value)) axis->low = value;
+  if (!(axis->high >= value)) axis->high = value;
+}
+
+void strut_axis_settle(strut_axis *axis, double room) {
+  if (!isfinite(axis->low) || !isfinite(axis->high) || axis->low > axis->high) {
+    axis->low = axis->logarithmic ? 0.1 : 0;
+    axis->high = 1;
+  }
+  if (axis->logarithmic) {
+    if (!(axis->high > 0)) axis->high = 1;
+    if (!(axis->low > 0)) axis->low = 1e-3 * axis->high;
+    double wider = pow(axis->high / axis->low, room);
+    if (axis->high / axis->low < 1.5) wider = fmax(wider, 2);
+    axis->low = fmin(fmax(axis->low / wider, 1e-300), 1e299);
+    axis->high = fmax(fmin(axis->high * wider, 1e300), 2 * axis->low);
+    return;
+  }
+  bool constant = strut_is_noise(&axis->low, &axis->high, axis->unit);
+  double span = axis->high - axis->low;
+  double size = fmax(fabs(axis->low), fabs(axis->high));
+  if (constant || !isfinite(span)) { /* a constant is drawn in the middle */
+    span = size > 1e-300 ? fmin(size, 1e300) : 1;
+    room = isfinite(axis->high - axis->low) ? 0.1 : 0;
+  }
+  axis->low -= room * span;
+  axis->high += room * span;
+}
+
+void strut_axis_choose(strut_axis *axis, const strut_axis_choice *choice) {
+  if (choice->label) axis->name = choice->label;
+  if (choice->limited) axis->low = choice->low, axis->high = choice->high;
+}
+
+/* ---- ranges that few values do not flatten ---- */
+
+/* Values that take more than this part of a scale are left out of it, if they are few: of all values. */
+static const double MOST_OF_RANGE = 0.75, FEW = 0.05;
+
+/* Sorts the finite values to the front. Returns how many there are. */
+static size_t sort_finite(double *values, size_t count) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(values[i])) values[kept++] = values[i];
+  if (kept) gsl_sort(values, 1, kept);
+  return kept;
+}
+
+double strut_limit_without_outliers(double *magnitudes, size_t count, double other, double share,
+                                    strut_beyond *beyond) {
+  size_t kept = sort_finite(magnitudes, count), most = (size_t)(share * (double)kept);
+  *beyond = (strut_beyond){0};
+  if (!kept) return other;
+  for (; beyond->above < most && kept > 1; kept--) {
+    double rest = fmax(magnitudes[kept - 2], other);
+    if (!(magnitudes[kept - 1] * (1 - MOST_OF_RANGE) > rest) || !(rest > 0)) break;
+    if (!beyond->above++) beyond->farthest = magnitudes[kept - 1];
+  }
+  return fmax(magnitudes[kept - 1], other);
+}
+
+void strut_range_without_outliers(double *values, size_t count, double *low, double *high,
+                                  strut_beyond *beyond) {
+  size_t kept = sort_finite(values, count), most = (size_t)(FEW * (double)kept), best = 0;
+  double least = HUGE_VAL;
+  *beyond = (strut_beyond){0};
+  if (!kept) return;
+  for (size_t below = 0; below <= most; below++) { /* so many at the lower end, the others above */
+    double range = values[kept - 1 - (most - below)] - values[below];
+    if (range < least) least = range, best = below;
+  }
+  double whole = values[kept - 1] - values[0];
+  if (!(least < (1 - MOST_OF_RANGE) * whole) || !(least > 0)) return;
+  /* The rest of the values decides; of those left out, which still fit into its neighbourhood stay. */
+  *low = values[best], *high = values[kept - 1 - (most - best)];
+  for (size_t i = best; i-- > 0 && values[i] >= *low - 0.5 * least;) *low = values[i];
+  for (size_t i = kept - (most - best); i < kept && values[i] <= *high + 0.5 * least; i++)
+    *high = values[i];
+  for (size_t i = 0; i < kept; i++) {
+    if (values[i] >= *low && values[i] <= *high) continue;
+    beyond->below += values[i] < *low;
+    beyond->above += values[i] > *high;
+    if (fabs(values[i]) > fabs(beyond->farthest)) beyond->farthest = values[i];
+  }
+}
+
+const char *strut_beyond_text(const strut_beyond *beyond, const char *what, const char *unit,
+                              char text[STRUT_BEYOND_TEXT]) {
+  size_t count = beyond->below + beyond->above;
+  text[0] = '\0';
+  if (count)
+    snprintf(text, STRUT_BEYOND_TEXT, "%zu %s%s beyond the scale, up to %s", count, what,
+             count > 1 ? "s" : "", strut_quantity_of(beyond->farthest, 3, unit ? unit : "").text);
+  return text;
+}
+
+/* ---- bounds of structures ---- */
+
+strut_bounds strut_bounds_none(void) {
+  return (strut_bounds){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+}
+
+void strut_bounds_widen(strut_bounds *bounds, const double low[2], const double high[2]) {
+  for (int d = 0; d < 2; d++) {
+    bounds->low[d] = fmin(bounds->low[d], low[d]);
+    bounds->high[d] = fmax(bounds->high[d], high[d]);
+  }
+}
+
+void strut_bounds_add(strut_bounds *bounds, const strut_model *model, const double *positions) {
+  for (int32_t i = 0; i < 2 * model->node_count; i++) {
+    if (!isfinite(positions[i])) continue;
+    bounds->low[i % 2] = fmin(bounds->low[i % 2], positions[i]);
+    bounds->high[i % 2] = fmax(bounds->high[i % 2], positions[i]);
+  }
+  for (size_t m = 0; m < model->scene->member_count; m++) { /* circles of guides */
+    const strut_member *member = &model->scene->members[m];
+    double radius = member->guide_radius;
+    for (size_t k = 1; k <= member->guide_count && radius > 0.0; k++) {
+      const double *at = positions + 2 * strut_member_node(member, k);
+      strut_bounds_widen(bounds, (const double[2]){at[0] - radius, at[1] - radius},
+                         (const double[2]){at[0] + radius, at[1] + radius});
+    }
+  }
+}
+
+void strut_bounds_share(strut_bounds *bounds, const double size[2]) {
+  double middle = 0.5 * (bounds->low[0] + bounds->high[0]);
+  bounds->low[0] = middle - 0.5 * size[0], bounds->high[0] = middle + 0.5 * size[0];
+  bounds->high[1] = bounds->low[1] + size[1];
+}
+
+double strut_bounds_extent(const strut_bounds *bounds) {
+  return fmax(bounds->high[0] - bounds->low[0], bounds->high[1] - bounds->low[1]);
+}
+
+strut_bounds strut_bounds_of(const strut_model *model, const double *positions) {
+  strut_bounds bounds = strut_bounds_none();
+  strut_bounds_add(&bounds, model, positions);
+  return bounds;
+}
