@@ -117,8 +117,8 @@ typedef enum strut_fit_kind {
 
 /** Measured numbers and what they are compared with. */
 typedef struct strut_fit_series {
-  const char *of; /* quantity that the model measures, or a column */
-  strut_search_place place;
+  const char *of;         /* quantity that the model measures, or a column */
+  const char *where;      /* "FILE:LINE:COLUMN" of the study's text */
   const char *unit;       /* of the numbers, SI; "1": none */
   const double *measured; /* (count of the match) SI; NAN: a gap */
   const double *weights;  /* (count) of their squared residuals; NULL: 1 */
@@ -131,7 +131,6 @@ typedef struct strut_fit_alignment {
 
 typedef struct strut_fit_match {
   const char *name;
-  strut_search_place place;
   strut_fit_kind kind;
   uint32_t compute; /* strut_compute, of a TABLE */
   size_t count;     /* numbers of each series */

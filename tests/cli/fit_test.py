@@ -334,7 +334,7 @@ def refusals():
             ("d.x, noise", "d.y, noise", "d.y"),
             ("b.x: d.x", "c.x: d.x", "c.x"),
             ("noise: 0.1 mm", "noise: 0.1 N", "is in N, this in m"),
-            ("b.x: d.x", "b.vx: d.x", "has another unit than its numbers"),
+            ("b.x: d.x", "b.vx: d.x", "refused.yaml:10:26: match 'd': 'b.vx' has another unit than its numbers"),
             ("over:", "ower:", "did you mean 'over'"),
             ("starts: 3", "starts: 0", "starts"),
             ("data:", "lowest: 2\ndata:", "no match of the fit uses 'lowest'"),

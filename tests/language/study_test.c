@@ -35,22 +35,28 @@ static strut_status try_ends(strut_study_file *file) {
   return status;
 }
 
-/* Strikes messages off those expected; returns how many were not. */
+/* Strikes a message off those expected; 1 where it is none of them. */
+static size_t strike_one(faulty_case *c, const char *where, strut_place place,
+                         const char *message) {
+  char line[1200];
+  snprintf(line, sizeof line, "%s%u:%u: %s", where, place.line, place.column, message);
+  for (size_t k = 0; k < c->message_count; k++)
+    if (strcmp(c->message[k], line) == 0) {
+      c->message[k][0] = '\0';
+      return 0;
+    }
+  print_error("%s: %s: not expected: %s\n", c->document, c->name, line);
+  return 1;
+}
+
+/* Strikes messages and their notes off; returns how many were not expected. */
 static size_t strike(faulty_case *c, const char *where, const strut_diagnostics *found) {
   size_t wrong = 0;
   for (size_t i = 0; i < found->count; i++) {
-    char line[1200];
-    bool expected = false;
     const strut_diagnostic *d = &found->items[i];
-    snprintf(line, sizeof line, "%s%u:%u: %s", where, d->place.line, d->place.column, d->message);
-    for (size_t k = 0; k < c->message_count && !expected; k++)
-      if (strcmp(c->message[k], line) == 0) {
-        c->message[k][0] = '\0';
-        expected = true;
-      }
-    if (expected) continue;
-    print_error("%s: %s: not expected: %s\n", c->document, c->name, line);
-    wrong++;
+    wrong += strike_one(c, where, d->place, d->message);
+    for (size_t k = 0; k < STRUT_MESSAGE_NOTES && d->note[k]; k++)
+      wrong += strike_one(c, "note: ", d->note_place[k], d->note[k]);
   }
   return wrong;
 }

@@ -416,8 +416,8 @@ static int axis_of(const strut_quantity_definition *quantity, strut_column *plac
 static strut_status refuse(const strut_fit_match *match, size_t s, const char *why,
                            strut_error *error) {
   const strut_fit_series *series = &match->series[s];
-  return strut_fail(error, STRUT_BAD_SCENE, "line %u: match '%.60s': '%.80s' %s",
-                    series->place.line, match->name, series->of, why);
+  return strut_fail(error, STRUT_BAD_SCENE, "%s: match '%.60s': '%.80s' %s", series->where,
+                    match->name, series->of, why);
 }
 
 /* What the series of a match are in the model. */

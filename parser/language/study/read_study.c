@@ -573,12 +573,31 @@ static strut_status check_starts(strut_study_file *file, const strut_scene *scen
   return status;
 }
 
+/* Adds the values of the axes, and of what is followed, to the first of the messages from number `before` on. */
+static void note_values(strut_study_file *file, strut_diagnostics *messages, size_t before,
+                        const strut_study_value *values, const double *followed) {
+  char text[300] = "";
+  size_t used = 0, first = before;
+  strut_place place = file->column_count ? file->columns[0].place : (strut_place){0};
+  for (size_t i = 0; i < file->column_count; i++)
+    if (file->columns[i].name)
+      used = format_value(&file->columns[i], values[i], text, used, sizeof text);
+  if (followed)
+    format_value(&file->followed, (strut_study_value){.number = *followed}, text, used,
+                 sizeof text);
+  for (size_t i = before; i < messages->count; i++)
+    if (strut_place_compare(messages->items[i].place, messages->items[first].place) < 0) first = i;
+  if (messages == &file->model_diagnostics)
+    place.file = strut_diagnostics_use(messages, file->path, file->text, file->length) & 0xFFu;
+  if (messages == &file->model_diagnostics && !place.file) place = (strut_place){0};
+  strut_diagnose_note(messages, first, place, "the model cannot be run at %s", text);
+}
+
 static strut_status try_point(strut_study_file *file, const strut_study_value *values,
                               const double *followed) {
   strut_setup setup;
-  char text[300] = "";
-  size_t used = 0;
   const others more = {followed ? 1 : 0, NULL, followed};
+  size_t before = file->diagnostics.count, before_model = file->model_diagnostics.count;
   strut_status status = read_point(file, values, more, &file->model_diagnostics, &setup);
   strut_status started = STRUT_OK;
   if (status == STRUT_OK && followed) started = check_starts(file, &setup.scene);
@@ -586,14 +605,9 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
   if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
   if (status == STRUT_OK) return started;
   if (status != STRUT_BAD_SCENE || (!file->column_count && !followed)) return status;
-  for (size_t i = 0; i < file->column_count; i++)
-    if (file->columns[i].name)
-      used = format_value(&file->columns[i], values[i], text, used, sizeof text);
-  if (followed)
-    format_value(&file->followed, (strut_study_value){.number = *followed}, text, used,
-                 sizeof text);
-  strut_place place = file->column_count ? file->columns[0].place : (strut_place){0};
-  strut_diagnose(&file->diagnostics, place, "the model cannot be run at %s", text);
+  bool own = file->diagnostics.count > before;
+  note_values(file, own ? &file->diagnostics : &file->model_diagnostics,
+              own ? before : before_model, values, followed);
   return status;
 }
 

@@ -13,6 +13,8 @@
 static const strut_owner search_owner = {"the search", NULL};
 /* Scenarios of one evaluation, at most. */
 enum { MOST_SCENARIOS = 1000 };
+/* The largest end of a logarithmic range, of the smallest. */
+static const double MOST_RATIO = 1e12 * (1.0 + 1e-9);
 
 size_t strut_study_search_columns(const strut_slot *slot) {
   size_t count = 0;
@@ -56,6 +58,8 @@ static bool check_range(strut_study_reader *reader, const strut_study_along *alo
     return refuse(reader, along, "has too wide a range for a number");
   if (variable->logarithmic && variable->from * variable->to <= 0.0)
     return refuse(reader, along, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
+  if (variable->logarithmic && variable->to > MOST_RATIO * variable->from)
+    return refuse(reader, along, "has more than 12 decades in its logarithmic range");
   if (variable->wraps && (variable->logarithmic || variable->integer))
     return refuse(reader, along, "cannot wrap: only even ranges of any number do");
   if (variable->wraps && !wraps_around(along, variable))

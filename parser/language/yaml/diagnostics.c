@@ -206,15 +206,16 @@ static void append_source_line(strut_buffer *out, strut_cursor *cursor, strut_pl
   strut_buffer_add(out, "\n");
 }
 
+int strut_place_compare(strut_place a, strut_place b) {
+  if (a.file != b.file) return a.file < b.file ? -1 : 1;
+  if (a.line != b.line) return a.line < b.line ? -1 : 1;
+  return a.column < b.column ? -1 : a.column > b.column;
+}
+
 static int compare(const void *first, const void *second) {
-  const strut_diagnostic *diagnostic = first, *y = second;
-  if (diagnostic->place.file != y->place.file)
-    return diagnostic->place.file < y->place.file ? -1 : 1;
-  if (diagnostic->place.line != y->place.line)
-    return diagnostic->place.line < y->place.line ? -1 : 1;
-  if (diagnostic->place.column != y->place.column)
-    return diagnostic->place.column < y->place.column ? -1 : 1;
-  return diagnostic->order < y->order ? -1 : diagnostic->order > y->order;
+  const strut_diagnostic *a = first, *b = second;
+  int order = strut_place_compare(a->place, b->place);
+  return order ? order : a->order < b->order ? -1 : a->order > b->order;
 }
 
 /* The text that a place is in. */
