@@ -337,66 +337,6 @@ static void put_axis(strut_writer *writer, const strut_study_axis *axis) {
   }
 }
 
-/* What is computed where it is no run. */
-static void put_computed(strut_writer *writer, const strut_study *study) {
-  if (study->compute == STRUT_COMPUTE_RUN) return;
-  put_number(writer, (double)study->compute);
-  put_number(writer, (double)study->lowest);
-  put_word(writer, study->at ? study->at : "");
-  put_word(writer, study->path.load ? study->path.load : "");
-  put_word(writer, study->path.over ? study->path.over : "");
-  put_number(writer, study->path.from);
-  put_number(writer, study->path.until);
-  put_word(writer, study->path.from_unit ? study->path.from_unit : "");
-  put_word(writer, study->path.until_unit ? study->path.until_unit : "");
-  put_number(writer, study->path.from_given + 2 * study->path.until_given);
-  put_number(writer, (double)study->path.steps);
-  put_number(writer, (double)study->form.from);
-  put_number(writer, (double)study->form.objective);
-  put_number(writer, study->form.least_tension);
-  put_number(writer, study->form.least_density);
-}
-
-/* What is searched; the goal decides the column `objective`. */
-static void put_search(strut_writer *writer, const strut_study_search *search) {
-  put_number(writer, search->maximise);
-  put_word(writer, search->goal.text);
-  if (search->second.text) put_word(writer, search->second.text);
-  for (size_t i = 0; i < search->condition_count; i++) put_word(writer, search->conditions[i].text);
-  for (size_t i = 0; i < search->variable_count; i++) {
-    const strut_search_variable *variable = &search->variables[i];
-    put_word(writer, variable->name);
-    put_number(writer, variable->from);
-    put_number(writer, variable->to);
-    put_number(writer, variable->start);
-    put_number(writer, variable->logarithmic + 2 * variable->wraps + 4 * variable->integer);
-    for (size_t k = 0; k < variable->choice_count; k++) {
-      if (variable->word)
-        put_word(writer, variable->words[k]);
-      else
-        put_number(writer, variable->numbers[k]);
-    }
-  }
-  put_number(writer, (double)search->method);
-  put_number(writer, (double)search->starts);
-  put_number(writer, (double)search->evaluations);
-  put_number(writer, (double)search->seed);
-}
-
-/* What is followed at each point. */
-static void put_follow(strut_writer *writer, const strut_study_follow *follow) {
-  put_word(writer, follow->over);
-  put_number(writer, follow->from);
-  put_number(writer, follow->to);
-  put_number(writer, (double)follow->at_count);
-  for (size_t i = 0; i < follow->at_count; i++) put_number(writer, follow->at[i]);
-  for (size_t i = 0; i < follow->start_count; i++) put_word(writer, follow->start_from[i]);
-  put_number(writer, follow->accuracy);
-  put_word(writer, follow->integrator ? follow->integrator : "");
-  put_number(writer, (double)follow->steps);
-  put_number(writer, follow->basins);
-}
-
 /* What is measured, by checksums. */
 static void put_tables(strut_writer *writer, const strut_data_table *tables, size_t count) {
   for (size_t i = 0; i < count; i++)
@@ -413,7 +353,6 @@ static void put_tables(strut_writer *writer, const strut_data_table *tables, siz
 }
 
 char *strut_study_identity(const strut_study_file *file) {
-  static const char *const goals[] = {"stiffness_at", "shape", "like", "curve"};
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
   for (size_t i = 0; i < file->source_count; i++) {
@@ -428,27 +367,12 @@ char *strut_study_identity(const strut_study_file *file) {
     put_word(&w, file->settings[i].text);
   }
   for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
-  for (size_t i = 0; i < STRUT_KEEP_WORDS; i++) {
-    put_number(&w, (double)(study->keep.bits[i] >> 32));
-    put_number(&w, (double)(study->keep.bits[i] & UINT32_MAX));
-  }
-  for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
-  for (size_t i = 0; i < study->derivative_count; i++) put_word(&w, study->derivatives[i].name);
-  put_number(&w, study->trajectories);
-  put_number(&w, study->half_step);
-  put_number(&w, study->check_accuracy);
-  put_computed(&w, study);
-  if (study->refine.depth) {
-    put_number(&w, (double)study->refine.depth);
-    put_number(&w, study->refine.by);
-    put_word(&w, study->refine.where);
-  }
-  if (study->search) put_search(&w, study->search);
-  if (study->follow) put_follow(&w, study->follow);
-  if (study->fit) put_tree(&w, file->document.root); /* its matches use whatever stands there */
-  for (size_t i = 0; i < sizeof goals / sizeof goals[0]; i++) {
-    const strut_tree *goal = strut_tree_find(file->document.root, goals[i], NULL);
-    if (goal) put_tree(&w, goal);
+  for (int key = STRUT_KEY_STUDY_KEEP; key <= STRUT_KEY_STUDY_FIT; key++) {
+    const char *name = strut_key_at(key)->name;
+    const strut_tree *value = strut_tree_find(file->document.root, name, NULL);
+    if (!value || key == STRUT_KEY_STUDY_FIGURES || key == STRUT_KEY_STUDY_LIMIT) continue;
+    put_word(&w, name);
+    put_tree(&w, value);
   }
   if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
   return strut_buffer_take(&w.out);
