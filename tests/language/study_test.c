@@ -54,7 +54,7 @@ static size_t strike(faulty_case *c, const char *where, const strut_diagnostics 
   size_t wrong = 0;
   for (size_t i = 0; i < found->count; i++) {
     const strut_diagnostic *d = &found->items[i];
-    wrong += strike_one(c, where, d->place, d->message);
+    wrong += strike_one(c, d->place.file ? "table " : where, d->place, d->message);
     for (size_t k = 0; k < STRUT_MESSAGE_NOTES && d->note[k]; k++)
       wrong += strike_one(c, "note: ", d->note_place[k], d->note[k]);
   }
@@ -83,8 +83,6 @@ static size_t check_case(faulty_case *c, const char *folder) {
   }
   wrong += strike(c, "", &file.diagnostics);
   wrong += strike(c, "model ", &file.model_diagnostics);
-  for (size_t i = 0; i < file.table_count; i++)
-    wrong += strike(c, "table ", &file.tables[i].diagnostics);
   for (size_t i = 0; i < c->message_count; i++)
     if (c->message[i][0]) {
       print_error("%s: %s: not found: %s\n", c->document, c->name, c->message[i]);

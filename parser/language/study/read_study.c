@@ -191,26 +191,22 @@ static void read_keep(strut_study_reader *reader, const strut_slot *slot) {
   }
 }
 
-static void require_column(strut_study_reader *reader, const strut_fields *fields,
-                           const strut_tree *key, const char *kind, const char *name,
-                           const char *text) {
-  if (text || fields->broken) return;
-  strut_report_error(reader->reader, key->place,
-                     "%s '%s' lacks '%s', expected a column of the table", kind, key->text, name);
-}
-
 /* Reports columns that the kind of figure needs. */
 static void require_columns(strut_study_reader *reader, const strut_fields *fields,
                             const strut_tree *key, const strut_study_figure *figure) {
-  static const char *const kinds[] = {"figure", "map", "figure", "", "", "", "figure", ""};
-  const char *kind = kinds[figure->kind];
-  if (figure->kind == STRUT_FIGURE_PERIOD || figure->kind == STRUT_FIGURE_SNAPSHOTS ||
-      figure->kind == STRUT_FIGURE_BEST || figure->kind == STRUT_FIGURE_WINNER)
+  bool map = figure->kind == STRUT_FIGURE_MAP;
+  const struct {
+    const char *name, *text;
+  } columns[] = {{"x", figure->x}, {"y", figure->y}, {"color", figure->color}};
+  if (fields->broken || figure->kind == STRUT_FIGURE_PERIOD ||
+      figure->kind == STRUT_FIGURE_SNAPSHOTS || figure->kind == STRUT_FIGURE_BEST ||
+      figure->kind == STRUT_FIGURE_WINNER)
     return;
-  require_column(reader, fields, key, kind, "x", figure->x);
-  require_column(reader, fields, key, kind, "y", figure->y);
-  if (figure->kind == STRUT_FIGURE_MAP)
-    require_column(reader, fields, key, kind, "color", figure->color);
+  for (int i = 0; i < 2 + map; i++)
+    if (!columns[i].text)
+      strut_report_error(reader->reader, key->place,
+                         "%s '%s' lacks '%s', expected a column of the table",
+                         map ? "map" : "figure", key->text, columns[i].name);
 }
 
 /* Reports limits that do not ascend. */
@@ -415,11 +411,6 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
 
 const char *strut_study_messages(strut_study_file *file, size_t most) {
   const char *text = strut_diagnostics_render(&file->diagnostics, most);
-  for (size_t i = 0; i < file->table_count && text; i++) {
-    strut_diagnostics *own = &file->tables[i].diagnostics;
-    const char *more = own->count ? strut_diagnostics_render(own, most) : "";
-    text = more ? strut_arena_format(&file->arena, "%s%s", text, more) : NULL;
-  }
   const char *model =
       file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
   return text && model ? strut_arena_format(&file->arena, "%s%s", text, model) : NULL;
@@ -471,19 +462,13 @@ static strut_status read_scene(const strut_study_file *file, const strut_study_v
   return status;
 }
 
-/* Parameters that have these values beside those of the axes; followed: one, that which is followed. */
-typedef struct others {
-  size_t count;
-  const strut_derived_by *by; /* NULL: followed */
-  const double *numbers;
-} others;
-
-/* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
+/* Reads a point's scene, the parameters `by` at `numbers`; messages go to `diagnostics`, of the model's text. */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
-                               others more, strut_diagnostics *diagnostics, strut_setup *setup) {
+                               const strut_derived_by *by, size_t by_count, const double *numbers,
+                               strut_diagnostics *diagnostics, strut_setup *setup) {
   const strut_scene_source *source = source_of(file, values);
   size_t first = file->variants, count = file->setting_count;
-  size_t most = count + file->column_count - first + more.count;
+  size_t most = count + file->column_count - first + by_count;
   strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return STRUT_NO_MEMORY;
   char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + most);
@@ -497,20 +482,21 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     setting->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
-  for (size_t i = 0; i < more.count; i++) {
-    const char *name = more.by ? more.by[i].name : file->followed.name;
-    strut_setting_put(source, name, more.numbers[i], texts[most - 1 - i], settings, &count);
-    if (!more.by) settings[count - 1].place = strut_overlay_place(file->followed.place);
+  for (size_t i = 0; i < by_count; i++) {
+    strut_setting_put(source, by[i].name, numbers[i], texts[most - 1 - i], settings, &count);
+    if (by[i].name == file->followed.name)
+      settings[count - 1].place = strut_overlay_place(file->followed.place);
   }
   strut_status status = read_scene(file, values, settings, count, diagnostics, setup);
   strut_release(settings);
   return status;
 }
 
-static strut_status make_setup(const strut_study_file *file, const strut_study_value *values,
-                               others more, strut_setup *setup, strut_error *error) {
+strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
+                              const strut_derived_by *by, size_t count, const double *numbers,
+                              strut_setup *setup, strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = read_point(file, values, more, &diagnostics, setup);
+  strut_status status = read_point(file, values, by, count, numbers, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
     const strut_diagnostic *first = &diagnostics.items[0];
     for (size_t i = 1; i < diagnostics.count; i++)
@@ -531,18 +517,13 @@ static strut_status make_setup(const strut_study_file *file, const strut_study_v
 
 strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
                                strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, (others){0}, setup, error);
+  return strut_study_vary(file, values, NULL, 0, NULL, setup, error);
 }
 
 strut_status strut_study_setup_at(const strut_study_file *file, const strut_study_value *values,
                                   double value, strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, (others){1, NULL, &value}, setup, error);
-}
-
-strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
-                              const strut_derived_by *by, size_t count, const double *numbers,
-                              strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, (others){count, by, numbers}, setup, error);
+  const strut_derived_by followed = {.name = file->followed.name};
+  return strut_study_vary(file, values, &followed, 1, &value, setup, error);
 }
 
 /* Appends "frequency = 10 Hz" or "start = I" to a text. */
@@ -596,9 +577,10 @@ static void note_values(strut_study_file *file, strut_diagnostics *messages, siz
 static strut_status try_point(strut_study_file *file, const strut_study_value *values,
                               const double *followed) {
   strut_setup setup;
-  const others more = {followed ? 1 : 0, NULL, followed};
+  const strut_derived_by by = {.name = file->followed.name};
   size_t before = file->diagnostics.count, before_model = file->model_diagnostics.count;
-  strut_status status = read_point(file, values, more, &file->model_diagnostics, &setup);
+  strut_status status =
+      read_point(file, values, &by, followed != NULL, followed, &file->model_diagnostics, &setup);
   strut_status started = STRUT_OK;
   if (status == STRUT_OK && followed) started = check_starts(file, &setup.scene);
   if (status == STRUT_OK) strut_setup_free(&setup);
@@ -622,10 +604,7 @@ strut_status strut_study_try_at(strut_study_file *file, const strut_study_value 
 
 void strut_study_close(strut_study_file *file) {
   for (size_t i = 0; i < file->source_count; i++) strut_scene_source_free(file->sources[i]);
-  for (size_t i = 0; i < file->table_count; i++) {
-    strut_diagnostics_free(&file->tables[i].diagnostics);
-    strut_safe_text_free(&file->tables[i].file);
-  }
+  for (size_t i = 0; i < file->table_count; i++) strut_safe_text_free(&file->tables[i].file);
   strut_diagnostics_free(&file->diagnostics);
   strut_diagnostics_free(&file->model_diagnostics);
   strut_document_free(&file->document);

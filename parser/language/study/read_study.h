@@ -17,7 +17,6 @@ typedef struct strut_study_points {
   const struct strut_tree *node; /* its name in the study */
   const char *copy;              /* the name of its copy beside results */
   strut_safe_text file;
-  strut_diagnostics diagnostics; /* about it */
 } strut_study_points;
 
 /** What is done to each scene of an open study once it was read, by several threads at a time. */

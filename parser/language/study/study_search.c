@@ -50,25 +50,26 @@ static bool wraps_around(const strut_study_along *along, const strut_search_vari
 
 static bool check_range(strut_study_reader *reader, const strut_study_along *along,
                         const strut_search_variable *variable) {
-  if (variable->from == variable->to)
-    return refuse(reader, along, "has a range of one value: write it under 'set' of the study");
-  if (variable->from > variable->to)
-    return refuse(reader, along, "has a reversed range: 'from' must be below 'to'");
-  if (!isfinite(variable->to - variable->from))
-    return refuse(reader, along, "has too wide a range for a number");
-  if (variable->logarithmic && variable->from * variable->to <= 0.0)
-    return refuse(reader, along, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
-  if (variable->logarithmic && variable->to > MOST_RATIO * variable->from)
-    return refuse(reader, along, "has more than 12 decades in its logarithmic range");
-  if (variable->wraps && (variable->logarithmic || variable->integer))
-    return refuse(reader, along, "cannot wrap: only even ranges of any number do");
-  if (variable->wraps && !wraps_around(along, variable))
-    return refuse(reader, along,
-                  "cannot wrap: its range is no full turn, such as 0 deg to 360 deg");
-  if (variable->integer && floor(variable->to) < ceil(variable->from) + 1.0)
-    return refuse(reader, along, "has no two whole numbers in its range");
-  if (!(variable->start >= variable->from && variable->start <= variable->to))
-    return refuse(reader, along, "has a 'start' outside of its range");
+  const double from = variable->from, to = variable->to;
+  const bool logarithmic = variable->logarithmic;
+  const struct {
+    bool found;
+    const char *why;
+  } flaws[] = {
+      {from == to, "has a range of one value: write it under 'set' of the study"},
+      {from > to, "has a reversed range: 'from' must be below 'to'"},
+      {!isfinite(to - from), "has too wide a range for a number"},
+      {logarithmic && from * to <= 0.0,
+       "cannot be logarithmic: 'from' and 'to' must be on one side of 0"},
+      {logarithmic && to > MOST_RATIO * from, "has more than 12 decades in its logarithmic range"},
+      {variable->wraps && (logarithmic || variable->integer),
+       "cannot wrap: only even ranges of any number do"},
+      {variable->wraps && !wraps_around(along, variable),
+       "cannot wrap: its range is no full turn, such as 0 deg to 360 deg"},
+      {variable->integer && floor(to) < ceil(from) + 1.0, "has no two whole numbers in its range"},
+      {!(variable->start >= from && variable->start <= to), "has a 'start' outside of its range"}};
+  for (size_t i = 0; i < sizeof flaws / sizeof flaws[0]; i++)
+    if (flaws[i].found) return refuse(reader, along, flaws[i].why);
   return true;
 }
 
@@ -384,18 +385,6 @@ static int find(void *context, const char *kind, strut_piece owner, strut_piece 
   return -1;
 }
 
-static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
-                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
-  (void)context, (void)word, (void)first, (void)second, (void)column, (void)dimension;
-  (void)refusal;
-  return 0;
-}
-
-static int look_up(void *context, const char *name, size_t length, strut_quantity *quantity) {
-  (void)context, (void)name, (void)length, (void)quantity;
-  return 0;
-}
-
 static strut_place place_of(strut_search_place place, size_t offset, size_t length) {
   return (strut_place){
       .line = place.line, .column = place.column + (uint32_t)offset, .length = length & 0xffffffu};
@@ -405,7 +394,7 @@ static strut_place place_of(strut_search_place place, size_t offset, size_t leng
 static bool compile(binder *self, const char *text, size_t offset, strut_search_formula *formula,
                     strut_quantity *quantity) {
   strut_arena *arena = &self->file->arena;
-  const strut_scope scope = {.lookup = look_up, .names = column_name, .context = self};
+  const strut_scope scope = {.names = column_name, .context = self};
   strut_expression_error error = {0};
   strut_compiled *program = strut_arena_allocate(arena, strlen(text) + 1, sizeof *program);
   strut_instruction *kept = strut_arena_allocate(arena, strlen(text) + 1, sizeof *kept);
@@ -413,8 +402,7 @@ static bool compile(binder *self, const char *text, size_t offset, strut_search_
     self->no_memory = true;
     return false;
   }
-  strut_compiler compiler = {
-      .column = find, .pair = find_pair, .context = self, .program = program};
+  strut_compiler compiler = {.column = find, .context = self, .program = program};
   if (!strut_expression_compile(text, &scope, &compiler, quantity, &error)) {
     strut_diagnose(&self->file->diagnostics,
                    place_of(formula->place, offset + error.offset, error.length),

@@ -64,33 +64,24 @@ bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
   return fine;
 }
 
-static void split_notes(strut_diagnostics *from, strut_diagnostics *over) {
+/* Moves items at marked places to `over`, as notes or as messages; how many are left. */
+static size_t split(strut_diagnostic *items, size_t count, strut_diagnostics *over, bool notes) {
   size_t kept = 0;
-  for (size_t i = 0; i < from->note_count; i++) {
-    strut_diagnostic note = from->notes[i];
-    if (note.place.line & STRUT_OVERLAY_LINE) {
-      note.place.line &= ~STRUT_OVERLAY_LINE;
-      strut_note(over, note.place, "%s", note.message);
-    } else {
-      from->notes[kept++] = note;
-    }
-  }
-  from->note_count = kept;
-}
-
-bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over) {
-  size_t kept = 0;
-  split_notes(from, over);
-  for (size_t i = 0; i < from->count; i++) {
-    strut_diagnostic item = from->items[i];
+  for (size_t i = 0; i < count; i++) {
+    strut_diagnostic item = items[i];
     if (!(item.place.line & STRUT_OVERLAY_LINE)) {
-      from->items[kept++] = item;
+      items[kept++] = item;
       continue;
     }
     item.place.line &= ~STRUT_OVERLAY_LINE;
-    strut_diagnose(over, item.place, "%s", item.message);
+    (notes ? strut_note : strut_diagnose)(over, item.place, "%s", item.message);
   }
-  from->count = kept;
+  return kept;
+}
+
+bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over) {
+  from->note_count = split(from->notes, from->note_count, over, true);
+  from->count = split(from->items, from->count, over, false);
   return !over->out_of_memory;
 }
 

@@ -93,11 +93,16 @@ void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char
   used->file = name ? name : "<file>";
 }
 
+int strut_place_compare(strut_place a, strut_place b) {
+  if (a.file != b.file) return a.file < b.file ? -1 : 1;
+  if (a.line != b.line) return a.line < b.line ? -1 : 1;
+  return a.column < b.column ? -1 : a.column > b.column;
+}
+
 static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     const strut_diagnostic *note = &diagnostics->notes[i];
-    if (note->place.file == place.file && note->place.line == place.line &&
-        note->place.column == place.column && strcmp(note->message, message) == 0)
+    if (strut_place_compare(note->place, place) == 0 && strcmp(note->message, message) == 0)
       return true;
   }
   return false;
@@ -206,12 +211,6 @@ static void append_source_line(strut_buffer *out, strut_cursor *cursor, strut_pl
   strut_buffer_add(out, "\n");
 }
 
-int strut_place_compare(strut_place a, strut_place b) {
-  if (a.file != b.file) return a.file < b.file ? -1 : 1;
-  if (a.line != b.line) return a.line < b.line ? -1 : 1;
-  return a.column < b.column ? -1 : a.column > b.column;
-}
-
 static int compare(const void *first, const void *second) {
   const strut_diagnostic *a = first, *b = second;
   int order = strut_place_compare(a->place, b->place);
@@ -262,6 +261,14 @@ const char *strut_diagnostics_file(const strut_diagnostics *diagnostics, strut_p
   return text_of(diagnostics, place).file;
 }
 
+/* What was written, in the arena; NULL: memory is out. */
+static const char *keep_text(strut_diagnostics *diagnostics, strut_buffer *out) {
+  const char *text = out->text ? out->text : "";
+  text = out->failed ? NULL : strut_arena_text(&diagnostics->arena, text, out->length);
+  strut_release(out->text);
+  return text;
+}
+
 const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most) {
   strut_buffer out = {0};
   strut_cursor cursor = {0};
@@ -275,11 +282,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   }
   size_t left = diagnostics->count - shown + diagnostics->unstored;
   if (left) strut_buffer_add(&out, "... and %zu more\n", left);
-  const char *text =
-      out.failed ? NULL
-                 : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
-  strut_release(out.text);
-  return text;
+  return keep_text(diagnostics, &out);
 }
 
 const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
@@ -288,11 +291,7 @@ const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
     strut_cursor cursor = cursor_in(text_of(diagnostics, diagnostics->notes[i].place));
     render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
   }
-  const char *text =
-      out.failed ? NULL
-                 : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
-  strut_release(out.text);
-  return text;
+  return keep_text(diagnostics, &out);
 }
 
 void strut_diagnostics_free(strut_diagnostics *diagnostics) {
