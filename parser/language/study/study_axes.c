@@ -22,6 +22,7 @@ bool strut_study_read_value(strut_study_reader *study_reader, along *self, const
   if (first && setting->bare && !q.bare) {
     setting->bare = false;
     setting->dimension = q.dimension;
+    self->column->unit = strut_dimension_unit(q.dimension);
   }
   if (q.bare || (!setting->bare && strut_dimension_equal(q.dimension, setting->dimension)))
     return true;
@@ -147,42 +148,40 @@ static bool is_reserved(const strut_study_reader *reader, const char *name) {
   return found;
 }
 
-bool strut_study_begin_along(strut_study_reader *reader, along *self, strut_place place) {
+bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis, along *self) {
+  if (!self->parameter) self->parameter = strut_study_parameter(reader, self->key);
   const strut_declared *parameter = self->parameter;
-  *self->column = (strut_study_column){.name = parameter->name, .word = parameter->text};
+  if (!parameter) return false;
+  if (axis) self->column = &axis->columns[axis->column_count++];
+  if (axis) self->setting = &reader->file->columns[reader->file->column_count++];
+  bool plain = parameter->bare || parameter->text;
+  *self->column =
+      (strut_study_column){.name = parameter->name,
+                           .unit = plain ? "1" : strut_dimension_unit(parameter->dimension),
+                           .word = parameter->text};
   *self->setting = (strut_setting){.name = parameter->name,
                                    .text = "",
                                    .known = !parameter->text,
                                    .bare = parameter->bare,
                                    .dimension = parameter->dimension,
-                                   .place = place};
+                                   .place = self->key->place};
   if (!is_reserved(reader, parameter->name)) return true;
   return strut_report_error(
-      reader->reader, place,
+      reader->reader, self->key->place,
       "the table has a column '%s' of its own: give the model's parameter another name",
       parameter->name);
 }
 
-/* A parameter with its values. */
-static bool read_along(strut_study_reader *reader, along *self) {
-  self->parameter = strut_study_parameter(reader, self->key);
+bool strut_study_read_along(strut_study_reader *reader, strut_study_axis *axis, along *self) {
+  strut_study_begin_along(reader, axis, self);
   if (!self->parameter) return false;
-  strut_study_begin_along(reader, self, self->key->place);
-  bool fine = false;
-  if (self->value->kind == STRUT_TREE_LIST)
-    fine = read_list(reader, self);
-  else if (self->value->kind == STRUT_TREE_MAP)
-    fine = read_range(reader, self);
-  else
-    strut_report_error(
-        reader->reader, self->value->place,
-        "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
-        "found %s",
-        self->parameter->name, strut_found(reader->reader, self->value));
-  self->column->unit = self->setting->bare || self->parameter->text
-                           ? "1"
-                           : strut_dimension_unit(self->setting->dimension);
-  return fine;
+  if (self->value->kind == STRUT_TREE_LIST) return read_list(reader, self);
+  if (self->value->kind == STRUT_TREE_MAP) return read_range(reader, self);
+  return strut_report_error(
+      reader->reader, self->value->place,
+      "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
+      "found %s",
+      self->parameter->name, strut_found(reader->reader, self->value));
 }
 
 /* The mapping whose keys are the axis' parameters: the item itself, or what is zipped in it. */
@@ -221,20 +220,17 @@ static void read_axis(strut_study_reader *reader, const strut_tree *item, strut_
   }
   const strut_tree *map = parameters_of(reader, item);
   if (!map) return;
-  strut_study_column *columns = axis->columns =
-      strut_study_allocate(reader, map->count, sizeof *columns);
-  if (!columns) return;
+  axis->columns = strut_study_allocate(reader, map->count, sizeof *axis->columns);
+  if (!axis->columns) return;
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    along a = {.key = key, .value = key->next, .column = &columns[axis->column_count]};
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    fine = read_along(reader, &a) && fine;
-    axis->column_count++;
+    along a = {.key = key, .value = key->next};
+    fine = strut_study_read_along(reader, axis, &a) && fine;
     if (fine && axis->column_count > 1 && a.count != axis->count)
       fine = strut_report_error(
           reader->reader, key->next->place,
           "zipped parameters need equally many values: '%s' has %lld values, '%s' %lld",
-          columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
+          axis->columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
     if (axis->column_count == 1) axis->count = a.count;
   }
 }
@@ -260,10 +256,6 @@ static void add_variants(strut_study_reader *reader) {
   file->study.axes[file->study.axis_count++] = (strut_study_axis){
       .count = (int64_t)reader->variant_count, .column_count = 1, .columns = column};
   file->variants = true;
-}
-
-bool strut_study_read_along(strut_study_reader *reader, strut_study_along *a) {
-  return read_along(reader, a);
 }
 
 void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
@@ -541,8 +533,7 @@ static void read_over(strut_study_reader *reader, strut_fields *fields,
   strut_study_column unused = {0};
   strut_study_along a = {.key = over->value, .column = &unused, .setting = &reader->file->followed};
   if (over->state != STRUT_GIVEN) return;
-  a.parameter = strut_study_parameter(reader, over->value);
-  if (!a.parameter || !strut_study_begin_along(reader, &a, over->value->place)) return;
+  if (!strut_study_begin_along(reader, NULL, &a)) return;
   if (a.parameter->text) {
     strut_report_error(reader->reader, over->value->place,
                        "parameter '%s' is a text, over which no motion is followed",

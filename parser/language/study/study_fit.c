@@ -301,12 +301,8 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
 static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
                     const strut_tree *key, strut_study_axis *axis, strut_study_fit *fit) {
   const strut_study_value *first = &fit->matches[0].values[fit->set_count];
-  strut_study_along a = {
-      .key = key, .value = key->next, .parameter = strut_study_parameter(reader, key)};
-  a.column = &axis->columns[axis->column_count];
-  a.setting = &reader->file->columns[reader->file->column_count];
-  if (!a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
-  axis->column_count++, reader->file->column_count++;
+  strut_study_along a = {.key = key, .value = key->next};
+  if (!strut_study_begin_along(reader, axis, &a)) return;
   for (size_t m = 0; m < fit->match_count; m++) {
     const strut_tree *value = sets[m] ? strut_tree_find(sets[m], key->text, NULL) : NULL;
     strut_study_value *to = &fit->matches[m].values[fit->set_count];
@@ -320,8 +316,6 @@ static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
   }
   a.column->kind = STRUT_RANGE_LIST;
   a.column->number = &first->number, a.column->words = a.parameter->text ? &first->word : NULL;
-  a.column->unit =
-      a.parameter->text || a.setting->bare ? "1" : strut_dimension_unit(a.setting->dimension);
   fit->set_count++;
 }
 

@@ -118,6 +118,7 @@ static bool check_unit(table *self, size_t i, const strut_study_along *along, co
   if (known && setting->bare && !q.bare) {
     setting->bare = false;
     setting->dimension = q.dimension;
+    along->column->unit = strut_dimension_unit(q.dimension);
   }
   if (known && !q.bare && strut_dimension_equal(q.dimension, setting->dimension)) return true;
   strut_report_error(
@@ -178,17 +179,10 @@ static void read_cells(table *self, size_t i, const strut_study_along *along, co
 }
 
 static void read_column(table *self, size_t i, strut_study_axis *axis) {
-  strut_study_along a = {.parameter = parameter_of(self, i)};
+  strut_study_along a = {.key = self->name, .parameter = parameter_of(self, i)};
   const char *unit = "";
-  if (!a.parameter) return;
-  a.column = &axis->columns[axis->column_count++];
-  a.setting = &self->r->file->columns[self->r->file->column_count++];
-  a.column->unit = "1";
-  if (!strut_study_begin_along(self->r, &a, self->name->place) || !check_unit(self, i, &a, &unit))
-    return;
-  read_cells(self, i, &a, unit);
-  a.column->unit =
-      a.setting->bare || a.parameter->text ? "1" : strut_dimension_unit(a.setting->dimension);
+  if (a.parameter && strut_study_begin_along(self->r, axis, &a) && check_unit(self, i, &a, &unit))
+    read_cells(self, i, &a, unit);
 }
 
 static void read_columns(table *self, strut_study_axis *axis) {
@@ -295,15 +289,14 @@ static bool read_numbers(strut_study_reader *reader, strut_study_along *along,
 }
 
 /* One parameter and its distribution. */
-static bool read_parameter(strut_study_reader *reader, strut_study_along *along,
-                           strut_distribution *distribution) {
+static bool read_parameter(strut_study_reader *reader, strut_study_axis *axis,
+                           strut_study_along *along, strut_distribution *distributions) {
   strut_fields fields;
   int kinds = 0;
-  along->parameter = strut_study_parameter(reader, along->key);
-  if (!along->parameter) return false;
+  bool fine = strut_study_begin_along(reader, axis, along);
+  if (!along->parameter) return false; /* it has no column */
   const strut_owner owner = {"parameter", along->parameter->name};
-  bool fine = strut_study_begin_along(reader, along, along->key->place);
-  along->column->unit = "1";
+  strut_distribution *distribution = &distributions[along->column - axis->columns];
   if (along->parameter->text)
     return strut_report_error(reader->reader, along->key->place,
                               "parameter '%s' is a text, which has no distribution",
@@ -323,8 +316,6 @@ static bool read_parameter(strut_study_reader *reader, strut_study_along *along,
                        "expected a distribution such as {uniform: [1, 2]} for parameter '%s'",
                        along->parameter->name);
   along->column->kind = STRUT_RANGE_LIST;
-  along->column->unit =
-      along->setting->bare ? "1" : strut_dimension_unit(along->setting->dimension);
   return fine && kinds > 0;
 }
 
@@ -398,15 +389,7 @@ bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree
   if (!axis->columns) return false;
   for (const strut_tree *key = over->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next};
-    if (!strut_study_declared(reader, key->text) ||
-        strut_name_map_find(&reader->given, key->text) >= 0) { /* no slot for it */
-      strut_study_parameter(reader, key);
-      fine = false;
-      continue;
-    }
-    a.column = &axis->columns[axis->column_count];
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    fine = read_parameter(reader, &a, &distributions[axis->column_count++]) && fine;
+    fine = read_parameter(reader, axis, &a, distributions) && fine;
   }
   return fine;
 }

@@ -55,11 +55,11 @@ const strut_declared *strut_study_declared(const strut_study_reader *reader, con
 /** The i-th name of a parameter, for suggestions; `context` is the reader. */
 const char *strut_study_declared_name(const void *context, size_t i);
 /**
- * Starts the column of a->parameter and its setting at `place`. False: the table has a column of that
- * name, and `reserved` says so.
+ * Finds along->parameter by along->key unless it is known, and adds its column to the axis and its setting to the
+ * study's; without an axis they are those of `along`. False: there is none, or the table has a column of that name.
  */
-bool strut_study_begin_along(strut_study_reader *reader, strut_study_along *along,
-                             strut_place place);
+bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis,
+                             strut_study_along *along);
 /** A number in the parameter's dimension; where that has none the first value decides. */
 bool strut_study_read_value(strut_study_reader *reader, strut_study_along *along,
                             const strut_tree *value, const char *key, bool first, double *number);
@@ -69,7 +69,8 @@ bool strut_study_store_value(strut_study_reader *reader, strut_study_along *alon
                              strut_fields *fields, int key, bool first, void *object);
 
 /** Reads a parameter along its axis: a list or a range. False where something was reported. */
-bool strut_study_read_along(strut_study_reader *reader, strut_study_along *along);
+bool strut_study_read_along(strut_study_reader *reader, strut_study_axis *axis,
+                            strut_study_along *along);
 
 /* study_search.c */
 

@@ -101,24 +101,22 @@ static bool read_range(strut_study_reader *reader, strut_study_along *along,
 }
 
 /* A variable: its column has the value at which the search begins. */
-static bool read_variable(strut_study_reader *reader, strut_study_along *along,
-                          strut_search_variable *variable) {
-  bool list = along->value->kind == STRUT_TREE_LIST, fine;
+static bool read_variable(strut_study_reader *reader, strut_study_axis *axis,
+                          strut_study_along *along, strut_search_variable *variable) {
+  bool fine;
   double *start = strut_study_allocate(reader, 1, sizeof *start);
   if (!start) return false;
-  if (list) {
-    fine = strut_study_read_along(reader, along) && read_choices(reader, along, variable);
+  if (along->value->kind == STRUT_TREE_LIST) {
+    fine = strut_study_read_along(reader, axis, along) && read_choices(reader, along, variable);
   } else {
-    along->parameter = strut_study_parameter(reader, along->key);
-    fine = along->parameter && strut_study_begin_along(reader, along, along->key->place);
-    if (fine && along->value->kind != STRUT_TREE_MAP)
-      fine = refuse(reader, along, "needs a range such as {from: 1, to: 2}, or a list of choices");
-    fine = fine && read_range(reader, along, variable);
+    if (!strut_study_begin_along(reader, axis, along)) return false;
+    fine =
+        along->value->kind == STRUT_TREE_MAP
+            ? read_range(reader, along, variable)
+            : refuse(reader, along, "needs a range such as {from: 1, to: 2}, or a list of choices");
     *start = variable->start;
     along->column->kind = STRUT_RANGE_LIST;
     along->column->number = start;
-    along->column->unit =
-        fine && !along->setting->bare ? strut_dimension_unit(along->setting->dimension) : "1";
   }
   if (!fine) return false;
   variable->name = along->parameter->name;
@@ -145,9 +143,7 @@ void strut_study_read_variables(strut_study_reader *reader, const strut_slot *ov
   if (!axis->columns || !*variables) return;
   for (const strut_tree *key = over->value->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next, .of = of};
-    a.column = &axis->columns[axis->column_count++];
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    read_variable(reader, &a, &(*variables)[(*variable_count)++]);
+    read_variable(reader, axis, &a, &(*variables)[(*variable_count)++]);
   }
 }
 
@@ -159,11 +155,10 @@ static void read_scenarios(strut_study_reader *reader, const strut_slot *slot,
   if (slot->state != STRUT_GIVEN) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
     strut_study_axis *axis = &study->axes[study->axis_count++];
-    *axis = (strut_study_axis){.count = 1, .column_count = 1};
+    *axis = (strut_study_axis){.count = 1};
     axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
-    strut_study_along a = {.key = key, .value = key->next, .column = axis->columns};
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    if (axis->columns && strut_study_read_along(reader, &a)) axis->count = a.count;
+    strut_study_along a = {.key = key, .value = key->next};
+    if (axis->columns && strut_study_read_along(reader, axis, &a)) axis->count = a.count;
     scenarios *= (double)axis->count;
     search->scenario_axes++;
   }

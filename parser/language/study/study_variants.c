@@ -22,45 +22,44 @@ strut_place strut_overlay_place(strut_place place) {
  * nested mappings too, and keys that say the same in another way. False: memory is out.
  */
 static bool lay_map_over(strut_document *document, const char *section, const strut_tree *value) {
+  strut_arena *arena = &document->arena;
   strut_tree *root = document->root;
   if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
   const strut_tree *below = strut_tree_find(root, section, NULL);
   if (below && below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
-  const strut_overlay overlay = {.arena = &document->arena, .mark = STRUT_OVERLAY_LINE};
-  strut_tree inner = *value;
-  strut_tree key = {.kind = STRUT_TREE_SCALAR, .place = value->place, .text = section};
-  const strut_tree over = {
-      .kind = STRUT_TREE_MAP, .place = value->place, .count = 1, .first = &key};
-  key.next = &inner;
-  inner.next = NULL;
-  strut_tree *whole =
-      strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, &over);
+  const strut_overlay overlay = {.arena = arena, .mark = STRUT_OVERLAY_LINE};
+  strut_tree_builder over = strut_tree_begin(arena, value);
+  strut_tree *whole = NULL;
+  if (strut_tree_append(&over, strut_tree_scalar(arena, value, section),
+                        strut_tree_copy(arena, value)))
+    whole =
+        strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, over.map);
   if (whole) document->root = whole;
   return whole != NULL;
 }
 
+/* {key: value} where `like` stands; NULL: memory is out. */
+static strut_tree *wrap(strut_arena *arena, const strut_tree *like, const char *key,
+                        strut_tree *value) {
+  strut_tree_builder map = strut_tree_begin(arena, like);
+  bool fine = strut_tree_append(&map, strut_tree_scalar(arena, like, key), value);
+  return fine ? map.map : NULL;
+}
+
 bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
-  static const char *const path[] = {"measure", "quantities"};
-  strut_tree end = {.place = column->place, .text = "final"},
-             take = {.place = column->place, .text = "take", .next = &end},
-             value = {.place = column->place, .text = column->text, .next = &take},
-             of = {.place = column->place, .text = "of", .next = &value},
-             quantity = {.place = column->place, .kind = STRUT_TREE_MAP, .count = 2, .first = &of},
-             name = *column;
-  strut_tree keys[2], maps[3] = {quantity};
-  name.next = &maps[0];
-  strut_tree *first = &name;
-  for (int i = 1; i >= 0; i--) {
-    strut_tree *map = &maps[2 - i];
-    *map = (strut_tree){.place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
-    keys[i] = (strut_tree){.place = column->place, .text = path[i], .next = map};
-    first = &keys[i];
-  }
-  const strut_tree run = {
-      .place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
   bool fine = true;
-  for (size_t i = 0; i < file->source_count && fine; i++)
-    fine = lay_map_over(strut_scene_source_document(file->sources[i]), "run", &run);
+  for (size_t i = 0; i < file->source_count && fine; i++) {
+    strut_document *document = strut_scene_source_document(file->sources[i]);
+    strut_arena *arena = &document->arena;
+    strut_tree_builder quantity = strut_tree_begin(arena, column);
+    fine = strut_tree_append(&quantity, strut_tree_scalar(arena, column, "of"),
+                             strut_tree_scalar(arena, column, column->text)) &&
+           strut_tree_append(&quantity, strut_tree_scalar(arena, column, "take"),
+                             strut_tree_scalar(arena, column, "final"));
+    strut_tree *run = fine ? wrap(arena, column, column->text, quantity.map) : NULL;
+    run = wrap(arena, column, "measure", wrap(arena, column, "quantities", run));
+    fine = run && lay_map_over(document, "run", run);
+  }
   return fine;
 }
 
