@@ -131,21 +131,14 @@ static bool read_range(strut_study_reader *reader, along *self) {
 
 /* Names of the table's own columns, which no axis may have. */
 static bool is_reserved(const strut_study_reader *reader, const char *name) {
-  static const char *const names[] = {"point", "status", "message"};
-  static const char *const searching[] = {"search", "evaluation", "objective", "objective_2",
-                                          "violation"};
-  static const char *const following[] = {
-      "branch",           "arclength",  "velocity",         "work", "amplitude", "period_multiple",
-      "stable",           "multiplier", "multiplier_angle", "node", "detail",    "word",
-      "changes_stability"};
-  bool found = reader->variant_count > 0 && strcmp(name, "variant") == 0;
-  for (size_t i = 0; reader->following && i < sizeof following / sizeof following[0]; i++)
-    found = found || strcmp(name, following[i]) == 0;
-  for (size_t i = 0; reader->searching && i < sizeof searching / sizeof searching[0]; i++)
-    found = found || strcmp(name, searching[i]) == 0;
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-    found = found || strcmp(name, names[i]) == 0;
-  return found;
+  static const char searching[] = "search|evaluation|objective|objective_2|violation";
+  static const char following[] =
+      "branch|arclength|velocity|work|amplitude|period_multiple|stable|multiplier|multiplier_angle|"
+      "node|detail|word|changes_stability";
+  return strut_word_find(STRUT_STUDY_OWN_COLUMNS, name) >= 0 ||
+         (reader->variant_count > 0 && strcmp(name, "variant") == 0) ||
+         (reader->searching && strut_word_find(searching, name) >= 0) ||
+         (reader->following && strut_word_find(following, name) >= 0);
 }
 
 bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis, along *self) {

@@ -13,9 +13,6 @@
 
 enum { MOST_ROWS = 1000000, MOST_WORD = 24 };
 
-/* Columns of strut's own tables that say nothing about the model. */
-static const char *const skipped[] = {"point", "status", "message"};
-
 /* A file of points being read. */
 typedef struct table {
   strut_study_reader *r;
@@ -54,10 +51,7 @@ static bool is_wanted(const table *self, const char *name) {
   for (const strut_tree *item = self->columns ? self->columns->first : NULL; item;
        item = item->next)
     if (strcmp(item->text, name) == 0) return true;
-  if (self->columns) return false;
-  for (size_t i = 0; i < sizeof skipped / sizeof skipped[0]; i++)
-    if (strcmp(skipped[i], name) == 0) return false;
-  return true;
+  return !self->columns && strut_word_find(STRUT_STUDY_OWN_COLUMNS, name) < 0;
 }
 
 /* Reports wanted columns that the file does not have. */
@@ -377,9 +371,10 @@ static void make_values(strut_study_reader *reader, const strut_sample_keys *key
     reader->reader->out_of_memory = true;
 }
 
-bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree *over,
-                                    strut_owner owner, size_t most, strut_study_axis *axis,
-                                    strut_distribution *distributions) {
+/* Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
+static bool read_distributions(strut_study_reader *reader, const strut_tree *over,
+                               strut_owner owner, size_t most, strut_study_axis *axis,
+                               strut_distribution *distributions) {
   bool fine = true;
   if (over->count == 0 || over->count > most)
     return strut_report_error(reader->reader, over->place,
@@ -403,8 +398,8 @@ void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
   axis->count = keys.count;
-  bool fine = strut_study_read_distributions(reader, over->value, sample_owner,
-                                             STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
+  bool fine = read_distributions(reader, over->value, sample_owner, STRUT_SAMPLE_MOST_NUMBERS, axis,
+                                 distributions);
   double *factor = NULL;
   fine = fine && read_factor(reader, strut_slot_of(&fields, STRUT_KEY_SAMPLE_CORRELATION),
                              axis->column_count, &factor);
@@ -495,8 +490,8 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
                        "the sensitivity analysis has neither samples nor derivatives");
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  bool fine = strut_study_read_distributions(reader, over->value, sensitivity_owner,
-                                             STRUT_SENSITIVITY_MOST, axis, distributions);
+  bool fine = read_distributions(reader, over->value, sensitivity_owner, STRUT_SENSITIVITY_MOST,
+                                 axis, distributions);
   sensitivity->axis = study->axis_count++;
   sensitivity->wanted = true;
   if (fine && !fields.broken && !reader->reader->failed)

@@ -26,14 +26,12 @@ typedef struct strut_study_reader {
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size);
 /** The parameter of the model that a key names; NULL where that was reported. */
 const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key);
+/** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
+bool strut_study_measure(strut_study_file *file, const strut_tree *column);
 /**
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.
  */
-/** A model that cannot be read may be the study itself, or another: then that is all there is to say. */
-bool strut_study_is_its_model(const strut_study_file *file);
-/** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
-bool strut_study_measure(strut_study_file *file, const strut_tree *column);
 strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *top,
                                       strut_error *error);
 /** Reads the axes into the study, and their columns; list NULL: none. Then what is searched. */
@@ -90,6 +88,8 @@ void strut_study_read_refine(strut_study_reader *reader, const strut_slot *slot)
 
 /* study_points.c */
 
+/** Columns of strut's own tables that no axis may have, and that say nothing about the model. */
+#define STRUT_STUDY_OWN_COLUMNS "point|status|message"
 /** Is the item of `axes` a file of points, or a sample, and no parameter of such a name? */
 bool strut_study_is_points(const strut_study_reader *reader, const strut_tree *item);
 bool strut_study_is_sample(const strut_study_reader *reader, const strut_tree *item);
@@ -97,11 +97,6 @@ void strut_study_read_points(strut_study_reader *reader, const strut_tree *value
                              strut_study_axis *axis);
 void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis);
-
-/** Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
-bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree *over,
-                                    strut_owner owner, size_t most, strut_study_axis *axis,
-                                    strut_distribution *distributions);
 
 /* study_axes.c: goals */
 

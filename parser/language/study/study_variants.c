@@ -115,7 +115,8 @@ static bool lay_over(strut_document *document, const char *section, const strut_
   return slot->state != STRUT_GIVEN || lay_map_over(document, section, slot->value);
 }
 
-bool strut_study_is_its_model(const strut_study_file *file) {
+/* A model that cannot be read may be the study itself, or another: then that is all there is to say. */
+static bool is_study(const strut_study_file *file) {
   strut_document document = {0};
   strut_diagnostics unsaid = {0};
   strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
@@ -141,7 +142,7 @@ static strut_status open_source(strut_study_reader *reader, strut_fields *top,
   strut_scene_source **source = &file->sources[file->source_count];
   strut_status status = strut_scene_source_open(
       file->model_path, file->model_text, file->model_length, &file->model_diagnostics, source);
-  if (status == STRUT_BAD_SCENE && strut_study_is_its_model(file)) {
+  if (status == STRUT_BAD_SCENE && is_study(file)) {
     strut_diagnostics_free(&file->model_diagnostics);
     strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
                        "'%s' is a study, expected a model",
