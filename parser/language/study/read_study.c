@@ -66,8 +66,10 @@ static void read_settings(strut_study_reader *reader, const strut_slot *slot, si
     bool yields = may_yield && overridden(file, overrides, key->text);
     const strut_declared *parameter = strut_study_parameter(reader, key);
     if (!parameter || yields) continue;
-    file->settings[file->setting_count++] = (strut_setting){
-        .name = parameter->name, .text = value->text, .place = strut_overlay_place(value->place)};
+    file->settings[file->setting_count++] =
+        (strut_setting){.name = parameter->name,
+                        .text = value->text,
+                        .place = strut_study_place(file, value->place)};
   }
 }
 
@@ -477,7 +479,7 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     if (!file->columns[i].name) continue; /* a number of the search's own */
     strut_setting *setting = &settings[count++];
     *setting = file->columns[i];
-    setting->place = strut_overlay_place(setting->place);
+    setting->place = strut_study_place(file, setting->place);
     setting->value = values[i].number;
     setting->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
@@ -485,7 +487,7 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
   for (size_t i = 0; i < by_count; i++) {
     strut_setting_put(source, by[i].name, numbers[i], texts[most - 1 - i], settings, &count);
     if (by[i].name == file->followed.name)
-      settings[count - 1].place = strut_overlay_place(file->followed.place);
+      settings[count - 1].place = strut_study_place(file, file->followed.place);
   }
   strut_status status = read_scene(file, values, settings, count, diagnostics, setup);
   strut_release(settings);
@@ -498,14 +500,10 @@ strut_status strut_study_vary(const strut_study_file *file, const strut_study_va
   strut_diagnostics diagnostics = {0};
   strut_status status = read_point(file, values, by, count, numbers, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
+    strut_diagnostics_sort(&diagnostics);
     const strut_diagnostic *first = &diagnostics.items[0];
-    for (size_t i = 1; i < diagnostics.count; i++)
-      if (diagnostics.items[i].place.line < first->place.line) first = &diagnostics.items[i];
-    bool own = first->place.line & STRUT_OVERLAY_LINE;
-    unsigned used = first->place.file;
-    const char *model = used ? diagnostics.used[used - 1].file : file->model_path;
-    strut_fail(error, status, "%s:%u: %s", own ? file->path : model,
-               first->place.line & ~STRUT_OVERLAY_LINE, first->message);
+    strut_fail(error, status, "%s:%u: %s", strut_diagnostics_file(&diagnostics, first->place),
+               first->place.line, first->message);
   } else if (status == STRUT_USAGE) {
     strut_fail(error, status, "the options do not fit the scene of this point");
   } else if (status != STRUT_OK) {
@@ -554,11 +552,11 @@ static strut_status check_starts(strut_study_file *file, const strut_scene *scen
   return status;
 }
 
-/* Adds the values of the axes, and of what is followed, to the first of the messages from number `before` on. */
-static void note_values(strut_study_file *file, strut_diagnostics *messages, size_t before,
-                        const strut_study_value *values, const double *followed) {
+/* Adds the values of the axes, and of what is followed, to the first of the messages. */
+static void note_values(strut_study_file *file, const strut_study_value *values,
+                        const double *followed) {
   char text[300] = "";
-  size_t used = 0, first = before;
+  size_t used = 0;
   strut_place place = file->column_count ? file->columns[0].place : (strut_place){0};
   for (size_t i = 0; i < file->column_count; i++)
     if (file->columns[i].name)
@@ -566,30 +564,23 @@ static void note_values(strut_study_file *file, strut_diagnostics *messages, siz
   if (followed)
     format_value(&file->followed, (strut_study_value){.number = *followed}, text, used,
                  sizeof text);
-  for (size_t i = before; i < messages->count; i++)
-    if (strut_place_compare(messages->items[i].place, messages->items[first].place) < 0) first = i;
-  if (messages == &file->model_diagnostics)
-    place.file = strut_diagnostics_use(messages, file->path, file->text, file->length) & 0xFFu;
-  if (messages == &file->model_diagnostics && !place.file) place = (strut_place){0};
-  strut_diagnose_note(messages, first, place, "the model cannot be run at %s", text);
+  strut_diagnostics_sort(&file->model_diagnostics);
+  strut_diagnose_note(&file->model_diagnostics, 0, strut_study_place(file, place),
+                      "the model cannot be run at %s", text);
 }
 
 static strut_status try_point(strut_study_file *file, const strut_study_value *values,
                               const double *followed) {
   strut_setup setup;
   const strut_derived_by by = {.name = file->followed.name};
-  size_t before = file->diagnostics.count, before_model = file->model_diagnostics.count;
   strut_status status =
       read_point(file, values, &by, followed != NULL, followed, &file->model_diagnostics, &setup);
-  strut_status started = STRUT_OK;
-  if (status == STRUT_OK && followed) started = check_starts(file, &setup.scene);
-  if (status == STRUT_OK) strut_setup_free(&setup);
-  if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
-  if (status == STRUT_OK) return started;
-  if (status != STRUT_BAD_SCENE || (!file->column_count && !followed)) return status;
-  bool own = file->diagnostics.count > before;
-  note_values(file, own ? &file->diagnostics : &file->model_diagnostics,
-              own ? before : before_model, values, followed);
+  if (status == STRUT_OK) {
+    status = followed ? check_starts(file, &setup.scene) : STRUT_OK;
+    strut_setup_free(&setup);
+  } else if (status == STRUT_BAD_SCENE && (file->column_count || followed)) {
+    note_values(file, values, followed);
+  }
   return status;
 }
 

@@ -38,6 +38,7 @@ typedef struct strut_study_file {
   strut_setting *settings; /* (setting_count) the same at every point: --set, set, derive */
   strut_setting *columns;  /* (column_count) of the axes, their values to be filled in */
   const char *path;        /* of the study; not owned */
+  unsigned number;         /* of the study's text among the files that the model uses */
   char *text, *model_path, *model_text;
   size_t length, model_length;
   strut_document document; /* the study's tree */

@@ -24,6 +24,8 @@ typedef struct strut_study_reader {
 
 /** count * size zeroed bytes of the study; NULL: memory is out, which the reader remembers. */
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size);
+/** A place in the study's text, as one of a file that the model uses. */
+strut_place strut_study_place(const strut_study_file *file, strut_place place);
 /** The parameter of the model that a key names; NULL where that was reported. */
 const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key);
 /** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
@@ -121,11 +123,5 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top);
 /** Reports those of the keys that are given: the study has `own`, which excludes them. */
 void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
                          const int *keys, size_t count);
-
-/** The place, marked as one of the study's text. */
-strut_place strut_overlay_place(strut_place place);
-
-/** Moves messages and notes at marked places from `from` to `over`, unmarked. False: memory is out. */
-bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over);
 
 #endif

@@ -12,8 +12,8 @@
 #include "parser/language/write/writer.h"
 #include "parser/language/yaml/text.h"
 
-strut_place strut_overlay_place(strut_place place) {
-  place.line |= STRUT_OVERLAY_LINE;
+strut_place strut_study_place(const strut_study_file *file, strut_place place) {
+  place.file = file->number & 0xFFu;
   return place;
 }
 
@@ -21,13 +21,14 @@ strut_place strut_overlay_place(strut_place place) {
  * Lays the mapping `value` over the section of that name: its keys replace those of the section, within
  * nested mappings too, and keys that say the same in another way. False: memory is out.
  */
-static bool lay_map_over(strut_document *document, const char *section, const strut_tree *value) {
+static bool lay_map_over(const strut_study_file *file, strut_document *document,
+                         const char *section, const strut_tree *value) {
   strut_arena *arena = &document->arena;
   strut_tree *root = document->root;
   if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
   const strut_tree *below = strut_tree_find(root, section, NULL);
   if (below && below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
-  const strut_overlay overlay = {.arena = arena, .mark = STRUT_OVERLAY_LINE};
+  const strut_overlay overlay = {.arena = arena, .file = file->number};
   strut_tree_builder over = strut_tree_begin(arena, value);
   strut_tree *whole = NULL;
   if (strut_tree_append(&over, strut_tree_scalar(arena, value, section),
@@ -58,30 +59,9 @@ bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
                              strut_tree_scalar(arena, column, "final"));
     strut_tree *run = fine ? wrap(arena, column, column->text, quantity.map) : NULL;
     run = wrap(arena, column, "measure", wrap(arena, column, "quantities", run));
-    fine = run && lay_map_over(document, "run", run);
+    fine = run && lay_map_over(file, document, "run", run);
   }
   return fine;
-}
-
-/* Moves items at marked places to `over`, as notes or as messages; how many are left. */
-static size_t split(strut_diagnostic *items, size_t count, strut_diagnostics *over, bool notes) {
-  size_t kept = 0;
-  for (size_t i = 0; i < count; i++) {
-    strut_diagnostic item = items[i];
-    if (!(item.place.line & STRUT_OVERLAY_LINE)) {
-      items[kept++] = item;
-      continue;
-    }
-    item.place.line &= ~STRUT_OVERLAY_LINE;
-    (notes ? strut_note : strut_diagnose)(over, item.place, "%s", item.message);
-  }
-  return kept;
-}
-
-bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over) {
-  from->note_count = split(from->notes, from->note_count, over, true);
-  from->count = split(from->items, from->count, over, false);
-  return !over->out_of_memory;
 }
 
 /* Sections of the model that are laid over, and the keys that do so. */
@@ -109,10 +89,6 @@ static strut_status read_model(strut_study_reader *reader, const strut_tree *nam
   if (status) return status;
   file->model_path = text.path, file->model_text = text.text, file->model_length = text.length;
   return STRUT_OK;
-}
-
-static bool lay_over(strut_document *document, const char *section, const strut_slot *slot) {
-  return slot->state != STRUT_GIVEN || lay_map_over(document, section, slot->value);
 }
 
 /* A model that cannot be read may be the study itself, or another: then that is all there is to say. */
@@ -152,11 +128,17 @@ static strut_status open_source(strut_study_reader *reader, strut_fields *top,
   file->source_count++;
   strut_document *document = strut_scene_source_document(*source);
   if (!keep_copy(file, *source)) return STRUT_NO_MEMORY;
+  file->number = strut_scene_source_use(*source, file->path, file->text, file->length);
+  if (!file->number)
+    strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
+                       "the model uses too many files for one of a study");
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
-    const char *section = sections[i].section;
-    if (!lay_over(document, section, strut_slot_of(top, sections[i].study)) ||
-        (variant && !lay_over(document, section, strut_slot_of(variant, sections[i].variant))))
-      return STRUT_NO_MEMORY;
+    const strut_slot *slots[] = {strut_slot_of(top, sections[i].study),
+                                 variant ? strut_slot_of(variant, sections[i].variant) : NULL};
+    for (int k = 0; k < 2; k++)
+      if (slots[k] && slots[k]->state == STRUT_GIVEN &&
+          !lay_map_over(file, document, sections[i].section, slots[k]->value))
+        return STRUT_NO_MEMORY;
   }
   return STRUT_OK;
 }
