@@ -15,36 +15,30 @@ static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the p
                          form_owner = {"the form", NULL}, limit_owner = {"the limit", NULL},
                          check_owner = {"the check", NULL};
 
-const char *strut_study_declared_name(const void *context, size_t i) {
-  const strut_study_reader *reader = context;
-  return i < reader->declared_count ? reader->declared[i].name : NULL;
-}
-
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size) {
   return strut_reader_allocate(reader->reader, &reader->file->arena, count, size);
 }
 
 const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name) {
-  for (size_t i = 0; i < reader->declared_count; i++)
-    if (strcmp(reader->declared[i].name, name) == 0) return &reader->declared[i];
-  return NULL;
+  return strut_scene_source_parameter(reader->file->sources[0], name);
 }
 
-const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key) {
-  const strut_declared *found = strut_study_declared(reader, key->text);
-  if (!found) {
-    strut_report_error(reader->reader, key->place, "the model has no parameter '%s'%s",
-                       strut_sanitised_text(reader->reader, key->text),
-                       strut_hint(reader->reader, key->text, strut_study_declared_name, reader,
-                                  reader->declared_count));
-    return NULL;
-  }
-  if (strut_name_map_find(&reader->given, found->name) >= 0) {
-    strut_report_error(reader->reader, key->place, "parameter '%s' is given twice", found->name);
-    return NULL;
-  }
-  strut_add_name(reader->reader, &reader->given, found->name, (size_t)(found - reader->declared));
-  return found;
+const strut_declared *strut_study_parameter(strut_study_reader *study_reader, const strut_tree *key,
+                                            const char *advice) {
+  strut_reader *reader = study_reader->reader;
+  const strut_declared *found = strut_study_declared(study_reader, key->text);
+  bool twice = found && strut_name_map_find(&study_reader->given, found->name) >= 0;
+  if (twice)
+    strut_report_error(reader, key->place, "parameter '%s' is given twice", found->name);
+  else if (!found)
+    strut_report_error(reader, key->place, "the model has no parameter '%s'%s%s",
+                       strut_sanitised_text(reader, key->text),
+                       strut_hint(reader, key->text, strut_scene_source_parameter_name,
+                                  study_reader->file->sources[0], study_reader->declared_count),
+                       advice ? advice : "");
+  else
+    strut_add_name(reader, &study_reader->given, found->name, 0);
+  return twice ? NULL : found;
 }
 
 /* --set wins over the study's own `set`. */
@@ -64,7 +58,7 @@ static void read_settings(strut_study_reader *reader, const strut_slot *slot, si
                            "an expression or a text"))
       continue;
     bool yields = may_yield && overridden(file, overrides, key->text);
-    const strut_declared *parameter = strut_study_parameter(reader, key);
+    const strut_declared *parameter = strut_study_parameter(reader, key, NULL);
     if (!parameter || yields) continue;
     file->settings[file->setting_count++] =
         (strut_setting){.name = parameter->name,
@@ -300,10 +294,6 @@ static void read_rest(strut_study_reader *reader, strut_fields *top) {
   read_figures(reader, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
-static size_t size_of(const strut_slot *slot) {
-  return slot->state == STRUT_GIVEN ? slot->value->count : 0;
-}
-
 /* Reads what refers to the model's parameters: set, derive and axes. */
 static void read_points(strut_study_reader *reader, strut_fields *top,
                         const strut_override *overrides, size_t count) {
@@ -312,7 +302,7 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
   const strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
   file->settings =
-      strut_study_allocate(reader, count + size_of(set) + size_of(derive), sizeof *file->settings);
+      strut_study_allocate(reader, count + reader->declared_count, sizeof *file->settings);
   if (!file->settings) return;
   for (size_t i = 0; i < count; i++)
     file->settings[file->setting_count++] =
@@ -321,8 +311,7 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   read_settings(reader, derive, count, false);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
   reader->following = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state == STRUT_GIVEN;
-  if (axes->state == STRUT_GIVEN || search->state == STRUT_GIVEN)
-    strut_study_read_axes(reader, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
+  strut_study_read_axes(reader, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
   strut_study_read_refine(reader, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   strut_study_read_sensitivity(reader, top);
   strut_study_read_follow(reader, top);

@@ -142,7 +142,7 @@ static bool is_reserved(const strut_study_reader *reader, const char *name) {
 }
 
 bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis, along *self) {
-  if (!self->parameter) self->parameter = strut_study_parameter(reader, self->key);
+  if (!self->parameter) self->parameter = strut_study_parameter(reader, self->key, self->advice);
   const strut_declared *parameter = self->parameter;
   if (!parameter) return false;
   if (axis) self->column = &axis->columns[axis->column_count++];
@@ -228,16 +228,6 @@ static void read_axis(strut_study_reader *reader, const strut_tree *item, strut_
   }
 }
 
-static size_t count_columns(const strut_tree *list) {
-  size_t count = 0;
-  for (const strut_tree *item = list->first; item; item = item->next) {
-    if (item->kind != STRUT_TREE_MAP || !item->count) continue;
-    const strut_tree *value = item->first->next;
-    count += value->kind == STRUT_TREE_MAP && value->count > 1 ? value->count : 1;
-  }
-  return count;
-}
-
 /* The axis of the variants, before all others. */
 static void add_variants(strut_study_reader *reader) {
   strut_study_file *file = reader->file;
@@ -251,15 +241,17 @@ static void add_variants(strut_study_reader *reader) {
   file->variants = true;
 }
 
+/* Axes, and columns, beside those of parameters: variants, evaluations, fits and the like. */
+enum { MOST_OWN = 8 };
+
 void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
                            const strut_slot *search) {
   strut_study *study = &reader->file->study;
-  size_t listed = list ? list->count : 0, names = list ? count_columns(list) : 0;
-  size_t more = strut_study_search_columns(search);
-  reader->searching = more > 0;
-  study->axes = strut_study_allocate(reader, listed + more + 3, sizeof *study->axes);
-  reader->file->columns = strut_study_allocate(reader, names + reader->declared_count + more + 1,
-                                               sizeof *reader->file->columns);
+  size_t listed = list ? list->count : 0;
+  size_t most = reader->declared_count + MOST_OWN; /* none is given twice */
+  reader->searching = search->state == STRUT_GIVEN;
+  study->axes = strut_study_allocate(reader, listed + most, sizeof *study->axes);
+  reader->file->columns = strut_study_allocate(reader, most, sizeof *reader->file->columns);
   reader->file->tables = strut_study_allocate(reader, listed + 1, sizeof *reader->file->tables);
   if (!study->axes || !reader->file->columns || !reader->file->tables) return;
   if (reader->variant_count > 0) add_variants(reader);
@@ -311,29 +303,26 @@ static size_t find_axis(strut_study_reader *reader, const strut_tree *item) {
 static bool choose_axes(strut_study_reader *reader, const strut_slot *refine,
                         const strut_slot *named) {
   strut_study *study = &reader->file->study;
-  size_t count = 0;
+  size_t *axes = study->refine.axes, count = 0;
   if (named->state == STRUT_GIVEN) {
     for (const strut_tree *item = named->value->first; item; item = item->next) {
       size_t axis = find_axis(reader, item);
       if (axis == study->axis_count) return false;
-      if (count < 2) study->refine.axes[count] = axis;
+      if (count < 2) axes[count] = axis;
       count++;
     }
   } else {
     for (size_t i = 0; i < study->axis_count; i++) {
       if (!is_range(&study->axes[i])) continue;
-      if (count < 2) study->refine.axes[count] = i;
+      if (count < 2) axes[count] = i;
       count++;
     }
   }
-  if (count == 2 && study->refine.axes[0] != study->refine.axes[1]) {
-    if (study->refine.axes[0] > study->refine.axes[1]) {
-      size_t first = study->refine.axes[1];
-      study->refine.axes[1] = study->refine.axes[0];
-      study->refine.axes[0] = first;
-    }
-    return true;
+  if (count == 2 && axes[0] > axes[1]) {
+    size_t first = axes[1];
+    axes[1] = axes[0], axes[0] = first;
   }
+  if (count == 2 && axes[0] < axes[1]) return true;
   return strut_report_error(
       reader->reader, refine->key->place,
       "'refine' divides two axes with ranges of more than one value, found %zu; name "
@@ -541,12 +530,10 @@ static void read_over(strut_study_reader *reader, strut_fields *fields,
 
 void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW);
-  const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   refuse_others(reader, top, slot);
-  if (!study->axes) strut_study_read_axes(reader, NULL, search); /* the study has none */
   strut_study_follow *follow = strut_study_allocate(reader, 1, sizeof *follow);
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,

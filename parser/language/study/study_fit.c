@@ -468,7 +468,6 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   if (slot->state != STRUT_GIVEN) return;
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
-  if (!study->axes) strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   if (!fit || !study->axes || reader->reader->failed) return;
   *fit = (strut_study_fit){.starts = 1, .seed = 1};
   strut_read_object(reader->reader, STRUT_SECTION_FIT, slot->value, fit_owner, &fields, fit);

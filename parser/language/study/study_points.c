@@ -68,27 +68,6 @@ static void check_columns(table *self) {
   }
 }
 
-/* The parameter that a column gives; NULL where that was reported. */
-static const strut_declared *parameter_of(table *self, size_t i) {
-  strut_reader *reader = self->r->reader;
-  const char *name = self->csv.titles[i].name;
-  const strut_declared *found = strut_study_declared(self->r, name);
-  if (!found) {
-    strut_report_error(
-        reader, place_of(self, i), "the model has no parameter '%s'%s%s",
-        strut_sanitised_text(reader, name),
-        strut_hint(reader, name, strut_study_declared_name, self->r, self->r->declared_count),
-        self->columns ? "" : "; {points: {file: ..., columns: [...]}} chooses columns");
-    return NULL;
-  }
-  if (strut_name_map_find(&self->r->given, found->name) >= 0) {
-    strut_report_error(reader, place_of(self, i), "parameter '%s' is given twice", found->name);
-    return NULL;
-  }
-  strut_add_name(reader, &self->r->given, found->name, (size_t)(found - self->r->declared));
-  return found;
-}
-
 /* A plain number with the column's unit; the whole text is read as one, so that 0.1 mm has its bits. */
 static bool read_number(const char *text, const char *unit, strut_quantity *quantity) {
   char whole[200];
@@ -173,10 +152,13 @@ static void read_cells(table *self, size_t i, const strut_study_along *along, co
 }
 
 static void read_column(table *self, size_t i, strut_study_axis *axis) {
-  strut_study_along a = {.key = self->name, .parameter = parameter_of(self, i)};
+  const strut_tree cell = {.text = self->csv.titles[i].name, .place = place_of(self, i)};
+  strut_study_along a = {.key = &cell};
   const char *unit = "";
-  if (a.parameter && strut_study_begin_along(self->r, axis, &a) && check_unit(self, i, &a, &unit))
-    read_cells(self, i, &a, unit);
+  if (!self->columns) a.advice = "; {points: {file: ..., columns: [...]}} chooses columns";
+  if (!strut_study_begin_along(self->r, axis, &a)) return;
+  a.setting->place = self->name->place;
+  if (check_unit(self, i, &a, &unit)) read_cells(self, i, &a, unit);
 }
 
 static void read_columns(table *self, strut_study_axis *axis) {
@@ -474,8 +456,6 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
                                STRUT_KEY_STUDY_SEARCH};
   if (slot->state != STRUT_GIVEN) return;
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
-  if (!study->axes) /* the study has no others */
-    strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   sensitivity->samples = 256, sensitivity->seed = 1, sensitivity->derivatives = true;
   strut_read_object(reader->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner,
                     &fields, sensitivity);

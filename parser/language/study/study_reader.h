@@ -13,10 +13,9 @@
 typedef struct strut_study_reader {
   strut_reader *reader; /* of the study's text: its messages and its tree */
   strut_study_file *file;
-  const strut_declared *declared; /* (declared_count) the model's parameters */
-  size_t declared_count;
-  strut_name_map given; /* parameters that the study gives: their declared index */
-  size_t variant_count; /* 0: the study has none */
+  size_t declared_count; /* the model's parameters */
+  strut_name_map given;  /* those that the study gives */
+  size_t variant_count;  /* 0: the study has none */
   const char **variant_names;
   bool searching; /* the table has the columns of a search */
   bool following; /* the tables have those of branches */
@@ -26,8 +25,9 @@ typedef struct strut_study_reader {
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size);
 /** A place in the study's text, as one of a file that the model uses. */
 strut_place strut_study_place(const strut_study_file *file, strut_place place);
-/** The parameter of the model that a key names; NULL where that was reported. */
-const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key);
+/** The parameter of the model that a key names; NULL where that was reported, with the advice. */
+const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key,
+                                            const char *advice);
 /** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
 bool strut_study_measure(strut_study_file *file, const strut_tree *column);
 /**
@@ -47,13 +47,12 @@ typedef struct strut_study_along {
   strut_study_column *column;
   strut_setting *setting;
   int64_t count;
-  const char *of; /* of a variable: "the search", for messages */
+  const char *of;     /* of a variable: "the search", for messages */
+  const char *advice; /* of a message that there is no such parameter; or NULL */
 } strut_study_along;
 
 /** The parameter of that name, or NULL; nothing is reported. */
 const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name);
-/** The i-th name of a parameter, for suggestions; `context` is the reader. */
-const char *strut_study_declared_name(const void *context, size_t i);
 /**
  * Finds along->parameter by along->key unless it is known, and adds its column to the axis and its setting to the
  * study's; without an axis they are those of `along`. False: there is none, or the table has a column of that name.
@@ -74,8 +73,6 @@ bool strut_study_read_along(strut_study_reader *reader, strut_study_axis *axis,
 
 /* study_search.c */
 
-/** Most axes and columns that a search adds. */
-size_t strut_study_search_columns(const strut_slot *slot);
 /** Reads the parameters that a search or a fit, which `of` says, is over, at most `most`, and adds their axis. */
 void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
                                 size_t most, strut_search_variable **variables,

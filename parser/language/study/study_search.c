@@ -16,14 +16,6 @@ enum { MOST_SCENARIOS = 1000 };
 /* The largest end of a logarithmic range, of the smallest. */
 static const double MOST_RATIO = 1e12 * (1.0 + 1e-9);
 
-size_t strut_study_search_columns(const strut_slot *slot) {
-  size_t count = 0;
-  if (slot->state != STRUT_GIVEN || slot->value->kind != STRUT_TREE_MAP) return 0;
-  for (const strut_tree *key = slot->value->first; key; key = key->next->next)
-    count += key->next->kind == STRUT_TREE_MAP ? key->next->count : 0;
-  return count + 4; /* search, evaluation; an axis each for them and the variables */
-}
-
 static bool refuse(strut_study_reader *reader, const strut_study_along *along, const char *why) {
   return strut_report_error(reader->reader, along->value->place, "variable '%s' of %s %s",
                             along->parameter->name, along->of, why);
@@ -154,11 +146,12 @@ static void read_scenarios(strut_study_reader *reader, const strut_slot *slot,
   double scenarios = 1.0;
   if (slot->state != STRUT_GIVEN) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
-    strut_study_axis *axis = &study->axes[study->axis_count++];
-    *axis = (strut_study_axis){.count = 1};
-    axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
+    strut_study_axis *axis = &study->axes[study->axis_count];
+    *axis = (strut_study_axis){.columns = strut_study_allocate(reader, 1, sizeof *axis->columns)};
     strut_study_along a = {.key = key, .value = key->next};
-    if (axis->columns && strut_study_read_along(reader, axis, &a)) axis->count = a.count;
+    if (!axis->columns || !strut_study_read_along(reader, axis, &a)) continue;
+    axis->count = a.count;
+    study->axis_count++;
     scenarios *= (double)axis->count;
     search->scenario_axes++;
   }

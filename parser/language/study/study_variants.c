@@ -181,8 +181,7 @@ strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *
   reader->variant_names = strut_study_allocate(reader, count + 1, sizeof *reader->variant_names);
   if (!file->sources || !reader->variant_names) return STRUT_NO_MEMORY;
   status = count ? open_variants(reader, top, variants->value) : open_source(reader, top, NULL);
-  if (status == STRUT_OK)
-    reader->declared = strut_scene_source_parameters(file->sources[0], &reader->declared_count);
+  if (status == STRUT_OK) strut_scene_source_parameters(file->sources[0], &reader->declared_count);
   return status;
 }
 
