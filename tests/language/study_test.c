@@ -6,7 +6,7 @@
 #include "engine/study/sweep/grid.h"
 #include "parser/language/keys/keys.h"
 #include "parser/language/study/read_study.h"
-#include "tests/language/cases.h"
+#include "tests/language/case_messages.h"
 #include "tests/support/check.h"
 
 #define FOLDER STRUT_TESTS_DIR "/language/studies/"
@@ -35,65 +35,30 @@ static strut_status try_ends(strut_study_file *file) {
   return status;
 }
 
-/* Strikes a message off those expected; 1 where it is none of them. */
-static size_t strike_one(faulty_case *c, const char *where, strut_place place,
-                         const char *message) {
-  char line[1200];
-  snprintf(line, sizeof line, "%s%u:%u: %s", where, place.line, place.column, message);
-  for (size_t k = 0; k < c->message_count; k++)
-    if (strcmp(c->message[k], line) == 0) {
-      c->message[k][0] = '\0';
-      return 0;
-    }
-  print_error("%s: %s: not expected: %s\n", c->document, c->name, line);
-  return 1;
-}
-
 /* What a case calls the file of a place. */
 static const char *file_of(const strut_diagnostics *found, strut_place place) {
   const char *name = strut_diagnostics_file(found, place), *dot = strrchr(name, '.');
   return dot && strcmp(dot, ".csv") == 0 ? "table " : strstr(name, "/models/") ? "model " : "";
 }
 
-/* Strikes messages and their notes off; returns how many were not expected. */
-static size_t strike(faulty_case *c, const strut_diagnostics *found) {
-  size_t wrong = 0;
-  for (size_t i = 0; i < found->count; i++) {
-    const strut_diagnostic *d = &found->items[i];
-    wrong += strike_one(c, file_of(found, d->place), d->place, d->message);
-    for (size_t k = 0; k < STRUT_MESSAGE_NOTES && d->note[k]; k++)
-      wrong += strike_one(c, "note: ", d->note_place[k], d->note[k]);
-  }
-  return wrong;
-}
-
 /* Reads a base or case from the folder, which holds the models and tables that it names. */
 static size_t check_case(faulty_case *c, const char *folder) {
-  char path[600], *equals = NULL;
+  char path[600];
   size_t wrong = 0;
   strut_study_file file;
   strut_error error = {0};
-  strut_override set = {0};
-  if (c->set_count) {
-    equals = strchr(c->set[0], '=');
-    *equals = '\0';
-    set = (strut_override){c->set[0], equals + 1};
-  }
-  assert_true(c->set_count <= 1 && write_faulty_case(c, folder));
+  strut_override set[CASE_MOST_SETS];
+  split_settings(c, set);
+  assert_true(write_faulty_case(c, folder));
   snprintf(path, sizeof path, "%s/%s.yaml", folder, c->name);
-  strut_status status = strut_study_open(path, &set, c->set_count, &file, &error);
+  strut_status status = strut_study_open(path, set, c->set_count, &file, &error);
   if (status == STRUT_OK) status = try_ends(&file);
   if (status != (c->is_base ? STRUT_OK : STRUT_BAD_SCENE)) {
     print_error("%s: %s: status %d, %s\n", c->document, c->name, status, error.message);
     wrong++;
   }
-  wrong += strike(c, &file.diagnostics);
-  wrong += strike(c, &file.model_diagnostics);
-  for (size_t i = 0; i < c->message_count; i++)
-    if (c->message[i][0]) {
-      print_error("%s: %s: not found: %s\n", c->document, c->name, c->message[i]);
-      wrong++;
-    }
+  wrong += strike_messages(c, &file.diagnostics, file_of);
+  wrong += strike_messages(c, &file.model_diagnostics, file_of) + missing_messages(c);
   assert_non_null(strut_study_messages(&file, 50));
   strut_study_close(&file);
   return wrong;
