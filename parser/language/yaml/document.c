@@ -37,22 +37,23 @@ static anchored_node *find_anchor(const anchor_table *anchors, const char *name)
   return first < 0 ? NULL : &anchors->items[anchors->items[first].latest];
 }
 
-static bool add_anchor(anchor_table *anchors, const char *name, strut_tree *node) {
+static anchored_node *add_anchor(anchor_table *anchors, const char *name, strut_tree *node) {
   if (!anchors->items) anchors->items = strut_allocate(ANCHOR_MOST, sizeof *anchors->items);
   int32_t first = anchors->items ? strut_name_map_add(&anchors->firsts, name, anchors->count) : -2;
-  if (first == -2) return false;
-  anchors->items[anchors->count] = (anchored_node){.node = node, .latest = anchors->count};
+  if (first == -2) return NULL;
+  anchored_node *anchor = &anchors->items[anchors->count];
+  *anchor = (anchored_node){.node = node, .latest = anchors->count};
   if (first >= 0) anchors->items[first].latest = anchors->count;
   anchors->count++;
-  return true;
+  return anchor;
 }
 
 /* A list or map whose end has not come yet. */
 typedef struct frame {
   strut_tree *node, *last; /* last child so far */
   uint64_t weight;
-  size_t height; /* of the highest child so far */
-  size_t anchor; /* 1 + index, or 0 */
+  size_t height;         /* of the highest child so far */
+  anchored_node *anchor; /* or NULL */
   bool bracketed;
   bool value_next; /* map: a key waits for its value */
 } frame;
@@ -154,17 +155,17 @@ static bool key_expected(const reader *self) {
   return open && open->node->kind == STRUT_TREE_MAP && !open->value_next;
 }
 
-/* Names the node; *index is 1 + the anchor's, or 0 without one. */
-static bool read_anchor(reader *self, const yaml_char_t *name, strut_tree *node, size_t *index) {
-  *index = 0;
+/* Names the node; *anchor is NULL without a name. */
+static bool read_anchor(reader *self, const yaml_char_t *name, strut_tree *node,
+                        anchored_node **anchor) {
+  *anchor = NULL;
   if (!name) return true;
   if (self->anchors.count >= ANCHOR_MOST)
     return over_limit(self, node->place, "anchors", ANCHOR_MOST);
   const char *text = (const char *)name;
   text = strut_arena_text(&self->document->arena, text, strlen(text));
-  if (!text || !add_anchor(&self->anchors, text, node)) return out_of_memory(self);
-  *index = (size_t)self->anchors.count;
-  return true;
+  *anchor = text ? add_anchor(&self->anchors, text, node) : NULL;
+  return *anchor || out_of_memory(self);
 }
 
 static void check_tag(reader *self, const yaml_char_t *tag, const yaml_event_t *event) {
@@ -205,7 +206,8 @@ static const char *keep_text(reader *self, const char *text, size_t length) {
 
 static bool read_scalar(reader *self, const yaml_event_t *event) {
   const char *text = (const char *)event->data.scalar.value;
-  size_t length = event->data.scalar.length, anchor;
+  size_t length = event->data.scalar.length;
+  anchored_node *anchor;
   strut_place place = place_of(event);
   bool quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
   check_tag(self, event->data.scalar.tag, event);
@@ -218,7 +220,7 @@ static bool read_scalar(reader *self, const yaml_event_t *event) {
   node->quoted = quoted;
   node->text = keep_text(self, text, length);
   if (!node->text) return out_of_memory(self);
-  if (anchor) self->anchors.items[anchor - 1].weight = 1;
+  if (anchor) anchor->weight = 1;
   attach(self, node, 1, 0);
   return true;
 }
@@ -287,9 +289,8 @@ static bool close_collection(reader *self, const yaml_event_t *event) {
   if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, self->diagnostics))
     return out_of_memory(self);
   if (closed.anchor) {
-    anchored_node *anchor = &self->anchors.items[closed.anchor - 1];
-    anchor->weight = closed.weight;
-    anchor->height = closed.height + 1;
+    closed.anchor->weight = closed.weight;
+    closed.anchor->height = closed.height + 1;
   }
   attach(self, node, closed.weight, closed.height + 1);
   return true;
