@@ -131,7 +131,6 @@ typedef struct strut_fit_alignment {
 
 typedef struct strut_fit_match {
   const char *name;
-  strut_search_place place;
   strut_fit_kind kind;
   uint32_t compute; /* strut_compute, of a TABLE */
   size_t count;     /* numbers of each series */

@@ -241,27 +241,20 @@ static void read_document(faulty_cases *cases, const char *folder, const char *n
   free(d);
 }
 
-static int by_name(const void *a, const void *b) {
-  return strcmp(*(char *const *)a, *(char *const *)b);
+static int is_document(const struct dirent *entry) {
+  const char *ending = strrchr(entry->d_name, '.');
+  return ending && strcmp(ending, ".cases") == 0;
 }
 
 faulty_cases read_faulty_cases(const char *folder) {
-  enum { MOST_DOCUMENTS = 100 };
   faulty_cases cases = {0};
-  char *names[MOST_DOCUMENTS];
-  size_t count = 0;
-  DIR *directory = opendir(folder);
-  for (struct dirent *entry; directory && (entry = readdir(directory));) {
-    const char *ending = strrchr(entry->d_name, '.');
-    if (!ending || strcmp(ending, ".cases") != 0 || count == MOST_DOCUMENTS) continue;
-    names[count++] = copy_text(entry->d_name);
+  struct dirent **found;
+  int count = scandir(folder, &found, is_document, alphasort);
+  for (int i = 0; i < count; i++) {
+    read_document(&cases, folder, found[i]->d_name);
+    free(found[i]);
   }
-  if (directory) closedir(directory);
-  qsort(names, count, sizeof names[0], by_name);
-  for (size_t i = 0; i < count; i++) {
-    read_document(&cases, folder, names[i]);
-    free(names[i]);
-  }
+  if (count > 0) free(found);
   if (cases.count == 0) {
     fprintf(stderr, "%s: no cases\n", folder);
     exit(EXIT_FAILURE);

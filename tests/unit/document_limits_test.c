@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "parser/language/read/read_scene.h"
-#include "parser/language/yaml/document.h"
 #include "tests/support/motion.h"
 #include "tests/support/sanitized.h"
 #include "tests/unit/document_support.h"
@@ -19,8 +18,7 @@ TEST(depth_is_limited) {
       FREED char *text = repeat(open, kinds[i][1], i == 2 ? 0 : depth, "");
       OWN(strut_document) document = {0};
       OWN(strut_diagnostics) diagnostics = {0};
-      strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
-      strut_status status = strut_document_read(&document, &diagnostics);
+      strut_status status = read_text(text, &document, &diagnostics);
       assert_int_equal(status, depth == 64 ? STRUT_OK : STRUT_BAD_SCENE);
       if (depth == 65) {
         assert_string_equal(diagnostics.items[0].message, "more than 64 levels of nesting");
@@ -38,8 +36,7 @@ TEST(depth_counts_aliases) {
   char *good = repeat(fits, "]", 23, ""), *bad = repeat(deep, "]", 24, "");
   strut_document document = {0};
   strut_diagnostics diagnostics = {0};
-  strut_diagnostics_source(&diagnostics, "t", good, strlen(good));
-  assert_ok(strut_document_read(&document, &diagnostics));
+  assert_ok(read_text(good, &document, &diagnostics));
   expect_error(bad, "2:28: more than 64 levels of nesting");
   strut_document_free(&document);
   char *texts[] = {open, closed, fits, deep, good, bad};
@@ -53,8 +50,7 @@ TEST(anchors_and_aliases_are_limited) {
        *more = repeat(thousand, "- &z x\n", 1, "");
   strut_document document = {0};
   OWN(strut_diagnostics) diagnostics = {0};
-  strut_diagnostics_source(&diagnostics, "t", most, strlen(most));
-  assert_ok(strut_document_read(&document, &diagnostics));
+  assert_ok(read_text(most, &document, &diagnostics));
   assert_int_equal(document.root->count, 1004);
   strut_document_free(&document);
   expect_error(more, "1001:6: more than 1000 anchors");
@@ -64,8 +60,7 @@ TEST(anchors_and_aliases_are_limited) {
 
   /* Ten thousand values, repeated a hundred times, and one too many. */
   char *list = repeat("a: &a [1", ",1", 9998, "]\nb: [*a"), *fits = repeat(list, ",*a", 99, "]\n");
-  strut_diagnostics_source(&diagnostics, "t", fits, strlen(fits));
-  assert_ok(strut_document_read(&document, &diagnostics));
+  assert_ok(read_text(fits, &document, &diagnostics));
   strut_document_free(&document);
   free(fits);
   fits = repeat(list, ",*a", 100, "]\n");
@@ -78,8 +73,7 @@ TEST(a_thousand_problems_are_enough) {
   FREED char *text = repeat("a: [", "!x 1, ", 5000, "]");
   OWN(strut_document) document = {0};
   OWN(strut_diagnostics) diagnostics = {0};
-  strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
-  assert_int_equal(strut_document_read(&document, &diagnostics), STRUT_BAD_SCENE);
+  assert_int_equal(read_text(text, &document, &diagnostics), STRUT_BAD_SCENE);
   assert_int_equal(diagnostics.count, 1000);
   assert_null(document.root);
 }
@@ -182,9 +176,8 @@ TEST(big_texts_are_read) {
   FREED char *text = numbered("members:\n", "  m#: {group: rod, nodes: [n#, k#]}\n", 100000);
   OWN(strut_document) document = {0};
   OWN(strut_diagnostics) diagnostics = {0};
-  strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
   clock_t begin = clock();
-  assert_ok(strut_document_read(&document, &diagnostics));
+  assert_ok(read_text(text, &document, &diagnostics));
   double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
   assert_int_equal(document.root->first->next->count, 100000);
   print_message("%.2f s for %.1f MB, %.1f MB of tree\n", seconds, (double)strlen(text) * 1e-6,
@@ -238,8 +231,7 @@ TEST(random_texts_are_survived) {
     }
     OWN(strut_document) document = {0};
     OWN(strut_diagnostics) diagnostics = {0};
-    strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
-    strut_status status = strut_document_read(&document, &diagnostics);
+    strut_status status = read_text(text, &document, &diagnostics);
     assert_true((status == STRUT_OK) == (diagnostics.count == 0));
     assert_true(status != STRUT_OK || document.root);
     assert_non_null(strut_diagnostics_render(&diagnostics, 50));

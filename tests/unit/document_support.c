@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/unit/document_support.h"
 
-#include "parser/language/yaml/document.h"
 #include "tests/support/test.h"
 
 char *shown_end(char *out) { return out + strlen(out); }
+
+strut_status read_text(const char *text, strut_document *document, strut_diagnostics *diagnostics) {
+  strut_diagnostics_source(diagnostics, "t", text, strlen(text));
+  return strut_document_read(document, diagnostics);
+}
 
 /* {a: [1 'x']} with the places of scalars where asked: a@1:1+1. */
 static void show(const strut_tree *node, bool places, char *out) {

@@ -6,6 +6,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "parser/language/yaml/document.h"
+
+/** What reading the text, called "t" in messages, returns. */
+strut_status read_text(const char *text, strut_document *document, strut_diagnostics *diagnostics);
 /** text[0..length) gives this tree (with places where asked) and these messages, else the test fails. */
 void expect_of(const char *text, size_t length, bool places, const char *tree,
                const char *messages);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader: trees and places, and every refusal with its words. */
-#include "parser/language/yaml/document.h"
 #include "tests/support/test.h"
 #include "tests/unit/document_support.h"
 
@@ -150,8 +149,7 @@ TEST(many_keys_are_compared_alike) {
     }
     OWN(strut_document) document = {0};
     OWN(strut_diagnostics) diagnostics = {0};
-    strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
-    strut_document_read(&document, &diagnostics);
+    read_text(text, &document, &diagnostics);
     assert_int_equal(diagnostics.count, doubles);
     assert_int_equal(document.root->count, count - doubles);
     free(number);
@@ -249,8 +247,7 @@ TEST(finding_is_by_text) {
   OWN(strut_document) document = {0};
   OWN(strut_diagnostics) diagnostics = {0};
   strut_tree *key = NULL;
-  strut_diagnostics_source(&diagnostics, "t", text, strlen(text));
-  assert_ok(strut_document_read(&document, &diagnostics));
+  assert_ok(read_text(text, &document, &diagnostics));
   assert_string_equal(strut_tree_find(document.root, "d", &key)->text, "b");
   assert_int_equal(key->place.line, 3);
   assert_int_equal(strut_tree_find(document.root, "b", NULL)->count, 1);

@@ -445,14 +445,8 @@ static strut_status open_study(abi_call *call, study *self) {
   if (!status) return STRUT_OK;
   if (status != STRUT_BAD_SCENE || what.message[0])
     return abi_call_fail(call, status, &what), status;
-  size_t count = 0;
-  strut_diagnostics **found =
-      strut_arena_allocate(&file->arena, file->table_count + 2, sizeof *found);
-  if (!found) return (strut_status)abi_no_memory(call->error);
-  found[count++] = &file->diagnostics;
-  for (size_t i = 0; i < file->table_count; i++) found[count++] = &file->tables[i].diagnostics;
-  found[count++] = &file->model_diagnostics;
-  return (strut_status)abi_fail_located(call->error, status, found, count);
+  strut_diagnostics *found[] = {&file->diagnostics, &file->model_diagnostics};
+  return (strut_status)abi_fail_located(call->error, status, found, 2);
 }
 
 /* Computes the study; sets the error where there is no result. */

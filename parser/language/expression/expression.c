@@ -170,40 +170,33 @@ static bool read_signed(strut_expression_reader *reader, strut_quantity *quantit
   return fine;
 }
 
-static bool read_product(strut_expression_reader *reader, strut_quantity *quantity) {
+/* Operands that two operators of one rank join, from left to right. */
+static bool read_chain(strut_expression_reader *reader, char first, char second,
+                       bool (*read)(strut_expression_reader *, strut_quantity *),
+                       strut_quantity *quantity) {
   strut_expression_peek(reader);
   size_t begin = reader->at;
-  if (!read_signed(reader, quantity)) return false;
-  for (;;) {
+  bool fine = read(reader, quantity);
+  while (fine) {
     size_t end = reader->at;
     char c = strut_expression_peek(reader);
-    strut_quantity factor;
-    if (c != '*' && c != '/') {
+    strut_quantity operand;
+    if (c != first && c != second) {
       reader->at = end;
-      return true;
+      break;
     }
     reader->at++;
-    if (!read_signed(reader, &factor) || !apply_operator(reader, begin, c, quantity, factor))
-      return false;
+    fine = read(reader, &operand) && apply_operator(reader, begin, c, quantity, operand);
   }
+  return fine;
+}
+
+static bool read_product(strut_expression_reader *reader, strut_quantity *quantity) {
+  return read_chain(reader, '*', '/', read_signed, quantity);
 }
 
 static bool read_sum(strut_expression_reader *reader, strut_quantity *quantity) {
-  strut_expression_peek(reader);
-  size_t begin = reader->at;
-  if (!read_product(reader, quantity)) return false;
-  for (;;) {
-    size_t end = reader->at;
-    char c = strut_expression_peek(reader);
-    strut_quantity term;
-    if (c != '+' && c != '-') {
-      reader->at = end;
-      return true;
-    }
-    reader->at++;
-    if (!read_product(reader, &term) || !apply_operator(reader, begin, c, quantity, term))
-      return false;
-  }
+  return read_chain(reader, '+', '-', read_product, quantity);
 }
 
 bool strut_expression_evaluate(const char *text, const strut_scope *scope, strut_quantity *quantity,

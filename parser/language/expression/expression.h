@@ -85,7 +85,7 @@ typedef struct strut_compiled {
 /** Compiles an expression of columns to a program. */
 typedef struct strut_compiler {
   strut_find_column *column;
-  strut_find_pair *pair;
+  strut_find_pair *pair; /* NULL: there are none */
   void *context;
   strut_compiled *program; /* at least one for each byte of the text */
   size_t length, depth;    /* instructions so far; numbers on the stack at most */

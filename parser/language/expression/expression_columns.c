@@ -139,6 +139,10 @@ static int read_quoted(strut_expression_reader *reader, const char *kind, size_t
 static int read_pair(strut_expression_reader *reader, strut_piece word, size_t begin,
                      strut_quantity *quantity) {
   strut_piece first, second;
+  if (!reader->compiler->pair) {
+    reader->at = begin;
+    return 0;
+  }
   if (!read_raw_name(reader, ',', &first) || !read_raw_name(reader, ')', &second)) return -1;
   looked_up it = nothing();
   it.found = reader->compiler->pair(reader->compiler->context, word, first, second, &it.column,

@@ -116,19 +116,15 @@ static bool read_power(strut_expression_reader *reader, int *power) {
   char c = strut_expression_peek(reader);
   size_t begin = reader->at;
   if (c == '-' || c == '+') reader->at++;
-  size_t digits = reader->at;
-  int value = 0;
-  for (; reader->at < reader->length && reader->text[reader->at] >= '0' &&
-         reader->text[reader->at] <= '9';
-       reader->at++)
-    if (value <= UNIT_POWER_MOST) value = value * 10 + (reader->text[reader->at] - '0');
-  size_t end = reader->at;
-  if (end < reader->length && (reader->text[end] == '.' || strut_expression_word(reader, end)))
-    end++;
-  if (reader->at == digits || end != reader->at || value > UNIT_POWER_MOST)
-    return strut_expression_fail(reader, begin, end,
+  const char *text = reader->text + reader->at;
+  size_t digits = strspn(text, "0123456789");
+  long value = digits ? strtol(text, NULL, 10) : 0;
+  reader->at += digits;
+  bool longer = text[digits] == '.' || strut_expression_word(reader, reader->at);
+  if (!digits || longer || value > UNIT_POWER_MOST)
+    return strut_expression_fail(reader, begin, reader->at + longer,
                                  "the power of a unit is a whole number such as 2");
-  *power = c == '-' ? -value : value;
+  *power = (int)(c == '-' ? -value : value);
   return true;
 }
 

@@ -115,13 +115,24 @@ static bool raise_to_power(strut_quantity *quantity, strut_quantity b, strut_rea
   return true;
 }
 
+/* The value of a result; 1 where it varies, since it is not known. False: it is no finite number. */
+static bool check_result(strut_quantity *quantity, bool varies, const char *what,
+                         strut_reason *reason) {
+  quantity->varies = varies;
+  if (varies) quantity->value = 1;
+  if (isfinite(quantity->value)) return true;
+  return fail_with_reason(reason, "the result of %s is not %s", what,
+                          isnan(quantity->value) ? "a real number" : "finite");
+}
+
 bool strut_quantity_operate(char operation, strut_quantity *quantity, strut_quantity b,
                             strut_reason *reason) {
+  const char what[] = {'\'', operation, '\'', '\0'};
   bool varies = quantity->varies || b.varies;
   switch (operation) {
     case '+':
     case '-':
-      if (!unify_dimensions(quantity, b, operation == '+' ? "'+'" : "'-'", reason)) return false;
+      if (!unify_dimensions(quantity, b, what, reason)) return false;
       quantity->value = operation == '+' ? quantity->value + b.value : quantity->value - b.value;
       break;
     case '*':
@@ -136,13 +147,7 @@ bool strut_quantity_operate(char operation, strut_quantity *quantity, strut_quan
     default:
       if (!raise_to_power(quantity, b, reason)) return false;
   }
-  quantity->varies = varies;
-  if (varies) quantity->value = 1; /* not known */
-  if (isnan(quantity->value))
-    return fail_with_reason(reason, "the result of '%c' is not a real number", operation);
-  if (isinf(quantity->value))
-    return fail_with_reason(reason, "the result of '%c' is not finite", operation);
-  return true;
+  return check_result(quantity, varies, what, reason);
 }
 
 const strut_function *strut_function_find(const char *name, size_t length) {
@@ -202,12 +207,7 @@ bool strut_function_apply(const strut_function *function, const strut_quantity *
     q.dimension = STRUT_DIM_ANGLE;
     q.bare = false;
   }
-  q.varies = varies;
-  if (varies) q.value = 1; /* not known */
-  if (isnan(q.value))
-    return fail_with_reason(reason, "the result of '%s' is not a real number", function->name);
-  if (isinf(q.value))
-    return fail_with_reason(reason, "the result of '%s' is not finite", function->name);
+  if (!check_result(&q, varies, what, reason)) return false;
   *result = q;
   return true;
 }
@@ -313,18 +313,17 @@ static const struct dimension_words {
 };
 enum { WORD_COUNT = sizeof words / sizeof words[0] };
 
+/* The order of a word and of a unit's name, of which the word may be the beginning. */
+static int compare_unit(const void *word, const void *unit) {
+  const strut_piece *piece = word;
+  const char *name = ((const strut_unit *)unit)->name;
+  int order = strncmp(piece->text, name, piece->length);
+  return order || !name[piece->length] ? order : -1;
+}
+
 const strut_unit *strut_unit_find(const char *name, size_t length) {
-  size_t low = 0, high = UNIT_COUNT;
-  while (low < high) {
-    size_t middle = (low + high) / 2;
-    int order = strncmp(units[middle].name, name, length);
-    if (order == 0 && units[middle].name[length] == '\0') return &units[middle];
-    if (order < 0)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return NULL;
+  const strut_piece word = {name, length};
+  return bsearch(&word, units, UNIT_COUNT, sizeof units[0], compare_unit);
 }
 
 const strut_unit *strut_unit_at(size_t i) { return i < UNIT_COUNT ? &units[i] : NULL; }

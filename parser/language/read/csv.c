@@ -23,6 +23,7 @@ typedef struct record {
 typedef struct reader {
   char *at, *end, separator;
   strut_diagnostics *diagnostics;
+  size_t before; /* messages that there were */
   strut_csv *csv;
   char **cell; /* of strut_allocate */
   size_t cell_count, cell_capacity;
@@ -308,7 +309,7 @@ static void read_rows(reader *self) {
   self->csv->column_count = names.count;
   memmove(self->cell, &self->cell[names.first], names.count * sizeof *self->cell);
   for (size_t i = self->rows; i < self->head_count; i++) take_row(self, self->head[i]);
-  while (!self->failed && self->diagnostics->count < MOST_MESSAGES) {
+  while (!self->failed && self->diagnostics->count < self->before + MOST_MESSAGES) {
     self->cell_count = (1 + self->csv->row_count) * names.count;
     record line = next_line(self, names.count == 1);
     if (!line.count || self->failed) break;
@@ -318,7 +319,7 @@ static void read_rows(reader *self) {
 
 strut_status strut_csv_read(const char *text, size_t length, int header,
                             strut_diagnostics *diagnostics, strut_csv *csv) {
-  reader r = {.diagnostics = diagnostics, .csv = csv};
+  reader r = {.diagnostics = diagnostics, .before = diagnostics->count, .csv = csv};
   const char *nul = memchr(text, '\0', length); /* it would end a cell */
   *csv = (strut_csv){.text = text};
   csv->copy = r.at = strut_arena_text(&csv->arena, text, length);
@@ -334,16 +335,16 @@ strut_status strut_csv_read(const char *text, size_t length, int header,
     if (fine) make_titles(&r);
     if (fine && !r.failed) read_rows(&r);
   }
-  if (!r.failed && !diagnostics->count && !csv->row_count)
+  if (!r.failed && diagnostics->count == r.before && !csv->row_count)
     strut_diagnose(diagnostics, strut_place_at(1, 1, 1), "the table has a header but no rows");
-  if (!r.failed && !diagnostics->count) {
+  if (!r.failed && diagnostics->count == r.before) {
     size_t count = (1 + csv->row_count) * csv->column_count;
     csv->cell = strut_arena_copy(&csv->arena, r.cell, count, sizeof *csv->cell);
     r.failed = !csv->cell;
   }
   strut_release(r.cell);
   if (r.failed || diagnostics->out_of_memory) return STRUT_NO_MEMORY;
-  return diagnostics->count ? STRUT_BAD_SCENE : STRUT_OK;
+  return diagnostics->count > r.before ? STRUT_BAD_SCENE : STRUT_OK;
 }
 
 /* ---- numbers and units ---- */

@@ -67,6 +67,13 @@ bool strut_refuse_data(strut_reader *reader, const strut_tree *value, const stru
   return false;
 }
 
+/* Reports about a cell of the table that is being read. */
+static bool refuse_cell(loader *self, const strut_tree *used, size_t cell, const char *message) {
+  report_in_file(self->reader, strut_csv_place(&self->csv, cell),
+                 show_file(self->reader, self->table), used, message);
+  return false;
+}
+
 static bool refuse_column(loader *self, const strut_tree *at, const char *name) {
   return strut_report_error(self->reader, at->place, "'%s' has no column '%s'",
                             strut_sanitised_text(self->reader, self->table->file),
@@ -235,6 +242,31 @@ static bool rotate(loader *self) {
   return true;
 }
 
+/* A key that moves coordinates needs some. */
+static bool require_coordinates(loader *self) {
+  static const int keys[] = {STRUT_KEY_DATA_FLIP, STRUT_KEY_DATA_SCALE, STRUT_KEY_DATA_ROTATE,
+                             STRUT_KEY_DATA_SHIFT};
+  const char *near = NULL;
+  int axis;
+  bool fine = true;
+  for (size_t i = 0; i < self->table->column_count; i++) {
+    if (coordinate(self, i, &axis)) return true;
+    if (!near && axis_in(self->columns[i].name)) near = self->columns[i].name;
+  }
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+    const strut_slot *slot = strut_slot_of(&self->fields, keys[i]);
+    if (slot->state != STRUT_GIVEN) continue;
+    fine = strut_report_error(
+        self->reader, slot->key->place,
+        near ? "'%s' finds no coordinates in data '%s': '%s' would be one with a length as its "
+               "unit, in the header, under 'units' or by a 'scale' such as 0.2 mm"
+             : "'%s' finds no coordinates in data '%s': they are columns of lengths with an x or y "
+               "that stands alone in their names, such as x, y2 or n1.x",
+        slot->key->text, self->table->name, near ? strut_sanitised_text(self->reader, near) : "");
+  }
+  return fine;
+}
+
 /* Flips, scales, turns and shifts coordinates. False: that was reported. */
 static bool place_coordinates(loader *self) {
   static const double one[2] = {1.0, 1.0}, nothing[2] = {0.0, 0.0};
@@ -251,6 +283,7 @@ static bool place_coordinates(loader *self) {
     column->unit = "m";
     column->dimension = STRUT_DIM_LENGTH;
   }
+  if (!require_coordinates(self)) return false;
   for (int k = 0; k < 2; k++) scale[k] = table->flip >> k & 1u ? -table->scale : table->scale;
   move(self, scale, nothing);
   bool fine = rotate(self);
@@ -291,15 +324,17 @@ static bool find_weights(loader *self) {
 
 /* ---- tables ---- */
 
-/* The title's name, with a number where an earlier column has it. */
-static const char *name_column(loader *self, size_t i) {
-  const char *name = self->csv.titles[i].name;
-  size_t number = 1;
-  for (size_t k = 0; k < i; k++) number += strcmp(self->csv.titles[k].name, name) == 0;
-  if (number == 1) return strut_keep_text(self->reader, name);
-  name = strut_arena_format(self->reader->keep, "%s.%zu", name, number);
-  if (!name) self->reader->out_of_memory = true;
-  return name ? name : "";
+/* Names the columns. False: two have one name, which was reported. */
+static bool name_columns(loader *self) {
+  for (size_t i = 0; i < self->table->column_count; i++) {
+    const char *name = self->csv.titles[i].name;
+    self->columns[i].name = strut_keep_text(self->reader, name);
+    for (size_t k = 0; k < i && *name; k++)
+      if (strcmp(self->csv.titles[k].name, name) == 0)
+        return refuse_cell(self, value_of(self, STRUT_KEY_DATA_FILE), i,
+                           "an earlier column has this name too, give one of them another");
+  }
+  return true;
 }
 
 static bool make_columns(loader *self) {
@@ -314,7 +349,7 @@ static bool make_columns(loader *self) {
   if (!self->columns) return false;
   table->columns = self->columns, table->column_count = count;
   table->row_count = self->csv.row_count - (size_t)table->skip;
-  for (size_t i = 0; i < count; i++) self->columns[i].name = name_column(self, i);
+  if (!name_columns(self)) return false;
   const strut_tree *units = value_of(self, STRUT_KEY_DATA_UNITS);
   if (units && !keep_units(self, units)) return false;
   for (size_t i = 0; i < count; i++) read_numbers(self, i);

@@ -428,12 +428,6 @@ static const companion companions[] = {
 
 enum { COMPANIONS = sizeof companions / sizeof companions[0] };
 
-/* Are both keys of one file, and not one of them laid over by a study? */
-static bool same_layer(const strut_tree *first, const strut_tree *second) {
-  return first->place.file == second->place.file &&
-         (first->place.line ^ second->place.line) < STRUT_OVERLAY_LINE;
-}
-
 /* Is the key beside, or the other's word one of the words? What could not be read is. */
 static bool is_met(strut_fields *fields, const companion *self, const strut_slot **other) {
   char word[40];
@@ -462,7 +456,7 @@ bool strut_check_companions(strut_reader *reader, strut_fields *fields, strut_ow
     if (strut_key_at(c->key)->section != fields->section) continue;
     strut_slot *slot = strut_slot_of(fields, c->key);
     if (slot->state != STRUT_GIVEN || is_met(fields, c, &other)) continue;
-    if (slot->from || (other && other->key && !same_layer(slot->key, other->key))) {
+    if (slot->from || (other && other->key && slot->key->place.file != other->key->place.file)) {
       slot->state = STRUT_ABSENT; /* a group's is for others, a base's for its own kind */
       continue;
     }

@@ -259,8 +259,8 @@ strut_status strut_setup_read(strut_setup *setup, const char *file, const char *
 }
 
 static strut_status keep_used(strut_scene_source *source, strut_diagnostics *from) {
-  if (!from->used_count) return STRUT_OK;
-  source->used = strut_arena_allocate(&source->arena, from->used_count, sizeof *source->used);
+  size_t most = from->used_count + 1; /* strut_scene_source_use adds one */
+  source->used = strut_arena_allocate(&source->arena, most, sizeof *source->used);
   if (!source->used) return STRUT_NO_MEMORY;
   for (size_t i = 0; i < from->used_count; i++) {
     strut_used_file *to = &source->used[i];
@@ -388,7 +388,14 @@ const char *strut_scene_source_parameter_name(const void *context, size_t i) {
 }
 
 bool strut_scene_source_uses_files(const strut_scene_source *source) {
-  return source->used_count > 0;
+  return source->used_count > 0 && source->used[0].owned;
+}
+
+unsigned strut_scene_source_use(strut_scene_source *source, const char *file, const char *text,
+                                size_t length) {
+  if (source->used_count == STRUT_USED_FILES_MOST) return 0;
+  source->used[source->used_count] = (strut_used_file){file, text, length, NULL};
+  return (unsigned)++source->used_count;
 }
 
 const strut_data_table *strut_scene_source_tables(const strut_scene_source *source, size_t *count) {

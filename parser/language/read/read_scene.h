@@ -65,6 +65,9 @@ STRUT_API const strut_declared *strut_scene_source_parameter(const strut_scene_s
 STRUT_API const char *strut_scene_source_parameter_name(const void *source, size_t i);
 /** Does the text name files, which the tree has taken in? */
 STRUT_API bool strut_scene_source_uses_files(const strut_scene_source *source);
+/** Enters one more file, which outlives the source; its number for places, 0: there are too many. */
+STRUT_API unsigned strut_scene_source_use(strut_scene_source *source, const char *file,
+                                          const char *text, size_t length);
 /** The *count tables of measured data, which all its scenes share. */
 STRUT_API const strut_data_table *strut_scene_source_tables(const strut_scene_source *source,
                                                             size_t *count);

@@ -15,36 +15,30 @@ static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the p
                          form_owner = {"the form", NULL}, limit_owner = {"the limit", NULL},
                          check_owner = {"the check", NULL};
 
-const char *strut_study_declared_name(const void *context, size_t i) {
-  const strut_study_reader *reader = context;
-  return i < reader->declared_count ? reader->declared[i].name : NULL;
-}
-
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size) {
   return strut_reader_allocate(reader->reader, &reader->file->arena, count, size);
 }
 
 const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name) {
-  for (size_t i = 0; i < reader->declared_count; i++)
-    if (strcmp(reader->declared[i].name, name) == 0) return &reader->declared[i];
-  return NULL;
+  return strut_scene_source_parameter(reader->file->sources[0], name);
 }
 
-const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key) {
-  const strut_declared *found = strut_study_declared(reader, key->text);
-  if (!found) {
-    strut_report_error(reader->reader, key->place, "the model has no parameter '%s'%s",
-                       strut_sanitised_text(reader->reader, key->text),
-                       strut_hint(reader->reader, key->text, strut_study_declared_name, reader,
-                                  reader->declared_count));
-    return NULL;
-  }
-  if (strut_name_map_find(&reader->given, found->name) >= 0) {
-    strut_report_error(reader->reader, key->place, "parameter '%s' is given twice", found->name);
-    return NULL;
-  }
-  strut_add_name(reader->reader, &reader->given, found->name, (size_t)(found - reader->declared));
-  return found;
+const strut_declared *strut_study_parameter(strut_study_reader *study_reader, const strut_tree *key,
+                                            const char *advice) {
+  strut_reader *reader = study_reader->reader;
+  const strut_declared *found = strut_study_declared(study_reader, key->text);
+  bool twice = found && strut_name_map_find(&study_reader->given, found->name) >= 0;
+  if (twice)
+    strut_report_error(reader, key->place, "parameter '%s' is given twice", found->name);
+  else if (!found)
+    strut_report_error(reader, key->place, "the model has no parameter '%s'%s%s",
+                       strut_sanitised_text(reader, key->text),
+                       strut_hint(reader, key->text, strut_scene_source_parameter_name,
+                                  study_reader->file->sources[0], study_reader->declared_count),
+                       advice ? advice : "");
+  else
+    strut_add_name(reader, &study_reader->given, found->name, 0);
+  return twice ? NULL : found;
 }
 
 /* --set wins over the study's own `set`. */
@@ -64,10 +58,12 @@ static void read_settings(strut_study_reader *reader, const strut_slot *slot, si
                            "an expression or a text"))
       continue;
     bool yields = may_yield && overridden(file, overrides, key->text);
-    const strut_declared *parameter = strut_study_parameter(reader, key);
+    const strut_declared *parameter = strut_study_parameter(reader, key, NULL);
     if (!parameter || yields) continue;
-    file->settings[file->setting_count++] = (strut_setting){
-        .name = parameter->name, .text = value->text, .place = strut_overlay_place(value->place)};
+    file->settings[file->setting_count++] =
+        (strut_setting){.name = parameter->name,
+                        .text = value->text,
+                        .place = strut_study_place(file, value->place)};
   }
 }
 
@@ -191,26 +187,22 @@ static void read_keep(strut_study_reader *reader, const strut_slot *slot) {
   }
 }
 
-static void require_column(strut_study_reader *reader, const strut_fields *fields,
-                           const strut_tree *key, const char *kind, const char *name,
-                           const char *text) {
-  if (text || fields->broken) return;
-  strut_report_error(reader->reader, key->place,
-                     "%s '%s' lacks '%s', expected a column of the table", kind, key->text, name);
-}
-
 /* Reports columns that the kind of figure needs. */
 static void require_columns(strut_study_reader *reader, const strut_fields *fields,
                             const strut_tree *key, const strut_study_figure *figure) {
-  static const char *const kinds[] = {"figure", "map", "figure", "", "", "", "figure", ""};
-  const char *kind = kinds[figure->kind];
-  if (figure->kind == STRUT_FIGURE_PERIOD || figure->kind == STRUT_FIGURE_SNAPSHOTS ||
-      figure->kind == STRUT_FIGURE_BEST || figure->kind == STRUT_FIGURE_WINNER)
+  bool map = figure->kind == STRUT_FIGURE_MAP;
+  const struct {
+    const char *name, *text;
+  } columns[] = {{"x", figure->x}, {"y", figure->y}, {"color", figure->color}};
+  if (fields->broken || figure->kind == STRUT_FIGURE_PERIOD ||
+      figure->kind == STRUT_FIGURE_SNAPSHOTS || figure->kind == STRUT_FIGURE_BEST ||
+      figure->kind == STRUT_FIGURE_WINNER)
     return;
-  require_column(reader, fields, key, kind, "x", figure->x);
-  require_column(reader, fields, key, kind, "y", figure->y);
-  if (figure->kind == STRUT_FIGURE_MAP)
-    require_column(reader, fields, key, kind, "color", figure->color);
+  for (int i = 0; i < 2 + map; i++)
+    if (!columns[i].text)
+      strut_report_error(reader->reader, key->place,
+                         "%s '%s' lacks '%s', expected a column of the table",
+                         map ? "map" : "figure", key->text, columns[i].name);
 }
 
 /* Reports limits that do not ascend. */
@@ -302,10 +294,6 @@ static void read_rest(strut_study_reader *reader, strut_fields *top) {
   read_figures(reader, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
-static size_t size_of(const strut_slot *slot) {
-  return slot->state == STRUT_GIVEN ? slot->value->count : 0;
-}
-
 /* Reads what refers to the model's parameters: set, derive and axes. */
 static void read_points(strut_study_reader *reader, strut_fields *top,
                         const strut_override *overrides, size_t count) {
@@ -314,7 +302,7 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   const strut_slot *derive = strut_slot_of(top, STRUT_KEY_STUDY_DERIVE);
   const strut_slot *axes = strut_slot_of(top, STRUT_KEY_STUDY_AXES);
   file->settings =
-      strut_study_allocate(reader, count + size_of(set) + size_of(derive), sizeof *file->settings);
+      strut_study_allocate(reader, count + reader->declared_count, sizeof *file->settings);
   if (!file->settings) return;
   for (size_t i = 0; i < count; i++)
     file->settings[file->setting_count++] =
@@ -323,8 +311,7 @@ static void read_points(strut_study_reader *reader, strut_fields *top,
   read_settings(reader, derive, count, false);
   const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
   reader->following = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW)->state == STRUT_GIVEN;
-  if (axes->state == STRUT_GIVEN || search->state == STRUT_GIVEN)
-    strut_study_read_axes(reader, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
+  strut_study_read_axes(reader, axes->state == STRUT_GIVEN ? axes->value : NULL, search);
   strut_study_read_refine(reader, strut_slot_of(top, STRUT_KEY_STUDY_REFINE));
   strut_study_read_sensitivity(reader, top);
   strut_study_read_follow(reader, top);
@@ -415,11 +402,6 @@ strut_status strut_study_open(const char *path, const strut_override *overrides,
 
 const char *strut_study_messages(strut_study_file *file, size_t most) {
   const char *text = strut_diagnostics_render(&file->diagnostics, most);
-  for (size_t i = 0; i < file->table_count && text; i++) {
-    strut_diagnostics *own = &file->tables[i].diagnostics;
-    const char *more = own->count ? strut_diagnostics_render(own, most) : "";
-    text = more ? strut_arena_format(&file->arena, "%s%s", text, more) : NULL;
-  }
   const char *model =
       file->model_diagnostics.file ? strut_diagnostics_render(&file->model_diagnostics, most) : "";
   return text && model ? strut_arena_format(&file->arena, "%s%s", text, model) : NULL;
@@ -471,19 +453,13 @@ static strut_status read_scene(const strut_study_file *file, const strut_study_v
   return status;
 }
 
-/* Parameters that have these values beside those of the axes; followed: one, that which is followed. */
-typedef struct others {
-  size_t count;
-  const strut_derived_by *by; /* NULL: followed */
-  const double *numbers;
-} others;
-
-/* Reads a point's scene; its messages go to `diagnostics`, of the model's text. */
+/* Reads a point's scene, the parameters `by` at `numbers`; messages go to `diagnostics`, of the model's text. */
 static strut_status read_point(const strut_study_file *file, const strut_study_value *values,
-                               others more, strut_diagnostics *diagnostics, strut_setup *setup) {
+                               const strut_derived_by *by, size_t by_count, const double *numbers,
+                               strut_diagnostics *diagnostics, strut_setup *setup) {
   const strut_scene_source *source = source_of(file, values);
   size_t first = file->variants, count = file->setting_count;
-  size_t most = count + file->column_count - first + more.count;
+  size_t most = count + file->column_count - first + by_count;
   strut_setting *settings = strut_allocate(most, sizeof *settings + STRUT_NUMBER_TEXT);
   if (!settings) return STRUT_NO_MEMORY;
   char(*texts)[STRUT_NUMBER_TEXT] = (char(*)[STRUT_NUMBER_TEXT])(settings + most);
@@ -492,34 +468,31 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
     if (!file->columns[i].name) continue; /* a number of the search's own */
     strut_setting *setting = &settings[count++];
     *setting = file->columns[i];
-    setting->place = strut_overlay_place(setting->place);
+    setting->place = strut_study_place(file, setting->place);
     setting->value = values[i].number;
     setting->text = values[i].word ? values[i].word : texts[i - first];
     if (!values[i].word) strut_number_text(values[i].number, texts[i - first]);
   }
-  for (size_t i = 0; i < more.count; i++) {
-    const char *name = more.by ? more.by[i].name : file->followed.name;
-    strut_setting_put(source, name, more.numbers[i], texts[most - 1 - i], settings, &count);
-    if (!more.by) settings[count - 1].place = strut_overlay_place(file->followed.place);
+  for (size_t i = 0; i < by_count; i++) {
+    strut_setting_put(source, by[i].name, numbers[i], texts[most - 1 - i], settings, &count);
+    if (by[i].name == file->followed.name)
+      settings[count - 1].place = strut_study_place(file, file->followed.place);
   }
   strut_status status = read_scene(file, values, settings, count, diagnostics, setup);
   strut_release(settings);
   return status;
 }
 
-static strut_status make_setup(const strut_study_file *file, const strut_study_value *values,
-                               others more, strut_setup *setup, strut_error *error) {
+strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
+                              const strut_derived_by *by, size_t count, const double *numbers,
+                              strut_setup *setup, strut_error *error) {
   strut_diagnostics diagnostics = {0};
-  strut_status status = read_point(file, values, more, &diagnostics, setup);
+  strut_status status = read_point(file, values, by, count, numbers, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
+    strut_diagnostics_sort(&diagnostics);
     const strut_diagnostic *first = &diagnostics.items[0];
-    for (size_t i = 1; i < diagnostics.count; i++)
-      if (diagnostics.items[i].place.line < first->place.line) first = &diagnostics.items[i];
-    bool own = first->place.line & STRUT_OVERLAY_LINE;
-    unsigned used = first->place.file;
-    const char *model = used ? diagnostics.used[used - 1].file : file->model_path;
-    strut_fail(error, status, "%s:%u: %s", own ? file->path : model,
-               first->place.line & ~STRUT_OVERLAY_LINE, first->message);
+    strut_fail(error, status, "%s:%u: %s", strut_diagnostics_file(&diagnostics, first->place),
+               first->place.line, first->message);
   } else if (status == STRUT_USAGE) {
     strut_fail(error, status, "the options do not fit the scene of this point");
   } else if (status != STRUT_OK) {
@@ -531,18 +504,13 @@ static strut_status make_setup(const strut_study_file *file, const strut_study_v
 
 strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
                                strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, (others){0}, setup, error);
+  return strut_study_vary(file, values, NULL, 0, NULL, setup, error);
 }
 
 strut_status strut_study_setup_at(const strut_study_file *file, const strut_study_value *values,
                                   double value, strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, (others){1, NULL, &value}, setup, error);
-}
-
-strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
-                              const strut_derived_by *by, size_t count, const double *numbers,
-                              strut_setup *setup, strut_error *error) {
-  return make_setup(file, values, (others){count, by, numbers}, setup, error);
+  const strut_derived_by followed = {.name = file->followed.name};
+  return strut_study_vary(file, values, &followed, 1, &value, setup, error);
 }
 
 /* Appends "frequency = 10 Hz" or "start = I" to a text. */
@@ -573,27 +541,35 @@ static strut_status check_starts(strut_study_file *file, const strut_scene *scen
   return status;
 }
 
-static strut_status try_point(strut_study_file *file, const strut_study_value *values,
-                              const double *followed) {
-  strut_setup setup;
+/* Adds the values of the axes, and of what is followed, to the first of the messages. */
+static void note_values(strut_study_file *file, const strut_study_value *values,
+                        const double *followed) {
   char text[300] = "";
   size_t used = 0;
-  const others more = {followed ? 1 : 0, NULL, followed};
-  strut_status status = read_point(file, values, more, &file->model_diagnostics, &setup);
-  strut_status started = STRUT_OK;
-  if (status == STRUT_OK && followed) started = check_starts(file, &setup.scene);
-  if (status == STRUT_OK) strut_setup_free(&setup);
-  if (!strut_overlay_split(&file->model_diagnostics, &file->diagnostics)) return STRUT_NO_MEMORY;
-  if (status == STRUT_OK) return started;
-  if (status != STRUT_BAD_SCENE || (!file->column_count && !followed)) return status;
+  strut_place place = file->column_count ? file->columns[0].place : (strut_place){0};
   for (size_t i = 0; i < file->column_count; i++)
     if (file->columns[i].name)
       used = format_value(&file->columns[i], values[i], text, used, sizeof text);
   if (followed)
     format_value(&file->followed, (strut_study_value){.number = *followed}, text, used,
                  sizeof text);
-  strut_place place = file->column_count ? file->columns[0].place : (strut_place){0};
-  strut_diagnose(&file->diagnostics, place, "the model cannot be run at %s", text);
+  strut_diagnostics_sort(&file->model_diagnostics);
+  strut_diagnose_note(&file->model_diagnostics, 0, strut_study_place(file, place),
+                      "the model cannot be run at %s", text);
+}
+
+static strut_status try_point(strut_study_file *file, const strut_study_value *values,
+                              const double *followed) {
+  strut_setup setup;
+  const strut_derived_by by = {.name = file->followed.name};
+  strut_status status =
+      read_point(file, values, &by, followed != NULL, followed, &file->model_diagnostics, &setup);
+  if (status == STRUT_OK) {
+    status = followed ? check_starts(file, &setup.scene) : STRUT_OK;
+    strut_setup_free(&setup);
+  } else if (status == STRUT_BAD_SCENE && (file->column_count || followed)) {
+    note_values(file, values, followed);
+  }
   return status;
 }
 
@@ -608,10 +584,7 @@ strut_status strut_study_try_at(strut_study_file *file, const strut_study_value 
 
 void strut_study_close(strut_study_file *file) {
   for (size_t i = 0; i < file->source_count; i++) strut_scene_source_free(file->sources[i]);
-  for (size_t i = 0; i < file->table_count; i++) {
-    strut_diagnostics_free(&file->tables[i].diagnostics);
-    strut_safe_text_free(&file->tables[i].file);
-  }
+  for (size_t i = 0; i < file->table_count; i++) strut_safe_text_free(&file->tables[i].file);
   strut_diagnostics_free(&file->diagnostics);
   strut_diagnostics_free(&file->model_diagnostics);
   strut_document_free(&file->document);

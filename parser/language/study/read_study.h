@@ -17,7 +17,6 @@ typedef struct strut_study_points {
   const struct strut_tree *node; /* its name in the study */
   const char *copy;              /* the name of its copy beside results */
   strut_safe_text file;
-  strut_diagnostics diagnostics; /* about it */
 } strut_study_points;
 
 /** What is done to each scene of an open study once it was read, by several threads at a time. */
@@ -39,6 +38,7 @@ typedef struct strut_study_file {
   strut_setting *settings; /* (setting_count) the same at every point: --set, set, derive */
   strut_setting *columns;  /* (column_count) of the axes, their values to be filled in */
   const char *path;        /* of the study; not owned */
+  unsigned number;         /* of the study's text among the files that the model uses */
   char *text, *model_path, *model_text;
   size_t length, model_length;
   strut_document document; /* the study's tree */

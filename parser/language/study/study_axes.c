@@ -22,6 +22,7 @@ bool strut_study_read_value(strut_study_reader *study_reader, along *self, const
   if (first && setting->bare && !q.bare) {
     setting->bare = false;
     setting->dimension = q.dimension;
+    self->column->unit = strut_dimension_unit(q.dimension);
   }
   if (q.bare || (!setting->bare && strut_dimension_equal(q.dimension, setting->dimension)))
     return true;
@@ -130,59 +131,50 @@ static bool read_range(strut_study_reader *reader, along *self) {
 
 /* Names of the table's own columns, which no axis may have. */
 static bool is_reserved(const strut_study_reader *reader, const char *name) {
-  static const char *const names[] = {"point", "status", "message"};
-  static const char *const searching[] = {"search", "evaluation", "objective", "objective_2",
-                                          "violation"};
-  static const char *const following[] = {
-      "branch",           "arclength",  "velocity",         "work", "amplitude", "period_multiple",
-      "stable",           "multiplier", "multiplier_angle", "node", "detail",    "word",
-      "changes_stability"};
-  bool found = reader->variant_count > 0 && strcmp(name, "variant") == 0;
-  for (size_t i = 0; reader->following && i < sizeof following / sizeof following[0]; i++)
-    found = found || strcmp(name, following[i]) == 0;
-  for (size_t i = 0; reader->searching && i < sizeof searching / sizeof searching[0]; i++)
-    found = found || strcmp(name, searching[i]) == 0;
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-    found = found || strcmp(name, names[i]) == 0;
-  return found;
+  static const char searching[] = "search|evaluation|objective|objective_2|violation";
+  static const char following[] =
+      "branch|arclength|velocity|work|amplitude|period_multiple|stable|multiplier|multiplier_angle|"
+      "node|detail|word|changes_stability";
+  return strut_word_find(STRUT_STUDY_OWN_COLUMNS, name) >= 0 ||
+         (reader->variant_count > 0 && strcmp(name, "variant") == 0) ||
+         (reader->searching && strut_word_find(searching, name) >= 0) ||
+         (reader->following && strut_word_find(following, name) >= 0);
 }
 
-bool strut_study_begin_along(strut_study_reader *reader, along *self, strut_place place) {
+bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis, along *self) {
+  if (!self->parameter) self->parameter = strut_study_parameter(reader, self->key, self->advice);
   const strut_declared *parameter = self->parameter;
-  *self->column = (strut_study_column){.name = parameter->name, .word = parameter->text};
+  if (!parameter) return false;
+  if (axis) self->column = &axis->columns[axis->column_count++];
+  if (axis) self->setting = &reader->file->columns[reader->file->column_count++];
+  bool plain = parameter->bare || parameter->text;
+  *self->column =
+      (strut_study_column){.name = parameter->name,
+                           .unit = plain ? "1" : strut_dimension_unit(parameter->dimension),
+                           .word = parameter->text};
   *self->setting = (strut_setting){.name = parameter->name,
                                    .text = "",
                                    .known = !parameter->text,
                                    .bare = parameter->bare,
                                    .dimension = parameter->dimension,
-                                   .place = place};
+                                   .place = self->key->place};
   if (!is_reserved(reader, parameter->name)) return true;
   return strut_report_error(
-      reader->reader, place,
+      reader->reader, self->key->place,
       "the table has a column '%s' of its own: give the model's parameter another name",
       parameter->name);
 }
 
-/* A parameter with its values. */
-static bool read_along(strut_study_reader *reader, along *self) {
-  self->parameter = strut_study_parameter(reader, self->key);
+bool strut_study_read_along(strut_study_reader *reader, strut_study_axis *axis, along *self) {
+  strut_study_begin_along(reader, axis, self);
   if (!self->parameter) return false;
-  strut_study_begin_along(reader, self, self->key->place);
-  bool fine = false;
-  if (self->value->kind == STRUT_TREE_LIST)
-    fine = read_list(reader, self);
-  else if (self->value->kind == STRUT_TREE_MAP)
-    fine = read_range(reader, self);
-  else
-    strut_report_error(
-        reader->reader, self->value->place,
-        "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
-        "found %s",
-        self->parameter->name, strut_found(reader->reader, self->value));
-  self->column->unit = self->setting->bare || self->parameter->text
-                           ? "1"
-                           : strut_dimension_unit(self->setting->dimension);
-  return fine;
+  if (self->value->kind == STRUT_TREE_LIST) return read_list(reader, self);
+  if (self->value->kind == STRUT_TREE_MAP) return read_range(reader, self);
+  return strut_report_error(
+      reader->reader, self->value->place,
+      "expected a list, or a range such as {from: 1, to: 2, count: 11}, for axis '%s', "
+      "found %s",
+      self->parameter->name, strut_found(reader->reader, self->value));
 }
 
 /* The mapping whose keys are the axis' parameters: the item itself, or what is zipped in it. */
@@ -221,32 +213,19 @@ static void read_axis(strut_study_reader *reader, const strut_tree *item, strut_
   }
   const strut_tree *map = parameters_of(reader, item);
   if (!map) return;
-  strut_study_column *columns = axis->columns =
-      strut_study_allocate(reader, map->count, sizeof *columns);
-  if (!columns) return;
+  axis->columns = strut_study_allocate(reader, map->count, sizeof *axis->columns);
+  if (!axis->columns) return;
   bool fine = true;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    along a = {.key = key, .value = key->next, .column = &columns[axis->column_count]};
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    fine = read_along(reader, &a) && fine;
-    axis->column_count++;
+    along a = {.key = key, .value = key->next};
+    fine = strut_study_read_along(reader, axis, &a) && fine;
     if (fine && axis->column_count > 1 && a.count != axis->count)
       fine = strut_report_error(
           reader->reader, key->next->place,
           "zipped parameters need equally many values: '%s' has %lld values, '%s' %lld",
-          columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
+          axis->columns[0].name, (long long)axis->count, a.parameter->name, (long long)a.count);
     if (axis->column_count == 1) axis->count = a.count;
   }
-}
-
-static size_t count_columns(const strut_tree *list) {
-  size_t count = 0;
-  for (const strut_tree *item = list->first; item; item = item->next) {
-    if (item->kind != STRUT_TREE_MAP || !item->count) continue;
-    const strut_tree *value = item->first->next;
-    count += value->kind == STRUT_TREE_MAP && value->count > 1 ? value->count : 1;
-  }
-  return count;
 }
 
 /* The axis of the variants, before all others. */
@@ -262,19 +241,17 @@ static void add_variants(strut_study_reader *reader) {
   file->variants = true;
 }
 
-bool strut_study_read_along(strut_study_reader *reader, strut_study_along *a) {
-  return read_along(reader, a);
-}
+/* Axes, and columns, beside those of parameters: variants, evaluations, fits and the like. */
+enum { MOST_OWN = 8 };
 
 void strut_study_read_axes(strut_study_reader *reader, const strut_tree *list,
                            const strut_slot *search) {
   strut_study *study = &reader->file->study;
-  size_t listed = list ? list->count : 0, names = list ? count_columns(list) : 0;
-  size_t more = strut_study_search_columns(search);
-  reader->searching = more > 0;
-  study->axes = strut_study_allocate(reader, listed + more + 3, sizeof *study->axes);
-  reader->file->columns = strut_study_allocate(reader, names + reader->declared_count + more + 1,
-                                               sizeof *reader->file->columns);
+  size_t listed = list ? list->count : 0;
+  size_t most = reader->declared_count + MOST_OWN; /* none is given twice */
+  reader->searching = search->state == STRUT_GIVEN;
+  study->axes = strut_study_allocate(reader, listed + most, sizeof *study->axes);
+  reader->file->columns = strut_study_allocate(reader, most, sizeof *reader->file->columns);
   reader->file->tables = strut_study_allocate(reader, listed + 1, sizeof *reader->file->tables);
   if (!study->axes || !reader->file->columns || !reader->file->tables) return;
   if (reader->variant_count > 0) add_variants(reader);
@@ -326,29 +303,26 @@ static size_t find_axis(strut_study_reader *reader, const strut_tree *item) {
 static bool choose_axes(strut_study_reader *reader, const strut_slot *refine,
                         const strut_slot *named) {
   strut_study *study = &reader->file->study;
-  size_t count = 0;
+  size_t *axes = study->refine.axes, count = 0;
   if (named->state == STRUT_GIVEN) {
     for (const strut_tree *item = named->value->first; item; item = item->next) {
       size_t axis = find_axis(reader, item);
       if (axis == study->axis_count) return false;
-      if (count < 2) study->refine.axes[count] = axis;
+      if (count < 2) axes[count] = axis;
       count++;
     }
   } else {
     for (size_t i = 0; i < study->axis_count; i++) {
       if (!is_range(&study->axes[i])) continue;
-      if (count < 2) study->refine.axes[count] = i;
+      if (count < 2) axes[count] = i;
       count++;
     }
   }
-  if (count == 2 && study->refine.axes[0] != study->refine.axes[1]) {
-    if (study->refine.axes[0] > study->refine.axes[1]) {
-      size_t first = study->refine.axes[1];
-      study->refine.axes[1] = study->refine.axes[0];
-      study->refine.axes[0] = first;
-    }
-    return true;
+  if (count == 2 && axes[0] > axes[1]) {
+    size_t first = axes[1];
+    axes[1] = axes[0], axes[0] = first;
   }
+  if (count == 2 && axes[0] < axes[1]) return true;
   return strut_report_error(
       reader->reader, refine->key->place,
       "'refine' divides two axes with ranges of more than one value, found %zu; name "
@@ -541,8 +515,7 @@ static void read_over(strut_study_reader *reader, strut_fields *fields,
   strut_study_column unused = {0};
   strut_study_along a = {.key = over->value, .column = &unused, .setting = &reader->file->followed};
   if (over->state != STRUT_GIVEN) return;
-  a.parameter = strut_study_parameter(reader, over->value);
-  if (!a.parameter || !strut_study_begin_along(reader, &a, over->value->place)) return;
+  if (!strut_study_begin_along(reader, NULL, &a)) return;
   if (a.parameter->text) {
     strut_report_error(reader->reader, over->value->place,
                        "parameter '%s' is a text, over which no motion is followed",
@@ -557,12 +530,10 @@ static void read_over(strut_study_reader *reader, strut_fields *fields,
 
 void strut_study_read_follow(strut_study_reader *reader, strut_fields *top) {
   const strut_slot *slot = strut_slot_of(top, STRUT_KEY_STUDY_FOLLOW);
-  const strut_slot *search = strut_slot_of(top, STRUT_KEY_STUDY_SEARCH);
   strut_study *study = &reader->file->study;
   strut_fields fields;
   if (slot->state != STRUT_GIVEN) return;
   refuse_others(reader, top, slot);
-  if (!study->axes) strut_study_read_axes(reader, NULL, search); /* the study has none */
   strut_study_follow *follow = strut_study_allocate(reader, 1, sizeof *follow);
   if (!follow) return;
   strut_read_object(reader->reader, STRUT_SECTION_FOLLOW, slot->value, follow_owner, &fields,

@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a study fits: parameters, and the measured numbers that the model shall match. See study_reader.h. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "parser/language/study/study_reader.h"
 
 static const strut_owner fit_owner = {"the fit", NULL};
+
+/* Numbers and weights up to this have a finite sum of squares. */
+static const double MOST_NUMBER = 1e150;
+/* Steps of one run, at most. */
+static const double MOST_STEPS = 1e10;
 
 /* A match while it is read. */
 typedef struct reading {
@@ -141,11 +147,41 @@ static bool read_numbers(strut_study_reader *reader, reading *self, const strut_
   return true;
 }
 
+/* Reports a number of a series, in its cell where it has one. */
+static bool refuse_number(strut_study_reader *reader, const reading *self, const strut_tree *value,
+                          const double *numbers, size_t row, const char *message) {
+  const strut_data_table *table = self->table;
+  for (size_t i = 0; table && i < table->column_count; i++)
+    if (table->columns[i].values == numbers)
+      return strut_refuse_data(reader->reader, value, table, &table->columns[i], row, message);
+  return strut_report_error(reader->reader, value->place, "%s", message);
+}
+
+/* Squares of residuals must not overflow, and some must count. */
+static bool check_numbers(strut_study_reader *reader, const reading *self, const strut_tree *value,
+                          const strut_fit_series *series) {
+  bool counts = false;
+  double noise = self->to->noise > 0.0 ? self->to->noise : 1.0;
+  for (size_t i = 0; i < self->to->count; i++) {
+    double weight = series->weights ? series->weights[i] : 1.0;
+    if (fabs(series->measured[i]) > MOST_NUMBER * fmin(noise, 1.0))
+      return refuse_number(reader, self, value, series->measured, i,
+                           "a number this large has no finite square in the sum of a fit");
+    if (weight > MOST_NUMBER)
+      return refuse_number(reader, self, value, series->weights, i,
+                           "a weight this large has no finite product in the sum of a fit");
+    counts = counts || (weight > 0.0 && !isnan(series->measured[i]));
+  }
+  return counts || refuse_number(reader, self, value, series->weights, 0,
+                                 "no number of this match has a weight above 0");
+}
+
 static bool add_series(strut_study_reader *reader, reading *self, const strut_tree *key) {
   strut_fit_series *series = &self->to->series[self->to->series_count];
   *series = (strut_fit_series){.of = key->text, .place = {key->place.line, key->place.column}};
   if (!read_numbers(reader, self, key->next, series) ||
-      !set_noise_unit(reader, self, key->next, series->unit))
+      !set_noise_unit(reader, self, key->next, series->unit) ||
+      !check_numbers(reader, self, key->next, series))
     return false;
   self->to->series_count++;
   bool moves = self->to->kind == STRUT_FIT_MOTION || self->to->kind == STRUT_FIT_REST;
@@ -218,7 +254,7 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
   reading self = {.to = to, .owner = {"match", key->text}};
   strut_reader *r = reader->reader;
   strut_read_name(r, key, "match");
-  *to = (strut_fit_match){.name = key->text, .place = {key->place.line, key->place.column}};
+  *to = (strut_fit_match){.name = key->text};
   if (key->next->kind != STRUT_TREE_MAP) {
     strut_report_error(r, key->next->place,
                        "expected a mapping such as {time: film.t, n1.x: film.x} "
@@ -261,12 +297,8 @@ static void read_match(strut_study_reader *reader, const strut_tree *key, strut_
 static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
                     const strut_tree *key, strut_study_axis *axis, strut_study_fit *fit) {
   const strut_study_value *first = &fit->matches[0].values[fit->set_count];
-  strut_study_along a = {
-      .key = key, .value = key->next, .parameter = strut_study_parameter(reader, key)};
-  a.column = &axis->columns[axis->column_count];
-  a.setting = &reader->file->columns[reader->file->column_count];
-  if (!a.parameter || !strut_study_begin_along(reader, &a, key->place)) return;
-  axis->column_count++, reader->file->column_count++;
+  strut_study_along a = {.key = key, .value = key->next};
+  if (!strut_study_begin_along(reader, axis, &a)) return;
   for (size_t m = 0; m < fit->match_count; m++) {
     const strut_tree *value = sets[m] ? strut_tree_find(sets[m], key->text, NULL) : NULL;
     strut_study_value *to = &fit->matches[m].values[fit->set_count];
@@ -280,8 +312,6 @@ static void add_set(strut_study_reader *reader, const strut_tree *const *sets,
   }
   a.column->kind = STRUT_RANGE_LIST;
   a.column->number = &first->number, a.column->words = a.parameter->text ? &first->word : NULL;
-  a.column->unit =
-      a.parameter->text || a.setting->bare ? "1" : strut_dimension_unit(a.setting->dimension);
   fit->set_count++;
 }
 
@@ -339,6 +369,61 @@ static void require_noise(strut_study_reader *reader, const strut_tree *matches,
   }
 }
 
+/* The first values of all axes. */
+static strut_study_value *first_values(strut_study_reader *reader) {
+  const strut_study *study = &reader->file->study;
+  strut_study_value *values = strut_study_allocate(reader, reader->file->column_count + 1,
+                                                   sizeof *values),
+                    *value = values;
+  for (size_t i = 0; i < study->axis_count && values; i++)
+    for (size_t c = 0; c < study->axes[i].column_count; c++, value++) {
+      const strut_study_column *column = &study->axes[i].columns[c];
+      value->number = column->number ? column->number[0] : (double)NAN;
+      value->word = column->word ? column->words[0] : NULL;
+    }
+  return values;
+}
+
+/* The model's step, the period of its fastest drive, or a thousandth of its run [s]; and its name. */
+static double time_scale_of(const strut_setup *setup, const char **name) {
+  double fastest = 0.0,
+         duration = strut_experiment_span(&setup->experiment, &setup->scene).duration;
+  for (size_t i = 0; i < setup->scene.signal_count; i++)
+    fastest = fmax(fastest, setup->scene.signals[i].frequency);
+  bool stepped = setup->experiment.step > 0.0 && !setup->experiment.step_chosen;
+  *name = stepped         ? "steps"
+          : fastest > 0.0 ? "periods of the fastest drive"
+                          : "thousandths of the model's own run";
+  return stepped ? setup->experiment.step : fastest > 0.0 ? 1.0 / fastest : duration / 1000.0;
+}
+
+/* Times in another unit than that of their column make runs that do not end. */
+static void check_durations(strut_study_reader *reader, const strut_tree *matches,
+                            const strut_study_fit *fit) {
+  strut_setup setup;
+  strut_error error = {0};
+  char message[200];
+  const char *name;
+  const strut_tree *key = matches->first;
+  const strut_study_value *values = reader->reader->failed ? NULL : first_values(reader);
+  if (!values || strut_study_setup(reader->file, values, &setup, &error)) return;
+  double scale = time_scale_of(&setup, &name);
+  for (size_t m = 0; m < fit->match_count; m++, key = key->next->next) {
+    const strut_fit_match *match = &fit->matches[m];
+    double last = match->kind == STRUT_FIT_MOTION ? match->at[match->count - 1] : 0.0;
+    if (!(last > MOST_STEPS * scale)) continue;
+    const strut_tree *value = strut_tree_find(key->next, "time", NULL);
+    reading self = {0};
+    strut_data_find(reader->reader->tables, reader->reader->table_count, value->text, &self.table);
+    snprintf(message, sizeof message,
+             "the run of match '%.40s' would last %.4g s, %.3g %s of %.3g s, a fit may have 1e10: "
+             "check the unit of this column",
+             match->name, last, last / scale, name, scale);
+    refuse_number(reader, &self, value, match->at, match->count - 1, message);
+  }
+  strut_setup_free(&setup);
+}
+
 /* Does a match compute one of the words? */
 static bool computes(const strut_study_fit *fit, const char *words) {
   bool found = false;
@@ -379,7 +464,6 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   if (slot->state != STRUT_GIVEN) return;
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
-  if (!study->axes) strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   if (!fit || !study->axes || reader->reader->failed) return;
   *fit = (strut_study_fit){.starts = 1, .seed = 1};
   strut_read_object(reader->reader, STRUT_SECTION_FIT, slot->value, fit_owner, &fields, fit);
@@ -407,5 +491,7 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   add_rows(reader, fit, over->value->count, rows);
   read_over(reader, over, fit);
   read_sets(reader, sets, fit);
-  if (!reader->reader->failed) study->fit = fit;
+  if (reader->reader->failed) return;
+  study->fit = fit;
+  check_durations(reader, matches->value, fit);
 }

@@ -13,16 +13,13 @@
 
 enum { MOST_ROWS = 1000000, MOST_WORD = 24 };
 
-/* Columns of strut's own tables that say nothing about the model. */
-static const char *const skipped[] = {"point", "status", "message"};
-
 /* A file of points being read. */
 typedef struct table {
   strut_study_reader *r;
-  strut_study_points *points;
+  const strut_tree *name;    /* of the file */
   const strut_tree *columns; /* the list of those to use, or NULL: all */
   strut_csv csv;
-  strut_place place; /* of the file's name in the study */
+  unsigned file; /* its number in places; 0: it has none */
 } table;
 
 static bool has_key(const strut_tree *map, const char *key) {
@@ -42,17 +39,19 @@ bool strut_study_is_points(const strut_study_reader *reader, const strut_tree *i
          !strut_study_declared(reader, "points");
 }
 
-static strut_diagnostics *messages(table *self) { return &self->points->diagnostics; }
+/* The place of a cell, or that of the file's name. */
+static strut_place place_of(const table *self, size_t cell) {
+  strut_place place = strut_csv_place(&self->csv, cell);
+  place.file = self->file & 0xFFu;
+  return self->file ? place : self->name->place;
+}
 
 /* Is the column to be used? */
 static bool is_wanted(const table *self, const char *name) {
   for (const strut_tree *item = self->columns ? self->columns->first : NULL; item;
        item = item->next)
     if (strcmp(item->text, name) == 0) return true;
-  if (self->columns) return false;
-  for (size_t i = 0; i < sizeof skipped / sizeof skipped[0]; i++)
-    if (strcmp(skipped[i], name) == 0) return false;
-  return true;
+  return !self->columns && strut_word_find(STRUT_STUDY_OWN_COLUMNS, name) < 0;
 }
 
 /* Reports wanted columns that the file does not have. */
@@ -64,31 +63,9 @@ static void check_columns(table *self) {
       found = found || strcmp(self->csv.titles[i].name, item->text) == 0;
     if (!found)
       strut_report_error(self->r->reader, item->place, "'%s' has no column '%s'",
-                         strut_sanitised_text(self->r->reader, self->points->node->text),
+                         strut_sanitised_text(self->r->reader, self->name->text),
                          strut_sanitised_text(self->r->reader, item->text));
   }
-}
-
-/* The parameter that a column gives; NULL where that was reported. */
-static const strut_declared *parameter_of(table *self, size_t i) {
-  strut_reader *reader = self->r->reader;
-  const char *name = self->csv.titles[i].name;
-  const strut_declared *found = strut_study_declared(self->r, name);
-  if (!found) {
-    strut_diagnose(
-        messages(self), strut_csv_place(&self->csv, i), "the model has no parameter '%s'%s%s",
-        strut_sanitised_text(reader, name),
-        strut_hint(reader, name, strut_study_declared_name, self->r, self->r->declared_count),
-        self->columns ? "" : "; {points: {file: ..., columns: [...]}} chooses columns");
-    return NULL;
-  }
-  if (strut_name_map_find(&self->r->given, found->name) >= 0) {
-    strut_diagnose(messages(self), strut_csv_place(&self->csv, i), "parameter '%s' is given twice",
-                   found->name);
-    return NULL;
-  }
-  strut_add_name(reader, &self->r->given, found->name, (size_t)(found - self->r->declared));
-  return found;
 }
 
 /* A plain number with the column's unit; the whole text is read as one, so that 0.1 mm has its bits. */
@@ -114,15 +91,15 @@ static bool check_unit(table *self, size_t i, const strut_study_along *along, co
   if (known && setting->bare && !q.bare) {
     setting->bare = false;
     setting->dimension = q.dimension;
+    along->column->unit = strut_dimension_unit(q.dimension);
   }
   if (known && !q.bare && strut_dimension_equal(q.dimension, setting->dimension)) return true;
-  strut_diagnose(messages(self), strut_csv_place(&self->csv, i),
-                 "expected %s in column '%s', found the unit '%s'",
-                 along->parameter->text ? "texts"
-                 : setting->bare
-                     ? "a unit"
-                     : strut_expected_number(setting->dimension, expected, sizeof expected),
-                 along->parameter->name, strut_sanitised_text(self->r->reader, title));
+  strut_report_error(
+      self->r->reader, place_of(self, i), "expected %s in column '%s', found the unit '%s'",
+      along->parameter->text ? "texts"
+      : setting->bare        ? "a unit"
+                             : strut_expected_number(setting->dimension, expected, sizeof expected),
+      along->parameter->name, strut_sanitised_text(self->r->reader, title));
   return false;
 }
 
@@ -140,14 +117,11 @@ static bool is_text(const char *text) {
 
 static void refuse_cell(table *self, size_t cell, const strut_study_along *along) {
   const char *text = self->csv.cell[cell];
-  const char *expected = along->parameter->text ? "a text of 1 to 23 bytes" : "a number";
-  if (!*text)
-    strut_diagnose(messages(self), strut_csv_place(&self->csv, cell),
-                   "expected %s for '%s', found an empty cell", expected, along->parameter->name);
-  else
-    strut_diagnose(messages(self), strut_csv_place(&self->csv, cell),
-                   "expected %s for '%s', found '%s'", expected, along->parameter->name,
-                   strut_sanitised_text(self->r->reader, text));
+  const char *quote = *text ? "'" : "";
+  strut_report_error(self->r->reader, place_of(self, cell), "expected %s for '%s', found %s%s%s",
+                     along->parameter->text ? "a text of 1 to 23 bytes" : "a number",
+                     along->parameter->name, quote,
+                     *text ? strut_sanitised_text(self->r->reader, text) : "an empty cell", quote);
 }
 
 /* The cells of column i. */
@@ -158,7 +132,7 @@ static void read_cells(table *self, size_t i, const strut_study_along *along, co
   double *numbers = text ? NULL : strut_study_allocate(self->r, rows, sizeof *numbers);
   const char **words = text ? strut_study_allocate(self->r, rows, sizeof *words) : NULL;
   if (!numbers && !words) return;
-  for (size_t k = 0; k < rows && !strut_diagnostics_full(messages(self)); k++) {
+  for (size_t k = 0; k < rows && !strut_diagnostics_full(self->r->reader->diagnostics); k++) {
     size_t cell = (k + 1) * self->csv.column_count + i, length = strlen(self->csv.cell[cell]);
     strut_quantity q = {.value = 0.0};
     bool fine = text ? length > 0 && length < MOST_WORD && is_text(self->csv.cell[cell])
@@ -178,25 +152,23 @@ static void read_cells(table *self, size_t i, const strut_study_along *along, co
 }
 
 static void read_column(table *self, size_t i, strut_study_axis *axis) {
-  strut_study_along a = {.parameter = parameter_of(self, i)};
+  const strut_tree cell = {.text = self->csv.titles[i].name, .place = place_of(self, i)};
+  strut_study_along a = {.key = &cell};
   const char *unit = "";
-  if (!a.parameter) return;
-  a.column = &axis->columns[axis->column_count++];
-  a.setting = &self->r->file->columns[self->r->file->column_count++];
-  a.column->unit = "1";
-  if (!strut_study_begin_along(self->r, &a, self->place) || !check_unit(self, i, &a, &unit)) return;
-  read_cells(self, i, &a, unit);
-  a.column->unit =
-      a.setting->bare || a.parameter->text ? "1" : strut_dimension_unit(a.setting->dimension);
+  if (!self->columns) a.advice = "; {points: {file: ..., columns: [...]}} chooses columns";
+  if (!strut_study_begin_along(self->r, axis, &a)) return;
+  a.setting->place = self->name->place;
+  if (check_unit(self, i, &a, &unit)) read_cells(self, i, &a, unit);
 }
 
 static void read_columns(table *self, strut_study_axis *axis) {
   strut_study_reader *reader = self->r;
+  size_t before = reader->reader->diagnostics->count;
   check_columns(self);
   if (self->csv.row_count > MOST_ROWS) {
-    strut_report_error(
-        reader->reader, self->place, "'%s' has %zu rows, a file of points may have 1e6",
-        strut_sanitised_text(reader->reader, self->points->node->text), self->csv.row_count);
+    strut_report_error(reader->reader, self->name->place,
+                       "'%s' has %zu rows, a file of points may have 1e6",
+                       strut_sanitised_text(reader->reader, self->name->text), self->csv.row_count);
     return;
   }
   axis->columns = strut_study_allocate(reader, reader->declared_count + 1, sizeof *axis->columns);
@@ -204,51 +176,54 @@ static void read_columns(table *self, strut_study_axis *axis) {
   axis->count = (int64_t)self->csv.row_count;
   for (size_t i = 0; i < self->csv.column_count; i++)
     if (is_wanted(self, self->csv.titles[i].name)) read_column(self, i, axis);
-  if (axis->column_count == 0 && !messages(self)->count)
-    strut_report_error(reader->reader, self->place,
+  if (axis->column_count == 0 && reader->reader->diagnostics->count == before)
+    strut_report_error(reader->reader, self->name->place,
                        "'%s' has no column of a parameter of the model",
-                       strut_sanitised_text(reader->reader, self->points->node->text));
+                       strut_sanitised_text(reader->reader, self->name->text));
 }
 
-static void read_file(table *self, const strut_tree *name, strut_study_axis *axis) {
-  strut_study_reader *reader = self->r;
-  self->points = &reader->file->tables[reader->file->table_count];
-  self->points->node = name;
-  self->points->copy =
-      strut_arena_format(&reader->file->arena, "points-%zu.csv", reader->file->table_count + 1);
-  if (!self->points->copy) reader->reader->out_of_memory = true;
-  if (!self->points->copy ||
-      !strut_read_file_of(reader->reader, name, STRUT_TEXT_MOST, &self->points->file))
+static void read_file(table *self, strut_study_axis *axis) {
+  strut_study_file *file = self->r->file;
+  strut_reader *reader = self->r->reader;
+  strut_diagnostics *messages = reader->diagnostics;
+  strut_study_points *points = &file->tables[file->table_count];
+  size_t before = messages->count;
+  points->node = self->name;
+  points->copy = strut_arena_format(&file->arena, "points-%zu.csv", file->table_count + 1);
+  if (!points->copy) reader->out_of_memory = true;
+  if (!points->copy || !strut_read_file_of(reader, self->name, STRUT_TEXT_MOST, &points->file))
     return;
-  reader->file->table_count++;
-  strut_diagnostics_source(messages(self), self->points->file.path, self->points->file.text,
-                           self->points->file.length);
-  strut_status status = strut_csv_read(self->points->file.text, self->points->file.length,
-                                       STRUT_CSV_ANY_HEADER, messages(self), &self->csv);
+  file->table_count++;
+  const strut_safe_text *text = &points->file;
+  self->file = strut_diagnostics_use(messages, text->path, text->text, text->length);
+  strut_status status =
+      strut_csv_read(text->text, text->length, STRUT_CSV_ANY_HEADER, messages, &self->csv);
+  for (size_t i = before; i < messages->count; i++) {
+    strut_place *place = &messages->items[i].place;
+    place->file = self->file & 0xFFu;
+    if (!self->file) *place = self->name->place;
+  }
+  if (status == STRUT_BAD_SCENE) reader->failed = true;
+  if (status == STRUT_NO_MEMORY) reader->out_of_memory = true;
   if (status == STRUT_OK) read_columns(self, axis);
-  if (status == STRUT_NO_MEMORY || messages(self)->out_of_memory)
-    reader->reader->out_of_memory = true;
-  if (messages(self)->count) reader->reader->failed = true;
   strut_arena_free(&self->csv.arena);
 }
 
 void strut_study_read_points(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis) {
   const strut_owner owner = {"the file of points", NULL};
-  const strut_tree *name = value;
-  table t = {.r = reader};
+  table t = {.r = reader, .name = value};
   if (value->kind == STRUT_TREE_MAP) {
     strut_fields fields;
     strut_points_keys keys = {0};
     if (!strut_read_object(reader->reader, STRUT_SECTION_POINTS, value, owner, &fields, &keys))
       return;
-    name = keys.file, t.columns = keys.columns;
+    t.name = keys.file, t.columns = keys.columns;
     for (const strut_tree *item = t.columns ? t.columns->first : NULL; item; item = item->next)
       if (!strut_read_scalar(reader->reader, item, "columns", owner, "a column's name")) return;
   }
-  if (!strut_read_scalar(reader->reader, name, "points", owner, "the path of a CSV file")) return;
-  t.place = name->place;
-  read_file(&t, name, axis);
+  if (strut_read_scalar(reader->reader, t.name, "points", owner, "the path of a CSV file"))
+    read_file(&t, axis);
 }
 
 /* ---- samples of distributions ---- */
@@ -290,15 +265,14 @@ static bool read_numbers(strut_study_reader *reader, strut_study_along *along,
 }
 
 /* One parameter and its distribution. */
-static bool read_parameter(strut_study_reader *reader, strut_study_along *along,
-                           strut_distribution *distribution) {
+static bool read_parameter(strut_study_reader *reader, strut_study_axis *axis,
+                           strut_study_along *along, strut_distribution *distributions) {
   strut_fields fields;
   int kinds = 0;
-  along->parameter = strut_study_parameter(reader, along->key);
-  if (!along->parameter) return false;
+  bool fine = strut_study_begin_along(reader, axis, along);
+  if (!along->parameter) return false; /* it has no column */
   const strut_owner owner = {"parameter", along->parameter->name};
-  bool fine = strut_study_begin_along(reader, along, along->key->place);
-  along->column->unit = "1";
+  strut_distribution *distribution = &distributions[along->column - axis->columns];
   if (along->parameter->text)
     return strut_report_error(reader->reader, along->key->place,
                               "parameter '%s' is a text, which has no distribution",
@@ -318,8 +292,6 @@ static bool read_parameter(strut_study_reader *reader, strut_study_along *along,
                        "expected a distribution such as {uniform: [1, 2]} for parameter '%s'",
                        along->parameter->name);
   along->column->kind = STRUT_RANGE_LIST;
-  along->column->unit =
-      along->setting->bare ? "1" : strut_dimension_unit(along->setting->dimension);
   return fine && kinds > 0;
 }
 
@@ -381,9 +353,10 @@ static void make_values(strut_study_reader *reader, const strut_sample_keys *key
     reader->reader->out_of_memory = true;
 }
 
-bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree *over,
-                                    strut_owner owner, size_t most, strut_study_axis *axis,
-                                    strut_distribution *distributions) {
+/* Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
+static bool read_distributions(strut_study_reader *reader, const strut_tree *over,
+                               strut_owner owner, size_t most, strut_study_axis *axis,
+                               strut_distribution *distributions) {
   bool fine = true;
   if (over->count == 0 || over->count > most)
     return strut_report_error(reader->reader, over->place,
@@ -393,15 +366,7 @@ bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree
   if (!axis->columns) return false;
   for (const strut_tree *key = over->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next};
-    if (!strut_study_declared(reader, key->text) ||
-        strut_name_map_find(&reader->given, key->text) >= 0) { /* no slot for it */
-      strut_study_parameter(reader, key);
-      fine = false;
-      continue;
-    }
-    a.column = &axis->columns[axis->column_count];
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    fine = read_parameter(reader, &a, &distributions[axis->column_count++]) && fine;
+    fine = read_parameter(reader, axis, &a, distributions) && fine;
   }
   return fine;
 }
@@ -415,8 +380,8 @@ void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_SAMPLE_OVER);
   if (over->state != STRUT_GIVEN) return;
   axis->count = keys.count;
-  bool fine = strut_study_read_distributions(reader, over->value, sample_owner,
-                                             STRUT_SAMPLE_MOST_NUMBERS, axis, distributions);
+  bool fine = read_distributions(reader, over->value, sample_owner, STRUT_SAMPLE_MOST_NUMBERS, axis,
+                                 distributions);
   double *factor = NULL;
   fine = fine && read_factor(reader, strut_slot_of(&fields, STRUT_KEY_SAMPLE_CORRELATION),
                              axis->column_count, &factor);
@@ -467,8 +432,6 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
                                STRUT_KEY_STUDY_SEARCH};
   if (slot->state != STRUT_GIVEN) return;
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
-  if (!study->axes) /* the study has no others */
-    strut_study_read_axes(reader, NULL, strut_slot_of(top, STRUT_KEY_STUDY_SEARCH));
   sensitivity->samples = 256, sensitivity->seed = 1, sensitivity->derivatives = true;
   strut_read_object(reader->reader, STRUT_SECTION_SENSITIVITY, slot->value, sensitivity_owner,
                     &fields, sensitivity);
@@ -483,8 +446,8 @@ void strut_study_read_sensitivity(strut_study_reader *reader, strut_fields *top)
                        "the sensitivity analysis has neither samples nor derivatives");
   strut_study_axis *axis = &study->axes[study->axis_count];
   *axis = (strut_study_axis){.count = 1};
-  bool fine = strut_study_read_distributions(reader, over->value, sensitivity_owner,
-                                             STRUT_SENSITIVITY_MOST, axis, distributions);
+  bool fine = read_distributions(reader, over->value, sensitivity_owner, STRUT_SENSITIVITY_MOST,
+                                 axis, distributions);
   sensitivity->axis = study->axis_count++;
   sensitivity->wanted = true;
   if (fine && !fields.broken && !reader->reader->failed)

@@ -13,10 +13,9 @@
 typedef struct strut_study_reader {
   strut_reader *reader; /* of the study's text: its messages and its tree */
   strut_study_file *file;
-  const strut_declared *declared; /* (declared_count) the model's parameters */
-  size_t declared_count;
-  strut_name_map given; /* parameters that the study gives: their declared index */
-  size_t variant_count; /* 0: the study has none */
+  size_t declared_count; /* the model's parameters */
+  strut_name_map given;  /* those that the study gives */
+  size_t variant_count;  /* 0: the study has none */
   const char **variant_names;
   bool searching; /* the table has the columns of a search */
   bool following; /* the tables have those of branches */
@@ -24,16 +23,17 @@ typedef struct strut_study_reader {
 
 /** count * size zeroed bytes of the study; NULL: memory is out, which the reader remembers. */
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size);
-/** The parameter of the model that a key names; NULL where that was reported. */
-const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key);
+/** A place in the study's text, as one of a file that the model uses. */
+strut_place strut_study_place(const strut_study_file *file, strut_place place);
+/** The parameter of the model that a key names; NULL where that was reported, with the advice. */
+const strut_declared *strut_study_parameter(strut_study_reader *reader, const strut_tree *key,
+                                            const char *advice);
+/** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
+bool strut_study_measure(strut_study_file *file, const strut_tree *column);
 /**
  * Opens the model that the study names, once for each variant, lays their keys over it, and finds its
  * parameters.
  */
-/** A model that cannot be read may be the study itself, or another: then that is all there is to say. */
-bool strut_study_is_its_model(const strut_study_file *file);
-/** Lets all variants measure a column of the motion, which `column` names, at the end of their runs. */
-bool strut_study_measure(strut_study_file *file, const strut_tree *column);
 strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *top,
                                       strut_error *error);
 /** Reads the axes into the study, and their columns; list NULL: none. Then what is searched. */
@@ -47,19 +47,18 @@ typedef struct strut_study_along {
   strut_study_column *column;
   strut_setting *setting;
   int64_t count;
-  const char *of; /* of a variable: "the search", for messages */
+  const char *of;     /* of a variable: "the search", for messages */
+  const char *advice; /* of a message that there is no such parameter; or NULL */
 } strut_study_along;
 
 /** The parameter of that name, or NULL; nothing is reported. */
 const strut_declared *strut_study_declared(const strut_study_reader *reader, const char *name);
-/** The i-th name of a parameter, for suggestions; `context` is the reader. */
-const char *strut_study_declared_name(const void *context, size_t i);
 /**
- * Starts the column of a->parameter and its setting at `place`. False: the table has a column of that
- * name, and `reserved` says so.
+ * Finds along->parameter by along->key unless it is known, and adds its column to the axis and its setting to the
+ * study's; without an axis they are those of `along`. False: there is none, or the table has a column of that name.
  */
-bool strut_study_begin_along(strut_study_reader *reader, strut_study_along *along,
-                             strut_place place);
+bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis,
+                             strut_study_along *along);
 /** A number in the parameter's dimension; where that has none the first value decides. */
 bool strut_study_read_value(strut_study_reader *reader, strut_study_along *along,
                             const strut_tree *value, const char *key, bool first, double *number);
@@ -69,12 +68,11 @@ bool strut_study_store_value(strut_study_reader *reader, strut_study_along *alon
                              strut_fields *fields, int key, bool first, void *object);
 
 /** Reads a parameter along its axis: a list or a range. False where something was reported. */
-bool strut_study_read_along(strut_study_reader *reader, strut_study_along *along);
+bool strut_study_read_along(strut_study_reader *reader, strut_study_axis *axis,
+                            strut_study_along *along);
 
 /* study_search.c */
 
-/** Most axes and columns that a search adds. */
-size_t strut_study_search_columns(const strut_slot *slot);
 /** Reads the parameters that a search or a fit, which `of` says, is over, at most `most`, and adds their axis. */
 void strut_study_read_variables(strut_study_reader *reader, const strut_slot *over, const char *of,
                                 size_t most, strut_search_variable **variables,
@@ -89,6 +87,8 @@ void strut_study_read_refine(strut_study_reader *reader, const strut_slot *slot)
 
 /* study_points.c */
 
+/** Columns of strut's own tables that no axis may have, and that say nothing about the model. */
+#define STRUT_STUDY_OWN_COLUMNS "point|status|message"
 /** Is the item of `axes` a file of points, or a sample, and no parameter of such a name? */
 bool strut_study_is_points(const strut_study_reader *reader, const strut_tree *item);
 bool strut_study_is_sample(const strut_study_reader *reader, const strut_tree *item);
@@ -96,11 +96,6 @@ void strut_study_read_points(strut_study_reader *reader, const strut_tree *value
                              strut_study_axis *axis);
 void strut_study_read_sample(strut_study_reader *reader, const strut_tree *value,
                              strut_study_axis *axis);
-
-/** Reads parameters, at most `most`, and their distributions into columns of the axis; false: reported. */
-bool strut_study_read_distributions(strut_study_reader *reader, const strut_tree *over,
-                                    strut_owner owner, size_t most, strut_study_axis *axis,
-                                    strut_distribution *distributions);
 
 /* study_axes.c: goals */
 
@@ -125,11 +120,5 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top);
 /** Reports those of the keys that are given: the study has `own`, which excludes them. */
 void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
                          const int *keys, size_t count);
-
-/** The place, marked as one of the study's text. */
-strut_place strut_overlay_place(strut_place place);
-
-/** Moves messages and notes at marked places from `from` to `over`, unmarked. False: memory is out. */
-bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over);
 
 #endif

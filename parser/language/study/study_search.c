@@ -13,14 +13,8 @@
 static const strut_owner search_owner = {"the search", NULL};
 /* Scenarios of one evaluation, at most. */
 enum { MOST_SCENARIOS = 1000 };
-
-size_t strut_study_search_columns(const strut_slot *slot) {
-  size_t count = 0;
-  if (slot->state != STRUT_GIVEN || slot->value->kind != STRUT_TREE_MAP) return 0;
-  for (const strut_tree *key = slot->value->first; key; key = key->next->next)
-    count += key->next->kind == STRUT_TREE_MAP ? key->next->count : 0;
-  return count + 4; /* search, evaluation; an axis each for them and the variables */
-}
+/* The largest end of a logarithmic range, of the smallest. */
+static const double MOST_RATIO = 1e12 * (1.0 + 1e-9);
 
 static bool refuse(strut_study_reader *reader, const strut_study_along *along, const char *why) {
   return strut_report_error(reader->reader, along->value->place, "variable '%s' of %s %s",
@@ -48,23 +42,26 @@ static bool wraps_around(const strut_study_along *along, const strut_search_vari
 
 static bool check_range(strut_study_reader *reader, const strut_study_along *along,
                         const strut_search_variable *variable) {
-  if (variable->from == variable->to)
-    return refuse(reader, along, "has a range of one value: write it under 'set' of the study");
-  if (variable->from > variable->to)
-    return refuse(reader, along, "has a reversed range: 'from' must be below 'to'");
-  if (!isfinite(variable->to - variable->from))
-    return refuse(reader, along, "has too wide a range for a number");
-  if (variable->logarithmic && variable->from * variable->to <= 0.0)
-    return refuse(reader, along, "cannot be logarithmic: 'from' and 'to' must be on one side of 0");
-  if (variable->wraps && (variable->logarithmic || variable->integer))
-    return refuse(reader, along, "cannot wrap: only even ranges of any number do");
-  if (variable->wraps && !wraps_around(along, variable))
-    return refuse(reader, along,
-                  "cannot wrap: its range is no full turn, such as 0 deg to 360 deg");
-  if (variable->integer && floor(variable->to) < ceil(variable->from) + 1.0)
-    return refuse(reader, along, "has no two whole numbers in its range");
-  if (!(variable->start >= variable->from && variable->start <= variable->to))
-    return refuse(reader, along, "has a 'start' outside of its range");
+  const double from = variable->from, to = variable->to;
+  const bool logarithmic = variable->logarithmic;
+  const struct {
+    bool found;
+    const char *why;
+  } flaws[] = {
+      {from == to, "has a range of one value: write it under 'set' of the study"},
+      {from > to, "has a reversed range: 'from' must be below 'to'"},
+      {!isfinite(to - from), "has too wide a range for a number"},
+      {logarithmic && from * to <= 0.0,
+       "cannot be logarithmic: 'from' and 'to' must be on one side of 0"},
+      {logarithmic && to > MOST_RATIO * from, "has more than 12 decades in its logarithmic range"},
+      {variable->wraps && (logarithmic || variable->integer),
+       "cannot wrap: only even ranges of any number do"},
+      {variable->wraps && !wraps_around(along, variable),
+       "cannot wrap: its range is no full turn, such as 0 deg to 360 deg"},
+      {variable->integer && floor(to) < ceil(from) + 1.0, "has no two whole numbers in its range"},
+      {!(variable->start >= from && variable->start <= to), "has a 'start' outside of its range"}};
+  for (size_t i = 0; i < sizeof flaws / sizeof flaws[0]; i++)
+    if (flaws[i].found) return refuse(reader, along, flaws[i].why);
   return true;
 }
 
@@ -96,24 +93,22 @@ static bool read_range(strut_study_reader *reader, strut_study_along *along,
 }
 
 /* A variable: its column has the value at which the search begins. */
-static bool read_variable(strut_study_reader *reader, strut_study_along *along,
-                          strut_search_variable *variable) {
-  bool list = along->value->kind == STRUT_TREE_LIST, fine;
+static bool read_variable(strut_study_reader *reader, strut_study_axis *axis,
+                          strut_study_along *along, strut_search_variable *variable) {
+  bool fine;
   double *start = strut_study_allocate(reader, 1, sizeof *start);
   if (!start) return false;
-  if (list) {
-    fine = strut_study_read_along(reader, along) && read_choices(reader, along, variable);
+  if (along->value->kind == STRUT_TREE_LIST) {
+    fine = strut_study_read_along(reader, axis, along) && read_choices(reader, along, variable);
   } else {
-    along->parameter = strut_study_parameter(reader, along->key);
-    fine = along->parameter && strut_study_begin_along(reader, along, along->key->place);
-    if (fine && along->value->kind != STRUT_TREE_MAP)
-      fine = refuse(reader, along, "needs a range such as {from: 1, to: 2}, or a list of choices");
-    fine = fine && read_range(reader, along, variable);
+    if (!strut_study_begin_along(reader, axis, along)) return false;
+    fine =
+        along->value->kind == STRUT_TREE_MAP
+            ? read_range(reader, along, variable)
+            : refuse(reader, along, "needs a range such as {from: 1, to: 2}, or a list of choices");
     *start = variable->start;
     along->column->kind = STRUT_RANGE_LIST;
     along->column->number = start;
-    along->column->unit =
-        fine && !along->setting->bare ? strut_dimension_unit(along->setting->dimension) : "1";
   }
   if (!fine) return false;
   variable->name = along->parameter->name;
@@ -140,9 +135,7 @@ void strut_study_read_variables(strut_study_reader *reader, const strut_slot *ov
   if (!axis->columns || !*variables) return;
   for (const strut_tree *key = over->value->first; key; key = key->next->next) {
     strut_study_along a = {.key = key, .value = key->next, .of = of};
-    a.column = &axis->columns[axis->column_count++];
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    read_variable(reader, &a, &(*variables)[(*variable_count)++]);
+    read_variable(reader, axis, &a, &(*variables)[(*variable_count)++]);
   }
 }
 
@@ -153,12 +146,12 @@ static void read_scenarios(strut_study_reader *reader, const strut_slot *slot,
   double scenarios = 1.0;
   if (slot->state != STRUT_GIVEN) return;
   for (const strut_tree *key = slot->value->first; key; key = key->next->next) {
-    strut_study_axis *axis = &study->axes[study->axis_count++];
-    *axis = (strut_study_axis){.count = 1, .column_count = 1};
-    axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
-    strut_study_along a = {.key = key, .value = key->next, .column = axis->columns};
-    a.setting = &reader->file->columns[reader->file->column_count++];
-    if (axis->columns && strut_study_read_along(reader, &a)) axis->count = a.count;
+    strut_study_axis *axis = &study->axes[study->axis_count];
+    *axis = (strut_study_axis){.columns = strut_study_allocate(reader, 1, sizeof *axis->columns)};
+    strut_study_along a = {.key = key, .value = key->next};
+    if (!axis->columns || !strut_study_read_along(reader, axis, &a)) continue;
+    axis->count = a.count;
+    study->axis_count++;
     scenarios *= (double)axis->count;
     search->scenario_axes++;
   }
@@ -380,18 +373,6 @@ static int find(void *context, const char *kind, strut_piece owner, strut_piece 
   return -1;
 }
 
-static int find_pair(void *context, strut_piece word, strut_piece first, strut_piece second,
-                     strut_column *column, strut_dimension *dimension, strut_refusal *refusal) {
-  (void)context, (void)word, (void)first, (void)second, (void)column, (void)dimension;
-  (void)refusal;
-  return 0;
-}
-
-static int look_up(void *context, const char *name, size_t length, strut_quantity *quantity) {
-  (void)context, (void)name, (void)length, (void)quantity;
-  return 0;
-}
-
 static strut_place place_of(strut_search_place place, size_t offset, size_t length) {
   return (strut_place){
       .line = place.line, .column = place.column + (uint32_t)offset, .length = length & 0xffffffu};
@@ -401,7 +382,7 @@ static strut_place place_of(strut_search_place place, size_t offset, size_t leng
 static bool compile(binder *self, const char *text, size_t offset, strut_search_formula *formula,
                     strut_quantity *quantity) {
   strut_arena *arena = &self->file->arena;
-  const strut_scope scope = {.lookup = look_up, .names = column_name, .context = self};
+  const strut_scope scope = {.names = column_name, .context = self};
   strut_expression_error error = {0};
   strut_compiled *program = strut_arena_allocate(arena, strlen(text) + 1, sizeof *program);
   strut_instruction *kept = strut_arena_allocate(arena, strlen(text) + 1, sizeof *kept);
@@ -409,8 +390,7 @@ static bool compile(binder *self, const char *text, size_t offset, strut_search_
     self->no_memory = true;
     return false;
   }
-  strut_compiler compiler = {
-      .column = find, .pair = find_pair, .context = self, .program = program};
+  strut_compiler compiler = {.column = find, .context = self, .program = program};
   if (!strut_expression_compile(text, &scope, &compiler, quantity, &error)) {
     strut_diagnose(&self->file->diagnostics,
                    place_of(formula->place, offset + error.offset, error.length),

@@ -12,8 +12,8 @@
 #include "parser/language/write/writer.h"
 #include "parser/language/yaml/text.h"
 
-strut_place strut_overlay_place(strut_place place) {
-  place.line |= STRUT_OVERLAY_LINE;
+strut_place strut_study_place(const strut_study_file *file, strut_place place) {
+  place.file = file->number & 0xFFu;
   return place;
 }
 
@@ -21,77 +21,47 @@ strut_place strut_overlay_place(strut_place place) {
  * Lays the mapping `value` over the section of that name: its keys replace those of the section, within
  * nested mappings too, and keys that say the same in another way. False: memory is out.
  */
-static bool lay_map_over(strut_document *document, const char *section, const strut_tree *value) {
+static bool lay_map_over(const strut_study_file *file, strut_document *document,
+                         const char *section, const strut_tree *value) {
+  strut_arena *arena = &document->arena;
   strut_tree *root = document->root;
   if (root->kind != STRUT_TREE_MAP || value->kind != STRUT_TREE_MAP) return true;
   const strut_tree *below = strut_tree_find(root, section, NULL);
   if (below && below->kind != STRUT_TREE_MAP) return true; /* the reader reports it */
-  const strut_overlay overlay = {.arena = &document->arena, .mark = STRUT_OVERLAY_LINE};
-  strut_tree inner = *value;
-  strut_tree key = {.kind = STRUT_TREE_SCALAR, .place = value->place, .text = section};
-  const strut_tree over = {
-      .kind = STRUT_TREE_MAP, .place = value->place, .count = 1, .first = &key};
-  key.next = &inner;
-  inner.next = NULL;
-  strut_tree *whole =
-      strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, &over);
+  const strut_overlay overlay = {.arena = arena, .file = file->number};
+  strut_tree_builder over = strut_tree_begin(arena, value);
+  strut_tree *whole = NULL;
+  if (strut_tree_append(&over, strut_tree_scalar(arena, value, section),
+                        strut_tree_copy(arena, value)))
+    whole =
+        strut_lay_over(&overlay, (strut_mapping_kind){STRUT_SECTION_SCENE, false}, root, over.map);
   if (whole) document->root = whole;
   return whole != NULL;
 }
 
+/* {key: value} where `like` stands; NULL: memory is out. */
+static strut_tree *wrap(strut_arena *arena, const strut_tree *like, const char *key,
+                        strut_tree *value) {
+  strut_tree_builder map = strut_tree_begin(arena, like);
+  bool fine = strut_tree_append(&map, strut_tree_scalar(arena, like, key), value);
+  return fine ? map.map : NULL;
+}
+
 bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
-  static const char *const path[] = {"measure", "quantities"};
-  strut_tree end = {.place = column->place, .text = "final"},
-             take = {.place = column->place, .text = "take", .next = &end},
-             value = {.place = column->place, .text = column->text, .next = &take},
-             of = {.place = column->place, .text = "of", .next = &value},
-             quantity = {.place = column->place, .kind = STRUT_TREE_MAP, .count = 2, .first = &of},
-             name = *column;
-  strut_tree keys[2], maps[3] = {quantity};
-  name.next = &maps[0];
-  strut_tree *first = &name;
-  for (int i = 1; i >= 0; i--) {
-    strut_tree *map = &maps[2 - i];
-    *map = (strut_tree){.place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
-    keys[i] = (strut_tree){.place = column->place, .text = path[i], .next = map};
-    first = &keys[i];
-  }
-  const strut_tree run = {
-      .place = column->place, .kind = STRUT_TREE_MAP, .count = 1, .first = first};
   bool fine = true;
-  for (size_t i = 0; i < file->source_count && fine; i++)
-    fine = lay_map_over(strut_scene_source_document(file->sources[i]), "run", &run);
+  for (size_t i = 0; i < file->source_count && fine; i++) {
+    strut_document *document = strut_scene_source_document(file->sources[i]);
+    strut_arena *arena = &document->arena;
+    strut_tree_builder quantity = strut_tree_begin(arena, column);
+    fine = strut_tree_append(&quantity, strut_tree_scalar(arena, column, "of"),
+                             strut_tree_scalar(arena, column, column->text)) &&
+           strut_tree_append(&quantity, strut_tree_scalar(arena, column, "take"),
+                             strut_tree_scalar(arena, column, "final"));
+    strut_tree *run = fine ? wrap(arena, column, column->text, quantity.map) : NULL;
+    run = wrap(arena, column, "measure", wrap(arena, column, "quantities", run));
+    fine = run && lay_map_over(file, document, "run", run);
+  }
   return fine;
-}
-
-static void split_notes(strut_diagnostics *from, strut_diagnostics *over) {
-  size_t kept = 0;
-  for (size_t i = 0; i < from->note_count; i++) {
-    strut_diagnostic note = from->notes[i];
-    if (note.place.line & STRUT_OVERLAY_LINE) {
-      note.place.line &= ~STRUT_OVERLAY_LINE;
-      strut_note(over, note.place, "%s", note.message);
-    } else {
-      from->notes[kept++] = note;
-    }
-  }
-  from->note_count = kept;
-}
-
-bool strut_overlay_split(strut_diagnostics *from, strut_diagnostics *over) {
-  size_t kept = 0;
-  split_notes(from, over);
-  for (size_t i = 0; i < from->count; i++) {
-    strut_diagnostic item = from->items[i];
-    if (!(item.place.line & STRUT_OVERLAY_LINE)) {
-      from->items[kept++] = item;
-      continue;
-    }
-    item.place.line &= ~STRUT_OVERLAY_LINE;
-    strut_diagnose(over, item.place, "%s", item.message);
-  }
-  from->count = kept;
-  return !over->out_of_memory;
 }
 
 /* Sections of the model that are laid over, and the keys that do so. */
@@ -121,11 +91,8 @@ static strut_status read_model(strut_study_reader *reader, const strut_tree *nam
   return STRUT_OK;
 }
 
-static bool lay_over(strut_document *document, const char *section, const strut_slot *slot) {
-  return slot->state != STRUT_GIVEN || lay_map_over(document, section, slot->value);
-}
-
-bool strut_study_is_its_model(const strut_study_file *file) {
+/* A model that cannot be read may be the study itself, or another: then that is all there is to say. */
+static bool is_study(const strut_study_file *file) {
   strut_document document = {0};
   strut_diagnostics unsaid = {0};
   strut_diagnostics_source(&unsaid, file->model_path, file->model_text, file->model_length);
@@ -151,7 +118,7 @@ static strut_status open_source(strut_study_reader *reader, strut_fields *top,
   strut_scene_source **source = &file->sources[file->source_count];
   strut_status status = strut_scene_source_open(
       file->model_path, file->model_text, file->model_length, &file->model_diagnostics, source);
-  if (status == STRUT_BAD_SCENE && strut_study_is_its_model(file)) {
+  if (status == STRUT_BAD_SCENE && is_study(file)) {
     strut_diagnostics_free(&file->model_diagnostics);
     strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
                        "'%s' is a study, expected a model",
@@ -161,11 +128,17 @@ static strut_status open_source(strut_study_reader *reader, strut_fields *top,
   file->source_count++;
   strut_document *document = strut_scene_source_document(*source);
   if (!keep_copy(file, *source)) return STRUT_NO_MEMORY;
+  file->number = strut_scene_source_use(*source, file->path, file->text, file->length);
+  if (!file->number)
+    strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
+                       "the model uses too many files for one of a study");
   for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
-    const char *section = sections[i].section;
-    if (!lay_over(document, section, strut_slot_of(top, sections[i].study)) ||
-        (variant && !lay_over(document, section, strut_slot_of(variant, sections[i].variant))))
-      return STRUT_NO_MEMORY;
+    const strut_slot *slots[] = {strut_slot_of(top, sections[i].study),
+                                 variant ? strut_slot_of(variant, sections[i].variant) : NULL};
+    for (int k = 0; k < 2; k++)
+      if (slots[k] && slots[k]->state == STRUT_GIVEN &&
+          !lay_map_over(file, document, sections[i].section, slots[k]->value))
+        return STRUT_NO_MEMORY;
   }
   return STRUT_OK;
 }
@@ -208,8 +181,7 @@ strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *
   reader->variant_names = strut_study_allocate(reader, count + 1, sizeof *reader->variant_names);
   if (!file->sources || !reader->variant_names) return STRUT_NO_MEMORY;
   status = count ? open_variants(reader, top, variants->value) : open_source(reader, top, NULL);
-  if (status == STRUT_OK)
-    reader->declared = strut_scene_source_parameters(file->sources[0], &reader->declared_count);
+  if (status == STRUT_OK) strut_scene_source_parameters(file->sources[0], &reader->declared_count);
   return status;
 }
 
@@ -337,66 +309,6 @@ static void put_axis(strut_writer *writer, const strut_study_axis *axis) {
   }
 }
 
-/* What is computed where it is no run. */
-static void put_computed(strut_writer *writer, const strut_study *study) {
-  if (study->compute == STRUT_COMPUTE_RUN) return;
-  put_number(writer, (double)study->compute);
-  put_number(writer, (double)study->lowest);
-  put_word(writer, study->at ? study->at : "");
-  put_word(writer, study->path.load ? study->path.load : "");
-  put_word(writer, study->path.over ? study->path.over : "");
-  put_number(writer, study->path.from);
-  put_number(writer, study->path.until);
-  put_word(writer, study->path.from_unit ? study->path.from_unit : "");
-  put_word(writer, study->path.until_unit ? study->path.until_unit : "");
-  put_number(writer, study->path.from_given + 2 * study->path.until_given);
-  put_number(writer, (double)study->path.steps);
-  put_number(writer, (double)study->form.from);
-  put_number(writer, (double)study->form.objective);
-  put_number(writer, study->form.least_tension);
-  put_number(writer, study->form.least_density);
-}
-
-/* What is searched; the goal decides the column `objective`. */
-static void put_search(strut_writer *writer, const strut_study_search *search) {
-  put_number(writer, search->maximise);
-  put_word(writer, search->goal.text);
-  if (search->second.text) put_word(writer, search->second.text);
-  for (size_t i = 0; i < search->condition_count; i++) put_word(writer, search->conditions[i].text);
-  for (size_t i = 0; i < search->variable_count; i++) {
-    const strut_search_variable *variable = &search->variables[i];
-    put_word(writer, variable->name);
-    put_number(writer, variable->from);
-    put_number(writer, variable->to);
-    put_number(writer, variable->start);
-    put_number(writer, variable->logarithmic + 2 * variable->wraps + 4 * variable->integer);
-    for (size_t k = 0; k < variable->choice_count; k++) {
-      if (variable->word)
-        put_word(writer, variable->words[k]);
-      else
-        put_number(writer, variable->numbers[k]);
-    }
-  }
-  put_number(writer, (double)search->method);
-  put_number(writer, (double)search->starts);
-  put_number(writer, (double)search->evaluations);
-  put_number(writer, (double)search->seed);
-}
-
-/* What is followed at each point. */
-static void put_follow(strut_writer *writer, const strut_study_follow *follow) {
-  put_word(writer, follow->over);
-  put_number(writer, follow->from);
-  put_number(writer, follow->to);
-  put_number(writer, (double)follow->at_count);
-  for (size_t i = 0; i < follow->at_count; i++) put_number(writer, follow->at[i]);
-  for (size_t i = 0; i < follow->start_count; i++) put_word(writer, follow->start_from[i]);
-  put_number(writer, follow->accuracy);
-  put_word(writer, follow->integrator ? follow->integrator : "");
-  put_number(writer, (double)follow->steps);
-  put_number(writer, follow->basins);
-}
-
 /* What is measured, by checksums. */
 static void put_tables(strut_writer *writer, const strut_data_table *tables, size_t count) {
   for (size_t i = 0; i < count; i++)
@@ -413,7 +325,6 @@ static void put_tables(strut_writer *writer, const strut_data_table *tables, siz
 }
 
 char *strut_study_identity(const strut_study_file *file) {
-  static const char *const goals[] = {"stiffness_at", "shape", "like", "curve"};
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
   for (size_t i = 0; i < file->source_count; i++) {
@@ -428,27 +339,12 @@ char *strut_study_identity(const strut_study_file *file) {
     put_word(&w, file->settings[i].text);
   }
   for (size_t i = 0; i < study->axis_count; i++) put_axis(&w, &study->axes[i]);
-  for (size_t i = 0; i < STRUT_KEEP_WORDS; i++) {
-    put_number(&w, (double)(study->keep.bits[i] >> 32));
-    put_number(&w, (double)(study->keep.bits[i] & UINT32_MAX));
-  }
-  for (size_t i = 0; i < study->quantity_count; i++) put_word(&w, study->quantities[i]);
-  for (size_t i = 0; i < study->derivative_count; i++) put_word(&w, study->derivatives[i].name);
-  put_number(&w, study->trajectories);
-  put_number(&w, study->half_step);
-  put_number(&w, study->check_accuracy);
-  put_computed(&w, study);
-  if (study->refine.depth) {
-    put_number(&w, (double)study->refine.depth);
-    put_number(&w, study->refine.by);
-    put_word(&w, study->refine.where);
-  }
-  if (study->search) put_search(&w, study->search);
-  if (study->follow) put_follow(&w, study->follow);
-  if (study->fit) put_tree(&w, file->document.root); /* its matches use whatever stands there */
-  for (size_t i = 0; i < sizeof goals / sizeof goals[0]; i++) {
-    const strut_tree *goal = strut_tree_find(file->document.root, goals[i], NULL);
-    if (goal) put_tree(&w, goal);
+  for (int key = STRUT_KEY_STUDY_KEEP; key <= STRUT_KEY_STUDY_FIT; key++) {
+    const char *name = strut_key_at(key)->name;
+    const strut_tree *value = strut_tree_find(file->document.root, name, NULL);
+    if (!value || key == STRUT_KEY_STUDY_FIGURES || key == STRUT_KEY_STUDY_LIMIT) continue;
+    put_word(&w, name);
+    put_tree(&w, value);
   }
   if (study->limit.evaluations) put_number(&w, (double)study->limit.evaluations);
   return strut_buffer_take(&w.out);

@@ -93,11 +93,16 @@ void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char
   used->file = name ? name : "<file>";
 }
 
+int strut_place_compare(strut_place a, strut_place b) {
+  if (a.file != b.file) return a.file < b.file ? -1 : 1;
+  if (a.line != b.line) return a.line < b.line ? -1 : 1;
+  return a.column < b.column ? -1 : a.column > b.column;
+}
+
 static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     const strut_diagnostic *note = &diagnostics->notes[i];
-    if (note->place.file == place.file && note->place.line == place.line &&
-        note->place.column == place.column && strcmp(note->message, message) == 0)
+    if (strut_place_compare(note->place, place) == 0 && strcmp(note->message, message) == 0)
       return true;
   }
   return false;
@@ -162,59 +167,47 @@ static window choose_window(strut_cursor *line, strut_place place) {
   return shown;
 }
 
-/* Appends the shown stretch of the line. */
-static void append_source(strut_buffer *out, strut_cursor cursor, window shown) {
+/* Appends the mark below character i of a line: the caret at `from`, tildes up to `to`, blanks before. */
+static void append_mark(strut_buffer *out, uint32_t i, uint32_t from, uint32_t to, uint32_t code) {
+  const char *mark = i >= from ? "~" : code == '\t' ? "\t" : " ";
+  if (i >= to) return;
+  if (i == from) strut_buffer_put(out, "^", 1);
+  for (int cell = i == from ? 1 : 0; cell < cells(code); cell++) strut_buffer_put(out, mark, 1);
+}
+
+/* Appends the line in which the cursor stands and a caret line; the cursor moves to where the shown
+   stretch begins, so that places in order cost one walk of a line. */
+static void append_source_line(strut_buffer *out, strut_cursor *line, strut_place place) {
+  window shown = choose_window(line, place);
+  strut_buffer marks = {0};
+  strut_cursor cursor = *line;
+  uint32_t from = place.column ? place.column - 1 : 0, length = place.length ? place.length : 1;
+  uint32_t to = length > shown.end || from > shown.end - length ? shown.end : from + length;
+  if (!shown.points) return;
+  strut_buffer_add(out, "%5u | %s", place.line, shown.first ? "..." : "");
+  strut_buffer_add(&marks, "      | %s", shown.first ? "   " : "");
   for (uint32_t i = cursor.column - 1; i < shown.end; i++) {
     uint32_t code;
     const char *here = cursor.text + cursor.offset;
     size_t size = strut_text_decode(here, cursor.length - cursor.offset, &code);
     strut_cursor_step(&cursor);
     if (i < shown.first) continue;
-    if (code == STRUT_BAD_CODE || strut_text_forbidden(code) || strut_text_hidden(code))
-      strut_buffer_put(out, "\xEF\xBF\xBD", 3);
-    else
-      strut_buffer_put(out, here, size);
+    bool hidden = code == STRUT_BAD_CODE || strut_text_forbidden(code) || strut_text_hidden(code);
+    strut_buffer_put(out, hidden ? "\xEF\xBF\xBD" : here, hidden ? 3 : size);
+    append_mark(&marks, i, from, to, code);
   }
-}
-
-static void append_caret(strut_buffer *out, strut_cursor cursor, window shown, strut_place place) {
-  uint32_t from = place.column ? place.column - 1 : 0, length = place.length ? place.length : 1;
-  uint32_t to = length > shown.end || from > shown.end - length ? shown.end : from + length;
-  for (uint32_t i = cursor.column - 1; i < shown.end && i < to; i++) {
-    uint32_t code;
-    strut_text_decode(cursor.text + cursor.offset, cursor.length - cursor.offset, &code);
-    strut_cursor_step(&cursor);
-    if (i < shown.first) continue;
-    const char *mark = i > from ? "~" : i == from ? "^" : code == '\t' ? "\t" : " ";
-    if (i == from) strut_buffer_put(out, "^", 1);
-    for (int cell = i == from ? 1 : 0; cell < cells(code); cell++)
-      strut_buffer_put(out, i == from ? "~" : mark, 1);
-  }
-  if (from >= shown.end) strut_buffer_put(out, "^", 1); /* after the last character of the line */
-}
-
-/* Appends the line in which the cursor stands and a caret line; the cursor moves to where the shown
-   stretch begins, so that places in order cost one walk of a line. */
-static void append_source_line(strut_buffer *out, strut_cursor *cursor, strut_place place) {
-  window shown = choose_window(cursor, place);
-  if (!shown.points) return;
-  const char *before = shown.first ? "..." : "", *after = shown.end < shown.points ? "..." : "";
-  strut_buffer_add(out, "%5u | %s", place.line, before);
-  append_source(out, *cursor, shown);
-  strut_buffer_add(out, "%s\n      | %s", after, shown.first ? "   " : "");
-  append_caret(out, *cursor, shown, place);
-  strut_buffer_add(out, "\n");
+  if (from >= shown.end)
+    strut_buffer_put(&marks, "^", 1); /* after the last character of the line */
+  strut_buffer_add(out, "%s\n%s\n", shown.end < shown.points ? "..." : "",
+                   marks.text ? marks.text : "");
+  out->failed = out->failed || marks.failed;
+  strut_release(marks.text);
 }
 
 static int compare(const void *first, const void *second) {
-  const strut_diagnostic *diagnostic = first, *y = second;
-  if (diagnostic->place.file != y->place.file)
-    return diagnostic->place.file < y->place.file ? -1 : 1;
-  if (diagnostic->place.line != y->place.line)
-    return diagnostic->place.line < y->place.line ? -1 : 1;
-  if (diagnostic->place.column != y->place.column)
-    return diagnostic->place.column < y->place.column ? -1 : 1;
-  return diagnostic->order < y->order ? -1 : diagnostic->order > y->order;
+  const strut_diagnostic *a = first, *b = second;
+  int order = strut_place_compare(a->place, b->place);
+  return order ? order : a->order < b->order ? -1 : a->order > b->order;
 }
 
 /* The text that a place is in. */
@@ -261,6 +254,14 @@ const char *strut_diagnostics_file(const strut_diagnostics *diagnostics, strut_p
   return text_of(diagnostics, place).file;
 }
 
+/* What was written, in the arena; NULL: memory is out. */
+static const char *keep_text(strut_diagnostics *diagnostics, strut_buffer *out) {
+  const char *text = out->text ? out->text : "";
+  text = out->failed ? NULL : strut_arena_text(&diagnostics->arena, text, out->length);
+  strut_release(out->text);
+  return text;
+}
+
 const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most) {
   strut_buffer out = {0};
   strut_cursor cursor = {0};
@@ -274,11 +275,7 @@ const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most
   }
   size_t left = diagnostics->count - shown + diagnostics->unstored;
   if (left) strut_buffer_add(&out, "... and %zu more\n", left);
-  const char *text =
-      out.failed ? NULL
-                 : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
-  strut_release(out.text);
-  return text;
+  return keep_text(diagnostics, &out);
 }
 
 const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
@@ -287,11 +284,7 @@ const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics) {
     strut_cursor cursor = cursor_in(text_of(diagnostics, diagnostics->notes[i].place));
     render_one(&out, diagnostics, "note", &diagnostics->notes[i], &cursor);
   }
-  const char *text =
-      out.failed ? NULL
-                 : strut_arena_text(&diagnostics->arena, out.text ? out.text : "", out.length);
-  strut_release(out.text);
-  return text;
+  return keep_text(diagnostics, &out);
 }
 
 void strut_diagnostics_free(strut_diagnostics *diagnostics) {

@@ -3,8 +3,8 @@
 
 #include <assert.h>
 #include <string.h>
-#include <time.h>
 
+#include "engine/base/name_map.h"
 #include "parser/language/yaml/document_parts.h"
 #include "parser/language/yaml/text.h"
 
@@ -20,57 +20,40 @@ static const uint64_t NODES_MOST = 64000000, EXPANDED_MOST = 1000000;
 
 /* An anchored node. */
 typedef struct anchored_node {
-  const char *name;
   strut_tree *node;
   uint64_t weight; /* nodes in it, aliases expanded; 0: still open */
   size_t height;   /* levels of lists and mappings in it, aliases expanded */
+  int32_t latest;  /* index of the latest of its name; of the first of them only */
 } anchored_node;
 
 typedef struct anchor_table {
-  anchored_node *items; /* (ANCHOR_MOST) */
-  uint16_t *slots;      /* 1 + index of the latest of its name */
-  size_t count;
-  uint64_t seed;
+  anchored_node *items;  /* (ANCHOR_MOST) */
+  strut_name_map firsts; /* index of the first of each name */
+  int32_t count;
 } anchor_table;
 
-enum { SLOT_COUNT = 2048 };
-
-/* The slot of that name, or the empty slot in which to store it. */
-static size_t anchor_slot(const anchor_table *anchors, const char *name) {
-  size_t slot = (size_t)strut_document_hash(name, strlen(name), anchors->seed) % SLOT_COUNT;
-  while (anchors->slots[slot] && strcmp(anchors->items[anchors->slots[slot] - 1].name, name) != 0)
-    slot = (slot + 1) % SLOT_COUNT;
-  return slot;
-}
-
 static anchored_node *find_anchor(const anchor_table *anchors, const char *name) {
-  if (!anchors->count) return NULL;
-  uint16_t found = anchors->slots[anchor_slot(anchors, name)];
-  return found ? &anchors->items[found - 1] : NULL;
+  int32_t first = strut_name_map_find(&anchors->firsts, name);
+  return first < 0 ? NULL : &anchors->items[anchors->items[first].latest];
 }
 
 static anchored_node *add_anchor(anchor_table *anchors, const char *name, strut_tree *node) {
   if (!anchors->items) anchors->items = strut_allocate(ANCHOR_MOST, sizeof *anchors->items);
-  if (!anchors->slots) anchors->slots = strut_allocate(SLOT_COUNT, sizeof *anchors->slots);
-  if (!anchors->items || !anchors->slots) return NULL;
-  size_t slot = anchor_slot(anchors, name);
-  anchored_node *anchor = &anchors->items[anchors->count++];
-  *anchor = (anchored_node){.name = name, .node = node};
-  anchors->slots[slot] = (uint16_t)anchors->count;
+  int32_t first = anchors->items ? strut_name_map_add(&anchors->firsts, name, anchors->count) : -2;
+  if (first == -2) return NULL;
+  anchored_node *anchor = &anchors->items[anchors->count];
+  *anchor = (anchored_node){.node = node, .latest = anchors->count};
+  if (first >= 0) anchors->items[first].latest = anchors->count;
+  anchors->count++;
   return anchor;
-}
-
-static void free_anchors(anchor_table *anchors) {
-  strut_release(anchors->items);
-  strut_release(anchors->slots);
 }
 
 /* A list or map whose end has not come yet. */
 typedef struct frame {
   strut_tree *node, *last; /* last child so far */
   uint64_t weight;
-  size_t height; /* of the highest child so far */
-  size_t anchor; /* 1 + index, or 0 */
+  size_t height;         /* of the highest child so far */
+  anchored_node *anchor; /* or NULL */
   bool bracketed;
   bool value_next; /* map: a key waits for its value */
 } frame;
@@ -86,7 +69,6 @@ typedef struct reader {
   size_t spare_count;
   uint64_t nodes, expanded;
   anchor_table anchors;
-  strut_key_table keys;
   const char *recent[RECENT_SLOTS];
   bool ended, no_memory;
 } reader;
@@ -173,17 +155,17 @@ static bool key_expected(const reader *self) {
   return open && open->node->kind == STRUT_TREE_MAP && !open->value_next;
 }
 
-/* Names the node; *index is 1 + the anchor's, or 0 without one. */
-static bool read_anchor(reader *self, const yaml_char_t *name, strut_tree *node, size_t *index) {
-  *index = 0;
+/* Names the node; *anchor is NULL without a name. */
+static bool read_anchor(reader *self, const yaml_char_t *name, strut_tree *node,
+                        anchored_node **anchor) {
+  *anchor = NULL;
   if (!name) return true;
   if (self->anchors.count >= ANCHOR_MOST)
     return over_limit(self, node->place, "anchors", ANCHOR_MOST);
   const char *text = (const char *)name;
   text = strut_arena_text(&self->document->arena, text, strlen(text));
-  if (!text || !add_anchor(&self->anchors, text, node)) return out_of_memory(self);
-  *index = self->anchors.count;
-  return true;
+  *anchor = text ? add_anchor(&self->anchors, text, node) : NULL;
+  return *anchor || out_of_memory(self);
 }
 
 static void check_tag(reader *self, const yaml_char_t *tag, const yaml_event_t *event) {
@@ -206,11 +188,17 @@ static bool check_escapes(reader *self, const char *text, size_t length, strut_p
   return true;
 }
 
+static size_t slot_of(const char *text, size_t length) {
+  uint32_t hash = 0x811C9DC5;
+  for (size_t i = 0; i < length; i++) hash = (hash ^ (unsigned char)text[i]) * 0x01000193;
+  return (hash ^ hash >> 16) % RECENT_SLOTS;
+}
+
 /* A copy of the scalar's text in the arena; recent short texts are shared. */
 static const char *keep_text(reader *self, const char *text, size_t length) {
   if (!length) return "";
   if (length > RECENT_LENGTH) return strut_arena_text(&self->document->arena, text, length);
-  size_t slot = (size_t)strut_document_hash(text, length, 0) % RECENT_SLOTS;
+  size_t slot = slot_of(text, length);
   const char *known = self->recent[slot];
   if (known && strncmp(known, text, length) == 0 && known[length] == '\0') return known;
   return self->recent[slot] = strut_arena_text(&self->document->arena, text, length);
@@ -218,7 +206,8 @@ static const char *keep_text(reader *self, const char *text, size_t length) {
 
 static bool read_scalar(reader *self, const yaml_event_t *event) {
   const char *text = (const char *)event->data.scalar.value;
-  size_t length = event->data.scalar.length, anchor;
+  size_t length = event->data.scalar.length;
+  anchored_node *anchor;
   strut_place place = place_of(event);
   bool quoted = event->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
   check_tag(self, event->data.scalar.tag, event);
@@ -231,7 +220,7 @@ static bool read_scalar(reader *self, const yaml_event_t *event) {
   node->quoted = quoted;
   node->text = keep_text(self, text, length);
   if (!node->text) return out_of_memory(self);
-  if (anchor) self->anchors.items[anchor - 1].weight = 1;
+  if (anchor) anchor->weight = 1;
   attach(self, node, 1, 0);
   return true;
 }
@@ -297,13 +286,11 @@ static bool close_collection(reader *self, const yaml_event_t *event) {
   if (event->end_mark.index > event->start_mark.index && line == node->place.line &&
       column > node->place.column)
     node->place.length = strut_place_at(0, 0, (uint32_t)column - node->place.column).length;
-  if (node->kind == STRUT_TREE_MAP &&
-      !strut_document_check_keys(node, &self->keys, self->diagnostics))
+  if (node->kind == STRUT_TREE_MAP && !strut_document_check_keys(node, self->diagnostics))
     return out_of_memory(self);
   if (closed.anchor) {
-    anchored_node *anchor = &self->anchors.items[closed.anchor - 1];
-    anchor->weight = closed.weight;
-    anchor->height = closed.height + 1;
+    closed.anchor->weight = closed.weight;
+    closed.anchor->height = closed.height + 1;
   }
   attach(self, node, closed.weight, closed.height + 1);
   return true;
@@ -399,11 +386,10 @@ strut_status strut_document_read(strut_document *document, strut_diagnostics *di
   self->document = document;
   self->diagnostics = diagnostics;
   self->cursor = strut_cursor_begin(diagnostics->text, diagnostics->length);
-  self->keys.seed = self->anchors.seed = (uint64_t)(uintptr_t)self ^ (uint64_t)time(NULL) << 20;
   bool fine = read_events(self), no_memory = self->no_memory || diagnostics->out_of_memory;
   if (!fine || no_memory) document->root = NULL;
-  free_anchors(&self->anchors);
-  strut_release(self->keys.slots);
+  strut_release(self->anchors.items);
+  strut_name_map_free(&self->anchors.firsts);
   strut_release(self);
   if (no_memory) return STRUT_NO_MEMORY;
   return diagnostics->count > before ? STRUT_BAD_SCENE : STRUT_OK;

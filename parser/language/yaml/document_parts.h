@@ -23,18 +23,7 @@ bool strut_document_scan(strut_diagnostics *diagnostics);
 bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *open,
                                  strut_diagnostics *diagnostics);
 
-/** Not the same from seed to seed, so that no text can be made to collide on purpose. */
-uint64_t strut_document_hash(const char *text, size_t length, uint64_t seed);
-
-/** A hash table of the keys of a map, reused for the next map. Zero but for the seed; release `slots`. */
-typedef struct strut_key_table {
-  strut_tree **slots;
-  size_t capacity;
-  uint64_t seed;
-} strut_key_table;
-
 /** Reports keys that may not be, and takes them out of the map. False: memory is out. */
-bool strut_document_check_keys(strut_tree *map, strut_key_table *table,
-                               strut_diagnostics *diagnostics);
+bool strut_document_check_keys(strut_tree *map, strut_diagnostics *diagnostics);
 
 #endif

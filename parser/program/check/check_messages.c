@@ -201,8 +201,6 @@ static strut_status print_json(strut_sweep_study *study, strut_status status,
   strut_study_file *file = &study->file;
   strut_check_result checked = {.valid = status == STRUT_OK, .study = study};
   strut_messages_add_diagnostics(&checked.messages, &file->diagnostics);
-  for (size_t i = 0; i < file->table_count; i++)
-    strut_messages_add_diagnostics(&checked.messages, &file->tables[i].diagnostics);
   if (file->model_diagnostics.file)
     strut_messages_add_diagnostics(&checked.messages, &file->model_diagnostics);
   if (status != STRUT_OK) strut_messages_add_error(&checked.messages, file->path, error->message);

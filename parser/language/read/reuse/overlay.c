@@ -103,7 +103,7 @@ bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map, const 
 
 static strut_tree *marked_node(const strut_overlay *overlay, const strut_tree *node) {
   strut_tree *copy = strut_tree_copy(overlay->arena, node);
-  if (copy) copy->place.line |= overlay->mark;
+  if (copy && overlay->file) copy->place.file = overlay->file & 0xFFu;
   return copy;
 }
 
@@ -112,7 +112,7 @@ static strut_tree *marked_tree(const strut_overlay *overlay, const strut_tree *n
   strut_placed_tree placed = {*node, NULL};
   if (overlay->of_scene) placed.tree.placed = true;
   strut_tree *copy = marked_node(overlay, overlay->of_scene ? &placed.tree : node);
-  if (!copy || !(overlay->mark || overlay->of_scene)) return copy;
+  if (!copy || !(overlay->file || overlay->of_scene)) return copy;
   strut_tree **end = &copy->first;
   for (const strut_tree *child = node->first; child; child = child->next) {
     *end = marked_tree(overlay, child);

@@ -31,12 +31,9 @@ STRUT_API strut_mapping_kind strut_kind_below(strut_mapping_kind kind, const cha
 STRUT_API bool strut_says_otherwise(strut_mapping_kind kind, const strut_tree *map,
                                     const char *key);
 
-/** Marks what a study lays over its model. */
-#define STRUT_OVERLAY_LINE ((uint32_t)1 << 30)
-
 typedef struct strut_overlay {
   strut_arena *arena; /* of the result, which shares what did not change */
-  uint32_t mark;      /* is set in the line of every place of what is laid over */
+  unsigned file;      /* of every place of what is laid over; 0: as they stand */
   bool of_scene;      /* what is laid over belongs to the scene, not to a copy of a part */
   bool whole;         /* keys within keys are replaced together */
   strut_diagnostics *diagnostics; /* receives removals of what is not there; NULL: they stay */
