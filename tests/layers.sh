@@ -175,7 +175,7 @@ twins() {
   find "$1/engine" -name '*.c' -exec awk '
     cloned && match($0, /[a-z0-9_]+\(/) { print substr($0, RSTART, RLENGTH - 1); cloned = 0 }
     /^STRUT_CLONES/ { cloned = 1 }
-    /^STRUT_(PLAIN_STEPS|EVENT_TRIAL)\(/ { sub(/.*\(/, ""); sub(/,.*/, ""); print $0 "_with_balance" }' {} + |
+    /^STRUT_(PLAIN_STEPS|EVENT_TRIAL|COPIES)\(/ { sub(/.*\(/, ""); sub(/,.*/, ""); print $0 "_with_balance" }' {} + |
     sort | uniq -d | sed 's/$/ is the name of two cloned functions/'
 }
 mkdir -p "$scratch/twins/engine"

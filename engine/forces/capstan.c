@@ -334,9 +334,7 @@ static void add_powers(const strut_state *state, const cable *self, double dampe
   for (int k = 0; k + 1 < self->n && frozen; k++)
     lost += (carried(self, k) - carried(self, k + 1)) * self->flow[k];
   lost += damper * rate;
-  state->latest->power[STRUT_POWER_DRIVE] += drive;
-  state->latest->power[STRUT_POWER_MEMBERS] += lost;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+  strut_power_add_two(state->latest->power, STRUT_POWER_DRIVE, drive, STRUT_POWER_MEMBERS, lost);
 }
 
 void strut_capstan_add_forces(const strut_model *model, const strut_state *state, int32_t i,
@@ -386,8 +384,7 @@ void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i
     drop[k] = now;
   }
   if (jumped) lost = held - energy_of(&c);
-  if (state->balance) state->work[STRUT_POWER_MEMBERS] += lost;
-  if (state->balance) state->work[STRUT_POWER_EXCHANGED] += fabs(lost);
+  if (state->balance) strut_power_add(state->work, STRUT_POWER_MEMBERS, lost);
   keep_materials(model, state, i, &c);
 }
 

@@ -5,16 +5,10 @@
 #include <string.h>
 
 #include "engine/forces/capstan.h"
-#include "engine/forces/elements_kernel.h"
 #include "engine/forces/history.h"
+#include "engine/forces/members_kernel.h"
 #include "engine/forces/nearby.h"
-#include "engine/forces/strains/along.h"
-#include "engine/forces/strains/angle.h"
-#include "engine/forces/strains/area.h"
-#include "engine/forces/strains/foot.h"
-#include "engine/forces/strains/path.h"
-#include "engine/forces/strains/reach.h"
-#include "engine/forces/strains/wrap.h"
+#include "engine/forces/strains/strains.h"
 #include "engine/model/pose.h"
 
 /* The numbers that the function of a strain takes beside the positions, and those of its second derivative. */
@@ -163,9 +157,8 @@ static inline void add_powers(const strut_element *element, const strut_state *s
          lost = (self->force - self->elastic) * self->own_rate;
   bool load = element->role == STRUT_ELEMENT_LOAD;
   if (load) drive = -self->force * self->own_rate;
-  state->latest->power[load ? STRUT_POWER_LOAD : STRUT_POWER_DRIVE] += drive;
-  state->latest->power[STRUT_POWER_MEMBERS] += lost;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  strut_power_add_two(state->latest->power, load ? STRUT_POWER_LOAD : STRUT_POWER_DRIVE, drive,
+                      STRUT_POWER_MEMBERS, lost);
 }
 
 /* One element; `strain` and `law` are inlined, so that a block's loop tests neither. */
@@ -205,46 +198,6 @@ static inline void add_powers(const strut_element *element, const strut_state *s
   STRUT_ALL_LAWS(STRUT_ADD_CELL, (name, reference))
 STRUT_STRAINS(STRUT_ADD_ROW, )
 
-STRUT_CLONES
-static void add_hinges(const strut_model *model, const strut_state *state,
-                       const strut_element_block *block, const double *q, const double *v,
-                       double *force) {
-  strut_element_block rest = *block;
-  hinge_powers powers = {{0}, {0}, {0}};
-  const strut_element_table t = model->elements;
-  const uint32_t *at = t.at + t.element[rest.begin].first;
-  for (; rest.end - rest.begin >= STRUT_LANES; rest.begin += STRUT_LANES, at += 3 * STRUT_LANES)
-    add_four_hinges(&t, state, rest.begin, at, q, v, force, &powers);
-  for (int l = 0; l < STRUT_LANES && state->balance; l++) {
-    state->latest->power[STRUT_POWER_DRIVE] += powers.drive[l];
-    state->latest->power[STRUT_POWER_MEMBERS] += powers.lost[l];
-    state->latest->power[STRUT_POWER_EXCHANGED] += powers.exchanged[l];
-  }
-  add_angle_linear(model, state, &rest, q, v, force);
-}
-
-/* What add_path_linear does, with the segments in vectors. */
-STRUT_CLONES
-static void add_running_cables(const strut_model *model, const strut_state *state,
-                               const strut_element_block *block, const double *q,
-                               const double *velocity, double *force) {
-  const strut_element_table *elements = &model->elements;
-  for (int32_t i = block->begin; i < block->end; i++) {
-    const strut_element *element = &elements->element[i];
-    const uint32_t *at = elements->at + element->first;
-    strut_pair b[STRUT_MOST_GRADIENT / 2 + 1];
-    double strain = measure_path(at, element->nodes, q, b),
-           natural = strut_element_natural(element, state->latest->rest);
-    double rest_rate = element->slot >= 0 ? state->latest->rest_rate[element->slot] : 0.0,
-           rate = 0.0;
-    if (element->damping > 0.0 || state->balance) rate = path_rate(at, element->nodes, velocity, b);
-    strut_law_response r = strut_law_linear(&element->numbers, strain, natural, -1);
-    exertion x = exert(element, state, i, &r, strain - natural, rate - rest_rate);
-    pull_path(at, element->nodes, force, b, x.force);
-    if (state->balance) add_powers(element, state, &x, rest_rate);
-  }
-}
-
 typedef void add_block(const strut_model *model, const strut_state *state,
                        const strut_element_block *block, const double *q, const double *velocity,
                        double *force);
@@ -272,16 +225,10 @@ void strut_elements_add_forces(const strut_model *model, const strut_state *stat
                                const double *velocity, double *force) {
   for (int32_t b = 0; b < model->elements.block_count; b++) {
     const strut_element_block *block = &model->elements.block[b];
-    bool hinges = block->strain == STRUT_STRAIN_ANGLE && block->law == STRUT_LAW_LINEAR;
-    bool cables = block->strain == STRUT_STRAIN_PATH && block->law == STRUT_LAW_LINEAR;
     if (block->collides && model->elements.scattered)
       add_nearby(model, state, block, q, velocity, force);
     else if (block->remembers)
       strut_history_add_forces(model, state, block, q, velocity, force);
-    else if (hinges && block->both_signs)
-      add_hinges(model, state, block, q, velocity, force);
-    else if (cables)
-      add_running_cables(model, state, block, q, velocity, force);
     else
       adders[block->strain][block->law](model, state, block, q, velocity, force);
   }

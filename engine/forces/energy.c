@@ -5,13 +5,11 @@
 
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
 #include "engine/forces/nearby.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
-#include "engine/model/surface_search.h"
 
 /* Of masses that rest on their members. */
 static double sliding_at_rest(const strut_model *model, const double *velocity) {
@@ -130,6 +128,5 @@ void strut_impulse_apply(const strut_model *model, strut_state *state, strut_pow
     state->v[i] += change[i];
   }
   if (!state->balance) return;
-  state->work[power] += work;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
+  strut_power_add(state->work, power, work);
 }

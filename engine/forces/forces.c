@@ -4,6 +4,7 @@
 
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
+#include "engine/forces/forces.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/forces/mass_damping.h"
@@ -120,8 +121,7 @@ void strut_mass_damping_apply(const strut_model *model, const strut_state *state
   }
   if (model->sliding.count) lost += damp_sliding_masses(model, velocity - 2, force - 2);
   if (!state->balance) return;
-  state->latest->power[STRUT_POWER_MEMBERS] += lost;
-  state->latest->power[STRUT_POWER_EXCHANGED] += lost;
+  strut_power_add(state->latest->power, STRUT_POWER_MEMBERS, lost);
 }
 
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum) {

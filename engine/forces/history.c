@@ -100,8 +100,7 @@ void strut_slider_set(const strut_model *model, strut_state *state, int32_t i, i
 
 static void accumulate_loss(strut_state *state, double energy) {
   if (!state->balance) return;
-  state->work[STRUT_POWER_MEMBERS] += energy;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(energy);
+  strut_power_add(state->work, STRUT_POWER_MEMBERS, energy);
 }
 
 void strut_slider_return(const strut_model *model, strut_state *state, int32_t i, const double *q,
@@ -171,9 +170,7 @@ static void add_powers(const strut_element *element, const strut_state *state, i
   if (yields(element) && piece >= 0 && piece != STRUT_SLIDER_HOLDS && !state->forgetful)
     lost = force - element->numbers.second_stiffness * x;
   lost *= rate;
-  state->latest->power[STRUT_POWER_DRIVE] += drive;
-  state->latest->power[STRUT_POWER_MEMBERS] += lost;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + fabs(lost);
+  strut_power_add_two(state->latest->power, STRUT_POWER_DRIVE, drive, STRUT_POWER_MEMBERS, lost);
 }
 
 static void add_element(const strut_model *model, const strut_state *state, int32_t i,
@@ -213,8 +210,7 @@ static void add_element(const strut_model *model, const strut_state *state, int3
   add_powers(element, state, i, whole, r.force, strain - base_of(element, state->latest->rest),
              rate);
   double excess = r.excess * base_rate_of(element, state);
-  state->latest->power[STRUT_POWER_DRIVE] += excess;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(excess);
+  strut_power_add(state->latest->power, STRUT_POWER_DRIVE, excess);
 }
 
 void strut_history_add_forces(const strut_model *model, const strut_state *state,
@@ -431,9 +427,7 @@ void strut_maxwell_apply(const strut_model *model, const strut_state *state, con
     force[feedback->base + entry->state] = entry->stiffness * (rate - tension / entry->damping);
     if (!state->balance) continue;
     double drive = -tension * rest_rate, lost = tension * tension / entry->damping;
-    state->latest->power[STRUT_POWER_DRIVE] += drive;
-    state->latest->power[STRUT_POWER_MEMBERS] += lost;
-    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+    strut_power_add_two(state->latest->power, STRUT_POWER_DRIVE, drive, STRUT_POWER_MEMBERS, lost);
   }
 }
 

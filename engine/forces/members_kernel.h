@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Texts of laws for four things side by side, the vectors of model/algebra/hot.h: members, angles of hinges, and
-    coordinates in a step. */
+/** Texts of laws for four things side by side, the vectors of model/algebra/hot.h: members, and coordinates in a
+    step. */
 #ifndef STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
 #define STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
 
@@ -12,7 +12,6 @@
 
 #define LAW(name) four_##name
 #define LAW_INLINE STRUT_INLINE
-#include "engine/forces/strains/direction.h"
 #include "engine/scene/laws/member.h"
 #include "engine/scene/laws/runge_kutta.h"
 #undef LAW
@@ -84,22 +83,6 @@ STRUT_INLINE member_pulls members_group(const strut_member_table *t, const strut
   strut_lanes density = tension * inverse, px = density * d.x, py = density * d.y;
   return (member_pulls){__builtin_shufflevector(px, py, 0, 4, 2, 6),
                         __builtin_shufflevector(px, py, 1, 5, 3, 7)};
-}
-
-STRUT_INLINE void members_pull(double *a, double *b, strut_pair pull) {
-  strut_pair_store(a, strut_pair_load(a) + pull);
-  strut_pair_store(b, strut_pair_load(b) - pull);
-}
-
-/* Adds the pulls of a group member by member, where there are no rows. */
-STRUT_INLINE void members_scatter(const strut_member_table *t, int32_t j, member_pulls pulls,
-                                  double *restrict force) {
-  const uint32_t *restrict from = t->from + j, *restrict to = t->to + j;
-  strut_lanes even = pulls.even, odd = pulls.odd;
-  members_pull(force + from[0], force + to[0], __builtin_shufflevector(even, even, 0, 1));
-  members_pull(force + from[1], force + to[1], __builtin_shufflevector(odd, odd, 0, 1));
-  members_pull(force + from[2], force + to[2], __builtin_shufflevector(even, even, 2, 3));
-  members_pull(force + from[3], force + to[3], __builtin_shufflevector(odd, odd, 2, 3));
 }
 
 /* Pulls of two members on their first and second ends, pair by pair. */

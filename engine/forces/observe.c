@@ -8,7 +8,6 @@
 #include "engine/base/vec.h"
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
@@ -16,7 +15,6 @@
 #include "engine/forces/rigid.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
-#include "engine/model/surface_search.h"
 #include "engine/scene/things.h"
 
 #define OBSERVE(ID)                                                                                \

@@ -8,7 +8,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/forces/energy.h"
-#include "engine/model/feedback.h"
+#include "engine/model/model.h"
 #include "engine/model/state.h"
 
 /** What observables are taken of. */

@@ -344,9 +344,7 @@ static void accumulate(const strut_model *model, const strut_state *state, const
     double slip = strut_contact_slip(contacts, i, velocity),
            rubbed = -state->latest->friction[i] * slip;
     double belt = state->latest->friction[i] * contacts->belt_speed;
-    state->latest->power[STRUT_POWER_FRICTION] += rubbed;
-    state->latest->power[STRUT_POWER_BELT] += belt;
-    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(rubbed) + fabs(belt);
+    strut_power_add_two(state->latest->power, STRUT_POWER_FRICTION, rubbed, STRUT_POWER_BELT, belt);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "engine/forces/elements.h"
 #include "engine/forces/nearby.h"
-#include "engine/forces/strains/foot.h"
+#include "engine/forces/strains/strains.h"
 #include "engine/scene/friction.h"
 
 static void slide_foot(const strut_element *element, const uint32_t *at, const double *q,
@@ -93,9 +93,7 @@ static void add_entry(const strut_model *model, const strut_state *state, int32_
     state->latest->force[at[k / 2] + (uint32_t)(k % 2)] += r.friction * r.slide[k];
   if (!state->balance) return;
   double lost = -r.friction * r.slip, belt = r.friction * entry->belt_speed;
-  state->latest->power[STRUT_POWER_FRICTION] += lost;
-  state->latest->power[STRUT_POWER_BELT] += belt;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(lost) + fabs(belt);
+  strut_power_add_two(state->latest->power, STRUT_POWER_FRICTION, lost, STRUT_POWER_BELT, belt);
 }
 
 void strut_rubbing_add_forces(const strut_model *model, const strut_state *state, const double *q,

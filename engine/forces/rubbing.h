@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Friction of elements that press (engine/model/rubbing.h), where they touch.
+ * Friction of elements that press (engine/model/model.h), where they touch.
  *
  * The surfaces slide on each other by b v, b over the coordinates of the element's nodes: friction F there is F b
  * on them, of a foot with its moment on the member. Its law is one without stick, or of bristles, under the force by

@@ -3,7 +3,7 @@
 
 #include <assert.h>
 
-#include "engine/forces/ground_kernel.h"
+#include "engine/forces/forces_kernel.h"
 
 /* Contacts of one node that touch: `count` indices, ascending. */
 typedef struct touching {

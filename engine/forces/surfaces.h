@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Reactions of surfaces (engine/model/surfaces.h): the laws of ground_kernel.h, each contact with its own
+ * Reactions of surfaces (engine/model/surfaces.h): the laws of forces_kernel.h, each contact with its own
  * tangent and normal, and several contacts of one node at once.
  */
 #ifndef STRUT_ENGINE_FORCES_SURFACES_H

@@ -316,48 +316,14 @@ static void add_rubbing(assembly *self) {
   }
 }
 
-/*
- * Contributions that are in memory at once: they take three times as much as the matrix that they add up to.
- * More are visited again for each stretch of columns.
- */
-enum { MOST_AT_ONCE = 1 << 20 };
-
-/* Collects the contributions to the columns [first, end). */
-static void collect_columns(assembly *self, const double *rest, strut_closed closed, int32_t first,
-                            int32_t end) {
-  self->stiffness.count = self->damping.count = 0;
-  self->stiffness.first = self->damping.first = first;
-  self->stiffness.end = self->damping.end = end;
+static bool build(assembly *self, const double *rest, strut_closed closed, strut_arena *arena,
+                  strut_tangent *tangent) {
   strut_force_visit visit = {
       .model = self->model, .q = self->q, .rest = rest, .least = -HUGE_VAL, .closed = closed};
   for (const strut_force *force; (force = strut_force_next(&visit));) add_force(self, force);
   if (self->stiffest) add_maxwell(self, rest);
   if (self->stiffest) add_rubbing(self);
   strut_mass_damping_add(self->model, self->row_of, &self->damping);
-}
-
-/* Builds both matrices a stretch of columns at a time. */
-static bool build_by_stretches(assembly *self, const double *rest, strut_closed closed,
-                               strut_arena *arena, strut_tangent *tangent) {
-  self->stiffness.counting = self->damping.counting = true;
-  collect_columns(self, rest, closed, 0, tangent->n);
-  self->stiffness.counting = self->damping.counting = false;
-  int32_t n = tangent->n, stretches = (int32_t)(self->stiffness.count / MOST_AT_ONCE) + 1;
-  int32_t columns = n / stretches + 1;
-  tangent->stiffness = strut_sparse_begin(n, self->stiffness.count, arena);
-  tangent->damping = strut_sparse_begin(n, self->damping.count, arena);
-  if (!tangent->stiffness || !tangent->damping) return false;
-  for (int32_t first = 0; first < n; first += columns) {
-    collect_columns(self, rest, closed, first, n - first < columns ? n : first + columns);
-    strut_sparse_append(tangent->stiffness, &self->stiffness);
-    strut_sparse_append(tangent->damping, &self->damping);
-  }
-  return true;
-}
-
-static bool build_at_once(assembly *self, const double *rest, strut_closed closed,
-                          strut_arena *arena, strut_tangent *tangent) {
-  collect_columns(self, rest, closed, 0, tangent->n);
   tangent->stiffness = strut_sparse_build(tangent->n, &self->stiffness, arena);
   tangent->damping = strut_sparse_build(tangent->n, &self->damping, arena);
   return tangent->stiffness && tangent->damping;
@@ -367,7 +333,6 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
                                     strut_closed closed, strut_arena *arena,
                                     strut_tangent *tangent) {
   strut_arena scratch = {0};
-  bool resting = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
   size_t both = (size_t)model->length;
   size_t most = strut_tangent_entries(model, true) + strut_mass_damping_entries(model) +
                 10 * (size_t)model->feedback.maxwell_count +
@@ -376,16 +341,14 @@ strut_status strut_tangent_assemble(const strut_model *model, const double *q, c
   assembly a = {
       .model = model, .q = q, .row_of = row_of, .undamped = closed == STRUT_CLOSED_UNDAMPED};
   a.stiffest = closed == STRUT_CLOSED_ALL || closed == STRUT_CLOSED_UNDAMPED;
-  if (resting && (model->terms & STRUT_TERM_LAWS)) a.weight = resting_force(model);
+  if (a.stiffest && (model->terms & STRUT_TERM_LAWS)) a.weight = resting_force(model);
   tangent->coordinate = strut_arena_allocate(arena, both, sizeof *tangent->coordinate);
   tangent->rigid = NULL;
   strut_status status = STRUT_NO_MEMORY;
   if (row_of && tangent->coordinate && strut_triplets_reserve(&a.stiffness, most, &scratch) &&
       strut_triplets_reserve(&a.damping, most, &scratch)) {
     tangent->n = strut_number_free(model, NULL, row_of, tangent->coordinate);
-    if (most > MOST_AT_ONCE ? build_by_stretches(&a, rest, closed, arena, tangent)
-                            : build_at_once(&a, rest, closed, arena, tangent))
-      status = STRUT_OK;
+    if (build(&a, rest, closed, arena, tangent)) status = STRUT_OK;
   }
   strut_arena_free(&scratch);
   return status;

@@ -98,9 +98,7 @@ static void add_powers(const strut_state *state, const average *self, const stre
                        double change, double rest_rate) {
   double damped = self->tension - self->elastic, lost = damped * m->rate;
   double drive = -self->elastic * change / m->h - damped * rest_rate;
-  state->latest->power[STRUT_POWER_DRIVE] += drive;
-  state->latest->power[STRUT_POWER_MEMBERS] += lost;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(drive) + lost;
+  strut_power_add_two(state->latest->power, STRUT_POWER_DRIVE, drive, STRUT_POWER_MEMBERS, lost);
 }
 
 static void add_members(const strut_model *model, const strut_state *state,
@@ -238,8 +236,7 @@ static void add_element(const strut_model *model, const strut_state *state,
   }
   if (!state->balance) return;
   if (load) {
-    state->latest->power[STRUT_POWER_LOAD] -= force * rate;
-    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(force * rate);
+    strut_power_add(state->latest->power, STRUT_POWER_LOAD, -force * rate);
     return;
   }
   const average now = {.tension = force, .elastic = elastic};
@@ -247,8 +244,7 @@ static void add_element(const strut_model *model, const strut_state *state,
   add_powers(state, &now, &m, origin1 - origin0, rest_rate);
   /* what the drive does to the energy at the same stretch, of a law that depends on more */
   double excess = (energy0 - step->energy0[i] + (end.energy - at1.energy)) / step->h;
-  state->latest->power[STRUT_POWER_DRIVE] += excess;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(excess);
+  strut_power_add(state->latest->power, STRUT_POWER_DRIVE, excess);
 }
 
 static void add_elements(const strut_model *model, const strut_state *state,

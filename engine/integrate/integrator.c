@@ -119,8 +119,7 @@ static void update_on_grid(const strut_integrator *method, const strut_model *mo
   if (!changed) return;
   if (state->balance) {
     double gained = strut_energy_evaluate(model, state, t).elastic - before;
-    state->work[STRUT_POWER_DRIVE] += gained;
-    state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
+    strut_power_add(state->work, STRUT_POWER_DRIVE, gained);
   }
   if (method->restart) method->restart(model, state, workspace, dt);
 }

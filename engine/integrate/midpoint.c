@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/forces/drives/drives.h"
-#include "engine/forces/drives/support_motion.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/tangent.h"
 #include "engine/integrate/discrete_gradient.h"

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * How a method of plain steps comes to run its loop: with the energy balance and without it are two
- * functions, and a third is for scenes with rare terms, each compiled for several processors, so that a
- * scene does not pay for what it does not need.
- */
+/** What methods of plain steps share. */
 #ifndef STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
 #define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
+
+#include <stdint.h>
 
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces_kernel.h"
+#include "engine/forces/members_kernel.h"
+#include "engine/model/algebra/pull_rows.h"
 
 /** Terms whose impulses and positions plain methods apply at the end of a step. */
 enum {
@@ -20,44 +20,50 @@ enum {
 /** At the end of the step of dt [s] from state->step on: supports that move, and impulses. */
 static inline void end_moving_step(const strut_model *model, strut_state *state, double dt) {
   double t = ((double)state->step + 1.0) * dt;
-  state->kicked = strut_sliding_masses_kick(model, state, t - dt, t);
-  state->kicked = strut_support_motion_kick(model, state, t - dt, t) || state->kicked;
-  state->kicked = strut_unbalance_kick(model, state, t - dt, t) || state->kicked;
+  state->kicked = strut_moving_kick(model, state, t - dt, t);
   strut_support_motion_place(model, state, t, state->q, state->v);
 }
 
-/**
- * Defines NAME_plain(model, state, work, dt, count), which runs
- * `steps(model, state, work, dt, count, terms, balance)`, an inlined function, as terms and balance ask.
- * NAME must be the method's own: cloned functions of equal names do not link with clang (hot.h).
- */
+/** Defines NAME_plain(model, state, work, dt, count), which runs `steps` in copies: STRUT_COPIES. */
 #define STRUT_PLAIN_STEPS(name, work_type, steps)                                                  \
-  STRUT_CLONES                                                                                     \
-  static void name##_with_balance(const strut_model *model, strut_state *state, work_type *work,   \
-                                  double dt, int64_t count) {                                      \
-    steps(model, state, work, dt, count, STRUT_TERMS_COMMON, true);                                \
-  }                                                                                                \
-                                                                                                   \
-  STRUT_CLONES                                                                                     \
-  static void name##_without_balance(const strut_model *model, strut_state *state,                 \
-                                     work_type *work, double dt, int64_t count) {                  \
-    steps(model, state, work, dt, count, STRUT_TERMS_COMMON, false);                               \
-  }                                                                                                \
-                                                                                                   \
-  STRUT_CLONES                                                                                     \
-  static void name##_with_rare_terms(const strut_model *model, strut_state *state,                 \
-                                     work_type *work, double dt, int64_t count) {                  \
-    steps(model, state, work, dt, count, STRUT_TERMS_ALL, state->balance);                         \
-  }                                                                                                \
-                                                                                                   \
-  static void name##_plain(const strut_model *model, strut_state *state, work_type *work,          \
-                           double dt, int64_t count) {                                             \
-    if (model->terms & STRUT_TERMS_RARE)                                                           \
-      name##_with_rare_terms(model, state, work, dt, count);                                       \
-    else if (state->balance)                                                                       \
-      name##_with_balance(model, state, work, dt, count);                                          \
-    else                                                                                           \
-      name##_without_balance(model, state, work, dt, count);                                       \
+  STRUT_COPIES(                                                                                    \
+      name##_plain, steps,                                                                         \
+      (const strut_model *model, strut_state *state, work_type *work, double dt, int64_t count),   \
+      model, state, work, dt, count)
+
+/* Hot: the stages of the classical Runge-Kutta method over arrays of coordinates, (n) each. */
+
+#define STRUT_RK4_TIME(time, weight) time,
+#define STRUT_RK4_WEIGHT(time, weight) weight,
+static const double STRUT_RK4_AHEAD[4] = {STRUT_RK4_STAGES(STRUT_RK4_TIME)},
+                    STRUT_RK4_WEIGHTS[4] = {STRUT_RK4_STAGES(STRUT_RK4_WEIGHT)};
+#undef STRUT_RK4_TIME
+#undef STRUT_RK4_WEIGHT
+
+/* Positions and velocities h after the begin of the step, by the rates v and a of the stage before. */
+STRUT_LOOP void rk4_next_stage(int32_t n, double h, const double *restrict q0,
+                               const double *restrict v0, const double *restrict v,
+                               const double *restrict a, double *restrict q,
+                               double *restrict next) {
+  strut_lanes step = four_all(h);
+  for (int32_t i = 0; i < n; i += STRUT_LANES) {
+    strut_lanes_store(q + i,
+                      four_rk4_stage(strut_lanes_load(q0 + i), step, strut_lanes_load(v + i)));
+    strut_lanes_store(
+        next + i, four_rk4_stage(strut_lanes_load(v0 + i), step, strut_lanes_load_pairs(a + i)));
   }
+}
+
+/* Positions, or velocities, at the end of a step of h; out: may be z. */
+STRUT_LOOP void rk4_end_of_step(int32_t n, double h, const double *z, const double *k1,
+                                const double *restrict k2, const double *restrict k3,
+                                const double *restrict k4, double *out) {
+  strut_lanes sixth = four_all(h / 6.0);
+  for (int32_t i = 0; i < n; i += STRUT_LANES)
+    strut_lanes_store(out + i,
+                      four_rk4_end(strut_lanes_load(z + i), sixth, strut_lanes_load(k1 + i),
+                                   strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i),
+                                   strut_lanes_load_pairs(k4 + i)));
+}
 
 #endif

@@ -7,7 +7,6 @@
 #include "engine/forces/rigid.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/plain_steps.h"
-#include "engine/integrate/rk4_stages.h"
 
 /* Stage values, (length) each: positions now, velocities of stages 2 to 4, accelerations of all. */
 typedef struct rk4_workspace {
@@ -32,7 +31,7 @@ static void *rk4_create(const strut_model *model, strut_state *state,
 /*
  * The step as a loop over its stages, so that the forces stand in it once. Times are n dt, (n + 1/2) dt and
  * (n + 1) dt, never sums. With the energy balance the powers enter the works with the stage's weight: those
- * of members and of level ground once for the whole step, see step_balance.h, all others stage by stage.
+ * of members and of level ground once for the whole step, see forces_kernel.h, all others stage by stage.
  */
 STRUT_INLINE void run_steps(const strut_model *model, strut_state *state, rk4_workspace *self,
                             double dt, int64_t count, unsigned terms, bool balance, bool rigid) {

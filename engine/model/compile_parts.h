@@ -16,6 +16,17 @@ size_t strut_element_slots(const strut_scene *scene);
  */
 bool strut_elements_compile(strut_model *model);
 
+/** The numbers of a law, with the pieces of its curve where it has one. False: out of memory. */
+bool strut_law_numbers_set(strut_model *model, const strut_law *law, double stiffness,
+                           strut_law_numbers *numbers);
+
+/**
+ * Puts (count) elements, whose nodes are in model->elements.at, into the order of the tables, and fills these.
+ * nodes: of all elements. False: out of memory.
+ */
+bool strut_elements_arrange(strut_model *model, const strut_element *element, int32_t count,
+                            int32_t nodes);
+
 /** Lists what rubs, and places the elements of feet on their grounds, after contacts were compiled; false: out of memory. */
 bool strut_rubbing_compile(strut_model *model);
 

@@ -2,14 +2,11 @@
 #include "engine/model/elements.h"
 
 #include <assert.h>
-#include <gsl/gsl_interp.h>
 #include <math.h>
-#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/model.h"
-#include "engine/scene/curve.h"
 
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
@@ -128,102 +125,6 @@ static void count_elements(const strut_scene *scene, const uint8_t *reeled, size
   }
 }
 
-/* Slopes at the points of a smooth table, of Steffen's monotone spline. */
-static bool find_slopes(const strut_law *law, double *slope) {
-  if (!law->smooth || law->count < 3) return true;
-  gsl_interp *spline = gsl_interp_alloc(gsl_interp_steffen, law->count);
-  if (!spline) return false;
-  bool good = gsl_interp_init(spline, law->x, law->force, law->count) == 0;
-  for (size_t i = 0; i < law->count && good; i++)
-    slope[i] = gsl_interp_eval_deriv(spline, law->x, law->force, law->x[i], NULL);
-  gsl_interp_free(spline);
-  return good;
-}
-
-/* Coefficients of a cubic from values and slopes at its two ends, h apart; straight where one has no slope. */
-static void fill_piece(const strut_law *law, const double *slope, size_t i, double piece[4]) {
-  double h = law->x[i + 1] - law->x[i], rise = (law->force[i + 1] - law->force[i]) / h;
-  bool straight = isnan(slope[i]) || isnan(slope[i + 1]);
-  piece[0] = law->force[i];
-  piece[1] = straight ? rise : slope[i];
-  piece[2] = straight ? 0.0 : (3.0 * rise - 2.0 * slope[i] - slope[i + 1]) / h;
-  piece[3] = straight ? 0.0 : (slope[i] + slope[i + 1] - 2.0 * rise) / (h * h);
-}
-
-/*
- * The law with its points as scene/curve.h makes them of those given, and their slopes, where they have some;
- * false: out of memory.
- */
-static bool take_points(strut_arena *arena, strut_law *law, double **slope) {
-  size_t room = strut_curve_room(law);
-  strut_curve_point *point = strut_allocate(room, sizeof *point);
-  double *x = strut_arena_allocate(arena, room, sizeof *x);
-  double *force = strut_arena_allocate(arena, room, sizeof *force);
-  *slope = strut_arena_allocate(arena, room, sizeof **slope);
-  bool made = point && x && force && *slope;
-  if (made) law->count = strut_curve_trace(law, point);
-  for (size_t i = 0; i < law->count && made; i++)
-    x[i] = point[i].x, force[i] = point[i].force, (*slope)[i] = point[i].slope;
-  law->x = x, law->force = force;
-  strut_release(point);
-  return made;
-}
-
-/* The stable piece of a curve at x = 0 whose force is least. */
-static int find_start(const strut_law_curve *curve) {
-  double least = HUGE_VAL;
-  int start = 0;
-  for (int i = 0; i + 1 < (int)curve->count; i++) {
-    if (strut_folding_way(curve, i) < 0 || strut_folding_beyond(curve, i, 0.0)) continue;
-    double force = fabs(strut_law_curve_piece(curve, (size_t)i, 0.0).force);
-    if (force < least) least = force, start = i;
-  }
-  return start;
-}
-
-static const strut_law_curve *make_curve(strut_model *model, const strut_law *given) {
-  strut_arena *arena = &model->arena;
-  strut_law points = *given;
-  const strut_law *law = &points;
-  double *slope;
-  if (!take_points(arena, &points, &slope)) return NULL;
-  size_t n = law->count;
-  strut_law_curve *curve = strut_arena_allocate(arena, 1, sizeof *curve);
-  double(*piece)[4] = strut_arena_allocate(arena, n, sizeof *piece);
-  double *energy = strut_arena_allocate(arena, n, sizeof *energy);
-  if (!curve || !piece || !energy || !find_slopes(law, slope)) return NULL;
-  bool folds = law->kind == STRUT_LAW_FOLDING;
-  *curve = (strut_law_curve){n, law->x, (const double(*)[4])piece, energy, law->smooth, 0};
-  for (size_t i = 0; i + 1 < n; i++) {
-    double h = law->x[i + 1] - law->x[i], *p = piece[i];
-    fill_piece(law, slope, i, p);
-    energy[i + 1] = energy[i] + h * (p[0] + h * (p[1] / 2.0 + h * (p[2] / 3.0 + h * p[3] / 4.0)));
-  }
-  strut_law_numbers numbers = {.curve = curve};
-  if (folds)
-    curve->start = find_start(curve),
-    curve->smooth = law->source == STRUT_LAW_CONTROL_POINTS || law->rounding > 0.0;
-  double origin = strut_law_respond(law->kind, &numbers, 0.0, 0.0, -1).energy;
-  for (size_t i = 0; i < n; i++) energy[i] -= origin;
-  return curve;
-}
-
-static bool set_numbers(strut_model *model, const strut_law *law, double stiffness,
-                        strut_law_numbers *numbers) {
-  *numbers = (strut_law_numbers){.stiffness = stiffness};
-#define STRUT_LAW_ROW(NAME, field, ...) numbers->field = law->field;
-  STRUT_LAW_PARAMETERS(STRUT_LAW_ROW)
-#undef STRUT_LAW_ROW
-  if (strut_law_needs(law->kind, STRUT_LAW_PARAMETER_COEFFICIENTS))
-    numbers->coefficient = law->force, numbers->count = law->count;
-  if (strut_law_allows(law->kind, STRUT_LAW_PARAMETER_POINTS) &&
-      !(numbers->curve = make_curve(model, law)))
-    return false;
-  if (strut_law_at(law->kind)->own)
-    numbers->stiffness = strut_law_respond(law->kind, numbers, 0.0, 0.0, -1).slope;
-  return true;
-}
-
 static int8_t sign_of(strut_carries carries) {
   return carries == STRUT_CARRIES_TENSION ? 1 : carries == STRUT_CARRIES_COMPRESSION ? -1 : 0;
 }
@@ -308,6 +209,15 @@ static void remember(compilation *self, strut_element *element) {
     rest[elements->history_slot + elements->history_slots++] = -1.0; /* nothing is remembered yet */
 }
 
+/* `ends`: it breaks or is released. */
+static void set_law(compilation *self, strut_element *element, const strut_law *law,
+                    double stiffness, bool ends) {
+  element->law = law->kind;
+  element->carries = sign_of(law->carries);
+  if (!strut_law_numbers_set(self->model, law, stiffness, &element->numbers)) self->failed = true;
+  if (ends || memory_of_law(law)) remember(self, element);
+}
+
 static void add_stop(compilation *self, size_t j, strut_element_role role, double at,
                      double stiffness) {
   const strut_member *member = &self->model->scene->members[j];
@@ -341,7 +251,8 @@ static void add_member(compilation *self, size_t j) {
                                           .carries = cable ? 1 : sign_of(member->law.carries),
                                           .damping = member->damping});
     add_way(self, element, member);
-    if (!set_numbers(self->model, &member->law, stiffness, &element->numbers)) self->failed = true;
+    if (!strut_law_numbers_set(self->model, &member->law, stiffness, &element->numbers))
+      self->failed = true;
     stiffness = element->numbers.stiffness;
     if (reeled)
       element->numbers.axial = member->axial_stiffness,
@@ -362,21 +273,13 @@ static void add_hinge(compilation *self, size_t i) {
   const strut_hinge *hinge = &model->scene->hinges[i];
   int32_t slot = hinge_slot(model, (int32_t)i);
   strut_element *element = add_element(self, (strut_element){.strain = STRUT_STRAIN_ANGLE,
-                                                             .law = hinge->law.kind,
                                                              .role = STRUT_ELEMENT_HINGE,
                                                              .item = (int32_t)i,
                                                              .slot = slot,
-                                                             .carries = sign_of(hinge->law.carries),
                                                              .damping = hinge->damping});
   for (int k = 0; k < 3; k++) add_node(self, element, hinge->node[k]);
   ((double *)model->members.rest)[slot] = strut_hinge_rest(model->scene, i);
-  if (!set_numbers(model, &hinge->law, hinge->stiffness, &element->numbers)) self->failed = true;
-  if (strut_hinge_ends(hinge) || memory_of_law(&hinge->law)) remember(self, element);
-}
-
-/* The block of an element: by strain, law and memory. */
-static int kind_of(const strut_element *element) {
-  return 2 * ((int)element->strain * STRUT_LAW_COUNT + (int)element->law) + element->remembers;
+  set_law(self, element, &hinge->law, hinge->stiffness, strut_hinge_ends(hinge));
 }
 
 /* Their nodes run counter-clockwise, so that their area is positive. */
@@ -390,18 +293,14 @@ static void add_elastic_cell(compilation *self, size_t i, double area) {
   const strut_cell *cell = &self->model->scene->cells[i];
   strut_element *element = add_element(
       self, (strut_element){.strain = STRUT_STRAIN_AREA,
-                            .law = cell->elastic.kind,
                             .role = STRUT_ELEMENT_CELL,
                             .item = (int32_t)i,
                             .slot = -1,
-                            .carries = sign_of(cell->elastic.carries),
                             .natural = isnan(cell->rest_area) ? fabs(area) : cell->rest_area,
                             .damping = cell->damping});
   add_corners(self, element, cell, area);
-  if (!set_numbers(self->model, &cell->elastic, cell->stiffness, &element->numbers))
-    self->failed = true;
+  set_law(self, element, &cell->elastic, cell->stiffness, false);
   element->numbers.area = fabs(area);
-  if (memory_of_law(&cell->elastic)) remember(self, element);
 }
 
 static void add_cell(compilation *self, size_t i) {
@@ -472,20 +371,16 @@ static void add_distance(compilation *self, size_t i) {
   double sign = back ? -1.0 : 1.0;
   strut_element *element = add_element(
       self, (strut_element){.strain = line ? STRUT_STRAIN_OFFSET : STRUT_STRAIN_ALONG,
-                            .law = spring->law.kind,
                             .role = STRUT_ELEMENT_DISTANCE,
                             .item = (int32_t)i,
                             .slot = -1,
-                            .carries = sign_of(spring->law.carries),
                             .natural = strut_distance_rest(self->model->scene, i),
                             .axis = sign * sin(spring->along) / (1.0 + sign * cos(spring->along)),
                             .damping = spring->damping});
   add_node(self, element, line ? spring->node[0] : spring->node[back]);
   add_node(self, element, line ? spring->line[0] : spring->node[!back]);
   if (line) add_node(self, element, spring->line[1]);
-  if (!set_numbers(self->model, &spring->law, spring->stiffness, &element->numbers))
-    self->failed = true;
-  if (memory_of_law(&spring->law)) remember(self, element);
+  set_law(self, element, &spring->law, spring->stiffness, false);
 }
 
 /* Its law is that of a given pressure, with the drawn angle for the area. */
@@ -536,166 +431,6 @@ static void add_feet(compilation *self) {
   }
 }
 
-/* So many elements of collisions, and so many times as many as nodes, that few act at a time. */
-enum { MANY_COLLISIONS = 64, FAR_MORE = 4 };
-
-/* Blocks of one strain and one law, in the tables' order; in a block the scene's order. */
-static bool sort_elements(compilation *self, strut_element_table *elements) {
-  strut_arena *arena = &self->model->arena;
-  strut_element *sorted = strut_arena_allocate(arena, (size_t)self->count, sizeof *sorted);
-  strut_element_block *block =
-      strut_arena_allocate(arena, 2 * (size_t)STRUT_STRAIN_COUNT * STRUT_LAW_COUNT, sizeof *block);
-  if (!sorted || !block) return false;
-  int32_t all = 0, of_kind[2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT] = {0};
-  for (int32_t i = 0; i < self->count; i++) of_kind[kind_of(&self->element[i])]++;
-  for (int kind = 0; kind < 2 * STRUT_STRAIN_COUNT * STRUT_LAW_COUNT; kind++) {
-    int32_t begin = elements->count;
-    if (!of_kind[kind]) continue;
-    for (int32_t i = 0; i < self->count; i++)
-      if (kind_of(&self->element[i]) == kind) sorted[elements->count++] = self->element[i];
-    bool both = true;
-    int32_t collisions = 0;
-    for (int32_t i = begin; i < elements->count; i++) {
-      both = both && !sorted[i].carries;
-      collisions += sorted[i].role == STRUT_ELEMENT_COLLISION;
-    }
-    const strut_element *element = &sorted[begin];
-    block[elements->block_count++] =
-        (strut_element_block){element->strain,    element->law,  begin, elements->count, both,
-                              element->remembers, collisions > 0};
-    all += collisions;
-    self->model->strains |= UINT32_C(1) << element->strain;
-  }
-  for (int32_t i = 0; i < elements->count; i++) {
-    int32_t rows = 2 * sorted[i].nodes;
-    sorted[i].place = elements->entries;
-    elements->entries += rows * (rows + 1) / 2;
-    if (sorted[i].nodes > elements->most_nodes) elements->most_nodes = sorted[i].nodes;
-  }
-  elements->element = sorted, elements->block = block;
-  elements->scattered = all >= MANY_COLLISIONS + FAR_MORE * (int32_t)self->model->node_count;
-  return true;
-}
-
-/*
- * Not all of many collisions act at once, which would make the largest stable step smaller than it can ever be. Marks
- * the stiffest of each node, and as many more as bodies that are packed together have: CROWD at each node.
- */
-static bool mark_crowd(strut_model *model) {
-  enum { CROWD = 4 };
-  strut_element_table *elements = &model->elements;
-  if (!elements->scattered) return true;
-  uint8_t *at_node = strut_allocate((size_t)model->node_count, sizeof *at_node);
-  double *stiffest = strut_allocate((size_t)model->node_count, sizeof *stiffest);
-  bool done = at_node && stiffest;
-  /* where there is room, then what is stiffer */
-  for (int32_t n = 0; n < 2 * elements->count && done; n++) {
-    strut_element *element = (strut_element *)&elements->element[n % elements->count];
-    if (element->role != STRUT_ELEMENT_COLLISION || element->crowds) continue;
-    const uint32_t *at = elements->at + element->first;
-    bool room = true;
-    for (int32_t k = 0; k < element->nodes; k++) room = room && at_node[at[k] / 2] < CROWD;
-    element->crowds = n < elements->count ? room : element->numbers.stiffness > stiffest[at[0] / 2];
-    if (!element->crowds) continue;
-    for (int32_t k = 0; k < element->nodes; k++) {
-      uint32_t node = at[k] / 2;
-      stiffest[node] = fmax(stiffest[node], element->numbers.stiffness);
-      if (at_node[node] < CROWD) at_node[node]++;
-    }
-  }
-  strut_release(at_node);
-  strut_release(stiffest);
-  return done;
-}
-
-/* Node lists in the elements' order, and numbers side by side, so that vector loops read on. */
-static bool lay_out(strut_model *model, int32_t nodes) {
-  strut_element_table *elements = &model->elements;
-  size_t count = (size_t)elements->count;
-  uint32_t *at = strut_arena_allocate(&model->arena, (size_t)nodes, sizeof *at);
-  double *stiffness = strut_arena_allocate(&model->arena, count, sizeof *stiffness);
-  double *damping = strut_arena_allocate(&model->arena, count, sizeof *damping);
-  int32_t *slot = strut_arena_allocate(&model->arena, count, sizeof *slot), next = 0;
-  if (!at || !stiffness || !damping || !slot) return false;
-  for (int32_t i = 0; i < elements->count; i++) {
-    strut_element *element = (strut_element *)&elements->element[i];
-    for (int32_t k = 0; k < element->nodes; k++) at[next + k] = elements->at[element->first + k];
-    element->first = next;
-    next += element->nodes;
-    stiffness[i] = element->numbers.stiffness, damping[i] = element->damping,
-    slot[i] = element->slot;
-  }
-  elements->at = at, elements->stiffness = stiffness, elements->damping = damping,
-  elements->slot = slot;
-  return true;
-}
-
-/* Chains the elements of each member, its own force first. */
-static bool link_members(strut_model *model) {
-  strut_element_table *elements = &model->elements;
-  strut_element *element = (strut_element *)elements->element;
-  size_t members = model->scene->member_count;
-  int32_t *of_member = strut_arena_allocate(&model->arena, members, sizeof *of_member);
-  if (!of_member) return false;
-  for (size_t j = 0; j < members; j++) of_member[j] = -1;
-  for (int own = 0; own < 2; own++)
-    for (int32_t i = 0; i < elements->count; i++) {
-      strut_element *e = &element[i];
-      if (!strut_element_is_of_member(e) || (e->role == STRUT_ELEMENT_MEMBER) != own) continue;
-      e->sibling = of_member[e->item];
-      of_member[e->item] = i;
-    }
-  elements->of_member = of_member;
-  return true;
-}
-
-/* What breaks or is released at a force or a time; 0 means never. */
-static strut_breakable breakable(strut_element_role role, size_t item, int32_t first, double force,
-                                 double time) {
-  return (strut_breakable){.role = role,
-                           .item = (int32_t)item,
-                           .first = first,
-                           .force = force > 0.0 ? force : HUGE_VAL,
-                           .time = time > 0.0 ? time : HUGE_VAL};
-}
-
-static bool list_breakables(strut_model *model) {
-  const strut_scene *scene = model->scene;
-  strut_element_table *elements = &model->elements;
-  strut_breakable *list =
-      strut_arena_allocate(&model->arena, (size_t)elements->history_count, sizeof *list);
-  if (!list) return false;
-  for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *member = &scene->members[j];
-    if (!strut_member_ends(member)) continue;
-    list[elements->breakable_count++] = breakable(STRUT_ELEMENT_MEMBER, j, elements->of_member[j],
-                                                  member->breaks_at, member->released_at);
-  }
-  for (size_t i = 0; i < scene->hinge_count; i++) {
-    const strut_hinge *hinge = &scene->hinges[i];
-    if (!strut_hinge_ends(hinge)) continue;
-    int32_t first = strut_element_find(elements, STRUT_ELEMENT_HINGE, (int32_t)i);
-    list[elements->breakable_count++] =
-        breakable(STRUT_ELEMENT_HINGE, i, first, hinge->breaks_at, hinge->released_at);
-  }
-  elements->breakable = list;
-  return true;
-}
-
-/* After the elements have been sorted. */
-static bool list_memories(strut_model *model) {
-  strut_element_table *elements = &model->elements;
-  if (!elements->history_count) return true;
-  int32_t *memory =
-      strut_arena_allocate(&model->arena, (size_t)elements->history_count, sizeof *memory);
-  if (!memory) return false;
-  for (int32_t i = 0; i < elements->count; i++)
-    if (elements->element[i].remembers) memory[elements->element[i].memory] = i;
-  elements->memory = memory;
-  model->terms |= STRUT_TERM_MEMORY;
-  return list_breakables(model);
-}
-
 static bool compile(strut_model *model, const uint8_t *reeled) {
   const strut_scene *scene = model->scene;
   size_t elements, nodes;
@@ -717,8 +452,7 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   assert(c.count <= (int32_t)elements && c.nodes <= (int32_t)nodes);
   model->elements.at = c.at;
   model->terms |= STRUT_TERM_ELEMENTS;
-  return !c.failed && sort_elements(&c, &model->elements) && lay_out(model, c.nodes) &&
-         mark_crowd(model) && link_members(model) && list_memories(model);
+  return !c.failed && strut_elements_arrange(model, c.element, c.count, c.nodes);
 }
 
 bool strut_elements_compile(strut_model *model) {

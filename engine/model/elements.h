@@ -97,9 +97,8 @@ typedef struct strut_element_block {
   strut_strain_kind strain;
   strut_law_kind law;
   int32_t begin, end;
-  bool both_signs; /* all of them carry both */
-  bool remembers;  /* all of them have memory; otherwise none */
-  bool collides;   /* some of them are of collisions */
+  bool remembers; /* all of them have memory; otherwise none */
+  bool collides;  /* some of them are of collisions */
 } strut_element_block;
 
 /** Elements of one member or hinge that from some force or time on carry nothing. */

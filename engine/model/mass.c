@@ -266,9 +266,6 @@ static void add_sliding_masses(const strut_model *model, const int32_t *row_of,
   }
 }
 
-/* Contributions from which on it pays to keep the entries only. */
-enum { LARGE = 100000 };
-
 strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *scratch,
                                strut_sparse **matrix, int32_t **node) {
   const uint8_t *fixed = model->fixed + coordinate;
@@ -290,9 +287,7 @@ strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *
   }
   add_members(model, row_of, &sum);
   add_sliding_masses(model, row_of, &sum);
-  bool large = sum.count > LARGE;
-  *matrix = strut_sparse_build(n, &sum, large ? scratch : &model->arena);
-  if (large && *matrix) *matrix = strut_sparse_copy(*matrix, &model->arena);
+  *matrix = strut_sparse_build(n, &sum, &model->arena);
   return *matrix ? STRUT_OK : STRUT_NO_MEMORY;
 }
 

@@ -18,12 +18,171 @@
 #include "engine/base/status.h"
 #include "engine/model/algebra/pull_rows.h"
 #include "engine/model/elements.h"
-#include "engine/model/feedback.h"
-#include "engine/model/rubbing.h"
-#include "engine/model/sliding_masses.h"
-#include "engine/model/support_motion.h"
 #include "engine/model/surfaces.h"
 #include "engine/scene/scene.h"
+
+/*
+ * Compiled feedback: where sensors find their values, and internal states. A model without them has none
+ * of it.
+ *
+ * Internal states are integrated beside the motion as auxiliary coordinates of unit mass, which stand
+ * behind those of the nodes and that of padding in coordinate arrays: the state is the velocity there,
+ * its rate the force. Every method so integrates them at its own order. They count as fixed, so that
+ * nobody else takes them for positions.
+ */
+
+/** Does a column need the driven rest lengths, or where shaken grounds are? */
+static inline bool strut_column_needs_drives(strut_column column) {
+  return strut_observable_at(column.kind)->need != STRUT_OBSERVED_MOTION;
+}
+
+/** The Maxwell branch of a member, whose force is an internal state. */
+typedef struct strut_maxwell_entry {
+  int32_t member, state;
+  double stiffness, damping;
+} strut_maxwell_entry;
+
+typedef struct strut_feedback_table {
+  int32_t count;
+  const strut_column *sensor; /* (count) as strut_column_find finds them */
+  bool needs_drives;          /* some sensor's value follows from the driven rest lengths */
+  int32_t base, state_count;  /* states stand at base .. base + state_count - 1 of velocities */
+  int32_t lag_count;
+  const int32_t
+      *lagged; /* (lag_count) signals with a lag; their states follow those of the scene */
+  const int32_t *lag_of; /* (signals) state of a signal's lag, or -1 */
+  int32_t maxwell_count;
+  const strut_maxwell_entry *maxwell; /* (maxwell_count); their states follow */
+  int32_t bristle_count;              /* bends of bristles, the last states */
+  int32_t sampled_count;
+  int32_t trigger_count;
+  const int32_t *triggered; /* (trigger_count) signals with a trigger */
+  const int32_t *sampled;   /* (sampled_count) signals that are sampled, terms before their sums */
+  int32_t relay_count;
+  const int32_t *relay; /* (relay_count) relays that are not sampled: they switch at any time */
+} strut_feedback_table;
+
+/** Does the motion depend on more of the past than positions and velocities hold? */
+static inline bool strut_feedback_remembers(const strut_feedback_table *feedback) {
+  return feedback->state_count || feedback->sampled_count || feedback->trigger_count ||
+         feedback->relay_count;
+}
+
+struct strut_model;
+/**
+ * The column of a scene with the item that its function knows: an element, which is looked for from `near` on, or
+ * contacts from `item` up to `other`.
+ */
+STRUT_API strut_column strut_column_find(const struct strut_model *model, strut_column column,
+                                         int32_t near);
+
+/*
+ * Supported coordinates that a signal moves: position + signal(t).
+ *
+ * They stay out of the mass matrix that is factored. With the consistent mass their acceleration a_c
+ * pushes free neighbours by -M_fc a_c; the entries of M_fc are the couplings.
+ */
+
+typedef struct strut_moved_coordinate {
+  int32_t at;     /* index in coordinate arrays */
+  int32_t signal; /* of the scene */
+  double base;    /* position where the signal is 0 [m] */
+} strut_moved_coordinate;
+
+/** An entry of the mass matrix between a moved coordinate and a free one. */
+typedef struct strut_support_coupling {
+  int32_t item; /* moved coordinate */
+  int32_t at;   /* index of the free one in coordinate arrays */
+  double mass;  /* [kg] */
+} strut_support_coupling;
+
+typedef struct strut_support_motion_table {
+  int32_t count, coupling_count;
+  const strut_moved_coordinate *item;     /* (count) in the scene's order */
+  const strut_support_coupling *coupling; /* (coupling_count) */
+  bool corners; /* some coupled coordinate has a signal whose rate jumps */
+} strut_support_motion_table;
+
+/*
+ * Point masses on the straight line between the two nodes of a member.
+ *
+ * A mass m at the share s of the line is at x = N q with N = (1 - s, s) at the member's two nodes, alike in
+ * x and y. One at rest on its member adds m N'N to the mass matrix, which is factored with it. One that moves
+ * stays out of that matrix M: its nodes answer through columns of M^-1 kept here, see
+ * engine/forces/drives/moving_masses.h.
+ */
+
+/** How nodes answer to unit forces on the two nodes of a member, cut where it is negligible. */
+typedef struct strut_sliding_answer {
+  int32_t count;
+  const uint32_t *at; /* (count) 2 * node */
+  const double *xy;   /* (count, 4) x, y by the first node, x, y by the second [1/kg] */
+} strut_sliding_answer;
+
+typedef struct strut_sliding_item {
+  int32_t member; /* of the scene */
+  uint32_t at[2]; /* 2 * node of the member's two nodes */
+  double mass;    /* [kg] */
+  double start;   /* share at t = 0 */
+  double base;    /* share where the signal is 0 */
+  double scale;   /* share per unit of the signal */
+  int32_t signal; /* of the scene; -1: at rest */
+} strut_sliding_item;
+
+/** A moving mass at one instant. */
+typedef struct strut_sliding_motion {
+  double share, rate, bend; /* of its member's line [1], and its derivatives [1/s], [1/s^2] */
+  double jump;              /* of the rate, while an impulse is found */
+} strut_sliding_motion;
+
+typedef struct strut_sliding_table {
+  int32_t count, moving_count;
+  const strut_sliding_item *item;     /* (count) in the scene's order */
+  const int32_t *moving;              /* (moving_count) those that move */
+  const strut_sliding_answer *answer; /* (moving_count) */
+  /* (2, 2 moving_count, 2 moving_count) of x, then y: entries of M^-1 between the members' nodes [1/kg] */
+  const double *between;
+  bool corners;       /* some signal's rate jumps */
+  bool massless_node; /* some free node has no mass but that of sliding masses */
+} strut_sliding_table;
+
+/** Mass moment beyond that of the weights at time t [s], sum of m x, of one coordinate at positions q [kg m]. */
+STRUT_API double strut_sliding_moment(const struct strut_model *model, double t, int axis,
+                                      const double *positions);
+
+/*
+ * Elements that rub: feet, circular arcs at ends of members, which roll on the ground instead of the node there,
+ * nodes that the ground holds by bristles (LuGre), and collisions with friction.
+ *
+ * How they press is an element of a one-sided linear law, so that every method and statics know it; the contact
+ * of the node with each ground says with which stiffness, damping and friction. Friction is a term of its own
+ * (engine/forces/rubbing.h).
+ */
+
+/** A foot or a node on one ground, or one element of a collision. */
+typedef struct strut_rubbing_entry {
+  int32_t element, contact; /* contact: of a foot or a node; else -1 */
+  int32_t
+      bend; /* where in velocities the bend of bristles stands, see strut_feedback_table; -1: none */
+  double belt_speed; /* [m/s] */
+  strut_friction friction;
+} strut_rubbing_entry;
+
+typedef struct strut_rubbing_table {
+  int32_t count, bristles;         /* bristles: entries that have them */
+  const strut_rubbing_entry *item; /* (count) */
+  const int32_t *of_element;       /* (elements) its entry, or -1 */
+  const int32_t *of_contact;       /* (contacts) likewise */
+} strut_rubbing_table;
+
+/** The foot at contact i of the scene, or -1. */
+STRUT_API int32_t strut_foot_of_contact(const strut_scene *scene, size_t i);
+/** Does a foot or bristles make the contact an element? */
+STRUT_API bool strut_contact_is_element(const strut_scene *scene, size_t i);
+/** Contacts with bristles, whose bends are internal states. */
+STRUT_API size_t strut_bristle_count(const strut_scene *scene);
+/** Does some collision of the scene have friction? */
+STRUT_API bool strut_collisions_rub(const strut_scene *scene);
 
 /** The terms a scene may need. The terms of a model is the set of those it does need. */
 typedef enum strut_term {
@@ -170,5 +329,20 @@ STRUT_API strut_status strut_model_compile(const strut_scene *scene, strut_model
 STRUT_API void strut_model_free(strut_model *model);
 /** Of members and contacts: the largest root of stiffness over the mass of the lightest free node [rad/s]. */
 STRUT_API double strut_model_fastest_spring(const strut_model *model);
+
+/* The parts of a structure, nodes that members and elements connect, and what acts on each as a whole. */
+
+typedef struct strut_connected_part {
+  double force[2]; /* sum of those on free coordinates [N] */
+  bool held[2];    /* some node of it, along x, along y */
+  bool touches;    /* some node of it is one that contacts have */
+} strut_connected_part;
+
+/**
+ * part_of (node_count) becomes the number of a node's part, the first that was found of its nodes; part
+ * (node_count), zeros before, is filled there. force: (length) [N].
+ */
+STRUT_API void strut_connected_parts_find(const strut_model *model, const double *force,
+                                          int32_t *part_of, strut_connected_part *part);
 
 #endif

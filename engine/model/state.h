@@ -8,6 +8,8 @@
 #ifndef STRUT_ENGINE_MODEL_STATE_H
 #define STRUT_ENGINE_MODEL_STATE_H
 
+#include <math.h>
+
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
 
@@ -20,13 +22,26 @@ typedef enum strut_power {
   STRUT_POWER_CONTACT,   /* lost in ground dampers, > 0 */
   STRUT_POWER_FRICTION,  /* lost in friction, > 0 */
   STRUT_POWER_EXCHANGED, /* sum of the absolute values of all others */
-  STRUT_POWER_SUPPORT,   /* supports that move, without a part that support_motion.h tells */
+  STRUT_POWER_SUPPORT,   /* supports that move, without a part that moving_masses.h tells */
   STRUT_POWER_COUNT,
   STRUT_POWER_ROOM = 8 /* arrays of powers have this size: whole vectors; the rest is 0 */
 } strut_power;
 
+/** Adds to one of the powers or works, and to the sum of their absolute values. */
+static inline void strut_power_add(double *powers, strut_power kind, double amount) {
+  powers[kind] += amount;
+  powers[STRUT_POWER_EXCHANGED] += fabs(amount);
+}
+/** Adds to two of them, whose absolute values are added to each other first. */
+static inline void strut_power_add_two(double *powers, strut_power kind, double amount,
+                                       strut_power other_kind, double other) {
+  powers[kind] += amount;
+  powers[other_kind] += other;
+  powers[STRUT_POWER_EXCHANGED] += fabs(amount) + fabs(other);
+}
+
 /**
- * Powers of the evaluations of a Runge-Kutta step that have one weight [W]; step_balance.h adds up the lanes
+ * Powers of the evaluations of a Runge-Kutta step that have one weight [W]; forces_kernel.h adds up the lanes
  * at its end. Of members by place in groups of STRUT_LANES; of contacts by the lane that strut_contact_entry
  * has.
  */
@@ -161,7 +176,7 @@ typedef struct strut_state_watched {
   struct strut_variation *variation; /* exact methods with events carry it along, see
                                         integrate/events/location/variation.h */
   struct strut_observer *observer;   /* sees each piece of the motion of a method with events, see
-                                        integrate/observer.h */
+                                        integrate/integrator.h */
   int rehearsals; /* a trial of a method with events is first taken so often and thrown away, which changes no bit */
 } strut_state_watched;
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/surfaces.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,7 +7,6 @@
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
 #include "engine/model/pose.h"
-#include "engine/model/surface_search.h"
 #include "engine/scene/profile.h"
 
 /* Unit vectors of a line in direction (x, y): the solid is to the right. */

@@ -34,7 +34,7 @@ typedef struct strut_line_bounds {
   double least, most;                   /* signed distances of `middle` from them [m] */
 } strut_line_bounds;
 
-/** Bounds of consecutive facets, a node of a tree (surface_search.h). */
+/** Bounds of consecutive facets, a node of a tree (pose.h). */
 typedef struct strut_facet_bounds {
   double low[2], high[2]; /* as far as they reach [m] */
   strut_line_bounds lines;

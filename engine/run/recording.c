@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/recording.h"
+#include "engine/run/simulate_parts.h"
 
 #include <assert.h>
 #include <math.h>

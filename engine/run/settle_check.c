@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/model/parts.h"
+#include "engine/model/model.h"
 #include "engine/run/settle.h"
 
 /* Pulls beyond what friction holds, over the push, that are rounding. */

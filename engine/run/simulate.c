@@ -9,7 +9,7 @@
 
 #include "engine/base/subnormals.h"
 #include "engine/forces/drives/drives.h"
-#include "engine/forces/drives/support_motion.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/integrate/limit/step_limit.h"

@@ -59,8 +59,6 @@ static strut_status inputs_create(strut_setup *setup, const strut_model *model, 
   return STRUT_OK;
 }
 
-static void inputs_free(stepping_inputs *in) { strut_arena_free(&in->arena); }
-
 /* Makes a load of each node, and the constant force a term of the model. */
 static bool add_loads(stepping_inputs *in, strut_model *model) {
   strut_scene *scene = in->scene;
@@ -85,33 +83,7 @@ static bool add_loads(stepping_inputs *in, strut_model *model) {
   return true;
 }
 
-static void restart(const strut_model *model, strut_run *run) {
-  run->state->latest->drive_time = (double)NAN;
-  if (run->method->restart) run->method->restart(model, run->state, run->workspace, run->dt);
-}
-
-/* The array of an input; loads become terms of the model only now. NULL: no memory. */
-static double *inputs_show(stepping_inputs *in, strut_model *model, strut_run *run,
-                           strut_input input, size_t *count) {
-  (void)run;
-  switch (input) {
-    case STRUT_INPUT_REST: *count = in->members; return in->given;
-    case STRUT_INPUT_ACTUATORS: *count = in->actuators; return in->given + in->members;
-    case STRUT_INPUT_LOAD:
-      if (!in->loads && !add_loads(in, model)) return NULL;
-      *count = 2 * in->nodes;
-      return in->given + in->members + in->actuators;
-    case STRUT_INPUTS: break;
-  }
-  return NULL;
-}
-
 /* ---- changes ---- */
-
-/* Bits are compared, so that NAN equals itself. */
-static bool inputs_changed(const stepping_inputs *in) {
-  return memcmp(in->given, in->applied, in->count * sizeof *in->given) != 0;
-}
 
 static strut_status check_inputs(const stepping_inputs *in, strut_error *error) {
   const strut_scene *scene = in->scene;
@@ -208,7 +180,7 @@ static strut_status inputs_apply(stepping_inputs *in, strut_model *model, strut_
   strut_state *state = run->state;
   double t = strut_time_grid_at(&run->grid, state->step);
   strut_status status = check_inputs(in, error);
-  if (status != STRUT_OK) return status;
+  if (status) return status;
   strut_energies before = strut_energy_evaluate(model, state, t);
   double loads = in->loads ? strut_energy_load_potential(model, state) : 0.0;
   /* Rest lengths that no drive and no memory sets follow here. */
@@ -221,10 +193,10 @@ static strut_status inputs_apply(stepping_inputs *in, strut_model *model, strut_
   state->latest->drive_time = (double)NAN;
   strut_energies after = strut_energy_evaluate(model, state, t);
   double work = after.elastic - before.elastic;
-  state->work[STRUT_POWER_DRIVE] += work;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
+  strut_power_add(state->work, STRUT_POWER_DRIVE, work);
   in->work += work;
-  restart(model, run);
+  state->latest->drive_time = (double)NAN;
+  if (run->method->restart) run->method->restart(model, state, run->workspace, run->dt);
   return STRUT_OK;
 }
 
@@ -307,17 +279,17 @@ strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_f
   s->checked = -1;
   s->identity = next_identity();
   strut_status status = make_endless(&s->experiment, error);
-  if (status == STRUT_OK) status = inputs_prepare(setup, error);
-  if (status == STRUT_OK) status = strut_model_compile(&setup->scene, &s->model, error);
-  if (status == STRUT_OK) {
+  if (!status) status = inputs_prepare(setup, error);
+  if (!status) status = strut_model_compile(&setup->scene, &s->model, error);
+  if (!status) {
     status = strut_run_begin(s->model, &s->experiment, &s->options, &s->summary, error, &s->run);
     s->begun = true;
   }
   if (status == STRUT_OK)
     status = strut_recording_create_alone(s->model, &s->run.grid, &s->live, error);
-  if (status == STRUT_OK) status = inputs_create(setup, s->model, &s->inputs, error);
+  if (!status) status = inputs_create(setup, s->model, &s->inputs, error);
   s->run.error = &s->error; /* `error` is the caller's, and may be gone */
-  if (status == STRUT_OK) {
+  if (!status) {
     *stepping = s;
     return STRUT_OK;
   }
@@ -331,7 +303,7 @@ void strut_stepping_free(strut_stepping *stepping) {
   if (stepping->begun) strut_run_end(&stepping->run, STRUT_OK);
   strut_summary_free(&stepping->summary);
   strut_recording_free(&stepping->live);
-  inputs_free(&stepping->inputs);
+  strut_arena_free(&stepping->inputs.arena);
   strut_model_free(stepping->model);
   strut_release(stepping);
 }
@@ -362,7 +334,7 @@ static strut_status step_to(strut_stepping *stepping, int64_t last) {
     if (stepping->checked < 0 || run->state->step - stepping->checked >= run->chunk)
       status = check(stepping);
     int64_t stop = stepping->checked + run->chunk;
-    if (status == STRUT_OK) strut_run_step(run, stop < last ? stop : last);
+    if (!status) strut_run_step(run, stop < last ? stop : last);
     if (status == STRUT_OK && run->state->trouble) status = check(stepping);
   }
   return status;
@@ -378,14 +350,15 @@ strut_status strut_stepping_advance(strut_stepping *stepping, int64_t steps, str
   if (interrupt && *interrupt)
     return strut_fail(error, STRUT_INTERRUPTED, "interrupted at t = %.9g s",
                       strut_run_time(&stepping->run));
-  if (inputs_changed(&stepping->inputs)) {
-    strut_status valid = inputs_apply(&stepping->inputs, stepping->model, &stepping->run, error);
-    if (valid != STRUT_OK) return valid;
+  stepping_inputs *in = &stepping->inputs; /* bits are compared, so that NAN equals itself */
+  if (memcmp(in->given, in->applied, in->count * sizeof *in->given) != 0) {
+    strut_status valid = inputs_apply(in, stepping->model, &stepping->run, error);
+    if (valid) return valid;
   }
   int64_t done = stepping->run.state->step, most = INT64_MAX - done;
   strut_status status = step_to(stepping, done + (steps < most ? steps : most));
   refresh(stepping);
-  if (status == STRUT_OK) return STRUT_OK;
+  if (!status) return STRUT_OK;
   if (error) *error = stepping->error;
   if (status != STRUT_INTERRUPTED) stepping->status = status;
   if (status == STRUT_INTERRUPTED) stepping->run.state->trouble = STRUT_FAILURE_NONE;
@@ -407,8 +380,19 @@ const strut_record_channel *strut_stepping_channel(strut_stepping *stepping, str
   return NULL;
 }
 
+/* Loads become terms of the model only where they are asked for. */
 double *strut_stepping_input(strut_stepping *stepping, strut_input input, size_t *count) {
-  return inputs_show(&stepping->inputs, stepping->model, &stepping->run, input, count);
+  stepping_inputs *in = &stepping->inputs;
+  switch (input) {
+    case STRUT_INPUT_REST: *count = in->members; return in->given;
+    case STRUT_INPUT_ACTUATORS: *count = in->actuators; return in->given + in->members;
+    case STRUT_INPUT_LOAD:
+      if (!in->loads && !add_loads(in, stepping->model)) return NULL;
+      *count = 2 * in->nodes;
+      return in->given + in->members + in->actuators;
+    case STRUT_INPUTS: break;
+  }
+  return NULL;
 }
 
 double strut_stepping_input_work(const strut_stepping *stepping) { return stepping->inputs.work; }

@@ -18,7 +18,7 @@ typedef enum strut_friction_class {
   STRUT_FRICTION_STICK_BAND,  /* balances the other forces below the speed stick_velocity */
   STRUT_FRICTION_EXACT_STICK, /* sticks without moving; needs a method with events */
   STRUT_FRICTION_CONTINUOUS,  /* a force that depends on the speed without a jump: no states */
-  STRUT_FRICTION_BRISTLES     /* continuous too, with an internal state; see model/rubbing.h */
+  STRUT_FRICTION_BRISTLES     /* continuous too, with an internal state; see model/model.h */
 } strut_friction_class;
 
 typedef enum strut_friction_law {

@@ -309,7 +309,7 @@ MUTANTS = [
            "e + r",
            "e - r",
            "a rotating mass that speeds up pushes the wrong way", "world"),
-    Mutant("moved-support-pushes", "engine/forces/drives/support_motion.c",
+    Mutant("moved-support-pushes", "engine/forces/drives/moving_masses.c",
            "    double push = -coupling->mass * a",
            "    double push = coupling->mass * a",
            "a support that moves pushes its neighbours the wrong way", "world"),
@@ -319,7 +319,7 @@ MUTANTS = [
            "damping ratios take supports in x for free", "world|cli_drives"),
     Mutant("gas-outside", "engine/scene/laws/gas.h", "e0 * energy + n->outside * (e - n->area)", "e0 * energy",
            "the pressure outside of a gas does no work", "cells|cli_cells|world_methods"),
-    Mutant("reach-at-the-end", "engine/forces/strains/reach.h", "s = s < 0.0 ? 0.0 : s > 1.0 ? 1.0 : s;",
+    Mutant("reach-at-the-end", "engine/forces/strains/strains.h", "s = s < 0.0 ? 0.0 : s > 1.0 ? 1.0 : s;",
            "s = s < 0.0 ? 0.0 : s;", "a bar's second end goes on for collisions", "elements|world"),
     # Orbits, sensitivity.
     Mutant("unstable-orbits", "engine/run/orbit/orbit.c",

@@ -3,7 +3,7 @@
  * Every element, ground, drive, sensor and state once more: forces and accelerations of random scenes at
  * random instants, and whole motions by a Runge-Kutta method of the test's own, against the engine's.
  */
-#include "engine/forces/drives/support_motion.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/history.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"

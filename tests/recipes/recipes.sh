@@ -17,7 +17,7 @@ number=$(awk '/^## / { inside = /Add a number of a thing/ } inside && /^\+\+\+ b
 [ "$number" -eq 3 ] || { echo "a number of a hinge takes $number files"; exit 1; }
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')
-expected="engine/forces/elements.c engine/forces/observe.c engine/forces/strains/span.h engine/integrate/euler_forward.c \
+expected="engine/forces/observe.c engine/forces/strains/strains.h engine/integrate/euler_forward.c \
 engine/integrate/events/location/between.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
 engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/observables.h engine/scene/scene.c \

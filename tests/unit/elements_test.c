@@ -4,13 +4,7 @@
 
 #include <float.h>
 
-#include "engine/forces/strains/along.h"
-#include "engine/forces/strains/angle.h"
-#include "engine/forces/strains/area.h"
-#include "engine/forces/strains/foot.h"
-#include "engine/forces/strains/path.h"
-#include "engine/forces/strains/reach.h"
-#include "engine/forces/strains/wrap.h"
+#include "engine/forces/strains/strains.h"
 #include "tests/physics/random_elements.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"

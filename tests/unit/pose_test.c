@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * The step's vector kernels against pose.h, on random poses: members_kernel.h and ground_kernel.h in
+ * The step's vector kernels against pose.h, on random poses: members_kernel.h and forces_kernel.h in
  * strut_forces_evaluate.
  */
 #include "engine/model/pose.h"

@@ -3,7 +3,6 @@
 #include <time.h>
 
 #include "engine/model/pose.h"
-#include "engine/model/surface_search.h"
 #include "engine/scene/profile.h"
 #include "tests/models/run_model.h"
 #include "tests/support/check.h"

@@ -8,8 +8,7 @@
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/drives/signal_vector.h"
 #include "engine/forces/history.h"
-#include "engine/forces/strains/angle.h"
-#include "engine/forces/strains/path.h"
+#include "engine/forces/strains/strains.h"
 #include "engine/scene/signal_bounds.h"
 #include "engine/scene/signal_motion.h"
 
@@ -127,8 +126,7 @@ void strut_loads_apply(const strut_model *model, const strut_state *state, doubl
     state->latest->force[at + 1] += py;
     if (!state->balance) continue;
     double power = px * velocity[at] + py * velocity[at + 1];
-    state->latest->power[STRUT_POWER_LOAD] += power;
-    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
+    strut_power_add(state->latest->power, STRUT_POWER_LOAD, power);
   }
 }
 
@@ -225,8 +223,7 @@ void strut_actuator_forces_apply(const strut_model *model, const strut_state *st
       speed += b[2 * k] * velocity[at[k]] + b[2 * k + 1] * velocity[at[k] + 1];
     }
     if (!state->balance) continue;
-    state->latest->power[STRUT_POWER_DRIVE] -= size * speed;
-    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(size * speed);
+    strut_power_add(state->latest->power, STRUT_POWER_DRIVE, -size * speed);
   }
 }
 

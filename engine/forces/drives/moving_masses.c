@@ -135,8 +135,7 @@ void strut_sliding_masses_apply(const strut_model *model, const strut_state *sta
     }
     if (!state->balance || alpha == 0.0) continue;
     double lost = alpha * m * (u.x * u.x + u.y * u.y);
-    state->latest->power[STRUT_POWER_MEMBERS] += lost;
-    state->latest->power[STRUT_POWER_EXCHANGED] += lost;
+    strut_power_add(state->latest->power, STRUT_POWER_MEMBERS, lost);
   }
 }
 
@@ -148,8 +147,7 @@ void strut_sliding_masses_add_power(const strut_model *model, const strut_state 
     strut_vec2 d = drift(&s), u = velocity(&s, v), bend = interpolate(&s, acceleration);
     double x = bend.x + d.x + alpha * u.x - g[0], y = bend.y + d.y + alpha * u.y - g[1];
     double power = s.item->mass * s.at->rate * (x * s.span.x + y * s.span.y);
-    state->latest->power[STRUT_POWER_DRIVE] += power;
-    state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
+    strut_power_add(state->latest->power, STRUT_POWER_DRIVE, power);
   }
 }
 
@@ -166,18 +164,16 @@ void strut_sliding_masses_add_energies(const strut_model *model, const strut_sta
   }
 }
 
-/* Sum of the jumps of the rate of a mass's share after `from` and up to `to`. */
-static double jump_of_rate(const strut_model *model, const strut_sliding_item *item, double from,
-                           double to) {
-  const strut_signal *signals = model->scene->signals;
-  double sum = 0.0, at = strut_signal_next_break(signals, item->signal, from);
-  for (; at <= to; at = strut_signal_next_break(signals, item->signal, at)) {
+/* Sum of the jumps of a signal's rate after `from` and up to `to`. */
+static double jump_of_rate(const strut_signal *signals, int32_t signal, double from, double to) {
+  double sum = 0.0, at = strut_signal_next_break(signals, signal, from);
+  for (; at <= to; at = strut_signal_next_break(signals, signal, at)) {
     double value, before, after, moment = 8.0 * DBL_EPSILON * fmax(fabs(at), to - from);
-    strut_signal_evaluate(signals, item->signal, at - moment, &value, &before);
-    strut_signal_evaluate(signals, item->signal, at + moment, &value, &after);
+    strut_signal_evaluate(signals, signal, at - moment, &value, &before);
+    strut_signal_evaluate(signals, signal, at + moment, &value, &after);
     sum += after - before;
   }
-  return sum * item->scale;
+  return sum;
 }
 
 /* Impulses of the jumps into state->latest->force, the jumps into their motions. True if there are any. */
@@ -187,7 +183,8 @@ static bool find_impulses(const strut_model *model, const strut_state *state, do
   memset(state->latest->force, 0, (size_t)model->length * sizeof *state->latest->force);
   for (int32_t k = 0; k < model->sliding.moving_count; k++) {
     slide s = slide_at(model, state, k, state->q, state->v);
-    double jump = jump_of_rate(model, s.item, from + state->time_offset, to + state->time_offset);
+    double jump = s.item->scale * jump_of_rate(model->scene->signals, s.item->signal,
+                                               from + state->time_offset, to + state->time_offset);
     double push = -s.item->mass * jump;
     state->latest->sliding[k].jump = jump;
     any = any || jump != 0.0;
@@ -210,8 +207,8 @@ static double work_of_jumps(const strut_model *model, const strut_state *state,
   return work;
 }
 
-bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, double from,
-                               double to) {
+static bool kick_sliding_masses(const strut_model *model, strut_state *state, double from,
+                                double to) {
   double *change = state->buffers->support_answer;
   if (!(model->terms & STRUT_TERM_SLIDING_MASS)) return false;
   strut_sliding_masses_place(model, state, to);
@@ -221,8 +218,7 @@ bool strut_sliding_masses_kick(const strut_model *model, strut_state *state, dou
   double work = work_of_jumps(model, state, change);
   for (int32_t i = 0; i < model->length; i++) state->v[i] += change[i];
   if (!state->balance) return true;
-  state->work[STRUT_POWER_DRIVE] += work;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(work);
+  strut_power_add(state->work, STRUT_POWER_DRIVE, work);
   return true;
 }
 
@@ -278,8 +274,7 @@ static void push(const strut_state *state, const strut_unbalance *unbalance, dou
   state->latest->force[at + 1] += fy;
   if (!state->balance) return;
   double power = fx * velocity[at] + fy * velocity[at + 1];
-  state->latest->power[STRUT_POWER_DRIVE] += power;
-  state->latest->power[STRUT_POWER_EXCHANGED] += fabs(power);
+  strut_power_add(state->latest->power, STRUT_POWER_DRIVE, power);
 }
 
 void strut_unbalance_apply(const strut_model *model, const strut_state *state, double t,
@@ -326,7 +321,7 @@ static bool add_impulses(const strut_model *model, const strut_state *state,
   return any;
 }
 
-bool strut_unbalance_kick(const strut_model *model, strut_state *state, double from, double to) {
+static bool kick_unbalances(const strut_model *model, strut_state *state, double from, double to) {
   const strut_scene *scene = model->scene;
   bool any = false;
   if (!model->unbalance_corners) return false;
@@ -338,4 +333,106 @@ bool strut_unbalance_kick(const strut_model *model, strut_state *state, double f
   if (!any) return false;
   strut_impulse_apply(model, state, STRUT_POWER_DRIVE);
   return true;
+}
+
+void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
+                                double *q, double *velocity) {
+  const strut_support_motion_table *table = &model->support_motion;
+  for (int32_t i = 0; i < table->count; i++) {
+    const strut_moved_coordinate *coordinate = &table->item[i];
+    double value;
+    strut_signal_evaluate(model->scene->signals, coordinate->signal, t + state->time_offset, &value,
+                          &velocity[coordinate->at]);
+    q[coordinate->at] = coordinate->base + value;
+  }
+}
+
+static void add_reaction_power(const strut_model *model, const strut_state *state, double power,
+                               const double *velocity) {
+  const strut_support_motion_table *table = &model->support_motion;
+  for (int32_t i = 0; i < table->count; i++)
+    power -= state->latest->force[table->item[i].at] * velocity[table->item[i].at];
+  strut_power_add(state->latest->power, STRUT_POWER_SUPPORT, power);
+}
+
+void strut_support_motion_apply(const strut_model *model, const strut_state *state, double t,
+                                const double *velocity) {
+  const strut_support_motion_table *table = &model->support_motion;
+  const strut_signal *signals = model->scene->signals;
+  double power = 0.0, *acceleration = state->buffers->support_rates;
+  for (int32_t i = 0; i < table->count && table->coupling_count; i++)
+    acceleration[i] =
+        strut_signal_acceleration(signals, table->item[i].signal, t + state->time_offset);
+  for (int32_t k = 0; k < table->coupling_count; k++) {
+    const strut_support_coupling *coupling = &table->coupling[k];
+    double push = -coupling->mass * acceleration[coupling->item];
+    state->latest->force[coupling->at] += push;
+    power += push * velocity[coupling->at];
+  }
+  if (state->balance) add_reaction_power(model, state, power, velocity);
+}
+
+void strut_support_motion_apply_mean(const strut_model *model, const strut_state *state, double h,
+                                     const double *before, const double *after, const double *u) {
+  const strut_support_motion_table *table = &model->support_motion;
+  double power = 0.0;
+  for (int32_t k = 0; k < table->coupling_count; k++) {
+    const strut_support_coupling *coupling = &table->coupling[k];
+    double push = -coupling->mass * (after[coupling->item] - before[coupling->item]) / h;
+    state->latest->force[coupling->at] += push;
+    power += push * u[coupling->at];
+  }
+  if (state->balance) add_reaction_power(model, state, power, u);
+}
+
+/* Impulses of the jumps into state->latest->force. True if there are any. */
+static bool find_reactions(const strut_model *model, const strut_state *state, double from,
+                           double to) {
+  const strut_support_motion_table *table = &model->support_motion;
+  bool any = false;
+  for (int32_t i = 0; i < table->count; i++) {
+    state->buffers->support_rates[i] =
+        jump_of_rate(model->scene->signals, table->item[i].signal, from + state->time_offset,
+                     to + state->time_offset);
+    any = any || state->buffers->support_rates[i] != 0.0;
+  }
+  if (!any) return false;
+  memset(state->latest->force, 0, (size_t)model->length * sizeof *state->latest->force);
+  for (int32_t k = 0; k < table->coupling_count; k++) {
+    const strut_support_coupling *coupling = &table->coupling[k];
+    state->latest->force[coupling->at] -=
+        coupling->mass * state->buffers->support_rates[coupling->item];
+  }
+  return true;
+}
+
+bool strut_moving_kick(const strut_model *model, strut_state *state, double from, double to) {
+  bool kicked = kick_sliding_masses(model, state, from, to);
+  if (model->support_motion.corners && find_reactions(model, state, from, to)) {
+    strut_impulse_apply(model, state, STRUT_POWER_SUPPORT);
+    kicked = true;
+  }
+  return kick_unbalances(model, state, from, to) || kicked;
+}
+
+/* The part of the kinetic energy to which moved velocities contribute. */
+static double moved_energy(const strut_model *model, const strut_state *state) {
+  const strut_support_motion_table *table = &model->support_motion;
+  double whole = strut_energy_kinetic(model, state->v);
+  memcpy(state->buffers->support_answer, state->v, (size_t)model->length * sizeof *state->v);
+  for (int32_t i = 0; i < table->count; i++)
+    state->buffers->support_answer[table->item[i].at] = 0.0;
+  double rest = strut_energy_kinetic(model, state->buffers->support_answer);
+  memset(state->buffers->support_answer, 0, (size_t)model->length * sizeof *state->v);
+  return whole - rest;
+}
+
+double strut_support_motion_work(const strut_model *model, const strut_state *state) {
+  if (!(model->terms & STRUT_TERM_SUPPORT_MOTION)) return 0.0;
+  return state->work[STRUT_POWER_SUPPORT] + moved_energy(model, state) - state->support_work_origin;
+}
+
+void strut_support_motion_reset_work(const strut_model *model, strut_state *state) {
+  if (model->terms & STRUT_TERM_SUPPORT_MOTION)
+    state->support_work_origin = moved_energy(model, state) + state->work[STRUT_POWER_SUPPORT];
 }

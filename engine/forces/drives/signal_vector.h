@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Hot: a signal at many times at once. Sines, and sums of them, go by vectors, with the bits of
- * strut_signal_evaluate; all other signals through it.
+ * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other
+ * signals through it.
  */
 #ifndef STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
 #define STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
@@ -32,33 +32,17 @@ STRUT_INLINE bool signal_is_wave(const strut_signal *signal, const double *time,
          fabs(first) < 0x1p48 && fabs(last) < 0x1p48;
 }
 
-/* The same of a sum of nothing but sines. */
-STRUT_INLINE bool signal_is_sum_of_waves(const strut_signal *signals, const strut_signal *signal,
-                                         const double *time, int32_t count) {
-  bool all =
-      signal->kind == STRUT_SUM && time[0] >= signal->start && time[count - 1] < signal->stop;
-  for (size_t i = 0; all && i < signal->term_count; i++) {
-    const strut_signal *term = &signals[signal->terms[i]];
-    all = signal_is_wave(term, time, count) && term->trigger.kind == STRUT_TRIGGER_NONE &&
-          !(term->lag > 0.0) && !(term->every > 0.0);
-  }
-  return all;
-}
-
-/* Adds a wave at `count` times, in whole vectors, to values and rates; or begins them. */
-STRUT_INLINE void signal_add_wave(const strut_signal *signal, const double *time, int32_t count,
-                                  bool begin, double *value, double *rate) {
+/* A wave at `count` times, in whole vectors. */
+STRUT_INLINE void signal_wave(const strut_signal *signal, const double *time, int32_t count,
+                              double *value, double *rate) {
   double fast = signal->amplitude * STRUT_TAU * signal->frequency;
   for (int32_t h = 0; h < count; h += STRUT_LANES) {
     strut_lanes sine, cosine;
     strut_lanes turns =
         signal->frequency * (strut_lanes_load(time + h) - signal->start) + signal->phase;
     signal_vector_sincos(turns, &sine, &cosine);
-    sine = signal->amplitude * sine, cosine = fast * cosine;
-    if (!begin) sine = strut_lanes_load(value + h) + sine;
-    if (!begin) cosine = strut_lanes_load(rate + h) + cosine;
-    strut_lanes_store(value + h, sine);
-    strut_lanes_store(rate + h, cosine);
+    strut_lanes_store(value + h, signal->amplitude * sine);
+    strut_lanes_store(rate + h, fast * cosine);
   }
 }
 
@@ -66,18 +50,8 @@ STRUT_INLINE void signal_add_wave(const strut_signal *signal, const double *time
 static __attribute__((noinline, unused)) void signal_at_times_otherwise(
     const strut_signal *signals, int32_t index, const double *time, int32_t count, double *value,
     double *rate) {
-  const strut_signal *signal = &signals[index];
-  if (!signal_is_sum_of_waves(signals, signal, time, count)) {
-    for (int32_t h = 0; h < count; h++)
-      strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
-    return;
-  }
-  for (int32_t h = 0; h < count; h += STRUT_LANES) {
-    strut_lanes_store(value + h, (strut_lanes){0.0});
-    strut_lanes_store(rate + h, (strut_lanes){0.0});
-  }
-  for (size_t i = 0; i < signal->term_count; i++)
-    signal_add_wave(&signals[signal->terms[i]], time, count, false, value, rate);
+  for (int32_t h = 0; h < count; h++)
+    strut_signal_evaluate(signals, index, time[h], &value[h], &rate[h]);
 }
 
 /* Values and rates of a signal at `count` times, none before the first or after the last; arrays have room for
@@ -85,7 +59,7 @@ static __attribute__((noinline, unused)) void signal_at_times_otherwise(
 STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, const double *time,
                                   int32_t count, double *value, double *rate) {
   if (signal_is_wave(&signals[index], time, count))
-    signal_add_wave(&signals[index], time, count, true, value, rate);
+    signal_wave(&signals[index], time, count, value, rate);
   else
     signal_at_times_otherwise(signals, index, time, count, value, rate);
 }

@@ -299,11 +299,8 @@ const strut_integrator strut_integrator_adaptive = {
     .order = 5,
     .evaluations = 6,
     .role = STRUT_ROLE_REFERENCE,
-    .events = true,
     .create = adaptive_create,
-    .restart = strut_event_stepper_restart,
-    .advance = strut_event_stepper_advance,
-    .observe = strut_event_stepper_observe,
+    STRUT_STEPS_TO_EVENTS,
     .tangent = true,
 };
 
@@ -313,9 +310,6 @@ const strut_integrator strut_integrator_adaptive8 = {
     .description = "Verner 8(7) from event to event, step by error control",
     .order = 8,
     .evaluations = 13,
-    .events = true,
     .create = adaptive8_create,
-    .restart = strut_event_stepper_restart,
-    .advance = strut_event_stepper_advance,
-    .observe = strut_event_stepper_observe,
+    STRUT_STEPS_TO_EVENTS,
 };

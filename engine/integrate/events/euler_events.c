@@ -37,9 +37,6 @@ const strut_integrator strut_integrator_euler_events = {
     .lag = 1.0 / 24.0,
     .evaluations = 1,
     .region = STRUT_REGION_EULER,
-    .events = true,
     .create = create,
-    .restart = strut_event_stepper_restart,
-    .advance = strut_event_stepper_advance,
-    .observe = strut_event_stepper_observe,
+    STRUT_STEPS_TO_EVENTS,
 };

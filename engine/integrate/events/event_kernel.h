@@ -13,7 +13,6 @@
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/integrate/events/contacts/mode_law.h"
-#include "engine/integrate/events/contacts/surface_contacts.h"
 #include "engine/integrate/events/event_stepping.h"
 #include "engine/model/pose.h"
 
@@ -358,38 +357,12 @@ STRUT_INLINE double law_value(const strut_event_stepper *stepper, const strut_st
   return strut_law_cable_margin(stepper->laws.acting[i], elastic, end->tension[i], law->abrupt);
 }
 
-/**
- * Defines NAME_trial, the trial of a strut_step_formula, which runs
- * `take(model, state, stepper, t, h, terms, balance)`, an inlined function, in copies as those of plain_steps.h.
- */
+/** Defines NAME_trial, the trial of a strut_step_formula, which runs `take` in copies: STRUT_COPIES. */
 #define STRUT_EVENT_TRIAL(name, take)                                                              \
-  STRUT_CLONES                                                                                     \
-  static void name##_with_balance(const strut_model *model, const strut_state *state,              \
-                                  strut_event_stepper *stepper, double t, double h) {              \
-    take(model, state, stepper, t, h, STRUT_TERMS_COMMON, true);                                   \
-  }                                                                                                \
-                                                                                                   \
-  STRUT_CLONES                                                                                     \
-  static void name##_without_balance(const strut_model *model, const strut_state *state,           \
-                                     strut_event_stepper *stepper, double t, double h) {           \
-    take(model, state, stepper, t, h, STRUT_TERMS_COMMON, false);                                  \
-  }                                                                                                \
-                                                                                                   \
-  STRUT_CLONES                                                                                     \
-  static void name##_with_rare_terms(const strut_model *model, const strut_state *state,           \
-                                     strut_event_stepper *stepper, double t, double h) {           \
-    take(model, state, stepper, t, h, STRUT_TERMS_ALL, state->balance);                            \
-  }                                                                                                \
-                                                                                                   \
-  static void name##_once(const strut_model *model, const strut_state *state,                      \
-                          strut_event_stepper *stepper, double t, double h) {                      \
-    if (model->terms & STRUT_TERMS_RARE)                                                           \
-      name##_with_rare_terms(model, state, stepper, t, h);                                         \
-    else if (state->balance)                                                                       \
-      name##_with_balance(model, state, stepper, t, h);                                            \
-    else                                                                                           \
-      name##_without_balance(model, state, stepper, t, h);                                         \
-  }                                                                                                \
+  STRUT_COPIES(name##_once, take,                                                                  \
+               (const strut_model *model, const strut_state *state, strut_event_stepper *stepper,  \
+                double t, double h),                                                               \
+               model, state, stepper, t, h)                                                        \
                                                                                                    \
   static void name##_trial(const strut_model *model, const strut_state *state,                     \
                            strut_event_stepper *stepper, double t, double h) {                     \

@@ -14,7 +14,7 @@
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/location/event_log.h"
 #include "engine/integrate/events/location/variation.h"
-#include "engine/integrate/observer.h"
+#include "engine/integrate/integrator.h"
 
 /* A root this close to where the step begins, in grid steps, is there already. */
 static const double AT_ONCE = 1e-9;
@@ -134,8 +134,7 @@ void strut_event_stepper_restart(const strut_model *model, strut_state *state, v
 static void accumulate_jump(const strut_model *model, strut_state *state, double t, double before) {
   if (!state->balance) return;
   double gained = strut_energy_evaluate(model, state, t).elastic - before;
-  state->work[STRUT_POWER_DRIVE] += gained;
-  state->work[STRUT_POWER_EXCHANGED] += fabs(gained);
+  strut_power_add(state->work, STRUT_POWER_DRIVE, gained);
 }
 
 /*
@@ -155,13 +154,8 @@ static void pass_break(const strut_model *model, strut_state *state, strut_event
   if (model->terms & STRUT_TERM_MEMORY)
     strut_history_release(model, state, t + moment + state->time_offset + STRUT_AT_BREAK * dt);
   bool kicked = model->contacts.moves; /* a ground may have changed its speed at once */
-  if (model->terms & STRUT_TERM_SLIDING_MASS)
-    kicked = strut_sliding_masses_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
-  if (model->terms & (STRUT_TERM_SUPPORT_MOTION | STRUT_TERM_UNBALANCE)) {
-    kicked = strut_support_motion_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
-    kicked = strut_unbalance_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
-    strut_support_motion_place(model, state, t + moment, state->q, state->v);
-  }
+  kicked = strut_moving_kick(model, state, t - 2.0 * moment, t + 0.5 * moment) || kicked;
+  strut_support_motion_place(model, state, t + moment, state->q, state->v);
   if (kicked)
     strut_modes_start(model, state, stepper, t + moment);
   else

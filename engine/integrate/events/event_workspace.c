@@ -77,7 +77,6 @@ static void list_cables(const strut_model *model, strut_law_switches *laws) {
                                                      .element = -1,
                                                      .stiffness = members->stiffness[j],
                                                      .damping = members->damping[j]};
-  laws->cable_count = laws->count;
 }
 
 static void list_elements(const strut_model *model, const strut_state *state,

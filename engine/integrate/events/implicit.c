@@ -273,10 +273,7 @@ const strut_integrator strut_integrator_implicit = {
     .order = 4,
     .evaluations = STAGES,
     .role = STRUT_ROLE_IMPLICIT,
-    .events = true,
     .no_memory = true,
     .create = implicit_create,
-    .restart = strut_event_stepper_restart,
-    .advance = strut_event_stepper_advance,
-    .observe = strut_event_stepper_observe,
+    STRUT_STEPS_TO_EVENTS,
 };

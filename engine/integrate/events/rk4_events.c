@@ -5,7 +5,7 @@
  */
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/integrator.h"
-#include "engine/integrate/rk4_stages.h"
+#include "engine/integrate/plain_steps.h"
 
 /* Positions, then velocities and accelerations of the stages 2 to 4. */
 enum { Q, V, A = V + 3, STAGES = A + 3 };
@@ -65,10 +65,7 @@ const strut_integrator strut_integrator_rk4_events = {
     .evaluations = 4,
     .region = STRUT_REGION_RK4,
     .role = STRUT_ROLE_EXACT_STICK,
-    .events = true,
     .create = create,
-    .restart = strut_event_stepper_restart,
-    .advance = strut_event_stepper_advance,
-    .observe = strut_event_stepper_observe,
+    STRUT_STEPS_TO_EVENTS,
     .tangent = true,
 };

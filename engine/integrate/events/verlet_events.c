@@ -135,33 +135,10 @@ STRUT_INLINE void advance_predicted(const strut_model *model, strut_state *state
   }
 }
 
-STRUT_CLONES
-static void verlet_advance_with_balance(const strut_model *model, strut_state *state,
-                                        strut_event_stepper *stepper, double dt, int64_t end) {
-  advance_predicted(model, state, stepper, dt, end, STRUT_TERMS_COMMON, true);
-}
-
-STRUT_CLONES
-static void verlet_advance_without_balance(const strut_model *model, strut_state *state,
-                                           strut_event_stepper *stepper, double dt, int64_t end) {
-  advance_predicted(model, state, stepper, dt, end, STRUT_TERMS_COMMON, false);
-}
-
-STRUT_CLONES
-static void verlet_advance_with_rare_terms(const strut_model *model, strut_state *state,
-                                           strut_event_stepper *stepper, double dt, int64_t end) {
-  advance_predicted(model, state, stepper, dt, end, STRUT_TERMS_ALL, state->balance);
-}
-
-static void verlet_advance_until_event(const strut_model *model, strut_state *state,
-                                       strut_event_stepper *stepper, double dt, int64_t end) {
-  if (model->terms & STRUT_TERMS_RARE)
-    verlet_advance_with_rare_terms(model, state, stepper, dt, end);
-  else if (state->balance)
-    verlet_advance_with_balance(model, state, stepper, dt, end);
-  else
-    verlet_advance_without_balance(model, state, stepper, dt, end);
-}
+STRUT_COPIES(verlet_advance_until_event, advance_predicted,
+             (const strut_model *model, strut_state *state, strut_event_stepper *stepper, double dt,
+              int64_t end),
+             model, state, stepper, dt, end)
 
 static const strut_step_formula formula = {.trial = verlet_events_trial,
                                            .stages = STAGES,
@@ -184,9 +161,6 @@ const strut_integrator strut_integrator_verlet_events = {
     .region = STRUT_REGION_VERLET,
     .role = STRUT_ROLE_COARSE,
     .implicit_damper = true,
-    .events = true,
     .create = create,
-    .restart = strut_event_stepper_restart,
-    .advance = strut_event_stepper_advance,
-    .observe = strut_event_stepper_observe,
+    STRUT_STEPS_TO_EVENTS,
 };

@@ -56,74 +56,6 @@ static strut_factor *copy_out(const strut_cholmod_columns *columns) {
   return factor;
 }
 
-/* ---- parts side by side ---- */
-
-/* Matrices from this size on; smaller ones are in no hurry. Parts that are solved in turns. */
-enum { LEAST_TO_WEAVE = 256, MOST_TURNS = 4 };
-
-/* Which part each column belongs to; returns how many parts there are. */
-static int32_t find_parts(const strut_factor *factor, int32_t *part) {
-  int32_t parts = 0;
-  for (int32_t j = factor->n - 1; j >= 0; j--)
-    part[j] =
-        factor->start[j] < factor->start[j + 1] ? part[factor->row[factor->start[j]]] : parts++;
-  return parts;
-}
-
-/* Each part goes to the turn with the fewest columns so far; columns of the turns one after the other. */
-static void order_turns(int32_t n, int32_t parts, const int32_t *part, int32_t *turn,
-                        int32_t *old) {
-  int32_t load[MOST_TURNS] = {0}, at[MOST_TURNS] = {0};
-  for (int32_t p = 0; p < parts; p++) turn[p] = 0;
-  for (int32_t j = 0; j < n; j++) turn[part[j]]++;
-  for (int32_t p = 0; p < parts; p++) {
-    int32_t least = 0, columns = turn[p];
-    for (int32_t t = 1; t < MOST_TURNS; t++)
-      if (load[t] < load[least]) least = t;
-    load[least] += columns;
-    turn[p] = least;
-  }
-  for (int32_t i = 0, t = 0; i < n; t = (t + 1) % MOST_TURNS) {
-    while (at[t] < n && turn[part[at[t]]] != t) at[t]++;
-    if (at[t] < n) old[i++] = at[t]++;
-  }
-}
-
-/*
- * Stores parts of the matrix that nothing couples column by column in turns: a column waits for the one before of
- * its own part, and the processor works on the others meanwhile. Every sum keeps its order. False: out of memory.
- */
-static bool weave_parts(strut_factor **factor) {
-  const strut_factor *f = *factor;
-  strut_arena scratch = {0};
-  size_t n = (size_t)f->n;
-  if (f->n < LEAST_TO_WEAVE) return true;
-  int32_t *part = strut_arena_allocate(&scratch, n, sizeof *part);
-  int32_t *turn = strut_arena_allocate(&scratch, n, sizeof *turn);
-  int32_t *old = strut_arena_allocate(&scratch, n, sizeof *old);
-  int32_t *place = strut_arena_allocate(&scratch, n, sizeof *place);
-  bool good = part && turn && old && place;
-  int32_t parts = good ? find_parts(f, part) : 0, at = 0;
-  strut_factor *woven = parts > 1 ? allocate_factor(f->n, (size_t)f->start[f->n]) : NULL;
-  if (parts > 1) good = woven;
-  if (woven) order_turns(f->n, parts, part, turn, old);
-  for (int32_t i = 0; i < f->n && woven; i++) place[old[i]] = i;
-  for (int32_t i = 0; i < f->n && woven; i++) {
-    int32_t j = old[i];
-    woven->order[i] = f->order[j], woven->inverse_diagonal[i] = f->inverse_diagonal[j];
-    woven->start[i] = at;
-    for (int32_t k = f->start[j]; k < f->start[j + 1]; k++, at++)
-      woven->row[at] = place[f->row[k]], woven->value[at] = f->value[k];
-  }
-  if (woven) {
-    woven->start[f->n] = at;
-    strut_factor_free(*factor);
-    *factor = woven;
-  }
-  strut_arena_free(&scratch);
-  return good;
-}
-
 /* ---- factors ---- */
 
 /*
@@ -160,10 +92,7 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
   status = check_size(matrix->n, nonzeros, error);
   if (!status && cholmod->factorise(analysed, matrix, 0.0, &l)) {
     int32_t row = bad_row(&l);
-    if (row < 0 && (*factor = copy_out(&l)) && !weave_parts(factor)) {
-      strut_factor_free(*factor);
-      *factor = NULL;
-    }
+    if (row < 0) *factor = copy_out(&l);
     if (row >= 0)
       status = strut_fail(error, STRUT_SINGULAR,
                           "the matrix is not positive definite (row %d of %d)", row, matrix->n);

@@ -16,11 +16,6 @@ bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_are
 
 void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, double value) {
   int32_t low = row > column ? column : row;
-  if (triplets->end && (low < triplets->first || low >= triplets->end)) return;
-  if (triplets->counting) {
-    triplets->count++;
-    return;
-  }
   assert(triplets->count < triplets->capacity);
   triplets->row[triplets->count] = row > column ? row : column;
   triplets->column[triplets->count] = low;
@@ -74,10 +69,9 @@ static int32_t tidy_column(int32_t *row, double *value, int32_t length) {
   return last + 1;
 }
 
-/* Tidies the columns [first, last), whose entries follow those before. */
-static void tidy(strut_sparse *matrix, int32_t first, int32_t last) {
-  int32_t at = matrix->start[first];
-  for (int32_t j = first, begin = at; j < last; j++) {
+/* Tidies the columns, whose entries then follow each other. */
+static void tidy(strut_sparse *matrix) {
+  for (int32_t j = 0, begin = 0, at = 0; j < matrix->n; j++) {
     int32_t end = matrix->start[j + 1];
     int32_t length = tidy_column(matrix->row + begin, matrix->value + begin, end - begin);
     memmove(matrix->row + at, matrix->row + begin, (size_t)length * sizeof *matrix->row);
@@ -88,15 +82,19 @@ static void tidy(strut_sparse *matrix, int32_t first, int32_t last) {
   }
 }
 
-/* Fills the columns [first, end); `start` is set up to `first`, and zero behind. */
-static void fill_columns(strut_sparse *matrix, int32_t first, int32_t end,
-                         const strut_triplets *triplets) {
+strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena) {
+  size_t count = triplets->count + (size_t)n;
+  strut_sparse *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);
+  if (!matrix) return NULL;
+  matrix->n = n;
+  matrix->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *matrix->start);
+  matrix->row = strut_arena_allocate(arena, count, sizeof *matrix->row);
+  matrix->value = strut_arena_allocate(arena, count, sizeof *matrix->value);
+  if (!matrix->start || !matrix->row || !matrix->value) return NULL;
   int32_t *next = matrix->start + 1; /* shifted by one while filling: becomes start at the end */
-  next[first] = matrix->start[first];
   for (size_t k = 0; k < triplets->count; k++) next[triplets->column[k] + 1]++;
-  for (int32_t j = first; j < end; j++) next[j + 1] += next[j] + 1;
-  for (int32_t j = first; j < end; j++) {
-    matrix->value[next[j]] = 0.0;
+  for (int32_t j = 0; j < n; j++) {
+    next[j + 1] += next[j] + 1;
     matrix->row[next[j]++] = j;
   }
   for (size_t k = 0; k < triplets->count; k++) {
@@ -104,43 +102,8 @@ static void fill_columns(strut_sparse *matrix, int32_t first, int32_t end,
     matrix->row[at] = triplets->row[k];
     matrix->value[at] = triplets->value[k];
   }
-  tidy(matrix, first, end);
-}
-
-strut_sparse *strut_sparse_begin(int32_t n, size_t capacity, strut_arena *arena) {
-  size_t count = capacity + (size_t)n;
-  strut_sparse *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);
-  if (!matrix) return NULL;
-  matrix->n = n;
-  matrix->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *matrix->start);
-  matrix->row = strut_arena_allocate(arena, count, sizeof *matrix->row);
-  matrix->value = strut_arena_allocate(arena, count, sizeof *matrix->value);
-  return matrix->start && matrix->row && matrix->value ? matrix : NULL;
-}
-
-void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets) {
-  fill_columns(matrix, triplets->first, triplets->end, triplets);
-}
-
-strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena) {
-  strut_sparse *matrix = strut_sparse_begin(n, triplets->count, arena);
-  if (matrix) fill_columns(matrix, 0, n, triplets);
+  tidy(matrix);
   return matrix;
-}
-
-strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena) {
-  size_t n = (size_t)matrix->n, entries = (size_t)matrix->start[n];
-  strut_sparse *m = strut_arena_allocate(arena, 1, sizeof *m);
-  if (!m) return NULL;
-  m->n = matrix->n;
-  m->start = strut_arena_allocate(arena, n + 1, sizeof *m->start);
-  m->row = strut_arena_allocate(arena, entries, sizeof *m->row);
-  m->value = strut_arena_allocate(arena, entries, sizeof *m->value);
-  if (!m->start || !m->row || !m->value) return NULL;
-  memcpy(m->start, matrix->start, (n + 1) * sizeof *m->start);
-  memcpy(m->row, matrix->row, entries * sizeof *m->row);
-  memcpy(m->value, matrix->value, entries * sizeof *m->value);
-  return m;
 }
 
 void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict vector,

@@ -10,14 +10,9 @@
 #include "engine/base/memory.h"
 #include "engine/model/algebra/linear_solver.h"
 
-/**
- * Collects contributions; zero-initialise, then strut_triplets_reserve. Those outside of the columns
- * [first, end) are left out; end 0: none are. `counting`: they are counted, and not kept.
- */
+/** Collects contributions; zero-initialise, then strut_triplets_reserve. */
 typedef struct strut_triplets {
   size_t count, capacity;
-  int32_t first, end;
-  bool counting;
   int32_t *row, *column;
   double *value;
 } strut_triplets;
@@ -33,17 +28,6 @@ void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, d
  * they were added. Every diagonal entry exists, if only as zero. NULL: out of memory.
  */
 strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena);
-
-/**
- * The same some columns at a time, in their order, so that the contributions need not all be in memory: an
- * n x n matrix without columns, for `capacity` contributions in all; then for each stretch of columns
- * [triplets->first, triplets->end) their contributions, which may be forgotten afterwards.
- */
-strut_sparse *strut_sparse_begin(int32_t n, size_t capacity, strut_arena *arena);
-void strut_sparse_append(strut_sparse *matrix, const strut_triplets *triplets);
-
-/** A copy in another arena, which takes no more than its entries: a built one takes all contributions. */
-strut_sparse *strut_sparse_copy(const strut_sparse *matrix, strut_arena *arena);
 
 /** y = A x with the whole symmetric matrix. */
 STRUT_API void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict vector,

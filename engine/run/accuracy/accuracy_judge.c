@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "engine/integrate/integrator.h"
-#include "engine/run/accuracy/ladder_parts.h"
+#include "engine/run/accuracy/accuracy.h"
 
 double strut_ladder_tolerated_error(const strut_ladder *ladder, const strut_measured *measured,
                                     size_t i) {

@@ -9,7 +9,7 @@
 
 #include "engine/forces/drives/drives.h"
 #include "engine/integrate/integrator.h"
-#include "engine/run/accuracy/ladder_parts.h"
+#include "engine/run/accuracy/accuracy.h"
 
 /* Factor from one run with error control to the next. */
 static const double FINER_TOLERANCE = 1.0 / 30.0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/run/follow/follow_system.h"
+#include "engine/run/follow/follow.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>

@@ -6,11 +6,9 @@
 #include <math.h>
 
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/drives/support_motion.h"
 #include "engine/forces/rubbing.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
-#include "engine/model/surface_search.h"
 
 /* ---- energy balance ---- */
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/forces/drives/drives.h"
-#include "engine/forces/drives/support_motion.h"
+#include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces.h"
 
 bool strut_dense_create(const strut_model *model, strut_arena *arena, strut_dense *matrix) {
@@ -140,6 +140,14 @@ typedef struct place {
 } place;
 
 static double range_of(const strut_meter *meter) { return meter->whole.high - meter->whole.low; }
+
+/* Does the lowest value count, or the highest? */
+static bool takes_low(const strut_meter *meter) {
+  return meter->definition->take == STRUT_TAKE_MIN || meter->definition->take == STRUT_TAKE_RANGE;
+}
+static bool takes_high(const strut_meter *meter) {
+  return meter->definition->take == STRUT_TAKE_MAX || meter->definition->take == STRUT_TAKE_RANGE;
+}
 
 /* To what an extreme is resolved. */
 static double resolution(const strut_meter *meter) {
@@ -282,29 +290,18 @@ void strut_meter_jump(strut_meter *meter, double time, double value) {
 /* Does an extreme of about this value matter to what is taken? */
 static bool matters(const strut_meter *meter, double value, double sign) {
   double close = RESOLVED * range_of(meter);
-  switch (meter->definition->take) {
-    case STRUT_TAKE_MIN: return sign < 0.0 && value < meter->part.low + close;
-    case STRUT_TAKE_MAX: return sign > 0.0 && value > meter->part.high - close;
-    case STRUT_TAKE_RANGE:
-      return sign > 0.0 ? value > meter->part.high - close : value < meter->part.low + close;
-    case STRUT_TAKE_RISE: return true;
-    case STRUT_TAKE_ARRIVAL:
-      return awaits_arrival(meter) || (!meter->returned && meter->beyond <= close);
-    case STRUT_TAKE_MEAN:
-    case STRUT_TAKE_RMS:
-    case STRUT_TAKE_FINAL:
-    case STRUT_TAKE_CHANGE:
-    case STRUT_TAKE_RATE: break;
-  }
-  return false;
+  strut_reduction take = meter->definition->take;
+  if (take == STRUT_TAKE_ARRIVAL)
+    return awaits_arrival(meter) || (!meter->returned && meter->beyond <= close);
+  if (take == STRUT_TAKE_RISE) return true;
+  return sign < 0.0 ? takes_low(meter) && value < meter->part.low + close
+                    : takes_high(meter) && value > meter->part.high - close;
 }
 
 /* Could values down to `low` or up to `high` change an extreme? */
 static bool may_exceed(const strut_meter *meter, double low, double high) {
-  strut_reduction take = meter->definition->take;
-  bool lower = take == STRUT_TAKE_MIN || take == STRUT_TAKE_RANGE;
-  bool higher = take == STRUT_TAKE_MAX || take == STRUT_TAKE_RANGE;
-  return (lower && low < meter->part.low) || (higher && high > meter->part.high);
+  return (takes_low(meter) && low < meter->part.low) ||
+         (takes_high(meter) && high > meter->part.high);
 }
 
 bool strut_meter_may_turn(const strut_meter *meter, double value, double length) {
@@ -312,19 +309,10 @@ bool strut_meter_may_turn(const strut_meter *meter, double value, double length)
                                     : HUGE_VAL;
   double reach = 2.0 * (way + fabs(value - meter->value)), target = meter->definition->target;
   double low = fmin(meter->value, value) - reach, high = fmax(meter->value, value) + reach;
-  switch (meter->definition->take) {
-    case STRUT_TAKE_MIN:
-    case STRUT_TAKE_MAX:
-    case STRUT_TAKE_RANGE: return may_exceed(meter, low, high);
-    case STRUT_TAKE_ARRIVAL: return !meter->returned && target >= low && target <= high;
-    case STRUT_TAKE_MEAN:
-    case STRUT_TAKE_RMS:
-    case STRUT_TAKE_RISE: return true;
-    case STRUT_TAKE_FINAL:
-    case STRUT_TAKE_CHANGE:
-    case STRUT_TAKE_RATE: break;
-  }
-  return false;
+  strut_reduction take = meter->definition->take;
+  if (take == STRUT_TAKE_ARRIVAL) return !meter->returned && target >= low && target <= high;
+  return may_exceed(meter, low, high) || take == STRUT_TAKE_MEAN || take == STRUT_TAKE_RMS ||
+         take == STRUT_TAKE_RISE;
 }
 
 /* ---- parts that need no samples between their ends ---- */
@@ -411,11 +399,8 @@ static bool is_unresolved(const strut_meter *meter, const strut_samples *samples
 }
 
 double strut_meter_left(const strut_meter *meter) {
-  strut_reduction take = meter->definition->take;
-  bool lower = take == STRUT_TAKE_MIN || take == STRUT_TAKE_RANGE;
-  bool higher = take == STRUT_TAKE_MAX || take == STRUT_TAKE_RANGE;
-  return (lower ? fmax(0.0, meter->whole.low - meter->least) : 0.0) +
-         (higher ? fmax(0.0, meter->most - meter->whole.high) : 0.0);
+  return (takes_low(meter) ? fmax(0.0, meter->whole.low - meter->least) : 0.0) +
+         (takes_high(meter) ? fmax(0.0, meter->most - meter->whole.high) : 0.0);
 }
 
 bool strut_meter_is_resolved(const strut_meter *meter, const strut_samples *samples) {

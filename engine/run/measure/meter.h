@@ -13,7 +13,7 @@
 
 #include <stdint.h>
 
-#include "engine/integrate/observer.h"
+#include "engine/integrate/integrator.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/quantity.h"
 

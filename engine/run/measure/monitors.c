@@ -11,7 +11,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
-#include "engine/model/surface_search.h"
 
 /* ---- step limit ---- */
 

@@ -76,19 +76,9 @@ static bool find_primitive(strut_column column, strut_column *primitive) {
 
 /* Does what happens between steps matter? */
 static bool needs_inner(const strut_meter *meter) {
-  switch (meter->definition->take) {
-    case STRUT_TAKE_MEAN: return meter->rate_of == NONE;
-    case STRUT_TAKE_FINAL:
-    case STRUT_TAKE_CHANGE:
-    case STRUT_TAKE_RATE: return false;
-    case STRUT_TAKE_MIN:
-    case STRUT_TAKE_MAX:
-    case STRUT_TAKE_RANGE:
-    case STRUT_TAKE_RMS:
-    case STRUT_TAKE_RISE:
-    case STRUT_TAKE_ARRIVAL: break;
-  }
-  return true;
+  strut_reduction take = meter->definition->take;
+  if (take == STRUT_TAKE_MEAN) return meter->rate_of == NONE;
+  return take != STRUT_TAKE_FINAL && take != STRUT_TAKE_CHANGE && take != STRUT_TAKE_RATE;
 }
 
 static bool make_meter(strut_quantities *quantities, const strut_quantity_definition *definition,

@@ -187,7 +187,7 @@ LAW_INLINE real LAW(friction)(const LAW(friction_numbers) * f, const LAW(frictio
 #define STRUT_FRICTION_FORCE_OF_STICK_BAND(name) STRUT_FRICTION_FORCE(name)
 #define STRUT_FRICTION_FORCE_OF_EXACT_STICK(name) STRUT_FRICTION_FORCE(name)
 #define STRUT_FRICTION_FORCE_OF_CONTINUOUS(name) STRUT_FRICTION_FORCE(name)
-#define STRUT_FRICTION_FORCE_OF_BRISTLES(name) /* no contact of a kernel has it: model/rubbing.h */
+#define STRUT_FRICTION_FORCE_OF_BRISTLES(name) /* no contact of a kernel has it: model/model.h */
 #define STRUT_FRICTION_ROW(NAME, name, word, states, needs) STRUT_FRICTION_FORCE_OF_##states(name)
   STRUT_FRICTION_LAWS(STRUT_FRICTION_ROW)
 #undef STRUT_FRICTION_ROW

@@ -7,7 +7,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/strains/reach.h"
+#include "engine/forces/strains/strains.h"
 
 /* Two shapes are one: as a share of the model's size, and of the potential. */
 static const double SAME_SHAPE = 1e-5, SAME_POTENTIAL = 1e-8;

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/model/parts.h"
+#include "engine/model/model.h"
 #include "engine/statics/minimise.h"
 
 /* Nodes that move at least this share of the one that moves most. */

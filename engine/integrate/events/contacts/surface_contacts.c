@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/integrate/events/contacts/surface_contacts.h"
+#include "engine/integrate/events/event_stepping.h"
 
 #include <assert.h>
 #include <string.h>

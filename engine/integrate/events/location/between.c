@@ -10,7 +10,7 @@
 #include <math.h>
 
 #include "engine/forces/nearby.h"
-#include "engine/forces/strains/path.h"
+#include "engine/forces/strains/strains.h"
 #include "engine/integrate/events/event_kernel.h"
 
 /* Parts of the step at most, of one law: beyond it what is left is taken to hold its mode. */

@@ -92,45 +92,15 @@ static void keep_first(const strut_model *model, const strut_event_stepper *step
   *first = (strut_event){kind, i, fraction};
 }
 
-/* Cables `k`, STRUT_LANES of them side by side, with the bits of strut_member_pose_at. */
-STRUT_INLINE void measure_cables_group(const strut_model *model, const strut_state *state,
-                                       const strut_event_stepper *stepper,
-                                       const strut_step_end *end, const int32_t *k) {
+static void measure_cable(const strut_model *model, const strut_state *state,
+                          const strut_law_switch *law, const strut_step_end *end, int32_t k) {
   const strut_member_table *members = &model->members;
-  uint32_t from[STRUT_LANES], to[STRUT_LANES];
-  strut_lanes rest, rest_rate, stiffness, damping;
-  for (int n = 0; n < STRUT_LANES; n++) {
-    int32_t j = stepper->laws.item[k[n]].member;
-    from[n] = members->from[j], to[n] = members->to[j];
-    rest[n] = state->latest->rest[j], rest_rate[n] = state->latest->rest_rate[j];
-    stiffness[n] = members->stiffness[j], damping[n] = members->damping[j];
-  }
-  member_vectors d = members_gather(end->q, from, to), w = members_gather(end->v, from, to);
-  strut_lanes length = four_root(d.x * d.x + d.y * d.y);
-  strut_lanes inverse = four_choose(length > 0.0, 1.0 / length, (strut_lanes){0});
-  strut_lanes stretch = length - rest;
-  strut_lanes rate = (w.x * d.x + w.y * d.y) * inverse - rest_rate;
-  strut_lanes tension = stiffness * stretch + damping * rate;
-  for (int n = 0; n < STRUT_LANES; n++) {
-    end->stretch[k[n]] = stretch[n];
-    end->stretch_rate[k[n]] = rate[n];
-    end->tension[k[n]] = tension[n];
-  }
-}
-
-/* The first `count` laws, or those of a list, which all are cables; the last group repeats one. */
-STRUT_CLONES
-static void measure_cables(const strut_model *model, const strut_state *state,
-                           const strut_event_stepper *stepper, const strut_step_end *end,
-                           const int32_t *list, int32_t count) {
-  for (int32_t n = 0; n < count; n += STRUT_LANES) {
-    int32_t k[STRUT_LANES];
-    for (int32_t m = 0; m < STRUT_LANES; m++) {
-      int32_t place = n + m < count ? n + m : count - 1;
-      k[m] = list ? list[place] : place;
-    }
-    measure_cables_group(model, state, stepper, end, k);
-  }
+  int32_t j = law->member;
+  strut_member_pose pose = strut_member_pose_at(members, state->latest->rest, j, end->q);
+  end->stretch[k] = pose.stretch;
+  end->stretch_rate[k] = strut_member_rate(members, j, &pose, end->v) - state->latest->rest_rate[j];
+  end->tension[k] =
+      members->stiffness[j] * pose.stretch + members->damping[j] * end->stretch_rate[k];
 }
 
 /* Of an element that carries one sign, with that sign; of kinks, the margins of the piece. */
@@ -169,21 +139,21 @@ static void measure_threshold(const strut_model *model, const strut_state *state
   end->stretch[k] = end->tension[k];
 }
 
-/* The rest lengths are those of the end. Laws of a list are all cables, or begin with all of them. */
+/* The rest lengths are those of the end. */
 static void measure_laws(const strut_model *model, const strut_state *state,
                          const strut_event_stepper *stepper, const strut_step_end *end) {
-  int32_t laws = strut_laws_of(&stepper->laws),
-          cables = laws < stepper->laws.cable_count ? laws : stepper->laws.cable_count;
-  measure_cables(model, state, stepper, end, stepper->laws.nearby, cables);
-  for (int32_t n = cables; n < laws; n++) {
+  for (int32_t n = 0, laws = strut_laws_of(&stepper->laws); n < laws; n++) {
     int32_t k = strut_law_of(&stepper->laws, n);
-    if (stepper->laws.item[k].event == STRUT_EVENT_TURN) break;
-    if (stepper->laws.item[k].event == STRUT_EVENT_THRESHOLD)
-      measure_threshold(model, state, &stepper->laws.item[k], end, k);
-    else if (stepper->laws.item[k].event >= STRUT_EVENT_SLIDER || stepper->laws.item[k].whole)
+    const strut_law_switch *law = &stepper->laws.item[k];
+    if (law->event == STRUT_EVENT_TURN) break;
+    if (law->event == STRUT_EVENT_THRESHOLD)
+      measure_threshold(model, state, law, end, k);
+    else if (law->event >= STRUT_EVENT_SLIDER || law->whole)
       strut_history_measure(model, state, stepper, end, k);
+    else if (law->member >= 0)
+      measure_cable(model, state, law, end, k);
     else
-      measure_element(model, state, &stepper->laws.item[k], end, k);
+      measure_element(model, state, law, end, k);
   }
   if (stepper->turns.on) strut_turns_measure(stepper, end);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/integrate/events/location/mode_tangent.h"
+#include "engine/integrate/events/location/variation.h"
 
 #include <assert.h>
 #include <math.h>

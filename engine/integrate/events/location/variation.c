@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/integrate/events/event_kernel.h"
-#include "engine/integrate/events/location/mode_tangent.h"
 
 enum { MOST_STAGES = 6 };
 /* Differences of an event's value: in time, in grid steps; along columns, relative to size and size per
