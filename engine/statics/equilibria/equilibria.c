@@ -355,19 +355,13 @@ static strut_status search_scene(strut_equilibrium_search *search, const strut_s
   return status;
 }
 
-static bool is_listed(const int32_t *nodes, int32_t count, int32_t node) {
-  for (int32_t k = 0; k < count; k++)
-    if (nodes[k] == node) return true;
-  return false;
-}
-
 /* Is the shape q held by the ground where that equilibrium is? */
 static bool touches_alike(const strut_model *model, const strut_equilibrium *equilibrium,
                           const double *positions) {
   const strut_contact_table *contacts = &model->contacts;
   for (int32_t i = 0; i < contacts->count; i++)
     if ((strut_contact_gap(contacts, i, positions) < 0.0) !=
-        is_listed(equilibrium->contacts, equilibrium->contact_count, contacts->entry[i].node))
+        strut_is_listed(equilibrium->contacts, equilibrium->contact_count, contacts->entry[i].node))
       return false;
   return true;
 }

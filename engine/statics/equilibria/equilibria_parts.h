@@ -299,8 +299,16 @@ strut_status strut_name_equilibria(const strut_model *model, size_t count, strut
 /** True if strut_name_equilibria may give this name. */
 bool strut_is_listed_name(const strut_scene *scene, const char *name);
 
-/** True where the set holds the same nodes, in any order. */
-bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count);
+/** Is the node among these? */
+static inline bool strut_is_listed(const int32_t *nodes, int32_t count, int32_t node) {
+  for (int32_t k = 0; k < count; k++)
+    if (nodes[k] == node) return true;
+  return false;
+}
+
+/** Do the nodes that touch make one of the configuration's contact sets, in any order? True where it has none. */
+bool strut_rests_on_set(const strut_configuration *configuration, const int32_t *nodes,
+                        int32_t count);
 
 /** Writes "n1, n2 and n3" for the nodes with a flag; many become "n1, n2, n3 and 5 more". */
 void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size, char *text);

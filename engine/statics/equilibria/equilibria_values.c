@@ -32,9 +32,7 @@ static const strut_equilibrium *rest_of(const strut_result_object *of) { return 
 
 static bool touches(const strut_result_object *of, size_t node) {
   const strut_equilibrium *equilibrium = rest_of(of);
-  for (int32_t i = 0; i < equilibrium->contact_count; i++)
-    if (equilibrium->contacts[i] == (int32_t)node) return true;
-  return false;
+  return strut_is_listed(equilibrium->contacts, equilibrium->contact_count, (int32_t)node);
 }
 
 static double normal_on(const strut_result_object *of, size_t node) {
@@ -71,11 +69,10 @@ static const char *name_down(const strut_result_object *of, size_t i) {
 }
 
 static bool is_support(const strut_result_object *of, size_t k) {
-  const strut_equilibrium *equilibrium = of->at;
+  const strut_node_set *held = ((const strut_equilibrium *)of->at)->supports;
   const strut_node *node = &of->scene->nodes[k / 2];
-  for (size_t i = 0; equilibrium->supports && i < equilibrium->supports->count; i++)
-    if (equilibrium->supports->node[i] == (int32_t)(k / 2)) return true;
-  return node->fixed[0] || node->fixed[1];
+  return (held && strut_is_listed(held->node, (int32_t)held->count, (int32_t)(k / 2))) ||
+         node->fixed[0] || node->fixed[1];
 }
 
 static void write_flaws(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {

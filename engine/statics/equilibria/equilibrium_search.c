@@ -238,12 +238,9 @@ bool strut_equilibrium_search_stands(const strut_equilibrium_search *search,
                                      const double *rest) {
   const strut_node_set *set = candidate->e.supports;
   double moved = strut_shape_distance(search->model, candidate->e.point.q, rest, false, NULL);
-  for (size_t i = 0; i < set->count; i++) {
-    bool touches = false;
-    for (int32_t k = 0; k < candidate->e.contact_count; k++)
-      touches = touches || candidate->e.contacts[k] == set->node[i];
-    if (!touches) return false;
-  }
+  for (size_t i = 0; i < set->count; i++)
+    if (!strut_is_listed(candidate->e.contacts, candidate->e.contact_count, set->node[i]))
+      return false;
   return moved < AS_IT_STOOD * search->model->size;
 }
 

@@ -190,10 +190,9 @@ static strut_status find_lowest(strut_landscape *landscape, strut_error *error) 
   while ((size_t)landscape->minima < set->count &&
          set->points[landscape->minima].label <= STRUT_FLOPPY)
     landscape->minima++;
-  landscape->lowest =
-      strut_arena_allocate(&landscape->arena, (size_t)landscape->minima, sizeof *landscape->lowest);
-  landscape->parent =
-      strut_arena_allocate(&landscape->arena, (size_t)landscape->minima, sizeof *landscape->parent);
+  size_t minima = (size_t)landscape->minima;
+  landscape->lowest = strut_arena_allocate(&landscape->arena, minima, sizeof(double));
+  landscape->parent = strut_arena_allocate(&landscape->arena, minima, sizeof(int32_t));
   if (!landscape->lowest || !landscape->parent) return strut_no_memory(error, "");
   for (int32_t i = 0; i < landscape->minima; i++) {
     landscape->lowest[i] = HUGE_VAL;

@@ -16,14 +16,18 @@
 
 enum { MOST_LISTED = 4 };
 
-bool strut_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count) {
+static bool are_same_nodes(const strut_node_set *set, const int32_t *nodes, int32_t count) {
   if (set->count != (size_t)count) return false;
-  for (int32_t i = 0; i < count; i++) {
-    bool there = false;
-    for (size_t k = 0; k < set->count; k++) there = there || set->node[k] == nodes[i];
-    if (!there) return false;
-  }
+  for (int32_t i = 0; i < count; i++)
+    if (!strut_is_listed(set->node, count, nodes[i])) return false;
   return true;
+}
+
+bool strut_rests_on_set(const strut_configuration *configuration, const int32_t *nodes,
+                        int32_t count) {
+  for (size_t k = 0; k < configuration->set_count; k++)
+    if (are_same_nodes(&configuration->sets[k], nodes, count)) return true;
+  return configuration->set_count == 0;
 }
 
 void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size, char *text) {
@@ -127,15 +131,6 @@ strut_status strut_orient_shape(const strut_model *model, const uint8_t *held, d
   return STRUT_OK;
 }
 
-static bool rests_on_set(const strut_configuration *configuration,
-                         const strut_equilibrium *equilibrium) {
-  for (size_t k = 0; k < configuration->set_count; k++)
-    if (strut_same_nodes(&configuration->sets[k], equilibrium->contacts,
-                         equilibrium->contact_count))
-      return true;
-  return configuration->set_count == 0;
-}
-
 static bool may_be_named(const strut_equilibrium *equilibrium) {
   return !equilibrium->name && equilibrium->outcome == STRUT_OUTCOME_STANDS;
 }
@@ -158,7 +153,9 @@ static void name_shaped(const strut_model *model, const strut_configuration *con
   double least = STRUT_NAMED_WITHIN * model->size;
   memcpy(scratch, configuration->position[0], 2 * model->scene->node_count * sizeof *scratch);
   for (size_t i = 0; i < count; i++) {
-    if (!may_be_named(list[i]) || !rests_on_set(configuration, list[i])) continue;
+    if (!may_be_named(list[i]) ||
+        !strut_rests_on_set(configuration, list[i]->contacts, list[i]->contact_count))
+      continue;
     /* Without a list of contacts, the shape says on which side the structure lies. */
     double d = model->contacts.count && !configuration->set_count
                    ? translated_distance(model, scratch, list[i]->rest)
@@ -196,8 +193,8 @@ static bool name_on_set(const strut_model *model, const strut_configuration *con
     for (size_t i = 0; i < count; i++) {
       strut_equilibrium *equilibrium = list[i];
       if (!may_be_named(equilibrium) ||
-          !strut_same_nodes(&configuration->sets[k], equilibrium->contacts,
-                            equilibrium->contact_count))
+          !are_same_nodes(&configuration->sets[k], equilibrium->contacts,
+                          equilibrium->contact_count))
         continue;
       if (!lowest || equilibrium->rest_energy < lowest->rest_energy) lowest = equilibrium;
     }
@@ -240,10 +237,9 @@ static const char *make_stem(const strut_scene *scene, const strut_equilibrium *
   bool held = equilibrium->supports && equilibrium->outcome != STRUT_OUTCOME_STANDS;
   if (held) used = (size_t)snprintf(text, sizeof text, "%s", HELD);
   for (size_t i = 0; i < scene->node_count && used < sizeof text; i++) {
-    bool touches = false;
-    for (int32_t k = 0; k < equilibrium->contact_count; k++)
-      touches = touches || equilibrium->contacts[k] == (int32_t)i;
-    if (!touches || ++shown > MOST_IN_STEM) continue;
+    if (!strut_is_listed(equilibrium->contacts, equilibrium->contact_count, (int32_t)i) ||
+        ++shown > MOST_IN_STEM)
+      continue;
     int n = snprintf(text + used, sizeof text - used, "%s%s", shown > 1 ? "-" : "",
                      scene->nodes[i].name);
     if (n > 0) used += (size_t)n;

@@ -2,9 +2,9 @@
 #include "engine/statics/equilibria/equilibria.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
+#include "engine/base/text_buffer.h"
 #include "engine/forces/tangent.h"
 #include "engine/run/settle.h"
 #include "engine/scene/things.h"
@@ -138,11 +138,9 @@ static bool fits_configuration(strut_equilibrium_search *search,
   strut_equilibrium e = {0};
   if (strut_equilibrium_search_contacts(search, positions, &e)) return false;
   *rests_on = (strut_node_set){(size_t)e.contact_count, e.contacts};
-  bool on_set = configuration->set_count == 0;
-  for (size_t k = 0; k < configuration->set_count; k++)
-    on_set = on_set || strut_same_nodes(&configuration->sets[k], e.contacts, e.contact_count);
-  return on_set && strut_shape_distance(search->model, shape, positions, false, NULL) <
-                       STRUT_NAMED_WITHIN * search->model->size;
+  return strut_rests_on_set(configuration, e.contacts, e.contact_count) &&
+         strut_shape_distance(search->model, shape, positions, false, NULL) <
+             STRUT_NAMED_WITHIN * search->model->size;
 }
 
 /*
@@ -206,32 +204,28 @@ static strut_status search_configuration(const strut_model *model,
     status =
         find_named(model, experiment, NULL, true, configuration->name, positions, &found, error);
   if (status || found) return status;
-  char instead[200] = "";
-  size_t used = 0;
-  for (size_t i = 0; i < rests_on->count && used < sizeof instead; i++) {
-    int n = snprintf(instead + used, sizeof instead - used, "%s%s",
-                     i ? ", " : "; from its shape it comes to rest on ",
+  strut_buffer instead = {0};
+  for (size_t i = 0; i < rests_on->count; i++)
+    strut_buffer_add(&instead, "%s%s", i ? ", " : "; from its shape it comes to rest on ",
                      model->scene->nodes[rests_on->node[i]].name);
-    if (n < 0) break;
-    used += (size_t)n;
-  }
-  return strut_fail(
-      error, STRUT_NOT_SETTLED,
-      "no equilibrium fits configuration '%.60s': none stands%s%s%s; 'strut equilibria' lists all",
-      configuration->name, configuration->set_count ? " on its contacts" : "",
-      configuration->shaped ? " near its shape" : "", instead);
+  strut_fail(error, STRUT_NOT_SETTLED,
+             "no equilibrium fits configuration '%.60s': none stands%s%s%.200s; 'strut equilibria' "
+             "lists all",
+             configuration->name, configuration->set_count ? " on its contacts" : "",
+             configuration->shaped ? " near its shape" : "", instead.text ? instead.text : "");
+  strut_release(instead.text);
+  return STRUT_NOT_SETTLED;
 }
 
 static strut_status report_unknown(const strut_scene *scene, const char *name, strut_error *error) {
-  char names[300] = "";
-  size_t used = 0;
-  for (size_t i = 0; i < scene->configuration_count && used < sizeof names; i++) {
-    int n = snprintf(names + used, sizeof names - used, ", %s", scene->configurations[i].name);
-    if (n < 0) break;
-    used += (size_t)n;
-  }
-  return strut_fail(error, STRUT_USAGE,
-                    "unknown configuration '%.100s'; choose one of: start, drawn%s", name, names);
+  strut_buffer names = {0};
+  for (size_t i = 0; i < scene->configuration_count; i++)
+    strut_buffer_add(&names, ", %s", scene->configurations[i].name);
+  strut_fail(error, STRUT_USAGE,
+             "unknown configuration '%.100s'; choose one of: start, drawn%.300s", name,
+             names.text ? names.text : "");
+  strut_release(names.text);
+  return STRUT_USAGE;
 }
 
 /* The equilibrium of that name in the list that the scene's own search makes. */

@@ -335,8 +335,8 @@ static void apply_modal_quotients(const strut_modes_work *work, strut_mode *list
 
 static bool allocate_quadratic(const strut_modes_work *work, quadratic *self) {
   size_t n = self->n;
-  self->system = gsl_matrix_calloc(2 * n, 2 * n);
-  self->damping = gsl_matrix_calloc(n, n);
+  self->system = strut_arena_matrix(work->arena, 2 * n, 2 * n);
+  self->damping = strut_arena_matrix(work->arena, n, n);
   self->value = gsl_vector_complex_calloc(2 * n);
   self->vector = gsl_matrix_complex_calloc(2 * n, 2 * n);
   self->w = gsl_eigen_nonsymmv_alloc(2 * n);
@@ -364,8 +364,6 @@ strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, str
       for (size_t j = 0; j < p.n; j++) set_damped_mode(&p, j, &list[j]);
     }
   }
-  gsl_matrix_free(p.system);
-  gsl_matrix_free(p.damping);
   gsl_vector_complex_free(p.value);
   gsl_matrix_complex_free(p.vector);
   gsl_eigen_nonsymmv_free(p.w);

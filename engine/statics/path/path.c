@@ -6,13 +6,12 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/text_buffer.h"
 #include "engine/forces/capstan.h"
 #include "engine/model/compile_parts.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/minimise.h"
 #include "engine/statics/path/path_parts.h"
-
-enum { NAMES = 400 };
 
 /* Residual that a descent may leave, relative to the rounding in forces; the path is corrected later. */
 static const double NEARLY = 1e6;
@@ -46,17 +45,13 @@ void strut_path_remark_steps(strut_path_walk *walk, int32_t steps) {
 }
 
 static strut_status no_such_load(const strut_scene *scene, const char *name, strut_error *error) {
-  char list[NAMES] = "";
-  size_t used = 0;
-  for (size_t i = 0; i < scene->load_count; i++) {
-    size_t length = strlen(scene->loads[i].name);
-    if (used + length + 3 > sizeof list) break;
-    if (used) memcpy(list + used, ", ", 2), used += 2;
-    memcpy(list + used, scene->loads[i].name, length);
-    used += length;
-    list[used] = '\0';
-  }
-  return strut_fail(error, STRUT_USAGE, "unknown load '%s'; the scene's loads are: %s", name, list);
+  strut_buffer list = {0};
+  for (size_t i = 0; i < scene->load_count; i++)
+    strut_buffer_add(&list, "%s%s", i ? ", " : "", scene->loads[i].name);
+  strut_fail(error, STRUT_USAGE, "unknown load '%s'; the scene's loads are: %.400s", name,
+             list.text ? list.text : "");
+  strut_release(list.text);
+  return STRUT_USAGE;
 }
 
 /* Is it one of the loads that the factor multiplies? */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/scene/things.h"
+#include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
 /* What the stages so far left. */
@@ -27,17 +28,15 @@ static bool create_stages(stages *self) {
   const strut_scene *scene = self->model->scene;
   const strut_experiment *experiment = self->experiment;
   size_t length = (size_t)self->model->length;
-  self->q = strut_arena_allocate(&self->arena, length, sizeof *self->q);
-  self->factor = strut_arena_allocate(&self->arena, scene->load_count, sizeof *self->factor);
-  self->staged = strut_arena_allocate(&self->arena, scene->load_count, sizeof *self->staged);
-  self->drive = strut_arena_allocate(&self->arena, scene->actuator_count, sizeof *self->drive);
-  self->moved = strut_arena_allocate(&self->arena, length, sizeof *self->moved);
-  self->held = strut_arena_allocate(&self->arena, length, sizeof *self->held);
+  strut_arena *arena = &self->arena;
+  self->staged = strut_arena_allocate(arena, scene->load_count, sizeof *self->staged);
+  self->held = strut_arena_copy(arena, self->model->fixed, length, sizeof *self->held);
   self->path = strut_allocate(experiment->stage_count, sizeof *self->path);
-  if (!self->q || !self->factor || !self->staged || !self->drive || !self->moved || !self->held ||
-      !self->path)
+  if (!self->staged || !self->held || !self->path ||
+      !strut_arena_numbers(arena, length, (double **[]){&self->q, &self->moved, NULL}) ||
+      !strut_arena_numbers(arena, scene->load_count, (double **[]){&self->factor, NULL}) ||
+      !strut_arena_numbers(arena, scene->actuator_count, (double **[]){&self->drive, NULL}))
     return false;
-  memcpy(self->held, self->model->fixed, length);
   for (size_t i = 0; i < scene->load_count; i++) {
     self->factor[i] = 1.0;
     for (size_t k = 0; k < experiment->stage_count; k++)

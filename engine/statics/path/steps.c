@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
 enum { SLOW = 8, PARTS = 4 };
@@ -90,12 +91,10 @@ typedef struct check {
 } check;
 
 static bool allocate_check(const strut_path_walk *walk, check *self) {
-  double **arrays[] = {&self->whole.y, &self->whole.tangent, &self->whole.end,
-                       &self->inner.y, &self->inner.tangent, &self->inner.end,
-                       &self->y,       &self->tangent,       &self->next_tangent};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    if (!(*arrays[i] = strut_arena_allocate(&self->arena, 1, strut_path_bytes(walk)))) return false;
-  return true;
+  return strut_arena_numbers(&self->arena, 2 * ((size_t)walk->system.n + 1),
+                             (double **[]){&self->whole.y, &self->whole.tangent, &self->whole.end,
+                                           &self->inner.y, &self->inner.tangent, &self->inner.end,
+                                           &self->y, &self->tangent, &self->next_tangent, NULL});
 }
 
 /*
