@@ -11,7 +11,6 @@
 #include "engine/model/pose.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/cost_estimate.h"
-#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/potential.h"
 #include "engine/statics/rigidity/rigidity.h"
@@ -44,7 +43,6 @@ typedef struct facts {
   strut_error error;           /* of the latest computation */
   strut_rest_state rest;       /* q is NULL if there is none */
   strut_rigidity drawn, forces;
-  strut_equilibria states;
   int32_t start; /* of them, in which a run starts; -1: none */
   strut_modes modes;
   strut_cost_estimate plan;
@@ -117,19 +115,22 @@ static const char *why_no_drive(const facts *f, const char *lacks) {
 }
 
 static double state_energy(const strut_compare_column *c, size_t i) {
-  return i < c->state_count ? c->states[i].energy : (double)NAN;
+  return i < c->state_count ? c->equilibria.list[c->states[i]].energy : (double)NAN;
 }
 
 static const char *why_no_state(const facts *f) {
-  const char *remark = f->states.remark[0] ? strut_arena_format(f->arena, "%s", f->states.remark)
-                                           : "there is no state in which it stands";
+  const strut_compare_column *c = f->column;
+  const char *remark = c->equilibria.remark[0]
+                           ? strut_arena_format(f->arena, "%s", c->equilibria.remark)
+                           : "there is no state in which it stands";
   return remark ? remark : "there is none";
 }
 
 static double lowest_barrier(const facts *f) {
   double lowest = (double)NAN;
-  for (size_t i = 0; f->start >= 0 && i < f->states.barrier_count; i++)
-    if (f->states.barriers[i].from == f->start) lowest = fmin(lowest, f->states.barriers[i].height);
+  const strut_equilibria *all = &f->column->equilibria;
+  for (size_t i = 0; f->start >= 0 && i < all->barrier_count; i++)
+    if (all->barriers[i].from == f->start) lowest = fmin(lowest, all->barriers[i].height);
   return f->column->state_count ? lowest : (double)NAN;
 }
 
@@ -262,39 +263,11 @@ static strut_status find_drawn(facts *f, const strut_model *model) {
   return know(f, DRAWN, status, true);
 }
 
-/* Adds a state to those before it, which are in order; of one energy they stay in the list's. */
-static void insert_by_energy(strut_compare_column *column, strut_compare_state state) {
-  size_t k = column->state_count++;
-  for (; k > 0 && column->states[k - 1].energy > state.energy; k--)
-    column->states[k] = column->states[k - 1];
-  column->states[k] = state;
-}
-
-static strut_status keep_states(facts *f) {
-  strut_compare_column *column = f->column;
-  const strut_equilibria *all = &f->states;
-  column->states = strut_arena_allocate(f->arena, all->count + 1, sizeof *column->states);
-  column->barriers =
-      strut_arena_allocate(f->arena, all->barrier_count + 1, sizeof *column->barriers);
-  const char **names = strut_arena_allocate(f->arena, all->count + 1, sizeof *names);
-  if (!column->states || !column->barriers || !names) return STRUT_NO_MEMORY;
-  for (size_t i = 0; i < all->count; i++) {
-    names[i] = strut_arena_format(f->arena, "%s", all->list[i].name);
-    if (!names[i]) return STRUT_NO_MEMORY;
-    if (all->list[i].outcome == STRUT_OUTCOME_STANDS)
-      insert_by_energy(column, (strut_compare_state){names[i], all->list[i].energy});
-  }
-  for (size_t i = 0; i < all->barrier_count; i++)
-    column->barriers[column->barrier_count++] = (strut_compare_barrier){
-        names[all->barriers[i].from], names[all->barriers[i].to], all->barriers[i].height};
-  return STRUT_OK;
-}
-
 /* The equilibrium of the list that a run starts in, or -1. */
 static int32_t find_start(const facts *f, const strut_model *model) {
   const double *q = f->rest.q;
-  for (size_t i = 0; q && i < f->states.count; i++) {
-    const strut_equilibrium *equilibrium = &f->states.list[i];
+  for (size_t i = 0; q && i < f->column->equilibria.count; i++) {
+    const strut_equilibrium *equilibrium = &f->column->equilibria.list[i];
     const double *p = equilibrium->rest ? equilibrium->rest : equilibrium->point.q;
     if (equilibrium->outcome != STRUT_OUTCOME_STANDS) continue;
     double shift = p[0] - q[0], apart = 0.0; /* along the ground it may lie anywhere */
@@ -311,9 +284,13 @@ static strut_status find_states(facts *f, const strut_model *model) {
   const strut_equilibria_options wanted = {.interrupt = f->options->interrupt};
   f->missing[STABLE] = "not requested";
   if (f->options->no_states) return STRUT_OK;
-  strut_status status = strut_equilibria_find(model, f->experiment, &wanted, &f->states, &f->error);
-  if (!status) status = keep_states(f);
+  strut_compare_column *c = f->column;
+  strut_status status =
+      strut_equilibria_find(model, f->experiment, &wanted, &c->equilibria, &f->error);
+  if (!status) c->states = strut_standing_states(&c->equilibria, f->arena, &c->state_count);
+  if (!status && !c->states) status = STRUT_NO_MEMORY;
   if (!status) f->start = find_start(f, model);
+  if (status) strut_equilibria_free(&c->equilibria);
   return know(f, STABLE, status, true);
 }
 
@@ -478,7 +455,6 @@ static strut_status fill_column(const strut_compare_input *input,
   if (status && error) *error = f.error;
   strut_rigidity_free(&f.drawn);
   strut_rigidity_free(&f.forces);
-  strut_equilibria_free(&f.states);
   strut_modes_free(&f.modes);
   strut_summary_free(&f.run);
   return status;
@@ -506,8 +482,10 @@ strut_status strut_compare_make(const strut_compare_input *inputs, size_t count,
 }
 
 void strut_compare_free(strut_compare *result) {
-  for (size_t i = 0; result->columns && i < result->count; i++)
+  for (size_t i = 0; result->columns && i < result->count; i++) {
     strut_model_free(result->columns[i].model);
+    strut_equilibria_free(&result->columns[i].equilibria);
+  }
   strut_arena_free(&result->arena);
   *result = (strut_compare){0};
 }

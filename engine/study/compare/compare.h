@@ -16,6 +16,7 @@
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/things.h"
+#include "engine/statics/equilibria/equilibria.h"
 
 enum { STRUT_COMPARE_MOST = 100 };
 
@@ -107,18 +108,6 @@ typedef struct strut_compare_cell {
   const char *reason; /* why the value is missing, or NULL */
 } strut_compare_cell;
 
-/** A state in which a structure stands. */
-typedef struct strut_compare_state {
-  const char *name;
-  double energy; /* (13) at rest on the real ground [J] */
-} strut_compare_state;
-
-/** The lowest pass known from one state to another. */
-typedef struct strut_compare_barrier {
-  const char *from, *to;
-  double height; /* [J] above `from` */
-} strut_compare_barrier;
-
 /** A model to compare. Scenes are checked for any purpose; a start equilibrium may be unresolved. */
 typedef struct strut_compare_input {
   const char *label;                   /* unique */
@@ -133,12 +122,12 @@ typedef struct strut_compare_input {
 typedef struct strut_compare_column {
   const strut_compare_input *input;
   strut_compare_cell cell[STRUT_COMPARE_QUANTITIES];
-  strut_model *model; /* as run; owned */
-  const char *shape;  /* name of the equilibrium evaluated and drawn, or "drawn" */
-  const double *q;    /* (length) its positions [m] */
-  size_t state_count, barrier_count, contact_count;
-  strut_compare_state *states;     /* by energy */
-  strut_compare_barrier *barriers; /* as strut_equilibria lists them */
+  strut_model *model;          /* as run; owned */
+  const char *shape;           /* name of the equilibrium evaluated and drawn, or "drawn" */
+  const double *q;             /* (length) its positions [m] */
+  strut_equilibria equilibria; /* owned */
+  size_t state_count, contact_count;
+  const int32_t *states;  /* (state_count) equilibria that stand, by energy */
   double (*stiffness)[2]; /* (nodes) under unit loads in x and y [N/m]; NAN: none. Or NULL */
   int32_t softest[2];     /* node of STIFFNESS_X and _Y, or -1 */
   strut_contact_summary *contacts; /* (contact_count) in the steady motion */

@@ -40,13 +40,16 @@ static strut_value quantity_reason(const strut_result_object *of, size_t i) {
 #define STATE(X)                                                                                   \
   X("name", "", TEXT(state->name), "of the equilibrium", .label = {""})                            \
   X("energy", "J", NUMBER(state->energy), "at rest on the real ground", .label = {""})
-STRUT_VALUES_HERE(state_values, STATE, const strut_compare_state *state = of->at)
+STRUT_VALUES_HERE(state_values, STATE, const strut_compare_column *c = of->outer->at;
+                  const strut_equilibrium *state = &c->equilibria.list[*(const int32_t *)of->at])
 
 #define BARRIER(X)                                                                                 \
-  X("from", "", TEXT(barrier->from), "an equilibrium")                                             \
-  X("to", "", TEXT(barrier->to), "another one")                                                    \
+  X("from", "", TEXT(list[barrier->from].name), "an equilibrium")                                  \
+  X("to", "", TEXT(list[barrier->to].name), "another one")                                         \
   X("height", "J", NUMBER(barrier->height), "above `from`")
-STRUT_VALUES_HERE(barrier_values, BARRIER, const strut_compare_barrier *barrier = of->at)
+STRUT_VALUES_HERE(
+    barrier_values, BARRIER, const strut_barrier *barrier = of->at;
+    const strut_equilibrium *list = ((const strut_compare_column *)of->outer->at)->equilibria.list)
 
 #define NODE(X)                                                                                    \
   X("position", "m", NUMBERS(of->at, 2), "in that shape")                                          \
@@ -97,7 +100,8 @@ static const char *softest_node(const strut_compare_column *column, int axis) {
   X("reasons", "", MAP(STRUT_COMPARE_QUANTITIES, quantity_name, quantity_reason), "of null")       \
   X("states", "", LIST(c->states, c->state_count), "equilibria in which it stands",                \
     .rows = &state_values, .label = {""})                                                          \
-  X("barriers", "", LIST(c->barriers, c->barrier_count), "between", .rows = &barrier_values)       \
+  X("barriers", "", LIST(c->equilibria.barriers, c->equilibria.barrier_count), "between",          \
+    .rows = &barrier_values)                                                                       \
   X("shape", "", TEXT(c->shape), "that is evaluated and drawn")                                    \
   X("nodes", "", NAMED((const double(*)[2])c->q, c->q ? scene_of(c)->node_count : 0, node_name),   \
     "in it", .rows = &node_values)                                                                 \

@@ -154,7 +154,6 @@ static strut_status lock(const strut_slots *slots, strut_error *error) {
 static strut_status begin(strut_slots *slots, const strut_slots_description *plan,
                           strut_error *error) {
   slots->plan = *plan;
-  if (!strut_slots_own(&slots->plan, &slots->arena)) return no_memory(error, slots->path);
   strut_status status = strut_slots_lay_out(&slots->plan, &slots->layout, error);
   if (status != STRUT_OK) return status;
   unsigned char *header = strut_slots_header(&slots->plan, &slots->layout, &slots->arena);

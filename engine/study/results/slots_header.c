@@ -92,54 +92,10 @@ strut_status strut_slots_lay_out(strut_slots_description *plan, strut_slots_layo
   return STRUT_OK;
 }
 
-bool strut_slots_own(strut_slots_description *plan, strut_arena *arena) {
-  strut_slot_column *columns = strut_arena_allocate(arena, plan->column_count + 1, sizeof *columns);
-  plan->version = strut_arena_text(arena, plan->version, strlen(plan->version));
-  plan->name = strut_arena_text(arena, plan->name, strlen(plan->name));
-  bool good = columns && plan->version && plan->name;
-  for (size_t i = 0; good && i < plan->column_count; i++) {
-    const strut_slot_column *from = &plan->columns[i];
-    columns[i] =
-        (strut_slot_column){strut_arena_text(arena, from->name, strlen(from->name)),
-                            strut_arena_text(arena, from->unit, strlen(from->unit)), from->word};
-    good = columns[i].name && columns[i].unit;
-  }
-  plan->columns = columns;
-  return good;
-}
-
 static char *put_text(char *at, const char *text) {
   size_t length = strlen(text) + 1;
   memcpy(at, text, length);
   return at + length;
-}
-
-unsigned char *strut_slots_header(const strut_slots_description *plan,
-                                  const strut_slots_layout *layout, strut_arena *arena) {
-  unsigned char *header = strut_arena_allocate(arena, layout->header_bytes, 1);
-  if (!header) return NULL;
-  fixed_part fixed = {.byte_order = BYTE_ORDER_MARK,
-                      .format = FORMAT,
-                      .header_bytes = layout->header_bytes,
-                      .slot_bytes = layout->slot_bytes,
-                      .points = plan->points,
-                      .first = plan->first,
-                      .stride = plan->stride,
-                      .count = plan->count,
-                      .column_count = plan->column_count,
-                      .text_bytes = text_bytes(plan)};
-  memcpy(fixed.magic, MAGIC, sizeof MAGIC);
-  memcpy(fixed.hash, plan->hash, sizeof fixed.hash);
-  char *at = (char *)header + sizeof fixed;
-  at = put_text(put_text(at, plan->version), plan->name);
-  for (size_t i = 0; i < plan->column_count; i++) {
-    *at++ = plan->columns[i].word ? 'w' : 'n';
-    at = put_text(put_text(at, plan->columns[i].name), plan->columns[i].unit);
-  }
-  memcpy(header, &fixed, sizeof fixed);
-  fixed.checksum = strut_checksum(header, layout->header_bytes, 0);
-  memcpy(header, &fixed, sizeof fixed);
-  return header;
 }
 
 /* The next text before `end`, or NULL. */
@@ -167,6 +123,34 @@ static bool take_texts(strut_slots_description *plan, const char *at, const char
   }
   plan->columns = columns;
   return good;
+}
+
+unsigned char *strut_slots_header(strut_slots_description *plan, const strut_slots_layout *layout,
+                                  strut_arena *arena) {
+  unsigned char *header = strut_arena_allocate(arena, layout->header_bytes, 1);
+  if (!header) return NULL;
+  fixed_part fixed = {.byte_order = BYTE_ORDER_MARK,
+                      .format = FORMAT,
+                      .header_bytes = layout->header_bytes,
+                      .slot_bytes = layout->slot_bytes,
+                      .points = plan->points,
+                      .first = plan->first,
+                      .stride = plan->stride,
+                      .count = plan->count,
+                      .column_count = plan->column_count,
+                      .text_bytes = text_bytes(plan)};
+  memcpy(fixed.magic, MAGIC, sizeof MAGIC);
+  memcpy(fixed.hash, plan->hash, sizeof fixed.hash);
+  char *texts = (char *)header + sizeof fixed, *at = texts;
+  at = put_text(put_text(at, plan->version), plan->name);
+  for (size_t i = 0; i < plan->column_count; i++) {
+    *at++ = plan->columns[i].word ? 'w' : 'n';
+    at = put_text(put_text(at, plan->columns[i].name), plan->columns[i].unit);
+  }
+  memcpy(header, &fixed, sizeof fixed);
+  fixed.checksum = strut_checksum(header, layout->header_bytes, 0);
+  memcpy(header, &fixed, sizeof fixed);
+  return take_texts(plan, texts, at, arena) ? header : NULL;
 }
 
 /* Are these only the first bytes of a header, or of space reserved for one? */

@@ -19,11 +19,9 @@ typedef struct strut_slots_layout {
 /** STRUT_USAGE if the plan's points or columns are invalid. Replaces a stride of 0 by 1. */
 strut_status strut_slots_lay_out(strut_slots_description *plan, strut_slots_layout *layout,
                                  strut_error *error);
-/** Copies all texts of a plan into the arena. False when memory is out. */
-bool strut_slots_own(strut_slots_description *plan, strut_arena *arena);
-/** The header of a plan: layout->header_bytes bytes in the arena, or NULL. */
-unsigned char *strut_slots_header(const strut_slots_description *plan,
-                                  const strut_slots_layout *layout, strut_arena *arena);
+/** The header of a plan, whose texts are in it from now on: layout->header_bytes bytes in the arena, or NULL. */
+unsigned char *strut_slots_header(strut_slots_description *plan, const strut_slots_layout *layout,
+                                  strut_arena *arena);
 /** An open file of slots, of which up to `most` bytes may be what a stopped process left. */
 typedef struct strut_slots_file {
   int descriptor;

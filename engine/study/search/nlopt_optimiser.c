@@ -173,16 +173,12 @@ static bool run(nlopt_search *self, strut_search_method method, double first_ste
  */
 static bool spread_points(nlopt_search *self, double share) {
   size_t n = self->task->dimension;
-  const strut_search_spread sequence = strut_search_spread_begin(n, self->task->seed);
   double usual = 20.0 * ((double)n + 1.0);
   int64_t count = (int64_t)fmax(fmin(usual, floor(share * (double)self->task->evaluations)), 1.0);
   self->spread = strut_allocate((size_t)count * n, sizeof *self->spread);
   self->spread_values = strut_allocate((size_t)count, sizeof *self->spread_values);
   if (!self->spread || !self->spread_values) return false;
-  for (int64_t k = 0; k < count; k++)
-    for (size_t i = 0; i < n; i++)
-      self->spread[(size_t)k * n + i] =
-          k == 0 ? self->task->start[i] : strut_search_spread_at(&sequence, k, i);
+  strut_search_spread_points(self->task, (size_t)count, self->spread);
   self->spread_count = (size_t)count;
   self->asked = count;
   self->ended = !self->asker->ask(self->asker->context, self->spread_count, self->spread,

@@ -62,6 +62,15 @@ double strut_search_spread_at(const strut_search_spread *spread, int64_t i, size
   return at - floor(at);
 }
 
+void strut_search_spread_points(const strut_search_task *task, size_t count, double *points) {
+  const size_t n = task->dimension;
+  const strut_search_spread spread = strut_search_spread_begin(n, task->seed);
+  memcpy(points, task->start, n * sizeof *points);
+  for (size_t i = 1; i < count; i++)
+    for (size_t k = 0; k < n; k++)
+      points[i * n + k] = strut_search_spread_at(&spread, (int64_t)i, k);
+}
+
 int64_t strut_search_count(const strut_search_variable *variable) {
   if (variable->choice_count) return (int64_t)variable->choice_count;
   return variable->integer ? (int64_t)(floor(variable->to) - ceil(variable->from)) + 1 : 0;
@@ -162,8 +171,9 @@ typedef struct evolution {
   const strut_search_task *task;
   size_t n, size;
   uint64_t state;
-  double *points, *values; /* (2 size, dimension), (2 size, 2): parents, then children */
-  individual *all;         /* (2 size) */
+  double *points[2],
+      *values[2];  /* (2 size, dimension), (2 size, 2): parents, then children; room for the next */
+  individual *all; /* (2 size) */
 } evolution;
 
 static double share(evolution *self) { return strut_search_share(&self->state); }
@@ -216,32 +226,22 @@ static int by_worth(const void *first, const void *second) {
   return self->index < y->index ? -1 : 1;
 }
 
-static void sort(evolution *self, size_t count) {
+/* The best of `count` become the parents, in order. */
+static void select_parents(evolution *self, size_t count) {
+  double *points = self->points[1], *values = self->values[1];
   for (size_t i = 0; i < count; i++) {
-    self->all[i] = (individual){.point = self->points + i * self->n, .index = i};
-    memcpy(self->all[i].value, self->values + 2 * i, sizeof self->all[i].value);
+    self->all[i] = (individual){.point = self->points[0] + i * self->n, .index = i};
+    memcpy(self->all[i].value, self->values[0] + 2 * i, sizeof self->all[i].value);
   }
   rank_all(self->all, count);
   find_crowding(self->all, count);
   qsort(self->all, count, sizeof *self->all, by_worth);
-}
-
-/* The better half become the parents. False: no memory. */
-static bool select_parents(evolution *self) {
-  double *points = strut_allocate(self->size * self->n, sizeof *points);
-  double *values = strut_allocate(2 * self->size, sizeof *values);
-  bool fine = points && values;
-  for (size_t i = 0; fine && i < self->size; i++) {
+  for (size_t i = 0; i < self->size; i++) {
     memcpy(points + i * self->n, self->all[i].point, self->n * sizeof *points);
     memcpy(values + 2 * i, self->all[i].value, 2 * sizeof *values);
   }
-  if (fine) {
-    memcpy(self->points, points, self->size * self->n * sizeof *points);
-    memcpy(self->values, values, 2 * self->size * sizeof *values);
-  }
-  strut_release(points);
-  strut_release(values);
-  return fine;
+  self->points[1] = self->points[0], self->points[0] = points;
+  self->values[1] = self->values[0], self->values[0] = values;
 }
 
 /* The better of two parents by chance; parents are in order. */
@@ -260,9 +260,9 @@ static double mutate(evolution *self, double x, bool wraps) {
 
 /* Two children behind the parents. */
 static void make_children(evolution *self, size_t at) {
-  const double *a = self->points + choose(self) * self->n,
-               *b = self->points + choose(self) * self->n;
-  double *first = self->points + at * self->n, *second = first + self->n;
+  const double *a = self->points[0] + choose(self) * self->n,
+               *b = self->points[0] + choose(self) * self->n;
+  double *first = self->points[0] + at * self->n, *second = first + self->n;
   bool crossed = share(self) < CROSSED;
   for (size_t i = 0; i < self->n; i++) {
     double u = share(self), power = 1.0 / (CROSSOVER + 1.0);
@@ -272,14 +272,6 @@ static void make_children(evolution *self, size_t at) {
     first[i] = mutate(self, fmin(fmax(middle - half, 0.0), 1.0), self->task->wraps[i]);
     second[i] = mutate(self, fmin(fmax(middle + half, 0.0), 1.0), self->task->wraps[i]);
   }
-}
-
-static void spread_points(evolution *self, size_t count) {
-  strut_search_spread spread = strut_search_spread_begin(self->n, self->task->seed);
-  memcpy(self->points, self->task->start, self->n * sizeof *self->points);
-  for (size_t i = 1; i < count; i++)
-    for (size_t k = 0; k < self->n; k++)
-      self->points[i * self->n + k] = strut_search_spread_at(&spread, (int64_t)i, k);
 }
 
 bool strut_search_optimise_by_nsga2(const strut_search_task *task,
@@ -292,25 +284,23 @@ bool strut_search_optimise_by_nsga2(const strut_search_task *task,
   first = first < e.size ? e.size : first > 20 * (e.n + 1) ? 20 * (e.n + 1) : first;
   if (first < e.size) first = e.size;
   size_t most = first > 2 * e.size ? first : 2 * e.size;
-  e.points = strut_allocate(most * e.n, sizeof *e.points);
-  e.values = strut_allocate(2 * most, sizeof *e.values);
-  e.all = strut_allocate(most, sizeof *e.all);
-  bool fine = e.points && e.values && e.all, more = fine;
-  if (fine) spread_points(&e, first);
-  more = more && asker->ask(asker->context, first, e.points, e.values, NULL);
-  if (more) {
-    sort(&e, first);
-    fine = select_parents(&e);
+  strut_arena arena = {0};
+  bool fine = true;
+  for (int k = 0; k < 2; k++) {
+    e.points[k] = strut_arena_allocate(&arena, most * e.n, sizeof(double));
+    e.values[k] = strut_arena_allocate(&arena, 2 * most, sizeof(double));
+    fine = fine && e.points[k] && e.values[k];
   }
-  while (more && fine) {
+  e.all = strut_arena_allocate(&arena, most, sizeof *e.all);
+  fine = fine && e.all;
+  if (fine) strut_search_spread_points(task, first, e.points[0]);
+  bool more = fine && asker->ask(asker->context, first, e.points[0], e.values[0], NULL);
+  for (size_t count = first; more; count = 2 * e.size) {
+    select_parents(&e, count);
     for (size_t i = e.size; i < 2 * e.size; i += 2) make_children(&e, i);
-    more = asker->ask(asker->context, e.size, e.points + e.size * e.n, e.values + 2 * e.size, NULL);
-    if (!more) break;
-    sort(&e, 2 * e.size);
-    fine = select_parents(&e);
+    more = asker->ask(asker->context, e.size, e.points[0] + e.size * e.n, e.values[0] + 2 * e.size,
+                      NULL);
   }
-  strut_release(e.points);
-  strut_release(e.values);
-  strut_release(e.all);
+  strut_arena_free(&arena);
   return fine;
 }

@@ -82,6 +82,8 @@ typedef struct strut_search_spread {
 strut_search_spread strut_search_spread_begin(size_t dimension, uint64_t seed);
 /** The k-th number of the i-th point, which is the same in any order. */
 double strut_search_spread_at(const strut_search_spread *spread, int64_t i, size_t k);
+/** The start of a task, then such points: (count, dimension). */
+void strut_search_spread_points(const strut_search_task *task, size_t count, double *points);
 
 /** The same of methods of NLopt, in nlopt_optimiser.c. */
 bool strut_search_optimise_by_nlopt(const strut_search_task *task, const strut_search_asker *asker);

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "engine/statics/search/critical.h"
 #include "engine/study/sweep/sweep_parts.h"
@@ -117,6 +116,21 @@ strut_status strut_goals_stiffness(const strut_study *study, const strut_model *
   *stiffness = strut_node_stiffness_along(node_stiffness, node, direction);
   strut_node_stiffness_free(node_stiffness);
   return STRUT_OK;
+}
+
+int32_t *strut_standing_states(const strut_equilibria *equilibria, strut_arena *arena,
+                               size_t *count) {
+  const strut_equilibrium *list = equilibria->list;
+  int32_t *states = strut_arena_allocate(arena, equilibria->count + 1, sizeof *states);
+  *count = 0;
+  for (size_t i = 0; i < equilibria->count && states; i++) {
+    size_t k = *count;
+    if (list[i].outcome != STRUT_OUTCOME_STANDS) continue;
+    for (; k > 0 && list[states[k - 1]].energy > list[i].energy; k--) states[k] = states[k - 1];
+    states[k] = (int32_t)i;
+    ++*count;
+  }
+  return states;
 }
 
 const strut_mode *strut_elastic_mode(const strut_modes *modes, size_t i) {

@@ -7,6 +7,7 @@
 
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
+#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/path/path.h"
 
@@ -39,6 +40,9 @@ double strut_goals_curve_distance(const strut_study *study, const strut_path *pa
 strut_status strut_goals_stiffness(const strut_study *study, const strut_model *model,
                                    const double *positions, double *stiffness, strut_error *error);
 
+/** Indices of those that stand, by energy, *count of them, in the arena; equal ones in the order of the list. NULL: memory is out. */
+int32_t *strut_standing_states(const strut_equilibria *equilibria, strut_arena *arena,
+                               size_t *count);
 /** The i-th lowest elastic mode, or NULL; unknown ones count. */
 const strut_mode *strut_elastic_mode(const strut_modes *modes, size_t i);
 

@@ -9,10 +9,7 @@
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/equilibria.h"
 #include "engine/statics/form/form.h"
-#include "engine/statics/modes/modes.h"
-#include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/sweep_parts.h"
@@ -332,21 +329,6 @@ bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup) {
 
 /* ---- computing ---- */
 
-/* Lists what stands by energy; equal ones in the order of the list. */
-static bool rank_states(rest_result *result) {
-  const strut_equilibria *all = &result->equilibria;
-  result->stable = strut_arena_allocate(&result->arena, all->count, sizeof *result->stable);
-  for (size_t i = 0; i < all->count && result->stable; i++) {
-    size_t k = result->stable_count;
-    if (all->list[i].outcome != STRUT_OUTCOME_STANDS) continue;
-    for (; k > 0 && state_energy(result, k - 1) > all->list[i].energy; k--)
-      result->stable[k] = result->stable[k - 1];
-    result->stable[k] = (int32_t)i;
-    result->stable_count++;
-  }
-  return result->stable != NULL;
-}
-
 /* Warns where something carries more than it can, as the commands do. */
 static void warn_of_overload(strut_sweep_job *job, const strut_model *model,
                              const double *positions, const char *where) {
@@ -368,7 +350,8 @@ static strut_status find_equilibria(const strut_sweep_worker *worker, strut_swee
   strut_status status =
       strut_equilibria_find(result->model, &job->setup.experiment, &options, all, &job->error);
   if (status) return status;
-  if (!rank_states(result)) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
+  result->stable = strut_standing_states(all, &result->arena, &result->stable_count);
+  if (!result->stable) return strut_fail(&job->error, STRUT_NO_MEMORY, "out of memory");
   for (size_t i = 0; i < result->stable_count; i++)
     warn_of_overload(job, result->model, all->list[result->stable[i]].point.q,
                      all->list[result->stable[i]].name);
