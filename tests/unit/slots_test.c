@@ -261,7 +261,8 @@ TEST(other_studies_are_refused) {
   FREED char *bytes = scratch_read(path, &length);
   strut_slots_description plan = a_plan(9);
   plan.hash[15] = 1;
-  expect_refused(path, &plan, STRUT_USAGE, "differs in the model, its data, its parameters or the axes:");
+  expect_refused(path, &plan, STRUT_USAGE,
+                 "differs in the model, its data, its parameters or the axes:");
   plan = a_plan(9);
   plan.version = "1.2.4";
   expect_refused(path, &plan, STRUT_USAGE, "differs in the version of strut (1.2.3, now 1.2.4)");
