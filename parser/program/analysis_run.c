@@ -92,8 +92,10 @@ static strut_status check_files(strut_analysis *a, const strut_arguments *argume
 }
 
 strut_status strut_analysis_open(strut_analysis *a, char **text) {
-  strut_status status = strut_open_model_text(a->arguments, text, &a->scenes.length, a->setup);
-  a->scenes.text = *text;
+  strut_open_report kept = {.prints = true};
+  strut_status status = strut_open_model(a->arguments, STRUT_OPEN_FOR_STATICS, a->setup, &kept);
+  a->scenes.text = *text = kept.text;
+  a->scenes.length = kept.length;
   return status;
 }
 

@@ -16,40 +16,28 @@ static strut_status put_scene(const strut_arguments *arguments, const char *text
   return strut_print_failure(strut_file_write_path(arguments->output, text, &error), &error);
 }
 
-/* The scene as short as the file gave it, or the flat one where that cannot be kept. */
-static strut_status write_parts(const strut_arguments *arguments) {
-  strut_setup setup;
-  char *text, *result = NULL;
-  size_t length;
-  strut_status status = strut_open_model_text(arguments, &text, &length, &setup);
-  if (status != STRUT_OK) return status;
-  char *flat = strut_setup_write(&setup);
-  if (!flat) status = strut_print_out_of_memory();
-  if (flat) status = strut_write_short(arguments, text, length, flat, &setup, true, &result);
-  if (status == STRUT_OK) status = put_scene(arguments, result ? result : flat);
-  strut_release(result);
-  strut_release(flat);
-  strut_release(text);
-  strut_setup_free(&setup);
-  return status;
-}
-
-static strut_status write_flat(const strut_arguments *arguments) {
-  strut_setup setup;
-  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &setup);
-  if (status != STRUT_OK) return status;
-  char *text = strut_setup_write(&setup);
-  status = text ? put_scene(arguments, text) : strut_print_out_of_memory();
-  strut_release(text);
-  strut_setup_free(&setup);
-  return status;
-}
-
+/* Flat, or with --parts as short as the file gave it where that can be kept. */
 static strut_status run_export(const strut_arguments *arguments) {
+  const bool parts = arguments->parts;
+  strut_setup setup;
+  strut_open_report kept = {.prints = true};
+  char *text = NULL;
   struct stat found;
   if (stat(arguments->model, &found) == 0 && S_ISDIR(found.st_mode))
     return strut_usage_error(arguments, "the scene of a run is %s/scene.yaml", arguments->model);
-  return arguments->parts ? write_parts(arguments) : write_flat(arguments);
+  strut_status status = strut_open_model(
+      arguments, parts ? STRUT_OPEN_FOR_STATICS : STRUT_OPEN_AS_RUN, &setup, &kept);
+  if (status != STRUT_OK) return status;
+  char *flat = strut_setup_write(&setup);
+  if (!flat) status = strut_print_out_of_memory();
+  if (flat && parts)
+    status = strut_write_short(arguments, kept.text, kept.length, flat, &setup, true, &text);
+  if (status == STRUT_OK) status = put_scene(arguments, text ? text : flat);
+  strut_release(text);
+  strut_release(flat);
+  strut_open_report_free(&kept);
+  strut_setup_free(&setup);
+  return status;
 }
 
 static const strut_option options[] = {

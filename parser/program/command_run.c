@@ -261,37 +261,27 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
 }
 
 static strut_status run_run(const strut_arguments *arguments) {
-  strut_setup setup;
+  strut_setup setup = {0};
   strut_model *model = NULL;
   strut_error error = {0};
   run_pictures pictures = {0};
-  char *text = NULL;
-  strut_varied_scenes scenes = {.file = strut_model_name(arguments),
-                                .purpose = strut_run_options_purpose(arguments)};
+  strut_open_report kept = {.prints = true};
   strut_status status = read_pictures(arguments, &pictures);
-  if (status == STRUT_OK)
-    status = strut_open_model_kept(arguments, STRUT_OPEN_FOR_RUN, &text, &scenes.length, &setup);
-  scenes.text = text;
-  if (status != STRUT_OK) {
-    strut_release(text);
-    return status;
-  }
+  if (status == STRUT_OK) status = strut_open_model(arguments, STRUT_OPEN_FOR_RUN, &setup, &kept);
+  if (status != STRUT_OK) return status;
+  strut_varied_scenes scenes = {.file = strut_model_name(arguments),
+                                .text = kept.text,
+                                .length = kept.length,
+                                .purpose = strut_run_options_purpose(arguments)};
   status = strut_run_options_apply(arguments, &setup);
-  if (status != STRUT_OK) {
-    strut_release(text);
-    free_pictures(&pictures);
-    strut_setup_free(&setup);
-    return status;
-  }
   if (status == STRUT_OK) status = strut_warn_of_scene(&setup);
-  if (status != STRUT_OK) error.status = status;
   if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &error);
   if (status == STRUT_OK) status = check_pictures(&pictures, &setup.experiment, model, &error);
   if (status == STRUT_OK)
     status = run_model(arguments, &setup, model, &scenes, &pictures);
-  else
+  else if (error.message[0])
     strut_print_error(&error);
-  strut_release(text);
+  strut_open_report_free(&kept);
   free_pictures(&pictures);
   strut_model_free(model);
   strut_setup_free(&setup);

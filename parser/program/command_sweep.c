@@ -95,63 +95,59 @@ static strut_status find_places(char program[PATH_MAX], char folder[PATH_MAX]) {
   return STRUT_FILE_TROUBLE;
 }
 
-static strut_status print_script(const strut_arguments *arguments, strut_cluster_script *script,
-                                 strut_arena *arena) {
+/* Prints the script for a cluster. */
+static strut_status emit_script(const strut_arguments *arguments, strut_sweep_study *study) {
   strut_error error = {0};
   char program[PATH_MAX], folder[PATH_MAX], *text = NULL;
-  strut_status status = find_places(program, folder);
-  if (status != STRUT_OK) return status;
-  script->program = program;
-  script->folder = folder;
-  script->words = strut_sweep_words(arguments, arena, &script->word_count);
-  if (!script->words) return strut_print_out_of_memory();
-  status = strut_cluster_script_write(script, &text, &error);
-  if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
-  if (status == STRUT_NO_MEMORY) strut_print_error(&error);
-  if (status == STRUT_OK) status = strut_print(text);
-  strut_release(text);
-  return status;
-}
-
-/* Prints the script for a cluster. */
-static strut_status emit_script(const strut_arguments *arguments, const strut_study *study) {
-  strut_cluster_script script = {.name = study->name,
+  strut_cluster_script script = {.name = study->plan.study->name,
                                  .study = arguments->model,
                                  .output = arguments->output,
                                  .time = arguments->time,
                                  .memory = arguments->memory,
                                  .shards = arguments->shards.value,
-                                 .cpus = arguments->cpus.text ? arguments->cpus.value : 1};
+                                 .cpus = arguments->cpus.text ? arguments->cpus.value : 1,
+                                 .program = program,
+                                 .folder = folder};
   if (strcmp(arguments->model, "-") == 0)
     return strut_usage_error(arguments,
                              "--emit needs a file that the tasks can read, not standard input");
   if (!arguments->shards.text)
     return strut_usage_error(arguments, "--emit needs --shards N, the number of tasks");
-  strut_arena arena = {0};
-  strut_status status = print_script(arguments, &script, &arena);
-  strut_arena_free(&arena);
-  if (!status && study->refine.depth)
+  strut_status status = find_places(program, folder);
+  if (status) return status;
+  script.words = strut_sweep_words(arguments, &study->plan.arena, &script.word_count);
+  if (!script.words) return strut_print_out_of_memory();
+  status = strut_cluster_script_write(&script, &text, &error);
+  if (status == STRUT_USAGE) fprintf(stderr, "strut sweep: --emit: %s\n", error.message);
+  if (status == STRUT_NO_MEMORY) strut_print_error(&error);
+  if (!status) status = strut_print(text);
+  strut_release(text);
+  if (!status && study->plan.study->refine.depth)
     strut_tell(arguments->listener, STRUT_MESSAGE_REMARK, NULL,
                "a refined study needs its shards in rounds: submit the script again until no shard "
                "asks for another");
   return status;
 }
 
-/* Several processes may not be able to share a search. */
-static strut_status check_search(const strut_arguments *arguments, strut_sweep_study *study) {
-  bool several = study->plan.study->search && (arguments->shard || arguments->emit.text);
-  return several ? strut_sweep_search_check_workers(arguments, study) : STRUT_OK;
-}
-
-/* The branches of all points go into one folder. */
-static strut_status check_follow(const strut_arguments *arguments) {
-  const char *option = arguments->shard ? "--shard" : arguments->emit.text ? "--emit" : NULL;
-  if (!option) return STRUT_OK;
-  return strut_usage_error(
-      arguments,
-      "%s cannot be used with a study that follows motions: its points run on the threads of one "
-      "machine",
-      option);
+/* Refuses what the study cannot have: a figure of one table, several processes. */
+static strut_status check_study(const strut_arguments *arguments, strut_sweep_study *opened) {
+  const strut_study *study = opened->plan.study;
+  const char *several = arguments->shard ? "--shard" : arguments->emit.text ? "--emit" : NULL;
+  if (arguments->plot && (strut_study_has_stages(study) || study->follow))
+    return strut_usage_error(arguments,
+                             "--plot is for studies of single points: searches, fits and "
+                             "branches of motions are drawn in DIR");
+  if (!several) return STRUT_OK;
+  if (study->sensitivity.wanted)
+    return strut_usage_error(arguments,
+                             "a sensitivity analysis needs all points in one file: run it "
+                             "without --shard and --emit");
+  if (study->follow) /* the branches of all points go into one folder */
+    return strut_usage_error(arguments,
+                             "%s cannot be used with a study that follows motions: its points run "
+                             "on the threads of one machine",
+                             several);
+  return study->search ? strut_sweep_search_check_workers(arguments, opened) : STRUT_OK;
 }
 
 /* "gait" of "studies/gait.yaml": the usual directory of results; false if there is none. */
@@ -317,23 +313,13 @@ static strut_status run_sweep(const strut_arguments *given) {
   if (!arguments->output && !arguments->count_points && !arguments->plan)
     return strut_usage_error(arguments, "missing -o DIR, the results directory");
   status = strut_sweep_study_open(arguments, &study);
-  if (!status && arguments->plot &&
-      (strut_study_has_stages(study.plan.study) || study.plan.study->follow))
-    status = strut_usage_error(arguments,
-                               "--plot is for studies of single points: searches, fits and "
-                               "branches of motions are drawn in DIR");
-  if (!status && study.plan.study->sensitivity.wanted && (arguments->shard || arguments->emit.text))
-    status = strut_usage_error(arguments,
-                               "a sensitivity analysis needs all points in one file: run it "
-                               "without --shard and --emit");
-  if (!status) status = check_search(arguments, &study);
-  if (!status && study.plan.study->follow) status = check_follow(arguments);
+  if (!status) status = check_study(arguments, &study);
   if (!status && arguments->plan)
     status = show_plan(arguments, &study);
   else if (!status && arguments->count_points)
     status = strut_print_values(arguments, &strut_sweep_count_values, &study.plan, NULL);
   else if (!status && arguments->emit.text)
-    status = emit_script(arguments, study.plan.study);
+    status = emit_script(arguments, &study);
   else if (!status && arguments->status)
     status = show_status(arguments, &study);
   else if (!status)

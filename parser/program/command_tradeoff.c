@@ -93,7 +93,7 @@ static strut_status open_point(const strut_arguments *arguments, uint64_t *seed,
     here.overrides = overrides;
     here.override_count = set + varied;
     here.no_notes = number > 0;
-    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup);
+    status = strut_open_model(&here, STRUT_OPEN_FOR_RUN, setup, NULL);
     if (status != STRUT_OK && varied > 0) {
       fprintf(stderr, "strut tradeoff: at operating point %zu:", number + 1);
       for (size_t i = 0; i < varied; i++)

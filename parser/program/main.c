@@ -12,28 +12,17 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
+#include "engine/run/simulate.h"
 #include "parser/language/yaml/document.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* Below a table; never in JSON or a file, which must not change from run to run. */
-static void print_time(double taken) {
-  printf("\n  took %s\n", strut_quantity_of(taken, 3, "s").text);
-}
 
 /* --threads, for all that computes on several. */
 static void limit_threads(const strut_given_whole *threads) {
@@ -53,7 +42,7 @@ static bool asks_for_help(int argc, char **argv) {
 
 static strut_status run_command(const strut_command *command, int argc, char **argv) {
   strut_arguments arguments;
-  double begin = now();
+  const double begin = strut_run_clock();
   command = strut_command_variant_of(command, argc - 1, argv + 1);
   if (asks_for_help(argc, argv)) {
     strut_command_help(command);
@@ -65,8 +54,9 @@ static strut_status run_command(const strut_command *command, int argc, char **a
     strut_command_help(command);
   } else if (status == STRUT_OK) {
     status = command->run ? command->run(&arguments) : strut_analysis_run(&arguments);
+    /* Below a table; never in JSON or a file, which must not change from run to run. */
     if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet)
-      print_time(now() - begin);
+      printf("\n  took %s\n", strut_quantity_of(strut_run_clock() - begin, 3, "s").text);
   }
   strut_arguments_free(&arguments);
   return status;

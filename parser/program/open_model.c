@@ -17,12 +17,6 @@
 
 enum { MOST_MESSAGES = 50 };
 
-typedef struct source {
-  const char *name;
-  char *text;
-  size_t length;
-} source;
-
 const char *strut_model_name(const strut_arguments *arguments) {
   return strcmp(arguments->model, "-") == 0 ? "<stdin>" : arguments->model;
 }
@@ -44,80 +38,38 @@ static strut_status print_found(strut_diagnostics *diagnostics, strut_status sta
   return status;
 }
 
-/* `report` NULL: messages are printed. */
-static strut_status read_source(const strut_arguments *arguments, const source *from,
-                                strut_purpose purpose, strut_setup *setup,
-                                strut_diagnostics *report) {
-  strut_diagnostics own = {0}, *diagnostics = report ? report : &own;
-  strut_status status =
-      strut_setup_read(setup, from->name, from->text, from->length, arguments->overrides,
-                       arguments->override_count, purpose, diagnostics);
-  if (!report) status = print_found(diagnostics, status, arguments->no_notes, setup);
+strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
+                              strut_setup *setup, strut_open_report *report) {
+  const strut_purpose purposes[] = {[STRUT_OPEN_FOR_RUN] = strut_run_options_purpose(arguments),
+                                    [STRUT_OPEN_AS_RUN] = STRUT_FOR_ANY,
+                                    [STRUT_OPEN_FOR_ANY] = STRUT_FOR_ANY,
+                                    [STRUT_OPEN_FOR_STATICS] = STRUT_FOR_ANY_STATICS};
+  strut_open_report own = {.prints = true}, *to = report ? report : &own;
+  strut_status status = strut_file_read(arguments->model, &to->text, &to->length, &to->error);
+  if (status != STRUT_OK) {
+    strut_print_failure(status, &to->error);
+    to->error = (strut_error){0}; /* it is said */
+    return status;
+  }
+  status = strut_setup_read(setup, strut_model_name(arguments), to->text, to->length,
+                            arguments->overrides, arguments->override_count, purposes[purpose],
+                            &to->diagnostics);
+  if (to->prints) status = print_found(&to->diagnostics, status, arguments->no_notes, setup);
   if (status == STRUT_NO_MEMORY) strut_print_out_of_memory();
-  strut_diagnostics_free(&own);
-  return status;
-}
-
-/* Reads the scene and keeps its text, which is NULL after a failure. */
-static strut_status open_text(const strut_arguments *arguments, strut_purpose purpose, source *from,
-                              strut_setup *setup, strut_diagnostics *report) {
-  strut_error error = {0};
-  *from = (source){.name = strut_model_name(arguments)};
-  strut_status status = strut_file_read(arguments->model, &from->text, &from->length, &error);
-  if (status != STRUT_OK) return strut_print_failure(status, &error);
-  status = read_source(arguments, from, purpose, setup, report);
-  if (status == STRUT_OK || report) return status;
-  strut_release(from->text);
-  from->text = NULL;
-  return status;
-}
-
-static strut_purpose scene_purpose(const strut_arguments *arguments, strut_open_purpose purpose) {
-  return purpose == STRUT_OPEN_FOR_RUN ? strut_run_options_purpose(arguments) : STRUT_FOR_ANY;
-}
-
-strut_status strut_open_model_reported(const strut_arguments *arguments, strut_open_purpose purpose,
-                                       strut_setup *setup, strut_open_report *report) {
-  source from;
-  strut_status status =
-      open_text(arguments, scene_purpose(arguments, purpose), &from, setup, &report->diagnostics);
-  report->text = from.text;
-  report->length = from.length;
-  if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
-  status = strut_resolve_start_equilibrium(setup, &report->error);
-  if (status != STRUT_OK) strut_setup_free(setup);
+  if (status == STRUT_OK && purpose <= STRUT_OPEN_AS_RUN) {
+    status = strut_resolve_start_equilibrium(setup, &to->error);
+    if (status != STRUT_OK) strut_setup_free(setup);
+    if (to->prints) strut_print_failure(status, &to->error);
+  }
+  if (to->prints) strut_diagnostics_free(&to->diagnostics);
+  if (!report || (to->prints && status != STRUT_OK)) strut_open_report_free(to);
   return status;
 }
 
 void strut_open_report_free(strut_open_report *report) {
   strut_diagnostics_free(&report->diagnostics);
   strut_release(report->text);
-  *report = (strut_open_report){.text = NULL};
-}
-
-strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
-                              strut_setup *setup) {
-  char *text;
-  size_t length;
-  strut_status status = strut_open_model_kept(arguments, purpose, &text, &length, setup);
-  strut_release(text);
-  return status;
-}
-
-strut_status strut_open_model_kept(const strut_arguments *arguments, strut_open_purpose purpose,
-                                   char **text, size_t *length, strut_setup *setup) {
-  source from;
-  strut_error error = {0};
-  strut_status status = open_text(arguments, scene_purpose(arguments, purpose), &from, setup, NULL);
-  *text = from.text;
-  *length = from.length;
-  if (status != STRUT_OK || purpose == STRUT_OPEN_FOR_ANY) return status;
-  status = strut_resolve_start_equilibrium(setup, &error);
-  if (status != STRUT_OK) {
-    strut_print_error(&error);
-    strut_setup_free(setup);
-  }
-  return status;
+  *report = (strut_open_report){.prints = report->prints};
 }
 
 strut_status strut_warn_of_scene(const strut_setup *setup) {
@@ -127,15 +79,6 @@ strut_status strut_warn_of_scene(const strut_setup *setup) {
     fprintf(stderr, "strut: warning: %s\n", warnings.items[i].message);
   strut_findings_free(&warnings);
   return status ? strut_print_out_of_memory() : STRUT_OK;
-}
-
-strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
-                                   strut_setup *setup) {
-  source from;
-  strut_status status = open_text(arguments, STRUT_FOR_ANY_STATICS, &from, setup, NULL);
-  *text = from.text;
-  *length = from.length;
-  return status;
 }
 
 /* Does the scene say something in a way that a flat one loses? */
@@ -253,7 +196,7 @@ static strut_status open_directory(const strut_arguments *arguments, size_t room
   if (status != STRUT_OK) return status;
   strut_arguments inner = *arguments;
   inner.model = scene;
-  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->setup);
+  status = strut_open_model(&inner, STRUT_OPEN_FOR_ANY, &opened->setup, NULL);
   if (status != STRUT_OK) return status;
   status = strut_model_compile(&opened->setup.scene, &opened->model, error);
   if (status == STRUT_OK) status = read_motion(directory, room, opened, error);
@@ -274,7 +217,7 @@ strut_status strut_open_run(const strut_arguments *arguments, size_t room, strut
   if (opened->run) {
     status = open_directory(arguments, room, &arena, opened, &error);
   } else {
-    status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &opened->setup);
+    status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, &opened->setup, NULL);
     if (status == STRUT_OK)
       status = strut_model_compile(&opened->setup.scene, &opened->model, &error);
   }

@@ -14,38 +14,28 @@
 
 /** Purpose of opening a scene. */
 typedef enum strut_open_purpose {
-  STRUT_OPEN_FOR_RUN, /* for a run; a start equilibrium is resolved into start positions */
-  STRUT_OPEN_AS_RUN,  /* as above if the file describes a run, else for statics */
-  STRUT_OPEN_FOR_ANY  /* as STRUT_OPEN_AS_RUN, but a start equilibrium stays unresolved */
+  STRUT_OPEN_FOR_RUN,    /* for a run; a start equilibrium is resolved into start positions */
+  STRUT_OPEN_AS_RUN,     /* as above if the file describes a run, else for statics */
+  STRUT_OPEN_FOR_ANY,    /* as STRUT_OPEN_AS_RUN, but a start equilibrium stays unresolved */
+  STRUT_OPEN_FOR_STATICS /* likewise; a run needs no step */
 } strut_open_purpose;
 
-/** What was found while a scene was opened. Zero-initialise; strut_open_report_free releases it. */
+/** The text of an opened scene, and what was found. Zero-initialise; strut_open_report_free releases it. */
 typedef struct strut_open_report {
+  bool prints; /* print what is found; only the text is kept then, NULL after a failure */
   strut_diagnostics diagnostics; /* of the text below */
   char *text;
   size_t length;
   strut_error error; /* what has no place; empty message: nothing */
 } strut_open_report;
 
-/** As strut_open_model, but what is wrong with the scene goes to the report, and nothing is printed. */
-strut_status strut_open_model_reported(const strut_arguments *arguments, strut_open_purpose purpose,
-                                       strut_setup *setup, strut_open_report *report);
-void strut_open_report_free(strut_open_report *report);
-
-/** Reads the model that the arguments name; messages go to stderr. strut_setup_free frees it. */
-strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
-                              strut_setup *setup);
-
-/** The same, which keeps the file's text[0..length), a block of strut_allocate. */
-strut_status strut_open_model_kept(const strut_arguments *arguments, strut_open_purpose purpose,
-                                   char **text, size_t *length, strut_setup *setup);
-
 /**
- * The same, STRUT_OPEN_FOR_ANY, which keeps the file's text[0..length), a block of strut_allocate that is
- * NULL after a failure.
+ * Reads the model that the arguments name. Where `report` is NULL or prints, messages go to stderr; those about the
+ * file always do. strut_setup_free frees the setup.
  */
-strut_status strut_open_model_text(const strut_arguments *arguments, char **text, size_t *length,
-                                   strut_setup *setup);
+strut_status strut_open_model(const strut_arguments *arguments, strut_open_purpose purpose,
+                              strut_setup *setup, strut_open_report *report);
+void strut_open_report_free(strut_open_report *report);
 
 /**
  * The scene as short as the file gave it, see strut_short_write; `text` is the file's, `before` the scene

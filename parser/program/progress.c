@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "engine/base/number_text.h"
+#include "engine/run/simulate.h"
 
 /* ---- the terminal ---- */
 
@@ -34,19 +34,13 @@ enum { WIDTH = 30, USUAL = 80, BAR_ROOM = WIDTH + 1, TEXT = 128, LEAST = 8 };
 /* Runs shorter than this show no bar [s]. */
 static const double PATIENCE = 0.5;
 
-static double now(void) {
-  struct timespec time;
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 strut_progress strut_progress_begin(bool quiet) {
   const char *no_colour = getenv("NO_COLOR"), *terminal = getenv("TERM");
   bool plain = (no_colour && *no_colour) || !terminal || strcmp(terminal, "dumb") == 0;
   return (strut_progress){
       .wanted = !quiet && isatty(STDERR_FILENO),
       .colour = !plain,
-      .start = now(),
+      .start = strut_run_clock(),
       .columns = strut_terminal_columns(STDERR_FILENO, USUAL),
   };
 }
@@ -71,16 +65,17 @@ void strut_progress_bar(char *bar, int width, double fraction) {
 void strut_progress_phase(void *context, const char *name) {
   strut_progress *progress = context;
   progress->phase = name;
-  progress->run_start = now();
+  progress->run_start = strut_run_clock();
   progress->last = 0;
 }
 
 /* ", up to 12 s left in this run": a run may stop early; what follows it is unknown. Empty at first. */
 static void write_run_left(strut_progress *progress, double fraction, char *text, size_t size) {
   char left[STRUT_DURATION_TEXT];
-  if (fraction < progress->last) progress->run_start = now(); /* the phase begins another run */
+  if (fraction < progress->last)
+    progress->run_start = strut_run_clock(); /* the phase begins another run */
   progress->last = fraction;
-  double elapsed = now() - progress->run_start;
+  double elapsed = strut_run_clock() - progress->run_start;
   *text = '\0';
   if (elapsed < PATIENCE || !(fraction > 0)) return;
   strut_duration_text(elapsed * (1.0 - fraction) / fraction, left);
@@ -90,7 +85,7 @@ static void write_run_left(strut_progress *progress, double fraction, char *text
 void strut_progress_show(void *context, double fraction) {
   strut_progress *progress = context;
   char bar[BAR_ROOM], left[STRUT_DURATION_TEXT], simulated[48], run_left[64], text[TEXT];
-  double elapsed = now() - progress->start;
+  double elapsed = strut_run_clock() - progress->start;
   write_run_left(progress, fraction, run_left, sizeof run_left);
   if (elapsed < PATIENCE) return;
   strut_duration_text(fraction > 0 ? elapsed * (1.0 - fraction) / fraction : HUGE_VAL, left);

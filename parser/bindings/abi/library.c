@@ -459,15 +459,11 @@ void abi_leave(void) {
 
 /* ---- options ---- */
 
-static const strut_command *command_of(const char *name) {
-  for (size_t i = 0; name && abi_command_at(i); i++)
-    if (strcmp(abi_command_at(i)->name, name) == 0) return abi_command_at(i);
+static const strut_option *option_of(const char *name, size_t i) {
+  const strut_command *command;
+  for (size_t k = 0; name && (command = abi_command_at(k)); k++)
+    if (strcmp(command->name, name) == 0) return strut_option_row(command->options, i);
   return NULL;
-}
-
-static const strut_option *option_of(const char *command, size_t i) {
-  const strut_command *found = command_of(command);
-  return found ? strut_option_row(found->options, i) : NULL;
 }
 
 static const char *kind_of(const strut_option *option) {

@@ -82,21 +82,17 @@ char *strutlib_result_svg(const strutlib_result *result, size_t count, const cha
 
 enum { WIDTH = 510, MARGIN = 24 }; /* [pt] of a drawing */
 
-static strut_status draw_structure(const strut_model *model, const double *positions,
-                                   const char *path, strut_error *what) {
-  strut_shape shape = {
-      .model = model, .q = positions, .style.member_names = true, .ground = true, .names = true};
-  strut_panel panel = {.shape_count = 1, .shapes = &shape, .margin = MARGIN};
-  return strut_figure_draw(&(strut_plot){.path = path, .width = WIDTH},
-                           &(strut_figure){.panel_count = 1, .panels = &panel, .aspect = 1.2},
-                           what);
-}
-
-/* The positions at the start, of all coordinates of the model. */
+/* The structure at the start. */
 static strut_status draw_start(const strut_model *model, const char *path, strut_error *what) {
   strut_state *state = NULL;
   strut_status status = strut_state_create(model, &state, what);
-  if (status == STRUT_OK) status = draw_structure(model, state->q, path, what);
+  if (status != STRUT_OK) return status;
+  strut_shape shape = {
+      .model = model, .q = state->q, .style.member_names = true, .ground = true, .names = true};
+  strut_panel panel = {.shape_count = 1, .shapes = &shape, .margin = MARGIN};
+  status =
+      strut_figure_draw(&(strut_plot){.path = path, .width = WIDTH},
+                        &(strut_figure){.panel_count = 1, .panels = &panel, .aspect = 1.2}, what);
   strut_state_free(state);
   return status;
 }

@@ -8,6 +8,7 @@
 #include "engine/output/page/page.h"
 #include "engine/statics/algebra.h"
 #include "engine/study/search/optimisers.h"
+#include "parser/program/study/sweep.h"
 
 /* ---- figures, for which Cairo and Pango are too large ---- */
 
@@ -71,6 +72,16 @@ bool strut_search_optimise_by_nlopt(const strut_search_task *task,
                                     const strut_search_asker *asker) {
   return false; /* no call of the library searches */
 }
+
+/* ---- studies by file, with their fits and figures: no call of the package computes one ---- */
+
+strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
+                                   strut_error *error) {
+  return strut_fail(error, STRUT_USAGE,
+                    "strut in a browser computes no studies; use the program strut");
+}
+strut_status strut_study_job_compute(strut_study_job *job) { return STRUT_USAGE; }
+void strut_sweep_study_close(strut_sweep_study *study) {}
 
 /* ---- of GLPK the presolver and the dual simplex method, for which linear_program.c does not ask ---- */
 

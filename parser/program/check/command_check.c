@@ -134,8 +134,8 @@ static strut_status print_wrong(strut_status status, const strut_error *error,
 
 static strut_status open_checked(const strut_arguments *arguments, strut_setup *setup,
                                  strut_open_report *report) {
-  if (!arguments->json) return strut_open_model(arguments, STRUT_OPEN_AS_RUN, setup);
-  strut_status status = strut_open_model_reported(arguments, STRUT_OPEN_AS_RUN, setup, report);
+  strut_status status = strut_open_model(arguments, STRUT_OPEN_AS_RUN, setup, report);
+  if (!arguments->json) return status;
   bool located = status == STRUT_BAD_SCENE && report->diagnostics.count;
   if (located || report->error.message[0]) return print_wrong(status, &report->error, report);
   return status; /* what is not about the scene was printed */
@@ -168,7 +168,7 @@ static strut_status check_model(const strut_arguments *arguments, strut_open_rep
 }
 
 static strut_status run_check(const strut_arguments *arguments) {
-  strut_open_report report = {.text = NULL};
+  strut_open_report report = {.prints = !arguments->json};
   if (strut_is_study(arguments->model)) return strut_check_study(arguments);
   strut_status status = check_model(arguments, &report);
   strut_open_report_free(&report);
