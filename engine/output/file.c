@@ -16,12 +16,23 @@
 
 enum { MOST_NAMES = 1000, NUMBER_ROOM = 48 };
 
-static strut_status trouble(strut_error *error, const char *what, const char *path, int code) {
+strut_status strut_file_fail(strut_error *error, const char *what, const char *directory,
+                             const char *name, int code) {
   char reason[128];
-  if (strerror_r(code, reason, sizeof reason) != 0) {
+  if (code == ENOMEM) return strut_no_memory(error, "while writing files");
+  if (strerror_r(code, reason, sizeof reason) != 0)
     snprintf(reason, sizeof reason, "error %d", code);
-  }
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s': %s", what, path, reason);
+  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s%s%s': %s", what, directory,
+                    name ? "/" : "", name ? name : "", reason);
+}
+
+char *strut_file_folder(const char *path, const char **name) {
+  const char *slash = strrchr(path, '/');
+  size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
+  char *folder = strut_allocate(length + 1, 1);
+  *name = slash ? slash + 1 : path;
+  if (folder) memcpy(folder, slash ? path : ".", length);
+  return folder;
 }
 
 static bool is_directory(const char *path) {
@@ -31,7 +42,7 @@ static bool is_directory(const char *path) {
 
 strut_status strut_directory_create(const char *directory, strut_error *error) {
   size_t length = strlen(directory);
-  if (length == 0) return trouble(error, "create directory", directory, ENOENT);
+  if (length == 0) return strut_file_fail(error, "create directory", directory, NULL, ENOENT);
   char *path = strut_allocate(length + 1, 1);
   if (!path) return strut_no_memory(error, "while writing files");
   strut_status status = STRUT_OK;
@@ -41,7 +52,8 @@ strut_status strut_directory_create(const char *directory, strut_error *error) {
     path[i] = '\0';
     if (mkdir(path, 0777) != 0) {
       int code = errno;
-      if (!is_directory(path)) status = trouble(error, "create directory", path, code);
+      if (!is_directory(path))
+        status = strut_file_fail(error, "create directory", path, NULL, code);
     }
     path[i] = '/';
   }
@@ -49,19 +61,24 @@ strut_status strut_directory_create(const char *directory, strut_error *error) {
   return status;
 }
 
-/* Is the file that is open still the one of that name, and a plain file? */
+/* Is what is open still what has that name? */
 static bool is_still(int descriptor, const char *name) {
   struct stat mine, there;
-  return fstat(descriptor, &mine) == 0 && lstat(name, &there) == 0 && S_ISREG(mine.st_mode) &&
-         mine.st_dev == there.st_dev && mine.st_ino == there.st_ino;
+  return fstat(descriptor, &mine) == 0 && lstat(name, &there) == 0 && mine.st_dev == there.st_dev &&
+         mine.st_ino == there.st_ino;
+}
+
+static bool is_file(int descriptor) {
+  struct stat found;
+  return fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode);
 }
 
 /* Opens what a killed process left under a name: it holds no lock any more. */
 static int take_over(const char *name) {
   int descriptor = open(name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return -1;
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_still(descriptor, name) &&
-      ftruncate(descriptor, 0) == 0)
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0 && is_file(descriptor) &&
+      is_still(descriptor, name) && ftruncate(descriptor, 0) == 0)
     return descriptor;
   close(descriptor);
   return -1;
@@ -131,7 +148,7 @@ static strut_status open_beside(strut_file *file, strut_error *error) {
     }
   }
   if (file->stream) return STRUT_OK;
-  status = trouble(error, "write", file->path, code);
+  status = strut_file_fail(error, "write", file->path, NULL, code);
   forget(file);
   return status;
 }
@@ -153,16 +170,13 @@ strut_status strut_file_open_path(strut_file *file, const char *path, strut_erro
 
 /* Makes a rename durable. Some file systems cannot synchronise a directory, which is not an error. */
 static int synchronise_parent(const char *path) {
-  const char *slash = strrchr(path, '/');
-  size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
-  char *parent = strut_allocate(length + 1, 1);
+  const char *name;
+  char *parent = strut_file_folder(path, &name);
   if (!parent) return ENOMEM;
-  memcpy(parent, slash ? path : ".", length);
   int code = 0, descriptor = open(parent, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor >= 0) {
-    if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP) {
+    if (fsync(descriptor) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
       code = errno;
-    }
     close(descriptor);
   }
   strut_release(parent);
@@ -187,8 +201,7 @@ strut_status strut_file_commit(strut_file *file, strut_error *error) {
   if (status != STRUT_OK) unlink(file->part);
   if (code) {
     unlink(renamed ? file->path : file->part);
-    status = code == ENOMEM ? strut_no_memory(error, "while writing files")
-                            : trouble(error, "write", file->path, code);
+    status = strut_file_fail(error, "write", file->path, NULL, code);
   }
   if (lock >= 0) close(lock);
   forget(file);
@@ -204,8 +217,7 @@ void strut_file_abandon(strut_file *file) {
 }
 
 strut_status strut_file_trouble(const strut_file *file, strut_error *error) {
-  if (errno == ENOMEM) return strut_no_memory(error, "while writing files");
-  return trouble(error, "write", file->path, errno ? errno : EIO);
+  return strut_file_fail(error, "write", file->path, NULL, errno ? errno : EIO);
 }
 
 void strut_file_remove(const char *directory, const char *name) {
@@ -348,13 +360,10 @@ bool strut_stage_sweep(const char *directory) {
 /* Locks and marks the new folder. False where somebody removed it meanwhile, with ENOENT, or with why
    not. A file system without locks gets no mark: then no process can know whether it is in use. */
 static bool hold(strut_stage *stage) {
-  struct stat mine, there;
   stage->lock = open(stage->path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (stage->lock < 0) return false;
   bool held = flock(stage->lock, LOCK_EX) != 0 || write_mark(stage->lock);
-  if (held && stat(stage->path, &there) == 0 && fstat(stage->lock, &mine) == 0 &&
-      there.st_dev == mine.st_dev && there.st_ino == mine.st_ino)
-    return true;
+  if (held && is_still(stage->lock, stage->path)) return true;
   int code = held ? ENOENT : errno;
   close(stage->lock);
   if (!held && code != ENOENT) rmdir(stage->path);
@@ -374,12 +383,9 @@ strut_status strut_stage_create(strut_stage *stage, const char *directory, strut
     if (mkdir(stage->path, 0777) == 0 && hold(stage)) return STRUT_OK;
     code = errno;
   }
-  char reason[128];
-  if (strerror_r(code, reason, sizeof reason) != 0)
-    snprintf(reason, sizeof reason, "error %d", code);
   strut_release(stage->path);
   *stage = (strut_stage){.path = NULL};
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", directory, reason);
+  return strut_file_fail(error, "write", directory, NULL, code);
 }
 
 void strut_stage_remove(strut_stage *stage) {

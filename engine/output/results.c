@@ -19,14 +19,6 @@
 static const char *const run_names[] = {"summary.json", "scene.yaml",
                                         STRUT_TABLES(TABLE_FILE) "trajectory.h5", NULL};
 
-static strut_status trouble(strut_error *error, const char *path, int code) {
-  char reason[128];
-  if (strerror_r(code, reason, sizeof reason) != 0) {
-    snprintf(reason, sizeof reason, "error %d", code);
-  }
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot write '%s': %s", path, reason);
-}
-
 strut_status strut_results_begin(strut_results *results, const char *directory,
                                  strut_error *error) {
   return strut_results_begin_named(results, directory, run_names, error);
@@ -51,29 +43,18 @@ strut_status strut_results_begin_named(strut_results *results, const char *direc
   return status;
 }
 
-/* Moves the file, or removes that of an earlier run if this one has none. 0 or an errno. */
-static int move(const char *from, const char *to) {
-  if (rename(from, to) == 0) return 0;
-  if (errno != ENOENT) return errno;
-  return unlink(to) == 0 || errno == ENOENT ? 0 : errno;
-}
-
-/* Memory for paths is allocated before the first move, so that then only the moves can fail. */
+/* Moves all files, or removes those of an earlier run that this one does not have. 0 or an errno. */
 static int move_all(const strut_results *results) {
-  size_t longest = 0;
-  for (int i = 0; results->names[i]; i++)
-    if (strlen(results->names[i]) > longest) longest = strlen(results->names[i]);
-  size_t from_room = strlen(results->stage) + longest + 2;
-  size_t to_room = strlen(results->directory) + longest + 2;
-  char *from = strut_allocate(from_room, 1), *to = strut_allocate(to_room, 1);
-  int code = from && to ? 0 : ENOMEM;
-  for (int i = 0; results->names[i] && !code; i++) {
-    snprintf(from, from_room, "%s/%s", results->stage, results->names[i]);
-    snprintf(to, to_room, "%s/%s", results->directory, results->names[i]);
-    code = move(from, to);
+  int from = open(results->stage, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  int to = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  int code = from < 0 || to < 0 ? errno : 0;
+  for (const char *const *name = results->names; *name && !code; name++) {
+    if (renameat(from, *name, to, *name) != 0) code = errno;
+    if (code == ENOENT) code = unlinkat(to, *name, 0) == 0 || errno == ENOENT ? 0 : errno;
   }
-  strut_release(from);
-  strut_release(to);
+  if (!code && fsync(to) != 0 && errno == EIO) code = EIO;
+  if (from >= 0) close(from);
+  if (to >= 0) close(to);
   return code;
 }
 
@@ -82,14 +63,7 @@ strut_status strut_results_commit(strut_results *results, strut_error *error) {
   if (status == STRUT_OK)
     status = strut_ownership_claim(results->directory, results->stage, results->names, error);
   int code = status == STRUT_OK ? move_all(results) : 0;
-  if (code) status = trouble(error, results->directory, code);
-  int descriptor = open(results->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor >= 0) {
-    if (fsync(descriptor) != 0 && errno == EIO && !code) {
-      status = trouble(error, results->directory, EIO);
-    }
-    close(descriptor);
-  }
+  if (code) status = strut_file_fail(error, "write", results->directory, NULL, code);
   if (status == STRUT_OK) results->made = false;
   strut_results_abandon(results);
   return status;
@@ -115,48 +89,22 @@ typedef struct list {
       at; /* after the entry found last, as names are mostly requested in the order of the list */
 } list;
 
-static strut_status trouble_with(strut_error *error, const char *what, const char *directory,
-                                 const char *name, int code) {
-  char reason[128];
-  if (strerror_r(code, reason, sizeof reason) != 0)
-    snprintf(reason, sizeof reason, "error %d", code);
-  return strut_fail(error, STRUT_FILE_TROUBLE, "cannot %s '%s/%s': %s", what, directory, name,
-                    reason);
-}
-
-/* Fills a block but at the end of the file; the bytes read, or -1 with errno. */
-static ssize_t read_block(int file, unsigned char *block) {
-  size_t filled = 0;
-  while (filled < BLOCK) {
-    ssize_t got = read(file, block + filled, BLOCK - filled);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return -1;
-    if (got == 0) break;
-    filled += (size_t)got;
-  }
-  return (ssize_t)filled;
-}
-
-/* Size and checksum of an open file, block by block, each seeded by those before it; 0 or an errno. */
-static int measure(int file, uint64_t *size, uint64_t *sum) {
+/* Size and checksum of a file, block by block, each seeded by those before it; 0 or an errno. */
+static int measure(int folder, const char *name, uint64_t *size, uint64_t *sum) {
+  int descriptor = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return errno;
   unsigned char *block = strut_allocate(BLOCK, 1);
-  ssize_t got = BLOCK;
+  FILE *file = block ? fdopen(descriptor, "rb") : NULL;
+  int code = file ? 0 : ENOMEM;
   *size = *sum = 0;
-  if (!block) return ENOMEM;
-  while (got == BLOCK && (got = read_block(file, block)) > 0) {
-    *sum = strut_checksum(block, (size_t)got, *sum);
-    *size += (uint64_t)got;
-  }
-  int code = got < 0 ? errno : 0;
+  for (size_t got; file && (got = fread(block, 1, BLOCK, file)) > 0; *size += got)
+    *sum = strut_checksum(block, got, *sum);
+  if (file && ferror(file)) code = errno;
   strut_release(block);
-  return code;
-}
-
-static int measure_at(int folder, const char *name, uint64_t *size, uint64_t *sum) {
-  int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (file < 0) return errno;
-  int code = measure(file, size, sum);
-  close(file);
+  if (file)
+    fclose(file);
+  else
+    close(descriptor);
   return code;
 }
 
@@ -215,7 +163,7 @@ static int check_one(int folder, list *self, const char *name) {
   if (S_ISDIR(found.st_mode)) return EISDIR;
   if (!S_ISREG(found.st_mode)) return EEXIST;
   if (found.st_size == 0) return 0; /* nothing would be lost */
-  int code = measure_at(folder, name, &size, &sum);
+  int code = measure(folder, name, &size, &sum);
   if (code == EACCES || code == ENOMEM) return code;
   if (code) return EEXIST;
   if (is_listed(self, name, size, sum)) return 0;
@@ -238,10 +186,8 @@ strut_status strut_ownership_check(const char *directory, const char *const *nam
                           "'%s/%s' is not overwritten: strut did not write it, or it has been "
                           "changed since; move it away, or give another name",
                           directory, names[i]);
-    else if (code == ENOMEM)
-      status = strut_no_memory(error, "while writing files");
     else if (code)
-      status = trouble_with(error, "write", directory, names[i], code);
+      status = strut_file_fail(error, "write", directory, names[i], code);
   }
   strut_release(l.text);
   close(folder);
@@ -275,7 +221,7 @@ static int append(int folder, const char *name, uint64_t size, uint64_t sum) {
 /* Lists directory/name, whose bytes are those of from/source. */
 static int claim_one(int folder, list *self, int from, const char *source, const char *name) {
   uint64_t size, sum;
-  int code = measure_at(from, source, &size, &sum);
+  int code = measure(from, source, &size, &sum);
   if (code == ENOENT) return 0; /* not written this time */
   return code || is_listed(self, name, size, sum) ? code : append(folder, name, size, sum);
 }
@@ -290,10 +236,7 @@ static strut_status claim(const char *directory, const char *stage, const char *
   strut_status status = usable ? read_list(folder, &l, error) : STRUT_OK;
   for (int i = 0; usable && names[i] && status == STRUT_OK; i++) {
     int code = claim_one(folder, &l, from, sources[i], names[i]);
-    if (code == ENOMEM)
-      status = strut_no_memory(error, "while writing files");
-    else if (code)
-      status = trouble_with(error, "write", directory, names[i], code);
+    if (code) status = strut_file_fail(error, "write", directory, names[i], code);
   }
   strut_release(l.text);
   if (from >= 0) close(from);
@@ -306,16 +249,6 @@ strut_status strut_ownership_claim(const char *directory, const char *stage,
   return claim(directory, stage, names, names, error);
 }
 
-/* The folder of a path in a block of strut_allocate, and its name within. NULL: memory is out. */
-static char *split(const char *path, const char **name) {
-  const char *slash = strrchr(path, '/');
-  size_t length = slash ? (size_t)(slash - path) + (slash == path) : 1;
-  char *folder = strut_allocate(length + 1, 1);
-  *name = slash ? slash + 1 : path;
-  if (folder) memcpy(folder, slash ? path : ".", length);
-  return folder;
-}
-
 /* Is it a staging folder? Ownership is checked when its files are moved. */
 static bool is_stage(const char *folder) {
   const char *slash = strrchr(folder, '/');
@@ -324,7 +257,7 @@ static bool is_stage(const char *folder) {
 
 strut_status strut_ownership_check_path(const char *path, strut_error *error) {
   const char *names[2] = {NULL, NULL};
-  char *folder = split(path, &names[0]);
+  char *folder = strut_file_folder(path, &names[0]);
   if (!folder) return strut_no_memory(error, "while writing files");
   strut_status status = is_stage(folder) ? STRUT_OK : strut_ownership_check(folder, names, error);
   strut_release(folder);
@@ -333,7 +266,7 @@ strut_status strut_ownership_check_path(const char *path, strut_error *error) {
 
 strut_status strut_ownership_claim_path(const char *path, const char *part, strut_error *error) {
   const char *names[2] = {NULL, NULL}, *sources[2] = {NULL, NULL};
-  char *folder = split(path, &names[0]);
+  char *folder = strut_file_folder(path, &names[0]);
   if (!folder) return strut_no_memory(error, "while writing files");
   const char *slash = strrchr(part, '/'); /* beside it */
   sources[0] = slash ? slash + 1 : part;

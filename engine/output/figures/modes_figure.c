@@ -113,13 +113,12 @@ static void add_mode(picture *self, const strut_mode *mode) {
 
 static void add_modes(picture *self) {
   size_t members = self->model->scene->member_count;
-  strut_bounds bounds = strut_bounds_none();
   self->taut = strut_figure_numbers(&self->figure, members);
   for (size_t j = 0; self->taut && j < members; j++)
     self->taut[j] = self->model->scene->members[j].kind != STRUT_CABLE ||
                     strut_member_path_length(self->model, (int32_t)j, self->modes->q) >
                         self->model->members.rest[j] * (1 - 1e-12);
-  strut_bounds_add(&bounds, self->model, self->modes->q);
+  const strut_bounds bounds = strut_bounds_of(self->model, self->modes->q);
   self->size = strut_bounds_extent(&bounds);
   if (!(self->size > 0)) self->size = self->model->size;
   for (size_t k = 0; k < self->count; k++) add_mode(self, self->shown[k]);

@@ -16,7 +16,6 @@ static const double ARROW = 0.13;              /* a load's, of the structure's s
 static const double SEEN = 0.05, LARGE = 0.12; /* motion over the structure's size */
 static const double NO_MOTION = 1e-10;         /* likewise: rounding, which is not enlarged */
 static const double SAME = 1e-7;               /* of the whole arc: events so close are one */
-static const char MINUS[] = "\xE2\x88\x92";
 enum { NAME = 28, TEXT = 110 }; /* bytes of a name in the key; of events that are named together */
 
 /* A shape that is drawn: the beginning, events, the end. */
@@ -287,9 +286,7 @@ static void add_loads(path_picture *picture, strut_panel *panel) {
     double ends[2][2];
     if (!load_grows(picture->path, &scene->loads[l]) || !(hypot(force[0], force[1]) > 0)) continue;
     load_arrow(picture, &scene->loads[l], largest, ends);
-    strut_trail *trail = strut_add_trail(&picture->figure, panel, STRUT_TRAIL_ARROW, pen);
-    trail->gap = GAP;
-    for (int end = 0; end < 2; end++) strut_add_place(&picture->figure, trail, ends[end]);
+    strut_add_segment(&picture->figure, panel, STRUT_TRAIL_ARROW, pen, ends[0], ends[1])->gap = GAP;
   }
 }
 
@@ -324,8 +321,7 @@ static const char *describe_stop(path_picture *picture, const path_stop *stop) {
   if (*unit)
     return strut_figure_text(&picture->figure, "%s, %s", stop->text,
                              strut_quantity_of(value, 5, unit).text);
-  return strut_figure_text(&picture->figure, "%s, %s%.5g", stop->text, value < 0 ? MINUS : "",
-                           fabs(value));
+  return strut_figure_text(&picture->figure, "%s, %.5g", stop->text, value);
 }
 
 static void add_keys(path_picture *picture) {

@@ -60,8 +60,7 @@ static bool is_shape(const strut_run_scene *run, size_t frame) {
     if (!isfinite(q[i])) return false;
   bool burst = run->summary && run->summary->status == STRUT_DIVERGED;
   if (!burst && run->motion->status != STRUT_DIVERGED) return true;
-  strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, run->model, q);
+  strut_bounds b = strut_bounds_of(run->model, q);
   return strut_bounds_extent(&b) <= BURST * run->model->size;
 }
 
@@ -137,8 +136,7 @@ double strut_run_ground_at(const strut_run_scene *run, double x) {
 }
 
 strut_bounds strut_run_frame_bounds(const strut_run_scene *run, size_t frame) {
-  strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, run->model, strut_run_positions(run, frame));
+  strut_bounds b = strut_bounds_of(run->model, strut_run_positions(run, frame));
   double missing = SMALLEST * run->model->size - strut_bounds_extent(&b);
   const double share[2] = {0.5,
                            0.15}; /* the missing extent goes to the width rather than the height */
@@ -205,38 +203,6 @@ static double shown_velocity(const strut_run_scene *run) {
   const strut_summary *summary = run->summary;
   double path = fabs(summary->velocity) * fmax(summary->duration, STRUT_RUN_MOMENT);
   return path > STANDING * run->model->size ? summary->velocity : 0;
-}
-
-/* A second motion of the same structure, dashed below the first. */
-
-static const double FRINGE =
-    1.8; /* both edges of dashes, which show on both sides of what lies on them [pt] */
-
-bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other) {
-  *other = (strut_run_scene){
-      .figure = run->figure, .model = run->model, .motion = run->figure->other, .page = run->page};
-  if (!other->motion || !other->motion->position) return false;
-  strut_run_count_frames(other);
-  return other->frames > 0;
-}
-
-void strut_run_add_other(const strut_run_scene *other, strut_panel *panel, size_t frame) {
-  strut_shape *shape =
-      strut_add_ghost(other->page, panel, other->model, strut_run_coordinates(other, frame), 0.25);
-  shape->style.fringe = FRINGE;
-}
-
-strut_pen strut_run_other_pen(void) {
-  return (strut_pen){.colour = strut_grey(0.25),
-                     .width = STRUT_RUN_TRAIL + FRINGE,
-                     .dash = {2.2, 2.2},
-                     .butt = true};
-}
-
-const char *strut_run_other_text(const strut_run_scene *run) {
-  const char *name = run->figure->other_name;
-  if (!run->figure->other) return "";
-  return strut_figure_text(run->page, "; thick dashes: %s", name ? name : "another");
 }
 
 /* ---- the whole figure ---- */

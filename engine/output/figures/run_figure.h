@@ -33,7 +33,16 @@ typedef struct strut_run_figure {
 } strut_run_figure;
 
 /** Channels that a view needs, strut_channels bits. */
-STRUT_API unsigned strut_run_figure_channels(strut_run_view view);
+static inline unsigned strut_run_figure_channels(strut_run_view view) {
+  static const unsigned shown[] = {
+      [STRUT_RUN_OVERVIEW] = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ANGLE,
+      [STRUT_RUN_PERIOD] = 0,
+      [STRUT_RUN_SNAPSHOTS] = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT,
+      [STRUT_RUN_CURVES] = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY |
+                           STRUT_CHANNEL_ANGLE | STRUT_CHANNEL_MOMENT | STRUT_CHANNEL_AREA |
+                           STRUT_CHANNEL_PRESSURE};
+  return STRUT_CHANNEL_POSITION | shown[view];
+}
 /**
  * Checks before a run that its record will contain what the figure draws: STRUT_USAGE with the
  * reason where a period has too few samples, or a time is outside the record.

@@ -86,9 +86,7 @@ static size_t frame_at(const making *self, size_t i) {
 }
 
 static strut_bounds bounds_of(const making *self, size_t i) {
-  strut_bounds b = strut_bounds_none();
-  strut_bounds_add(&b, self->run.model, strut_run_positions(&self->run, frame_at(self, i)));
-  return b;
+  return strut_bounds_of(self->run.model, strut_run_positions(&self->run, frame_at(self, i)));
 }
 
 /* Moves bounds as the window has moved at picture i, or back. */

@@ -22,8 +22,6 @@ typedef struct strut_run_scene {
   strut_figure *page;   /* that is filled in */
 } strut_run_scene;
 
-/** Width of enlarged node trajectories [pt]. */
-#define STRUT_RUN_TRAIL 1.5
 /** Length of the arrow for the largest force of the ground [pt]. */
 #define STRUT_RUN_ARROW 20.0
 
@@ -59,14 +57,6 @@ void strut_run_add_ground(const strut_run_scene *run, strut_bounds *bounds);
 void strut_run_expect_frame(strut_run_scene *run, size_t frame);
 /** Adds the frame's structure in colours of force, on the ground, with the forces of the ground. */
 strut_shape *strut_run_add_shape(const strut_run_scene *run, strut_panel *panel, size_t frame);
-/** The figure's second motion; false where there is none. */
-bool strut_run_find_other(const strut_run_scene *run, strut_run_scene *other);
-/** Adds the members of the second motion, dashed, to be seen below the first's. */
-void strut_run_add_other(const strut_run_scene *other, strut_panel *panel, size_t frame);
-/** The pen of the second motion's trails, likewise. */
-strut_pen strut_run_other_pen(void);
-/** "; thick dashes: NAME", or "" where there is no other motion. */
-const char *strut_run_other_text(const strut_run_scene *run);
 /** Scale bar, scale of the colours of force, and the key entry of the contact arrows, where there are some. */
 void strut_run_add_scales(const strut_run_scene *run);
 

@@ -7,7 +7,35 @@
 /* Node trajectories over the last period, enlarged, as in the paper's figure 9; and snapshots to
    one scale, as in its figure 11. */
 
+static const double TRAIL = 1.5;   /* width of enlarged trajectories [pt] */
 static const double CLOSED = 1e-3; /* of the model's size: less above the ground is on it */
+
+/* A second motion of the same structure, dashed below the first. */
+
+static const double FRINGE =
+    1.8; /* both edges of dashes, which show on both sides of what lies on them [pt] */
+
+/* False where there is none. */
+static bool find_other(const strut_run_scene *run, strut_run_scene *other) {
+  *other = (strut_run_scene){
+      .figure = run->figure, .model = run->model, .motion = run->figure->other, .page = run->page};
+  if (!other->motion || !other->motion->position) return false;
+  strut_run_count_frames(other);
+  return other->frames > 0;
+}
+
+static void add_other(const strut_run_scene *other, strut_panel *panel, size_t frame) {
+  strut_shape *shape =
+      strut_add_ghost(other->page, panel, other->model, strut_run_coordinates(other, frame), 0.25);
+  shape->style.fringe = FRINGE;
+}
+
+/* "; thick dashes: NAME", or "". */
+static const char *other_text(const strut_run_scene *run) {
+  const char *name = run->figure->other_name;
+  if (!run->figure->other) return "";
+  return strut_figure_text(run->page, "; thick dashes: %s", name ? name : "another");
+}
 
 static double enlargement(const strut_run_scene *run, int axis) {
   return run->figure->scale[axis] > 0 ? run->figure->scale[axis] : 1;
@@ -50,7 +78,8 @@ static double *find_anchors(const strut_run_scene *run, bool *grounded) {
 /* The nodes' enlarged paths about their own centres, at those of the motion drawn. */
 static void add_paths(const strut_run_scene *run, const double *own, const double *centres,
                       bool other, strut_panel *panel) {
-  const strut_pen pen = other ? strut_run_other_pen() : (strut_pen){.width = STRUT_RUN_TRAIL};
+  const strut_pen dashed = {strut_grey(0.25), TRAIL + FRINGE, {2.2, 2.2}, true};
+  const strut_pen pen = other ? dashed : (strut_pen){.width = TRAIL};
   for (size_t i = 0; own && centres && i < run->motion->node_count; i++) {
     strut_trail *trail =
         strut_add_trail(run->page, panel, other ? STRUT_TRAIL_LINE : STRUT_TRAIL_SEQUENCE, pen);
@@ -73,7 +102,7 @@ static const char *describe_period(const strut_run_scene *run, bool grounded) {
   const char *note =
       strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s",
                         run->period > 0 ? "one period (" : "", strut_quantity_of(span, 4, "s").text,
-                        run->period > 0 ? ")" : "", strut_run_other_text(run));
+                        run->period > 0 ? ")" : "", other_text(run));
   if (!is_enlarged(run)) return note;
   return strut_figure_text(
       run->page,
@@ -97,7 +126,7 @@ const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
   shape->ground = shape->names = true;
   panel->bounds = strut_run_frame_bounds(run, run->frames - 1);
   panel->margin = 20;
-  if (strut_run_find_other(run, &other))
+  if (find_other(run, &other))
     add_paths(&other, find_anchors(&other, &ignored), centres, true, panel);
   add_paths(run, centres, centres, false, panel);
   strut_run_add_ground(run, &panel->bounds);
@@ -156,7 +185,7 @@ static size_t count_cells(const strut_run_scene *run) {
 /* Finds the frames and what they show: both motions, and the ground where it is near. */
 static void find_cells(strut_run_scene *run, grid *self) {
   strut_run_scene other;
-  bool two = strut_run_find_other(run, &other);
+  bool two = find_other(run, &other);
   size_t count = count_cells(run);
   self->frame = strut_arena_allocate(&run->page->arena, count, sizeof *self->frame);
   self->all = strut_bounds_none();
@@ -169,7 +198,7 @@ static void find_cells(strut_run_scene *run, grid *self) {
     if (two) {
       size_t frame = strut_run_nearest(&other, run->motion->time[self->frame[i]]);
       strut_bounds_add(&panel->bounds, run->model, strut_run_positions(&other, frame));
-      strut_run_add_other(&other, panel, frame);
+      add_other(&other, panel, frame);
     }
     strut_run_add_ground(run, &panel->bounds);
     strut_bounds_widen(&self->all, panel->bounds.low, panel->bounds.high);
@@ -254,11 +283,11 @@ static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
   panel->bounds = bounds_of(self, panel->bounds);
   panel->margin = MARGIN;
   if (!self->common[0] || !self->moves) return;
-  strut_trail *trail = strut_add_trail(run->page, panel, STRUT_TRAIL_LINE,
-                                       (strut_pen){strut_grey(0.6), 0.6, {2, 2}, false});
-  trail->below = true; /* where the measured point began */
-  strut_add_place(run->page, trail, (const double[2]){start, self->all.low[1]});
-  strut_add_place(run->page, trail, (const double[2]){start, self->all.high[1]});
+  /* Where the measured point began. */
+  strut_add_segment(
+      run->page, panel, STRUT_TRAIL_LINE, (strut_pen){strut_grey(0.6), 0.6, {2, 2}, false},
+      (const double[2]){start, self->all.low[1]}, (const double[2]){start, self->all.high[1]})
+      ->below = true;
 }
 
 const char *strut_run_snapshots(strut_run_scene *run, strut_figure *figure) {
@@ -275,5 +304,5 @@ const char *strut_run_snapshots(strut_run_scene *run, strut_figure *figure) {
                            marked        ? "; dashed: initial position of "
                            : g.common[0] ? ""
                                          : "; each centred",
-                           marked ? strut_run_measured_name(run) : "", strut_run_other_text(run));
+                           marked ? strut_run_measured_name(run) : "", other_text(run));
 }

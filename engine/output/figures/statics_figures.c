@@ -9,14 +9,6 @@
 
 static const double MARGIN = 20; /* [pt] */
 
-/* A shape in colours of the forces in it, with names. */
-static void add_forces(strut_figure *figure, strut_panel *panel, const strut_model *model,
-                       const double *positions, const double *force) {
-  strut_add_forces(figure, panel, model, positions, force,
-                   strut_largest(force, model->scene->member_count))
-      ->names = true;
-}
-
 /* ---- a form that was found ---- */
 
 strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
@@ -40,7 +32,8 @@ strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
     figure.note = strut_figure_text(&figure, "grey: drawn shape; nodes moved by up to %s",
                                     strut_quantity_of(moved, 3, "m").text);
   }
-  add_forces(&figure, panel, model, model->start, force);
+  strut_add_forces(&figure, panel, model, model->start, force, strut_largest(force, members))
+      ->names = true;
   figure.scale = strut_force_scale(strut_largest(force, members), NULL);
   return strut_figure_draw(plot, &figure, error);
 }
@@ -77,6 +70,13 @@ static strut_panel *add_panel(picture *self, const char *title) {
   return panel;
 }
 
+/* The shape in colours of forces. */
+static void add_forces(picture *self, const char *title, const double *force) {
+  strut_add_forces(&self->figure, add_panel(self, title), self->model, self->q, force,
+                   strut_largest(force, self->model->scene->member_count))
+      ->names = true;
+}
+
 /* The shape in grey, displaced by a small motion. */
 static void add_mechanism(picture *self, int32_t number) {
   const strut_mechanism *mechanism = &self->rigidity->mechanisms.list[number];
@@ -104,17 +104,16 @@ static int32_t add_panels(picture *self, int32_t columns) {
   int32_t states = rigidity->states.force ? rigidity->states.count : 0;
   int32_t motions = rigidity->mechanisms.list ? rigidity->mechanisms.count : 0;
   int32_t room = PANELS / COLUMNS * columns;
-  self->bounds = strut_bounds_none();
-  strut_bounds_add(&self->bounds, self->model, self->q);
+  self->bounds = strut_bounds_of(self->model, self->q);
   self->swing = SWING * strut_bounds_extent(&self->bounds);
   for (int d = 0; d < 2 && motions > 0; d++) /* there is room for motions */
     self->bounds.low[d] -= self->swing, self->bounds.high[d] += self->swing;
   if (forces_told(self)) {
     double limit = strut_largest(rigidity->force, self->model->scene->member_count);
-    add_forces(&self->figure,
-               add_panel(self, strut_figure_text(&self->figure, "forces, up to %s",
-                                                 strut_quantity_of(limit, 3, "N").text)),
-               self->model, self->q, rigidity->force);
+    add_forces(
+        self,
+        strut_figure_text(&self->figure, "forces, up to %s", strut_quantity_of(limit, 3, "N").text),
+        rigidity->force);
     room--;
   }
   int32_t kept = motions < room / 2 ? motions : room / 2; /* at least, if states abound */
@@ -122,10 +121,9 @@ static int32_t add_panels(picture *self, int32_t columns) {
   if (motions > room - states) motions = room - states;
   for (int32_t i = 0; i < states; i++) {
     bool presses = rigidity->has_cables && !rigidity->states.cables_pull[i];
-    strut_panel *panel =
-        add_panel(self, strut_figure_text(&self->figure, "self-stress %d%s", (int)i + 1,
-                                          presses ? ", presses cables" : ""));
-    add_forces(&self->figure, panel, self->model, self->q,
+    add_forces(self,
+               strut_figure_text(&self->figure, "self-stress %d%s", (int)i + 1,
+                                 presses ? ", presses cables" : ""),
                rigidity->states.force + (size_t)i * (size_t)rigidity->matrix.columns);
   }
   for (int32_t i = 0; i < motions; i++) add_mechanism(self, i);

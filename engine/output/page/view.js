@@ -207,38 +207,6 @@
     });
   }
 
-  /* The directions in which members leave each node. */
-  function memberAngles(s, px, py) {
-    const angles = s.data.nodes.map(() => []);
-    for (let j = 0; j < s.count; j++) {
-      const way = [s.from[j], ...s.guides[j], s.to[j]];
-      for (let k = 0; k + 1 < way.length; k++) {
-        const dx = px[way[k + 1]] - px[way[k]], dy = py[way[k + 1]] - py[way[k]];
-        angles[way[k]].push(Math.atan2(dy, dx));
-        angles[way[k + 1]].push(Math.atan2(-dy, -dx));
-      }
-    }
-    return angles;
-  }
-
-  /* The direction farthest from all of them; of equal ones the uppermost. */
-  function freeAngle(angles) {
-    let best = -Math.PI / 2, most = -1;
-    for (let k = 0; k < 16; k++) {
-      const angle = -Math.PI / 2 + (k % 2 ? 1 : -1) * Math.ceil(k / 2) * Math.PI / 8;
-      let least = Math.PI;
-      for (const other of angles) {
-        const apart = Math.abs(Math.atan2(Math.sin(angle - other), Math.cos(angle - other)));
-        least = Math.min(least, apart);
-      }
-      if (Math.min(least, 1.2) > most + 1e-6) {
-        most = Math.min(least, 1.2);
-        best = angle;
-      }
-    }
-    return best;
-  }
-
   function drawNodes(c, s, px, py, options) {
     const data = s.data;
     const theme = options.theme, count = data.nodes.length;
@@ -254,14 +222,15 @@
       c.stroke();
     }
     if (!options.names || count > page.MOST_NAMES) return;
-    const angles = memberAngles(s, px, py), taken = [];
-    if (data.ground) /* names avoid the space below a contact, with its force and the ground's marks */
-      for (const node of data.contacts) angles[node].push(Math.PI / 2);
+    const taken = [], middle = (p) => p.reduce((a, b) => a + b, 0) / count;
+    const [mx, my] = [middle(px), middle(py)]; /* names stand outside of a structure */
     c.font = "italic 13px system-ui, 'DejaVu Sans', sans-serif";
     c.textBaseline = "middle";
     c.lineWidth = 3;
     for (let i = 0; i < count; i++) {
-      const angle = freeAngle(angles[i]), dx = Math.cos(angle), dy = Math.sin(angle);
+      const far = Math.hypot(px[i] - mx, py[i] - my), on = data.ground && data.contacts.includes(i);
+      const dx = far > 6 ? (px[i] - mx) / far : 0.7; /* but above their contacts' forces */
+      const dy = on ? -0.7 : far > 6 ? (py[i] - my) / far : -0.7;
       const full = data.nodes[i].name, name = full.length > 24 ? full.slice(0, 23) + "\u2026" : full;
       c.textAlign = dx > 0.3 ? "left" : dx < -0.3 ? "right" : "center";
       const x = px[i] + 9 * dx, y = py[i] + 14 * dy;

@@ -19,16 +19,10 @@ typedef struct sheet {
   strut_figure figure;
 } sheet;
 
-static strut_bounds bounds_of(const strut_compare_column *column) {
-  strut_bounds bounds = strut_bounds_none();
-  strut_bounds_add(&bounds, column->model, column->q);
-  return bounds;
-}
-
 static void find_sizes(sheet *self) {
   double least = HUGE_VAL, most = 0.0;
   for (size_t i = 0; i < self->count; i++) {
-    strut_bounds b = bounds_of(&self->columns[i]);
+    strut_bounds b = strut_bounds_of(self->columns[i].model, self->columns[i].q);
     double extent = strut_bounds_extent(&b);
     least = fmin(least, extent);
     most = fmax(most, extent);
@@ -46,10 +40,9 @@ static void mark_driven(sheet *self, const strut_compare_column *column, strut_p
     if (scene->actuators[i].member < 0) continue;
     const strut_member *member = &scene->members[scene->actuators[i].member];
     for (size_t k = 0; k < 2 * (member->guide_count + 1); k++) {
-      strut_trail *trail = strut_add_trail(&self->figure, panel, STRUT_TRAIL_LINE, pens[k % 2]);
-      trail->gap = DOT;
-      for (size_t e = 0; e < 2; e++)
-        strut_add_place(&self->figure, trail, column->q + 2 * strut_member_node(member, k / 2 + e));
+      const double *from = column->q + 2 * strut_member_node(member, k / 2);
+      const double *to = column->q + 2 * strut_member_node(member, k / 2 + 1);
+      strut_add_segment(&self->figure, panel, STRUT_TRAIL_LINE, pens[k % 2], from, to)->gap = DOT;
     }
   }
 }
@@ -83,7 +76,7 @@ static void add_panel(sheet *self, const strut_compare_column *column) {
   strut_panel *panel = strut_add_panel(&self->figure);
   panel->title = column->input->label;
   panel->note = words_of(self, column);
-  panel->bounds = bounds_of(column);
+  panel->bounds = strut_bounds_of(column->model, column->q);
   /* The structure's own extent, or the largest of all about its middle and from its foot on. */
   if (self->alike)
     strut_bounds_share(&panel->bounds, self->size);

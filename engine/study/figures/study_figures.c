@@ -209,29 +209,23 @@ static strut_status extend(const strut_table *from, const double *best, const ch
   return STRUT_OK;
 }
 
-/* The best objective over the evaluations of each search. */
-static strut_status draw_best(const tracker *self, const strut_study_figure *f, strut_plot *plot,
-                              const strut_table *table, strut_table_figure *figure,
-                              strut_error *error) {
+/* What is drawn: the best objective over the evaluations of each search, or points over two variables, the best ringed. */
+static void choose_columns(const tracker *self, const strut_study_figure *f,
+                           strut_table_figure *figure) {
   const char *series = f->series ? f->series : self->search->starts > 1 ? "search" : NULL;
-  figure->x = self->evaluation;
-  figure->y[0] = (int)self->table->column_count;
-  figure->by = column_of(self->table, series);
-  figure->panels = column_of(self->table, f->panels);
-  if (!plot->y.label) plot->y.label = self->search->goal.text;
-  return strut_table_draw(plot, figure, table, error);
-}
-
-/* Its points over two variables, the best ringed. */
-static strut_status draw_points(const strut_study_figure *f, const strut_plot *plot,
-                                const strut_table *table, strut_table_figure *figure,
-                                strut_error *error) {
+  figure->choice.only = column_of_match(self->table, f->only, &figure->choice.only_value);
+  if (f->kind == STRUT_FIGURE_BEST) {
+    figure->x = self->evaluation;
+    figure->y[0] = (int)self->table->column_count; /* see extend */
+    figure->by = column_of(self->table, series);
+    figure->panels = column_of(self->table, f->panels);
+    return;
+  }
   figure->kind = STRUT_TABLE_POINTS;
-  figure->x = column_of(table, f->x);
-  figure->y[0] = column_of(table, f->y);
-  figure->value = column_of(table, f->color ? f->color : "objective");
+  figure->x = column_of(self->table, f->x);
+  figure->y[0] = column_of(self->table, f->y);
+  figure->value = column_of(self->table, f->color ? f->color : "objective");
   figure->colours = (strut_colours)f->colours;
-  return strut_table_draw(plot, figure, table, error);
 }
 
 strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
@@ -248,14 +242,12 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
   bool fine = best && shown && marked;
   if (fine) follow(&t, best, shown, marked);
   if (fine && t.second >= 0) fine = mark_front(&t, shown, marked, &own.arena);
-  strut_status status = fine ? STRUT_OK : strut_no_memory(error, "while drawing");
-  figure.choice.only = column_of_match(table, f->only, &figure.choice.only_value);
+  strut_status status = fine ? extend(table, best, strcmp(unit, "1") == 0 ? "" : unit, &own, error)
+                             : strut_no_memory(error, "while drawing");
+  choose_columns(&t, f, &figure);
   figure.shown = shown, figure.marked = marked;
-  if (!status && f->kind == STRUT_FIGURE_BEST)
-    status = extend(table, best, strcmp(unit, "1") == 0 ? "" : unit, &own, error);
-  if (!status)
-    status = f->kind == STRUT_FIGURE_BEST ? draw_best(&t, f, &plot, &own, &figure, error)
-                                          : draw_points(f, &plot, table, &figure, error);
+  if (f->kind == STRUT_FIGURE_BEST && !plot.y.label) plot.y.label = t.search->goal.text;
+  if (!status) status = strut_table_draw(&plot, &figure, &own, error);
   strut_arena_free(&own.arena);
   return status;
 }
