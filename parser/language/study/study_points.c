@@ -231,11 +231,8 @@ void strut_study_read_points(strut_study_reader *reader, const strut_tree *value
 static const strut_owner sample_owner = {"the sample", NULL};
 
 bool strut_study_is_sample(const strut_study_reader *reader, const strut_tree *item) {
-  if (item->kind != STRUT_TREE_MAP || item->count != 1) return false;
-  const strut_tree *value = item->first->next;
-  if (strcmp(item->first->text, "sample") != 0) return false;
-  return (value->kind == STRUT_TREE_MAP && strut_tree_find(value, "over", NULL)) ||
-         !strut_study_declared(reader, "sample");
+  const strut_tree *value = only_value(item, "sample");
+  return value && (has_key(value, "over") || !strut_study_declared(reader, "sample"));
 }
 
 /* Numbers of a distribution; the last one of a lognormal one has no unit. */
