@@ -13,7 +13,7 @@ packages="gcc libc6-dev make cmake pkg-config
 case ${1:-} in
   '') ;;
   tests) packages="$packages g++ clang clang-format libcmocka-dev locales jq
-  python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg poppler-utils slurm-wlm munge
+  python3 python3-selenium chromium chromium-driver python3-vtk9 ffmpeg octave poppler-utils slurm-wlm munge
   python3-pandas python3-matplotlib python3-jsonschema python3-yaml patch
   python3-build python3-setuptools python3-wheel python3-venv patchelf mypy
   python3-myst-parser furo weasyprint" ;;
