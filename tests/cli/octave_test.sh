@@ -7,6 +7,8 @@ models=$(realpath "$2")
 . "$(dirname "$0")/lib.sh"
 octave=$(command -v octave-cli || command -v octave) || { echo "skipped: Octave is not installed"; exit 77; }
 cp -R "$models" models
+mkdir "it's a folder"
+cp models/basics/von-mises-truss.yaml "it's a folder/\$x.yaml"
 OCTAVE_PATH=$(dirname "$strut")/matlab
 STRUT=$strut
 export OCTAVE_PATH STRUT
@@ -103,6 +105,10 @@ run = strut.run(crawler, 'step', 5e-5, 'set', {'step', '0.1 ms'}, 'output', 'kep
 assert([run.step, run.parameters.step], [5e-5, 1e-4]); % an option and a parameter of one name
 assert(exist('kept/nodes.csv', 'file') == 2 && exist('it''s.svg', 'file') == 2);
 
+[run, motion] = strut.run('models/parts/wave-crawler-of-cells.yaml'); % names of copies
+assert(size(motion.nodes.foot_0_n_x), size(motion.time));
+assert(run.nodes.foot_0_n.position(1), motion.nodes.foot_0_n_x(end), 1e-12);
+
 % Lists of things are columns, also of a single thing.
 found = strut.modes(crawler, 'at', 'II');
 numbers(found.modes.frequency, 'frequency');
@@ -151,7 +157,7 @@ short = struct('periods', 20, 'measure', struct('last', 5));
 table = strut.sweep(crawler, 'axes', struct('step', [1e-4, 5e-5]), 'frequency', range, 'run', short);
 assert([table.step, table.frequency], [1e-4 10; 1e-4 11; 1e-4 12; 5e-5 10; 5e-5 11; 5e-5 12]);
 assert(~any(isnan(table.velocity)));
-table = strut.sweep('models/basics/von-mises-truss.yaml', 'height', [0.3 0.4], 'compute', 'path', 'keep', 'limit_factor');
+table = strut.sweep('it''s a folder/$x.yaml', 'height', [0.3 0.4], 'compute', 'path', 'keep', 'limit_factor');
 assert(numel(table.limit_factor), 2);
 
 % Errors, warnings.
@@ -164,6 +170,7 @@ fails('strut:usage', 'use strut.sweep', @() strut.fit('study.yaml'));
 fails('strut:usage', 'unknown command', @() strut.command('nothing', crawler));
 fails('strut:failed', 'the step 0.01 s is above the largest stable step', @() strut.run(crawler, 'step', '10 ms'));
 fails('strut:file', 'No such file', @() strut.run('nowhere.yaml'));
+fails('strut:file', 'No such file', @() strut.sweep('nowhere.yaml'));
 lastwarn('', '');
 found = strut.run('models/basics/bouncing-node.yaml', 'step', 1, 'force', true);
 [text, identifier] = lastwarn();

@@ -68,7 +68,8 @@ classdef strut
     function [table, study] = sweep(model, varargin)
       model = model_of(model);
       options = varargin;
-      if isempty(regexp(fileread(model.file), '^[{\s]*"?study"?\s*:', 'once', 'lineanchors'))
+      is_study = @(text) ~isempty(regexp(text, '^[{\s]*"?study"?\s*:', 'once', 'lineanchors'));
+      if exist(model.file, 'file') == 2 && ~is_study(fileread(model.file))
         [model, options, folder] = study_of(model, options);
         before = cd(folder);
         back = onCleanup(@() cd(before)); %#ok<NASGU>
@@ -101,6 +102,7 @@ classdef strut
     end
 
     function [result, tables] = command(name, model, varargin)
+      name = char(name);
       model = model_of(model);
       folder = tempname();
       mkdir(folder);
@@ -109,7 +111,7 @@ classdef strut
       [words, settings, output] = words_of(name, known, varargin);
       settings = [model.set, settings];
       [~, last] = unique(regexprep(settings, '=.*', ''), 'last'); % of two for one parameter
-      words = [words, strcat('--set=', settings(sort(last)))];
+      words = [words, cellfun(@(setting) ['--set=' setting], settings(sort(last(:)')), 'UniformOutput', false)];
       if isempty(output) && (nargout > 1 || strcmp(name, 'sweep'))
         output = fullfile(folder, 'results');
       end
@@ -167,7 +169,7 @@ end
 
 function write(path, text)
   file = fopen(path, 'w');
-  fwrite(file, text);
+  fwrite(file, text, 'char');
   fclose(file);
 end
 
@@ -212,7 +214,7 @@ end
 % A model as its file, settings NAME=VALUE, and the text of the file '-', which is standard input.
 function model = model_of(model)
   if ~isstruct(model)
-    model = struct('file', char(model), 'set', {{}});
+    model = struct('file', char(model), 'set', {cell(1, 0)});
   end
   if ~isfield(model, 'text')
     model.text = '';
@@ -221,8 +223,8 @@ end
 
 % Names and values as options of the program, settings, and the name of a folder.
 function [words, settings, output] = words_of(name, known, given)
-  words = {};
-  settings = {};
+  words = cell(1, 0);
+  settings = cell(1, 0);
   output = '';
   if mod(numel(given), 2)
     error('strut:usage', 'strut.%s: arguments are names and values, but the last has no value', name);
