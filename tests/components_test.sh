@@ -29,7 +29,7 @@ there() {
   done
 }
 set -f
-there program "bin/strut"
+there program "bin/strut share/strut/matlab/strut.m"
 there library "lib*/libstrut.so.0"
 there development "include/strut/strut.h include/strut/abi.h lib*/libstrut.so lib*/libstrut_engine.a
   lib*/pkgconfig/strut.pc lib*/pkgconfig/strut-abi.pc lib*/cmake/strut/strutConfig.cmake"

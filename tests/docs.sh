@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md
-# runs in a scratch folder (one per document, holding models/ and the tables of docs/paper) with the strut just
-# built first on the PATH, and none fails; every link leads to a file and, after #, to a heading of it; every source
-# file that is named exists; and what a page says is printed, is (docs_numbers.py). Two blocks of README.md
-# install and build, which is not done here: the one for the tests must be what .ci/run runs, the one for
-# users the same with another preset, and its last command runs here.
+# The documents are right: every command of every ```sh block of README.md, docs/*.md and docs/*/*.md, and every
+# ```matlab block where Octave is installed, runs in a scratch folder (one per document, holding models/ and the
+# tables of docs/paper) with the strut just built first on the PATH, and none fails; every link leads to a file
+# and, after #, to a heading of it; every source file that is named exists; and what a page says is printed, is
+# (docs_numbers.py). Two blocks of README.md install and build, which is not done here: the one for the tests must
+# be what .ci/run runs, the one for users the same with another preset, and its last command runs here.
 #
 #   sh tests/docs.sh ROOT STRUT
 # shellcheck disable=SC2016  # backticks that mark a fence, not a command
@@ -14,7 +14,9 @@ root=$(cd "$1" && pwd)
 strut=$(cd "$(dirname "$2")" && pwd)/strut
 PATH=$(dirname "$strut"):$PATH
 PYTHONPATH=$(dirname "$strut")/python
-export PATH PYTHONPATH
+OCTAVE_PATH=$(dirname "$strut")/matlab
+export PATH PYTHONPATH OCTAVE_PATH
+octave=$(command -v octave-cli || command -v octave || true)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 failures=0
@@ -23,8 +25,8 @@ fail() { echo "$*"; failures=$((failures + 1)); }
 # folder FILE: the scratch folder of a document, named after its path.
 folder() { echo "$scratch/$(echo "${1#"$root"/}" | sed 's/\.md$//; s|/|-|g')"; }
 
-# blocks FILE FOLDER: the sh blocks of FILE as FOLDER/LINE.sh, those behind a marker
-# "<!-- command: NAME -->" as FOLDER/NAME.command. A fence that would hide commands is reported.
+# blocks FILE FOLDER: the sh blocks of FILE as FOLDER/LINE.sh, its matlab blocks as FOLDER/LINE.m, those behind a
+# marker "<!-- command: NAME -->" as FOLDER/NAME.command. A fence that would hide commands is reported.
 blocks() {
   awk -v file="$1" -v folder="$2" '
     /^<!-- command: [a-z]+ -->$/ { marker = $3; next }
@@ -35,6 +37,7 @@ blocks() {
         print file ":" NR ": a fence marked \"" language "\": sh for commands, text for the rest"
       out = ""
       if (language == "sh") out = folder "/" (marker == "" ? sprintf("%05d.sh", NR) : marker ".command")
+      if (language == "matlab") out = sprintf("%s/%05d.m", folder, NR)
       marker = ""
       next
     }
@@ -52,16 +55,23 @@ commands_work() {
   cp -R "$root/models" "$2/here/models"
   mkdir -p "$2/here/docs/paper" # tables of figures that take too long to make here
   cp "$root"/docs/paper/*.csv "$2/here/docs/paper"
-  for block in "$2"/blocks/*.sh; do
+  for block in "$2"/blocks/[0-9]*; do
     [ -e "$block" ] || continue
     # Without the Python package (sanitizers), the page ends where it needs that.
     [ -e "$PYTHONPATH" ] || ! grep -q strut.formats "$block" || break
     ran=$((ran + 1))
-    # "set -e" overlooks a "! command" that should have failed, so that is spelled out.
-    sed 's/^! \(.*\)$/if \1; then exit 1; fi/' "$block" >"$2/run"
-    log=${block%.sh}.log
-    if ! (cd "$2/here" && bash -euo pipefail "$2/run") >"$log" 2>&1 </dev/null; then
-      echo "$1, the block at line $(basename "$block" .sh | sed 's/^0*//'):"
+    case $block in
+      *.m) # without a screen
+        [ -n "$octave" ] || continue
+        { echo "1;"; printf 'function %s(varargin), end\n' plot xlabel ylabel; cat "$block"; } >"$2/run"
+        shell="$octave --quiet --no-init-file" ;;
+      *) # "set -e" overlooks a "! command" that should have failed, so that is spelled out.
+        sed 's/^! \(.*\)$/if \1; then exit 1; fi/' "$block" >"$2/run"
+        shell="bash -euo pipefail" ;;
+    esac
+    log=${block%.*}.log
+    if ! (cd "$2/here" && $shell "$2/run") >"$log" 2>&1 </dev/null; then
+      echo "$1, the block at line $(basename "${block%.*}" | sed 's/^0*//'):"
       cat "$block"
       echo "--- ended badly, saying:"
       tail -n 20 "$log"
@@ -71,7 +81,10 @@ commands_work() {
 }
 
 # wrong_numbers FILE FOLDER: numbers that FILE says are printed, which no block that ran in FOLDER printed.
-wrong_numbers() { python3 "$root/tests/docs_numbers.py" "$1" "$2/blocks"; }
+wrong_numbers() {
+  [ -n "$octave" ] || ! grep -q '^```matlab' "$1" || return 0
+  python3 "$root/tests/docs_numbers.py" "$1" "$2/blocks"
+}
 
 # dead_links FILE: the links of FILE, to files and to headings, that lead nowhere. Web addresses are not
 # followed.
@@ -114,7 +127,8 @@ document 'a\n```sh\necho a >left\n```\nb\n```sh\ntest -s left\nstrut --version\n
 commands_work "$scratch/made-up.md" "$scratch/self" || fail "self-test: a good document fails"
 [ "$ran" -eq 2 ] || fail "self-test: ran $ran blocks of 2"
 for bad in '```sh\nfalse\ntrue\n```\n' '```sh\nfalse | cat\n```\n' '```bash\ntrue\n```\n' \
-  '```sh\n! true\ntrue\n```\n' '```text\n$ strut run a.yaml\n```\n' '```sh\ntrue\n'; do
+  '```sh\n! true\ntrue\n```\n' '```text\n$ strut run a.yaml\n```\n' '```sh\ntrue\n' \
+  ${octave:+'```matlab\nerror("x")\n```\n'}; do
   document "$bad"
   ! commands_work "$scratch/made-up.md" "$scratch/self" >/dev/null ||
     fail "self-test: passes: $bad"

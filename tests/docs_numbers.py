@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The numbers that a page says strut prints are printed.
 
-A line "<!-- printed -->" claims this of the paragraph, list or table behind it: each of its numbers stands in an sh
-block of the same section (up to the next heading) or in what the block printed, rounded to the digits shown. Signs
-count where the page has one. Units may have other prefixes there, 500 um for 0.5 mm, or be missing, as in JSON. Code
-and links are left out, and numbers in names such as n1 or P7.
+A line "<!-- printed -->" claims this of the paragraph, list or table behind it: each of its numbers stands in an sh or
+matlab block of the same section (up to the next heading) or in what the block printed, rounded to the digits shown.
+Signs count where the page has one. Units may have other prefixes there, 500 um for 0.5 mm, or be missing, as in JSON.
+Code and links are left out, and numbers in names such as n1 or P7.
 
 usage: docs_numbers.py PAGE FOLDER, where FOLDER/%05d.log is what the block at that line printed
 """
@@ -51,11 +51,11 @@ def occurs(claim, printed):
 
 
 def sections(lines):
-    """Of each section the claimed paragraphs, with their lines, and the sh blocks, with theirs."""
+    """Of each section the claimed paragraphs, with their lines, and the blocks of commands, with theirs."""
     claims, blocks, fence = [], [], None
     for at, line in enumerate(lines):
         if re.match(" *```", line):
-            if fence is None and line.strip() == "```sh":
+            if fence is None and line.strip() in ("```sh", "```matlab"):
                 end = next((i for i in range(at + 1, len(lines)) if lines[i].strip() == "```"), len(lines))
                 blocks.append((at + 1, "\n".join(lines[at + 1:end])))
             fence = line if fence is None else None

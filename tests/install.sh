@@ -4,18 +4,19 @@
 #
 #   sh tests/install.sh          to build and run strut
 #   sh tests/install.sh tests    and what its tests need besides
-#   sh tests/install.sh tests --without browser,films,pages,slurm,vtk,wheel
+#   sh tests/install.sh tests --without browser,films,octave,pages,slurm,vtk,wheel
 #                                without what only tests of these need: ctest names them as skipped
 #   sh tests/install.sh web      and what strut for browsers needs, with its tests
 set -eu
 
-usage() { echo "usage: sh tests/install.sh [web | tests [--without browser,films,pages,slurm,vtk,wheel]]" >&2; exit 1; }
+usage() { echo "usage: sh tests/install.sh [web | tests [--without browser,films,octave,pages,slurm,vtk,wheel]]" >&2; exit 1; }
 
 # What a group of tests alone needs.
 group() {
   case $1 in
     browser) echo "python3-selenium chromium chromium-driver" ;;
     films) echo "ffmpeg" ;;
+    octave) echo "octave" ;;
     pages) echo "python3-myst-parser furo weasyprint" ;;
     slurm) echo "slurm-wlm munge" ;;
     vtk) echo "python3-vtk9" ;;
@@ -38,7 +39,7 @@ case ${1:-} in
       *) usage ;;
     esac
     for name in $(echo "$without" | tr , ' '); do group "$name" >/dev/null || usage; done
-    for name in browser films pages slurm vtk wheel; do
+    for name in browser films octave pages slurm vtk wheel; do
       case ,$without, in *,"$name",*) ;; *) packages="$packages $(group "$name")" ;; esac
     done ;;
   web) packages="$packages emscripten clang patch xz-utils ca-certificates nodejs npm node-acorn chromium" ;;

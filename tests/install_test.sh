@@ -125,6 +125,12 @@ test -s "$prefix/share/bash-completion/completions/strut"
 ! command -v help2man >/dev/null || test -s "$prefix/share/man/man1/strut.1"
 "$prefix/bin/strut" check "$source/models/crawler/crawler.yaml" >/dev/null
 
+# The file for MATLAB and Octave finds the program of its installation.
+if command -v octave-cli >/dev/null; then
+  (cd "$scratch" && env -u STRUT OCTAVE_PATH="$prefix/share/strut/matlab" octave-cli --quiet --no-init-file --eval \
+    "model = strut.load('$source/models/crawler/crawler.yaml'); disp(model.name)") | grep -qx 'Nine-member multistable crawler'
+fi
+
 # The Python package finds the library beside it, wherever both are.
 package=$(dirname "$(find "$prefix" -path "*/strut/_strut.py")")
 if [ -e "$package/__init__.py" ]; then

@@ -23,6 +23,7 @@ strut run "$model" -o run --quiet --plot crawler.pdf >/dev/null
 [ "$(head -c 5 crawler.pdf)" = %PDF- ] || fail "no figure"
 strut view run -o page.html >/dev/null
 grep -q Dygraph page.html || fail "no charts on the page"
+[ -s /usr/share/strut/matlab/strut.m ] || fail "no strut.m"
 (cd run && sha256sum nodes.csv members.csv contacts.csv) >/root/bits
 
 # The pages: every link to a file leads to one.
