@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/model/mass.h"
-#include "engine/scene/signal_motion.h"
+#include "engine/scene/signal.h"
 
 /* Entries of an answer below this part of its largest one change no bit that matters. */
 static const double NEGLIGIBLE = 1e-18;

@@ -2,7 +2,7 @@
 #include "engine/model/support_motion.h"
 
 #include "engine/model/compile_parts.h"
-#include "engine/scene/signal_motion.h"
+#include "engine/scene/signal.h"
 
 /* Which moved coordinate stands at a place; NONE: none. */
 enum { NONE = -1 };

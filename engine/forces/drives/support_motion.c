@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/forces/energy.h"
-#include "engine/scene/signal_motion.h"
+#include "engine/scene/signal.h"
 
 void strut_support_motion_place(const strut_model *model, const strut_state *state, double t,
                                 double *q, double *velocity) {
