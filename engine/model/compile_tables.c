@@ -6,7 +6,7 @@
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
 #include "engine/model/model.h"
-#include "engine/scene/signal_motion.h"
+#include "engine/scene/signal.h"
 
 int32_t strut_foot_of_contact(const strut_scene *scene, size_t i) {
   for (size_t f = 0; f < scene->foot_count; f++)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Accelerations of signals against differences of their rates, and where their values jump. */
-#include "engine/scene/signal_motion.h"
 #include "engine/scene/checks/check.h"
+#include "engine/scene/signal.h"
 #include "tests/support/test.h"
 
 static double rate_of(const strut_signal *signals, int32_t index, double t) {

@@ -3,7 +3,6 @@
 #include "engine/scene/signal.h"
 #include "engine/forces/drives/signal_vector.h"
 #include "engine/scene/signal_bounds.h"
-#include "engine/scene/signal_motion.h"
 #include "tests/support/check.h"
 
 static const double PI = 3.14159265358979323846;

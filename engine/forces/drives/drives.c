@@ -10,7 +10,6 @@
 #include "engine/forces/history.h"
 #include "engine/forces/strains/strains.h"
 #include "engine/scene/signal_bounds.h"
-#include "engine/scene/signal_motion.h"
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
                                        const double *velocity) {

@@ -10,7 +10,7 @@
 #include "engine/forces/energy.h"
 #include "engine/model/algebra/dense_cholesky.h"
 #include "engine/model/mass.h"
-#include "engine/scene/signal_motion.h"
+#include "engine/scene/signal.h"
 
 /* A moving mass at one instant: its item, its place, and what the motion of its member's nodes is. */
 typedef struct slide {

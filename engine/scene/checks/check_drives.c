@@ -5,7 +5,6 @@
 
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
-#include "engine/scene/signal_motion.h"
 #include "engine/scene/signal_program.h"
 
 bool strut_is_pulled(const strut_scene *scene, int32_t member, int32_t hinge) {

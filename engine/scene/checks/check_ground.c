@@ -5,7 +5,6 @@
 
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
-#include "engine/scene/signal_motion.h"
 #include "engine/scene/signal_program.h"
 
 /* ---- grounds and contacts ---- */

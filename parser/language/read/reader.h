@@ -55,7 +55,9 @@ typedef struct strut_group_item {
   bool refused[STRUT_GROUP_SECTIONS]; /* it has been reported that the section has no such key */
   bool found;                         /* a finding has been reported here */
   strut_fields *nested;               /* of a mapping: friction */
-  strut_slot of_hinge;                /* where hinges measure it by another unit; else as `slot` */
+  int first;                          /* the key of the first section that has it */
+  bool apart;                         /* hinges measure it by another unit: */
+  strut_slot of_hinge;
 } strut_group_item;
 
 typedef struct strut_group {
@@ -64,7 +66,6 @@ typedef struct strut_group {
   size_t count;
   strut_group_item *items;
   bool used, broken;
-  bool of_hinges, of_others; /* hinges name it; members, nodes or contacts do, or nothing does */
 } strut_group;
 
 /** A copy of a part as the scope of what is read, see copies.h. */

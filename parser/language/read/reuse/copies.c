@@ -377,18 +377,13 @@ static int64_t copies_of(const strut_reader *reader, const strut_tree *key) {
   return sum;
 }
 
-static const char *without_dot(const strut_copy *copy, char *buffer, size_t size) {
-  size_t length = copy->prefix_length ? copy->prefix_length - 1 : 0;
-  snprintf(buffer, size, "%.*s", length > 100 ? 100 : (int)length, copy->prefix);
-  return buffer;
-}
-
 void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, int64_t copies) {
   char which[220] = "", first[120];
   const strut_placement *placement = copy->placement;
   int64_t all = copies_of(reader, placement->key);
   strut_place place = placement->key->place;
-  without_dot(copy, first, sizeof first);
+  size_t length = copy->prefix_length ? copy->prefix_length - 1 : 0; /* without the dot */
+  snprintf(first, sizeof first, "%.*s", length > 100 ? 100 : (int)length, copy->prefix);
   bool link = copy->kind == STRUT_SCOPE_LINK;
   if (all > 1 && copies == all && !link)
     snprintf(which, sizeof which, ", in all %lld copies", (long long)all);

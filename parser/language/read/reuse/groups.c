@@ -29,23 +29,23 @@ static const strut_tree *rival(const strut_group *group, int key) {
   return NULL;
 }
 
-/* The value, by the unit of each section that uses the group: a stiffness of hinges is no force per length. */
-static void read_value(strut_reader *reader, const strut_group *group, const strut_tree *key,
-                       strut_owner owner, int found, strut_group_item *item) {
-  int hinge = item->key[HINGE];
-  bool apart = hinge >= 0 && strut_key_at(hinge)->measure != strut_key_at(found)->measure;
-  if (group->of_others || !apart)
-    strut_read_slot(reader, found, key, key->next, owner, &item->slot);
-  if (group->of_hinges && apart)
-    strut_read_slot(reader, hinge, key, key->next, owner, &item->of_hinge);
-  else
-    item->of_hinge = item->slot;
-  if (!group->of_others && apart) item->slot = item->of_hinge;
+/* The value as things of the section read it, in the scope of the group, once it is needed. */
+static strut_slot *read_value(strut_reader *reader, const strut_group *group,
+                              strut_group_item *item, size_t section) {
+  bool hinge = section == HINGE && item->apart;
+  strut_slot *slot = hinge ? &item->of_hinge : &item->slot;
+  const strut_tree *key = item->slot.key;
+  if (slot->state != STRUT_ABSENT) return slot;
+  strut_copy *before = strut_enter_scope(reader, group->key);
+  strut_read_slot(reader, hinge ? item->key[HINGE] : item->first, key, key->next,
+                  (strut_owner){"group", group->name}, slot);
+  reader->scope = before;
+  return slot;
 }
 
 static void read_item(strut_reader *reader, strut_group *group, const strut_tree *key,
                       strut_owner owner) {
-  strut_group_item item = {.key = {-1, -1, -1, -1}};
+  strut_group_item item = {.key = {-1, -1, -1, -1}, .slot = {.key = key, .value = key->next}};
   int found = -1;
   for (size_t r = 0; r < SECTIONS; r++) {
     item.key[r] = strut_key_named(reader, strut_group_sections[r], key);
@@ -63,16 +63,19 @@ static void read_item(strut_reader *reader, strut_group *group, const strut_tree
     if (meant < 0) return;
     for (size_t r = 0; r < SECTIONS; r++)
       item.key[r] = strut_key_find(strut_group_sections[r], strut_key_at(meant)->name);
-    item.slot = (strut_slot){.state = STRUT_BROKEN, .key = key, .value = key->next};
+    item.slot.state = STRUT_BROKEN;
     group->items[group->count++] = item;
     return;
   }
-  read_value(reader, group, key, owner, found, &item);
+  item.first = found;
+  item.apart = item.key[HINGE] >= 0 &&
+               strut_key_at(item.key[HINGE])->measure != strut_key_at(found)->measure;
+  if (!item.apart) read_value(reader, group, &item, 0);
   const strut_tree *other = rival(group, found);
   if (other) {
     strut_report_error(reader, key->place, "%s gives both '%s' and '%s', expected one of them",
                        strut_owner_text(reader, owner), other->text, key->text);
-    item.slot.state = STRUT_BROKEN;
+    item.slot.state = item.of_hinge.state = STRUT_BROKEN;
   }
   if (item.slot.state == STRUT_GIVEN && strcmp(strut_key_at(found)->name, "friction") == 0) {
     item.nested = strut_reader_allocate(reader, &reader->scratch, 1, sizeof *item.nested);
@@ -111,39 +114,6 @@ size_t strut_groups_named(strut_reader *reader, const strut_tree *value, strut_g
   return count;
 }
 
-static void mark_users(strut_reader *reader, const strut_tree *map, bool hinges) {
-  strut_group *groups[STRUT_MOST_GROUPS];
-  if (!map || map->kind != STRUT_TREE_MAP) return;
-  for (const strut_tree *key = strut_first_entry(reader, map); key;
-       key = strut_following_entry(reader, key)) {
-    const strut_tree *value = key->next;
-    const strut_tree *named = strut_tree_find(value, "group", NULL);
-    size_t count = named ? strut_groups_named(reader, named, groups) : 0;
-    while (count-- > 0) *(hinges ? &groups[count]->of_hinges : &groups[count]->of_others) = true;
-  }
-}
-
-static void mark_contacts(strut_reader *reader, const strut_tree *ground) {
-  if (ground) mark_users(reader, strut_tree_find(ground, "contacts", NULL), false);
-}
-
-static void find_users(strut_reader *reader) {
-  const strut_tree *hinges = strut_slot_of(&reader->top, STRUT_KEY_SCENE_HINGES)->value;
-  for (size_t i = 0; i < reader->group_count && !hinges; i++) reader->groups[i].of_others = true;
-  if (!hinges) return;
-  mark_users(reader, hinges, true);
-  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_MEMBERS)->value, false);
-  mark_users(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_NODES)->value, false);
-  mark_contacts(reader, strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUND)->value);
-  const strut_tree *grounds = strut_slot_of(&reader->top, STRUT_KEY_SCENE_GROUNDS)->value;
-  if (grounds && grounds->kind == STRUT_TREE_MAP)
-    for (const strut_tree *key = grounds->first; key; key = key->next->next)
-      mark_contacts(reader, key->next);
-  if (reader->copies) mark_users(reader, reader->copies->contacts, false);
-  for (size_t i = 0; i < reader->group_count; i++)
-    if (!reader->groups[i].of_hinges) reader->groups[i].of_others = true;
-}
-
 void strut_read_groups(strut_reader *reader) {
   const strut_tree *map = strut_entries(reader, STRUT_KEY_SCENE_GROUPS);
   size_t i = 0;
@@ -155,7 +125,6 @@ void strut_read_groups(strut_reader *reader) {
     reader->groups[reader->group_count] = (strut_group){.name = key->text, .key = key};
     strut_add_name(reader, &reader->group_names, key->text, reader->group_count++);
   }
-  find_users(reader);
   for (const strut_tree *key = strut_first_entry(reader, map); key && reader->groups;
        key = strut_following_entry(reader, key))
     read_group(reader, key, &reader->groups[i++]);
@@ -205,7 +174,7 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
     int key = item->key[section];
     if (key >= 0) {
       if (taken(fields, key)) continue;
-      const strut_slot *slot = section == HINGE ? &item->of_hinge : &item->slot;
+      const strut_slot *slot = read_value(reader, group, item, section);
       *strut_slot_of(fields, key) = *slot;
       strut_slot_of(fields, key)->from = item;
       if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
@@ -262,6 +231,11 @@ static bool parts_mention(strut_reader *reader, const char *name) {
 }
 
 void strut_report_unused_groups(strut_reader *reader) {
+  for (size_t i = 0; i < reader->group_count; i++)
+    for (size_t k = 0; k < reader->groups[i].count; k++) {
+      strut_group_item *item = &reader->groups[i].items[k]; /* wrong values of others, too */
+      if (item->of_hinge.state == STRUT_ABSENT) read_value(reader, &reader->groups[i], item, 0);
+    }
   if (reader->groups_unknown || reader->top.broken) return;
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];

@@ -62,18 +62,17 @@ static void report_apart(merging *self, const strut_merger *merger, int32_t a, i
   const strut_tree *at = merger->a ? merger->a : merger->place;
   size_t before = reader->diagnostics->count;
   reader->ends_unknown = true;
-  if (merger->a)
+  if (merger->a) {
     strut_report_error(reader, at->place, "'%s' and '%s' cannot be one node: they are %.3g m apart",
                        nodes[a].name, nodes[b].name, apart);
-  else if (self->near_count == 1)
+  } else {
+    char more[80] = "";
+    if (self->near_count > 1)
+      snprintf(more, sizeof more, ", and %zu more pairs nearly touch", self->near_count - 1);
     strut_report_error(reader, at->place,
-                       "'%s' and '%s' are %.3g m apart: merge them by name, or move them",
-                       nodes[a].name, nodes[b].name, apart);
-  else
-    strut_report_error(reader, at->place,
-                       "'%s' and '%s' are %.3g m apart, and %zu more pairs nearly touch: merge "
-                       "them by name, or move them",
-                       nodes[a].name, nodes[b].name, apart, self->near_count - 1);
+                       "'%s' and '%s' are %.3g m apart%s: merge them by name, or move them",
+                       nodes[a].name, nodes[b].name, apart, more);
+  }
   if (reader->diagnostics->count == before) return;
   strut_diagnose_note(reader->diagnostics, before, drawn_place(self, a), "'%s' is drawn here",
                       nodes[a].name);

@@ -514,10 +514,10 @@ static void read_limit(strut_reader *reader) {
 }
 
 const char *strut_limit_hint(strut_reader *reader) {
-  char text[100];
-  if (reader->limit_things >= STRUT_MOST_THINGS) return "";
-  snprintf(text, sizeof text, "; 'limit_things' of the scene allows up to %d", STRUT_MOST_THINGS);
-  return strut_keep_text(reader, text);
+  return reader->limit_things >= STRUT_MOST_THINGS
+             ? ""
+             : strut_formatted(reader, &reader->scratch,
+                               "; 'limit_things' of the scene allows up to %d", STRUT_MOST_THINGS);
 }
 
 /* Counts first, then copies. */

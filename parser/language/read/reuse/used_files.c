@@ -4,11 +4,18 @@
 
 #include "parser/language/read/reuse/used_files.h"
 
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "engine/base/name_map.h"
+#include "parser/language/read/reader.h"
 #include "parser/language/read/reuse/overlay.h"
 
 /* Values that files which are used several times may repeat, as those of aliases. */
@@ -163,22 +170,14 @@ static void leave(loader *self, text_file *f) {
 }
 
 static bool is_scene(loader *self, const text_file *f, const strut_tree *name) {
-  const char *expected = "expected a scene";
-  strut_place place = name->place;
-  if (f->text->kind != STRUT_TREE_MAP) {
-    strut_diagnose(self->diagnostics, place, "'%s' is not a mapping, %s", f->path, expected);
-    return false;
-  }
-  bool study = strut_tree_find(f->text, "study", NULL) && !strut_tree_find(f->text, "nodes", NULL);
-  if (study) {
-    strut_diagnose(self->diagnostics, place, "'%s' is a study, %s", f->path, expected);
-    return false;
-  }
   const strut_tree *version = strut_tree_find(f->text, "strut", NULL);
-  if (version && version->kind == STRUT_TREE_SCALAR && strcmp(version->text, "1") == 0) return true;
-  strut_diagnose(self->diagnostics, place,
-                 "'%s' is not a scene of this version: it lacks 'strut: 1'", f->path);
-  return false;
+  bool known = version && version->kind == STRUT_TREE_SCALAR && strcmp(version->text, "1") == 0;
+  const char *fault = f->text->kind != STRUT_TREE_MAP ? "is not a mapping, expected a scene"
+                      : strut_tree_is_study(f->text)  ? "is a study, expected a scene"
+                      : !known ? "is not a scene of this version: it lacks 'strut: 1'"
+                               : NULL;
+  if (fault) strut_diagnose(self->diagnostics, name->place, "'%s' %s", f->path, fault);
+  return !fault;
 }
 
 static bool lay_over_base(loader *self, text_file *f);
@@ -375,15 +374,6 @@ strut_status strut_read_used_files(strut_document *document, strut_diagnostics *
 }
 
 /* ---- files below the folder of another ---- */
-
-#define _XOPEN_SOURCE 700
-
-#include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 #ifndef PATH_MAX
 #define PATH_MAX 4096
