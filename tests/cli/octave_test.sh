@@ -43,6 +43,7 @@ wanted kind '.modes[].kind'
 expect 0 equilibria models/basics/robot.yaml --json
 wanted energy '.equilibria[].energy'
 wanted name '.equilibria[].name'
+wanted friction '.equilibria[] | .rest.friction // "NaN"'
 wanted barrier '.barriers[].height'
 expect 0 path models/basics/von-mises-truss.yaml --until 3 --json
 wanted factor '.points[].factor'
@@ -109,6 +110,10 @@ assert(exist('kept/nodes.csv', 'file') == 2 && exist('it''s.svg', 'file') == 2);
 assert(size(motion.nodes.foot_0_n_x), size(motion.time));
 assert(run.nodes.foot_0_n.position(1), motion.nodes.foot_0_n_x(end), 1e-12);
 
+parameters = struct('friction', 0.123456789012345, 'amplitude', '0.2 mm');
+run = strut.run(crawler, 'set', parameters, 'accuracy', '5 %');
+assert([run.parameters.friction, run.parameters.amplitude], [0.123456789012345, 2e-4], -1e-15);
+
 % Lists of things are columns, also of a single thing.
 found = strut.modes(crawler, 'at', 'II');
 numbers(found.modes.frequency, 'frequency');
@@ -117,6 +122,8 @@ texts(found.modes.kind, 'kind');
 found = strut.equilibria('models/basics/robot.yaml');
 numbers(found.equilibria.energy, 'energy');
 texts(found.equilibria.name, 'name');
+numbers(found.equilibria.rest.friction, 'friction'); % not all have the struct
+assert(iscellstr(found.equilibria.ends_as)); % nor a text
 numbers(found.barriers.height, 'barrier');
 found = strut.path('models/basics/von-mises-truss.yaml', 'until', 3);
 numbers(found.points.factor, 'factor');
@@ -144,10 +151,13 @@ assert([table.message{4} '"'], wanted{1});
 % A sweep of a model, beside it in another folder; a parameter with the name of an option.
 mkdir('elsewhere');
 cd('elsewhere');
+lastwarn('');
 model = strut.load('../models/crawler/crawler.yaml', 'friction', 0.3, 'frequency', 12);
+assert(lastwarn(), ''); % such as that the file's own step is too long
 table = strut.sweep(model, 'frequency', [10 11], 'start', {'I', 'II'}, 'keep', {'velocity', 'outcome'}, ...
                     'accuracy', '5 %', 'output', 'swept');
 assert(table.frequency', [10 10 11 11]);
+assert(table.message, {''; ''; ''; ''});
 run = strut.run(model, 'frequency', 11, 'start', 'II', 'accuracy', '5 %');
 assert(table.velocity(4), run.velocity, -1e-14);
 assert(exist('swept/table.csv', 'file') == 2);
