@@ -102,6 +102,9 @@ typedef struct strut_derived_by {
   const char *name, *unit; /* unit "1": none */
 } strut_derived_by;
 
+/** The accuracy of a run whose scene has no solver, relative. */
+#define STRUT_USUAL_ACCURACY 0.01
+
 /** Start, method, duration and measurements of an experiment. */
 typedef struct strut_experiment {
   const char *integrator; /* name in the table of methods; default "rk4" */
@@ -116,7 +119,8 @@ typedef struct strut_experiment {
   double refine_memory; /* taken from the scene: in relaxation times [1]; default 8 */
   double
       accuracy; /* wanted relative error of the measured quantity [1], by which method and step are chosen; 0: they are as given */
-  double budget; /* work allowed for it, in fine runs with a fixed step */
+  bool accuracy_assumed; /* the scene says nothing of the solver, so it is STRUT_USUAL_ACCURACY */
+  double budget;         /* work allowed for it, in fine runs with a fixed step */
   strut_steady steady;
   strut_settle settle; /* before t = 0 */
   strut_search search; /* of equilibria */

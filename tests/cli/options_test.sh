@@ -83,9 +83,20 @@ sed 's/^solver: .*/solver: {accuracy: 1%}/' hop.yaml >promised.yaml
 tells 1 "the solver has no step, which only adaptive and adaptive8 do without: give --step" run promised.yaml --integrator verlet
 expect 0 run promised.yaml --integrator adaptive8 --quiet
 expect 0 run free.yaml --accuracy 1% --quiet
-tells 2 "the solver has no step" run none.yaml
+# Where a model says nothing of the solver, strut chooses, and says so.
+shows 0 "1 % taken, as the model has no solver" run none.yaml
+sed 's/^solver: .*/solver: {integrator: rk4}/' hop.yaml >stepless.yaml
+tells 2 "the solver has no step" run stepless.yaml
 # What only rests needs none either.
 expect 0 equilibria none.yaml --quiet
+
+# Any name may be that of a text parameter, so that a study chooses what is driven.
+sed 's/seconds: 50 ms/seconds: 50 ms, hung: "ball"/; s/nodes: \[ball, top\]/nodes: [hung, top]/' hop.yaml >hung.yaml
+expect 0 run hop.yaml --quiet --json
+cp out one
+expect 0 run hung.yaml --quiet --json
+[ "$(grep energy one)" = "$(grep energy out)" ] || fail "a node by a text parameter: $(cat out)"
+tells 2 "unknown node 'bal' in parameter 'hung'; did you mean 'ball'" run hung.yaml --set hung=bal
 
 # The same range of a path in two ways; the same words with other values elsewhere.
 expect 0 path truss.yaml --over load=1..3N --json

@@ -200,6 +200,7 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
   refuse_wide_bands(&a);
+  summary->accuracy.assumed = experiment->accuracy_assumed;
   strut_summary_warn_of_accuracy(summary);
   strut_settled_start_free(&start);
   return status;

@@ -77,6 +77,7 @@ static void describe_error(const strut_summary *summary, char *text, size_t size
   const strut_accuracy_summary *accuracy_summary = &summary->accuracy;
   bool velocity = summary->measured_count == 0;
   char error[60] = "the error is not known";
+  const char *asked = accuracy_summary->assumed ? "taken, as the model has no solver" : "requested";
   if (isfinite(accuracy_summary->expected) && velocity &&
       fabs(summary->velocity) < accuracy_summary->scale)
     snprintf(error, sizeof error, "within %.2g m/s",
@@ -88,12 +89,12 @@ static void describe_error(const strut_summary *summary, char *text, size_t size
   else if (accuracy_summary->kept && velocity && summary->velocity_zero)
     snprintf(text, size, "right for this model: the velocity is zero by symmetry");
   else if (accuracy_summary->kept)
-    snprintf(text, size, "right %s for this model; %.2g %% requested", error,
-             100.0 * accuracy_summary->wanted);
+    snprintf(text, size, "right %s for this model; %.2g %% %s", error,
+             100.0 * accuracy_summary->wanted, asked);
   else
-    snprintf(text, size, "NOT kept: %s%s, but %.2g %% requested",
+    snprintf(text, size, "NOT kept: %s%s, but %.2g %% %s",
              isfinite(accuracy_summary->expected) ? "right only " : "", error,
-             100.0 * accuracy_summary->wanted);
+             100.0 * accuracy_summary->wanted, asked);
 }
 
 void strut_summary_worth(const strut_summary *summary, char *text, size_t size) {

@@ -127,6 +127,7 @@ typedef struct strut_accuracy_summary {
       expected; /* expected error of the velocity, relative to it or to `scale` if larger [1]; NAN where unknown */
   double scale;  /* velocity below which errors are not relative [m/s] */
   bool kept;     /* expected <= wanted */
+  bool assumed;  /* nobody asked for it: the scene has no solver */
   char why[400]; /* method, step and reason, in one or two sentences */
   int64_t
       check_evaluations; /* force evaluations for choosing and checking; not among those of the run */

@@ -155,28 +155,8 @@ int32_t strut_find_configuration(strut_reader *reader, int key) {
   strut_owner owner = {"the initial state", NULL};
   if (slot->state != STRUT_GIVEN) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_CONFIGURATIONS)->state == STRUT_BROKEN) return -1;
-  strut_parameter_state *parameters = strut_parameter_find(reader, slot->value->text);
-  int32_t direct = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, slot->value->text);
-  if (!parameters || !parameters->text)
-    return strut_read_reference(reader, slot->value, slot->key->text, owner,
-                                STRUT_THING_CONFIGURATION);
-  if (direct >= 0) {
-    strut_report_error(reader, slot->value->place,
-                       "'%s' is both a configuration and a text parameter; rename one of them",
-                       parameters->name);
-    return -1;
-  }
-  parameters->used = true;
-  const char *text = parameters->set ? parameters->set->text : parameters->value->text;
-  int32_t index = strut_find_thing(reader, STRUT_THING_CONFIGURATION, NULL, text);
-  strut_place place = !parameters->set              ? parameters->value->place
-                      : parameters->set->place.line ? parameters->set->place
-                                                    : parameters->key->place;
-  if (index < 0)
-    strut_report_error(reader, place, "unknown configuration '%s' in parameter '%s'%s",
-                       strut_sanitised_text(reader, text), parameters->name,
-                       strut_hint_of_things(reader, text, STRUT_THING_CONFIGURATION));
-  return index;
+  return strut_read_reference(reader, slot->value, slot->key->text, owner,
+                              STRUT_THING_CONFIGURATION);
 }
 
 void strut_read_search(strut_reader *reader) {
@@ -408,6 +388,10 @@ void strut_read_experiment(strut_reader *reader) {
   if (strut_read_section(reader, STRUT_KEY_SCENE_SOLVER, STRUT_SECTION_SOLVER, solver.kind,
                          &reader->solver))
     strut_store(reader, &reader->solver, solver, experiment);
+  experiment->accuracy_assumed =
+      reader->purpose == STRUT_FOR_RUN &&
+      strut_slot_of(&reader->top, STRUT_KEY_SCENE_SOLVER)->state == STRUT_ABSENT;
+  if (experiment->accuracy_assumed) experiment->accuracy = STRUT_USUAL_ACCURACY;
   choose_settling_step(reader);
   if (!strut_read_section(reader, STRUT_KEY_SCENE_OUTPUT, STRUT_SECTION_OUTPUT, output.kind,
                           &reader->output))

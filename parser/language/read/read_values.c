@@ -337,6 +337,28 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
   return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
+/* The thing whose name is the text of a parameter, or -1, which was reported. */
+static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *value,
+                                       strut_parameter_state *parameter,
+                                       const strut_namespace *names) {
+  const strut_setting *set = parameter->set;
+  strut_tree text = set ? (strut_tree){.text = set->text} : *parameter->value;
+  if (set) text.place = set->place.line ? set->place : parameter->key->place;
+  if (strut_find_named(reader, names->map, value, value->text) >= 0) {
+    strut_report_error(reader, value->place,
+                       "'%s' names a %s and a text parameter; rename one of them", parameter->name,
+                       names->kind);
+    return -1;
+  }
+  parameter->used = true;
+  int32_t index = strut_find_named(reader, names->map, value, text.text);
+  if (index < 0)
+    strut_report_error(reader, text.place, "unknown %s '%s' in parameter '%s'%s", names->kind,
+                       strut_sanitised_text(reader, text.text), parameter->name,
+                       hint_of_names(reader, &text, names));
+  return index;
+}
+
 int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const char *key,
                            strut_owner owner, const strut_namespace *names) {
   const strut_name_map *nodes = &reader->things[STRUT_THING_NODE].names;
@@ -346,6 +368,8 @@ int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const 
     strut_read_scalar(reader, value, key, owner, expected);
     return -1;
   }
+  strut_parameter_state *parameter = strut_parameter_find(reader, value->text);
+  if (parameter && parameter->text) return find_named_by_parameter(reader, value, parameter, names);
   int32_t index = strut_find_named(reader, names->map, value, value->text);
   const char *hiding = index < 0 && names->map == nodes ? strut_hiding_part(reader, value) : NULL;
   if (hiding)

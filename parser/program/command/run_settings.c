@@ -46,7 +46,8 @@ static strut_status apply_settings(const strut_arguments *arguments, strut_exper
   bool by_hand = arguments->integrator.text || arguments->step.text;
   if (arguments->integrator.text)
     experiment->integrator = strut_integrator_find(arguments->integrator.text)->name;
-  if (arguments->accuracy.text) experiment->accuracy = arguments->accuracy.value;
+  if (arguments->accuracy.text)
+    experiment->accuracy = arguments->accuracy.value, experiment->accuracy_assumed = false;
   if (arguments->step.text) experiment->step = arguments->step.value;
   if (arguments->tolerance.text) experiment->tolerance = arguments->tolerance.value;
   if (arguments->budget.text) experiment->budget = arguments->budget.value;
