@@ -250,47 +250,30 @@ static double energy_of(const cable *self) {
   return sum;
 }
 
-static double *materials_of(const strut_model *model, const strut_state *state, int32_t i) {
+/* Where the segments and guides of element i stand among those of all. */
+static int32_t place_of(const strut_model *model, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
   const strut_element_table *elements = &model->elements;
-  return state->history.material + (elements->element[i].slot + 1 - elements->history_slot);
-}
-
-static int8_t *modes_of(const strut_model *model, const strut_state *state, int32_t i) {
-  assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *elements = &model->elements;
-  return state->history.guide_mode + (elements->element[i].slot + 1 - elements->history_slot);
-}
-
-static int8_t *sides_of(const strut_model *model, const strut_state *state, int32_t i) {
-  assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *elements = &model->elements;
-  return state->history.guide_side + (elements->element[i].slot + 1 - elements->history_slot);
-}
-
-static double *drops_of(const strut_model *model, const strut_state *state, int32_t i) {
-  assert(i >= 0 && i < model->elements.count);
-  const strut_element_table *elements = &model->elements;
-  return state->history.guide_drop + (elements->element[i].slot + 1 - elements->history_slot);
+  return elements->element[i].slot + 1 - elements->history_slot;
 }
 
 /* The cable at q with the materials that the state remembers. */
 static void measure_kept(const strut_model *model, const strut_state *state, int32_t i,
                          const double *q, cable *self) {
-  measure(model, state->latest->rest, materials_of(model, state, i), i, q, self);
+  measure(model, state->latest->rest, state->history.material + place_of(model, i), i, q, self);
 }
 
 /* The cable at q in its modes; true where these are frozen. */
 static bool stand(const strut_model *model, const strut_state *state, int32_t i, const double *q,
                   cable *self) {
-  const int8_t *mode = modes_of(model, state, i);
+  const int8_t *mode = state->history.guide_mode + place_of(model, i);
   measure_kept(model, state, i, q, self);
   if (self->material[0] < 0.0) share_evenly(self);
   if (mode[0] == STRUT_GUIDE_FREE) {
     settle(self);
     return false;
   }
-  const int8_t *side = sides_of(model, state, i);
+  const int8_t *side = state->history.guide_side + place_of(model, i);
   for (int k = 0; k < self->n; k++) self->mode[k] = k + 1 < self->n ? mode[k] : STRUT_GUIDE_STICKS;
   for (int k = 0; k + 1 < self->n; k++) {
     double bend = bend_on_side(self, k, side[k]);
@@ -312,7 +295,8 @@ static void show_materials(const strut_model *model, const strut_state *state, i
 static void keep_materials(const strut_model *model, strut_state *state, int32_t i,
                            const cable *self) {
   show_materials(model, state, i, self);
-  memcpy(materials_of(model, state, i), self->material, (size_t)self->n * sizeof *self->material);
+  memcpy(state->history.material + place_of(model, i), self->material,
+         (size_t)self->n * sizeof *self->material);
 }
 
 /* Its damper works along the whole cable while that is taut, and does not push. */
@@ -366,13 +350,14 @@ void strut_capstan_begin(const strut_model *model, strut_state *state, int32_t i
   share_evenly(&c);
   keep_materials(model, state, i, &c);
   strut_capstan_thaw(model, state, i);
-  memset(drops_of(model, state, i), 0, (size_t)c.n * sizeof(double));
+  memset(state->history.guide_drop + place_of(model, i), 0, (size_t)c.n * sizeof(double));
 }
 
 void strut_capstan_renew(const strut_model *model, strut_state *state, int32_t i, const double *q,
                          bool jumped) {
   cable c;
-  double before[MOST], moved = 0.0, lost = 0.0, *drop = drops_of(model, state, i);
+  double before[MOST], moved = 0.0, lost = 0.0,
+                       *drop = state->history.guide_drop + place_of(model, i);
   measure_kept(model, state, i, q, &c);
   memcpy(before, c.material, sizeof before);
   double held = energy_of(&c);
@@ -397,13 +382,13 @@ void strut_capstan_keep(const strut_model *model, strut_state *state, int32_t i,
 
 void strut_capstan_thaw(const strut_model *model, strut_state *state, int32_t i) {
   assert(i >= 0 && i < model->elements.count);
-  int8_t *mode = modes_of(model, state, i);
+  int8_t *mode = state->history.guide_mode + place_of(model, i);
   for (int k = 0; k + 1 < model->elements.element[i].nodes; k++) mode[k] = STRUT_GUIDE_FREE;
 }
 
 void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t i, const double *q,
                           const double *velocity) {
-  int8_t *mode = modes_of(model, state, i);
+  int8_t *mode = state->history.guide_mode + place_of(model, i);
   cable c;
   strut_capstan_renew(model, state, i, q, true);
   measure_kept(model, state, i, q, &c);
@@ -419,13 +404,13 @@ void strut_capstan_freeze(const strut_model *model, strut_state *state, int32_t 
   find_flows(&c);
   for (int k = 0; k + 1 < c.n; k++)
     mode[k] = (int8_t)(c.mode[k] * c.flow[k] > 0.0 ? c.mode[k] : STRUT_GUIDE_STICKS);
-  int8_t *side = sides_of(model, state, i);
+  int8_t *side = state->history.guide_side + place_of(model, i);
   for (int k = 0; k + 1 < c.n; k++) side[k] = (int8_t)c.side[k];
 }
 
 void strut_capstan_pass_straight(const strut_model *model, strut_state *state, int32_t i, int k) {
   assert(i >= 0 && i < model->elements.count);
-  int8_t *side = sides_of(model, state, i);
+  int8_t *side = state->history.guide_side + place_of(model, i);
   side[k] = (int8_t)-side[k];
 }
 
@@ -433,7 +418,7 @@ void strut_capstan_measure(const strut_model *model, const strut_state *state, i
                            const double *q, const double *velocity, double h,
                            strut_capstan_guide *guide) {
   assert(i >= 0 && i < model->elements.count);
-  const int8_t *side = sides_of(model, state, i);
+  const int8_t *side = state->history.guide_side + place_of(model, i);
   cable c;
   bool pulls = stand(model, state, i, q, &c) && !is_slack(&c);
   if (pulls) find_rates(model, state, i, velocity, &c);
@@ -458,7 +443,7 @@ strut_capstan_stretch strut_capstan_stretch_of(const strut_model *model, const s
 
 void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t i, const double *q,
                           const double *velocity, double soon) {
-  int8_t *mode = modes_of(model, state, i);
+  int8_t *mode = state->history.guide_mode + place_of(model, i);
   cable c;
   measure_kept(model, state, i, q, &c);
   share_evenly(&c);
@@ -473,7 +458,7 @@ void strut_capstan_tauten(const strut_model *model, strut_state *state, int32_t 
 void strut_capstan_switch(const strut_model *model, strut_state *state, int32_t i, int k,
                           const double *q) {
   assert(i >= 0 && i < model->elements.count);
-  int8_t *mode = modes_of(model, state, i);
+  int8_t *mode = state->history.guide_mode + place_of(model, i);
   cable c;
   stand(model, state, i, q, &c);
   keep_materials(model, state, i, &c);

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "engine/base/indices.h"
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 
@@ -104,15 +105,7 @@ const strut_nearby *strut_nearby_around(const strut_model *model, const strut_st
 }
 
 int32_t strut_nearby_find(const strut_nearby *near, int32_t element) {
-  int32_t low = 0, high = near->count;
-  while (low < high) {
-    int32_t middle = low + (high - low) / 2;
-    if (near->element[middle] < element)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
+  return strut_index_find(near->element, near->count, element);
 }
 
 /* The least of the listed elements; NULL: of all. */

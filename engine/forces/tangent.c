@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <string.h>
 
+#include "engine/base/indices.h"
 #include "engine/forces/mass_damping.h"
 #include "engine/forces/nearby.h"
 
@@ -66,15 +67,11 @@ static bool visit_member(const strut_force_visit *visit, strut_force *force) {
   return true;
 }
 
-static bool are_stops_closed(const strut_force_visit *visit) {
-  return visit->closed == STRUT_CLOSED_ALL || visit->closed == STRUT_CLOSED_UNDAMPED;
-}
-
 /* Stops and collisions that count as closed but do not act are as if at their kink. */
 static bool visit_element(const strut_force_visit *visit, strut_force *force) {
   const strut_model *model = visit->model;
   const strut_element *own = &model->elements.element[force->index];
-  bool stops = are_stops_closed(visit);
+  bool stops = visit->closed == STRUT_CLOSED_ALL || visit->closed == STRUT_CLOSED_UNDAMPED;
   if (model->elements.scattered && !(stops && own->crowds) &&
       strut_nearby_is_far(model, force->index, visit->q, stops))
     return false;
@@ -203,16 +200,10 @@ void strut_tangent_add_pattern(const strut_model *model, const int32_t *row_of, 
 
 /* Index of entry (row, column) among the pattern's values; the entry exists. */
 static int32_t find_place(const strut_sparse *pattern, int32_t row, int32_t column) {
-  int32_t low = pattern->start[column], high = pattern->start[column + 1] - 1;
-  while (low < high) {
-    int32_t middle = low + (high - low) / 2;
-    if (pattern->row[middle] < row)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  assert(pattern->row[low] == row);
-  return low;
+  int32_t begin = pattern->start[column], end = pattern->start[column + 1];
+  int32_t place = begin + strut_index_find(pattern->row + begin, end - begin, row);
+  assert(place < end && pattern->row[place] == row);
+  return place;
 }
 
 static int32_t place_of(const strut_sparse *pattern, int32_t a, int32_t b, bool diagonal) {

@@ -136,11 +136,6 @@ static double energy_at(const strut_element *element, double natural, double str
   return strut_law_respond(element->law, &element->numbers, strain, natural, -1).energy;
 }
 
-/* Does the force depend on the natural strain beside the stretch? */
-static bool law_scales(strut_law_kind law) {
-  return law == STRUT_LAW_LOGARITHMIC || law >= STRUT_LAW_AXIAL;
-}
-
 /*
  * The end of a step at which the element's force is averaged. A law that does not depend on the stretch alone
  * has the natural strain half-way, so that the method keeps its order.
@@ -152,7 +147,8 @@ static strut_element_pose averaged_end(const strut_element *element, const strut
                            .force = end->force,
                            .energy = end->energy,
                            .slope = end->slope};
-  if (!law_scales(element->law) || natural0 == end->natural) return at;
+  bool scales = element->law == STRUT_LAW_LOGARITHMIC || element->law >= STRUT_LAW_AXIAL;
+  if (!scales || natural0 == end->natural) return at;
   double stretch = end->strain - strut_element_origin(element, end->natural);
   at.natural = 0.5 * (natural0 + end->natural);
   at.strain = strut_element_origin(element, at.natural) + stretch;
@@ -247,12 +243,6 @@ static void add_element(const strut_model *model, const strut_state *state,
   strut_power_add(state->latest->power, STRUT_POWER_DRIVE, excess);
 }
 
-static void add_elements(const strut_model *model, const strut_state *state,
-                         strut_discrete_gradient *step, const double *restrict q0,
-                         const double *restrict q1) {
-  for (int32_t i = 0; i < model->elements.count; i++) add_element(model, state, step, i, q0, q1);
-}
-
 /* Drives that follow the motion: their rates half-way, with the loads and the rates of internal states
    there, and their values at the end. */
 static void follow(const strut_model *model, const strut_state *state,
@@ -291,7 +281,8 @@ void strut_discrete_gradient_forces(const strut_model *model, const strut_state 
   if (model->terms & STRUT_TERM_MASS_DAMPING) strut_mass_damping_apply(model, state, u);
   if (!(model->terms & (STRUT_TERM_ELEMENTS | STRUT_TERM_ACTUATOR_FORCES))) return;
   for (int32_t i = 0; i < model->length; i++) step->middle[i] = 0.5 * (state->q[i] + q1[i]);
-  add_elements(model, state, step, state->q, q1);
+  for (int32_t i = 0; i < model->elements.count; i++)
+    add_element(model, state, step, i, state->q, q1);
   if (!(model->terms & STRUT_TERM_FEEDBACK))
     strut_actuator_forces_apply(model, state, step->begin + 0.5 * step->h, step->middle, u);
 }

@@ -35,18 +35,16 @@ static void add_masses(const strut_model *model, const int32_t *row_of, strut_tr
   }
 }
 
-static size_t mass_entries(const strut_model *model) {
-  const strut_mass_operator *op = model->mass->coordinate;
-  return (size_t)op[0].matrix->start[op[0].matrix->n] +
-         (size_t)op[1].matrix->start[op[1].matrix->n];
-}
-
 /* M with room for what members add: the pattern of the step's matrix. */
 static bool make_pattern(const strut_model *model, const int32_t *row_of, strut_arena *arena,
                          strut_midpoint_matrix *matrix) {
   strut_arena scratch = {0};
   strut_triplets sum = {0};
-  size_t most = strut_tangent_entries(model, false) + mass_entries(model);
+  size_t most = strut_tangent_entries(model, false);
+  for (int c = 0; c < 2; c++) {
+    const strut_sparse *mass = model->mass->coordinate[c].matrix;
+    most += (size_t)mass->start[mass->n];
+  }
   bool good = strut_triplets_reserve(&sum, most, &scratch);
   if (good) {
     add_masses(model, row_of, &sum);
@@ -358,12 +356,6 @@ static double size_of(const strut_midpoint_matrix *matrix, const double *vector)
   return most;
 }
 
-/* u += factor x */
-static void move(midpoint_workspace *workspace, const double *vector, double factor) {
-  for (int32_t i = 0; i < workspace->matrix.n; i++)
-    workspace->u[workspace->matrix.coordinate[i]] += factor * vector[i];
-}
-
 /* What rounding leaves of a correction [m/s]. */
 static double rounding_of(const strut_model *model, const strut_state *state,
                           const midpoint_workspace *workspace) {
@@ -412,7 +404,8 @@ static bool iterate(const strut_model *model, const strut_state *state,
       part = 1.0;
     }
     if (!isfinite(size)) return false;
-    move(workspace, workspace->x, part);
+    for (int32_t i = 0; i < workspace->matrix.n; i++)
+      workspace->u[workspace->matrix.coordinate[i]] += part * workspace->x[i];
     if (size <= CLOSE * close && workspace->states_settled) return true;
     before = size;
   }

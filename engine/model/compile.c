@@ -104,14 +104,6 @@ static void compile_members(strut_model *model, bool *failed) {
   if (!t->rows) *failed = true;
 }
 
-static void compile_elements(strut_model *model, bool *failed) {
-  if (!strut_elements_compile(model)) *failed = true;
-}
-
-static void compile_actuator_forces(strut_model *model, bool *failed) {
-  if (!strut_actuator_forces_compile(model)) *failed = true;
-}
-
 static void compile_drives(strut_model *model, bool *failed) {
   const strut_scene *scene = model->scene;
   size_t most = scene->actuator_count, count = 0;
@@ -138,19 +130,11 @@ static void compile_drives(strut_model *model, bool *failed) {
   model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
 }
 
-static void compile_rubbing(strut_model *model, bool *failed) {
+static bool compile_rubbing(strut_model *model) {
   bool rubs = strut_collisions_rub(model->scene);
   for (size_t i = 0; i < model->scene->contact_count && !rubs; i++)
     rubs = strut_contact_is_element(model->scene, i);
-  if (rubs && !strut_rubbing_compile(model)) *failed = true;
-}
-
-static void compile_feedback(strut_model *model, bool *failed) {
-  if (!strut_feedback_compile(model)) *failed = true;
-}
-
-static void compile_sliding_masses(strut_model *model, bool *failed) {
-  if (!strut_sliding_masses_compile(model)) *failed = true;
+  return !rubs || strut_rubbing_compile(model);
 }
 
 /* Half of each member's mass at each of its ends (7), the point masses, and the sliding ones. */
@@ -174,24 +158,14 @@ static void compile_weights(strut_model *model, bool *failed) {
   model->weight = weight;
 }
 
-static void compile_support_motion(strut_model *model, bool *failed) {
-  if (!strut_support_motion_compile(model)) *failed = true;
-}
-
-static void compile_unbalances(strut_model *model, bool *failed) {
+static void compile_unbalances(strut_model *model) {
   const strut_scene *scene = model->scene;
-  (void)failed;
   for (size_t i = 0; i < scene->unbalance_count; i++) {
     int32_t signal = scene->unbalances[i].signal;
     model->terms |= STRUT_TERM_UNBALANCE;
     if (signal >= 0 && strut_signal_next_break(scene->signals, signal, 0.0) < HUGE_VAL)
       model->unbalance_corners = true;
   }
-}
-
-static void compile_damping(strut_model *model, bool *failed) {
-  (void)failed;
-  strut_damping_compile(model);
 }
 
 static void compile_loads(strut_model *model, bool *failed) {
@@ -317,64 +291,6 @@ static void compile_contacts(strut_model *model, bool *failed) {
   model->terms |= STRUT_TERM_SLOPE;
 }
 
-strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
-                                 strut_error *error) {
-  *result = NULL;
-  strut_model *model = strut_allocate(1, sizeof *model);
-  if (!model) return strut_no_memory(error, "for the model");
-  model->scene = scene;
-  bool failed = false;
-  void (*const passes[])(strut_model *, bool *) = {
-      compile_nodes,           compile_members, compile_elements,       compile_drives,
-      compile_sliding_masses,  compile_weights, compile_loads,          compile_contacts,
-      compile_actuator_forces, compile_damping, compile_support_motion, compile_unbalances,
-      compile_feedback,        compile_rubbing};
-  for (size_t i = 0; i < sizeof passes / sizeof passes[0] && !failed; i++)
-    passes[i](model, &failed);
-  strut_status status = failed ? strut_no_memory(error, "for the model")
-                               : strut_mass_create(model, &model->mass, error);
-  if (!status && strut_sliding_masses_solve(model))
-    status = strut_no_memory(error, "for the model");
-  if (status) {
-    strut_model_free(model);
-    return status;
-  }
-  if (model->mass && !model->mass->diagonal) model->terms |= STRUT_TERM_SOLVE;
-  *result = model;
-  return STRUT_OK;
-}
-
-void strut_model_free(strut_model *model) {
-  if (!model) return;
-  strut_mass_free(model->mass);
-  strut_arena_free(&model->arena);
-  strut_release(model);
-}
-
-/* The lightest of nodes that are free to move [kg]. */
-static double lightest_of(const strut_model *model, const uint32_t *at, int count) {
-  double lightest = HUGE_VAL;
-  for (int k = 0; k < count; k++)
-    if (!(model->fixed[at[k]] && model->fixed[at[k] + 1]) && model->weight[at[k] / 2] > 0.0)
-      lightest = fmin(lightest, model->weight[at[k] / 2]);
-  return lightest;
-}
-
-double strut_model_fastest_spring(const strut_model *model) {
-  const strut_member_table *members = &model->members;
-  const strut_contact_table *contacts = &model->contacts;
-  double square = 0.0;
-  for (int32_t j = 0; j < members->count; j++)
-    square = fmax(square,
-                  members->stiffness[j] /
-                      lightest_of(model, (const uint32_t[]){members->from[j], members->to[j]}, 2));
-  for (int32_t i = 0; i < contacts->count; i++)
-    square = fmax(square, contacts->entry[i].stiffness / lightest_of(model, &contacts->at[i], 1));
-  return sqrt(square);
-}
-
-/* Damping that a scene gives as a ratio or by Rayleigh's two numbers; see compile_parts.h. */
-
 /* Inverse of a node's lumped mass along d, in which supported directions are infinitely heavy. */
 static double lightness(const strut_model *model, int32_t node, strut_vec2 d) {
   assert(node >= 0 && node < model->node_count);
@@ -427,7 +343,8 @@ static double stiffness_of(const strut_model *model, size_t j) {
   return fmax(0.0, element ? e->numbers.stiffness : model->members.stiffness[j]);
 }
 
-void strut_damping_compile(strut_model *model) {
+/* Adds the damping that ratios and Rayleigh's numbers give; after the weights of nodes are known. */
+static void compile_damping(strut_model *model) {
   const strut_scene *scene = model->scene;
   double share = scene->rayleigh_stiffness;
   for (size_t j = 0; j < scene->member_count; j++) {
@@ -442,4 +359,68 @@ void strut_damping_compile(strut_model *model) {
   }
   model->mass_damping = scene->rayleigh_mass;
   if (model->mass_damping > 0.0) model->terms |= STRUT_TERM_MASS_DAMPING;
+}
+
+static bool compile_tables(strut_model *model) {
+  bool failed = false;
+  compile_nodes(model, &failed);
+  if (!failed) compile_members(model, &failed);
+  if (!failed) failed = !strut_elements_compile(model);
+  if (!failed) compile_drives(model, &failed);
+  if (!failed) failed = !strut_sliding_masses_compile(model);
+  if (!failed) compile_weights(model, &failed);
+  if (!failed) compile_loads(model, &failed);
+  if (!failed) compile_contacts(model, &failed);
+  if (!failed) compile_damping(model);
+  compile_unbalances(model);
+  return !failed && strut_actuator_forces_compile(model) && strut_support_motion_compile(model) &&
+         strut_feedback_compile(model) && compile_rubbing(model);
+}
+
+strut_status strut_model_compile(const strut_scene *scene, strut_model **result,
+                                 strut_error *error) {
+  *result = NULL;
+  strut_model *model = strut_allocate(1, sizeof *model);
+  if (!model) return strut_no_memory(error, "for the model");
+  model->scene = scene;
+  strut_status status = compile_tables(model) ? strut_mass_create(model, &model->mass, error)
+                                              : strut_no_memory(error, "for the model");
+  if (!status && strut_sliding_masses_solve(model))
+    status = strut_no_memory(error, "for the model");
+  if (status) {
+    strut_model_free(model);
+    return status;
+  }
+  if (model->mass && !model->mass->diagonal) model->terms |= STRUT_TERM_SOLVE;
+  *result = model;
+  return STRUT_OK;
+}
+
+void strut_model_free(strut_model *model) {
+  if (!model) return;
+  strut_mass_free(model->mass);
+  strut_arena_free(&model->arena);
+  strut_release(model);
+}
+
+/* The lightest of nodes that are free to move [kg]. */
+static double lightest_of(const strut_model *model, const uint32_t *at, int count) {
+  double lightest = HUGE_VAL;
+  for (int k = 0; k < count; k++)
+    if (!(model->fixed[at[k]] && model->fixed[at[k] + 1]) && model->weight[at[k] / 2] > 0.0)
+      lightest = fmin(lightest, model->weight[at[k] / 2]);
+  return lightest;
+}
+
+double strut_model_fastest_spring(const strut_model *model) {
+  const strut_member_table *members = &model->members;
+  const strut_contact_table *contacts = &model->contacts;
+  double square = 0.0;
+  for (int32_t j = 0; j < members->count; j++)
+    square = fmax(square,
+                  members->stiffness[j] /
+                      lightest_of(model, (const uint32_t[]){members->from[j], members->to[j]}, 2));
+  for (int32_t i = 0; i < contacts->count; i++)
+    square = fmax(square, contacts->entry[i].stiffness / lightest_of(model, &contacts->at[i], 1));
+  return sqrt(square);
 }

@@ -35,8 +35,6 @@ bool strut_actuator_forces_compile(strut_model *model);
 
 /** Fills model->support_motion, and start and velocity of moved coordinates. False: out of memory. */
 bool strut_support_motion_compile(strut_model *model);
-/** Adds the damping that ratios and Rayleigh's numbers give; after the weights of nodes are known. */
-void strut_damping_compile(strut_model *model);
 
 /** Value near which an element's strain is taken at the start: its natural strain. */
 double strut_element_start(const strut_model *model, int32_t element);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/indices.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
 #include "engine/model/model.h"
@@ -143,14 +144,6 @@ bool strut_sliding_masses_compile(strut_model *model) {
   return true;
 }
 
-/* Columns of M^-1 for both coordinates of a node, into `column` (length). */
-static void solve_column(const strut_model *model, uint32_t at, double *column, double *force,
-                         double *work) {
-  memset(force, 0, (size_t)model->length * sizeof *force);
-  force[at] = force[at + 1] = 1.0;
-  strut_mass_solve(model, force, column, work);
-}
-
 static bool keep_answer(strut_model *model, double *const *column, strut_sliding_answer *answer) {
   double most = 0.0;
   int32_t end = 2 * model->node_count, count = 0;
@@ -202,8 +195,12 @@ strut_status strut_sliding_masses_solve(strut_model *model) {
   bool good = answer && between && scratch;
   for (int32_t l = 0; l < table->moving_count && good; l++) {
     double *column[2] = {scratch, scratch + length}, *force = scratch + 2 * length;
-    for (int e = 0; e < 2; e++)
-      solve_column(model, table->item[table->moving[l]].at[e], column[e], force, force + length);
+    for (int e = 0; e < 2; e++) { /* columns of M^-1 for both coordinates of a node */
+      uint32_t at = table->item[table->moving[l]].at[e];
+      memset(force, 0, length * sizeof *force);
+      force[at] = force[at + 1] = 1.0;
+      strut_mass_solve(model, force, column[e], force + length);
+    }
     good = keep_answer(model, column, &answer[l]);
     keep_entries(table, l, column, between);
   }
@@ -371,21 +368,17 @@ bool strut_feedback_compile(strut_model *model) {
   return true;
 }
 
-static int32_t root(int32_t *parent, int32_t a) {
-  while (parent[a] != a) a = parent[a] = parent[parent[a]];
-  return a;
-}
-
 static void connect_nodes(const strut_model *model, int32_t *parent) {
   for (int32_t i = 0; i < model->node_count; i++) parent[i] = i;
   for (int32_t j = 0; j < model->members.count; j++) {
     int32_t a = (int32_t)model->members.from[j] / 2, b = (int32_t)model->members.to[j] / 2;
-    parent[root(parent, a)] = root(parent, b);
+    parent[strut_index_root(parent, a)] = strut_index_root(parent, b);
   }
   for (int32_t j = 0; j < model->elements.count; j++) {
     const uint32_t *at = model->elements.at + model->elements.element[j].first;
     for (int32_t k = 1; k < model->elements.element[j].nodes; k++)
-      parent[root(parent, (int32_t)at[0] / 2)] = root(parent, (int32_t)at[k] / 2);
+      parent[strut_index_root(parent, (int32_t)at[0] / 2)] =
+          strut_index_root(parent, (int32_t)at[k] / 2);
   }
 }
 
@@ -393,7 +386,7 @@ void strut_connected_parts_find(const strut_model *model, const double *force, i
                                 strut_connected_part *part) {
   connect_nodes(model, part_of);
   for (int32_t i = 0; i < model->node_count; i++) {
-    strut_connected_part *connected_part = &part[part_of[i] = root(part_of, i)];
+    strut_connected_part *connected_part = &part[part_of[i] = strut_index_root(part_of, i)];
     for (int c = 0; c < 2; c++) {
       connected_part->held[c] = connected_part->held[c] || model->fixed[2 * i + c];
       if (!model->fixed[2 * i + c]) connected_part->force[c] += force[2 * i + c];

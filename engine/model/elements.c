@@ -467,11 +467,6 @@ static int32_t nodes_of(const strut_scene *scene, const strut_actuator *actuator
   return actuator->member >= 0 ? (int32_t)scene->members[actuator->member].guide_count + 2 : 3;
 }
 
-static int32_t node_of(const strut_scene *scene, const strut_actuator *actuator, int32_t k) {
-  return actuator->member >= 0 ? strut_member_node(&scene->members[actuator->member], (size_t)k)
-                               : scene->hinges[actuator->hinge].node[k];
-}
-
 bool strut_actuator_forces_compile(strut_model *model) {
   const strut_scene *scene = model->scene;
   size_t count = 0, nodes = 0;
@@ -498,8 +493,10 @@ bool strut_actuator_forces_compile(strut_model *model) {
                                             .signal = actuator->signal,
                                             .first = first,
                                             .nodes = n};
-    for (int32_t k = 0; k < n; k++) at[first + k] = 2 * (uint32_t)node_of(scene, actuator, k);
-    first += n;
+    for (int32_t k = 0; k < n; k++)
+      at[first++] =
+          2 * (uint32_t)(member ? strut_member_node(&scene->members[actuator->member], (size_t)k)
+                                : scene->hinges[actuator->hinge].node[k]);
   }
   model->actuator_forces = (strut_actuator_force_table){(int32_t)count, item, at};
   model->terms |= STRUT_TERM_ACTUATOR_FORCES;

@@ -3,27 +3,22 @@
 
 #include <assert.h>
 
+#include "engine/base/indices.h"
 #include "engine/model/algebra/hot.h"
 #include "engine/model/algebra/sparse.h"
 #include "engine/model/mass_kernel.h"
 #include "engine/model/model.h"
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
-static int32_t find_root(int32_t *parent, int32_t i) {
-  assert(i >= 0);
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 static void join_coupled(const strut_sparse *matrix, int32_t *parent) {
   for (int32_t i = 0; i < matrix->n; i++) parent[i] = i;
   for (int32_t j = 0; j < matrix->n; j++)
     for (int32_t k = matrix->start[j] + 1; k < matrix->start[j + 1]; k++) {
-      int32_t a = find_root(parent, j), b = find_root(parent, matrix->row[k]);
+      int32_t a = strut_index_root(parent, j), b = strut_index_root(parent, matrix->row[k]);
       if (a < b) parent[b] = a;
       if (b < a) parent[a] = b;
     }
-  for (int32_t i = 0; i < matrix->n; i++) parent[i] = find_root(parent, i);
+  for (int32_t i = 0; i < matrix->n; i++) parent[i] = strut_index_root(parent, i);
 }
 
 /* Inverse of a small positive definite matrix in place, by Gauss-Jordan; false if it is not one. */
@@ -183,27 +178,6 @@ static bool has_massless_node(const strut_model *model) {
   return false;
 }
 
-/* One array of inverses for both coordinates; each operator has filled its own places. */
-static void join_inverses(const strut_model *model, strut_mass *mass) {
-  double *x = (double *)mass->coordinate[0].inverse;
-  for (int32_t i = 0; i < model->node_count; i++)
-    x[2 * i + 1] = mass->coordinate[1].inverse[2 * i + 1];
-}
-
-static bool same_supports(const strut_model *model) {
-  for (int32_t i = 0; i < model->node_count; i++)
-    if (model->fixed[2 * i] != model->fixed[2 * i + 1]) return false;
-  return true;
-}
-
-/* x and y have one matrix: the second operator is the first. */
-static void share_operator(const strut_model *model, strut_mass *mass) {
-  double *inverse = (double *)mass->coordinate[0].inverse;
-  for (int32_t i = 0; i < model->node_count; i++) inverse[2 * i + 1] = inverse[2 * i];
-  mass->coordinate[1] = mass->coordinate[0];
-  mass->shared = true;
-}
-
 strut_status strut_mass_create(strut_model *model, strut_mass **result, strut_error *error) {
   *result = NULL;
   if (has_massless_node(model)) return STRUT_OK;
@@ -211,11 +185,16 @@ strut_status strut_mass_create(strut_model *model, strut_mass **result, strut_er
   if (!mass) return strut_no_memory(error, "for the model");
   strut_arena scratch = {0};
   strut_status status = make_operator(model, &scratch, mass, 0, error);
-  if (!status && same_supports(model))
-    share_operator(model, mass);
+  mass->shared = true;
+  for (int32_t i = 0; i < model->node_count; i++)
+    if (model->fixed[2 * i] != model->fixed[2 * i + 1]) mass->shared = false;
+  if (!status && mass->shared) /* x and y have one matrix */
+    mass->coordinate[1] = mass->coordinate[0];
   else if (!status)
     status = make_operator(model, &scratch, mass, 1, error);
-  if (!status && !mass->shared) join_inverses(model, mass);
+  double *inverse = (double *)mass->coordinate[0].inverse; /* of both coordinates */
+  for (int32_t i = 0; i < model->node_count && !status; i++)
+    inverse[2 * i + 1] = mass->coordinate[1].inverse[2 * i + (mass->shared ? 0 : 1)];
   strut_arena_free(&scratch);
   if (status) {
     strut_mass_free(mass);

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/base/indices.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
@@ -38,9 +39,8 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
                                        strut_scene *passive, strut_arena *arena) {
   *passive = *scene;
   passive->actuator_count = 0;
-  passive->nodes = strut_arena_allocate(arena, scene->node_count, sizeof *passive->nodes);
+  passive->nodes = strut_arena_copy(arena, scene->nodes, scene->node_count, sizeof *passive->nodes);
   if (!passive->nodes) return STRUT_NO_MEMORY;
-  memcpy(passive->nodes, scene->nodes, scene->node_count * sizeof *passive->nodes);
   if (!strut_scene_hold_sliding_masses(passive, arena)) return STRUT_NO_MEMORY;
   strut_scene_hold_supports(passive, false);
   strut_scene_stop_unbalances(passive);
@@ -64,8 +64,7 @@ static strut_status copy_passive_scene(const strut_scene *scene, bool friction,
   for (size_t i = 0; i < scene->collision_count && !friction; i++)
     bodies[i].friction.mu_kinetic = 0.0;
   passive->collisions = bodies;
-  if (!strut_scene_remove_feedback(passive, arena)) return STRUT_NO_MEMORY;
-  return STRUT_OK;
+  return strut_scene_remove_feedback(passive, arena) ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 /* The largest absolute entry of x and its node; infinite where x has a NaN. */
@@ -165,8 +164,7 @@ static void stop_motion(strut_relaxation *relaxation) {
                                 relaxation->step);
 }
 
-/* Steps until at rest; adds to r->time and r->evaluations. */
-static strut_status relax_until_rest(strut_relaxation *relaxation, strut_error *error) {
+strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error) {
   const strut_settle *wanted = &relaxation->experiment->settle;
   strut_state *state = relaxation->state;
   double dt = relaxation->step, previous = 0.0, before = relaxation->time,
@@ -175,6 +173,7 @@ static strut_status relax_until_rest(strut_relaxation *relaxation, strut_error *
   int64_t spent = relaxation->evaluations;
   int32_t length = relaxation->model->length, node;
   bool strict = true;
+  state->limits.interrupt = relaxation->interrupt;
   stop_motion(relaxation);
   while (relaxation->time < wanted->limit && (double)relaxation->evaluations < most) {
     if (relaxation->interrupt && *relaxation->interrupt)
@@ -200,11 +199,6 @@ static strut_status relax_until_rest(strut_relaxation *relaxation, strut_error *
     if (find_largest(relaxation->acceleration, length, &node) < enough) return STRUT_OK;
   }
   return fail_not_settled(relaxation, error);
-}
-
-strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *error) {
-  relaxation->state->limits.interrupt = relaxation->interrupt;
-  return relax_until_rest(relaxation, error);
 }
 
 strut_status strut_relaxation_create(const strut_model *model, const strut_experiment *experiment,
@@ -334,17 +328,10 @@ static bool normalise(double *vector, int32_t n) {
   return true;
 }
 
-/* Row of a coordinate, or -1 where it is fixed; coordinates are in ascending order. */
+/* Row of a coordinate, or -1 where it is fixed. */
 static int32_t find_row(const strut_tangent *tangent, int32_t coordinate) {
-  int32_t low = 0, high = tangent->n;
-  while (low < high) {
-    int32_t middle = low + (high - low) / 2;
-    if (tangent->coordinate[middle] < coordinate)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < tangent->n && tangent->coordinate[low] == coordinate ? low : -1;
+  int32_t row = strut_index_find(tangent->coordinate, tangent->n, coordinate);
+  return row < tangent->n && tangent->coordinate[row] == coordinate ? row : -1;
 }
 
 /* Adds the ground stiffness along the ground for contacts that touch and may stick. */
@@ -494,13 +481,6 @@ static strut_status relax_from(strut_relaxation *relaxation, const double *from,
   return status;
 }
 
-static void perturb_start(const strut_relaxation *relaxation, const instability *unstable,
-                          double *positions) {
-  for (int32_t i = 0; i < 2 * relaxation->model->node_count; i++)
-    positions[i] =
-        relaxation->state->q[i] + PUSH * relaxation->model->size * unstable->direction[i];
-}
-
 /*
  * Settles, and leaves unstable equilibria where requested. q (length): start positions in, settled
  * positions out.
@@ -517,7 +497,9 @@ static strut_status settle_and_perturb(strut_relaxation *relaxation, double *pos
     if (unstable.node < 0 || !relaxation->experiment->settle.perturb ||
         how->perturbations == MOST_PERTURBATIONS)
       break;
-    perturb_start(relaxation, &unstable, positions);
+    for (int32_t i = 0; i < 2 * relaxation->model->node_count; i++)
+      positions[i] =
+          relaxation->state->q[i] + PUSH * relaxation->model->size * unstable.direction[i];
     how->perturbations++;
   }
   memcpy(positions, relaxation->state->q, (size_t)relaxation->model->length * sizeof *positions);
@@ -553,9 +535,9 @@ static strut_status move_start(const strut_scene *scene, const double *positions
   strut_scene *settled = start->scene = strut_arena_allocate(&start->arena, 1, sizeof *settled);
   if (!settled) return STRUT_NO_MEMORY;
   *settled = *scene;
-  settled->nodes = strut_arena_allocate(&start->arena, scene->node_count, sizeof *settled->nodes);
+  settled->nodes =
+      strut_arena_copy(&start->arena, scene->nodes, scene->node_count, sizeof *settled->nodes);
   if (!settled->nodes) return STRUT_NO_MEMORY;
-  memcpy(settled->nodes, scene->nodes, scene->node_count * sizeof *settled->nodes);
   for (size_t i = 0; i < scene->node_count; i++)
     for (size_t c = 0; c < 2; c++)
       if (!scene->nodes[i].fixed[c]) settled->nodes[i].start[c] = positions[2 * i + c];

@@ -320,22 +320,10 @@ static int64_t find_next_check(const strut_run *run, int64_t chunk) {
   return stop > end ? end : stop;
 }
 
-static void step_with_quantities(strut_run *run, int64_t stop) {
-  while (run->state->step < stop) {
-    advance(run, run->dt, 1);
-    if (run->state->trouble) return;
-    strut_measure_step_quantities(run->model, run->state, &run->measure);
-  }
-}
-
 static void step_to(strut_run *run, int64_t stop) {
   int64_t n = run->state->step;
   if (n < strut_measure_first_step(&run->measure)) {
     advance(run, run->dt, stop - n);
-    return;
-  }
-  if (run->measure.quantities) {
-    step_with_quantities(run, stop);
     return;
   }
   for (; n < stop; n++) {
@@ -347,11 +335,6 @@ static void step_to(strut_run *run, int64_t stop) {
 
 double strut_run_time(const strut_run *run) {
   return strut_time_grid_real(&run->grid, run->state->step);
-}
-
-/* Is the next step the last one and shorter than the others? */
-static bool is_short_step_due(const strut_run *run) {
-  return run->state->step == run->grid.last - 1 && strut_time_grid_rest(&run->grid) > 0.0;
 }
 
 /*
@@ -371,10 +354,7 @@ static void step_short(strut_run *run) {
   state->latest->drive_time = (double)NAN;
   if (state->step != run->grid.last || state->step <= strut_measure_first_step(&run->measure))
     return;
-  if (run->measure.quantities)
-    strut_measure_step_quantities(run->model, state, &run->measure);
-  else
-    strut_measure_step(run->model, state, &run->measure);
+  strut_measure_step(run->model, state, &run->measure);
 }
 
 /*
@@ -383,8 +363,8 @@ static void step_short(strut_run *run) {
 void strut_run_step(strut_run *run, int64_t stop) {
   assert(run->ready && stop > run->state->step);
   unsigned before = strut_subnormals_off();
-  if (is_short_step_due(run))
-    step_short(run);
+  if (run->state->step == run->grid.last - 1 && strut_time_grid_rest(&run->grid) > 0.0)
+    step_short(run); /* the last one, shorter than the others */
   else
     step_to(run, stop);
   strut_subnormals_restore(before);
@@ -497,12 +477,6 @@ static void store_end_state(const strut_run *run) {
   to->refined = fmax(0.0, run->state->refined_until - (to->time - run->grid.offset));
 }
 
-static void fill_contacts(strut_run *run) {
-  for (int32_t i = 0; i < run->model->contacts.count; i++)
-    run->summary->end.contacts[i].band_needed =
-        strut_stick_band_missed(run->model, &run->watch.band, i);
-}
-
 /* Angles and moments of the hinges at the end, areas and pressures of the cells. */
 static void measure_elements(strut_run *run) {
   const strut_scene *scene = run->model->scene;
@@ -541,7 +515,8 @@ static void list_breaks(const strut_run *run) {
 
 static void fill_summary(strut_run *run, strut_status status) {
   strut_summary *summary = run->summary;
-  fill_contacts(run);
+  for (int32_t i = 0; i < run->model->contacts.count; i++)
+    summary->end.contacts[i].band_needed = strut_stick_band_missed(run->model, &run->watch.band, i);
   summary->status = status;
   summary->spent.steps = run->state->step - run->first;
   summary->duration = (double)summary->spent.steps * run->dt;

@@ -9,6 +9,59 @@
 #include "engine/forces/observe.h"
 #include "engine/scene/signal_program.h"
 
+static double input_of(const strut_model *model, const strut_state *state, int32_t signal,
+                       double now, const double *velocity) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  strut_signal_inputs in = strut_drive_inputs(model, state, velocity);
+  double input, unused;
+  in.values_only = true;
+  strut_program_evaluate(&model->scene->signals[signal].program, model->scene->signals, &in, now,
+                         &input, &unused);
+  return input;
+}
+
+/* Sets the side of a relay at t = 0. */
+static void relay_start(const strut_model *model, const strut_state *state, int32_t signal,
+                        double now, const double *velocity) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  const strut_relay *relay = &model->scene->signals[signal].relay;
+  double input = input_of(model, state, signal, now, velocity);
+  bool above =
+      input > relay->upper || (!(input < relay->lower) && relay->on_at_start == relay->on_above);
+  state->signals.relay_side[signal] = above ? 1 : -1;
+}
+
+/* How far the input is from the threshold that switches the relay; negative beyond it. */
+static double relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
+                           double now, const double *velocity) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  const strut_relay *relay = &model->scene->signals[signal].relay;
+  double input = input_of(model, state, signal, now, velocity);
+  return state->signals.relay_side[signal] > 0 ? input - relay->lower : relay->upper - input;
+}
+
+/* Switches a relay whose input is beyond its threshold, as when it is sampled. True if it was. */
+static bool relay_sample(const strut_model *model, strut_state *state, int32_t signal, double now,
+                         const double *velocity) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  if (!(relay_margin(model, state, signal, now, velocity) < 0.0)) return false;
+  state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
+  return true;
+}
+
+/*
+ * Switches a relay at time t [s] of the steps and the state's positions and velocities. Where what it
+ * drives takes its own input past the other threshold at once, state->trouble says so.
+ */
+static void relay_switch(const strut_model *model, strut_state *state, int32_t signal, double t) {
+  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
+  state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
+  strut_drive_apply(model, state, t);
+  if (!(relay_margin(model, state, signal, t + state->time_offset, state->v) < 0.0)) return;
+  state->trouble = STRUT_FAILURE_RELAY;
+  state->trouble_node = signal;
+}
+
 static void sense_all(const strut_model *model, const strut_state *state, bool driven, double t,
                       const double *q, const double *velocity) {
   const strut_feedback_table *feedback = &model->feedback;
@@ -44,7 +97,7 @@ static bool take_samples(const strut_model *model, strut_state *state, double t,
     double every = model->scene->signals[signal].every, rate;
     if (!(fabs(t - every * round(t / every)) <= tolerance)) continue;
     if (model->scene->signals[signal].kind == STRUT_RELAY)
-      strut_relay_sample(model, state, signal, t, velocity);
+      relay_sample(model, state, signal, t, velocity);
     strut_signal_follow_unsampled(model->scene->signals, &in, signal, t,
                                   &state->signals.held[signal], &rate);
     any = true;
@@ -68,7 +121,7 @@ static void begin_history(const strut_model *model, const strut_state *state, do
   sense_all(model, state, false, t, q, velocity);
   sense_all(model, state, true, t, q, velocity);
   for (int32_t i = 0; i < (int32_t)model->scene->signal_count; i++) {
-    if (signals[i].kind == STRUT_RELAY) strut_relay_start(model, state, i, t, velocity);
+    if (signals[i].kind == STRUT_RELAY) relay_start(model, state, i, t, velocity);
     if (signals[i].every > 0.0)
       strut_signal_follow_unsampled(signals, &in, i, t, &state->signals.held[i], &rate);
   }
@@ -165,61 +218,15 @@ bool strut_feedback_watch(const strut_model *model, strut_state *state, double t
   return any;
 }
 
-static double input_of(const strut_model *model, const strut_state *state, int32_t signal,
-                       double now, const double *velocity) {
-  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
-  strut_signal_inputs in = strut_drive_inputs(model, state, velocity);
-  double input, unused;
-  in.values_only = true;
-  strut_program_evaluate(&model->scene->signals[signal].program, model->scene->signals, &in, now,
-                         &input, &unused);
-  return input;
-}
-
-void strut_relay_start(const strut_model *model, const strut_state *state, int32_t signal,
-                       double now, const double *velocity) {
-  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
-  const strut_relay *relay = &model->scene->signals[signal].relay;
-  double input = input_of(model, state, signal, now, velocity);
-  bool above =
-      input > relay->upper || (!(input < relay->lower) && relay->on_at_start == relay->on_above);
-  state->signals.relay_side[signal] = above ? 1 : -1;
-}
-
-double strut_relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
-                          double now, const double *velocity) {
-  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
-  const strut_relay *relay = &model->scene->signals[signal].relay;
-  double input = input_of(model, state, signal, now, velocity);
-  return state->signals.relay_side[signal] > 0 ? input - relay->lower : relay->upper - input;
-}
-
-bool strut_relay_sample(const strut_model *model, strut_state *state, int32_t signal, double now,
-                        const double *velocity) {
-  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
-  if (!(strut_relay_margin(model, state, signal, now, velocity) < 0.0)) return false;
-  state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
-  return true;
-}
-
-void strut_relay_switch(const strut_model *model, strut_state *state, int32_t signal, double t) {
-  assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
-  state->signals.relay_side[signal] = (int8_t)-state->signals.relay_side[signal];
-  strut_drive_apply(model, state, t);
-  if (!(strut_relay_margin(model, state, signal, t + state->time_offset, state->v) < 0.0)) return;
-  state->trouble = STRUT_FAILURE_RELAY;
-  state->trouble_node = signal;
-}
-
 bool strut_relays_follow(const strut_model *model, strut_state *state, double t) {
   const strut_feedback_table *feedback = &model->feedback;
   bool any = false;
   strut_drive_apply(model, state, t);
   for (int32_t i = 0; i < feedback->relay_count && !state->trouble; i++) {
     double margin =
-        strut_relay_margin(model, state, feedback->relay[i], t + state->time_offset, state->v);
+        relay_margin(model, state, feedback->relay[i], t + state->time_offset, state->v);
     if (!(margin < 0.0)) continue;
-    strut_relay_switch(model, state, feedback->relay[i], t);
+    relay_switch(model, state, feedback->relay[i], t);
     any = true;
   }
   return any;
@@ -241,7 +248,7 @@ double strut_threshold_margin(const strut_model *model, const strut_state *state
   const strut_trigger *trigger = &model->scene->signals[signal].trigger;
   *rate = 0.0;
   if (model->scene->signals[signal].kind == STRUT_RELAY && trigger->kind == STRUT_TRIGGER_NONE)
-    return strut_relay_margin(model, state, signal, now, velocity);
+    return relay_margin(model, state, signal, now, velocity);
   if (state->signals.started[signal] < (double)INFINITY && !trigger->each) return 1.0;
   double side = trigger->kind == STRUT_TRIGGER_ABOVE ? -1.0 : 1.0;
   if (state->signals.trigger_was[signal] > 0) side = -side;
@@ -252,7 +259,7 @@ double strut_threshold_margin(const strut_model *model, const strut_state *state
 void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t signal, double t) {
   assert(signal >= 0 && signal < (int32_t)model->scene->signal_count);
   if (model->scene->signals[signal].trigger.kind == STRUT_TRIGGER_NONE) {
-    strut_relay_switch(model, state, signal, t);
+    relay_switch(model, state, signal, t);
     return;
   }
   bool holds = !(state->signals.trigger_was[signal] > 0);

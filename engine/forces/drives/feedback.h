@@ -41,8 +41,8 @@ bool strut_feedback_watch(const strut_model *model, strut_state *state, double t
 
 /** Before the first step: on which side of their levels the sensors are that start signals, as evaluated last. */
 void strut_threshold_begin(const strut_model *model, strut_state *state);
-/** How far the signal's input is from its threshold, of sensors and internal states as strut_relay_margin has them;
-    1 where it has none any more. Negative beyond it. And its rate, where that is known; else 0. */
+/** How far the signal's input is from its threshold, of sensors as they were evaluated last and internal states at
+    velocities v; 1 where it has none any more. Negative beyond it. And its rate, where that is known; else 0. */
 double strut_threshold_margin(const strut_model *model, const strut_state *state, int32_t signal,
                               double now, const double *velocity, double *rate);
 /** Passes it at time t [s] of the steps: a relay switches, a signal starts, or may start again. */
@@ -52,26 +52,6 @@ void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t 
  * the lower one downwards. Methods with events locate that; others switch at the ends of steps.
  */
 
-/*
- * Of the functions below, those with a time `now` [s] of the signals take the sensors as they were
- * evaluated last, and internal states at velocities v.
- */
-
-/** Sets the side of a relay at t = 0. */
-void strut_relay_start(const strut_model *model, const strut_state *state, int32_t signal,
-                       double now, const double *velocity);
-/** How far the input is from the threshold that switches the relay; negative beyond it. */
-double strut_relay_margin(const strut_model *model, const strut_state *state, int32_t signal,
-                          double now, const double *velocity);
-/** Switches a relay whose input is beyond its threshold, as when it is sampled. True if it was. */
-bool strut_relay_sample(const strut_model *model, strut_state *state, int32_t signal, double now,
-                        const double *velocity);
-
-/**
- * Switches a relay at time t [s] of the steps and the state's positions and velocities. Where what it
- * drives takes its own input past the other threshold at once, state->trouble says so.
- */
-void strut_relay_switch(const strut_model *model, strut_state *state, int32_t signal, double t);
 /** Switches every relay that is not sampled and whose input is beyond its threshold. True if one was. */
 bool strut_relays_follow(const strut_model *model, strut_state *state, double t);
 

@@ -213,11 +213,6 @@ static double earliest_spent(const strut_model *model, const strut_event_stepper
 /* Steps are not split for a stage's sake below this part of the longest. */
 static const double LEAST_SPLIT = 1e-4;
 
-/* The error that makes the next step end there. */
-static double error_to_reach(const strut_event_stepper *stepper, double part) {
-  return fmax(1.01, pow(0.9 / part, stepper->formula->tableau->order));
-}
-
 void strut_event_look_between(const strut_model *model, const strut_state *state,
                               strut_event_stepper *stepper, double h) {
   if (strut_turns_due(state, stepper)) strut_turns_look(model, state, stepper, h);
@@ -229,7 +224,8 @@ void strut_event_look_between(const strut_model *model, const strut_state *state
     strut_event event = strut_event_first(model, state, stepper, h);
     if (!event.kind || event.fraction > spent) part = spent;
   }
-  if (part > 0.0) stepper->control.error = error_to_reach(stepper, part);
+  if (part > 0.0) /* the error that makes the next step end there */
+    stepper->control.error = fmax(1.01, pow(0.9 / part, stepper->formula->tableau->order));
 }
 
 STRUT_INLINE void take(const strut_model *model, const strut_state *state,

@@ -69,13 +69,6 @@ static void hold_contacts(const strut_motion_piece *piece, const strut_model *mo
   show_contacts(model, state, stepper, at);
 }
 
-/* Keeps the begin of a step that is about to be accepted. */
-static void keep_begin(const strut_model *model, const strut_state *state, strut_event_view *view) {
-  memcpy(view->q, state->q, (size_t)model->length * sizeof(double));
-  memcpy(view->v, state->v, (size_t)model->length * sizeof(double));
-  memcpy(view->work, state->work, sizeof view->work);
-}
-
 /* From the time at which a step that begins at t is evaluated to one after what jumps at t; see moment_before. */
 static double moment_after(const strut_event_stepper *stepper, double t, double dt) {
   return stepper->next_break < HUGE_VAL ? 2.0 * moment_before(t, dt) : 0.0;
@@ -248,12 +241,6 @@ static void release_kink(const strut_model *model, strut_state *state, strut_eve
   if (!state->forced.count++) state->forced.first = piece->t;
 }
 
-/* Must a step be taken whatever the modes say? */
-static bool must_step(const strut_chatter *chatter) {
-  return (chatter->at_once > 0 && chatter->most >= MOST_AT_ONCE) ||
-         chatter->switches >= MOST_SWITCHES;
-}
-
 /*
  * Predicts positions, where the method knows them before it knows forces. A touchdown or an opening on the way ends
  * the piece.
@@ -424,7 +411,12 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
     return;
   }
   if (state->watched.variation) strut_variation_step(model, state, stepper, piece->t, piece->h);
-  if (observed) keep_begin(model, state, stepper->view);
+  if (observed) {
+    strut_event_view *view = stepper->view;
+    memcpy(view->q, state->q, (size_t)model->length * sizeof(double));
+    memcpy(view->v, state->v, (size_t)model->length * sizeof(double));
+    memcpy(view->work, state->work, sizeof view->work);
+  }
   accept_step(model, state, stepper, state->balance);
   if (stepper->scales) keep_scales(stepper, piece);
   if (observed) show_piece(model, state, stepper, piece);
@@ -471,7 +463,9 @@ static void switch_modes(const strut_model *model, strut_state *state, strut_eve
 static double advance_piece(const strut_model *model, strut_state *state,
                             strut_event_stepper *stepper, double t, double h, double dt) {
   step_piece piece = {.t = t, .h = h, .dt = dt};
-  if (must_step(&stepper->chatter)) {
+  const strut_chatter *chatter = &stepper->chatter;
+  if ((chatter->at_once > 0 && chatter->most >= MOST_AT_ONCE) ||
+      chatter->switches >= MOST_SWITCHES) { /* whatever the modes say */
     if (!force_piece(model, state, stepper, &piece)) return 0.0;
   } else {
     predict_piece(model, state, stepper, &piece);

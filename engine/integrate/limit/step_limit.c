@@ -251,13 +251,6 @@ static bool improve(search *self) {
   return true;
 }
 
-/* Few coordinates: all motions; many: those that bind. False: out of memory. */
-static bool seek(search *self, const strut_model *model, bool all) {
-  int32_t n = self->tangent->n;
-  if (!begin(self, model, all ? n : n > LARGE ? LARGE_ROOM : ROOM)) return false;
-  return all ? take_all(self) : look_around(self) && improve(self);
-}
-
 static void tell_found(const search *self, bool all, strut_step_limit *limit) {
   limit->exact = all && self->found.solved;
   limit->largest_frequency = self->found.largest_frequency;
@@ -313,7 +306,12 @@ static strut_status limits(const strut_model *model, const double *positions, co
     return STRUT_NO_MEMORY;
   bool all = tangent.n <= STRUT_EXACT_LIMIT, room = true;
   if (tangent.rigid || tangent.n <= TOO_LARGE) {
-    room = seek(&s, model, all);
+    int32_t n = tangent.n; /* few: all motions; many: those that bind */
+    room = begin(&s, model,
+                 all         ? n
+                 : n > LARGE ? LARGE_ROOM
+                             : ROOM) &&
+           (all ? take_all(&s) : look_around(&s) && improve(&s));
     if (room) tell_found(&s, all, limit);
   }
   if (room && !tangent.rigid && tangent.n > LARGE && !s.settled)

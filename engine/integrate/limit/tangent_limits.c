@@ -165,22 +165,6 @@ typedef struct symmetric {
   gsl_eigen_symmv_workspace *w;
 } symmetric;
 
-static bool symmetric_create(symmetric *self, size_t m) {
-  *self = (symmetric){.m = m,
-                      .matrix = gsl_matrix_alloc(m, m),
-                      .vectors = gsl_matrix_alloc(m, m),
-                      .values = gsl_vector_alloc(m),
-                      .w = gsl_eigen_symmv_alloc(m)};
-  return self->matrix && self->vectors && self->values && self->w;
-}
-
-static void symmetric_free(symmetric *self) {
-  gsl_matrix_free(self->matrix);
-  gsl_matrix_free(self->vectors);
-  gsl_vector_free(self->values);
-  gsl_eigen_symmv_free(self->w);
-}
-
 /*
  * Fills in a K + b D, times a power of two that makes the largest entry about 1. Returns by which
  * power they are too small then; INT_MAX where some entry is no finite number: GSL would not end.
@@ -336,13 +320,18 @@ static bool find_rk4(const strut_krylov_basis *space, double omega, strut_tangen
 
 bool strut_tangent_limits_find(const strut_krylov_basis *space, bool damped, bool rk4,
                                strut_tangent_limits *limits) {
-  symmetric s;
   limits->count = 0;
   limits->solved = true;
   for (int region = 0; region < STRUT_REGIONS; region++) limits->of[region] = HUGE_VAL;
   limits->largest_frequency = 0.0;
   if (space->count == 0) return true;
-  bool good = symmetric_create(&s, (size_t)space->count);
+  size_t m = (size_t)space->count;
+  symmetric s = {.m = m,
+                 .matrix = gsl_matrix_alloc(m, m),
+                 .vectors = gsl_matrix_alloc(m, m),
+                 .values = gsl_vector_alloc(m),
+                 .w = gsl_eigen_symmv_alloc(m)};
+  bool good = s.matrix && s.vectors && s.values && s.w;
   if (good) {
     double rate = find_symmetric(&s, space, damped, limits), omega = limits->largest_frequency;
     /* the stability of RK4 for eigenvalues of any direction, where they are unknown */
@@ -353,6 +342,9 @@ bool strut_tangent_limits_find(const strut_krylov_basis *space, bool damped, boo
       good = find_rk4(space, fmax(omega, rate), limits);
     if (good && !limits->solved) limits->of[STRUT_REGION_RK4] = bound;
   }
-  symmetric_free(&s);
+  gsl_matrix_free(s.matrix);
+  gsl_matrix_free(s.vectors);
+  gsl_vector_free(s.values);
+  gsl_eigen_symmv_free(s.w);
   return good;
 }

@@ -145,14 +145,6 @@ static void step_back(strut_ladder *ladder) {
   ladder->runs--;
 }
 
-/* The latest run exceeded the budget: the one before it becomes the answer, if there is one. */
-static strut_status discard_unfinished_run(strut_ladder *ladder) {
-  ladder->budget_spent = true;
-  if (ladder->runs < 2) return STRUT_WORK_LIMIT;
-  step_back(ladder);
-  return STRUT_OK;
-}
-
 /* Runs that may fail: their tolerance or step is left out. */
 enum { MOST_FAILURES = 2 };
 
@@ -176,13 +168,6 @@ static void keep_results(const strut_ladder *ladder, const strut_summary *summar
   value[summary->measured_count] = summary->velocity;
 }
 
-/* Do tolerances set the steps of the two latest runs, with error control? */
-static void note_growth(strut_ladder *ladder) {
-  double growth = (double)ladder->now->cost / (double)ladder->before->cost;
-  if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS)
-    ladder->precise = !ladder->imprecise && !ladder->implicit;
-}
-
 /* Makes one more run without output and compares it with the one before. */
 static strut_status run_next_rung(strut_ladder *ladder) {
   strut_rung *next = ladder->runs == 0                 ? ladder->rung
@@ -202,12 +187,21 @@ static strut_status run_next_rung(strut_ladder *ladder) {
   strut_status status = strut_accuracy_run(ladder->a, &next->e, &quiet, &next->s);
   next->cost = next->s.spent.evaluations;
   ladder->a->check_evaluations += next->cost;
-  if (status == STRUT_WORK_LIMIT) return discard_unfinished_run(ladder);
+  if (status == STRUT_WORK_LIMIT) { /* the run before becomes the answer, if there is one */
+    ladder->budget_spent = true;
+    if (ladder->runs < 2) return STRUT_WORK_LIMIT;
+    step_back(ladder);
+    return STRUT_OK;
+  }
   if (status == STRUT_DIVERGED && ladder->before && ladder->before->s.status == STRUT_OK) {
     discard_failed_run(ladder);
     return STRUT_OK;
   }
-  if (strut_ladder_runs_with_error_control(ladder) > 1) note_growth(ladder);
+  if (strut_ladder_runs_with_error_control(ladder) > 1) { /* do tolerances set the steps? */
+    double growth = (double)ladder->now->cost / (double)ladder->before->cost;
+    if (growth > GROWTH_BY_TOLERANCE && growth < GROWTH_BY_EVENTS)
+      ladder->precise = !ladder->imprecise && !ladder->implicit;
+  }
   ladder->earliest_change = ladder->earlier_change;
   ladder->earlier_change = ladder->change;
   ladder->earlier_distance = ladder->distance;
@@ -334,12 +328,6 @@ static strut_status create_ladder(strut_accuracy *accuracy, strut_ladder *ladder
  */
 static const double CHECKED_BELOW = 1e-8;
 
-/* The shift, over the size of the structure. */
-static double shift_of(const strut_ladder *ladder, double tolerance) {
-  return ladder->model->feedback.sampled_count ? fmax(STRUT_LADDER_SHIFT, 0.01 * tolerance)
-                                               : STRUT_LADDER_SHIFT;
-}
-
 /* The start with every free coordinate shifted, up or down. */
 static strut_status shift_start(strut_ladder *ladder, double shift, strut_snapshot *start) {
   const strut_model *model = ladder->model;
@@ -375,7 +363,9 @@ static strut_status check_sensitivity(strut_ladder *ladder) {
     return STRUT_OK;
   if (!(rung->e.tolerance < CHECKED_BELOW) && !ladder->model->feedback.sampled_count)
     return STRUT_OK;
-  ladder->shift = shift_of(ladder, rung->e.tolerance);
+  ladder->shift = STRUT_LADDER_SHIFT; /* over the size of the structure */
+  if (ladder->model->feedback.sampled_count)
+    ladder->shift = fmax(ladder->shift, 0.01 * rung->e.tolerance);
   strut_status status = shift_start(ladder, ladder->shift, &start);
   if (status) return status;
   quiet.sink_count = 0, quiet.to = NULL, quiet.from = &start;

@@ -73,14 +73,6 @@ static bool uses_finer_steps(const strut_accuracy *accuracy) {
   return accuracy->stiff && accuracy->target >= FINE;
 }
 
-static void allocate_arrays(strut_orbit_solve *solve) {
-  solve->both = 2 * (size_t)solve->a->model->length + 1;
-  double **const arrays[] = {&solve->end.y, &solve->known.y, &solve->fixed_point};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    *arrays[i] = strut_orbit_solve_array(solve);
-  solve->orbit.y = solve->known.y;
-}
-
 /* Is there an answer, or what stops the search? */
 static bool is_over(const strut_orbit_solve *solve) { return solve->status || solve->answer; }
 
@@ -204,12 +196,6 @@ static void correct_orbit(strut_orbit_solve *solve, double enough, int least) {
   }
 }
 
-/* Drive periods in which the orbit repeats itself. */
-static double orbit_periods(const strut_orbit_solve *solve) {
-  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
-  return ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
-}
-
 /*
  * Runs the orbit by the method of `e` over one repetition, or, to record it, over as many periods as `output`
  * names.
@@ -221,7 +207,8 @@ static void run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
   e.measure_last = 0.0;
   e.steady.wanted = false;
   e.step = period / ceil(period / e.step * (1.0 - 1e-9)); /* as the maps have it */
-  e.periods = orbit_periods(solve);
+  bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED && solve->last_run.steady.repeats > 0;
+  e.periods = ran_on ? solve->last_run.steady.repeats : solve->coarse_map.repeats;
   if (record) e.periods = fmax(e.periods, e.output_last);
   e.output_last = 0.0;
   strut_run_options options = *accuracy->options;
@@ -235,22 +222,6 @@ static void run_orbit(strut_orbit_solve *solve, strut_experiment e, bool record,
   options.from = &from;
   options.progress = NULL;
   solve->status = strut_accuracy_run(accuracy, &e, &options, summary);
-}
-
-/* Charges the cost of a failed orbit search to the checks of the next strategy. */
-static void charge_costs(strut_orbit_solve *solve, strut_summary *orbit) {
-  solve->a->check_evaluations += solve->coarse_run.spent.evaluations +
-                                 solve->coarse_map.evaluations + solve->reference_map.evaluations +
-                                 solve->last_run.spent.evaluations + orbit->spent.evaluations;
-  strut_summary_free(orbit);
-}
-
-static void free_solve(strut_orbit_solve *solve) {
-  strut_period_map_free(&solve->coarse_map);
-  strut_period_map_free(&solve->reference_map);
-  strut_summary_free(&solve->coarse_run);
-  strut_summary_free(&solve->last_run);
-  strut_arena_free(&solve->arena);
 }
 
 static void accept_fixed_point(strut_orbit_solve *solve) {
@@ -285,14 +256,6 @@ static void extrapolate_to_fixed_point(strut_orbit_solve *solve, strut_extrapola
   accept_fixed_point(solve);
   solve->coarse_run.steady.kind = STRUT_MOTION_PERIODIC;
   solve->coarse_run.steady.repeats = solve->coarse_map.repeats;
-}
-
-/* The coarse method with a finer step than the first. */
-static strut_experiment finer_experiment(const strut_orbit_solve *solve) {
-  strut_experiment e = solve->a->coarse;
-  e.steady.creep = 0.0;
-  e.step *= solve->finer / FINER;
-  return e;
 }
 
 /*
@@ -534,7 +497,10 @@ static bool confirm_by(strut_orbit_solve *solve, strut_experiment e, double part
 static bool confirm_by_finer(strut_orbit_solve *solve, strut_summary *orbit) {
   bool corrected = solve->answer == STRUT_ORBIT_CORRECTED;
   if (!uses_finer_steps(solve->a)) return false;
-  if (confirm_by(solve, finer_experiment(solve), CONFIRMED_BY_FINER, orbit)) return true;
+  strut_experiment e = solve->a->coarse;
+  e.steady.creep = 0.0;
+  e.step *= solve->finer / FINER; /* finer than the first */
+  if (confirm_by(solve, e, CONFIRMED_BY_FINER, orbit)) return true;
   if (solve->status || !corrected) return false;
   solve->answer = STRUT_ORBIT_NONE;
   correct_to_answer(solve);
@@ -570,7 +536,10 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   accuracy->coarse.refine_memory = 3.0;
   accuracy->coarse.steady.mean_tolerance = MEAN * accuracy->target;
   if (accuracy->target >= FINE) accuracy->coarse.steady.creep = CREEP * accuracy->scale;
-  allocate_arrays(&solve);
+  solve.both = 2 * (size_t)accuracy->model->length + 1;
+  solve.end.y = strut_orbit_solve_array(&solve);
+  solve.orbit.y = solve.known.y = strut_orbit_solve_array(&solve);
+  solve.fixed_point = strut_orbit_solve_array(&solve);
   bool steady = run_coarse(&solve);
   if (!solve.status && solve.coarse_run.status == STRUT_OK) {
     if (solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING) steady = find_creep(&solve);
@@ -580,14 +549,22 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   bool followed =
       orbit.spent.forced + solve.last_run.spent.forced + solve.reference_map.forced == 0;
   *done = !solve.status && solve.answer && followed;
-  if (*done)
+  if (*done) {
     strut_orbit_solve_report(&solve, &orbit);
-  else
-    charge_costs(&solve, &orbit);
+  } else { /* the next strategy is charged with the cost */
+    accuracy->check_evaluations += solve.coarse_run.spent.evaluations +
+                                   solve.coarse_map.evaluations + solve.reference_map.evaluations +
+                                   solve.last_run.spent.evaluations + orbit.spent.evaluations;
+    strut_summary_free(&orbit);
+  }
   given.step = solve.finer * accuracy->coarse.step;
   accuracy->coarse = given;
   accuracy->allowed = accuracy->budget;
-  free_solve(&solve);
+  strut_period_map_free(&solve.coarse_map);
+  strut_period_map_free(&solve.reference_map);
+  strut_summary_free(&solve.coarse_run);
+  strut_summary_free(&solve.last_run);
+  strut_arena_free(&solve.arena);
   bool failed = solve.status == STRUT_DIVERGED || solve.status == STRUT_WORK_LIMIT;
   return failed ? STRUT_OK : solve.status;
 }

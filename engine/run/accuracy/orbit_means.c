@@ -28,15 +28,6 @@ static void continue_coarse_run(strut_orbit_solve *solve, double periods) {
                            &solve->coarse_run);
 }
 
-/* The mean of a run that has ended, and the interval within which it is known. */
-static strut_orbit_mean mean_of(const strut_summary *run) {
-  bool repeats = run->steady.kind == STRUT_MOTION_PERIODIC;
-  return (strut_orbit_mean){
-      .velocity = repeats ? run->velocity : run->steady.mean,
-      .interval = repeats ? run->steady.interval : WIDER * run->steady.scatter,
-      .periods = run->steady.periods};
-}
-
 /* Runs from solve->end, which becomes the run's end. What the run was counts as a check. */
 static strut_orbit_mean run_for_mean(strut_orbit_solve *solve, strut_experiment e, double periods,
                                      strut_summary *run) {
@@ -46,7 +37,11 @@ static strut_orbit_mean run_for_mean(strut_orbit_solve *solve, strut_experiment 
   e.steady.creep = 0.0;
   e.measure_last = ceil(0.5 * fmin(periods, e.periods));
   strut_orbit_solve_run_until_steady(solve, e, PERIODIC, 8, periods, true, run);
-  return mean_of(run);
+  bool repeats = run->steady.kind == STRUT_MOTION_PERIODIC;
+  return (strut_orbit_mean){
+      .velocity = repeats ? run->velocity : run->steady.mean,
+      .interval = repeats ? run->steady.interval : WIDER * run->steady.scatter,
+      .periods = run->steady.periods};
 }
 
 /* Do two means differ by no more than their scatter? Neither is known of runs that were too short. */

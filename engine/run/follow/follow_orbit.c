@@ -82,11 +82,6 @@ static bool take_step(strut_follow_system *system, const strut_follow_planes *pl
   return evaluate(system, planes, next);
 }
 
-static bool differentiate(strut_follow_system *system, trial *self) {
-  return strut_follow_differentiate_states(system, &self->at, self->f) &&
-         strut_follow_differentiate_parameters(system, &self->at, self->f);
-}
-
 /*
  * The derivative of an earlier point serves, updated, while it makes the residual fall; where it does not,
  * a new one is made at the best point so far, and its steps are halved until the residual falls.
@@ -102,7 +97,9 @@ static bool iterate(strut_follow_system *system, const strut_follow_planes *plan
   for (*rounds = 0; *rounds < MOST_ROUNDS; ++*rounds) {
     if (here->left <= enough) return true;
     bool own = wanted;
-    if (own && (made++ == MOST_DERIVATIVES || !differentiate(system, here)))
+    if (own && (made++ == MOST_DERIVATIVES ||
+                !strut_follow_differentiate_states(system, &here->at, here->f) ||
+                !strut_follow_differentiate_parameters(system, &here->at, here->f)))
       return here->left <= ACCEPTED;
     wanted = false;
     if (!find_step(system, planes, here)) {

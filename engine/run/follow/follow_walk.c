@@ -205,12 +205,6 @@ static strut_follow_orbit *turn_at_corner(strut_follow_walk *walk, strut_follow_
   return NULL;
 }
 
-/* A step that is not too long, neither in the parameter nor in the motion. */
-static double limited(const strut_follow_walk *walk, const strut_follow_orbit *orbit, double h) {
-  double along = fabs(orbit->tangent[0][walk->s->n]);
-  return fmin(h, fmin(MOST, walk->limits->longest / fmax(along, 1e-9)));
-}
-
 static const char *walk_on(strut_follow_walk *walk, strut_follow_orbit *orbit, double first) {
   strut_follow_system *system = walk->s;
   walk->begin = walk->branch->count - (walk->backwards ? 0 : 1);
@@ -254,7 +248,8 @@ static const char *walk_on(strut_follow_walk *walk, strut_follow_orbit *orbit, d
       walk->limits->progress(walk->limits->progress_context,
                              strut_follow_scaled(system, 0, next->at.value[0]));
     if (rounds <= FEW) h *= 1.5;
-    h = limited(walk, next, h);
+    double along = fabs(next->tangent[0][system->n]); /* not too far in parameter and motion */
+    h = fmin(h, fmin(MOST, walk->limits->longest / fmax(along, 1e-9)));
     orbit = next;
   }
   return "the number of steps is used up";

@@ -419,7 +419,7 @@ static __attribute__((noinline)) void pass_marks(const strut_model *model, const
   }
 }
 
-void strut_measure_step(const strut_model *model, const strut_state *state,
+void strut_measure_step(const strut_model *model, strut_state *state,
                         strut_measurement *measurement) {
   double x, v;
   strut_measure_tracked_point(model, state, measurement, &x, &v);
@@ -429,13 +429,8 @@ void strut_measure_step(const strut_model *model, const strut_state *state,
   measurement->last_x = x;
   measurement->last_v = v;
   measurement->last_work = state->work[STRUT_POWER_DRIVE];
-}
-
-void strut_measure_step_quantities(const strut_model *model, strut_state *state,
-                                   strut_measurement *measurement) {
-  assert(measurement->quantities);
-  strut_measure_step(model, state, measurement);
-  strut_quantities_step(measurement->quantities, step_length(measurement, state->step), state);
+  if (measurement->quantities)
+    strut_quantities_step(measurement->quantities, step_length(measurement, state->step), state);
 }
 
 bool strut_measure_is_zero(const strut_measurement *measurement, const strut_summary *summary) {

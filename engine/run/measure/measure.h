@@ -125,11 +125,7 @@ int64_t strut_measure_first_step(const strut_measurement *measure);
 /** Samples the tracked point and the quantities before the first measured step. */
 void strut_measure_begin(const strut_model *model, strut_state *state, strut_measurement *measure);
 /** Measures after each step from then on. Allocates nothing. */
-void strut_measure_step(const strut_model *model, const strut_state *state,
-                        strut_measurement *measure);
-/** As strut_measure_step, with the quantities, which must exist. */
-void strut_measure_step_quantities(const strut_model *model, strut_state *state,
-                                   strut_measurement *measure);
+void strut_measure_step(const strut_model *model, strut_state *state, strut_measurement *measure);
 /** Fills velocity, quantities, spread, window and contacts of the summary from the marks passed so far. */
 void strut_measure_finish(const strut_measurement *measure, strut_summary *summary);
 /** Is the mean velocity of a finished window only rounding, as of a symmetric motion? */

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/indices.h"
 #include "engine/forces/drives/feedback.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/surfaces.h"
@@ -312,22 +313,12 @@ static bool has_band(const strut_contact_entry *contact) {
   return strut_friction_has_band(contact->friction.law);
 }
 
-static bool is_stronger_at_rest(const strut_contact_entry *contact) {
-  return has_band(contact) && strut_friction_drops(&contact->friction);
-}
-
 /* Contact with stronger static friction at a coordinate, or -1; contacts are in ascending order. */
 static int32_t contact_at(const strut_contact_table *contacts, uint32_t coordinate) {
-  int32_t low = 0, high = contacts->count;
-  while (low < high) {
-    int32_t middle = low + (high - low) / 2;
-    if (contacts->at[middle] < coordinate)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  bool found = low < contacts->count && contacts->at[low] == coordinate;
-  return found && is_stronger_at_rest(&contacts->entry[low]) ? low : -1;
+  int32_t i = strut_index_find((const int32_t *)contacts->at, contacts->count, (int32_t)coordinate);
+  if (i == contacts->count || contacts->at[i] != coordinate) return -1;
+  const strut_contact_entry *contact = &contacts->entry[i];
+  return has_band(contact) && strut_friction_drops(&contact->friction) ? i : -1;
 }
 
 /* Counts the ties; fills them if `ties` is given. */

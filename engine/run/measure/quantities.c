@@ -436,28 +436,12 @@ void strut_quantities_step(strut_quantities *quantities, double length, strut_st
     strut_dense_keep(&quantities->dense, state);
 }
 
-/* Fills size, span and noise of all columns over the window. */
-static void measure_columns(strut_quantities *quantities) {
-  const strut_columns *columns = &quantities->columns;
-  for (size_t i = 0; i < columns->count; i++)
-    quantities->sizes[i] = (strut_magnitude){.size = columns->largest[i],
-                                             .span = strut_columns_span(columns, i),
-                                             .noise = strut_columns_noise(columns, i)};
-}
-
 bool strut_quantity_names_member(const strut_quantity_definition *definition) {
   bool asked = false;
   for (size_t i = 0; i < definition->length; i++)
     asked = asked || (definition->program[i].operation == STRUT_OPERATION_COLUMN &&
                       definition->program[i].column.kind == STRUT_COLUMN_LARGEST_FORCE);
   return asked && definition->take == STRUT_TAKE_MAX;
-}
-
-/* The member of the largest force, where the largest one of all was asked for. */
-static const char *loaded_member(const strut_quantities *quantities, const strut_meter *meter) {
-  if (!strut_quantity_names_member(meter->definition) || quantities->columns.loaded < 0)
-    return NULL;
-  return quantities->columns.instant.model->scene->members[quantities->columns.loaded].name;
 }
 
 static void fill_measured(strut_quantities *quantities, strut_meter *meter, strut_measured *to) {
@@ -476,7 +460,9 @@ static void fill_measured(strut_quantities *quantities, strut_meter *meter, stru
   to->doubt = meter->doubt / (summed ? window : 1.0);
   to->left = strut_meter_left(meter);
   to->value = meter->result;
-  to->member = loaded_member(quantities, meter);
+  int32_t loaded = quantities->columns.loaded; /* where the largest force of all was asked for */
+  if (strut_quantity_names_member(meter->definition) && loaded >= 0)
+    to->member = quantities->columns.instant.model->scene->members[loaded].name;
   if (take == STRUT_TAKE_ARRIVAL) { /* a time, not a value of the expression */
     to->scale = fabs(meter->result);
     return;
@@ -490,7 +476,11 @@ static void fill_measured(strut_quantities *quantities, strut_meter *meter, stru
 
 void strut_quantities_finish(strut_quantities *quantities, strut_summary *summary) {
   if (quantities->next < 2) return;
-  measure_columns(quantities);
+  const strut_columns *columns = &quantities->columns;
+  for (size_t i = 0; i < columns->count; i++) /* over the window */
+    quantities->sizes[i] = (strut_magnitude){.size = columns->largest[i],
+                                             .span = strut_columns_span(columns, i),
+                                             .noise = strut_columns_noise(columns, i)};
   for (size_t i = 0; i < quantities->count && i < summary->measured_count; i++)
     fill_measured(quantities, &quantities->meters[i], &summary->measured[i]);
 }

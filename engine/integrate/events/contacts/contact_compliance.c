@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/indices.h"
 #include "engine/integrate/events/contacts/contact_coupling.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/model/algebra/dense_cholesky.h"
@@ -29,11 +30,6 @@ static void solve_column(const strut_model *model, const strut_state *state, uin
 /* Then the mass matrix changes with time, and with it the compliances. */
 static bool has_moving_masses(const strut_model *model) {
   return model->terms & STRUT_TERM_SLIDING_MASS;
-}
-
-/* Where neither axes nor compliances of contacts stay. */
-static bool has_moving_axes(const strut_model *model) {
-  return model->contacts.surface || has_moving_masses(model);
 }
 
 /* The compliances of the node itself, from the column of M^-1. */
@@ -140,11 +136,6 @@ static double settling_time(const strut_contact_entry *contact, double inverse_m
   return rate * longest > 1.0 ? 1.0 / rate : longest;
 }
 
-static int32_t root_of(int32_t *body, int32_t i) {
-  while (body[i] != i) i = body[i] = body[body[i]];
-  return i;
-}
-
 /* Joins contacts that accelerate a common node. */
 static strut_status find_bodies(const strut_model *model, strut_event_stepper *stepper) {
   strut_contact_bodies *contacts = &stepper->contacts;
@@ -157,12 +148,13 @@ static strut_status find_bodies(const strut_model *model, strut_event_stepper *s
     for (int32_t k = 0; k < compliance->count; k++) {
       int32_t *first = &seen[compliance->at[k] / 2]; /* one more than the index; 0: none yet */
       if (*first)
-        contacts->body[root_of(contacts->body, *first - 1)] = root_of(contacts->body, i);
+        contacts->body[strut_index_root(contacts->body, *first - 1)] =
+            strut_index_root(contacts->body, i);
       else
         *first = i + 1;
     }
   }
-  for (int32_t i = 0; i < count; i++) contacts->body[i] = root_of(contacts->body, i);
+  for (int32_t i = 0; i < count; i++) contacts->body[i] = strut_index_root(contacts->body, i);
   strut_release(seen);
   return STRUT_OK;
 }
@@ -307,7 +299,8 @@ void strut_update_active_set(const strut_model *model, strut_event_stepper *step
   const strut_contact_bodies *contacts = &stepper->contacts;
   strut_active_set *active = &stepper->active;
   active->closed_count = active->stuck_count = 0;
-  active->decoupled = model->contacts.normal[0] == 0.0 && !has_moving_axes(model);
+  active->decoupled = /* where axes and compliances of contacts stay */
+      model->contacts.normal[0] == 0.0 && !model->contacts.surface && !has_moving_masses(model);
   int32_t count = model->contacts.count;
   for (int32_t i = 0; i < count; i++) contacts->body_seen[contacts->body[i]] = false;
   for (int32_t i = 0; i < count; i++) {
