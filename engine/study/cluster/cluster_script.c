@@ -84,39 +84,32 @@ static const char *quote(const char *const *words, size_t count, strut_arena *ar
 }
 
 /* The placeholder NAME of a text that starts with "@NAME@", or NULL. */
-static const placeholder *find(const placeholder *all, const char *text, size_t length) {
-  const char *end = length > 1 ? memchr(text + 1, '@', length - 1) : NULL;
-  for (; end && all->name; all++)
-    if (strlen(all->name) == (size_t)(end - text - 1) &&
-        memcmp(all->name, text + 1, strlen(all->name)) == 0)
+static const placeholder *find(const placeholder *all, const char *text) {
+  for (; all->name; all++) {
+    size_t length = strlen(all->name);
+    if (text[0] == '@' && strncmp(text + 1, all->name, length) == 0 && text[length + 1] == '@')
       return all;
+  }
   return NULL;
 }
 
-/* Copies a line of the template with its placeholders filled in, unless one has no value. */
-static void add_line(strut_buffer *to, const char *line, size_t length, const placeholder *all) {
-  for (size_t i = 0; i < length; i++) {
-    const placeholder *self = line[i] == '@' ? find(all, line + i, length - i) : NULL;
-    if (self && !self->value) return;
-  }
-  for (size_t i = 0; i < length; i++) {
-    const placeholder *p = line[i] == '@' ? find(all, line + i, length - i) : NULL;
-    if (p) {
-      strut_buffer_add(to, "%s", p->value);
-      i += strlen(p->name) + 1;
-    } else {
-      strut_buffer_add(to, "%c", line[i]);
-    }
-  }
-}
-
+/* The template with its placeholders filled in, without the lines of those that have no value. */
 static char *fill(const strut_embedded *template, const placeholder *all) {
   strut_buffer text = {0};
-  for (const char *line = template->text; *line;) {
-    size_t length = strcspn(line, "\n");
-    length += line[length] == '\n';
-    add_line(&text, line, length, all);
-    line += length;
+  size_t line = 0; /* where the latest one begins */
+  for (const char *at = template->text; *at;) {
+    const placeholder *self = find(all, at);
+    if (!self) {
+      strut_buffer_add(&text, "%c", *at);
+      if (*at++ == '\n') line = text.length;
+      continue;
+    }
+    at += strlen(self->name) + 2;
+    if (self->value) strut_buffer_add(&text, "%s", self->value);
+    if (self->value) continue;
+    text.length = line;
+    at += strcspn(at, "\n");
+    at += *at == '\n';
   }
   return strut_buffer_take(&text);
 }

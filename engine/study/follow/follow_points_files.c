@@ -9,7 +9,7 @@
 #include "engine/output/json_value.h"
 #include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
-#include "engine/study/results/study_table.h"
+#include "engine/study/results/slots_parts.h"
 
 enum { MOST_BLOCK = 1 << 28 };
 

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * What slots.c and slots_header.c share: the layout of a file of slots.
+ * What slots.c, slots_header.c and tables of slots share. Internal to engine/study.
  */
 #ifndef STRUT_ENGINE_STUDY_RESULTS_SLOTS_PARTS_H
 #define STRUT_ENGINE_STUDY_RESULTS_SLOTS_PARTS_H
 
 #include "engine/base/memory.h"
+#include "engine/output/buffer.h"
 #include "engine/study/results/slots.h"
 
 enum { STRUT_SLOT_HEAD = 24 }; /* bytes: checksum, point, status */
@@ -43,6 +44,8 @@ const char *strut_slots_difference(const strut_slots_description *first,
 /** STRUT_USAGE with the difference, unless both have the same study and points. */
 strut_status strut_slots_compare(const char *path, const strut_slots_description *there,
                                  const strut_slots_description *wanted, strut_error *error);
+/** Appends the header of a column of the table, and a comma. */
+void strut_study_table_add_name(strut_buffer *line, const strut_slot_column *column);
 /** STRUT_FILE_TROUBLE with the reason in errno's value `code`. */
 strut_status strut_slots_trouble(strut_error *error, const char *what, const char *path, int code);
 /**

@@ -267,17 +267,11 @@ char *strut_shard_path(const char *directory, strut_shard shard, strut_arena *ar
 /* Is it the file name of a shard? */
 static bool is_shard(const char *name, strut_shard *shard) {
   char expected[NAME_ROOM];
-  const char *at = name;
-  if (strncmp(at, "shard-", 6) != 0) return false;
-  at += 6;
-  shard->index = take_integer(&at);
-  if (strncmp(at, "-of-", 4) != 0) return false;
-  at += 4;
-  shard->count = take_integer(&at);
-  snprintf(expected, sizeof expected, "shard-%04lld-of-%04lld.slots", (long long)shard->index,
-           (long long)shard->count);
-  return strcmp(name, expected) == 0 && shard->index < shard->count &&
-         shard->count <= STRUT_MOST_SHARDS;
+  long long index, count;
+  if (sscanf(name, "shard-%9lld-of-%9lld", &index, &count) != 2) return false;
+  *shard = (strut_shard){index, count};
+  snprintf(expected, sizeof expected, "shard-%04lld-of-%04lld.slots", index, count);
+  return strcmp(name, expected) == 0 && index >= 0 && index < count && count <= STRUT_MOST_SHARDS;
 }
 
 static strut_status note(strut_shards_found *found, strut_shard shard, strut_arena *arena,

@@ -10,7 +10,6 @@
 #define STRUT_ENGINE_STUDY_RESULTS_STUDY_TABLE_H
 
 #include "engine/base/memory.h"
-#include "engine/output/buffer.h"
 #include "engine/study/results/slots.h"
 
 /**
@@ -34,9 +33,6 @@ STRUT_API strut_status strut_study_table_write_partial(const char *directory, co
 STRUT_API strut_status strut_study_table_write_points(const char *directory, const char *name,
                                                       strut_slots *source, const int64_t *points,
                                                       size_t count, strut_error *error);
-
-/** Appends the header of a column, and a comma. */
-void strut_study_table_add_name(strut_buffer *line, const strut_slot_column *column);
 
 /* Parts of a study that are computed apart, on as many machines: shard k of n, counted from 0.
  *

@@ -60,21 +60,17 @@ bool strut_search_knows_conditions(strut_search_method method) {
   return rows[method].conditions; /* of others: no */
 }
 
-/* Asks for a point, unless it is the latest one. */
+/* Asks for a point, unless it is the latest one; where it cannot, the method must end. */
 static double look_at(nlopt_search *self, const double *point) {
   size_t n = self->task->dimension;
-  if (self->asked > 0 && memcmp(point, self->last, n * sizeof *point) == 0) {
-    if (++self->stuck > MOST_STUCK && self->opt) nlopt_force_stop(self->opt);
-    return self->value;
-  }
-  self->stuck = 0;
-  if (self->ended || self->asked >= self->most) {
-    if (self->opt) nlopt_force_stop(self->opt);
-    return self->value;
-  }
-  if (!self->asker->ask(self->asker->context, 1, point, self->answer, self->broken)) {
+  bool same = self->asked > 0 && memcmp(point, self->last, n * sizeof *point) == 0;
+  self->stuck = same ? self->stuck + 1 : 0;
+  if (same && self->stuck <= MOST_STUCK) return self->value;
+  bool open = !same && !self->ended && self->asked < self->most;
+  if (open && !self->asker->ask(self->asker->context, 1, point, self->answer, self->broken))
     self->ended = true;
-    if (self->opt) nlopt_force_stop(self->opt);
+  if (!open || self->ended) {
+    nlopt_force_stop(self->opt);
     return self->value;
   }
   double value = self->answer[0];

@@ -35,13 +35,12 @@ typedef struct analysis {
   const strut_study_axis *axis;
   strut_slots *slots;
   const strut_slot_column *columns;
-  size_t column_count, axis_columns;
+  size_t column_count;
   int64_t block; /* points of one analysis */
   target *targets;
   size_t target_count, target_room;
-  double *values;     /* (block) of a target */
-  double *parameters; /* (block, parameters) */
-  double *design;     /* (samples, parameters + 2) or (2 samples) */
+  double *values; /* (block) of a target */
+  double *design; /* (samples, parameters + 2) or (2 samples) */
   strut_sensitivity_result *result;
   size_t room; /* for rows */
   strut_arena scratch;

@@ -112,7 +112,9 @@ bool strut_sweep_add_column(strut_sweep_plan *plan, const char *prefix, const ch
          is_taken(plan, plan->axis_columns, text))
     text = strut_arena_format(&plan->arena, "run_%s", text);
   assert(plan->column_count < plan->column_capacity);
-  if (plan->smooth && !word) plan->derived[plan->derived_count++] = plan->column_count;
+  bool kept = plan->column_count >= plan->axis_columns && !plan->by && text && !word;
+  if (kept && (plan->smooth || strut_sweep_is_analysed(plan->study, text)))
+    plan->derived[plan->derived_count++] = plan->column_count;
   plan->columns[plan->column_count++] = (strut_slot_column){text, unit, word};
   return text != NULL;
 }
@@ -269,7 +271,7 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   if (plan->scenes.vary) most += 3 * by * most;
   plan->column_capacity = most;
   plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
-  plan->derived = strut_arena_allocate(&plan->arena, 2 * most, sizeof *plan->derived);
+  plan->derived = strut_arena_allocate(&plan->arena, most, sizeof *plan->derived);
   plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
   plan->names_member = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->names_member);
   if (!plan->columns || !plan->derived || !plan->quantities || !plan->names_member ||

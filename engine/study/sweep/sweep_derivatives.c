@@ -43,6 +43,13 @@ static bool analyses_derivatives(const strut_study *study) {
   return study->sensitivity.wanted && study->sensitivity.derivatives;
 }
 
+bool strut_sweep_is_analysed(const strut_study *study, const char *name) {
+  bool found = false;
+  for (size_t i = 0; i < study->sensitivity.of_count && analyses_derivatives(study); i++)
+    found = found || strcmp(study->sensitivity.of[i], name) == 0;
+  return found;
+}
+
 static bool add_columns(strut_sweep_plan *plan, const strut_slot_column *of) {
   bool fine = true;
   for (size_t i = 0; i < plan->by_count && fine; i++) {
@@ -87,22 +94,6 @@ static strut_status check_parameter(const strut_sweep_plan *plan, const strut_se
   return STRUT_OK;
 }
 
-/* The numbers that are differentiated: of what is smooth, where that is asked for, and of what is analysed. */
-static void choose_derived(strut_sweep_plan *plan) {
-  const strut_study_sensitivity *analysis = &plan->study->sensitivity;
-  size_t smooth = plan->own_by_count ? plan->derived_count : 0, k = 0;
-  const size_t *all = plan->derived;
-  size_t *chosen = plan->derived + plan->column_capacity;
-  plan->derived = chosen, plan->derived_count = 0;
-  for (size_t i = plan->axis_columns; i < plan->column_count; i++) {
-    while (k < smooth && all[k] < i) k++;
-    bool wanted = k < smooth && all[k] == i;
-    for (size_t n = 0; analyses_derivatives(plan->study) && n < analysis->of_count; n++)
-      wanted = wanted || strcmp(analysis->of[n], plan->columns[i].name) == 0;
-    if (wanted && !plan->columns[i].word) chosen[plan->derived_count++] = i;
-  }
-}
-
 strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
                                             const strut_study_value *values, strut_error *error) {
   const strut_study *study = plan->study;
@@ -125,7 +116,10 @@ strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_
   for (size_t i = 0; i < more && fine; i++)
     fine = add_parameter(plan, analysed->columns[i].name, analysed->columns[i].unit);
   plan->first_derivative = plan->column_count;
-  choose_derived(plan);
+  size_t smooth = plan->derived_count;
+  for (size_t j = plan->derived_count = 0; j < smooth; j++)
+    if (count || strut_sweep_is_analysed(study, plan->columns[plan->derived[j]].name))
+      plan->derived[plan->derived_count++] = plan->derived[j];
   for (size_t j = 0; j < plan->derived_count && fine; j++)
     fine = add_columns(plan, &plan->columns[plan->derived[j]]);
   return fine ? STRUT_OK : strut_no_memory(error, "");

@@ -91,6 +91,8 @@ strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep
 
 /* sweep_derivatives.c */
 
+/** Does a sensitivity analysis want derivatives of the column, at the medians? */
+bool strut_sweep_is_analysed(const strut_study *study, const char *name);
 /**
  * Adds the columns of derivatives of the numbers so far, by the scene of the first point and its values. STRUT_USAGE: a
  * parameter is missing, or nothing uses it.

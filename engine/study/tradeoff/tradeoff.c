@@ -61,7 +61,7 @@ static void evaluate_cost(tradeoff_study *study, strut_tradeoff_row *row,
       if (p == 0) tradeoff->base_evaluations = unit;
       if (!isfinite(forces)) continue;
       ratio[count] = forces / unit;
-      rate[count++] = forces / strut_tradeoff_span(study, p).duration;
+      rate[count++] = forces / study->points[p].span.duration;
     }
   row->evaluations = strut_spread_of(ratio, count, study->scratch).median;
   row->rate = strut_spread_of(rate, count, study->scratch).median;
@@ -223,17 +223,40 @@ static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tra
   return walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
 }
 
+/* The experiment of a point, cut to the periods that are wanted. */
+static strut_experiment cut_experiment(const tradeoff_study *study, size_t point) {
+  strut_experiment e = study->setups[point]->experiment;
+  e.quantity_count = 0; /* only velocity and positions are compared */
+  double most =
+      study->options->periods > 0 ? study->options->periods : STRUT_TRADEOFF_USUAL_PERIODS;
+  e.accuracy = 0;
+  e.steady = (strut_steady){.wanted = false};
+  if (e.periods > most) {
+    double window = e.measure_last > 0 ? e.measure_last : e.periods;
+    e.periods = most;
+    e.measure_last = fmin(window, fmax(1, floor(most / 3)));
+  }
+  e.output_last = 0;
+  e.channels = STRUT_CHANNEL_POSITION;
+  return e;
+}
+
 static void measure_points(tradeoff_study *study) {
   for (size_t p = 0; p < study->result->point_count && !study->status; p++) {
     const strut_setup *setup = study->setups[p];
     const strut_model *model = NULL;
+    tradeoff_point *point = &study->points[p];
     strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
+    double most = span.period > 0 ? span.period : span.duration;
     study->status = strut_tradeoff_compile(study, p, 0, &model);
     if (study->status) return;
-    study->size[p] = model->size;
-    study->scale[p] = SPEED_SHARE * model->size / (span.period > 0 ? span.period : span.duration);
+    point->experiment = cut_experiment(study, p);
+    point->span = strut_experiment_span(&point->experiment, &setup->scene);
+    point->longest = most / 20;
+    point->size = model->size;
+    point->scale = SPEED_SHARE * model->size / most;
   }
-  study->result->scale = study->scale[0];
+  study->result->scale = study->points[0].scale;
 }
 
 static void prepare(tradeoff_study *study, size_t count) {
@@ -245,8 +268,7 @@ static void prepare(tradeoff_study *study, size_t count) {
   tradeoff->measure = choose_measure(study->setups[0], study->options->measure);
   tradeoff->value_count = tradeoff->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
-  study->size = strut_tradeoff_allocate(study, count, sizeof(double));
-  study->scale = strut_tradeoff_allocate(study, count, sizeof(double));
+  study->points = strut_tradeoff_allocate(study, count, sizeof *study->points);
   study->scratch = strut_tradeoff_allocate(study, most, sizeof(double));
   study->spare = strut_tradeoff_allocate(study, 2 * count, sizeof(double));
   study->coarse_value = strut_tradeoff_allocate(study, most, sizeof(double));
@@ -261,8 +283,8 @@ static void prepare(tradeoff_study *study, size_t count) {
 /* rk4 at the scene's step, or the first method in the table that can run the scene. */
 static void choose_base(tradeoff_study *study) {
   strut_tradeoff *tradeoff = study->result;
-  strut_experiment e = strut_tradeoff_experiment(study, 0);
-  strut_span span = strut_tradeoff_span(study, 0);
+  strut_experiment e = study->points[0].experiment;
+  strut_span span = study->points[0].span;
   tradeoff->periods = e.periods;
   tradeoff->duration = span.duration;
   const strut_integrator *method;
@@ -290,8 +312,8 @@ static void run_coarse(tradeoff_study *study) {
   double *value = study->coarse_value;
   tradeoff_outcome outcome = strut_tradeoff_run(study, 0, 0, study->coarse, value);
   if (outcome.cannot) study->status = study->error->status;
-  bool still =
-      tradeoff->measure == STRUT_TRADEOFF_VELOCITY && fabs(value[0]) < 1e-9 * study->scale[0];
+  bool still = tradeoff->measure == STRUT_TRADEOFF_VELOCITY &&
+               fabs(value[0]) < 1e-9 * study->points[0].scale;
   if (study->status || study->options->measure != STRUT_TRADEOFF_AUTOMATIC || !still) return;
   tradeoff->measure = STRUT_TRADEOFF_POSITION;
   tradeoff->value_count = 2 * study->setups[0]->scene.node_count;

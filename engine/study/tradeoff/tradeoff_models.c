@@ -71,7 +71,7 @@ static bool makes_sense(const strut_scene *scene, kind what) {
 /* The regularisation speed for friction laws that need one [m/s]. */
 static double regularisation_speed(const tradeoff_study *study, const strut_friction *friction) {
   if (friction->stick_velocity > 0) return friction->stick_velocity;
-  return friction->width > 0 ? friction->width : study->scale[0];
+  return friction->width > 0 ? friction->width : study->points[0].scale;
 }
 
 static void describe(const tradeoff_study *study, kind what, strut_model_variant *variant) {

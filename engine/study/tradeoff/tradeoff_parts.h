@@ -33,6 +33,14 @@ typedef struct tradeoff_model {
   strut_arena arena;
 } tradeoff_model;
 
+/** What runs of an operating point have in common. */
+typedef struct tradeoff_point {
+  strut_experiment experiment; /* cut to the periods that are wanted */
+  strut_span span;             /* of it */
+  double longest;     /* step that can make sense: a part of the whole period or duration [s] */
+  double size, scale; /* [m], [m/s] */
+} tradeoff_point;
+
 typedef struct tradeoff_study {
   const strut_setup *const *setups;
   const strut_tradeoff_options *options;
@@ -41,7 +49,7 @@ typedef struct tradeoff_study {
   strut_error *error;
   double began;                  /* CPU clock [s] */
   double budget, stepping;       /* CPU time: limit, and of all steps so far [s] */
-  double *size, *scale;          /* (points) [m], [m/s] */
+  tradeoff_point *points;        /* (points) */
   double *scratch, *spare;       /* (max(points, values)) */
   tradeoff_setting base, coarse; /* the latter for what one cheap run tells */
   double *coarse_value;          /* (values) of the unchanged model at the first point */
@@ -64,14 +72,8 @@ bool strut_tradeoff_has_time(tradeoff_study *study, double evaluations);
 double strut_tradeoff_planned(const tradeoff_study *study, size_t point, tradeoff_setting setting);
 /** The same of all points. */
 double strut_tradeoff_planned_at_all(const tradeoff_study *study, tradeoff_setting setting);
-/** strut_simulate's experiment for `point`, cut to the periods that are wanted. */
-strut_experiment strut_tradeoff_experiment(const tradeoff_study *study, size_t point);
 /** The largest step up to `step` of which the period, or else the duration, is a multiple. */
 double strut_tradeoff_fit_step(const tradeoff_study *study, size_t point, double step);
-/** Duration and period of that experiment. */
-strut_span strut_tradeoff_span(const tradeoff_study *study, size_t point);
-/** The longest step that can make sense: a part of the period, or else of the duration [s]. */
-double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point);
 /**
  * The largest step of a method worth trying in a variant at the first point [s], INFINITY where
  * nothing limits it. False: the method cannot run it, and the study's error says why.

@@ -48,7 +48,7 @@ static void choose(tradeoff_study *study, tradeoff_reference *self, int which) {
     tried[at] = true;
     double limit = 0;
     if (!strut_tradeoff_limit(study, self->variant, best, &limit)) continue;
-    if (!isfinite(limit)) limit = strut_tradeoff_longest_step(study, 0);
+    if (!isfinite(limit)) limit = study->points[0].longest;
     if (which == 0 && limit > 0) self->limit = 0.5 * limit;
     self->method[which] = best;
     return;

@@ -38,30 +38,8 @@ bool strut_tradeoff_is_adaptive(const strut_integrator *method) {
   return strut_experiment_is_adaptive(method->name);
 }
 
-strut_experiment strut_tradeoff_experiment(const tradeoff_study *study, size_t point) {
-  strut_experiment e = study->setups[point]->experiment;
-  e.quantity_count = 0; /* only velocity and positions are compared */
-  double most =
-      study->options->periods > 0 ? study->options->periods : STRUT_TRADEOFF_USUAL_PERIODS;
-  e.accuracy = 0;
-  e.steady = (strut_steady){.wanted = false};
-  if (e.periods > most) {
-    double window = e.measure_last > 0 ? e.measure_last : e.periods;
-    e.periods = most;
-    e.measure_last = fmin(window, fmax(1, floor(most / 3)));
-  }
-  e.output_last = 0;
-  e.channels = STRUT_CHANNEL_POSITION;
-  return e;
-}
-
-strut_span strut_tradeoff_span(const tradeoff_study *study, size_t point) {
-  const strut_experiment e = strut_tradeoff_experiment(study, point);
-  return strut_experiment_span(&e, &study->setups[point]->scene);
-}
-
 double strut_tradeoff_fit_step(const tradeoff_study *study, size_t point, double step) {
-  strut_span span = strut_tradeoff_span(study, point);
+  strut_span span = study->points[point].span;
   double turns = span.period > 0 ? span.duration / span.period : 0;
   bool whole = turns > 0.5 && fabs(turns - round(turns)) < 1e-9 * turns;
   double unit = whole ? span.period : span.duration;
@@ -69,8 +47,8 @@ double strut_tradeoff_fit_step(const tradeoff_study *study, size_t point, double
 }
 
 double strut_tradeoff_planned(const tradeoff_study *study, size_t point, tradeoff_setting setting) {
-  double steps = strut_tradeoff_span(study, point).duration /
-                 strut_tradeoff_fit_step(study, point, setting.step);
+  double steps =
+      study->points[point].span.duration / strut_tradeoff_fit_step(study, point, setting.step);
   return round(steps) * setting.method->evaluations;
 }
 
@@ -108,12 +86,6 @@ static void take_values(const tradeoff_study *study, const strut_summary *summar
   }
 }
 
-double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point) {
-  const strut_setup *setup = study->setups[point];
-  strut_span span = strut_experiment_span(&setup->experiment, &setup->scene);
-  return (span.period > 0 ? span.period : span.duration) / 20;
-}
-
 /*
  * Where nothing vibrates, as for rigid bars swinging under gravity, the stability limit may exceed
  * the duration: then a part of the duration counts.
@@ -121,13 +93,13 @@ double strut_tradeoff_longest_step(const tradeoff_study *study, size_t point) {
 bool strut_tradeoff_limit(tradeoff_study *study, int variant, const strut_integrator *method,
                           double *limit) {
   const strut_model *model = NULL;
-  strut_experiment e = strut_tradeoff_experiment(study, 0);
+  strut_experiment e = study->points[0].experiment;
   e.integrator = method->name;
   *limit = HUGE_VAL;
   strut_status status = strut_tradeoff_compile(study, 0, variant, &model);
   if (!status) status = strut_integrator_check(model, &e, study->error);
   if (!status) status = strut_step_limit_for_method(model, method, limit, study->error);
-  if (isfinite(*limit)) *limit = fmin(*limit, strut_tradeoff_longest_step(study, 0));
+  if (isfinite(*limit)) *limit = fmin(*limit, study->points[0].longest);
   if (status == STRUT_NO_MEMORY) study->status = status;
   return !status;
 }
@@ -144,12 +116,12 @@ tradeoff_outcome strut_tradeoff_run(tradeoff_study *study, size_t point, int var
                                      .sinks = sinks,
                                      .sink_count = 1,
                                      .most_evaluations = (int64_t)study->allowed};
-  strut_experiment e = strut_tradeoff_experiment(study, point);
+  strut_experiment e = study->points[point].experiment;
   e.integrator = setting.method->name;
   e.step = strut_tradeoff_fit_step(study, point, setting.step);
   if (isfinite(setting.tolerance)) e.tolerance = setting.tolerance;
   e.refine = isfinite(setting.refine) ? setting.refine : 1;
-  e.output_every = strut_tradeoff_span(study, point).duration;
+  e.output_every = study->points[point].span.duration;
   for (size_t i = 0; i < study->result->value_count; i++) value[i] = (double)NAN;
   if (study->status) return outcome;
   strut_status status = strut_tradeoff_compile(study, point, variant, &model);
@@ -172,14 +144,14 @@ double strut_tradeoff_distance(const tradeoff_study *study, size_t point, const 
   size_t count = study->result->value_count;
   if (study->result->measure == STRUT_TRADEOFF_POSITION) {
     for (size_t i = 0; i + 1 < count; i += 2) {
-      double d =
-          hypot(value[i] - reference[i], value[i + 1] - reference[i + 1]) / study->size[point];
+      double d = hypot(value[i] - reference[i], value[i + 1] - reference[i + 1]) /
+                 study->points[point].size;
       if (!(d <= most)) most = d;
     }
   } else if (study->result->measure == STRUT_TRADEOFF_ENERGY) {
     most = fabs(value[0] - reference[0]);
   } else {
-    most = fabs(value[0] - reference[0]) / fmax(fabs(reference[0]), study->scale[point]);
+    most = fabs(value[0] - reference[0]) / fmax(fabs(reference[0]), study->points[point].scale);
   }
   return isfinite(most) ? most : HUGE_VAL;
 }
@@ -338,7 +310,7 @@ void strut_tradeoff_add_method(tradeoff_study *study, step_series_list *all, int
   if (limited) first.step = limit;
   if (!limited && !adaptive) {
     double most = study->limit > 0 ? FREE * study->limit : FREE_OF_BASE * first.step;
-    first.step = fmin(most, strut_tradeoff_longest_step(study, 0));
+    first.step = fmin(most, study->points[0].longest);
   }
   if (add_series(study, all, variant, first, limited) && method->events && !adaptive)
     add_refined(study, all, variant, first, limited);
