@@ -142,7 +142,7 @@ const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
 
 /* Snapshots. */
 
-enum { USUAL = 6, TIME_DIGITS = 6 };
+enum { USUAL = 6 };
 
 static const double COMMON = 2.2; /* shapes closer than this, in their sizes, share a window */
 static const double SEEN = 2e-3;  /* of the drawing: least visible motion of the measured point */
@@ -258,14 +258,27 @@ static strut_bounds bounds_of(const grid *self, strut_bounds own) {
   return own;
 }
 
+/* One digit more than the times need to differ. */
+static int count_digits(const strut_run_scene *run, const grid *self) {
+  double least = HUGE_VAL, latest = 0;
+  for (size_t i = 0; i < self->count; i++) {
+    double time = run->motion->time[self->frame[i]];
+    double before = i ? run->motion->time[self->frame[i - 1]] : -HUGE_VAL;
+    latest = fmax(latest, fabs(time));
+    if (fabs(time - before) > STRUT_RUN_MOMENT) least = fmin(least, fabs(time - before));
+  }
+  double digits = isfinite(least) && latest > 0 ? ceil(log10(latest / least)) + 2 : 4;
+  return (int)fmax(3, fmin(digits, 9));
+}
+
 static void fill_cell(const strut_run_scene *run, const grid *self, size_t i) {
   strut_panel *panel = &self->panels[i];
   double way = way_to(run, self, i), start = strut_run_measured(run, self->frame[0], 0);
   bool far = i > 0 && fabs(way) > 1e-6 * run->model->size;
   double time = run->motion->time[self->frame[i]];
   panel->title = strut_figure_text(
-      run->page, "%s%s%s%s", strut_quantity_of(time, TIME_DIGITS, "s").text, far ? ", x " : "",
-      far && way > 0 ? "+" : "", far ? strut_quantity_of(way, 3, "m").text : "");
+      run->page, "%s%s%s%s", strut_quantity_of(time, count_digits(run, self), "s").text,
+      far ? ", x " : "", far && way > 0 ? "+" : "", far ? strut_quantity_of(way, 3, "m").text : "");
   strut_run_add_shape(run, panel, self->frame[i])->names = true;
   panel->bounds = bounds_of(self, panel->bounds);
   panel->margin = MARGIN;
