@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/record_files.h"
 
-#include <string.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
 #include "engine/output/buffer.h"
@@ -18,7 +16,8 @@ typedef struct table {
 
 typedef struct csv {
   strut_sink sink;
-  char *directory;
+  const char *directory;
+  strut_arena arena;               /* of its name */
   size_t width;                    /* doubles in a row of the recorder */
   table tables[STRUT_OWNER_COUNT]; /* a file without channels is not written */
   size_t used;
@@ -162,20 +161,17 @@ static strut_status end(void *context, strut_status run_status, strut_error *err
 strut_sink *strut_csv_create(const char *directory) {
   csv *self = strut_allocate(1, sizeof *self);
   if (!self) return NULL;
-  self->directory = strut_allocate(strlen(directory) + 1, 1);
-  if (!self->directory) {
-    strut_release(self);
-    return NULL;
-  }
-  memcpy(self->directory, directory, strlen(directory));
   self->sink = (strut_sink){self, begin, take_rows, end, 0};
-  return &self->sink;
+  self->directory = strut_arena_format(&self->arena, "%s", directory);
+  if (self->directory) return &self->sink;
+  strut_csv_free(&self->sink);
+  return NULL;
 }
 
 void strut_csv_free(strut_sink *sink) {
   if (!sink) return;
   csv *self = sink->context;
   abandon(self);
-  strut_release(self->directory);
+  strut_arena_free(&self->arena);
   strut_release(self);
 }

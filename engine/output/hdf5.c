@@ -3,7 +3,6 @@
 #include "engine/output/record_files.h"
 
 #include <stdatomic.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/hdf5_library.h"
@@ -28,9 +27,10 @@ strut_status strut_hdf5_ready(const strut_hdf5_library **library, strut_error *e
 
 typedef struct late_sink {
   strut_sink sink;
-  char *directory, *scene_text;
   const strut_hdf5_library *library;
-  strut_sink *writer; /* NULL until the run begins */
+  strut_sink *writer; /* NULL until the run begins, then `sink` is a copy of it */
+  const char *directory, *scene_text;
+  strut_arena arena;
 } late_sink;
 
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
@@ -38,45 +38,27 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   if (!strut_hdf5_has_memory()) return strut_no_memory(error, "while writing files");
   strut_status status = strut_hdf5_ready(&self->library, error);
   if (status != STRUT_OK) return status;
-  if (!self->writer) self->writer = self->library->create(self->directory, self->scene_text);
+  self->writer = self->library->create(self->directory, self->scene_text);
   if (!self->writer) return strut_no_memory(error, "while writing files");
-  return self->writer->begin(self->writer->context, layout, error);
-}
-
-static strut_status write_rows(void *context, const double *rows, size_t count,
-                               strut_error *error) {
-  const strut_sink *writer = ((late_sink *)context)->writer;
-  return writer->rows(writer->context, rows, count, error);
-}
-
-static strut_status end(void *context, strut_status run_status, strut_error *error) {
-  const strut_sink *writer = ((late_sink *)context)->writer;
-  return writer->end(writer->context, run_status, error);
-}
-
-static char *copy(const char *text) {
-  size_t length = strlen(text);
-  char *result = strut_allocate(length + 1, 1);
-  if (result) memcpy(result, text, length);
-  return result;
+  self->sink = *self->writer;
+  return self->sink.begin(self->sink.context, layout, error);
 }
 
 strut_sink *strut_hdf5_create(const char *directory, const char *scene_text) {
   late_sink *self = strut_allocate(1, sizeof *self);
   if (!self) return NULL;
-  self->sink = (strut_sink){self, begin, write_rows, end, 0};
-  self->directory = copy(directory);
-  self->scene_text = copy(scene_text);
+  self->sink = (strut_sink){.context = self, .begin = begin};
+  self->directory = strut_arena_format(&self->arena, "%s", directory);
+  self->scene_text = strut_arena_format(&self->arena, "%s", scene_text);
   if (self->directory && self->scene_text) return &self->sink;
   strut_hdf5_free(&self->sink);
   return NULL;
 }
 
 void strut_hdf5_free(strut_sink *sink) {
-  if (!sink) return;
-  late_sink *self = sink->context;
+  late_sink *self = (late_sink *)sink;
+  if (!self) return;
   if (self->writer) self->library->free(self->writer);
-  strut_release(self->directory);
-  strut_release(self->scene_text);
+  strut_arena_free(&self->arena);
   strut_release(self);
 }

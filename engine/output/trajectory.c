@@ -103,8 +103,14 @@ static bool take_row(keeper *self, const double *row) {
   return true;
 }
 
-static bool trajectory_contacts(strut_trajectory *trajectory, const strut_scene *scene) {
-  trajectory->contact_count = scene->contact_count;
+/* An empty one with what the scene has. False: out of memory. */
+static bool size_trajectory(strut_trajectory *trajectory, const strut_scene *scene) {
+  *trajectory = (strut_trajectory){.every = 1,
+                                   .node_count = scene->node_count,
+                                   .member_count = scene->member_count,
+                                   .hinge_count = scene->hinge_count,
+                                   .cell_count = scene->cell_count,
+                                   .contact_count = scene->contact_count};
   trajectory->contact_node = strut_arena_allocate(&trajectory->arena, scene->contact_count,
                                                   sizeof *trajectory->contact_node);
   for (size_t i = 0; i < scene->contact_count && trajectory->contact_node; i++)
@@ -115,11 +121,7 @@ static bool trajectory_contacts(strut_trajectory *trajectory, const strut_scene 
 static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
   keeper *self = context;
   strut_trajectory *trajectory = self->t;
-  *trajectory = (strut_trajectory){.every = 1,
-                                   .node_count = self->scene->node_count,
-                                   .member_count = self->scene->member_count,
-                                   .hinge_count = self->scene->hinge_count,
-                                   .cell_count = self->scene->cell_count};
+  bool ready = size_trajectory(trajectory, self->scene);
   self->width = layout->width;
   self->arrays[0] = (trajectory_array){.values = &trajectory->time, .size = 1};
   self->array_count = self->frame_size = 1;
@@ -134,8 +136,7 @@ static strut_status begin(void *context, const strut_record_layout *layout, stru
   self->most = self->room / self->frame_size;
   if (self->most < 4) self->most = 4;
   self->last = strut_allocate(self->width, sizeof *self->last);
-  bool ready = self->last && trajectory_contacts(trajectory, self->scene) &&
-               grow(self, self->most < FIRST_FRAMES ? self->most : FIRST_FRAMES);
+  ready = ready && self->last && grow(self, self->most < FIRST_FRAMES ? self->most : FIRST_FRAMES);
   return ready ? STRUT_OK : strut_no_memory(error, "for the recorded motion");
 }
 
@@ -191,23 +192,19 @@ strut_status strut_trajectory_read(const char *directory, const strut_scene *sce
   size_t length = strlen(directory) + sizeof "/trajectory.h5";
   char *path = strut_allocate(length, 1);
   const strut_hdf5_library *library = NULL;
-  *trajectory = (strut_trajectory){.node_count = scene->node_count,
-                                   .member_count = scene->member_count,
-                                   .hinge_count = scene->hinge_count,
-                                   .cell_count = scene->cell_count};
-  if (!path) return strut_no_memory(error, "");
-  snprintf(path, length, "%s/trajectory.h5", directory);
+  bool ready = size_trajectory(trajectory, scene);
+  if (path) snprintf(path, length, "%s/trajectory.h5", directory);
   strut_status status = STRUT_OK;
-  if (!strut_hdf5_has_memory()) {
+  if (!path || !ready) {
+    status = strut_no_memory(error, "for the recorded motion");
+  } else if (!strut_hdf5_has_memory()) {
     status = strut_fail(error, STRUT_NO_MEMORY, "out of memory reading '%s'", path);
   } else if (access(path, R_OK) != 0) {
     char reason[128];
     if (strerror_r(errno, reason, sizeof reason) != 0) snprintf(reason, sizeof reason, "no access");
     status = strut_trajectory_trouble(path, reason, error);
   } else if ((status = strut_hdf5_ready(&library, error)) == STRUT_OK) {
-    status = trajectory_contacts(trajectory, scene)
-                 ? library->read(path, scene, room, trajectory, error)
-                 : strut_no_memory(error, "for the recorded motion");
+    status = library->read(path, scene, room, trajectory, error);
   }
   strut_release(path);
   if (status != STRUT_OK) strut_trajectory_free(trajectory);

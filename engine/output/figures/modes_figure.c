@@ -33,22 +33,15 @@ static void choose_modes(picture *self, size_t panels) {
       self->shown[self->count++] = &self->modes->list[i];
 }
 
-/* Strains of all members by the displacement drawn, to first order; returns the largest. */
-static double find_strains(const picture *self, const double *moved, double *strain) {
-  const double *q = self->modes->q;
+/* Strains of all members by the displacement drawn, to first order: from that against it to that along it. */
+static double find_strains(const picture *self, const double *moved, const double *back,
+                           double *strain) {
   double largest = 0.0;
-  for (size_t j = 0; j < self->model->scene->member_count; j++) {
-    const strut_member *member = &self->model->scene->members[j];
-    double change = 0.0, length = 0.0;
-    for (size_t k = 0; k <= member->guide_count; k++) {
-      int32_t a = 2 * strut_member_node(member, k), b = 2 * strut_member_node(member, k + 1);
-      double own = 0.0, part = strut_distance(q + a, q + b);
-      for (int d = 0; d < 2; d++)
-        own += (q[b + d] - q[a + d]) * (moved[b + d] - q[b + d] - moved[a + d] + q[a + d]);
-      length += part;
-      change += part > 0 ? own / part : 0.0;
-    }
-    strain[j] = length > 0 ? change / length : 0.0;
+  for (int32_t j = 0; j < (int32_t)self->model->scene->member_count; j++) {
+    double length = strut_member_path_length(self->model, j, self->modes->q);
+    double change = strut_member_path_length(self->model, j, moved) -
+                    strut_member_path_length(self->model, j, back);
+    strain[j] = length > 0 ? 0.5 * change / length : 0.0;
     largest = fmax(largest, fabs(strain[j]));
   }
   return largest > UNSTRAINED ? largest : 1.0;
@@ -86,12 +79,14 @@ static void add_mode(picture *self, const strut_mode *mode) {
   const double *q = self->modes->q;
   strut_panel *panel = strut_add_panel(&self->figure);
   double most = 0.0, *moved = strut_figure_copy(&self->figure, q, (size_t)model->length);
+  double *back = strut_figure_copy(&self->figure, q, (size_t)model->length);
   double *strain = strut_figure_numbers(&self->figure, model->scene->member_count);
-  if (!moved || !strain) return;
+  if (!moved || !back || !strain) return;
   for (int32_t i = 0; i < model->node_count; i++)
     most = fmax(most, hypot(mode->shape[2 * i], mode->shape[2 * i + 1]));
   for (int32_t i = 0; i < model->length && most > 0; i++)
-    moved[i] += STRUT_MODES_FIGURE_SWING * self->size / most * mode->shape[i];
+    moved[i] += STRUT_MODES_FIGURE_SWING * self->size / most * mode->shape[i],
+        back[i] = 2.0 * q[i] - moved[i];
   describe_mode(&self->figure, mode, (size_t)(mode - self->modes->list) + 1, panel);
   panel->margin = MARGIN;
   strut_shape *shape = strut_add_ghost(&self->figure, panel, model, q, 0.8);
@@ -99,7 +94,7 @@ static void add_mode(picture *self, const strut_mode *mode) {
   shape->style.no_supports = false;
   shape->ground = true;
   shape = strut_add_forces(&self->figure, panel, model, moved, strain,
-                           find_strains(self, moved, strain));
+                           find_strains(self, moved, back, strain));
   shape->style.slack_forces = self->taut;
   shape->style.no_supports = true;
   shape->ground = false;

@@ -2,6 +2,7 @@
 #include "engine/output/figures/run_figure.h"
 
 #include <assert.h>
+#include <gsl/gsl_interp.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -96,12 +97,9 @@ double strut_run_time_from(const strut_run_scene *run, size_t frame) {
 
 size_t strut_run_nearest(const strut_run_scene *run, double time) {
   const double *times = run->motion->time;
-  size_t low = 0, high = run->frames - 1;
-  while (high - low > 1) {
-    size_t middle = (low + high) / 2;
-    *(times[middle] <= time ? &low : &high) = middle;
-  }
-  return time - times[low] <= times[high] - time ? low : high;
+  size_t low = gsl_interp_bsearch(times, time, 0, run->frames - 1);
+  bool next = low + 1 < run->frames && time - times[low] > times[low + 1] - time;
+  return next ? low + 1 : low;
 }
 
 size_t strut_run_first(const strut_run_scene *run, double periods, double part) {

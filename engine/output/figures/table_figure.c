@@ -2,6 +2,7 @@
 #include "engine/output/figures/table_figure.h"
 
 #include <assert.h>
+#include <gsl/gsl_interp.h>
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdlib.h>
@@ -144,13 +145,8 @@ static bool find_positions(maker *self, int column, int d) {
 /* Index of the nearest of (count) ascending positions. */
 static size_t nearest_index(const double *at, size_t count, double value) {
   assert(count > 0);
-  size_t low = 0, high = count - 1;
-  while (low < high) {
-    size_t middle = (low + high) / 2;
-    bool right = 0.5 * (at[middle] + at[middle + 1]) < value;
-    *(right ? &low : &high) = middle + right;
-  }
-  return low;
+  size_t i = gsl_interp_bsearch(at, value, 0, count - 1);
+  return i + 1 < count && 0.5 * (at[i] + at[i + 1]) < value ? i + 1 : i;
 }
 
 static bool is_doubtful(const char *text) {

@@ -169,9 +169,7 @@
     const step = Math.max(1, Math.floor(frames / 2000));
     for (const curve of kind.curves)
       for (let f = 0; f < frames; f += step) most = Math.max(most, Math.abs(curve.at(f)));
-    const group = most > 0 ? Math.min(Math.max(Math.floor(Math.log10(most) / 3 + 1e-12), -5), 4) : 0;
-    return { factor: Math.pow(1000, group),
-      text: ["f", "p", "n", "\u00b5", "m", "", "k", "M", "G", "T"][group + 5] };
+    return page.prefixOf(most);
   }
 
   page.createCharts = function (onTime) {

@@ -68,15 +68,16 @@ bool strut_rows_multiples(const strut_rows *rows, double quantum) {
   return true;
 }
 
-/* Writes a number in groups of 7 bits, or only counts the bytes where `to` is NULL. */
+enum { MOST_GROUPS = 8 }; /* of 7 bits, of a number */
+
+/* Writes a number in groups of 7 bits. Returns how many. */
 static size_t put_number(int64_t n, unsigned char *to) {
   uint64_t left = n < 0 ? (uint64_t)(-n) * 2 - 1 : (uint64_t)n * 2;
   size_t size = 0;
   assert(left < UINT64_C(1) << 53);
-  for (; left >= 128; left >>= 7, size++)
-    if (to) to[size] = (unsigned char)(left | 128);
-  if (to) to[size] = (unsigned char)left;
-  return size + 1;
+  for (; left >= 128; left >>= 7) to[size++] = (unsigned char)(left | 128);
+  to[size++] = (unsigned char)left;
+  return size;
 }
 
 /* Column after column: first the number, then its difference, then second differences. */
@@ -86,7 +87,7 @@ static size_t put_numbers(const strut_rows *rows, double quantum, unsigned char 
     int64_t previous = 0, slope = 0;
     for (size_t i = 0; i < count; i++) {
       int64_t n = llround(strut_rows_at(rows, i)[column] / quantum), step = n - previous;
-      size += put_number(i == 0 ? n : i == 1 ? step : step - slope, to ? to + size : NULL);
+      size += put_number(i == 0 ? n : i == 1 ? step : step - slope, to + size);
       previous = n, slope = step;
     }
   }
@@ -118,10 +119,8 @@ static bool deflate_all(unsigned char *numbers, size_t size, strut_block *block)
 
 bool strut_block_encode(const strut_rows *rows, double quantum, strut_block *block) {
   *block = (strut_block){.quantum = quantum, .columns = rows->columns};
-  size_t size = put_numbers(rows, quantum, NULL);
-  unsigned char *numbers = strut_allocate(size + 1, 1);
-  if (numbers) put_numbers(rows, quantum, numbers);
-  bool good = numbers && deflate_all(numbers, size, block);
+  unsigned char *numbers = strut_allocate(strut_rows_taken(rows) * rows->columns + 1, MOST_GROUPS);
+  bool good = numbers && deflate_all(numbers, put_numbers(rows, quantum, numbers), block);
   strut_release(numbers);
   if (!good) strut_block_free(block);
   return good;
@@ -164,12 +163,6 @@ typedef struct motion {
   double (*dots)[2];  /* (STRUT_DATA_DOTS) room for data */
 } motion;
 
-static bool all_finite(const double *values, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (!isfinite(values[i])) return false;
-  return true;
-}
-
 /* True if every node is within `reach` model sizes of its start. */
 static bool is_within(const strut_model *model, const double *positions, double reach) {
   for (int32_t i = 0; i < 2 * model->node_count; i++)
@@ -182,10 +175,9 @@ static size_t count_frames(const motion *self) {
   bool diverged = trajectory->status == STRUT_DIVERGED;
   double most = STRUT_MOST_QUANTA * POSITION_QUANTUM / 8;
   for (size_t f = 0; f < trajectory->frames; f++) {
-    for (int b = 0; b < BLOCKS; b++) {
-      const strut_rows *rows = &self->rows[b];
-      if (rows->values && !all_finite(rows->values + f * rows->columns, rows->columns)) return f;
-    }
+    for (const strut_rows *rows = self->rows; rows < self->rows + BLOCKS; rows++)
+      for (size_t k = 0; k < rows->columns && rows->values; k++)
+        if (!isfinite(rows->values[f * rows->columns + k])) return f;
     const double *q = self->rows[POSITION].values + f * self->rows[POSITION].columns;
     if (!is_within(self->page->model, q, diverged ? DIVERGED_REACH : most)) return f;
   }

@@ -418,15 +418,20 @@
     if (options.key) drawKey(surface, s, shape, options);
   };
 
+  /* The prefix for numbers up to a size: its text and what it stands for. */
+  page.prefixOf = function (size) {
+    const group = size > 0 ? Math.min(Math.max(Math.floor(Math.log10(size) / 3 + 1e-12), -5), 4) : 0;
+    return { factor: Math.pow(1000, group),
+      text: ["f", "p", "n", "\u00b5", "m", "", "k", "M", "G", "T"][group + 5] };
+  };
+
   /* A number with a prefix: "9.78 mm/s". */
   page.quantity = function (value, unit, digits) {
     if (value === null || value === undefined || !isFinite(value)) return "\u2013";
     if (value === 0) return "0 " + unit;
-    const prefixes = ["f", "p", "n", "\u00b5", "m", "", "k", "M", "G", "T"];
-    const size = Math.abs(Number(value.toPrecision(digits)));
-    const group = Math.min(Math.max(Math.floor(Math.log10(size) / 3 + 1e-12), -5), 4);
-    const number = Number((value / Math.pow(1000, group)).toPrecision(digits));
-    return String(number).replace("-", "\u2212") + " " + prefixes[group + 5] + unit;
+    const { factor, text } = page.prefixOf(Math.abs(Number(value.toPrecision(digits))));
+    const number = Number((value / factor).toPrecision(digits));
+    return String(number).replace("-", "\u2212") + " " + text + unit;
   };
 
   /* Digits after the point that tell neighbouring times apart, at most six. */

@@ -24,17 +24,25 @@ static strut_axis axis_in(const char *name, const char *unit) {
 }
 
 static strut_axis axis_of_match(const strut_fit_match *match) {
-  bool motion = match->kind == STRUT_FIT_MOTION, curve = match->kind == STRUT_FIT_CURVE;
-  return strut_axis_of(motion  ? "time"
-                       : curve ? "displacement"
-                               : "number",
-                       motion  ? "s"
-                       : curve ? "m"
-                               : "");
+  if (match->kind == STRUT_FIT_MOTION) return strut_axis_of("time", "s");
+  if (match->kind == STRUT_FIT_CURVE) return strut_axis_of("displacement", "m");
+  return strut_axis_of("number", "");
 }
 
 static double place_of(const strut_fit_match *match, size_t i) {
   return match->at ? match->at[i] : (double)i + 1.0;
+}
+
+/* Adds dots where something was measured: these numbers times `unit`. */
+static strut_series *add_dots(strut_figure *figure, strut_panel *panel, const char *label,
+                              const strut_fit_match *match, size_t s, const double *numbers,
+                              double unit) {
+  strut_series *dots = strut_add_series(figure, panel, label);
+  dots->cloud = true;
+  for (size_t i = 0; i < match->count; i++)
+    if (!isnan(match->series[s].measured[i]))
+      strut_add_point(figure, dots, place_of(match, i), numbers[i] * unit);
+  return dots;
 }
 
 /* Numbers as dots, and the model as a line, a panel for each series. */
@@ -45,11 +53,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   panel->x = axis_of_match(match);
   panel->y = axis_in(match->series[s].of, match->series[s].unit);
   panel->title = match->name;
-  strut_series *dots = strut_add_series(figure, panel, "measured");
-  dots->cloud = true, dots->look = 1;
-  for (size_t i = 0; i < match->count; i++)
-    if (!isnan(match->series[s].measured[i]))
-      strut_add_point(figure, dots, place_of(match, i), match->series[s].measured[i]);
+  add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
   strut_series *line = strut_add_series(figure, panel, "model");
   line->look = 0;
   line->markers = match->count > 1 ? STRUT_MARKERS_NONE : STRUT_MARKERS_ALL;
@@ -69,11 +73,7 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result, 
   for (size_t s = 0; s < match->series_count; s++) {
     const double *residual = result->residual + strut_fit_first(result->fit, m, s);
     if (!is_measured(match, s)) continue;
-    strut_series *dots = strut_add_series(figure, panel, match->series[s].of);
-    dots->cloud = true;
-    for (size_t i = 0; i < match->count; i++)
-      if (!isnan(match->series[s].measured[i]))
-        strut_add_point(figure, dots, place_of(match, i), residual[i] * unit);
+    add_dots(figure, panel, match->series[s].of, match, s, residual, unit);
   }
   strut_add_band(figure, panel, -USUAL, USUAL, "95 % of the usual ones")->level = true;
 }
