@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "parser/language/yaml/text.h"
+
 enum {
   MOST_COLUMNS = 10000,
   MOST_ROWS = 5000000,
@@ -36,11 +38,10 @@ typedef struct reader {
 /* ---- places ---- */
 
 static strut_place place_of(const char *text, const char *at, size_t length) {
-  uint32_t line = 1, column = 1;
-  for (const char *end; (end = memchr(text, '\n', (size_t)(at - text))); text = end + 1) line++;
-  if (at - text >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) text += 3;
-  for (; text < at; text++) column += ((unsigned char)*text & 0xC0) != 0x80;
-  return strut_place_at(line, column, length ? (uint32_t)fmin((double)length, 1e6) : 1);
+  strut_cursor cursor = strut_cursor_begin(text, (size_t)(at - text));
+  strut_cursor_to_offset(&cursor, cursor.length);
+  return strut_place_at(cursor.line, cursor.column,
+                        length ? (uint32_t)fmin((double)length, 1e6) : 1);
 }
 
 strut_place strut_csv_place(const strut_csv *csv, size_t cell) {
@@ -329,7 +330,7 @@ strut_status strut_csv_read(const char *text, size_t length, int header,
                    "a NUL byte is not allowed; the file is damaged, or no text");
   if (r.at && !nul) {
     r.end = r.at + length;
-    if (length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) r.at += 3; /* a byte order mark */
+    r.at += strut_text_mark(text, length);
     r.separator = find_separator(&r, (size_t)header);
     bool fine = read_header(&r, (size_t)header);
     if (fine) make_titles(&r);

@@ -64,15 +64,6 @@ bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
   return fine;
 }
 
-/* Sections of the model that are laid over, and the keys that do so. */
-static const struct {
-  const char *section;
-  int study, variant;
-} sections[] = {{"solver", STRUT_KEY_STUDY_SOLVER, STRUT_KEY_VARIANT_SOLVER},
-                {"run", STRUT_KEY_STUDY_RUN, STRUT_KEY_VARIANT_RUN},
-                {"initial", STRUT_KEY_STUDY_INITIAL, STRUT_KEY_VARIANT_INITIAL},
-                {"output", STRUT_KEY_STUDY_OUTPUT, STRUT_KEY_VARIANT_OUTPUT}};
-
 /* Reads the model's file: below the folder of the study, as all files that a file names. */
 static strut_status read_model(strut_study_reader *reader, const strut_tree *name,
                                strut_error *error) {
@@ -113,7 +104,8 @@ static bool keep_copy(strut_study_file *file, strut_scene_source *source) {
 
 /* The text of the model as a tree, with the study's keys over it and those of a variant, or NULL. */
 static strut_status open_source(strut_study_reader *reader, strut_fields *top,
-                                strut_fields *variant) {
+                                const strut_tree *variant) {
+  static const char *const sections[] = {"solver", "run", "initial", "output"};
   strut_study_file *file = reader->file;
   strut_scene_source **source = &file->sources[file->source_count];
   strut_status status = strut_scene_source_open(
@@ -132,14 +124,12 @@ static strut_status open_source(strut_study_reader *reader, strut_fields *top,
   if (!file->number)
     strut_report_error(reader->reader, strut_slot_of(top, STRUT_KEY_STUDY_MODEL)->value->place,
                        "the model uses too many files for one of a study");
-  for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
-    const strut_slot *slots[] = {strut_slot_of(top, sections[i].study),
-                                 variant ? strut_slot_of(variant, sections[i].variant) : NULL};
-    for (int k = 0; k < 2; k++)
-      if (slots[k] && slots[k]->state == STRUT_GIVEN &&
-          !lay_map_over(file, document, sections[i].section, slots[k]->value))
-        return STRUT_NO_MEMORY;
-  }
+  const strut_tree *layers[] = {file->document.root, variant};
+  for (int layer = 0; layer < (variant ? 2 : 1); layer++)
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0]; i++) {
+      const strut_tree *value = strut_tree_find(layers[layer], sections[i], NULL);
+      if (value && !lay_map_over(file, document, sections[i], value)) return STRUT_NO_MEMORY;
+    }
   return STRUT_OK;
 }
 
@@ -160,7 +150,7 @@ static strut_status open_variants(strut_study_reader *reader, strut_fields *top,
     check_name(reader, key);
     strut_read_fields(reader->reader, STRUT_SECTION_VARIANT, key->next, owner, &fields);
     reader->variant_names[reader->variant_count++] = key->text;
-    status = open_source(reader, top, &fields);
+    status = open_source(reader, top, key->next);
   }
   return status;
 }
