@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "engine/study/fit/fit_parts.h"
 #include "engine/study/search/optimisers.h"
@@ -347,20 +346,18 @@ static bool choose_row(void *context, int64_t i, int64_t *point) {
          strut_slots_claim(self->points.slots, *point);
 }
 
+/* Rows that are looked at: all of the stage until none is left. */
+static int64_t count_rows(void *context) {
+  const fitting *self = context;
+  for (int64_t i = 0; i < self->count; i++)
+    if (!strut_slots_done(self->points.slots, self->first + i)) return self->count;
+  return 0;
+}
+
 /* Computes the rows of a stage, or waits until other workers have. */
 static strut_status run_stage(fitting *self, int64_t first, int64_t count) {
-  const strut_flag *interrupt = self->points.interrupt;
-  struct timespec pause = {.tv_nsec = 20000000};
   self->first = first, self->count = count;
-  for (int64_t left = count; left > 0 && !self->points.status;) {
-    strut_points_run(&self->points, count);
-    left = 0;
-    for (int64_t i = 0; i < count; i++) left += !strut_slots_done(self->points.slots, first + i);
-    if (interrupt && *interrupt && left)
-      return self->points.status = strut_fail(self->points.error, STRUT_INTERRUPTED, "interrupted");
-    if (left && !self->points.status) nanosleep(&pause, NULL);
-  }
-  return self->points.status;
+  return strut_points_complete(&self->points, count_rows);
 }
 
 static bool has_residuals(const strut_fit_row *row) {

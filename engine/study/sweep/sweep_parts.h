@@ -160,8 +160,8 @@ void strut_points_close(strut_points *points);
 /** Looks at `count` points. */
 strut_status strut_points_run(strut_points *points, int64_t count);
 /**
- * Does so until all have rows, and waits for those that other workers compute. left(context): how many of them have
- * none, which are looked at next. STRUT_INTERRUPTED.
+ * Does so until all have rows, and waits for those that other workers compute. left(context): how many are looked at
+ * next; 0: all have rows. STRUT_INTERRUPTED.
  */
 strut_status strut_points_complete(strut_points *points, int64_t (*left)(void *context));
 /** Done and failed points of the file, as it is now. */
