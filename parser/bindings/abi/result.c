@@ -421,24 +421,17 @@ static const abi_array *given_array(const strutlib_result *result, const char *n
   return found;
 }
 
-/* An array of the JSON, made when it is first asked for. With the lock. */
-static const abi_array *made_array(strutlib_result *result, const char *name) {
-  const abi_array *made = find_array(&result->made, name);
-  if (made) return made;
-  abi_array array;
-  return read_array(locked_tree(result), name, &result->made_arena, &array)
-             ? add_array(&result->made, &result->made_arena, &array)
-             : NULL;
-}
-
 int strutlib_result_array(const strutlib_result *constant, const char *name, const double **data,
                           int *dimensions, size_t *shape, size_t *stride) {
   abi_array part;
   if (!constant || !name) return 0;
   const abi_array *found = given_array(constant, name, &part);
   if (found) return abi_show_array(found, data, dimensions, shape, stride);
-  strutlib_result *result = lock(constant);
-  found = made_array(result, name);
+  strutlib_result *result =
+      lock(constant); /* an array of the JSON is made when it is first asked for */
+  found = find_array(&result->made, name);
+  if (!found && read_array(locked_tree(result), name, &result->made_arena, &part))
+    found = add_array(&result->made, &result->made_arena, &part);
   int shown = found ? abi_show_array(found, data, dimensions, shape, stride) : 0;
   pthread_mutex_unlock(&result->lock);
   return shown;
