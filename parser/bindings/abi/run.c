@@ -15,6 +15,7 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
+#include "parser/program/command/plot_options.h"
 #include "parser/program/command/run_settings.h"
 #include "parser/program/command/varied_scenes.h"
 
@@ -124,8 +125,10 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
                          const char *path, strut_error *error) {
   const run_detail *run = result->detail;
   strut_run_figure figure = {.experiment = &result->setup.experiment};
-  double times[ABI_MOST_TIMES];
-  strut_status status = abi_run_figure_read(arguments, &figure, times);
+  double times[STRUT_MOST_TIMES];
+  strut_plot plot;
+  strut_status status = abi_plot_read(arguments, path, &plot);
+  if (status == STRUT_OK) status = strut_run_figure_read(arguments, &plot, &figure, times);
   if (status != STRUT_OK) return status;
   unsigned needed = strut_run_figure_channels(figure.view);
   if (!run->motion.position || ((needed & STRUT_CHANNEL_FORCE) && !run->motion.force))
