@@ -55,21 +55,19 @@ bool strut_keys_know(const char *name) {
   return strut_section_find(name) != STRUT_SECTION_COUNT;
 }
 
-/* The section of that name, or the key of that name in every section that has one. */
-static strut_status print_keys(const char *name) {
-  strut_section section = strut_section_find(name);
-  if (section != STRUT_SECTION_COUNT) return strut_print_block(strut_keys_text(section));
-  return strut_print_block(strut_keys_named(name));
-}
-
 static strut_status run_keys(const strut_arguments *arguments) {
   strut_status status = STRUT_OK;
   if (!arguments->model_count) return strut_print_block(strut_keys_page());
   for (size_t i = 0; i < arguments->model_count; i++)
     if (!strut_keys_know(arguments->models[i])) return refuse_name(arguments->models[i]);
   for (size_t i = 0; i < arguments->model_count && status == STRUT_OK; i++) {
+    /* The section of that name, or the key of that name in every section that has one. */
+    strut_section section = strut_section_find(arguments->models[i]);
     if (i) status = strut_print("\n");
-    if (status == STRUT_OK) status = print_keys(arguments->models[i]);
+    if (status == STRUT_OK)
+      status = strut_print_block(section != STRUT_SECTION_COUNT
+                                     ? strut_keys_text(section)
+                                     : strut_keys_named(arguments->models[i]));
   }
   return status;
 }

@@ -186,14 +186,6 @@ static size_t read_names(const strut_arguments *arguments, follow_source *source
   return count;
 }
 
-static strut_status check_names(const strut_arguments *arguments, const strut_scene *scene,
-                                const char *const *names, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
-      return strut_usage_error(arguments, "--at: the model has no configuration '%s'", names[i]);
-  return STRUT_OK;
-}
-
 /* What is followed, of the scene as it was read: --over, --and, --values, --at and others. STRUT_USAGE. */
 static strut_status read_options(const strut_arguments *arguments, const strut_scene *scene,
                                  follow_source *source, strut_follow_options *wanted) {
@@ -203,7 +195,9 @@ static strut_status read_options(const strut_arguments *arguments, const strut_s
   size_t value_count = 0, name_count = read_names(arguments, source, names);
   strut_status status = read_ranges(arguments, scene, source, wanted, &dimension);
   if (!status) status = read_values(arguments, scene, dimension, wanted, values, &value_count);
-  if (!status) status = check_names(arguments, scene, names, name_count);
+  for (size_t i = 0; i < name_count && !status; i++)
+    if (strut_thing_find(scene, STRUT_THING_CONFIGURATION, names[i]) < 0)
+      status = strut_usage_error(arguments, "--at: the model has no configuration '%s'", names[i]);
   if (status) return status;
   for (size_t v = 0; v < value_count; v++)
     for (size_t k = 0; k < (name_count ? name_count : 1); k++)

@@ -217,19 +217,6 @@ static strut_status simulate(const strut_model *model, const strut_setup *setup,
   return status;
 }
 
-static strut_status print_summary(const strut_arguments *arguments, const strut_summary *summary,
-                                  const strut_scene *scene) {
-  if (arguments->quiet && !arguments->json) return STRUT_OK;
-  return strut_print_block(arguments->json ? strut_summary_json(summary, scene, true)
-                                           : strut_summary_table(summary, scene));
-}
-
-/* Warnings about a result that exists but may not be what was meant. */
-static void print_warnings(const strut_summary *summary) {
-  for (size_t i = 0; i < summary->warning_count; i++)
-    fprintf(stderr, "strut: warning: %s\n", summary->warnings[i].text);
-}
-
 static strut_status run_model(const strut_arguments *arguments, const strut_setup *setup,
                               const strut_model *model, strut_varied_scenes *scenes,
                               run_pictures *pictures) {
@@ -242,14 +229,18 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
                                         &error);
   if (status != STRUT_OK) strut_print_error(&error);
   if (strut_run_has_results(status)) {
-    print_warnings(&summary);
+    /* Of a result that exists but may not be what was meant. */
+    for (size_t i = 0; i < summary.warning_count; i++)
+      fprintf(stderr, "strut: warning: %s\n", summary.warnings[i].text);
     strut_status written = complete_results(&keep, &summary, model->scene, &late);
     if (written == STRUT_OK) written = draw_picture(pictures, model, &summary, &late);
     if (written != STRUT_OK) strut_print_error(&late);
     /* The failure of the run is reported, not the missing figure. */
     if (written == STRUT_USAGE && status != STRUT_OK) written = status;
     if (written != STRUT_OK) status = written;
-    strut_status printed = print_summary(arguments, &summary, model->scene);
+    strut_status printed = strut_print_report(
+        arguments, arguments->json ? strut_summary_json(&summary, model->scene, true)
+                                   : strut_summary_table(&summary, model->scene));
     if (status == STRUT_OK) status = printed;
     if (written == STRUT_OK) written = make_film(pictures, model);
     if (written != STRUT_OK) status = written;

@@ -401,61 +401,44 @@ static strut_status check_searches(const char *directory, bool quiet) {
   return STRUT_OK;
 }
 
-/*
- * Writes directory/table.csv of the shards of a refined study, in place of strut_merge. *merged is true if
- * the study in the directory is a refined one; otherwise nothing is done.
- */
-static strut_status merge_refined(const strut_arguments *arguments, bool *merged) {
-  strut_sweep_study study = {0};
-  strut_arena arena = {0};
-  strut_error error = {0};
-  strut_arguments inner = *arguments;
-  strut_merged table;
+/* Refined maps are merged where the points of all shards are those that their study wants. */
+static strut_status merge(const strut_arguments *arguments, strut_sweep_study *refined) {
   const char *directory = arguments->model;
-  inner.model = strut_arena_format(&arena, "%s/study.yaml", directory);
-  strut_status status = STRUT_OK;
-  bool search = false, refined = false;
-  if (inner.model && access(inner.model, R_OK) == 0) {
-    status = strut_study_open(inner.model, NULL, 0, &study.file, &error);
-    search = !status && strut_study_has_stages(&study.file.study);
-    refined = !status && !search && study.file.study.refine.depth > 0;
-    strut_study_close(&study.file);
-    error = (strut_error){0};
-  }
-  *merged = search || refined;
-  if (search) status = check_searches(directory, arguments->quiet);
-  if (refined) {
-    study = (strut_sweep_study){0};
-    status = strut_sweep_study_open(&inner, &study);
-    if (!status) {
-      status = strut_merge_if(directory, check_refined, &study, &table, &error);
-      strut_print_failure(status, &error);
-    }
-    if (!status && !arguments->quiet)
-      printf("%s/table.csv: %lld points\n", directory, (long long)table.points);
-    if (!status)
-      status = strut_sweep_judge(arguments->listener, table.points, table.failed, table.inaccurate);
-    strut_sweep_study_close(&study);
-  }
-  strut_arena_free(&arena);
-  return status;
-}
-
-static strut_status run_merge(const strut_arguments *arguments) {
   strut_merged merged;
   strut_error error = {0};
-  bool refined = false;
-  allow_many_files();
-  strut_status early = merge_refined(arguments, &refined);
-  if (refined) return early;
-  strut_status status = strut_merge(arguments->model, &merged, &error);
-  if (status != STRUT_OK) return strut_print_failure(status, &error);
+  strut_status status =
+      strut_merge_if(directory, refined ? check_refined : NULL, refined, &merged, &error);
+  if (status) return strut_print_failure(status, &error);
   if (!arguments->quiet) {
-    printf("%s/table.csv: %lld points", arguments->model, (long long)merged.points);
-    if (merged.shards) printf(" of %lld shards", (long long)merged.shards);
+    printf("%s/%s: %lld points", directory, table_name, (long long)merged.points);
+    if (merged.shards && !refined) printf(" of %lld shards", (long long)merged.shards);
     printf("\n");
   }
   return strut_sweep_judge(arguments->listener, merged.points, merged.failed, merged.inaccurate);
+}
+
+static strut_status run_merge(const strut_arguments *arguments) {
+  strut_sweep_study study = {0};
+  strut_arena arena = {0};
+  strut_error unused = {0};
+  strut_arguments inner = *arguments;
+  bool search = false, refined = false;
+  allow_many_files();
+  inner.model = strut_arena_format(&arena, "%s/study.yaml", arguments->model);
+  if (inner.model && access(inner.model, R_OK) == 0 &&
+      strut_study_open(inner.model, NULL, 0, &study.file, &unused) == STRUT_OK) {
+    search = strut_study_has_stages(&study.file.study);
+    refined = !search && study.file.study.refine.depth > 0;
+  }
+  strut_study_close(&study.file);
+  study = (strut_sweep_study){0};
+  strut_status status = refined ? strut_sweep_study_open(&inner, &study) : STRUT_OK;
+  if (!status)
+    status = search ? check_searches(arguments->model, arguments->quiet)
+                    : merge(arguments, refined ? &study : NULL);
+  strut_sweep_study_close(&study);
+  strut_arena_free(&arena);
+  return status;
 }
 
 static const strut_option merge_options[] = {

@@ -182,18 +182,14 @@ static const strut_output_file files[] = {
 
 static strut_status read_methods(const strut_arguments *arguments, tradeoff_study *self) {
   const char *text = arguments->integrator.text;
-  char list[500];
+  char list[500], name[40];
   while (text) {
-    size_t length = strcspn(text, ",");
-    const strut_integrator *found = NULL;
-    for (size_t i = 0; strut_integrator_at(i); i++) {
-      const char *name = strut_integrator_at(i)->name;
-      if (strlen(name) == length && strncmp(name, text, length) == 0)
-        found = strut_integrator_at(i);
-    }
+    int length = (int)strcspn(text, ",");
+    snprintf(name, sizeof name, "%.*s", length, text);
+    const strut_integrator *found = strut_integrator_find(name);
     if (!found || self->options.method_count == MOST_METHODS)
       return strut_usage_error(arguments, "--integrator: unknown method '%.*s'; expected %s",
-                               (int)length, text,
+                               length, text,
                                strut_words_text(STRUT_INTEGRATOR_WORDS, list, sizeof list));
     self->methods[self->options.method_count++] = found;
     text = text[length] ? text + length + 1 : NULL;

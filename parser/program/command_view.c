@@ -58,15 +58,6 @@ static bool choose_page(const char *shown, char *text, size_t size) {
   return true;
 }
 
-/* Checks before anything is computed that the page has a valid name and can be written. */
-static strut_status check_output(const strut_arguments *arguments) {
-  const char *path = arguments->output;
-  if (!ends_with(path, ".html") && !ends_with(path, ".htm"))
-    return strut_usage_error(arguments, "'%s' is not the name of a page: it must end in .html",
-                             path);
-  return strut_try_file(path);
-}
-
 /* A search that fails leaves a remark on the page; only an interrupt or lack of memory is a failure. */
 static strut_status find_equilibria(const strut_arguments *arguments, const strut_opened *opened,
                                     const strut_flag *interrupt, strut_equilibria *all,
@@ -126,15 +117,6 @@ static strut_status describe_pages(const strut_opened *opened, size_t count, str
   return STRUT_OK;
 }
 
-/* Two runs are told apart by their paths. */
-static void label_pages(const strut_arguments *arguments, strut_page *pages,
-                        char labels[MOST_RUNS][PATH_MAX]) {
-  for (size_t i = 0; i < arguments->model_count && arguments->model_count > 1; i++) {
-    trim_path(arguments->models[i], labels[i], PATH_MAX);
-    pages[i].label = labels[i];
-  }
-}
-
 static strut_status make_page(const strut_arguments *arguments, const strut_opened *opened,
                               int search) {
   strut_equilibria all = {0};
@@ -152,7 +134,10 @@ static strut_status make_page(const strut_arguments *arguments, const strut_open
     if (status != STRUT_OK) strut_no_memory(&error, "");
   }
   if (status == STRUT_OK) {
-    label_pages(arguments, pages, labels);
+    for (size_t i = 0; i < arguments->model_count && arguments->model_count > 1; i++) {
+      trim_path(arguments->models[i], labels[i], PATH_MAX); /* tells two runs apart */
+      pages[i].label = labels[i];
+    }
     if (remark.status == STRUT_OK) pages->equilibria = &all;
     pages->remark = search == SEARCH_NONE ? "No search for equilibria was made." : remark.message;
     status = write_page(arguments, pages, interrupt, &error);
@@ -188,7 +173,10 @@ static strut_status run_view(const strut_arguments *given) {
     arguments->output = page;
   if (!arguments->output) return strut_usage_error(arguments, "missing -o FILE.html");
   int search = arguments->equilibria.text ? arguments->equilibria.index : SEARCH_OF_MODEL;
-  strut_status status = check_output(arguments);
+  if (!ends_with(arguments->output, ".html") && !ends_with(arguments->output, ".htm"))
+    return strut_usage_error(arguments, "'%s' is not the name of a page: it must end in .html",
+                             arguments->output);
+  strut_status status = strut_try_file(arguments->output);
   if (status == STRUT_OK) status = open_all(arguments, opened);
   if (status == STRUT_OK) {
     if (search == SEARCH_OF_MODEL && !opened->run) search = SEARCH_ALL;

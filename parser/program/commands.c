@@ -102,15 +102,12 @@ strut_status strut_print_values(const strut_arguments *arguments, const strut_va
                                                      STRUT_REPORT_ROWS));
 }
 
-/* The help of a word that is no command: a key or section of the language, or none. */
-static strut_status print_other_help(const strut_arguments *arguments) {
-  if (strut_keys_know(arguments->model)) return strut_command_keys.run(arguments);
-  return strut_command_find(arguments->model) ? STRUT_OK : STRUT_USAGE;
-}
-
 static strut_status print_help(const strut_arguments *arguments) {
   const strut_command *command = arguments->model ? strut_command_named(arguments->model) : NULL;
-  if (arguments->model && !command) return print_other_help(arguments);
+  if (arguments->model && !command && strut_keys_know(arguments->model))
+    return strut_command_keys.run(arguments);
+  if (arguments->model && !command)
+    return strut_command_find(arguments->model) ? STRUT_OK : STRUT_USAGE;
   if (command)
     strut_command_help(command);
   else

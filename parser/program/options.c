@@ -192,13 +192,6 @@ const strut_command *strut_command_variant_of(const strut_command *command, int 
   return command;
 }
 
-/* Checks that the file can be created. */
-static strut_status try_path(const char *path) {
-  strut_error error = {0};
-  strut_status status = strut_figure_check_name(path, &error);
-  return status ? strut_print_failure(status, &error) : strut_try_file(path);
-}
-
 strut_status strut_plot_read(const strut_arguments *arguments, double usual, strut_plot *plot) {
   const strut_option *option;
   *plot = (strut_plot){.path = arguments->plot};
@@ -206,6 +199,9 @@ strut_status strut_plot_read(const strut_arguments *arguments, double usual, str
     if (option->of_figure && strut_given_text(option, arguments))
       return strut_usage_error(arguments, "--%s needs --plot FILE", option->name);
   if (!plot->path) return STRUT_OK;
+  strut_error error = {0};
   strut_status status = strut_plot_settings_read(arguments, usual, plot);
-  return status ? status : try_path(plot->path);
+  if (status) return status;
+  status = strut_figure_check_name(plot->path, &error);
+  return status ? strut_print_failure(status, &error) : strut_try_file(plot->path);
 }

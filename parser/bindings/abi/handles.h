@@ -31,8 +31,6 @@
 
 typedef struct cJSON abi_tree;
 
-/** The tree of a JSON text; NULL: memory is out. */
-abi_tree *abi_tree_read(const char *json);
 /** The tree of a resolved scene: texts in quotes stay texts, plain ones become numbers or flags if they are. */
 abi_tree *abi_tree_of(const strut_tree *root);
 /** As a JSON text in a block of strut_allocate; NULL: memory is out. */
@@ -42,10 +40,6 @@ void abi_tree_free(abi_tree *tree); /* NULL is allowed */
 bool abi_tree_number(const abi_tree *tree, const char *name, double *value);
 bool abi_tree_flag(const abi_tree *tree, const char *name, int *value);
 const char *abi_tree_text(const abi_tree *tree, const char *name);
-/** Number of items of a list or mapping; "" is the whole. */
-size_t abi_tree_count(const abi_tree *tree, const char *name);
-/** The i-th key of a mapping, or NULL. */
-const char *abi_tree_key(const abi_tree *tree, const char *name, size_t i);
 /**
  * Replaces a value of the mapping called `name` by a number or, where text is not NULL, by a text. False: no
  * memory.
@@ -187,8 +181,6 @@ strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
 /** Fills *error of a call that failed, by what its listener heard or by `what`. */
 void abi_call_fail(abi_call *call, strut_status status, const strut_error *what);
 
-/** Commands of the library with their options, for strutlib_option_name. NULL after the last. */
-const strut_command *abi_command_at(size_t i);
 extern const strut_command abi_run_command, abi_equilibria_command, abi_modes_command,
     abi_rigidity_command, abi_form_command, abi_path_command, abi_matrices_command,
     abi_sweep_command, abi_study_command, abi_simulation_command, abi_svg_command;
@@ -235,14 +227,6 @@ char *abi_give(char *text, strutlib_error **error);
 
 /* ---- figures and pages as texts ---- */
 
-enum { ABI_MOST_TIMES = 100 };
-
-/**
- * Options "draw", "scale", "times", "title" and "width" into a figure of a run; times has room for
- * ABI_MOST_TIMES.
- */
-strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
-                                 double *times);
 /** Options "title" and "width" into a plot that goes to `path`. */
 strut_status abi_plot_read(const strut_arguments *arguments, const char *path, strut_plot *plot);
 

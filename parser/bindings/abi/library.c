@@ -457,31 +457,6 @@ void abi_leave(void) {
   pthread_mutex_unlock(&handler_lock);
 }
 
-/* ---- options ---- */
-
-static const strut_option *option_of(const char *name, size_t i) {
-  const strut_command *command;
-  for (size_t k = 0; name && (command = abi_command_at(k)); k++)
-    if (strcmp(command->name, name) == 0) return strut_option_row(command->options, i);
-  return NULL;
-}
-
-static const char *kind_of(const strut_option *option) {
-  static const char *const names[] = {"selector", "flag", "setting", "text", "number",
-                                      "whole",    "word", "words",   "range"};
-  return names[option->kind];
-}
-
-#define OPTION(PART, VALUE)                                                                        \
-  const char *strutlib_option_##PART(const char *command, size_t i) {                              \
-    const strut_option *option = option_of(command, i);                                            \
-    return option ? VALUE : NULL;                                                                  \
-  }
-OPTION(name, option->name)
-OPTION(help, option->help)
-OPTION(kind, kind_of(option))
-OPTION(words, strut_option_words(option))
-
 /* ---- calls ---- */
 
 void abi_call_fail(abi_call *call, strut_status status, const strut_error *what) {
@@ -518,6 +493,8 @@ strut_status abi_call_begin_file(abi_call *call, const strut_arguments *begun,
   if (status != STRUT_OK) abi_call_fail(call, status, NULL);
   return status;
 }
+
+/* ---- options ---- */
 
 /* The library's commands: of each the options that the program's command of that name has, files apart. */
 
@@ -568,13 +545,39 @@ const strut_command abi_run_command = {.name = "run", .options = run_options},
                                               .analysis = &strut_##NAME##_analysis};
 STRUT_ANALYSES(ANALYSIS)
 
-const strut_command *abi_command_at(size_t i) {
+/* NULL after the last. */
+static const strut_command *command_at(size_t i) {
 #define COMMAND(NAME) &abi_##NAME##_command,
   static const strut_command *const all[] = {
       &abi_run_command,        &abi_matrices_command, &abi_sweep_command,     &abi_study_command,
       &abi_simulation_command, &abi_svg_command,      STRUT_ANALYSES(COMMAND)};
   return i < sizeof all / sizeof all[0] ? all[i] : NULL;
 }
+
+static const strut_option *option_of(const char *name, size_t i) {
+  const strut_command *command;
+  for (size_t k = 0; name && (command = command_at(k)); k++)
+    if (strcmp(command->name, name) == 0) return strut_option_row(command->options, i);
+  return NULL;
+}
+
+static const char *kind_of(const strut_option *option) {
+  static const char *const names[] = {"selector", "flag", "setting", "text", "number",
+                                      "whole",    "word", "words",   "range"};
+  return names[option->kind];
+}
+
+#define OPTION(PART, VALUE)                                                                        \
+  const char *strutlib_option_##PART(const char *command, size_t i) {                              \
+    const strut_option *option = option_of(command, i);                                            \
+    return option ? VALUE : NULL;                                                                  \
+  }
+OPTION(name, option->name)
+OPTION(help, option->help)
+OPTION(kind, kind_of(option))
+OPTION(words, strut_option_words(option))
+
+/* ---- a temporary folder ---- */
 
 strut_status abi_scratch_begin(abi_scratch *self, const char *name, strut_error *error) {
   const char *temporary = getenv("TMPDIR");

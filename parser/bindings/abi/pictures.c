@@ -19,14 +19,6 @@ strut_status abi_plot_read(const strut_arguments *arguments, const char *path, s
   return strut_plot_settings_read(arguments, 0, plot);
 }
 
-strut_status abi_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
-                                 double *times) {
-  strut_plot plot;
-  strut_status status = abi_plot_read(arguments, "", &plot);
-  if (status != STRUT_OK) return status;
-  return strut_run_figure_read(arguments, &plot, figure, times);
-}
-
 /* ---- figures ---- */
 
 static const char figure_name[] = "figure.svg";

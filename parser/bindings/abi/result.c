@@ -11,13 +11,6 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"
 
-abi_tree *abi_tree_read(const char *json) {
-  strut_c_locale locale = strut_c_locale_enter();
-  cJSON *tree = cJSON_Parse(json);
-  strut_c_locale_leave(locale);
-  return tree;
-}
-
 void abi_tree_free(abi_tree *tree) { cJSON_Delete(tree); }
 
 char *abi_tree_write(const abi_tree *tree) {
@@ -146,19 +139,6 @@ bool abi_tree_flag(const abi_tree *tree, const char *name, int *value) {
 const char *abi_tree_text(const abi_tree *tree, const char *name) {
   const cJSON *at = find(tree, name);
   return at && cJSON_IsString(at) ? at->valuestring : NULL;
-}
-
-size_t abi_tree_count(const abi_tree *tree, const char *name) {
-  const cJSON *at = find(tree, name);
-  return at && (cJSON_IsArray(at) || cJSON_IsObject(at)) ? (size_t)cJSON_GetArraySize(at) : 0;
-}
-
-const char *abi_tree_key(const abi_tree *tree, const char *name, size_t i) {
-  const cJSON *at = find(tree, name);
-  if (!at || !cJSON_IsObject(at)) return NULL;
-  at = at->child;
-  while (at && i-- > 0) at = at->next;
-  return at ? at->string : NULL;
 }
 
 /* ---- arrays ---- */
@@ -305,7 +285,9 @@ char *strutlib_result_yaml(const strutlib_result *result, strutlib_error **error
 
 /* The tree of the JSON; NULL: memory is out. With the lock. */
 static const abi_tree *locked_tree(strutlib_result *result) {
-  if (!result->tree) result->tree = abi_tree_read(strutlib_result_json(result));
+  strut_c_locale locale = strut_c_locale_enter();
+  if (!result->tree) result->tree = cJSON_Parse(strutlib_result_json(result));
+  strut_c_locale_leave(locale);
   return result->tree;
 }
 
@@ -337,11 +319,15 @@ const char *strutlib_result_text(const strutlib_result *result, const char *name
 }
 
 size_t strutlib_result_count(const strutlib_result *result, const char *name) {
-  return abi_tree_count(tree_of(result), name);
+  const cJSON *at = find(tree_of(result), name);
+  return cJSON_IsArray(at) || cJSON_IsObject(at) ? (size_t)cJSON_GetArraySize(at) : 0;
 }
 
 const char *strutlib_result_key(const strutlib_result *result, const char *name, size_t i) {
-  return abi_tree_key(tree_of(result), name, i);
+  const cJSON *at = find(tree_of(result), name);
+  at = cJSON_IsObject(at) ? at->child : NULL;
+  while (at && i-- > 0) at = at->next;
+  return at ? at->string : NULL;
 }
 
 /* ---- arrays ---- */
@@ -421,24 +407,17 @@ static const abi_array *given_array(const strutlib_result *result, const char *n
   return found;
 }
 
-/* An array of the JSON, made when it is first asked for. With the lock. */
-static const abi_array *made_array(strutlib_result *result, const char *name) {
-  const abi_array *made = find_array(&result->made, name);
-  if (made) return made;
-  abi_array array;
-  return read_array(locked_tree(result), name, &result->made_arena, &array)
-             ? add_array(&result->made, &result->made_arena, &array)
-             : NULL;
-}
-
 int strutlib_result_array(const strutlib_result *constant, const char *name, const double **data,
                           int *dimensions, size_t *shape, size_t *stride) {
   abi_array part;
   if (!constant || !name) return 0;
   const abi_array *found = given_array(constant, name, &part);
   if (found) return abi_show_array(found, data, dimensions, shape, stride);
-  strutlib_result *result = lock(constant);
-  found = made_array(result, name);
+  strutlib_result *result =
+      lock(constant); /* an array of the JSON is made when it is first asked for */
+  found = find_array(&result->made, name);
+  if (!found && read_array(locked_tree(result), name, &result->made_arena, &part))
+    found = add_array(&result->made, &result->made_arena, &part);
   int shown = found ? abi_show_array(found, data, dimensions, shape, stride) : 0;
   pthread_mutex_unlock(&result->lock);
   return shown;

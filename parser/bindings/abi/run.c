@@ -15,6 +15,7 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
+#include "parser/program/command/plot_options.h"
 #include "parser/program/command/run_settings.h"
 #include "parser/program/command/varied_scenes.h"
 
@@ -51,17 +52,16 @@ static strut_channels choose_channels(const strut_arguments *arguments, const st
 
 /* ---- the run ---- */
 
-static strut_status open_setup(abi_call *call, const strutlib_scene *scene,
-                               strutlib_result *result) {
-  const strut_arguments *arguments = &call->arguments;
+/* The scene as it is run with the options of the call; *opened: there is a setup, also after a failure. */
+static strut_status open_setup(abi_call *call, const strutlib_scene *scene, strut_setup *setup,
+                               bool *opened) {
   strut_error what = {0};
   strut_status status =
-      abi_setup(scene, strut_run_options_purpose(arguments), &result->setup, call->error);
+      abi_setup(scene, strut_run_options_purpose(&call->arguments), setup, call->error);
+  *opened = status == STRUT_OK;
   if (status != STRUT_OK) return status;
-  result->opened = true;
-  status = strut_resolve_start_equilibrium(&result->setup, &what);
-  if (status == STRUT_OK) status = strut_run_options_apply(arguments, &result->setup);
-  if (status == STRUT_OK) status = strut_model_compile(&result->setup.scene, &result->model, &what);
+  status = strut_resolve_start_equilibrium(setup, &what);
+  if (status == STRUT_OK) status = strut_run_options_apply(&call->arguments, setup);
   if (status != STRUT_OK) abi_call_fail(call, status, &what);
   return status;
 }
@@ -125,8 +125,10 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
                          const char *path, strut_error *error) {
   const run_detail *run = result->detail;
   strut_run_figure figure = {.experiment = &result->setup.experiment};
-  double times[ABI_MOST_TIMES];
-  strut_status status = abi_run_figure_read(arguments, &figure, times);
+  double times[STRUT_MOST_TIMES];
+  strut_plot plot;
+  strut_status status = abi_plot_read(arguments, path, &plot);
+  if (status == STRUT_OK) status = strut_run_figure_read(arguments, &plot, &figure, times);
   if (status != STRUT_OK) return status;
   unsigned needed = strut_run_figure_channels(figure.view);
   if (!run->motion.position || ((needed & STRUT_CHANNEL_FORCE) && !run->motion.force))
@@ -145,8 +147,8 @@ static strut_status run_model(abi_call *call, const strutlib_scene *scene,
   result->detail = run;
   result->draw = draw;
   const strut_channels channels = choose_channels(&call->arguments, &result->setup);
-  strut_status status = STRUT_OK;
-  if (channels) {
+  strut_status status = strut_model_compile(&result->setup.scene, &result->model, &what);
+  if (status == STRUT_OK && channels) {
     sink = strut_trajectory_sink(&run->motion, &result->setup.scene, channels, ROOM);
     if (!sink) status = strut_no_memory(&what, "");
   }
@@ -169,7 +171,7 @@ strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count, const c
   if (status == STRUT_OK)
     status = abi_call_begin(&call, scene, &abi_run_command, &(abi_pairs){count, names, values},
                             control, error, &result->messages);
-  if (status == STRUT_OK) status = open_setup(&call, scene, result);
+  if (status == STRUT_OK) status = open_setup(&call, scene, &result->setup, &result->opened);
   bool begun = status == STRUT_OK;
   if (begun) status = run_model(&call, scene, result);
   return abi_result_leave(result, begun && strut_run_has_results(status));
@@ -187,28 +189,12 @@ struct strutlib_snapshot {
   strut_stepping_snapshot *stored;
 };
 
-static strut_status open_simulation(abi_call *call, const strutlib_scene *scene,
-                                    strutlib_simulation *simulation) {
-  const strut_arguments *arguments = &call->arguments;
-  strut_setup *setup = &simulation->setup;
-  strut_error what = {0};
-  strut_status status = abi_setup(scene, strut_run_options_purpose(arguments), setup, call->error);
-  if (status != STRUT_OK) return status;
-  simulation->opened = true;
-  status = strut_resolve_start_equilibrium(setup, &what);
-  if (status == STRUT_OK) status = strut_run_options_apply(arguments, setup);
-  if (status == STRUT_OK)
-    status = strut_stepping_create(setup, arguments->force, abi_interrupt_of(call->control),
-                                   &simulation->stepping, &what);
-  if (status != STRUT_OK) abi_call_fail(call, status, &what);
-  return status;
-}
-
 strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_t count,
                                               const char *const *names, const char *const *values,
                                               strutlib_control *control, strutlib_error **error) {
   abi_messages messages = {0};
   abi_call call;
+  strut_error what = {0};
   abi_enter(error);
   strutlib_simulation *simulation = strut_allocate(1, sizeof *simulation);
   strut_status status = STRUT_NO_MEMORY;
@@ -217,7 +203,13 @@ strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_
                             &(abi_pairs){count, names, values}, control, error, &messages);
   else
     abi_no_memory(error);
-  if (status == STRUT_OK) status = open_simulation(&call, scene, simulation);
+  if (status == STRUT_OK)
+    status = open_setup(&call, scene, &simulation->setup, &simulation->opened);
+  if (status == STRUT_OK) {
+    status = strut_stepping_create(&simulation->setup, call.arguments.force,
+                                   abi_interrupt_of(control), &simulation->stepping, &what);
+    if (status != STRUT_OK) abi_call_fail(&call, status, &what);
+  }
   if (status != STRUT_OK) {
     strutlib_simulation_close(simulation);
     simulation = NULL;

@@ -54,20 +54,17 @@ static void release(void *detail) { strut_release(detail); }
 
 /* ---- the study ---- */
 
-static strut_status refuse_parameter(const strut_scene_source *source, const char *name,
-                                     strut_error *what) {
-  const char *near = strut_did_you_mean(name, strut_scene_source_parameter_name, source);
-  return strut_fail(what, STRUT_USAGE, "the scene has no parameter '%s'%s%s%s", name,
-                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-}
-
 /* Column k of the points, which are (count, axes). */
 static strut_status add_axis(sweep *self, size_t k, const char *name, const double *points,
                              const char *const *words, strut_error *what) {
   size_t count = (size_t)self->axis.count, axes = self->axis.column_count;
   const strut_scene_source *source = self->scene->source->tree;
   const strut_declared *declared = strut_scene_source_parameter(source, name);
-  if (!declared) return refuse_parameter(source, name, what);
+  if (!declared) {
+    const char *near = strut_did_you_mean(name, strut_scene_source_parameter_name, source);
+    return strut_fail(what, STRUT_USAGE, "the scene has no parameter '%s'%s%s%s", name,
+                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  }
   strut_study_column *column = &self->axis.columns[k];
   *column = (strut_study_column){
       .name = declared->name,

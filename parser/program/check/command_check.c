@@ -86,15 +86,6 @@ static void print_run(const strut_cost_estimate *estimate, const strut_experimen
   }
 }
 
-static strut_status print_estimate(const strut_check_result *result) {
-  const strut_scene *scene = result->model->scene;
-  printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
-  print_counts(result->estimate);
-  print_run(result->estimate, &result->setup->experiment);
-  strut_check_print_things(result);
-  return STRUT_OK;
-}
-
 static strut_status print_json(strut_check_result *result, strut_open_report *report) {
   strut_status status = strut_setup_warn(result->setup, &result->found);
   strut_messages_add_diagnostics(&result->messages, &report->diagnostics);
@@ -108,9 +99,18 @@ static strut_status print_valid(const strut_arguments *arguments, strut_check_re
                                 strut_open_report *report) {
   result->drawn = strut_allocate((size_t)result->model->length, sizeof *result->drawn);
   if (!result->drawn) return strut_print_out_of_memory();
-  for (size_t i = 0; i < 2 * result->model->scene->node_count; i++)
-    result->drawn[i] = result->model->scene->nodes[i / 2].position[i % 2];
-  strut_status status = arguments->json ? print_json(result, report) : print_estimate(result);
+  const strut_scene *scene = result->model->scene;
+  for (size_t i = 0; i < 2 * scene->node_count; i++)
+    result->drawn[i] = scene->nodes[i / 2].position[i % 2];
+  strut_status status = STRUT_OK;
+  if (arguments->json) {
+    status = print_json(result, report);
+  } else {
+    printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
+    print_counts(result->estimate);
+    print_run(result->estimate, &result->setup->experiment);
+    strut_check_print_things(result);
+  }
   strut_release(result->drawn);
   return status;
 }

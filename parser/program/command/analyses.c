@@ -488,14 +488,6 @@ const strut_analysis_kind strut_form_analysis = {.rows = &strut_form_values,
 
 /* ---- path ---- */
 
-/* The file's stages are followed unless the command says what to follow. */
-static bool has_stages(const strut_analysis *analysis) {
-  const strut_arguments *arguments = analysis->arguments;
-  return analysis->setup->experiment.stage_count > 0 &&
-         !(arguments->load || arguments->over.text || arguments->from || arguments->until ||
-           arguments->stop);
-}
-
 static strut_status compute_path(strut_analysis *analysis, strut_error *error) {
   const strut_arguments *arguments = analysis->arguments;
   strut_path_options wanted = {.at = arguments->at,
@@ -504,7 +496,10 @@ static strut_status compute_path(strut_analysis *analysis, strut_error *error) {
                                .friction = arguments->friction.text
                                                ? arguments->friction.index == 1
                                                : analysis->setup->experiment.path_friction};
-  if (has_stages(analysis))
+  /* The file's stages are followed unless the command says what to follow. */
+  const bool given = arguments->load || arguments->over.text || arguments->from ||
+                     arguments->until || arguments->stop;
+  if (analysis->setup->experiment.stage_count > 0 && !given)
     return strut_path_follow_stages(analysis->model, &analysis->setup->experiment, &wanted,
                                     &analysis->result.path, error);
   strut_status status =

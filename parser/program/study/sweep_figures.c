@@ -24,23 +24,16 @@ static const char *column_name(const void *context, size_t i) {
   return self->runs ? strut_study_motion_column(i - count) : NULL;
 }
 
-static bool holds_texts(const source *self, size_t i) {
-  size_t axes = self->plan->axis_columns;
-  return self->runs && i >= axes ? i == axes : self->plan->columns[i].word;
-}
-
-/* Columns that may split rows into series; recorded numbers may not. */
-static bool tells_apart(const source *self, size_t i) {
-  return !self->runs || i <= self->plan->axis_columns;
-}
-
 /* Checks that the figure may use this column; NULL: not given. */
 static strut_status check_column(const source *self, const strut_study_figure *figure,
                                  const char *name, bool number, strut_error *error) {
   const char *other = NULL;
   for (size_t i = 0; name && (other = column_name(self, i)); i++) {
     if (strcmp(other, name) != 0) continue;
-    if (number ? !holds_texts(self, i) : tells_apart(self, i)) return STRUT_OK;
+    /* What was recorded is numbers behind the names of nodes; it does not split rows into series. */
+    const size_t node = self->plan->axis_columns;
+    const bool texts = self->runs && i >= node ? i == node : self->plan->columns[i].word;
+    if (number ? !texts : !self->runs || i <= node) return STRUT_OK;
     return strut_fail(error, STRUT_BAD_SCENE,
                       number
                           ? "figure '%.60s' of the study: column '%.60s' holds texts, not numbers"

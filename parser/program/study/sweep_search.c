@@ -204,12 +204,6 @@ strut_status strut_sweep_search_check_workers(const strut_arguments *arguments,
 
 /* Refined studies: what the files of all shards hold, and their table. */
 
-/* Are the files of the same study? */
-static bool alike(const strut_slots_description *first, const strut_slots_description *second) {
-  return first->points == second->points && first->column_count == second->column_count &&
-         memcmp(first->hash, second->hash, sizeof first->hash) == 0;
-}
-
 void strut_sweep_refine_learn(strut_refinement *refinement, const char *directory,
                               strut_shard shard, strut_slots *own) {
   strut_shards_found found = {0};
@@ -222,7 +216,10 @@ void strut_sweep_refine_learn(strut_refinement *refinement, const char *director
       if (k == shard.index || found.count != shard.count || !found.there[k]) continue;
       const char *path = strut_shard_path(directory, (strut_shard){k, found.count}, &arena);
       if (!path || strut_slots_read(path, &slots, &there, NULL) != STRUT_OK) continue;
-      if (alike(&there, strut_slots_description_of(own))) strut_refinement_learn(refinement, slots);
+      const strut_slots_description *mine = strut_slots_description_of(own);
+      if (there.points == mine->points && there.column_count == mine->column_count &&
+          memcmp(there.hash, mine->hash, sizeof there.hash) == 0) /* of the same study */
+        strut_refinement_learn(refinement, slots);
       strut_slots_close(slots);
     }
   strut_arena_free(&arena);

@@ -74,38 +74,25 @@ class Error(Exception):
         return (type(self), self.args, self.__dict__)
 
 
+def _first(part: str, hint: str, text: str) -> Any:
+    """A part of the first message, None where there is none."""
+
+    def get(self: Error) -> Any:
+        return getattr(self.messages[0], part) if self.messages else None
+
+    get.__annotations__["return"] = hint
+    return property(get, doc=text)
+
+
 class SceneError(Error, ValueError):
     """A scene is not valid. The first mistake's place, hint and key are attributes; `messages` has all."""
 
-    @property
-    def file(self) -> str | None:
-        """The file of the first mistake."""
-        return self.messages[0].file if self.messages else None
-
-    @property
-    def line(self) -> int | None:
-        """Its line, from 1."""
-        return self.messages[0].line if self.messages else None
-
-    @property
-    def column(self) -> int | None:
-        """Its column, from 1."""
-        return self.messages[0].column if self.messages else None
-
-    @property
-    def length(self) -> int | None:
-        """Characters that are wrong."""
-        return self.messages[0].length if self.messages else None
-
-    @property
-    def hint(self) -> str | None:
-        """The word that was probably meant."""
-        return self.messages[0].hint if self.messages else None
-
-    @property
-    def key(self) -> str | None:
-        """The key there, such as "nodes.n3.mass"."""
-        return self.messages[0].key if self.messages else None
+    file = _first("file", "str | None", "The file of the first mistake.")
+    line = _first("line", "int | None", "Its line, from 1.")
+    column = _first("column", "int | None", "Its column, from 1.")
+    length = _first("length", "int | None", "Characters that are wrong.")
+    hint = _first("hint", "str | None", "The word that was probably meant.")
+    key = _first("key", "str | None", 'The key there, such as "nodes.n3.mass".')
 
 
 class UsageError(Error, ValueError):

@@ -58,39 +58,43 @@ export async function open(text, options) {
   return openScene(text, options);
 }
 
-export const version = () => textAt(module()._strutlib_version());
-export const statusName = (status) => textAt(module()._strutlib_status_name(status));
-export const exitCode = (status) => module()._strutlib_exit_code(status);
-export const statusText = (status) => textAt(module()._strutlib_status_text(status));
+/* ---- functions of the module ---- */
+
+/* Arguments that need memory while a call lasts: a text, or options as an object, which are three. */
+const text = (value) => (place) => [place.text(value)];
+const options = (given) => (place) => pairs(place, given);
+const put = (place, given) => given.flatMap((one) => (typeof one === "function" ? one(place) : one));
+
+/* What strutlib_NAME returns; of one that may fail, whose error is thrown; of one that counts, all its texts. */
+const call = (name, ...given) => withMemory((place) => module()["_strutlib_" + name](...put(place, given)));
+const ask = (name, ...given) =>
+  must((place, error) => module()["_strutlib_" + name](...put(place, given), error));
+const all = (name, ...given) => withMemory((place) => {
+  const pointers = put(place, given);
+  return list((i) => module()["_strutlib_" + name](...pointers, i));
+});
+
+export const version = () => textAt(call("version"));
+export const statusName = (status) => textAt(call("status_name", status));
+export const exitCode = (status) => call("exit_code", status);
+export const statusText = (status) => textAt(call("status_text", status));
 
 /** The language as a JSON Schema, an object; with `study` that of studies. */
-export function schema({ study = false } = {}) {
-  return JSON.parse(taken(must((_, error) => module()._strutlib_schema(study ? 1 : 0, error))));
-}
+export const schema = ({ study = false } = {}) => JSON.parse(taken(ask("schema", study ? 1 : 0)));
 
 /** {name: help} of the options that a call has: one of CALLS, "sweep" or "simulate". */
-export function optionsOf(call) {
-  return withMemory((place) => {
-    const name = place.text(call === "simulate" ? "simulation_open" : call), found = {};
-    list((i) => module()._strutlib_option_name(name, i)).forEach((option, i) => {
-      found[option] = textAt(module()._strutlib_option_help(name, i));
-    });
-    return found;
-  });
+export function optionsOf(of) {
+  const command = text(of === "simulate" ? "simulation_open" : of), helps = all("option_help", command);
+  return Object.fromEntries(all("option_name", command).map((name, i) => [name, helps[i]]));
 }
 
 /** All channels: [{name, kind, components, columns}]. */
-export function channels() {
-  return list((i) => module()._strutlib_channel(i)).map((name) => withMemory((place) => {
-    const at = place.text(name);
-    return {
-      name,
-      kind: textAt(module()._strutlib_channel_kind(at)),
-      components: list((i) => module()._strutlib_channel_component(at, i)),
-      columns: list((i) => module()._strutlib_channel_column(at, i))
-    };
-  }));
-}
+export const channels = () => all("channel").map((name) => ({
+  name,
+  kind: textAt(call("channel_kind", text(name))),
+  components: all("channel_component", text(name)),
+  columns: all("channel_column", text(name))
+}));
 
 /* ---- what owns memory of the module ---- */
 
@@ -135,7 +139,7 @@ class Values extends Owner {
   }
   number(name) { return numberOf((place, at) => this.#find("number", place, name, at)); }
   flag(name) { return flagOf((place, at) => this.#find("flag", place, name, at)); }
-  text(name) { return withMemory((place) => textAt(this.#find("text", place, name))); }
+  text(name) { return textAt(call(this.#of + "_text", this.handle, text(name))); }
   array(name) { return arrayOf((place, ...to) => this.#find("array", place, name, ...to)); }
 }
 
@@ -189,11 +193,8 @@ function openScene(text, { name = "scene.yaml", settings = {}, files = {} } = {}
   folder.join();
   try {
     folder.enter();
-    return new Scene(must((place, error) => {
-      const p = pairs(place, settings), whole = place.whole(text);
-      return module()._strutlib_open_text(place.text(name), whole.pointer, whole.length, p.count, p.names, p.values,
-        error);
-    }), folder);
+    const source = (place) => [place.text(name), ...place.whole(text)];
+    return new Scene(ask("open_text", source, options(settings)), folder);
   } finally {
     if (!failed()) folder.leave();
   }
@@ -216,56 +217,33 @@ export class Scene extends Values {
     this.#folder.enter();
     return handle;
   }
-  with(settings) {
-    const scene = this.ready;
-    return new Scene(must((place, error) => {
-      const p = pairs(place, settings);
-      return module()._strutlib_scene_with(scene, p.count, p.names, p.values, error);
-    }), this.#folder);
-  }
-  get warnings() { return list((i) => module()._strutlib_scene_warning(this.handle, i)); }
-  names(kind) {
-    return withMemory((place) => {
-      const at = place.text(kind);
-      return list((i) => module()._strutlib_name(this.handle, at, i));
-    });
-  }
-  index(kind, name) {
-    return withMemory((place) => module()._strutlib_index(this.handle, place.text(kind), place.text(name)));
-  }
-  yaml({ parts = false } = {}) {
-    return taken(must((_, error) => module()._strutlib_scene_yaml(this.ready, parts ? 1 : 0, error)));
-  }
-  json() {
-    return JSON.parse(taken(must((_, error) => module()._strutlib_scene_json(this.ready, error))));
-  }
-  svg() { return taken(must((_, error) => module()._strutlib_scene_svg(this.ready, error))); }
+  with(settings) { return new Scene(ask("scene_with", this.ready, options(settings)), this.#folder); }
+  get warnings() { return all("scene_warning", this.handle); }
+  names(kind) { return all("name", this.handle, text(kind)); }
+  index(kind, name) { return call("index", this.handle, text(kind), text(name)); }
+  yaml({ parts = false } = {}) { return taken(ask("scene_yaml", this.ready, parts ? 1 : 0)); }
+  json() { return JSON.parse(taken(ask("scene_json", this.ready))); }
+  svg() { return taken(ask("scene_svg", this.ready)); }
   pageData({ equilibria = false } = {}) {
-    return taken(must((_, error) =>
-      module()._strutlib_scene_page_data(this.ready, equilibria ? 1 : 0, 0, error)));
+    return taken(ask("scene_page_data", this.ready, equilibria ? 1 : 0, 0));
   }
-  simulate(options) {
-    return new Simulation(must((place, error) => {
-      const p = pairs(place, options);
-      return module()._strutlib_simulation_open(this.ready, p.count, p.names, p.values, 0, error);
-    }));
-  }
+  simulate(given) { return new Simulation(ask("simulation_open", this.ready, options(given), 0)); }
   /**
    * Points of a parameter study: axes are names, points rows of values, in SI units or words. `keep`: columns;
    * the other options as of `strut sweep`. `control` may have row(point, status): true to stop.
    */
-  sweep(axes, points, { keep = [], ...options } = {}, control = {}) {
-    for (const given of [axes, points, keep]) if (!Array.isArray(given)) throw wrongUse("expected a list");
+  sweep(axes, points, { keep = [], ...given } = {}, control = {}) {
+    for (const each of [axes, points, keep]) if (!Array.isArray(each)) throw wrongUse("expected a list");
     if (points.some((point) => !Array.isArray(point) || point.length !== axes.length))
       throw wrongUse("every point needs " + axes.length + " values, one of each axis");
     return compute(control, (place, handle, error) => {
-      const p = pairs(place, options), flat = points.flat();
+      const flat = points.flat();
       const numbers = flat.map((value) => (typeof value === "number" ? value : NaN));
       const words = flat.map((value) => (typeof value === "number" ? null : String(value)));
       return module()._strutlib_sweep(
         this.ready, axes.length, place.texts(axes), axes.length ? points.length : 1, place.numbers(numbers),
-        words.some((word) => word !== null) ? place.texts(words) : 0, keep.length, place.texts(keep), p.count, p.names,
-        p.values, control.row ? callbacks().row : 0, 0, handle, error);
+        words.some((word) => word !== null) ? place.texts(words) : 0, keep.length, place.texts(keep),
+        ...pairs(place, given), control.row ? callbacks().row : 0, 0, handle, error);
     });
   }
 }
@@ -275,12 +253,10 @@ export class Scene extends Values {
 /* The functions of abi.h that are called alike (STRUTLIB_CALLS). */
 export const CALLS = ["run", "equilibria", "modes", "rigidity", "form", "path", "matrices"];
 
-for (const call of CALLS)
-  Scene.prototype[call] = function (options, control) {
-    return compute(control, (place, handle, error) => {
-      const p = pairs(place, options);
-      return module()["_strutlib_" + call](this.ready, p.count, p.names, p.values, handle, error);
-    });
+for (const name of CALLS)
+  Scene.prototype[name] = function (given, control) {
+    return compute(control, (place, handle, error) =>
+      module()["_strutlib_" + name](this.ready, ...pairs(place, given), handle, error));
   };
 
 /* Who hears of the call under way: of one at a time, since it lasts until the call is done. */
@@ -309,7 +285,7 @@ function callbacks() {
 
 /* `control`: {progress(fraction): true to stop, limit: seconds after which it stops}. What was computed until then is
    the result, with its status and its error. */
-function compute({ progress, row, limit } = {}, call) {
+function compute({ progress, row, limit } = {}, work) {
   const engine = module(), control = engine._strutlib_control_create(), before = listener;
   if (!control) throw new StrutError({ status: STATUS.NO_MEMORY, message: "out of memory" });
   const end = limit ? performance.now() + 1000 * limit : Infinity;
@@ -320,7 +296,7 @@ function compute({ progress, row, limit } = {}, call) {
   };
   try {
     engine._strutlib_control_on_progress(control, callbacks().progress, 0);
-    const { value, error } = attempt((place, at) => call(place, control, at));
+    const { value, error } = attempt((place, at) => work(place, control, at));
     if (value && own.thrown) engine._strutlib_result_free(value);
     if (own.thrown) throw own.thrown.error;
     if (!value) throw error;
@@ -338,33 +314,20 @@ export class Result extends Values {
     super(handle, (engine, result) => engine._strutlib_result_free(result), "result");
     this.error = error; /* why it is not whole, or null */
   }
-  get status() { return module()._strutlib_result_status(this.handle); }
-  get command() { return textAt(module()._strutlib_result_command(this.handle)); }
+  get status() { return call("result_status", this.handle); }
+  get command() { return textAt(call("result_command", this.handle)); }
   /** The program's --json, byte for byte, and the same as an object. */
-  get jsonText() { return textAt(module()._strutlib_result_json(this.handle)); }
+  get jsonText() { return textAt(call("result_json", this.handle)); }
   get json() { return (this.#json ||= JSON.parse(this.jsonText)); }
-  get table() { return textAt(module()._strutlib_result_table(this.handle)); }
-  get warnings() { return list((i) => module()._strutlib_result_warning(this.handle, i)); }
-  get arrays() { return list((i) => module()._strutlib_result_array_name(this.handle, i)); }
-  unit(name) {
-    return withMemory((place) =>
-      textAt(module()._strutlib_result_array_unit(this.handle, place.text(name))));
-  }
-  get columns() { return list((i) => module()._strutlib_result_column(this.handle, i)); }
-  cell(column, point) {
-    return withMemory((place) =>
-      textAt(module()._strutlib_result_cell(this.handle, place.text(column), point)));
-  }
-  yaml() { return taken(must((_, error) => module()._strutlib_result_yaml(this.handle, error))); }
-  svg(options) {
-    return taken(must((place, error) => {
-      const p = pairs(place, options);
-      return module()._strutlib_result_svg(this.handle, p.count, p.names, p.values, error);
-    }));
-  }
-  pageData() {
-    return taken(must((_, error) => module()._strutlib_result_page_data(this.handle, error)));
-  }
+  get table() { return textAt(call("result_table", this.handle)); }
+  get warnings() { return all("result_warning", this.handle); }
+  get arrays() { return all("result_array_name", this.handle); }
+  unit(name) { return textAt(call("result_array_unit", this.handle, text(name))); }
+  get columns() { return all("result_column", this.handle); }
+  cell(column, point) { return textAt(call("result_cell", this.handle, text(column), point)); }
+  yaml() { return taken(ask("result_yaml", this.handle)); }
+  svg(given) { return taken(ask("result_svg", this.handle, options(given))); }
+  pageData() { return taken(ask("result_page_data", this.handle)); }
 }
 
 /** A run that is advanced from outside. */
@@ -375,43 +338,36 @@ export class Simulation extends Owner {
   advance(steps = 1) {
     if (!Number.isInteger(steps) || steps < 0 || steps > 0x7fffffff)
       throw wrongUse("expected a number of steps, not " + String(steps));
-    must((_, error) => module()._strutlib_simulation_advance(this.handle, steps, error));
+    ask("simulation_advance", this.handle, steps);
     return this;
   }
-  get time() { return module()._strutlib_simulation_time(this.handle); }
-  get step() { return module()._strutlib_simulation_step(this.handle); }
-  get inputWork() { return module()._strutlib_simulation_input_work(this.handle); }
-  array(name) {
-    return arrayOf((place, ...to) =>
-      module()._strutlib_simulation_array(this.handle, place.text(name), ...to));
+  get time() { return call("simulation_time", this.handle); }
+  get step() { return call("simulation_step", this.handle); }
+  get inputWork() { return call("simulation_input_work", this.handle); }
+  #find(what, name) {
+    return (place, ...to) => module()["_strutlib_simulation_" + what](this.handle, place.text(name), ...to);
   }
+  array(name) { return arrayOf(this.#find("array", name)); }
   /** What is written into an input, "rest", "actuators" or "load", as array() has it. */
-  input(name) {
-    return arrayOf((place, ...to) =>
-      module()._strutlib_simulation_input(this.handle, place.text(name), ...to));
-  }
+  input(name) { return arrayOf(this.#find("input", name)); }
   /** All numbers of an input, in the order of C. */
   write(name, numbers) {
-    const known = writeArray(numbers, (place, ...to) =>
-      module()._strutlib_simulation_input(this.handle, place.text(name), ...to));
+    const known = writeArray(numbers, this.#find("input", name));
     if (!known) throw wrongUse("there is no input '" + name + "'");
     return this;
   }
   /** set("rest", "m8", 0.12); set("load", "n1.x", 3). */
   set(input, name, value) {
     if (typeof value !== "number") throw wrongUse("the value of '" + name + "' is no number");
-    must((place, error) =>
-      module()._strutlib_simulation_set(this.handle, place.text(input), place.text(name), value, error));
+    ask("simulation_set", this.handle, text(input), text(name), value);
     return this;
   }
   snapshot() {
-    return new Snapshot(must((_, error) =>
-      module()._strutlib_simulation_snapshot(this.handle, error)));
+    return new Snapshot(ask("simulation_snapshot", this.handle));
   }
   restore(snapshot) {
     if (!(snapshot instanceof Snapshot)) throw wrongUse("expected a snapshot");
-    must((_, error) =>
-      module()._strutlib_simulation_restore(this.handle, snapshot.handle, error));
+    ask("simulation_restore", this.handle, snapshot.handle);
     return this;
   }
 }

@@ -98,10 +98,10 @@ export function withMemory(work) {
   };
   const place = {
     room,
-    /** A text that may have zeros inside: {pointer, length}. */
+    /** A text that may have zeros inside: pointer and length. */
     whole(value) {
       const bytes = bytesOf(value);
-      return { pointer: put(bytes), length: bytes.length };
+      return [put(bytes), bytes.length];
     },
     text(value) {
       if (value === null || value === undefined) return 0;
@@ -243,14 +243,11 @@ function written(name, value) {
   throw wrongUse("'" + name + "' is " + nameOf(value) + ", expected a number, a text, true or false");
 }
 
-/** {count, names, values} of pairs given as an object. */
+/** Count, names and values of pairs given as an object. */
 export function pairs(place, given = {}) {
   if (typeof given !== "object" || given === null || Array.isArray(given))
     throw wrongUse("expected an object of names and values, not " + nameOf(given));
   const entries = Object.entries(given).filter(([, value]) => value !== undefined);
-  return {
-    count: entries.length,
-    names: place.texts(entries.map(([name]) => name)),
-    values: place.texts(entries.map(([name, value]) => written(name, value)))
-  };
+  const values = entries.map(([name, value]) => written(name, value));
+  return [entries.length, place.texts(entries.map(([name]) => name)), place.texts(values)];
 }
