@@ -77,7 +77,9 @@ static void describe_error(const strut_summary *summary, char *text, size_t size
   const strut_accuracy_summary *accuracy_summary = &summary->accuracy;
   bool velocity = summary->measured_count == 0;
   char error[60] = "the error is not known";
-  const char *asked = accuracy_summary->assumed ? "taken, as the model has no solver" : "requested";
+  char asked[60];
+  snprintf(asked, sizeof asked, "%.2g %% %s", 100.0 * accuracy_summary->wanted,
+           accuracy_summary->assumed ? "taken, as the model has no solver" : "requested");
   if (isfinite(accuracy_summary->expected) && velocity &&
       fabs(summary->velocity) < accuracy_summary->scale)
     snprintf(error, sizeof error, "within %.2g m/s",
@@ -87,14 +89,13 @@ static void describe_error(const strut_summary *summary, char *text, size_t size
   if (accuracy_summary->kept && summary->steady.kind == STRUT_MOTION_CREEPING)
     snprintf(text, size, "right %s for this model: it only creeps", error);
   else if (accuracy_summary->kept && velocity && summary->velocity_zero)
-    snprintf(text, size, "right for this model: the velocity is zero by symmetry");
+    snprintf(text, size, "right for this model: the velocity is zero by symmetry%s%s",
+             accuracy_summary->assumed ? "; " : "", accuracy_summary->assumed ? asked : "");
   else if (accuracy_summary->kept)
-    snprintf(text, size, "right %s for this model; %.2g %% %s", error,
-             100.0 * accuracy_summary->wanted, asked);
+    snprintf(text, size, "right %s for this model; %s", error, asked);
   else
-    snprintf(text, size, "NOT kept: %s%s, but %.2g %% %s",
-             isfinite(accuracy_summary->expected) ? "right only " : "", error,
-             100.0 * accuracy_summary->wanted, asked);
+    snprintf(text, size, "NOT kept: %s%s, but %s",
+             isfinite(accuracy_summary->expected) ? "right only " : "", error, asked);
 }
 
 void strut_summary_worth(const strut_summary *summary, char *text, size_t size) {
