@@ -94,7 +94,7 @@ static void dense_free(void *memory) {
   strut_release(curvature);
 }
 
-void *strut_curvature_dense_create(const strut_potential *potential) {
+static void *dense_create(const strut_potential *potential) {
   dense_curvature *curvature = strut_allocate(1, sizeof *curvature);
   if (!curvature) return NULL;
   size_t n = (size_t)potential->n;
@@ -159,9 +159,9 @@ static bool dense_unstable_direction(void *memory, double *step) {
   return true;
 }
 
-const strut_curvature strut_curvature_dense = {dense_decompose,          dense_trust_step,
-                                               dense_rebalance,          dense_newton_step,
-                                               dense_unstable_direction, dense_free};
+const strut_curvature strut_curvature_dense = {
+    dense_create,      dense_decompose,          dense_trust_step, dense_rebalance,
+    dense_newton_step, dense_unstable_direction, dense_free};
 
 /* Steps by a sparse L D L' factor of the Hessian, shifted until it is positive definite. */
 
@@ -185,7 +185,7 @@ static void sparse_free(void *memory) {
   strut_release(curvature);
 }
 
-void *strut_curvature_sparse_create(const strut_potential *potential) {
+static void *sparse_create(const strut_potential *potential) {
   sparse_curvature *curvature = strut_allocate(1, sizeof *curvature);
   if (!curvature) return NULL;
   curvature->potential = potential;
@@ -358,9 +358,9 @@ static bool sparse_unstable_direction(void *memory, double *step) {
   return quotient < -1e-13 * curvature->scale;
 }
 
-const strut_curvature strut_curvature_sparse = {sparse_decompose,          sparse_trust_step,
-                                                sparse_rebalance,          sparse_newton_step,
-                                                sparse_unstable_direction, sparse_free};
+const strut_curvature strut_curvature_sparse = {
+    sparse_create,      sparse_decompose,          sparse_trust_step, sparse_rebalance,
+    sparse_newton_step, sparse_unstable_direction, sparse_free};
 
 /* Displacement of coordinate `at` per unit of (along x, along y, rotation about the centre by 1/size). */
 typedef struct frame {

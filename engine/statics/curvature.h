@@ -16,11 +16,10 @@ typedef struct strut_model_step {
   double reduction; /* -(g's + s'Hs/2) [J] */
 } strut_model_step;
 
-/**
- * A decomposition of the Hessian: dense or sparse. Rows are those of the potential; all arrays are
- * (n); `workspace` comes from the function of the same kind below.
- */
+/** A decomposition of the Hessian: dense or sparse. Rows are those of the potential; all arrays are (n). */
 typedef struct strut_curvature {
+  /** The workspace that the others take; NULL: out of memory. */
+  void *(*create)(const strut_potential *potential);
   /** Decomposes the Hessian at q; false: not finite, or out of memory. */
   bool (*decompose)(void *workspace, const double *q);
   /** The lowest point of the model within |s| <= radius. still [N]: a force within rounding. */
@@ -39,9 +38,6 @@ typedef struct strut_curvature {
 } strut_curvature;
 
 extern const strut_curvature strut_curvature_dense, strut_curvature_sparse;
-/** Workspaces of the two kinds; NULL: out of memory. */
-void *strut_curvature_dense_create(const strut_potential *potential);
-void *strut_curvature_sparse_create(const strut_potential *potential);
 
 /** q(x) = sum part x + value x^2 / 2, one term for each mode, in any order. */
 typedef struct strut_quadratic {

@@ -50,8 +50,7 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->longest_step = HUGE_VAL;
   m->first_step = 0.1 * m->size;
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
-  m->workspace =
-      dense ? strut_curvature_dense_create(potential) : strut_curvature_sparse_create(potential);
+  m->workspace = m->curvature->create(potential);
   if (m->workspace &&
       strut_arena_numbers(&m->arena, n,
                           (double **[]){&m->g, &m->g_trial, &m->step, &m->unbent, NULL}) &&

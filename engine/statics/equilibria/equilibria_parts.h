@@ -139,10 +139,7 @@ typedef enum strut_relaxed_end {
 
 typedef struct strut_relaxed {
   strut_relaxed_end end;
-  bool simulated;      /* false: below the pass from the start, or without a motion */
-  double time;         /* simulated [s] */
-  double residual;     /* largest net force at rest [N] */
-  double acceleration; /* largest there [m/s^2]; 0 for a scene without mass */
+  double residual; /* largest net force at rest [N] */
 } strut_relaxed;
 
 /** Memory of relaxations of one model, for one thread at a time. */
@@ -157,18 +154,17 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
                                   strut_relaxer **relaxer, strut_error *error);
 void strut_relaxer_free(strut_relaxer *relaxer);
 
-/** True if the model can be simulated. */
-bool strut_relaxer_simulates(const strut_relaxer *relaxer);
-
-/** Minimises without simulation, for a q with one possible end; reports as strut_relax does. */
-void strut_relax_down(strut_relaxer *relaxer, double *positions, strut_relaxed *relaxed);
-
 /**
  * Lets go of q (length) with no velocity; at the end it is the shape at rest, its centre of mass
  * where the motion has left it along the ground. passes: a landscape, or NULL. STRUT_OK or STRUT_INTERRUPTED.
  */
 strut_status strut_relax(strut_relaxer *relaxer, double *positions, const strut_landscape *passes,
                          const strut_flag *interrupt, strut_relaxed *relaxed, strut_error *error);
+
+/** The same, but of a q next to a minimum, and of a model that is not simulated, straight downhill. */
+strut_status strut_relax_nearby(strut_relaxer *relaxer, double *positions,
+                                const strut_flag *interrupt, strut_relaxed *relaxed,
+                                strut_error *error);
 
 /* The state of a search for equilibria: the level scene and the candidates found so far. */
 

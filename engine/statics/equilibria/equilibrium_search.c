@@ -319,6 +319,8 @@ enum { AGREE = 5 };
 static const double DIED = 1e-3;
 /* Distances, in model sizes: two shapes are one; the structure has moved away. */
 static const double SAME = 1e-5, GONE = 1e3;
+/* A start nearer to its minimum is at rest up to the ground's compliance; likewise. */
+static const double NEAR = 0.01;
 /* The share of the stable step; folded shapes are stiffer than the start that the limit is for. */
 static const double CAREFUL = 0.5;
 static const double GROWN = 1e-6;
@@ -377,8 +379,6 @@ void strut_relaxer_free(strut_relaxer *relaxer) {
   strut_arena_free(&relaxer->arena);
   strut_release(relaxer);
 }
-
-bool strut_relaxer_simulates(const strut_relaxer *relaxer) { return relaxer->state != NULL; }
 
 static bool free_along_x(const strut_model *model) {
   if (model->contacts.count && !strut_contacts_are_level(&model->contacts)) return false;
@@ -468,18 +468,6 @@ static outcome simulate(strut_relaxer *relaxer, double step, const strut_landsca
   return v.agreed >= AGREE ? DECIDED : TIME_OUT;
 }
 
-/* Largest acceleration at rest: the paper's break-off criterion with all speeds 0. */
-static void judge_rest(strut_relaxer *relaxer, const double *positions, strut_relaxed *relaxed) {
-  const strut_model *model = relaxer->model;
-  if (!relaxer->state) return;
-  size_t bytes = (size_t)model->length * sizeof(double);
-  memset(relaxer->state->v, 0, bytes);
-  memset(relaxer->last, 0, bytes);
-  strut_forces_acceleration(model, relaxer->state, 0.0, positions, relaxer->state->v,
-                            relaxer->last);
-  relaxed->acceleration = strut_largest_magnitude(relaxer->last, 2 * model->node_count);
-}
-
 /* Minimises from q, with the centre of mass moved to x. */
 static void quench_to_rest(strut_relaxer *relaxer, double x, double *positions,
                            strut_relaxed *relaxed) {
@@ -489,12 +477,6 @@ static void quench_to_rest(strut_relaxer *relaxer, double x, double *positions,
                                                         : STRUT_RELAXED_MOVES;
   restore_centre(relaxer->model, x, positions);
   relaxed->residual = descent.residual;
-  if (relaxed->end == STRUT_RELAXED_RESTS) judge_rest(relaxer, positions, relaxed);
-}
-
-void strut_relax_down(strut_relaxer *relaxer, double *positions, strut_relaxed *relaxed) {
-  *relaxed = (strut_relaxed){.end = STRUT_RELAXED_RESTS};
-  quench_to_rest(relaxer, centre_x(relaxer->model, positions), positions, relaxed);
 }
 
 strut_status strut_relax(strut_relaxer *relaxer, double *positions, const strut_landscape *passes,
@@ -509,8 +491,6 @@ strut_status strut_relax(strut_relaxer *relaxer, double *positions, const strut_
     end = simulate(relaxer, step, passes, interrupt);
     for (int i = 0; end == UNSTABLE_STEP && i < HALVINGS; i++)
       end = simulate(relaxer, step *= 0.5, passes, interrupt);
-    relaxed->time = (double)relaxer->state->step * step;
-    relaxed->simulated = relaxer->state->step > 0;
     memcpy(positions, end == DECIDED ? relaxer->quenched : relaxer->state->q, bytes);
   }
   if (end == STOPPED)
@@ -520,4 +500,19 @@ strut_status strut_relax(strut_relaxer *relaxer, double *positions, const strut_
   else
     relaxed->end = end == LEFT ? STRUT_RELAXED_LEAVES : STRUT_RELAXED_MOVES;
   return STRUT_OK;
+}
+
+strut_status strut_relax_nearby(strut_relaxer *relaxer, double *positions,
+                                const strut_flag *interrupt, strut_relaxed *relaxed,
+                                strut_error *error) {
+  const strut_model *model = relaxer->model;
+  size_t bytes = (size_t)model->length * sizeof *positions;
+  memcpy(relaxer->start, positions, bytes);
+  quench_to_rest(relaxer, centre_x(model, positions), positions, relaxed);
+  bool close =
+      relaxed->end == STRUT_RELAXED_RESTS &&
+      strut_shape_distance(model, relaxer->start, positions, false, NULL) < NEAR * model->size;
+  if (close || !relaxer->state) return STRUT_OK;
+  memcpy(positions, relaxer->start, bytes);
+  return strut_relax(relaxer, positions, NULL, interrupt, relaxed, error);
 }

@@ -10,8 +10,6 @@
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria_parts.h"
 
-/* A start nearer to its minimum is at rest up to the ground's compliance; in model sizes. */
-static const double NEAR = 0.01;
 /* The residual of a drawn shape that counts as at rest, in weights. */
 static const double AT_REST = 1e-8;
 
@@ -99,22 +97,13 @@ static const char *farthest_node(const strut_equilibrium_search *search, const d
 /* Moves q (level coordinates) to where the structure comes to rest from it. */
 static strut_status relax_to_rest(strut_equilibrium_search *search, const char *what,
                                   double *positions) {
-  size_t bytes = (size_t)search->model->length * sizeof *positions;
+  size_t length = (size_t)search->model->length;
   strut_relaxed relaxed;
-  strut_status status = STRUT_OK;
   if (search->potential->n == 0) return STRUT_OK;
-  double *near = strut_arena_copy(&search->out->arena, positions, 1, bytes);
-  double *from = strut_arena_copy(&search->out->arena, positions, 1, bytes);
-  if (!near || !from) return strut_no_memory(search->error, "");
-  strut_relax_down(search->relaxer, near, &relaxed);
-  bool close = relaxed.end == STRUT_RELAXED_RESTS &&
-               strut_shape_distance(search->model, positions, near, false, NULL) <
-                   NEAR * search->model->size;
-  if (close || !strut_relaxer_simulates(search->relaxer))
-    memcpy(positions, near, bytes);
-  else
-    status = strut_relax(search->relaxer, positions, NULL, search->experiment->interrupt, &relaxed,
-                         search->error);
+  const double *from = strut_arena_copy(&search->out->arena, positions, length, sizeof *positions);
+  if (!from) return strut_no_memory(search->error, "");
+  strut_status status = strut_relax_nearby(search->relaxer, positions,
+                                           search->experiment->interrupt, &relaxed, search->error);
   if (status || relaxed.end == STRUT_RELAXED_RESTS) return status;
   return strut_fail(
       search->error, STRUT_NOT_SETTLED,

@@ -136,26 +136,15 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
                                      strut_arena *arena, strut_scene *scene, strut_error *error) {
   const strut_actuator *a = &scene->actuators[actuator];
   double rest = drawn->members.rest[strut_actuator_slot(drawn, (size_t)actuator)] + value;
-  if (a->member < 0 && a->hinge < 0) {
-    strut_cell *cells = strut_arena_copy(arena, scene->cells, scene->cell_count, sizeof *cells);
-    if (!cells) return strut_no_memory(error, "");
-    cells[a->cell].pressure = rest;
-    scene->cells = cells;
-    return STRUT_OK;
-  }
-  if (a->member < 0) {
-    strut_hinge *hinges =
-        strut_arena_copy(arena, scene->hinges, scene->hinge_count, sizeof *hinges);
-    if (!hinges) return strut_no_memory(error, "");
-    hinges[a->hinge].rest_angle = rest;
-    scene->hinges = hinges;
-    return STRUT_OK;
-  }
-  strut_member *members =
-      strut_arena_copy(arena, scene->members, scene->member_count, sizeof *members);
-  if (!members) return strut_no_memory(error, "");
-  strut_member *driven = &members[a->member];
-  scene->members = members;
+  scene->cells = strut_arena_copy(arena, scene->cells, scene->cell_count, sizeof *scene->cells);
+  scene->hinges = strut_arena_copy(arena, scene->hinges, scene->hinge_count, sizeof *scene->hinges);
+  scene->members =
+      strut_arena_copy(arena, scene->members, scene->member_count, sizeof *scene->members);
+  if (!scene->cells || !scene->hinges || !scene->members) return strut_no_memory(error, "");
+  if (a->member < 0 && a->hinge < 0) scene->cells[a->cell].pressure = rest;
+  if (a->member < 0 && a->hinge >= 0) scene->hinges[a->hinge].rest_angle = rest;
+  if (a->member < 0) return STRUT_OK;
+  strut_member *driven = &scene->members[a->member];
   driven->rest_kind = STRUT_REST_LENGTH;
   driven->rest_value = rest;
   bool axial = driven->axial_stiffness > 0;

@@ -86,11 +86,6 @@ static bool pulls_cables_only(const strut_model *model, const strut_rigidity *ri
   return pulled > 0;
 }
 
-/* Every listed state that loads movable members must alone stiffen all mechanisms. */
-static bool all_states_stiffen(const strut_rigidity *rigidity) {
-  return rigidity->states.count == 1; /* of several, some combination presses what another pulls */
-}
-
 static const char *label_of(const strut_tensegrity *tensegrity) {
   if (!tensegrity->self_stress) return "no tensegrity: no state of self-stress";
   if (!tensegrity->judged) return "not judged: too many states";
@@ -129,7 +124,8 @@ static strut_status judge_tensegrity(const strut_model *model, const double *pos
         mechanisms->infinitesimal > 0 &&
         mechanisms->infinitesimal + mechanisms->rigid_body == mechanisms->count &&
         (mechanisms->by_forces || (mechanisms->stiffener && mechanisms->stiffener_pulls));
-    tensegrity->all_states = tensegrity->mechanism && all_states_stiffen(rigidity);
+    /* of several states, some combination presses what another pulls */
+    tensegrity->all_states = tensegrity->mechanism && rigidity->states.count == 1;
     tensegrity->struts_apart = apart(model, rigidity, largest, scratch);
     tensegrity->struts_inside = inside(model, positions, rigidity, largest, scratch);
     strut_release(scratch);

@@ -21,24 +21,23 @@ static uint64_t mix_bits(uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/* Bits of a generator that is a counter: the same for the same (seed, index, counter). */
-static uint64_t counted_bits(uint64_t seed, uint64_t index, uint64_t *counter) {
-  uint64_t key = mix_bits(seed + 0x9e3779b97f4a7c15u) ^ mix_bits(index * 0xd1342543de82ef95u + 1);
-  return mix_bits(key + (*counter += 1) * 0x9e3779b97f4a7c15u);
-}
-
 typedef struct source {
   uint64_t seed, index, counter;
 } source;
 
-/* In [-1, 1). */
-static double signed_unit(source *self) {
-  return (double)(counted_bits(self->seed, self->index, &self->counter) >> 11) * 0x1p-52 - 1.0;
+/* Bits of a generator that is a counter: the same for the same (seed, index, counter). */
+static uint64_t next_bits(source *self) {
+  uint64_t key =
+      mix_bits(self->seed + 0x9e3779b97f4a7c15u) ^ mix_bits(self->index * 0xd1342543de82ef95u + 1);
+  return mix_bits(key + (self->counter += 1) * 0x9e3779b97f4a7c15u);
 }
+
+/* In [-1, 1). */
+static double signed_unit(source *self) { return (double)(next_bits(self) >> 11) * 0x1p-52 - 1.0; }
 
 static int64_t random_below(source *self, int64_t count) {
   assert(count > 0);
-  return (int64_t)(counted_bits(self->seed, self->index, &self->counter) % (uint64_t)count);
+  return (int64_t)(next_bits(self) % (uint64_t)count);
 }
 
 int64_t strut_fold_count(const strut_potential *potential) {
