@@ -9,6 +9,7 @@
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/model.h"
+#include "engine/scene/curve.h"
 
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
@@ -150,7 +151,7 @@ static void fill_piece(const strut_law *law, const double *slope, size_t i, doub
 }
 
 /*
- * The law with its points as scene/curve.c makes them of those given, and their slopes, where they have some;
+ * The law with its points as scene/curve.h makes them of those given, and their slopes, where they have some;
  * false: out of memory.
  */
 static bool take_points(strut_arena *arena, strut_law *law, double **slope) {
