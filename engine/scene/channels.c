@@ -160,14 +160,14 @@ const char *strut_channel_thing(const strut_channel_row *row, const strut_scene 
 
 /* ---- rows of results ---- */
 
-const strut_value_row *strut_value_at(const strut_value_rows *rows, const char *path,
+const strut_value_row *strut_value_at(const strut_value_rows *table, const char *path,
                                       const strut_result_object *of, strut_value *value) {
   strut_value values[STRUT_MOST_VALUES];
   size_t length = strcspn(path, ".");
-  assert(rows->count <= STRUT_MOST_VALUES);
-  if (of) rows->fill(of, values);
-  for (size_t i = 0; i < rows->count; i++) {
-    const strut_value_row *row = &rows->row[i];
+  assert(table->count <= STRUT_MOST_VALUES);
+  if (of) table->fill(of, values);
+  for (size_t i = 0; i < table->count; i++) {
+    const strut_value_row *row = &table->row[i];
     if (!row->key || strncmp(row->key, path, length) != 0 || row->key[length]) continue;
     if (of) *value = values[i];
     if (!path[length]) return row;

@@ -222,11 +222,14 @@ static int find_anywhere(void *context, const char *kind, strut_piece owner, str
     const char *name = strut_piece_text(reader, owner);
     snprintf(text, sizeof text, " or hinge(%.40s)", name);
     snprintf(
-        refusal->text, sizeof refusal->text,
-        "'%.40s.%.40s' means two things, since a node%s is called '%.40s'; rename it, or write "
-        "node(%.40s)%smember(%.40s)%s for it",
-        name, strut_piece_text(reader, field), hinges ? ", a member or a hinge" : " or a member",
-        name, name, hinges ? ", " : " or ", name, hinges ? text : "");
+        refusal->text, sizeof refusal->text, "%s",
+        strut_formatted(
+            reader, &reader->scratch,
+            "'%.40s.%.40s' means two things, since a node%s is called '%.40s'; rename it, or write "
+            "node(%.40s)%smember(%.40s)%s for it",
+            name, strut_piece_text(reader, field),
+            hinges ? ", a member or a hinge" : " or a member", name, name, hinges ? ", " : " or ",
+            name, hinges ? text : ""));
     return -1;
   }
   strut_channel_owner of = strut_observable_at(column->kind)->owner;
