@@ -27,7 +27,7 @@ static void fill_piece(const strut_law *law, const double *slope, size_t i, doub
 }
 
 /*
- * The law with its points as scene/curve.c makes them of those given, and their slopes, where they have some;
+ * The law with its points as scene/curve.h makes them of those given, and their slopes, where they have some;
  * false: out of memory.
  */
 static bool take_points(strut_arena *arena, strut_law *law, double **slope) {

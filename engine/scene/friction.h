@@ -8,6 +8,8 @@
 #ifndef STRUT_ENGINE_SCENE_FRICTION_H
 #define STRUT_ENGINE_SCENE_FRICTION_H
 
+#include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "engine/scene/laws/friction.h"

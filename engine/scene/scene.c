@@ -59,15 +59,12 @@ void strut_scene_stop_unbalances(strut_scene *scene) {
   scene->unbalance_count = 0;
 }
 
-/* Twice the area of a triangle, counted counter-clockwise: its last corner is to the left of the first two. */
-static double turn_over(const double *first, const double *second, const double *c) {
-  return (second[0] - first[0]) * (c[1] - second[1]) - (second[1] - first[1]) * (c[0] - second[0]);
-}
-
+/* Twice the area of the triangle about guide k, counter-clockwise: the next node is to the left. */
 static double turn_at(const strut_scene *scene, const strut_member *member, size_t k) {
-  return turn_over(scene->nodes[strut_member_node(member, k - 1)].position,
-                   scene->nodes[strut_member_node(member, k)].position,
-                   scene->nodes[strut_member_node(member, k + 1)].position);
+  const double *a = scene->nodes[strut_member_node(member, k - 1)].position,
+               *b = scene->nodes[strut_member_node(member, k)].position,
+               *c = scene->nodes[strut_member_node(member, k + 1)].position;
+  return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
 }
 
 double strut_scene_last_signal_event(const strut_scene *scene) {

@@ -231,17 +231,12 @@ static double next_half_period(const strut_signal *signal, double t) {
   return at;
 }
 
-/* Does the instruction read a signal? */
-static bool is_signal(const strut_instruction *instruction) {
-  return instruction->operation == STRUT_OPERATION_COLUMN &&
-         instruction->column.kind == STRUT_COLUMN_SIGNAL;
-}
-
 double strut_program_next_break(const strut_signal *signals, const double *started,
                                 const strut_program *program, double t, double until) {
   double first = until;
   for (size_t i = 0; i < program->length; i++)
-    if (is_signal(&program->instruction[i]))
+    if (program->instruction[i].operation == STRUT_OPERATION_COLUMN &&
+        program->instruction[i].column.kind == STRUT_COLUMN_SIGNAL)
       first = fmin(first, strut_signal_next_break_since(
                               signals, started, program->instruction[i].column.item, t, first));
   return fmin(first, strut_program_next_kink(program, signals, started, t, first));

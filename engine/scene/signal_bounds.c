@@ -141,14 +141,14 @@ static strut_signal_bounds opposite(strut_signal_bounds x) {
 static strut_signal_bounds size(bounder *self, strut_signal_bounds x) {
   int side = side_of(self, x.value, x.follows, is_still(x));
   if (side != 0) return side > 0 ? x : opposite(x);
-  return (strut_signal_bounds){magnitude(x.value), hull(x.rate, negative(x.rate)), false};
+  return (strut_signal_bounds){magnitude(x.value), hull(x.rate, negative(x.rate)), x.follows};
 }
 
 static strut_signal_bounds stairs(bounder *self, strut_signal_bounds x, double (*f)(double)) {
   strut_range value = {f(x.value.low), f(x.value.high)};
   note_branch(self, (uint64_t)(int64_t)fmax(fmin(value.high, 1e15), -1e15));
   if (value.low != value.high && !x.follows && !is_still(x)) self->undecided = true;
-  return (strut_signal_bounds){isnan(width(value)) ? ANY : value, ZERO, false};
+  return (strut_signal_bounds){isnan(width(value)) ? ANY : value, ZERO, x.follows};
 }
 
 static strut_signal_bounds angle(bounder *self, strut_signal_bounds y, strut_signal_bounds x) {
@@ -222,25 +222,12 @@ static strut_signal_bounds apply(bounder *self, strut_operation operation, strut
   const double ten = 2.30258509299404568402; /* log 10 */
   const strut_range x = a.value, one = {1.0, 1.0};
   strut_range y = ANY, slope = ANY;
-  strut_signal_bounds result;
   switch ((int)operation) {
     case STRUT_OPERATION_NEGATE: return opposite(a);
-    case STRUT_OPERATION_ABS:
-      result = size(self, a);
-      result.follows = a.follows;
-      return result;
-    case STRUT_OPERATION_FLOOR:
-      result = stairs(self, a, floor);
-      result.follows = a.follows;
-      return result;
-    case STRUT_OPERATION_CEIL:
-      result = stairs(self, a, ceil);
-      result.follows = a.follows;
-      return result;
-    case STRUT_OPERATION_ROUND:
-      result = stairs(self, a, round);
-      result.follows = a.follows;
-      return result;
+    case STRUT_OPERATION_ABS: return size(self, a);
+    case STRUT_OPERATION_FLOOR: return stairs(self, a, floor);
+    case STRUT_OPERATION_CEIL: return stairs(self, a, ceil);
+    case STRUT_OPERATION_ROUND: return stairs(self, a, round);
     case STRUT_OPERATION_SIN: y = sine(x, 0.0), slope = sine(x, 0.25); break;
     case STRUT_OPERATION_COS: y = sine(x, 0.25), slope = sine(x, 0.5); break;
     case STRUT_OPERATION_TAN:

@@ -274,12 +274,6 @@ static void put_configurations(const numbers *to, const strut_scene *scene) {
   }
 }
 
-/* Loads with a signal are off while a structure is at rest. */
-static void put_loads(const numbers *to, const strut_scene *scene) {
-  for (size_t i = 0; i < scene->load_count; i++)
-    if (scene->loads[i].signal < 0) put_thing(to, STRUT_THING_LOAD, &scene->loads[i]);
-}
-
 /* What moves is where its signal has it at t = 0. */
 static void put_moved(const numbers *to, const strut_scene *scene) {
   for (size_t i = 0; i < scene->support_motion_count; i++) {
@@ -312,6 +306,7 @@ void strut_setup_at_rest(const strut_setup *setup, strut_number_sink *sink, void
   for (int kind = 0; kind < STRUT_THING_COUNT; kind++)
     if (rest[kind] == AT_REST) put_things(&to, scene, (strut_thing)kind);
   put_configurations(&to, scene);
-  put_loads(&to, scene);
+  for (size_t i = 0; i < scene->load_count; i++) /* those with a signal are off at rest */
+    if (scene->loads[i].signal < 0) put_thing(&to, STRUT_THING_LOAD, &scene->loads[i]);
   put_moved(&to, scene);
 }

@@ -339,12 +339,6 @@ static bool check_wave(strut_checker *checker) {
   return true;
 }
 
-/* Times at which a signal jumps per second; tables and ramps jump as often as they are long. */
-static double jump_rate(const strut_signal *signal) {
-  double rate = signal->kind == STRUT_SQUARE ? 2.0 * signal->frequency : 0.0;
-  return signal->every > 0.0 ? fmax(rate, 1.0 / signal->every) : rate;
-}
-
 /* A run stops at each jump: more of them than this in a step, or in a run without one, are a mistake. */
 static const double MOST_JUMPS_OF_STEP = 1e3, MOST_JUMPS_OF_RUN = 1e9;
 
@@ -352,7 +346,10 @@ static void check_jumps(strut_checker *checker) {
   const strut_experiment *experiment = checker->experiment;
   const strut_signal *signal = &checker->scene->signals[checker->index];
   bool step = experiment->step > 0.0 && isfinite(experiment->step);
-  double rate = jump_rate(signal), span = step ? experiment->step : experiment->duration;
+  /* jumps per second; tables and ramps jump as often as they are long */
+  double rate = signal->kind == STRUT_SQUARE ? 2.0 * signal->frequency : 0.0;
+  double span = step ? experiment->step : experiment->duration;
+  if (signal->every > 0.0) rate = fmax(rate, 1.0 / signal->every);
   if (checker->purpose != STRUT_FOR_RUN || !(span > 0.0 && isfinite(span))) return;
   if (rate * span <= (step ? MOST_JUMPS_OF_STEP : MOST_JUMPS_OF_RUN)) return;
   bool sampled = signal->every > 0.0 && signal->every * rate <= 1.0;

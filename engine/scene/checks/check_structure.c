@@ -5,6 +5,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/checks/check_rules.h"
+#include "engine/scene/curve.h"
 
 /* ---- laws, stops and hinges ---- */
 

@@ -26,11 +26,6 @@ static strut_place asking_place(strut_reader *reader) {
   return parameters->set->place.line ? parameters->set->place : parameters->key->place;
 }
 
-static strut_place section_place(strut_reader *reader) {
-  const strut_slot *slot = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS);
-  return slot->key ? slot->key->place : strut_root_place(reader);
-}
-
 static const char *stacked_name(strut_reader *reader, size_t i) {
   return reader->parameter_stack[i]->name;
 }
@@ -283,7 +278,8 @@ static void apply_setting(strut_reader *reader, const strut_setting *setting) {
         message, sizeof message, "the scene has no parameter '%s'%s",
         strut_sanitised_text(reader, setting->name),
         strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
-    report_setting(reader, setting, section_place(reader), message);
+    const strut_tree *key = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS)->key;
+    report_setting(reader, setting, key ? key->place : strut_root_place(reader), message);
   } else if (parameters->set) {
     strut_report_error(reader, setting->place.line ? setting->place : parameters->key->place,
                        "%s%s is given twice", setting->place.line ? "" : "--set ",

@@ -150,7 +150,8 @@ void strut_read_configurations(strut_reader *reader) {
                      (unsigned)map->count, nodes, (int)MOST_POSITIONS);
 }
 
-int32_t strut_find_configuration(strut_reader *reader, int key) {
+/* The one that a key of the initial state names, itself or through a text parameter; -1: absent, or reported. */
+static int32_t find_configuration(strut_reader *reader, int key) {
   const strut_slot *slot = strut_slot_of(&reader->initial, key);
   strut_owner owner = {"the initial state", NULL};
   if (slot->state != STRUT_GIVEN) return -1;
@@ -230,7 +231,7 @@ static void read_equilibrium(strut_reader *reader) {
   static const int rivals[] = {STRUT_KEY_INITIAL_CONFIGURATION, STRUT_KEY_INITIAL_POSITIONS,
                                STRUT_KEY_INITIAL_SETTLE};
   const strut_slot *equilibrium = strut_slot_of(&reader->initial, STRUT_KEY_INITIAL_EQUILIBRIUM);
-  int32_t index = strut_find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
+  int32_t index = find_configuration(reader, STRUT_KEY_INITIAL_EQUILIBRIUM);
   for (size_t i = 0; equilibrium->key && i < sizeof rivals / sizeof rivals[0]; i++) {
     const strut_slot *rival = strut_slot_of(&reader->initial, rivals[i]);
     if (!rival->key) continue;
@@ -246,7 +247,7 @@ void strut_read_initial(strut_reader *reader) {
   if (!strut_read_section(reader, STRUT_KEY_SCENE_INITIAL, STRUT_SECTION_INITIAL,
                           "the initial state", &reader->initial))
     return;
-  read_state(reader, strut_find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
+  read_state(reader, find_configuration(reader, STRUT_KEY_INITIAL_CONFIGURATION));
   read_equilibrium(reader);
   read_switch(reader, &reader->initial, STRUT_KEY_INITIAL_SETTLE, "the initial state",
               (strut_owner){"the settling", NULL}, &reader->settle);

@@ -7,9 +7,6 @@
 #include "parser/language/read/read_scene.h"
 #include "parser/language/read/reader.h"
 
-/* Most characters of a name that a message repeats. */
-enum { SHOWN_MOST = 40 };
-
 static const strut_observable *row_at(size_t k) {
   return strut_observable_at((strut_column_kind)k);
 }
@@ -47,8 +44,6 @@ typedef struct found_owner {
   int32_t
       item[STRUT_THING_COUNT]; /* the thing of each kind, where its columns are among the owners */
 } found_owner;
-
-static int shown(size_t length) { return length > SHOWN_MOST ? SHOWN_MOST : (int)length; }
 
 /* Things of all kinds and the owners above, for suggestions. */
 static const char *owner_name(const void *context, size_t i) {
@@ -125,15 +120,15 @@ static const char *field_list(unsigned owners, char *text, size_t size) {
 static int refuse_owner(strut_reader *reader, const char *kind, strut_piece owner,
                         strut_refusal *refusal) {
   if (!all_known(reader)) return -1;
+  const char *name = strut_piece_text(reader, owner);
   size_t count = 0;
   while (group_at(count)) count++;
   for (size_t k = 0; k < KIND_COUNT; k++) count += strut_thing_count(reader->scene, kinds[k]);
-  snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.*s'%s",
+  snprintf(refusal->text, sizeof refusal->text, "unknown %s '%.40s'%s",
            kind                         ? kind
            : reader->scene->hinge_count ? "node, member or hinge"
                                         : "node or member",
-           shown(owner.length), owner.text,
-           strut_hint(reader, strut_piece_text(reader, owner), owner_name, reader, count));
+           name, strut_hint(reader, name, owner_name, reader, count));
   return -1;
 }
 
@@ -143,9 +138,9 @@ static int refuse_field(strut_reader *reader, const found_owner *found, strut_pi
   bool thing = found->thing;
   const char *hint = strut_hint(reader, strut_piece_text(reader, field), field_name, &found->owners,
                                 field_count(found->owners));
-  snprintf(refusal->text, sizeof refusal->text, "%s%s%.*s%s has no column '%.*s'%s%s%s",
-           found->what, thing ? " '" : "", thing ? shown(owner.length) : 0, owner.text,
-           thing ? "'" : "", shown(field.length), field.text, hint, *hint ? "" : ", expected ",
+  snprintf(refusal->text, sizeof refusal->text, "%s%s%.40s%s has no column '%.40s'%s%s%s",
+           found->what, thing ? " '" : "", thing ? strut_piece_text(reader, owner) : "",
+           thing ? "'" : "", strut_piece_text(reader, field), hint, *hint ? "" : ", expected ",
            *hint ? "" : field_list(found->owners, list, sizeof list));
   return -1;
 }
@@ -195,9 +190,10 @@ static int find_word(strut_reader *reader, strut_piece word, strut_column *colum
   if (strut_find_variable(reader, word, column, dimension)) return column->item >= 0 ? 1 : -1;
   found_owner found = find_owner(reader, NULL, word);
   if (!found.owners) return 0;
+  const char *name = strut_piece_text(reader, word);
   snprintf(refusal->text, sizeof refusal->text,
-           "'%.*s' alone is not a number; write '%.*s.' and %s", shown(word.length), word.text,
-           shown(word.length), word.text, field_list(found.owners, list, sizeof list));
+           "'%.40s' alone is not a number; write '%.40s.' and %s", name, name,
+           field_list(found.owners, list, sizeof list));
   return -1;
 }
 
@@ -223,14 +219,17 @@ static int find_anywhere(void *context, const char *kind, strut_piece owner, str
   if (count > 1) {
     bool hinges = reader->scene->hinge_count > 0;
     char text[80];
-    snprintf(text, sizeof text, " or hinge(%.*s)", shown(owner.length), owner.text);
-    snprintf(refusal->text, sizeof refusal->text,
-             "'%.*s.%.*s' means two things, since a node%s is called '%.*s'; rename it, or write "
-             "node(%.*s)%smember(%.*s)%s for it",
-             shown(owner.length), owner.text, shown(field.length), field.text,
-             hinges ? ", a member or a hinge" : " or a member", shown(owner.length), owner.text,
-             shown(owner.length), owner.text, hinges ? ", " : " or ", shown(owner.length),
-             owner.text, hinges ? text : "");
+    const char *name = strut_piece_text(reader, owner);
+    snprintf(text, sizeof text, " or hinge(%.40s)", name);
+    snprintf(
+        refusal->text, sizeof refusal->text, "%s",
+        strut_formatted(
+            reader, &reader->scratch,
+            "'%.40s.%.40s' means two things, since a node%s is called '%.40s'; rename it, or write "
+            "node(%.40s)%smember(%.40s)%s for it",
+            name, strut_piece_text(reader, field),
+            hinges ? ", a member or a hinge" : " or a member", name, name, hinges ? ", " : " or ",
+            name, hinges ? text : ""));
     return -1;
   }
   strut_channel_owner of = strut_observable_at(column->kind)->owner;
@@ -264,8 +263,8 @@ static int find_pair(void *context, strut_piece word, strut_piece first, strut_p
     node[k] = strut_find_thing(reader, STRUT_THING_NODE, NULL, name);
     if (node[k] >= 0) continue;
     if (all_known(reader))
-      snprintf(refusal->text, sizeof refusal->text, "unknown node '%.*s'%s", shown(names[k].length),
-               names[k].text, strut_hint_of_things(reader, name, STRUT_THING_NODE));
+      snprintf(refusal->text, sizeof refusal->text, "unknown node '%.40s'%s", name,
+               strut_hint_of_things(reader, name, STRUT_THING_NODE));
     return -1;
   }
   if (node[0] == node[1]) {

@@ -211,13 +211,6 @@ bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, str
                            (double *)(void *)((char *)object + k->field.offset));
 }
 
-static bool store_signal(strut_reader *reader, const strut_key *key, const strut_slot *slot,
-                         strut_owner owner, int32_t *signal) {
-  const strut_dimension dimension = strut_measure_dimension(key->measure);
-  *signal = strut_read_signal(reader, slot->value, key->name, owner, &dimension);
-  return *signal >= 0;
-}
-
 /* ---- references and lists ---- */
 
 /* The things, or coordinates, that a name, or a list of names, refers to; -1 for what is unknown. */
@@ -360,6 +353,7 @@ static bool store_nested(strut_reader *reader, const strut_key *key, const strut
 
 static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *slot,
                       strut_owner owner, strut_arena *arena, char *object) {
+  const strut_dimension dimension = strut_measure_dimension(key->measure);
   void *field = object + key->field.offset;
   bool fine = true;
   if (key->field.type == STRUT_FIELD_TREE) {
@@ -370,7 +364,8 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
   switch (key->field.role) {
     case STRUT_FIELD_VALUE:
       if (key->type == STRUT_TYPE_SIGNAL)
-        fine = store_signal(reader, key, slot, owner, field);
+        fine = (*(int32_t *)field =
+                    strut_read_signal(reader, slot->value, key->name, owner, &dimension)) >= 0;
       else if (key->field.direction)
         fine = store_direction(reader, key, slot->value, owner, field);
       else if (!strut_diagnostics_full(reader->diagnostics)) /* else the object will not be used */

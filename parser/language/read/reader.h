@@ -180,7 +180,6 @@ typedef struct strut_reader {
   bool tables_unknown;            /* some could not be read */
 } strut_reader;
 
-/** Reports a scene without nodes. */
 void strut_require_nodes(strut_reader *reader);
 /** Some things of the scene are missing: what refers to them is not reported. */
 void strut_mark_incomplete(strut_reader *reader);
@@ -227,7 +226,6 @@ bool strut_lacks_space_after(const strut_tree *value, const char *name);
 /** Is it a scalar that is not null? If not, that is reported. */
 bool strut_read_scalar(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, const char *expected);
-/** A number of any dimension. */
 bool strut_read_quantity(strut_reader *reader, const strut_tree *value, const char *key,
                          strut_owner owner, strut_quantity *quantity);
 /** The same of a value that may be no scalar, which is reported; `expected` says what it should be. */
@@ -246,7 +244,6 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
 /** Is the number within the limits of a WHOLE key? If not, that is reported. */
 bool strut_check_whole(strut_reader *reader, const strut_tree *value, const strut_key *key,
                        strut_owner owner, double number);
-/** A list of two numbers. */
 bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *key,
                      strut_owner owner, strut_dimension dimension, double number[2]);
 /** Things that a name may refer to. */
@@ -281,7 +278,6 @@ void *strut_reader_allocate(strut_reader *reader, strut_arena *arena, size_t cou
  */
 size_t strut_next_entry(const strut_reader *reader, size_t *count);
 
-/** Sets what the reader fills. */
 void strut_reader_target(strut_reader *reader, strut_setup *setup);
 /** A copy that outlives the reader; "" if memory is out. */
 const char *strut_keep_text(strut_reader *reader, const char *text);
@@ -308,7 +304,6 @@ double strut_scope_scale(const strut_reader *reader, const strut_tree *value);
 /** From the scope of `value` to the scene: a point [m] scaled already, and the direction of a vector. */
 void strut_place_point(const strut_reader *reader, const strut_tree *value, double point[2]);
 void strut_place_vector(const strut_reader *reader, const strut_tree *value, double vector[2]);
-/** Is the reader's scope mirrored? */
 bool strut_scope_flips(const strut_reader *reader);
 /** The scene's axis (0: x) along which one of the scope's lies, or -1; *reversed: against it. */
 int strut_scope_axis(const strut_reader *reader, int axis, bool *reversed);
@@ -316,8 +311,6 @@ int strut_scope_axis(const strut_reader *reader, int axis, bool *reversed);
 bool strut_error_is_repeated(strut_reader *reader, strut_place place, const char *format);
 /** Remembers that it was reported as the latest message. */
 void strut_error_remember(strut_reader *reader, strut_place place, const char *format);
-/** Adds to a message where the copy was placed, and in how many copies it is so. */
-void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, int64_t copies);
 
 /* read_fields.c: mappings */
 
@@ -419,7 +412,6 @@ strut_scope strut_parameter_scope(strut_reader *reader);
 strut_parameter_state *strut_parameter_in_scope(strut_reader *reader, const char *name);
 /** Evaluates the parameters of a copy. */
 void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parameter);
-/** Declares an entry of `parameters`. */
 void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
                              strut_parameter_state *parameter);
 /** The scene's parameter of that name, or NULL. */
@@ -445,12 +437,10 @@ void strut_read_signals(strut_reader *reader);
 void strut_read_nodes(strut_reader *reader);
 void strut_read_moves(strut_reader *reader);
 void strut_read_configurations(strut_reader *reader);
-/** Moves the signals into the scene. */
 void strut_keep_signals(strut_reader *reader);
 void strut_read_search(strut_reader *reader);
 void strut_read_initial(strut_reader *reader);
 void strut_read_experiment(strut_reader *reader);
-/** `quantities` of the measurement: read_quantities.c. */
 void strut_read_quantities(strut_reader *reader, const strut_slot *slot);
 /**
  * `derivatives`, of parameters of the scene that is read, or of those of `source`; *list is in the reader's arena.
@@ -465,11 +455,6 @@ size_t strut_read_derivatives(strut_reader *reader, const strut_slot *slot, stru
  */
 int32_t strut_read_signal(strut_reader *reader, const strut_tree *value, const char *key,
                           strut_owner owner, const strut_dimension *expected);
-/**
- * The configuration that a key of the initial state names, itself or through a text parameter; -1
- * where the key is absent or was reported.
- */
-int32_t strut_find_configuration(strut_reader *reader, int key);
 /** `[n1, n4]`, or a list of such lists, in the scene's memory. */
 bool strut_read_node_sets(strut_reader *reader, const strut_slot *slot, strut_owner owner,
                           strut_node_set **sets, size_t *count);
@@ -486,7 +471,6 @@ bool strut_read_file_of(strut_reader *reader, const strut_tree *name, size_t mos
                         strut_safe_text *text);
 /** Reads the tables behind the key into the reader's memory for what it keeps; nothing where it has some. */
 void strut_read_data(strut_reader *reader, const strut_slot *slot);
-/** Those of a scene. */
 void strut_read_scene_data(strut_reader *reader);
 /**
  * The column with numbers and a unit that "TABLE.COLUMN" names, and its table; NULL: reported. `expected`:
@@ -533,7 +517,6 @@ void strut_read_lattice(strut_reader *reader);
 /** The coordinate that a text names, "NODE.x"; -1, which was reported. */
 int32_t strut_read_coordinate(strut_reader *reader, const strut_tree *value, const char *key,
                               strut_owner owner);
-/** Stages of a path: read_stages.c. */
 void strut_read_stages(strut_reader *reader);
 /** Collisions of all members or of groups become those of pairs. */
 void strut_read_bodies(strut_reader *reader);
@@ -585,7 +568,6 @@ int32_t strut_add_controller_signal(strut_reader *reader, const strut_tree *key,
                                     bool bare, const strut_tree *gain);
 /** The signal that the controller behind the key stands for; -1: it was reported. */
 int32_t strut_read_controller(strut_reader *reader, const strut_tree *key);
-/** Is the controller a relay? */
 bool strut_is_relay(const strut_tree *map);
 int32_t strut_read_network(strut_reader *reader, const strut_tree *key);
 /** Enters a signal, or controller, by its name. */

@@ -21,10 +21,6 @@ static void put_search(strut_writer *writer) {
     strut_put_line(writer, "equilibria", STRUT_SECTION_EQUILIBRIA, search, usual, NULL);
 }
 
-static bool is_configuration(const strut_scene *scene, const char *name) {
-  return strut_thing_find(scene, STRUT_THING_CONFIGURATION, name) >= 0;
-}
-
 /* A name that refers to the configuration: its own, unless a text parameter has that name. */
 static const char *leading_name(const strut_scene *scene, const char *name) {
   const char *leading = name;
@@ -33,7 +29,7 @@ static const char *leading_name(const strut_scene *scene, const char *name) {
     const strut_parameter *parameter = &scene->parameters[i];
     if (!isnan(parameter->value)) continue; /* no text */
     if (strcmp(parameter->name, name) == 0) taken = true;
-    if (strcmp(parameter->text, name) == 0 && !is_configuration(scene, parameter->name))
+    if (strcmp(parameter->text, name) == 0 && !strut_configuration_named(scene, parameter->name))
       leading = parameter->name;
   }
   return taken ? leading : name;

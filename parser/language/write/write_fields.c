@@ -273,11 +273,6 @@ static bool has_references(const strut_field *field, const char *object) {
   return true;
 }
 
-/* A law is written where it is not the linear one. */
-static bool is_plain_law(const strut_law *law) {
-  return law->kind == STRUT_LAW_LINEAR && law->carries == STRUT_CARRIES_BOTH;
-}
-
 static bool differs(const strut_key *key, const char *object, const char *usual) {
   const strut_field *field = &key->field;
   const char *value = object + field->offset;
@@ -293,7 +288,10 @@ static bool differs(const strut_key *key, const char *object, const char *usual)
     case STRUT_FIELD_PATH:
     case STRUT_FIELD_PLACES: return true;
     case STRUT_FIELD_NESTED:
-      if (key->type == STRUT_TYPE_LAW) return !is_plain_law((const void *)value);
+      if (key->type == STRUT_TYPE_LAW) {
+        const strut_law *law = (const void *)value;
+        return law->kind != STRUT_LAW_LINEAR || law->carries != STRUT_CARRIES_BOTH;
+      }
       return field->chosen ||
              strut_fields_differ(strut_section_below(key), value, usual + field->offset);
     case STRUT_FIELD_BY_HAND:

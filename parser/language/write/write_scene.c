@@ -205,14 +205,6 @@ static void put_rayleigh(strut_writer *writer) {
                    NULL);
 }
 
-/* With these a friction is written: all its coefficients, of one with a signal none. */
-static strut_friction usual_friction(const strut_friction *friction) {
-  strut_friction usual = {STRUT_FRICTION_NONE};
-  usual.mu_static = usual.mu_kinetic = friction->driven ? friction->mu_static : (double)NAN;
-  if (friction->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
-  return usual;
-}
-
 static bool frictions_differ(const strut_friction *first, const strut_friction *second) {
   return strut_fields_differ(STRUT_SECTION_FRICTION, first, second) ||
          first->directional != second->directional || first->driven != second->driven ||
@@ -225,7 +217,10 @@ static bool has_friction(const strut_friction *friction) {
 }
 
 static void put_friction(strut_writer *writer, const strut_friction *friction) {
-  const strut_friction usual = usual_friction(friction);
+  strut_friction usual = {STRUT_FRICTION_NONE};
+  /* all its coefficients are written, of one with a signal none */
+  usual.mu_static = usual.mu_kinetic = friction->driven ? friction->mu_static : (double)NAN;
+  if (friction->directional) usual.mu_static_backward = usual.mu_kinetic_backward = (double)NAN;
   strut_put_mapping(writer, STRUT_SECTION_FRICTION, friction, &usual, NULL);
 }
 

@@ -138,31 +138,18 @@ typedef struct short_writer {
 
 /* ---- parameters as they were set ---- */
 
-static const strut_declared *find_declared(const strut_scene_source *source, const char *name) {
-  size_t count;
-  const strut_declared *declared = strut_scene_source_parameters(source, &count);
-  for (size_t i = 0; i < count; i++)
-    if (strcmp(declared[i].name, name) == 0) return &declared[i];
-  return NULL;
-}
-
-static double value_of(const strut_scene *scene, const char *name) {
-  for (size_t i = 0; i < scene->parameter_count; i++)
-    if (strcmp(scene->parameters[i].name, name) == 0) return scene->parameters[i].value;
-  return (double)NAN;
-}
-
 /* What --set gave, in the words of the file: a plain number has the unit that was declared. */
 static strut_tree *set_value(short_writer *self, const strut_tree *like,
                              const strut_override *set) {
-  const strut_declared *declared = find_declared(self->source, set->name);
+  const strut_declared *declared = strut_scene_source_parameter(self->source, set->name);
   char number[STRUT_NUMBER_TEXT];
   if (!declared || declared->text || declared->bare) {
     strut_tree *text = strut_tree_scalar(&self->document.arena, like, set->value);
     if (text) text->quoted = declared && declared->text;
     return text;
   }
-  strut_number_text(value_of(&self->setup->scene, set->name), number);
+  const strut_parameter *used = strut_parameter_named(&self->setup->scene, set->name);
+  strut_number_text(used ? used->value : (double)NAN, number);
   const char *unit = strut_dimension_unit(declared->dimension);
   if (strcmp(unit, "SI") == 0)
     return strut_tree_scalar(&self->document.arena, like, set->value); /* it has none */

@@ -350,22 +350,6 @@ bool strut_error_is_repeated(strut_reader *reader, strut_place place, const char
   return true;
 }
 
-void strut_error_remember(strut_reader *reader, strut_place place, const char *format) {
-  copied_error *slot = reader->scope ? error_slot(reader, place, format) : NULL;
-  size_t stored = reader->diagnostics->count;
-  if (!slot || strut_diagnostics_full(reader->diagnostics)) return;
-  if (slot->format) { /* a second message of the same copy */
-    strut_note_copy(reader, stored - 1, reader->scope, 1);
-    return;
-  }
-  *slot = (copied_error){.format = format,
-                         .place = place,
-                         .item = stored ? stored - 1 : SIZE_MAX,
-                         .first = reader->scope,
-                         .latest = reader->scope,
-                         .copies = 1};
-}
-
 /* How many copies the placements of one entry of `place` have made. */
 static int64_t copies_of(const strut_reader *reader, const strut_tree *key) {
   int64_t sum = 0;
@@ -377,7 +361,8 @@ static int64_t copies_of(const strut_reader *reader, const strut_tree *key) {
   return sum;
 }
 
-void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, int64_t copies) {
+/* Adds to a message where the copy was placed, and in how many copies it is so. */
+static void note_copy(strut_reader *reader, size_t item, const strut_copy *copy, int64_t copies) {
   char which[220] = "", first[120];
   const strut_placement *placement = copy->placement;
   int64_t all = copies_of(reader, placement->key);
@@ -402,9 +387,25 @@ void strut_note_copy(strut_reader *reader, size_t item, const strut_copy *copy, 
                         placement->key->text, which);
 }
 
+void strut_error_remember(strut_reader *reader, strut_place place, const char *format) {
+  copied_error *slot = reader->scope ? error_slot(reader, place, format) : NULL;
+  size_t stored = reader->diagnostics->count;
+  if (!slot || strut_diagnostics_full(reader->diagnostics)) return;
+  if (slot->format) { /* a second message of the same copy */
+    note_copy(reader, stored - 1, reader->scope, 1);
+    return;
+  }
+  *slot = (copied_error){.format = format,
+                         .place = place,
+                         .item = stored ? stored - 1 : SIZE_MAX,
+                         .first = reader->scope,
+                         .latest = reader->scope,
+                         .copies = 1};
+}
+
 void strut_note_copies(strut_reader *reader) {
   const copied_error *errors = reader->copies ? reader->copies->errors : NULL;
   for (size_t i = 0; errors && i < COPIED_SLOTS; i++)
     if (errors[i].format && errors[i].item != SIZE_MAX)
-      strut_note_copy(reader, errors[i].item, errors[i].first, errors[i].copies);
+      note_copy(reader, errors[i].item, errors[i].first, errors[i].copies);
 }

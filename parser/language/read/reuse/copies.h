@@ -83,7 +83,6 @@ typedef struct strut_full_name {
   char text[2 * STRUT_LONGEST_NAME + 2];
 } strut_full_name;
 
-/** The placement of that full name, or NULL. */
 const strut_placement *strut_placement_find(const strut_reader *reader, const char *name);
 /** Does a full name lead past the ports of a copy that is not around the scope? */
 bool strut_name_is_hidden(const strut_reader *reader, const strut_copy *scope, const char *name);
@@ -94,7 +93,6 @@ bool strut_within_part(const strut_reader *reader, const strut_tree *value,
 const char *strut_hiding_part(const strut_reader *reader, const strut_tree *value);
 /** Why there is no thing of that name, as far as copies tell: "; 'cell' has the copies 0 to 2", or "". */
 const char *strut_copy_hint(strut_reader *reader, const strut_tree *value);
-/** Likewise for a full name. */
 const char *strut_copy_hint_of(strut_reader *reader, const char *name);
 /** `last` in place of a number becomes that number. False: the name is too long. */
 bool strut_name_resolve_last(const strut_reader *reader, const char *name, strut_full_name *full);
@@ -160,9 +158,7 @@ struct strut_copies {
 
 /* ---- while parts are expanded: for the files that do so ---- */
 
-/** Most copies of one placement. */
 #define STRUT_MOST_COPIES 2e6
-/** Most parts within parts. */
 enum { STRUT_DEEPEST_PARTS = 16 };
 
 /** Entries of the copies for one key of the scene. */
@@ -180,7 +176,6 @@ typedef struct strut_expansion {
   bool stopped;
 } strut_expansion;
 
-/** What `repeat` says. */
 typedef struct strut_repetition {
   int numbers; /* 0: no repetition */
   int64_t count[2];
@@ -189,7 +184,6 @@ typedef struct strut_repetition {
   bool closed;
 } strut_repetition;
 
-/** One placement while its copies are made. */
 typedef struct strut_placing {
   strut_placement *placement;
   strut_copy *outer;
@@ -199,8 +193,6 @@ typedef struct strut_placing {
   strut_fields next[2]; /* of `repeat`, in each direction that it gives */
   bool varies;          /* some key mentions the copy's number */
 } strut_placing;
-
-/* read_parts.c */
 
 /** The keys of a placement. False: it cannot be copied, which was reported. */
 bool strut_read_placement(strut_expansion *expansion, const strut_tree *key, strut_copy *outer,
@@ -219,8 +211,6 @@ bool strut_read_repeat(strut_reader *reader, const strut_slot *slot, const char 
                        strut_repetition *repeat);
 /** The frame of a copy by its numbers, within that of the first. */
 strut_frame strut_repeated_frame(const strut_repetition *repeat, const int64_t number[2]);
-
-/* copy_entries.c */
 
 /** Enters the node under its full name, so that `onto` finds it. */
 void strut_remember_node(strut_expansion *expansion, const strut_tree *key);

@@ -13,13 +13,6 @@ static const char *group_name(const void *context, size_t i) {
   return i < reader->group_count ? reader->groups[i].name : NULL;
 }
 
-static size_t section_index(strut_section section) {
-  size_t i = 0;
-  while (i < SECTIONS && strut_group_sections[i] != section) i++;
-  assert(i < SECTIONS);
-  return i;
-}
-
 /* An earlier key of the group that belongs to the same set as `key`, or NULL. */
 static const strut_tree *rival(const strut_group *group, int key) {
   int set = strut_key_at(key)->set;
@@ -158,16 +151,14 @@ static bool taken(strut_fields *fields, int key) {
   return false;
 }
 
-/* Lengths of a group outside of a scaled copy are scaled with the thing that uses it. */
-static double scale_to(const strut_reader *reader, const strut_group *group) {
-  double own = strut_scope_scale(reader, group->key);
-  return group->key->placed ? strut_scope_scale(reader, NULL) / own
-                            : strut_scope_scale(reader, NULL);
-}
-
 static void apply_group(strut_reader *reader, strut_fields *fields, strut_group *group,
                         strut_owner owner) {
-  size_t section = section_index(fields->section);
+  size_t section = 0;
+  while (strut_group_sections[section] != fields->section) section++;
+  assert(section < SECTIONS);
+  /* lengths of a group outside of a scaled copy are scaled with the thing that uses it */
+  double scale = strut_scope_scale(reader, NULL);
+  if (group->key->placed) scale /= strut_scope_scale(reader, group->key);
   group->used = true;
   for (size_t i = 0; i < group->count; i++) {
     strut_group_item *item = &group->items[i];
@@ -178,7 +169,7 @@ static void apply_group(strut_reader *reader, strut_fields *fields, strut_group 
       *strut_slot_of(fields, key) = *slot;
       strut_slot_of(fields, key)->from = item;
       if (strut_key_at(key)->measure == STRUT_MEASURE_LENGTH)
-        strut_slot_of(fields, key)->number[0] *= scale_to(reader, group);
+        strut_slot_of(fields, key)->number[0] *= scale;
       if (slot->state == STRUT_BROKEN || (item->nested && item->nested->broken))
         fields->broken = true;
     } else if (!item->refused[section]) {
@@ -225,11 +216,6 @@ static bool is_mentioned(const strut_tree *tree, const char *name) {
   return false;
 }
 
-static bool parts_mention(strut_reader *reader, const char *name) {
-  return is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, name) ||
-         is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, name);
-}
-
 void strut_report_unused_groups(strut_reader *reader) {
   for (size_t i = 0; i < reader->group_count; i++)
     for (size_t k = 0; k < reader->groups[i].count; k++) {
@@ -240,7 +226,9 @@ void strut_report_unused_groups(strut_reader *reader) {
   for (size_t i = 0; i < reader->group_count; i++) {
     const strut_group *group = &reader->groups[i];
     if (group->used || group->broken || group->key->placed) continue;
-    if (parts_mention(reader, group->name)) continue;
+    if (is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->value, group->name) ||
+        is_mentioned(strut_slot_of(&reader->top, STRUT_KEY_SCENE_PLACE)->value, group->name))
+      continue;
     strut_report_error(reader, group->key->place, "nothing uses group '%s'", group->name);
   }
 }
