@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "engine/model/compile_parts.h"
+#include "engine/scene/curve.h"
 
 /* Slopes at the points of a smooth table, of Steffen's monotone spline. */
 static bool find_slopes(const strut_law *law, double *slope) {
