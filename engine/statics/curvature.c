@@ -11,7 +11,8 @@
 #include "engine/statics/potential.h"
 
 /* |x| for the multiplier mu, and d|x|/dmu; mu lies above minus the lowest value. */
-static double step_length_at(const strut_quadratic *r, double mu, double *slope) {
+static double step_length_at(const void *quadratic, double mu, double *slope) {
+  const strut_quadratic *r = quadratic;
   double square = 0.0, cube = 0.0;
   for (int32_t i = 0; i < r->n; i++) {
     if (r->idle[i] || r->part[i] == 0.0) continue;
@@ -25,12 +26,12 @@ static double step_length_at(const strut_quadratic *r, double mu, double *slope)
 }
 
 /* The multiplier at which |x| is the radius, between low (too long a step there) and high. */
-static double solve_secular(const strut_quadratic *quadratic, double low, double high,
-                            double radius) {
+static double solve_secular(double (*step_length)(const void *r, double mu, double *slope),
+                            const void *r, double low, double high, double radius) {
   double mu = low > 0 ? low * (1.0 + 1e-12) : low;
   for (int i = 0; i < 80 && high - low > 1e-14 * high; i++) {
     if (!(mu > low && mu < high)) mu = low > 0 ? 0.5 * (low + high) : 1e-3 * high;
-    double slope, length = step_length_at(quadratic, mu, &slope);
+    double slope, length = step_length(r, mu, &slope);
     if (fabs(length - radius) <= 1e-6 * radius) return mu;
     if (length > radius)
       low = mu;
@@ -65,7 +66,8 @@ double strut_trust_step(const strut_quadratic *quadratic, double radius, double 
   double floor = fmax(0.0, -lowest) + (lowest <= 0 ? DBL_EPSILON * quadratic->scale + 1e-300 : 0.0);
   double length = step_length_at(quadratic, floor, &slope);
   if (length > radius)
-    return shares_at(quadratic, solve_secular(quadratic, floor, floor + size / radius, radius),
+    return shares_at(quadratic,
+                     solve_secular(step_length_at, quadratic, floor, floor + size / radius, radius),
                      vector);
   shares_at(quadratic, floor, vector);
   if (lowest > -quadratic->noise) return floor;
@@ -74,12 +76,19 @@ double strut_trust_step(const strut_quadratic *quadratic, double radius, double 
   return floor;
 }
 
-/* Exact trust-region steps in the Hessian's modes. */
+/*
+ * Exact trust-region steps in the basis of the Hessian's tridiagonal form, for a quarter of the work
+ * of its eigenvectors. These serve where it is singular, so that motions without stiffness are left
+ * alone, where the lowest one is needed, and where there are so few that they cost next to nothing.
+ */
+enum { FEW_MODES = 20 };
 
 typedef struct dense_curvature {
   strut_spectrum_workspace *spectra;
+  strut_tridiagonal *reduced;
+  bool has_modes; /* `now` is filled, and `reduced` has lost its reflections */
   strut_spectrum now;
-  double *part, *x; /* (n) shares of the gradient and of the step in the modes */
+  double *part, *x; /* (n) the gradient and the step in the modes, or in the basis of T */
   uint8_t *idle;    /* (n) modes to leave alone */
   strut_arena arena;
   double scale;      /* largest |eigenvalue| */
@@ -97,8 +106,8 @@ static void dense_free(void *memory) {
 static void *dense_create(const strut_potential *potential) {
   dense_curvature *curvature = strut_allocate(1, sizeof *curvature);
   if (!curvature) return NULL;
-  size_t n = (size_t)potential->n;
   curvature->spectra = strut_spectrum_create(potential);
+  size_t n = (size_t)potential->n;
   curvature->idle = strut_arena_allocate(&curvature->arena, n, sizeof *curvature->idle);
   if (curvature->spectra && curvature->idle &&
       strut_arena_numbers(&curvature->arena, n,
@@ -108,11 +117,65 @@ static void *dense_create(const strut_potential *potential) {
   return NULL;
 }
 
+/* The modes of what was reduced last, at q; NULL where it is not singular, which refines nothing. */
+static bool find_modes(dense_curvature *curvature, const double *q) {
+  if (curvature->has_modes) return true;
+  curvature->has_modes = strut_spectrum_finish(curvature->spectra, q, false, &curvature->now);
+  if (curvature->has_modes && curvature->now.n)
+    curvature->scale =
+        fmax(fabs(curvature->now.value[0]), fabs(curvature->now.value[curvature->now.n - 1]));
+  return curvature->has_modes;
+}
+
 static bool dense_decompose(void *memory, const double *q) {
   dense_curvature *curvature = memory;
-  const strut_spectrum *now = &curvature->now;
-  if (!strut_spectrum_compute(curvature->spectra, q, 0.0, false, &curvature->now)) return false;
-  if (now->n) curvature->scale = fmax(fabs(now->value[0]), fabs(now->value[now->n - 1]));
+  bool singular;
+  curvature->has_modes = false;
+  if (!strut_spectrum_reduce(curvature->spectra, q, &curvature->reduced, &singular)) return false;
+  curvature->scale = curvature->reduced->bound;
+  return (!singular && curvature->reduced->n > FEW_MODES) || find_modes(curvature, q);
+}
+
+static bool is_definite(dense_curvature *curvature) {
+  return !curvature->has_modes && strut_tridiagonal_factor(curvature->reduced, 0.0) == 0;
+}
+
+/* |x| of x = -(T + mu)^-1 part, and d|x|/dmu; infinite where T + mu is not positive definite. */
+static double reduced_length_at(const void *memory, double mu, double *slope) {
+  const dense_curvature *curvature = memory;
+  int32_t n = curvature->reduced->n;
+  *slope = 0.0;
+  if (strut_tridiagonal_factor(curvature->reduced, mu) > 0) return HUGE_VAL;
+  for (int32_t i = 0; i < n; i++) curvature->x[i] = -curvature->part[i];
+  strut_tridiagonal_solve(curvature->reduced, curvature->x);
+  double length = sqrt(strut_dot(curvature->x, curvature->x, n));
+  if (length > 0) *slope = -strut_tridiagonal_form(curvature->reduced, curvature->x) / length;
+  return length;
+}
+
+static void enter_basis(dense_curvature *curvature, const double *gradient) {
+  memcpy(curvature->part, gradient, (size_t)curvature->reduced->n * sizeof *gradient);
+  strut_tridiagonal_enter(curvature->reduced, curvature->part);
+}
+
+/* False in the hard case, which needs the lowest mode: g has next to no share of it. */
+static bool step_in_basis(dense_curvature *curvature, const double *gradient, double radius,
+                          double *s, strut_model_step *step) {
+  int32_t n = curvature->reduced->n;
+  enter_basis(curvature, gradient);
+  double slope, mu = 0.0, length = reduced_length_at(curvature, mu, &slope);
+  if (length > radius) {
+    double size = sqrt(strut_dot(curvature->part, curvature->part, n)),
+           lowest = isfinite(length) ? 0.0 : curvature->scale;
+    mu = solve_secular(reduced_length_at, curvature, 0.0, lowest + size / radius, radius);
+    length = reduced_length_at(curvature, mu, &slope);
+    if (!(fabs(length - radius) <= 1e-5 * radius)) return false;
+  }
+  curvature->multiplier = mu;
+  *step = (strut_model_step){
+      length, 0.5 * (mu * length * length - strut_dot(curvature->part, curvature->x, n))};
+  memcpy(s, curvature->x, (size_t)n * sizeof *s);
+  strut_tridiagonal_leave(curvature->reduced, s);
   return true;
 }
 
@@ -129,23 +192,60 @@ static strut_model_step assemble_step(const dense_curvature *curvature, double *
 static strut_model_step dense_trust_step(void *memory, const double *gradient, double radius,
                                          double still, double *s) {
   dense_curvature *curvature = memory;
-  const strut_spectrum *now = &curvature->now;
-  strut_spectrum_split(now, gradient, still, curvature->part, curvature->idle);
-  strut_quadratic model = {now->n,           now->value,
-                           curvature->part,  curvature->idle,
-                           curvature->scale, now->n > 0 ? 4.0 * now->noise[0] : 0.0};
+  strut_model_step step = {0};
+  if (!curvature->has_modes && step_in_basis(curvature, gradient, radius, s, &step)) return step;
+  if (!find_modes(curvature, NULL)) return step;
+  strut_spectrum_split(&curvature->now, gradient, still, curvature->part, curvature->idle);
+  strut_quadratic model = {curvature->now.n, curvature->now.value, curvature->part,
+                           curvature->idle,  curvature->scale,     0.0};
+  if (curvature->now.n > 0) model.noise = 4.0 * curvature->now.noise[0];
   curvature->multiplier = strut_trust_step(&model, radius, curvature->x);
   return assemble_step(curvature, s);
+}
+
+/* A border in the middle of the gap above `stiff`; 0: no mode is stiffer. */
+static double find_border(dense_curvature *curvature, double stiff) {
+  int32_t soft = strut_tridiagonal_factor(curvature->reduced, -stiff);
+  double high = stiff;
+  if (soft == curvature->reduced->n) return 0.0;
+  while (strut_tridiagonal_factor(curvature->reduced, -10.0 * high) == soft) high *= 10.0;
+  return sqrt(stiff * high);
+}
+
+/*
+ * Newton's step weighed mode by mode by 1 - 5 u^4 + 4 u^5, u = c / (value + c): 1 for stiff modes, to
+ * (c / value)^4, and 0 for soft ones, to (value / c)^2. A border within a gap is as good as a sharp one.
+ */
+static bool rebalance_in_basis(dense_curvature *curvature, const double *gradient, double stiff,
+                               double *step) {
+  int32_t n = curvature->reduced->n;
+  double c = 2.0 * find_border(curvature, stiff);
+  if (c == 0.0 || strut_tridiagonal_factor(curvature->reduced, c) > 0) return false;
+  enter_basis(curvature, gradient);
+  memset(curvature->x, 0, (size_t)n * sizeof *curvature->x);
+  for (int k = 1; k <= 5; k++) {
+    strut_tridiagonal_solve(curvature->reduced, curvature->part);
+    for (int32_t i = 0; i < n; i++) curvature->x[i] += (k < 5 ? 1.0 : -4.0) * curvature->part[i];
+    for (int32_t i = 0; i < n; i++) curvature->part[i] *= c;
+  }
+  strut_tridiagonal_leave(curvature->reduced, curvature->x);
+  for (int32_t i = 0; i < n; i++) step[i] -= curvature->x[i];
+  return true;
 }
 
 static bool dense_rebalance(void *memory, const double *gradient, double *step) {
   dense_curvature *curvature = memory;
   double stiff = curvature->multiplier > 0 ? 10.0 * curvature->multiplier : 1e-3 * curvature->scale;
+  if (!curvature->has_modes) return rebalance_in_basis(curvature, gradient, stiff, step);
   return strut_spectrum_rebalance(&curvature->now, curvature->now.value, stiff, gradient, step);
 }
 
 static double dense_newton_step(void *memory, const double *gradient, double *s) {
   dense_curvature *curvature = memory;
+  strut_model_step step;
+  if (is_definite(curvature) && step_in_basis(curvature, gradient, HUGE_VAL, s, &step))
+    return step.length;
+  if (!find_modes(curvature, NULL)) return HUGE_VAL;
   strut_spectrum_split(&curvature->now, gradient, HUGE_VAL, curvature->part, curvature->idle);
   for (int32_t i = 0; i < curvature->now.n; i++)
     curvature->x[i] = curvature->idle[i] ? 0.0 : -curvature->part[i] / curvature->now.value[i];
@@ -153,9 +253,12 @@ static double dense_newton_step(void *memory, const double *gradient, double *s)
 }
 
 static bool dense_unstable_direction(void *memory, double *step) {
-  const strut_spectrum *now = &((dense_curvature *)memory)->now;
-  if (now->n == 0 || !(now->value[0] < -4.0 * now->noise[0])) return false;
-  memcpy(step, now->vector, (size_t)now->n * sizeof *step);
+  dense_curvature *curvature = memory;
+  if (is_definite(curvature)) return false;
+  if (!find_modes(curvature, NULL) || curvature->now.n == 0 ||
+      !(curvature->now.value[0] < -4.0 * curvature->now.noise[0]))
+    return false;
+  memcpy(step, curvature->now.vector, (size_t)curvature->now.n * sizeof *step);
   return true;
 }
 

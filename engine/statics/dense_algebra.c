@@ -170,6 +170,87 @@ bool strut_eigen(double *matrix, int32_t rows, double *value, double *work) {
   return true;
 }
 
+bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t rows, strut_arena *arena) {
+  size_t n = (size_t)rows;
+  strut_tridiagonal *t = tridiagonal;
+  *t = (strut_tridiagonal){.n = rows};
+  return strut_arena_numbers(arena, n * n, (double **[]){&t->z, NULL}) &&
+         strut_arena_numbers(arena, n,
+                             (double **[]){&t->height, &t->work, &t->diagonal, &t->beside,
+                                           &t->pivot, &t->ratio, NULL});
+}
+
+void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal) {
+  size_t n = (size_t)tridiagonal->n;
+  double before = 0.0;
+  tridiagonal->bound = 0.0;
+  if (n == 0) return;
+  tridiagonal->power = scale_matrix(tridiagonal->z, n);
+  reduce(tridiagonal->z, n, tridiagonal->height, tridiagonal->work);
+  for (size_t i = 0; i < n; i++) {
+    tridiagonal->diagonal[i] = ldexp(tridiagonal->z[i * n + i], tridiagonal->power);
+    tridiagonal->beside[i] = i + 1 < n ? ldexp(tridiagonal->work[i + 1], tridiagonal->power) : 0.0;
+    tridiagonal->bound = fmax(
+        tridiagonal->bound, fabs(tridiagonal->diagonal[i]) + fabs(tridiagonal->beside[i]) + before);
+    before = fabs(tridiagonal->beside[i]);
+  }
+}
+
+bool strut_tridiagonal_eigen(strut_tridiagonal *tridiagonal, double *value) {
+  size_t n = (size_t)tridiagonal->n;
+  if (n == 0) return true;
+  accumulate(tridiagonal->z, n, tridiagonal->height, tridiagonal->work);
+  if (!diagonalise(tridiagonal->z, n, tridiagonal->height, tridiagonal->work)) return false;
+  for (size_t i = 0; i < n; i++) value[i] = ldexp(tridiagonal->height[i], tridiagonal->power);
+  return true;
+}
+
+/* x without twice its share along the reflection of row i. */
+STRUT_INLINE void reflect(const strut_tridiagonal *tridiagonal, size_t i, double *vector) {
+  const double *row = tridiagonal->z + i * (size_t)tridiagonal->n;
+  if (tridiagonal->height[i] == 0.0) return;
+  double share = strut_dot(row, vector, (ptrdiff_t)i) / tridiagonal->height[i];
+  for (size_t k = 0; k < i; k++) vector[k] -= share * row[k];
+}
+
+void strut_tridiagonal_enter(const strut_tridiagonal *tridiagonal, double *vector) {
+  for (size_t i = (size_t)tridiagonal->n; i-- > 1;) reflect(tridiagonal, i, vector);
+}
+
+void strut_tridiagonal_leave(const strut_tridiagonal *tridiagonal, double *vector) {
+  for (size_t i = 1; i < (size_t)tridiagonal->n; i++) reflect(tridiagonal, i, vector);
+}
+
+int32_t strut_tridiagonal_factor(strut_tridiagonal *tridiagonal, double shift) {
+  int32_t negative = 0;
+  double taken = 0.0;
+  for (int32_t i = 0; i < tridiagonal->n; i++) {
+    double pivot = tridiagonal->diagonal[i] + shift - taken;
+    if (pivot == 0.0) pivot = -DBL_MIN;
+    negative += !(pivot > 0.0);
+    tridiagonal->pivot[i] = pivot;
+    tridiagonal->ratio[i] = tridiagonal->beside[i] / pivot;
+    taken = tridiagonal->ratio[i] * tridiagonal->beside[i];
+  }
+  return negative;
+}
+
+double strut_tridiagonal_form(const strut_tridiagonal *tridiagonal, const double *vector) {
+  double sum = 0.0, y = 0.0;
+  for (int32_t i = 0; i < tridiagonal->n; i++) {
+    y = vector[i] - (i > 0 ? tridiagonal->ratio[i - 1] * y : 0.0);
+    sum += y * y / tridiagonal->pivot[i];
+  }
+  return sum;
+}
+
+void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, double *vector) {
+  for (int32_t i = 1; i < tridiagonal->n; i++)
+    vector[i] -= tridiagonal->ratio[i - 1] * vector[i - 1];
+  for (int32_t i = 0; i < tridiagonal->n; i++) vector[i] /= tridiagonal->pivot[i];
+  for (int32_t i = tridiagonal->n - 1; i-- > 0;) vector[i] -= tridiagonal->ratio[i] * vector[i + 1];
+}
+
 /* Fixes the sign of a vector, so that results do not depend on how it was computed. */
 static void turn(double *vector, size_t n) {
   size_t largest = 0;

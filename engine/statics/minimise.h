@@ -2,8 +2,9 @@
 /**
  * From a shape downhill to a stationary point of the potential: Newton's method in a trust region.
  *
- * Up to STRUT_DENSE_STATICS free coordinates by exact steps, from the Hessian's eigenvectors; above by
- * its sparse L D L' factor, shifted until it is positive definite. Directions without stiffness and without force (free bodies, mechanisms) are left alone.
+ * Up to STRUT_DENSE_STATICS free coordinates by exact steps, from the tridiagonal form of the Hessian
+ * or its eigenvectors; above by its sparse L D L' factor, shifted until it is positive definite.
+ * Directions without stiffness and without force (free bodies, mechanisms) are left alone.
  * Deterministic.
  */
 #ifndef STRUT_ENGINE_STATICS_MINIMISE_H

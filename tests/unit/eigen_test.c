@@ -83,3 +83,46 @@ TEST(awkward) {
     for (int32_t k = 0; k < n; k++) a[i * n + k] = (i < 2 && k < 2 ? 1e12 : 1.0) / (1 + i + k);
   check(n);
 }
+
+/* A x = b with A = Q (T + shift) Q' - shift, signs of pivots against eigenvalues, and what is left of Q. */
+TEST(tridiagonal_form) {
+  uint32_t seed = 7;
+  OWN(strut_arena) arena = {0};
+  for (int32_t n = 1; n <= MOST; n += n < 12 ? 1 : 7) {
+    strut_tridiagonal t;
+    double x[MOST], b[MOST], largest = 0.0;
+    assert_true(strut_tridiagonal_create(&t, n, &arena));
+    for (int32_t i = 0; i < n; i++)
+      for (int32_t k = 0; k <= i; k++) a[i * n + k] = a[k * n + i] = entry(&seed);
+    for (int32_t i = 0; i < n * n; i++) z[i] = t.z[i] = a[i];
+    assert_true(strut_eigen(z, n, value, work));
+    strut_tridiagonal_reduce(&t);
+    for (int32_t i = 0; i < n; i++) largest = fmax(largest, fabs(value[i]));
+    assert_within(t.bound, largest, 3.0 * largest * (1.0 + 1e-12));
+    for (double shift = -2.0; shift <= 2.0; shift += 0.37) {
+      int32_t below = 0;
+      double nearest = 1.0, form = 0.0;
+      for (int32_t i = 0; i < n; i++) {
+        below += value[i] < -shift;
+        nearest = fmin(nearest, fabs(value[i] + shift));
+        x[i] = b[i] = entry(&seed);
+      }
+      assert_int_equal(strut_tridiagonal_factor(&t, shift), below);
+      strut_tridiagonal_enter(&t, x);
+      double expected = strut_tridiagonal_form(&t, x);
+      strut_tridiagonal_solve(&t, x);
+      strut_tridiagonal_leave(&t, x);
+      for (int32_t i = 0; i < n; i++) {
+        double sum = shift * x[i];
+        for (int32_t k = 0; k < n; k++) sum += a[i * n + k] * x[k];
+        assert_near(sum, b[i], 1e-12 / (nearest * nearest));
+        form += b[i] * x[i];
+      }
+      assert_near(expected, form, 1e-12 / (nearest * nearest));
+    }
+    memcpy(x, value, sizeof x);
+    assert_true(strut_tridiagonal_eigen(&t, value));
+    for (int32_t i = 0; i < n; i++) assert_true(value[i] == x[i]);
+    for (int32_t i = 0; i < n * n; i++) assert_true(t.z[i] == z[i]);
+  }
+}
