@@ -298,7 +298,7 @@ static const char *member_name(const strut_result_object *of, size_t i) {
   X("maxwell_calladine", "", PART(r), "the count", .rows = &maxwell_values,                        \
     .label = {"Maxwell-Calladine"})                                                                \
   X("class", "", COUNT(r->bars_at_node > 1 ? r->bars_at_node : 1), "most bars that meet",          \
-    .label = {""})                                                                                 \
+    .label = {"most bars at a node"})                                                              \
   X("super_stable", "", KNOWN(is_judged(r), FLAG(r->stress.super_stable)), "null: not judged")     \
   X("super_stability", "", WORDS(write_super_stability), "in words", .label = {"super stable"})    \
   X("stress_matrix", "", KNOWN(r->stress.tested, PART(&r->stress)), "null: not tested",            \

@@ -61,9 +61,8 @@ static void print_run(const strut_cost_estimate *estimate, const strut_experimen
     return;
   }
   double step = experiment->step, hertz = estimate->largest_frequency / STRUT_TAU;
-  printf("  mass matrix        %zu nonzeros, %zu in its factor, %zu in dense inverses\n",
-         estimate->matrix.mass_nonzeros, estimate->matrix.factor_nonzeros,
-         estimate->matrix.dense_entries);
+  printf("  mass matrix        %zu nonzeros, %zu in its factor\n", estimate->matrix.mass_nonzeros,
+         estimate->matrix.factor_nonzeros);
   bool bound = estimate->limits.bound;
   printf("  highest frequency  %s%s (undamped, all contacts closed)\n", bound ? "at most " : "",
          in(hertz, "Hz").text);
