@@ -257,6 +257,44 @@ static void add_columns(strut_buffer *text, const cell_table *table, int width) 
   }
 }
 
+/* A cell of LaTeX, after the mark between cells. */
+static void add_latex_cell(strut_buffer *text, const char *mark, const char *cell) {
+  strut_buffer_add(text, "%s", mark);
+  for (const char *c = cell ? cell : ""; *c; c++)
+    strut_buffer_add(text,
+                     strchr("#$%&_{}", *c) ? "\\%c"
+                     : *c == '^'           ? "\\^{}"
+                     : *c == '~'           ? "\\~{}"
+                     : *c == '\\'          ? "\\textbackslash{}"
+                                           : "%c",
+                     *c);
+}
+
+/* The table in LaTeX; `across`: a line for each value. */
+static void add_tabular(strut_buffer *text, const cell_table *table, bool across) {
+  strut_buffer_add(text, "\\begin{tabular}{%s", across ? "l" : "");
+  for (size_t i = 0; across && i < table->items; i++) strut_buffer_add(text, "r");
+  for (size_t k = 0; !across && k < table->count; k++)
+    if (table->column[k].width) strut_buffer_add(text, table->column[k].number ? "r" : "l");
+  strut_buffer_add(text, "}\n\\hline\n");
+  size_t lines = across ? table->count : table->items + 1;
+  for (size_t i = 0; i < lines; i++) {
+    if (across && !table->column[i].width) continue;
+    if (across) add_latex_cell(text, "", table->column[i].title);
+    for (size_t k = 0; across && k < table->items; k++)
+      add_latex_cell(text, " & ", table->column[i].cell[k]);
+    const char *mark = "";
+    for (size_t k = 0; !across && k < table->count; k++) {
+      const cell_column *column = &table->column[k];
+      if (!column->width) continue;
+      add_latex_cell(text, mark, i ? column->cell[i - 1] : column->title);
+      mark = " & ";
+    }
+    strut_buffer_add(text, " \\\\\n%s", i || across ? "" : "\\hline\n");
+  }
+  strut_buffer_add(text, "\\hline\n\\end{tabular}\n");
+}
+
 static void add_lists(strut_buffer *text, const strut_value_rows *rows,
                       const strut_result_object *of, const char *before,
                       const strut_table_page *page);
@@ -292,13 +330,18 @@ static void add_list(strut_buffer *text, const strut_value_row *row, const strut
   for (size_t k = 0; k < table->count; k++)
     if (table->column[k].width) all += width_of(&table->column[k]) + 2, shown++;
   text->failed = text->failed || table->failed;
-  if (all) strut_buffer_add(text, "\n%s%s\n", before, title);
-  bool few = 2 * (int)table->items <= shown;
-  if (all > (few ? page->width : 2 * page->width) && !text->failed)
+  bool latex = page->width == STRUT_REPORT_LATEX, few = 2 * (int)table->items <= shown;
+  int width = latex ? STRUT_REPORT_WIDTH : page->width;
+  bool across = all > (few ? width : 2 * width);
+  if (all) strut_buffer_add(text, "\n%s%s%s\n", latex ? "% " : "", before, title);
+  if (all && latex && !text->failed)
+    add_tabular(text, table, across);
+  else if (across && !text->failed)
     add_columns(text, table, page->width);
   else if (all && !text->failed)
     add_lines(text, table);
-  if (more) strut_buffer_add(text, "  ... and %zu more: JSON and CSV have all\n", more);
+  if (more)
+    strut_buffer_add(text, "%s ... and %zu more: JSON and CSV have all\n", latex ? "%" : " ", more);
   for (size_t i = 0; i < table->items && !text->failed; i++) {
     const cell_column *first = table->column;
     bool named = table->count && !first->number && first->cell[i];
@@ -342,12 +385,14 @@ char *strut_values_text(const strut_value_rows *rows, const void *result, const 
   const strut_result_object whole = {result, NULL, scene, 0};
   strut_c_locale locale = strut_c_locale_enter();
   cell_table *table = strut_allocate(1, sizeof *table);
-  if (scene && *scene->name) strut_buffer_add(&text, "%s\n", scene->name);
+  bool latex = width == STRUT_REPORT_LATEX;
+  if (scene && *scene->name) strut_buffer_add(&text, "%s%s\n", latex ? "% " : "", scene->name);
   if (table) {
     table->items = 1;
     table->digits = page.digits;
     put_cells(table, rows, "", &whole);
-    if (!table->failed) add_columns(&text, table, width);
+    if (!table->failed && latex && table->count) add_tabular(&text, table, true);
+    if (!table->failed && !latex) add_columns(&text, table, width);
     text.failed = text.failed || table->failed;
     strut_arena_free(&table->arena);
     strut_release(table);

@@ -32,8 +32,8 @@ STRUT_API char *strut_values_csv(const strut_value_rows *rows, const char *path,
                                  const char *const before[2], const void *result,
                                  const struct strut_scene *scene);
 
-/** Width of texts that no terminal shows; most structs of a list, unless all are wanted. */
-enum { STRUT_REPORT_WIDTH = 100, STRUT_REPORT_ROWS = 60 };
+/** Width of texts that no terminal shows, and that of tables in LaTeX; most structs of a list, unless all are wanted. */
+enum { STRUT_REPORT_WIDTH = 100, STRUT_REPORT_LATEX = -1, STRUT_REPORT_ROWS = 60 };
 /**
  * What people read of a result, in a block of strut_allocate or NULL: values with a label, those of the struct
  * each in a line, those of a list in a table with a line for each struct or, of few that are wider than `width`, a
@@ -45,7 +45,7 @@ STRUT_API char *strut_values_text(const strut_value_rows *rows, const void *resu
 
 /** What limits tables: letters of a line, structs of a list, digits of numbers. */
 typedef struct strut_table_page {
-  int width;
+  int width; /* or STRUT_REPORT_LATEX */
   size_t most;
   int digits;
 } strut_table_page;

@@ -75,7 +75,7 @@ static strut_status report(strut_analysis *a, const strut_arguments *arguments,
   return strut_print_report(
       arguments, arguments->csv
                      ? strut_values_csv(a->kind->rows, a->kind->printed, NULL, a->found, a->scene)
-                     : strut_analysis_text(a, strut_report_width()));
+                     : strut_analysis_text(a, strut_report_width(arguments)));
 }
 
 /* Finds out, before anything is computed, whether the files can go where -o and --plot want them. */

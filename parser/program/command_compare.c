@@ -256,7 +256,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(no_motion), "no-motion", NULL, "skip the simulated motion"},
     {STRUT_FILLS(no_states), "no-states", NULL, "skip the search for stable states"},
     STRUT_OUTPUT_OPTION("DIR", "write compare.csv, .json, .svg and model-1.svg, ... into DIR"),
-    STRUT_JSON_OPTION,
+    STRUT_PRINT_OPTIONS,
     STRUT_THREADS_OPTION,
     {STRUT_FILLS(csv), "csv", NULL, "print CSV, one row per model"},
     {.table = strut_plot_options},

@@ -42,7 +42,7 @@ static const strut_option options[] = {
     STRUT_SET_OPTION,
     STRUT_THREADS_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write branches.csv, .json and .svg into DIR"),
-    STRUT_JSON_OPTION,
+    STRUT_PRINT_OPTIONS,
     {.table = strut_plot_options},
     {.table = strut_axis_options},
     {.name = NULL},

@@ -24,7 +24,7 @@ static const strut_refused_option refused[] = {
                                                 STRUT_SET_OPTION,                                  \
                                                 STRUT_THREADS_OPTION,                              \
                                                 STRUT_OUTPUT_OPTION("DIR", FILES),                 \
-                                                STRUT_JSON_OPTION,                                 \
+                                                STRUT_PRINT_OPTIONS,                               \
                                                 {.table = strut_plot_options},                     \
                                                 LAST,                                              \
                                                 {.name = NULL}};
@@ -147,9 +147,9 @@ static strut_status report_form(const strut_analysis *analysis, const strut_argu
   if (model && !status && !output) status = strut_print(model);
   strut_release(model);
   if (status || !(output || arguments->json)) return status;
-  return strut_print_report(arguments, arguments->json
-                                           ? strut_analysis_json(analysis)
-                                           : strut_analysis_text(analysis, strut_report_width()));
+  return strut_print_report(
+      arguments, arguments->json ? strut_analysis_json(analysis)
+                                 : strut_analysis_text(analysis, strut_report_width(arguments)));
 }
 
 static const char form_details[] =

@@ -155,7 +155,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(own_model), "own-model", NULL, "skip variants of the model"},
     STRUT_SET_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write tradeoff.csv, .json and .svg into DIR"),
-    STRUT_JSON_OPTION,
+    STRUT_PRINT_OPTIONS,
     STRUT_THREADS_OPTION,
     {STRUT_FILLS(plot), "plot", "FILE",
      "draw error against cost into FILE (.svg, .pdf, .png or .json)"},

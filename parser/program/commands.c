@@ -92,14 +92,18 @@ void strut_program_help(void) {
       "4 file or memory trouble, 5 less accurate than requested, 130 interrupted.\n");
 }
 
-int strut_report_width(void) { return strut_terminal_columns(STDOUT_FILENO, STRUT_REPORT_WIDTH); }
+int strut_report_width(const strut_arguments *arguments) {
+  return arguments->format.index ? STRUT_REPORT_LATEX
+                                 : strut_terminal_columns(STDOUT_FILENO, STRUT_REPORT_WIDTH);
+}
 
 strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *values,
                                 const void *result, const strut_scene *scene) {
   return strut_print_report(
-      arguments, arguments->json ? strut_values_json(values, result, scene)
-                                 : strut_values_text(values, result, scene, strut_report_width(),
-                                                     STRUT_REPORT_ROWS));
+      arguments, arguments->json
+                     ? strut_values_json(values, result, scene)
+                     : strut_values_text(values, result, scene, strut_report_width(arguments),
+                                         STRUT_REPORT_ROWS));
 }
 
 static strut_status print_help(const strut_arguments *arguments) {

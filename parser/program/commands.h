@@ -47,7 +47,7 @@ void strut_program_help(void);
 void strut_examples_list(void (*each)(void *context, const char *model), void *context);
 
 /** Width of what is printed. */
-int strut_report_width(void);
+int strut_report_width(const strut_arguments *arguments);
 /** Prints a result as JSON where that is wanted, or else as text unless --quiet suppresses it. */
 strut_status strut_print_values(const strut_arguments *arguments, const strut_value_rows *rows,
                                 const void *result, const struct strut_scene *scene);

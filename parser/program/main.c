@@ -55,7 +55,8 @@ static strut_status run_command(const strut_command *command, int argc, char **a
   } else if (status == STRUT_OK) {
     status = command->run ? command->run(&arguments) : strut_analysis_run(&arguments);
     /* Below a table; never in JSON or a file, which must not change from run to run. */
-    if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet)
+    if (status == STRUT_OK && command->timed && !arguments.json && !arguments.quiet &&
+        !arguments.format.index)
       printf("\n  took %s\n", strut_quantity_of(strut_run_clock() - begin, 3, "s").text);
   }
   strut_arguments_free(&arguments);

@@ -33,8 +33,11 @@ void strut_command_help(const strut_command *command);
 
 #define STRUT_SET_OPTION                                                                           \
   { STRUT_FILLS(overrides), "set", "NAME=VALUE", "change a parameter; may be repeated" }
-#define STRUT_JSON_OPTION                                                                          \
-  { STRUT_FILLS(json), "json", NULL, "print everything as one JSON object" }
+#define STRUT_PRINT_OPTIONS                                                                        \
+  {STRUT_FILLS(json), "json", NULL, "print everything as one JSON object"}, {                      \
+    STRUT_FILLS(format), "format", "FORMAT", "print tables as text (default) or latex",            \
+        .words = "text|latex"                                                                      \
+  }
 #define STRUT_THREADS_OPTION                                                                       \
   {                                                                                                \
     STRUT_FILLS(threads), "threads", "N", "most threads (default: one per processor)",             \

@@ -22,6 +22,13 @@ expect 0 modes frame.yaml
 err_empty
 for text in "modes at " "coordinates       8" "rigid-body" \
   "the structure rotates freely" "19.0307 Hz" "elastic" "of the energy"; do out_has "$text"; done
+# In LaTeX each line of a table has as many cells as its columns.
+expect 0 modes frame.yaml --format latex
+out_has '\begin{tabular}{rrrrll}' '\hline' ' \% of the energy' '% modes'
+awk '/begin.tabular/ { sub(/.*tabular}{/, ""); n = length($0) - 1 }
+     / & / && gsub(/ & /, "") != n - 1 { print; bad = 1 }
+     END { exit bad }' out || fail "a line has other cells than its table"
+tells 1 "--format expects text or latex" modes frame.yaml --format tex
 expect 0 modes frame.yaml --json
 err_empty
 out_has '"name":	"Frame"' '"coordinates":	8' '"method":	"dense"' '"contacts":	[]' '"kind":	"rigid-body"' '"shape":	{' \

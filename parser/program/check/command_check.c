@@ -17,7 +17,7 @@ enum { DIGITS = 5 };
 static const strut_option options[] = {
     STRUT_SET_OPTION,
     {.table = strut_experiment_options},
-    STRUT_JSON_OPTION,
+    {STRUT_FILLS(json), "json", NULL, "print everything as one JSON object"},
     {.name = NULL},
 };
 

@@ -65,6 +65,7 @@ typedef struct strut_arguments {
   const char *x_label, *y_label, *x_limits, *y_limits;
   strut_given_word integrator, bars, mass_model, friction_law, damping_law, friction, given;
   strut_given_word objective, draw, kind, colors, log, equilibria, measure, emit, record, compute;
+  strut_given_word format;
   strut_given_words channels;
   strut_given_range over, and_over;
   strut_given_number accuracy, budget, step, tolerance, steady, speed, fps, periods, cpu_time;
