@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The programs of docs/python run and draw; those whose libraries are not installed are left out."""
+"""The programs and the notebook of docs/python run and draw; those whose libraries are not installed are left out."""
 
 import importlib.util
+import json
 import os
 import pathlib
 import subprocess
@@ -35,6 +36,17 @@ class Notebooks(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertGreater(picture.stat().st_size, 10000)
                 print(done.stdout, flush=True)
+
+    def test_the_cells_of_the_notebook_run_in_order(self):
+        cells = json.loads((ROOT / "docs/python/first-steps.ipynb").read_text())["cells"]
+        self.assertEqual(len(cells), 10)
+        program = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=folder,
+                                  env={**os.environ, "MPLCONFIGDIR": folder, "MPLBACKEND": "agg"})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            for words in ("right within", "at 8 Hz", "limit point"):
+                self.assertIn(words, done.stdout.replace("_", " "))
 
 
 main()
