@@ -420,11 +420,13 @@ static strut_status add_run(strut_former *former, strut_error *error) {
       status = strut_fail(error, STRUT_BAD_SCENE,
                           "stiffnesses are so large beside the masses that no time step can be "
                           "chosen; check their units");
-    former->form->run_added =
-        experiment->step == 0 || (experiment->duration == 0 && experiment->periods == 0);
-    if (status == STRUT_OK && (experiment->step == 0 || experiment->step > limit.limit))
+    bool chosen = experiment->accuracy > 0.0,
+         still = !(experiment->duration || experiment->periods);
+    bool stepless = experiment->step == 0 && !chosen;
+    former->form->run_added = stepless || still;
+    if (status == STRUT_OK && !chosen && (stepless || experiment->step > limit.limit))
       experiment->step = isfinite(limit.limit) ? round_down(STEP_SHARE * limit.limit) : IDLE_STEP;
-    if (experiment->duration == 0 && experiment->periods == 0) experiment->duration = HOLD;
+    if (still) experiment->duration = HOLD;
   }
   strut_model_free(model);
   return status;
