@@ -91,14 +91,24 @@ void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const do
 
 /* ---- one fit ---- */
 
-/* Where a start begins: the first one where the study says, the others spread evenly. */
+/*
+ * Where a start begins: the first one where the study says, the others spread evenly; so do the turns and delays of
+ * every second one, since what repeats itself fits as well a period later.
+ */
 void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
   const strut_study_fit *fit = layout->fit;
-  strut_search_spread spread = strut_search_spread_begin(fit->variable_count, (uint64_t)fit->seed);
+  size_t dimensions = fit->variable_count + layout->aligned_count;
+  strut_search_spread spread = strut_search_spread_begin(dimensions, (uint64_t)fit->seed);
   for (size_t i = 0; i < layout->parameters; i++) {
     size_t k = i - layout->aligned_count;
-    parameters[i] = i < layout->aligned_count
-                        ? strut_fit_parameter(layout, i, layout->aligned[i].start)
+    const strut_fit_aligned *aligned = i < layout->aligned_count ? &layout->aligned[i] : NULL;
+    bool spreads = aligned && start % 2 && aligned->spread[1] > aligned->spread[0];
+    double part =
+        spreads ? strut_search_spread_at(&spread, start - 1, fit->variable_count + i) : 0.0;
+    double own = spreads   ? aligned->spread[0] + part * (aligned->spread[1] - aligned->spread[0])
+                 : aligned ? aligned->start
+                           : 0.0;
+    parameters[i] = aligned      ? strut_fit_parameter(layout, i, own)
                     : start == 0 ? 1.0 + strut_search_start(&fit->variables[k])
                                  : 1.0 + strut_search_spread_at(&spread, start - 1, k);
   }

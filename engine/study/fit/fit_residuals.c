@@ -475,18 +475,28 @@ static double range_of(const strut_fit_match *match) {
   return most > least ? most - least : fmax(fabs(most), 1e-12);
 }
 
-/* Turns and delays have a range, as parameters do: a delay is no longer than the motion. */
+/*
+ * Turns and delays have a range, as parameters do: by a delay a motion begins no further from the run's start, or from
+ * its own first time, than it lasts.
+ */
 static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
                         double scale) {
   static const char *const names[] = {"shift_x", "shift_y", "rotate", "delay"};
   static const char *const units[] = {"m", "m", "rad", "s"};
+  const strut_fit_match *match = &layout->fit->matches[m];
+  bool delay = what == STRUT_FIT_DELAY;
   const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
+  double from = start - range[what], to = start + range[what];
+  if (delay) from = fmin(from, -scale), to = fmax(to, match->at[0] + scale);
   const char *name =
       strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
   size_t i = layout->aligned_count++;
-  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale};
-  layout->low[i] = 1.0 + (start - range[what]) / scale;
-  layout->high[i] = 1.0 + (start + range[what]) / scale;
+  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale, {0.0, 0.0}};
+  if (delay || what == STRUT_FIT_ROTATE)
+    layout->aligned[i].spread[0] = 0.5 * from, layout->aligned[i].spread[1] = 0.5 * to;
+  if (delay) layout->aligned[i].spread[0] = from, layout->aligned[i].spread[1] = to;
+  layout->low[i] = 1.0 + from / scale;
+  layout->high[i] = 1.0 + to / scale;
   return name != NULL;
 }
 
@@ -509,7 +519,10 @@ static bool add_alignments(strut_fit_layout *layout, size_t m) {
   }
   if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
   if (match->align.delay)
-    fine = add_aligned(layout, m, STRUT_FIT_DELAY, match->at[0], span_of(match)) && fine;
+    fine = add_aligned(layout, m, STRUT_FIT_DELAY,
+                       match->at[0] >= 0.0 && match->at[0] <= span_of(match) ? 0.0 : match->at[0],
+                       span_of(match)) &&
+           fine;
   return fine;
 }
 

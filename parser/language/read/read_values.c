@@ -369,7 +369,8 @@ int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const 
     return -1;
   }
   strut_parameter_state *parameter = strut_parameter_find(reader, value->text);
-  if (parameter && parameter->text) return find_named_by_parameter(reader, value, parameter, names);
+  if (parameter && parameter->text && names->map != &reader->group_names)
+    return find_named_by_parameter(reader, value, parameter, names);
   int32_t index = strut_find_named(reader, names->map, value, value->text);
   const char *hiding = index < 0 && names->map == nodes ? strut_hiding_part(reader, value) : NULL;
   if (hiding)

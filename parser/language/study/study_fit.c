@@ -95,7 +95,7 @@ static bool set_noise_unit(strut_study_reader *reader, reading *self, const stru
   if (!self->to->noise_unit) {
     if (!strut_read_quantity(reader->reader, noise->value, "noise", self->owner, &q)) return false;
     self->to->noise = q.value;
-    self->to->noise_unit = q.bare ? "1" : strut_dimension_unit(q.dimension);
+    self->to->noise_unit = q.bare ? unit : strut_dimension_unit(q.dimension);
     if (!(q.value > 0.0))
       return strut_report_error(reader->reader, noise->value->place,
                                 "'noise' of match '%s' must be above 0", self->to->name);
@@ -465,7 +465,7 @@ void strut_study_read_fit(strut_study_reader *reader, strut_fields *top) {
   strut_study_exclude(reader, top, slot, others, sizeof others / sizeof others[0]);
   strut_study_fit *fit = strut_study_allocate(reader, 1, sizeof *fit);
   if (!fit || !study->axes || reader->reader->failed) return;
-  *fit = (strut_study_fit){.starts = 1, .seed = 1};
+  *fit = (strut_study_fit){.starts = 8, .seed = 1};
   strut_read_object(reader->reader, STRUT_SECTION_FIT, slot->value, fit_owner, &fields, fit);
   const strut_slot *over = strut_slot_of(&fields, STRUT_KEY_FIT_OVER);
   const strut_slot *matches = strut_slot_of(&fields, STRUT_KEY_FIT_MATCH);
