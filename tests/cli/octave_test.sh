@@ -131,6 +131,8 @@ numbers(found.points.nodes.apex(:, 2), 'apex');
 texts(found.events.kind, 'event');
 found = strut.command('rigidity', 'models/basics/x-frame.yaml');
 assert(isfield(found, 'rank'));
+found = strut.command('compare', {'models/basics/x-frame.yaml', 'models/basics/von-mises-truss.yaml'});
+assert(isequal(found.models.model, {'x-frame'; 'von-mises-truss'}));
 
 % Fits and studies.
 [fit, residuals] = strut.fit('fit.yaml', 'output', 'fitted');

@@ -21,6 +21,7 @@ class Guesses(unittest.TestCase):
         self.assertEqual(robot["frequency"], 5.0)
         self.assertEqual(robot["parameters.friction"], 0.4)
         self.assertIsNone(robot.get("run.duration"))
+        self.assertEqual(robot["nodes"]["top"].position, (0.05, 0.06))
         self.assertRaisesRegex(KeyError, "did you mean 'frequency'", lambda: robot["frequncy"])
         self.assertRaisesRegex(AttributeError, "did you mean 'equilibria'", lambda: robot.equlibria)
 

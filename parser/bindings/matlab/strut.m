@@ -118,7 +118,7 @@ classdef strut
       if ~isempty(output)
         words = [words, {'--output', output}];
       end
-      words = [words, {model.file}];
+      words = [words, reshape(cellstr(model.file), 1, [])]; % compare takes several
 
       [status, out, err] = execute([{name, '--json'}, words], folder, model.text);
       failed = ~any(status == [0, 5]);
@@ -214,7 +214,7 @@ end
 % A model as its file, settings NAME=VALUE, and the text of the file '-', which is standard input.
 function model = model_of(model)
   if ~isstruct(model)
-    model = struct('file', char(model), 'set', {cell(1, 0)});
+    model = struct('file', {model}, 'set', {cell(1, 0)});
   end
   if ~isfield(model, 'text')
     model.text = '';
