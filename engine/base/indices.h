@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-/** The first of (count) ascending numbers that is not below `wanted`; count: there is none. */
+/** The first of (count) ascending numbers that is not below `wanted`; count where all are below. */
 static inline int32_t strut_index_find(const int32_t *list, int32_t count, int32_t wanted) {
   int32_t low = 0, high = count;
   while (low < high) {

@@ -210,7 +210,7 @@ strut_status strut_sliding_masses_solve(strut_model *model) {
   return good ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
-/* Which moved coordinate stands at a place; NONE: none. */
+/* Index of the moved coordinate at a place, or NONE. */
 enum { NONE = -1 };
 
 static void add_coupling(strut_model *model, strut_support_coupling *list, int32_t item,

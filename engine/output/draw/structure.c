@@ -447,7 +447,7 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *window, const st
     draw_name(&d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);
   }
   for (size_t j = 0; j < scene->member_count && members; j++) {
-    find_longest(&d, j, ends); /* the name stands at its middle */
+    find_longest(&d, j, ends); /* the name is drawn at its middle */
     for (int c = 0; c < 2; c++) at[c] = 0.5 * (ends[0][c] + ends[1][c]);
     draw_name(&d, at, 0.25 * STRUT_PI, MEMBER_GAP, scene->members[j].name);
   }

@@ -30,7 +30,7 @@ typedef struct strut_fit_aligned {
   strut_fit_aligns what;
   const char *name, *unit; /* "film.shift_x" */
   double start, scale;     /* SI */
-  double spread[2];        /* where starts begin, from and to; both 0: at `start` */
+  double spread[2];        /* range in which starts begin; both 0: all at `start` */
 } strut_fit_aligned;
 
 /** A series as the model has it. */
