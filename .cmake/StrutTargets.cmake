@@ -26,7 +26,7 @@ function(strut_compile_options target)
                                                STRUT_VERSION="${PROJECT_VERSION}")
   target_compile_options(${target} PRIVATE ${STRUT_WARNINGS} -ffp-contract=off -fno-math-errno
                                            -Wno-psabi)
-  if(EMSCRIPTEN) # clang 14 drops terms where it vectorises double_double.h under -Oz
+  if(EMSCRIPTEN) # clang 14 drops terms where it vectorises arithmetic.h under -Oz
     target_compile_options(${target} PRIVATE -fno-slp-vectorize)
   else()
     target_compile_options(${target} PRIVATE -fno-semantic-interposition)

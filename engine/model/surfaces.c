@@ -3,7 +3,7 @@
 #include <assert.h>
 #include <math.h>
 
-#include "engine/base/range_tree.h"
+#include "engine/base/indices.h"
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
 #include "engine/model/pose.h"

@@ -9,9 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 /* ---- CSV ---- */
 

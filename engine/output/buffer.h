@@ -8,8 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/number_text.h"
-#include "engine/base/text_buffer.h"
+#include "engine/base/text.h"
 
 /**
  * The text, of which no more than `length` bytes count, as a cell of CSV: RFC 4180 requires quotes around one

@@ -2,7 +2,7 @@
 #include "engine/output/record_files.h"
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 

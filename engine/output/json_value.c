@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 strut_json strut_json_begin(void) {
   cJSON *root = cJSON_CreateObject();

@@ -4,9 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/base/vec.h"
 #include "engine/output/result_values.h"
 #include "engine/scene/scene.h"

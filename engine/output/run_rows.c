@@ -6,9 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 
 enum { DIGITS = 4, MOST_CONTACTS = 12 };
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "engine/base/subnormals.h"
+#include "engine/base/arithmetic.h"
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces.h"

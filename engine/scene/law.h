@@ -2,29 +2,22 @@
 /**
  * Elastic laws: the force of a member, the moment of a hinge, as a function of its strain.
  *
- * A law is a row of STRUT_LAWS and a header of engine/scene/laws with two functions. It knows material
+ * A law is a row of STRUT_LAWS and two functions in a header of engine/scene/laws. It knows material
  * only: e is any strain (a length [m], an angle [rad], an area [m^2]), e0 its natural value, x = e - e0,
- * and the force is the one that does work on e. Laws of cells are in laws/cell_laws.h.
+ * and the force is the one that does work on e. Laws of cells are in laws/cells.h.
  * Reader, checks, forces, energies, stiffness, statics and located events loop over this table, so that a
  * law is added only here; see docs/dev/recipes.md.
  */
 #ifndef STRUT_ENGINE_SCENE_LAW_H
 #define STRUT_ENGINE_SCENE_LAW_H
 
-#include "engine/scene/laws/bilinear.h"
-#include "engine/scene/laws/cell_laws.h"
-#include "engine/scene/laws/elastic_plastic.h"
-#include "engine/scene/laws/exponential.h"
-#include "engine/scene/laws/folding.h"
-#include "engine/scene/laws/linear.h"
-#include "engine/scene/laws/logarithmic.h"
-#include "engine/scene/laws/play.h"
-#include "engine/scene/laws/polynomial.h"
-#include "engine/scene/laws/table.h"
+#include "engine/scene/laws/cells.h"
+#include "engine/scene/laws/curves.h"
+#include "engine/scene/laws/springs.h"
 
 /**
  * The laws: X(NAME, name, word, needs, context); context is passed on. needs: bits of the parameters
- * (laws/parameters.h) that the law needs, NAME_MAY that it may have, 0 if not given; OWN: it has a stiffness
+ * (laws/numbers.h) that the law needs, NAME_MAY that it may have, 0 if not given; OWN: it has a stiffness
  * of its own, so that the element must not give one.
  */
 #define STRUT_LAWS(X, context)                                                                     \

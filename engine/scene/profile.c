@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "engine/base/range_tree.h"
+#include "engine/base/indices.h"
 #include "engine/base/vec.h"
 
 static strut_vec2 segment_of(const strut_ground *ground, size_t k) {

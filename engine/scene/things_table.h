@@ -42,7 +42,7 @@
 
 #include <math.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/scene/experiment.h"
 
 /* clang-format off */

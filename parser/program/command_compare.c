@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/study/compare/compare.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/language/read/reuse/overlay.h"

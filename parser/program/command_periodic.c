@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/scene/things.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"

@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/figures/run_film.h"
 #include "engine/output/file.h"

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/study/cluster/cluster_script.h"
 #include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"

@@ -5,9 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/program/command/analyses.h"
 #include "parser/program/open_model.h"

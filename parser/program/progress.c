@@ -10,7 +10,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/run/simulate.h"
 
 /* ---- the terminal ---- */

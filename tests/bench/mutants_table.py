@@ -316,7 +316,7 @@ MUTANTS = [
            "double at_a = m * (share.own + share.other) * a;", "Rayleigh's damping lumps the mass", "world"),
     Mutant("ratio-of-fixed", "engine/model/compile.c", "(fixed[0] ? 0.0 : d.x * d.x)", "d.x * d.x",
            "damping ratios take supports in x for free", "world|cli_drives"),
-    Mutant("gas-outside", "engine/scene/laws/gas.h", "e0 * energy + n->outside * (e - n->area)", "e0 * energy",
+    Mutant("gas-outside", "engine/scene/laws/cells.h", "e0 * energy + n->outside * (e - n->area)", "e0 * energy",
            "the pressure outside of a gas does no work", "cells|cli_cells|world_methods"),
     Mutant("reach-at-the-end", "engine/forces/strains/strains.h", "s = s < 0.0 ? 0.0 : s > 1.0 ? 1.0 : s;",
            "s = s < 0.0 ? 0.0 : s;", "a bar's second end goes on for collisions", "elements|world"),

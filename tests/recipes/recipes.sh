@@ -20,7 +20,7 @@ touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')
 expected="engine/forces/observe.c engine/forces/strains/strains.h engine/integrate/euler_forward.c \
 engine/integrate/events/location/between.c \
 engine/model/elements.c engine/model/elements.h engine/scene/experiment.h engine/scene/law.h \
-engine/scene/laws/friction.h engine/scene/laws/stiffening.h engine/scene/observables.h engine/scene/scene.c \
+engine/scene/laws/friction.h engine/scene/laws/springs.h engine/scene/observables.h engine/scene/scene.c \
 engine/scene/scene.h engine/scene/things_table.h parser/language/keys/keys_table.h parser/language/read/read_scene.c \
 parser/language/read/read_things.c parser/language/write/write_scene.c "
 [ "$touched" = "$expected" ] || { echo "the recipes touch other files: $touched"; exit 1; }

@@ -3,7 +3,7 @@
 #include <float.h>
 #include <stdbool.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "tests/support/test.h"
 
 static uint64_t state = UINT64_C(0x9e3779b97f4a7c15);

@@ -43,7 +43,7 @@ def main():
     root = sys.argv[1]
     read = lambda name: open('%s/engine/scene/%s' % (root, name), encoding='utf-8').read()
     structs = read('scene.h') + read('law.h')
-    parameters = [name for name in re.findall(r'X\([A-Z_]+, (\w+),', read('laws/parameters.h')) if name not in ('field', 'key')]
+    parameters = [name for name in re.findall(r'X\([A-Z_]+, (\w+),', read('laws/numbers.h')) if name not in ('field', 'key')]
     table = read('things_table.h')
     missing, seen = [], 0
     for struct in STRUCTS:

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "engine/output/draw/painter.h"
 
 /* Ticks with more significant digits get a common offset. */

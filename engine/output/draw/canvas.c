@@ -13,8 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
+#include "engine/base/text.h"
 #include "engine/base/vec.h"
 #include "engine/output/buffer.h"
 #include "engine/output/draw/painter.h"

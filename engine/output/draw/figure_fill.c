@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "engine/output/draw/cairo_page.h"
 #include "engine/output/file.h"
 

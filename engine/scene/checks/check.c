@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/name_map.h"
+#include "engine/base/text.h"
 #include "engine/base/vec.h"
 #include "engine/scene/checks/check_rules.h"
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/text_buffer.h"
+#include "engine/base/text.h"
 #include "engine/forces/tangent.h"
 #include "engine/run/settle.h"
 #include "engine/scene/things.h"

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/text_buffer.h"
+#include "engine/base/text.h"
 #include "engine/forces/capstan.h"
 #include "engine/model/compile_parts.h"
 #include "engine/statics/equilibria/equilibria.h"

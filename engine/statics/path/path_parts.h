@@ -6,7 +6,7 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_permutation.h>
 
-#include "engine/base/double_double.h"
+#include "engine/base/arithmetic.h"
 #include "engine/statics/path/path.h"
 #include "engine/statics/potential.h"
 

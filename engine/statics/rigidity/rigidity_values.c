@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/statics/rigidity/rigidity.h"
 
 enum { FEW_DIGITS = 4 };

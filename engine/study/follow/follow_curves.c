@@ -4,8 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"

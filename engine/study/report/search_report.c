@@ -2,7 +2,7 @@
 /* What a search has found, and what it is worth. */
 #include <stdio.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/result_values.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/grid.h"

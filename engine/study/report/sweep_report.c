@@ -2,7 +2,7 @@
 /* What is told of a sweep: its points and columns, how far it is, its end. */
 #include <stdio.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/result_values.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/sweep/sweep_parts.h"

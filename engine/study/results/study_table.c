@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/study/results/slots_parts.h"

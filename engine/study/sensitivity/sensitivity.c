@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"
 #include "engine/scene/sample.h"

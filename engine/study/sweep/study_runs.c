@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/trajectory.h"
 #include "engine/study/sweep/grid.h"

@@ -3,8 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/buffer.h"
 #include "engine/output/result_values.h"
 #include "engine/study/tradeoff/tradeoff.h"

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "engine/output/json_value.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"

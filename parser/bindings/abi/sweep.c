@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"
 #include "engine/study/results/study_table.h"

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "parser/language/expression/expression_parts.h"
 
 enum { EXPONENT_MOST = 99999 };

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/scene/sample.h"
 #include "engine/scene/study.h"
 #include "parser/language/yaml/document.h"

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "parser/language/read/reader.h"
 #include "parser/language/read/reuse/copies.h"
 #include "parser/language/read/reuse/used_files.h"

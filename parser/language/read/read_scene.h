@@ -5,7 +5,7 @@
 #ifndef STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
 #define STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/expression/units.h"

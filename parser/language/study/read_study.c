@@ -6,8 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/scene/things.h"
 #include "parser/language/study/study_reader.h"
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "parser/language/expression/expression.h"
 #include "parser/language/study/read_study.h"
 #include "parser/language/study/study_reader.h"

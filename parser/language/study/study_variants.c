@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/base/checksum.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "parser/language/read/reuse/used_files.h"
 #include "parser/language/study/read_study.h"
 #include "parser/language/study/study_reader.h"

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/base/vec.h"
 #include "parser/language/write/writer.h"
 #include "parser/language/yaml/text.h"

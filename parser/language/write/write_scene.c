@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
+#include "engine/base/text.h"
 #include "engine/base/vec.h"
 #include "parser/language/write/writer.h"
 

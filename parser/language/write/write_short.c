@@ -5,9 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/name_map.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/writer.h"
 #include "parser/language/yaml/text.h"

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/text_buffer.h"
+#include "engine/base/text.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/keys/keys.h"
 

@@ -7,9 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/c_locale.h"
 #include "engine/base/memory.h"
-#include "engine/base/text_buffer.h"
+#include "engine/base/text.h"
 #include "parser/language/yaml/text.h"
 
 enum { MESSAGE_MOST = 900 };

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/forces/history.h"
 #include "engine/output/figures/statics_figures.h"
 #include "engine/output/path_csv.h"

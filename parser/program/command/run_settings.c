@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/command/run_settings.h"
 
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/integrate/integrator.h"
 
 const strut_option strut_method_options[] = {

@@ -9,7 +9,7 @@
 
 #include "engine/base/checksum.h"
 #include "engine/base/memory.h"
-#include "engine/base/number_text.h"
+#include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/cluster/cluster_script.h"

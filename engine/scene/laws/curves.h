@@ -1,17 +1,58 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
+/** Laws through points: tables, and curves that may fold back; see engine/scene/law.h. */
+#ifndef STRUT_ENGINE_SCENE_LAWS_CURVES_H
+#define STRUT_ENGINE_SCENE_LAWS_CURVES_H
+
+#include "engine/scene/laws/numbers.h"
+
+/* Piece i of the curve, extended beyond its ends. */
+static inline strut_law_response strut_law_curve_piece(const strut_law_curve *c, size_t i,
+                                                       double x) {
+  const double *p = c->piece[i];
+  double d = x - c->x[i];
+  return (strut_law_response){
+      p[0] + d * (p[1] + d * (p[2] + d * p[3])),
+      c->energy[i] + d * (p[0] + d * (p[1] / 2.0 + d * (p[2] / 3.0 + d * p[3] / 4.0))),
+      p[1] + d * (2.0 * p[2] + d * 3.0 * p[3]), 0.0};
+}
+
+/** Force through points, by straight lines or by a monotone spline; straight on beyond the ends. */
+static inline strut_law_response strut_law_table(const strut_law_numbers *n, double e, double e0,
+                                                 int piece) {
+  const strut_law_curve *c = n->curve;
+  double x = e - e0;
+  size_t low = 0, high = c->count - 1;
+  if (piece >= 0 && !c->smooth) return strut_law_curve_piece(c, (size_t)piece, x);
+  if (x < c->x[0] || x > c->x[high]) {
+    size_t end = x < c->x[0] ? 0 : high;
+    strut_law_response r = strut_law_curve_piece(c, end ? end - 1 : 0, c->x[end]);
+    double beyond = x - c->x[end];
+    return (strut_law_response){r.force + r.slope * beyond,
+                                r.energy + beyond * (r.force + 0.5 * r.slope * beyond), r.slope,
+                                0.0};
+  }
+  while (high - low > 1) {
+    size_t middle = (low + high) / 2;
+    *(c->x[middle] <= x ? &low : &high) = middle;
+  }
+  return strut_law_curve_piece(c, low, x);
+}
+static inline int strut_law_table_kinks(const strut_law_numbers *n) {
+  return n->curve->smooth ? 0 : (int)n->curve->count - 2;
+}
+static inline double strut_law_table_kink(const strut_law_numbers *n, int k) {
+  return n->curve->x[k + 1];
+}
+
+/*
  * Force over elongation along a curve of pieces that may fold back. Where x falls along it, nothing holds an
  * element in place; one that reaches a fold jumps to the next piece along which x grows.
  *
- * Which of several pieces holds at an x is a memory. Alone, this header starts from the piece at x = 0; runs
+ * Which of several pieces holds at an x is a memory. Alone, this law starts from the piece at x = 0; runs
  * and paths give the piece, see engine/forces/history.h. The rule that folds turn with falling force is that
  * of a potential over x and a place t on the curve, which is stable in t where x grows with t:
  * U = int F dx + F (x - x(t)) + k(t)/2 (x - x(t))^2 with k x' > F', which needs F' < 0 where x' = 0.
  */
-#ifndef STRUT_ENGINE_SCENE_LAWS_FOLDING_H
-#define STRUT_ENGINE_SCENE_LAWS_FOLDING_H
-
-#include "engine/scene/laws/table.h"
 
 /** Does x grow (1) or fall (-1) along piece i, 0 <= i < count - 1? */
 static inline int strut_folding_way(const strut_law_curve *c, int i) {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Doubles as the shortest decimal text that reads back to the same bits, in any locale.
- */
-#ifndef STRUT_ENGINE_BASE_NUMBER_TEXT_H
-#define STRUT_ENGINE_BASE_NUMBER_TEXT_H
+/** Texts: numbers as text in any locale, and a text that grows. */
+#ifndef STRUT_ENGINE_BASE_TEXT_H
+#define STRUT_ENGINE_BASE_TEXT_H
 
+#include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "engine/base/status.h"
@@ -46,5 +46,45 @@ typedef struct strut_rounded_quantity {
 STRUT_API strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit);
 /** As strut_quantity_of for any unit; units that take no prefix ("1", "m^2", "kg m/s") stay unchanged. */
 STRUT_API strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit);
+
+/*
+ * Numbers look the same whatever locale the host program has chosen.
+ *
+ * A function that reads or writes numbers as text puts its body between enter and leave; both act
+ * on the calling thread only.
+ */
+
+/** Two opaque handles; keep it on the stack between enter and leave. */
+typedef struct strut_c_locale {
+  void *c, *previous;
+} strut_c_locale;
+
+/** Makes "C" the calling thread's locale. Where memory is out it changes nothing. */
+STRUT_API strut_c_locale strut_c_locale_enter(void);
+/** Restores what enter found. */
+STRUT_API void strut_c_locale_leave(strut_c_locale locale);
+
+/*
+ * A text that grows.
+ */
+
+/** Zero-initialise it. */
+typedef struct strut_buffer {
+  char *text; /* NUL-terminated once something was added; a block of strut_allocate */
+  size_t length, room;
+  bool failed; /* memory was out: the text is not complete, and nothing more is added */
+} strut_buffer;
+
+/** Makes room for so many more bytes and a NUL; false: memory was out. */
+STRUT_API bool strut_buffer_reserve(strut_buffer *buffer, size_t more);
+/** Appends some bytes of a text. */
+STRUT_API void strut_buffer_put(strut_buffer *buffer, const char *text, size_t length);
+/** Appends by printf. Call between strut_c_locale_enter and leave for numbers in the C locale. */
+STRUT_API void strut_buffer_add(strut_buffer *buffer, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+STRUT_API void strut_buffer_add_list(strut_buffer *buffer, const char *format, va_list arguments)
+    __attribute__((format(printf, 2, 0)));
+/** Returns the text, to be released by the caller, and zeroes the buffer; NULL if memory was out. */
+STRUT_API char *strut_buffer_take(strut_buffer *buffer);
 
 #endif
