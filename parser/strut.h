@@ -57,7 +57,6 @@ extern "C" {
 #include "engine/study/compare/compare.h"
 #include "engine/study/results/slots.h"
 #include "engine/study/results/study_table.h"
-#include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/language/read/read_scene.h"

@@ -187,7 +187,7 @@ printf 'STRUT_CLONES\nstatic void same(int a) {\n' | tee "$scratch/twins/engine/
 strangers() {
   for pair in 'cholmod_:(model/algebra/cholmod_factor|statics/sparse_algebra)' \
     'ds[ae]upd_:statics/sparse_algebra' 'glp_:statics/linear_program' 'nlopt_:study/search/nlopt_optimiser' \
-    '(cairo|pango)_:output/draw/canvas' 'H5[A-Z]:output/(hdf5_(disk|parts|writer)|trajectory_file)'; do
+    '(cairo|pango)_:output/draw/canvas' 'H5[A-Z]:output/(hdf5_(file|parts)|trajectory_file)'; do
     (cd "$1" && grep -rlE "\b${pair%%:*}[a-z0-9_]+ *\(" engine parser --include='*.[ch]' || true) |
       grep -vE "^engine/${pair#*:}[.][ch]$" | sed "s/$/ uses ${pair%%:*}/" || true
   done

@@ -6,7 +6,7 @@
  * One file of strut uses each of them and offers what it does as a table of strut's own functions, which a
  * function strut_NAME_load gives. Programs that link strut's libraries have the table linked in. The program
  * strut is not linked to these libraries: it has a strut_NAME_load of its own for each (parser/program/
- * library_modules.c), which loads a module with that file and its library when a command first needs one. What
+ * installed.c), which loads a module with that file and its library when a command first needs one. What
  * such a file calls of strut has STRUT_API: a module finds it in the program.
  */
 #ifndef STRUT_ENGINE_BASE_LIBRARY_H

@@ -45,4 +45,44 @@ STRUT_API strut_member_values strut_member_measure_at(const strut_model *model,
 STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
                                      double *length, double *force);
 
+/*
+ * The energies that a state stores, and the work that constant loads have done.
+ */
+
+/** All in [J]. */
+typedef struct strut_energies {
+  double kinetic; /* v'Mv / 2 with the scene's mass model */
+  double elastic; /* first term of (13); slack cables store nothing; driven rest lengths count */
+  double gravity; /* second term of (13), for any gravity vector; zero at the origin */
+  double contact; /* of the ground's springs */
+} strut_energies;
+
+/** Energies at the state's q and v, with the driven rest lengths at time t [s]. */
+STRUT_API strut_energies strut_energy_evaluate(const strut_model *model, const strut_state *state,
+                                               double t);
+
+/** The same at positions q and velocities v, with the state's rest lengths as they are. */
+STRUT_API strut_energies strut_energy_evaluate_at(const strut_model *model,
+                                                  const strut_state *state, const double *q,
+                                                  const double *velocity);
+
+/** The first of them alone, at velocities v (length) [J]. */
+STRUT_API double strut_energy_kinetic(const strut_model *model, const double *velocity);
+
+/** Sum of constant load times position [J]: its change is the work of the loads (gravity is none). */
+STRUT_API double strut_energy_load_potential(const strut_model *model, const strut_state *state);
+
+/** Work of the constant loads since strut_energy_reset_load_work, which must have been called [J]. */
+STRUT_API double strut_energy_load_work(const strut_model *model, const strut_state *state);
+/** Makes the state's present positions those from which the loads' work counts. */
+STRUT_API void strut_energy_reset_load_work(const strut_model *model, strut_state *state);
+
+/* Velocities that jump, where something changes its speed at once. */
+
+/**
+ * The velocities answer to the impulses that state->latest->force holds [N s]; with the energy balance the
+ * work that these do is that of `power`. Needs state->buffers->support_answer.
+ */
+STRUT_API void strut_impulse_apply(const strut_model *model, strut_state *state, strut_power power);
+
 #endif

@@ -11,7 +11,6 @@
 #include <math.h>
 
 #include "engine/forces/drives/drives.h"
-#include "engine/forces/drives/feedback.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/forces.h"

@@ -180,7 +180,7 @@ STRUT_INLINE void members_add_powers(four_member_powers *sum, const four_member_
   sum->drive += part->drive, sum->exchanged += part->exchanged, sum->lost += part->lost;
 }
 
-/* In members.c: those of all members, whose powers are added up in parts. */
+/* In forces.c: those of all members, whose powers are added up in parts. */
 void strut_many_members_add_forces(const strut_model *model, const strut_state *state,
                                    const double *q, const double *v, double *force,
                                    four_member_powers *powers);

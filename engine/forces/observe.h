@@ -7,7 +7,7 @@
 #define STRUT_ENGINE_FORCES_OBSERVE_H
 
 #include "engine/base/memory.h"
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/model/model.h"
 #include "engine/model/state.h"
 

@@ -2,13 +2,12 @@
 #include "engine/forces/tangent.h"
 
 #include "engine/forces/capstan.h"
-#include "engine/forces/rubbing.h"
+#include "engine/forces/surfaces.h"
 
 #include <assert.h>
 #include <string.h>
 
 #include "engine/base/indices.h"
-#include "engine/forces/mass_damping.h"
 #include "engine/forces/nearby.h"
 
 void strut_force_begin(const strut_model *model, int32_t number, strut_force *force) {

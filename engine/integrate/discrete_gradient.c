@@ -6,11 +6,10 @@
 #include <string.h>
 
 #include "engine/forces/drives/drives.h"
-#include "engine/forces/drives/feedback.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"
-#include "engine/forces/mass_damping.h"
+#include "engine/forces/tangent.h"
 #include "engine/model/pose.h"
 
 bool strut_discrete_gradient_create(const strut_model *model, strut_state *state,

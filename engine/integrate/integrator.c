@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drives/feedback.h"
-#include "engine/forces/energy.h"
+#include "engine/forces/drives/drives.h"
+#include "engine/forces/forces.h"
 #include "engine/forces/rigid.h"
 #include "engine/model/algebra/linear_solver.h"
 

@@ -156,7 +156,7 @@ STRUT_API double strut_sliding_moment(const struct strut_model *model, double t,
  *
  * How they press is an element of a one-sided linear law, so that every method and statics know it; the contact
  * of the node with each ground says with which stiffness, damping and friction. Friction is a term of its own
- * (engine/forces/rubbing.h).
+ * (engine/forces/surfaces.h).
  */
 
 /** A foot or a node on one ground, or one element of a collision. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * The pieces of an HDF5 file of results: datasets, texts, dimension scales; for
- * hdf5_writer.c and trajectory.c.
+ * hdf5_file.c and trajectory_file.c.
  *
  * Scales follow the HDF5 Dimension Scale specification, so that netCDF-4 and xarray see named axes.
  * The library's own H5DS functions would copy the padding of a C struct into the file, and two

@@ -7,7 +7,7 @@
 #include "engine/base/memory.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/nearby.h"
-#include "engine/forces/rubbing.h"
+#include "engine/forces/surfaces.h"
 #include "engine/run/simulate_parts.h"
 
 /* A run beyond this multiple of the scene's size counts as diverged. */

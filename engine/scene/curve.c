@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/scene/curve.h"
+#include "engine/scene/law.h"
 
 #include <assert.h>
 #include <math.h>

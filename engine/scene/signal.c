@@ -6,7 +6,6 @@
 #include <stdbool.h>
 
 #include "engine/base/vec.h"
-#include "engine/scene/signal_bounds.h"
 #include "engine/scene/signal_program.h"
 
 strut_signal strut_signal_default(strut_signal_kind kind) {

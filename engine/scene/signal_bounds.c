@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Interval arithmetic of signals. See signal_bounds.h. */
-#include "engine/scene/signal_bounds.h"
+/* Interval arithmetic of signals. See signal_program.h. */
+#include "engine/scene/signal_program.h"
 
 #include <assert.h>
 #include <float.h>

@@ -454,7 +454,7 @@ typedef struct strut_study {
   } refine;
   strut_study_search *search; /* what is searched; NULL: the points are all of the axes */
   strut_study_sensitivity sensitivity;
-  struct {                      /* see engine/study/sweep/evaluation.h */
+  struct {                      /* see engine/study/sweep/sweep_parts.h */
     const char *stiffness_node; /* of the column stiffness; NULL: none */
     double stiffness_direction; /* [rad] */
     const char *like;           /* a configuration: the shape that is wanted; NULL: `shape` */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/curvature.h"
+#include "engine/statics/minimise.h"
 
 #include <assert.h>
 #include <float.h>

@@ -10,7 +10,6 @@
 #include "engine/forces/elements.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/curvature.h"
 
 enum { MOST_STEPS = 400, MOST_POLISH = 30, MOST_EXTRA = 25, MOST_BENDS = 4 };
 

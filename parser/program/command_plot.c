@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/program/command/table_file.h"
+#include "parser/program/command/plot_options.h"
 #include "parser/program/commands.h"
 
 #include <stdio.h>

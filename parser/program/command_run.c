@@ -7,7 +7,6 @@
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
 #include "engine/output/figures/run_figure.h"
-#include "engine/output/figures/run_film.h"
 #include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "engine/output/results.h"
@@ -15,11 +14,9 @@
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "parser/language/write/write_scene.h"
-#include "parser/program/command/run_settings.h"
-#include "parser/program/command/varied_scenes.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
 /* What is drawn and filmed of a run. Zero-initialise. */

@@ -13,11 +13,10 @@
 #include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
-#include "parser/program/command/run_settings.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 

@@ -12,7 +12,6 @@
 #include "parser/language/write/write_scene.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
-#include "parser/program/progress.h"
 #include "parser/program/streams.h"
 
 /* A page holds a few million numbers: reading more than 128 MB of motion would be wasted. */

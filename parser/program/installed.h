@@ -15,7 +15,5 @@ enum { STRUT_LONGEST_PATH = 4096 };
  * neither exists.
  */
 bool strut_find_installed(const char *name, const char *built, char path[STRUT_LONGEST_PATH]);
-/** The path of a module of the program: below lib/strut, or in modules beside a program that is not installed. */
-bool strut_find_module(const char *name, char path[STRUT_LONGEST_PATH]);
 
 #endif

@@ -11,7 +11,7 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/language/write/write_scene.h"
-#include "parser/program/command/run_settings.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
 

@@ -3,7 +3,7 @@
    Arguments: nodes and steps of the large one, steps of one of 1000 nodes, nodes of the largest. */
 #include <time.h>
 
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/measure/measure.h"
 #include "tests/support/allocations.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Very many steps: energy, clock and memory. The number of steps is the program's argument. */
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "tests/support/allocations.h"
 #include "tests/support/motion.h"
 #include "tests/support/widening.h"

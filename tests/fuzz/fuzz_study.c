@@ -11,7 +11,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/language/study/read_study.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -16,7 +16,7 @@ cd "$root"
 expected=tests/golden/crawler.hash
 # The mechanics are compiled for each level, the description and its reader once, or once by each
 # compiler.
-engine="tests/golden/golden.c engine/run/settle.c engine/run/settle_check.c
+engine="tests/golden/golden.c engine/run/settle.c
   $(find engine/base engine/model engine/forces engine/integrate -name '*.c' ! -name integrator.c | sort)"
 reader=$(find engine/scene parser/language/yaml parser/language/expression parser/language/keys parser/language/read -name '*.c' | sort)
 

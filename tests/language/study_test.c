@@ -3,7 +3,7 @@
 #include <dirent.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/language/keys/keys.h"
 #include "parser/language/study/read_study.h"
 #include "tests/language/case_messages.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Structures with many contacts, whose events come at once or soon after each other: closed forms, and falls of
    random grids by several methods. */
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 

@@ -3,7 +3,7 @@
  * Implicit midpoint: steps a hundred times the explicit limit on stiff members, the work that closes
  * the energy balance to rounding, and what it refuses.
  */
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/structures.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rows for sinks: which, when, what; sinks that fail; and a run that is refused memory. */
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "tests/support/structures.h"
 
 enum { MOST_ROWS = 2000, MOST_WIDTH = 300 };

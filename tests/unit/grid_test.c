@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of ranges: round where they are round, their ends as written, near the exact ones. */
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "tests/support/check.h"
 
 static double value_of(strut_range_kind kind, double from, double to, int64_t i, int64_t count) {

@@ -2,7 +2,7 @@
 /* The potential energy, its gradient and Hessian against differences and the engine's own sums. */
 #include "engine/statics/potential.h"
 
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/forces/tangent.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/motion.h"

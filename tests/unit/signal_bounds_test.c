@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Bounds of random expressions against their values and rates; kinks and the longest steps of known ones. */
 
-#include "engine/scene/signal_bounds.h"
+#include "engine/scene/signal_program.h"
 #include "tests/support/test.h"
 
 enum { MOST = 40, PROGRAMS = 20000, POINTS = 40 };

@@ -2,7 +2,7 @@
 /* Waveforms against their closed forms, and their rates against differences. */
 #include "engine/scene/signal.h"
 #include "engine/forces/drives/signal_vector.h"
-#include "engine/scene/signal_bounds.h"
+#include "engine/scene/signal_program.h"
 #include "tests/support/check.h"
 
 static const double PI = 3.14159265358979323846;

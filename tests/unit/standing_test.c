@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Equilibria that the points of a study share: only structures that stand alike may. */
-#include "engine/study/sweep/evaluation.h"
+#include "engine/study/sweep/sweep_parts.h"
 
 #include "tests/support/build.h"
 #include "tests/support/check.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables chosen from tables: rows of a text, differences of two sides, between points too. */
-#include "engine/output/figures/table_choice.h"
+#include "engine/output/figures/table_figure.h"
 #include "tests/support/check.h"
 
 enum { ROWS = 9 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Films where memory is out. */
 #include "engine/base/memory.h"
-#include "engine/output/figures/run_film.h"
+#include "engine/output/figures/run_figure.h"
 #include "parser/language/read/read_scene.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"

@@ -4,12 +4,11 @@
 
 #include <math.h>
 
-#include "engine/forces/drives/feedback.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/drives/signal_vector.h"
 #include "engine/forces/history.h"
 #include "engine/forces/strains/strains.h"
-#include "engine/scene/signal_bounds.h"
+#include "engine/scene/signal_program.h"
 
 strut_signal_inputs strut_drive_inputs(const strut_model *model, const strut_state *state,
                                        const double *velocity) {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/model/algebra/dense_cholesky.h"
 #include "engine/model/mass.h"
 #include "engine/scene/signal.h"

@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/integrate/events/event_kernel.h"
 #include "engine/integrate/events/location/event_log.h"

@@ -442,7 +442,7 @@ void strut_turn_round(const strut_model *model, strut_state *state, strut_event_
 /** Where the cubic with these values, both above 0, and slopes at 0 and 1 is lowest, if below 0 by more than faint. */
 double strut_event_dip(double g0, double d0, double g1, double d1, double faint);
 
-/** Of methods with error control (adaptive.c): notes what is left of margins at a stage. */
+/** Of methods with error control (runge_kutta.c): notes what is left of margins at a stage. */
 void strut_event_note_stage(const strut_event_stepper *stepper, double at, bool first);
 /** What the ends of a step of sufficient accuracy, and its stages, say about the time between. */
 void strut_event_look_between(const strut_model *model, const strut_state *state,

@@ -4,7 +4,7 @@
 #define STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
 
 #include "engine/base/memory.h"
-#include "engine/output/draw/cairo_page.h"
+#include "engine/output/draw/figure.h"
 
 /* ---- labels (labels.c): the one place where texts are put beside what they name ---- */
 
@@ -81,7 +81,7 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
                        double outside);
 #define STRUT_BEYOND_SIZE 5.0
 
-/* ---- charts (settle.c, chart.c) ---- */
+/* ---- charts (axes.c, chart.c) ---- */
 
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);

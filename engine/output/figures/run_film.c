@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/figures/run_film.h"
+#include "engine/output/figures/run_figure.h"
 
 #include <math.h>
 #include <signal.h>
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/draw/cairo_page.h"
+#include "engine/output/draw/figure.h"
 #include "engine/output/figures/run_parts.h"
 #include "engine/output/file.h"
 

@@ -6,7 +6,6 @@
 #include <math.h>
 
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/rubbing.h"
 #include "engine/forces/surfaces.h"
 #include "engine/model/pose.h"
 

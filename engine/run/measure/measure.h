@@ -3,7 +3,7 @@
 #ifndef STRUT_ENGINE_RUN_MEASURE_MEASURE_H
 #define STRUT_ENGINE_RUN_MEASURE_MEASURE_H
 
-#include "engine/forces/energy.h"
+#include "engine/forces/forces.h"
 #include "engine/model/state.h"
 #include "engine/run/measure/meter.h"
 #include "engine/run/measure/quantities.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/base/indices.h"
-#include "engine/forces/drives/feedback.h"
+#include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/surfaces.h"
 #include "engine/integrate/limit/step_limit.h"

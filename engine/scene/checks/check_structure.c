@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 #include "engine/scene/checks/check_rules.h"
-#include "engine/scene/curve.h"
+#include "engine/scene/law.h"
 
 /* ---- laws, stops and hinges ---- */
 

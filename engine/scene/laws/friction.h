@@ -131,7 +131,7 @@ LAW_INLINE real LAW(friction_stribeck_slope)(const LAW(friction_numbers) * f, re
  * internal state, as the part of the normal force that they carry: y' = mu_0/d (u - |u| y / mu(u)), force
  * -N (y + tau y'), with the presliding d and the relaxation tau (C. Canudas de Wit, H. Olsson, K. J. Astrom,
  * P. Lischinsky, IEEE Trans. Automatic Control 40 (1995) 419). These two are those of steady sliding and of bristles
- * at rest; forces with the state are in engine/forces/rubbing.c.
+ * at rest; forces with the state are in engine/forces/surfaces.c.
  */
 LAW_INLINE real LAW(friction_lugre)(const LAW(friction_numbers) * f, real normal, real slip,
                                     real applied) {

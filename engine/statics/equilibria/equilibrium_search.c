@@ -7,7 +7,6 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
-#include "engine/forces/energy.h"
 #include "engine/forces/forces.h"
 #include "engine/integrate/integrator.h"
 #include "engine/integrate/limit/step_limit.h"

@@ -8,14 +8,14 @@
 
 #include "engine/base/vec.h"
 #include "engine/forces/history.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
 #include "engine/run/accuracy/accuracy.h"
-#include "engine/run/cost_estimate.h"
 #include "engine/statics/modes/modes.h"
 #include "engine/statics/potential.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
-#include "engine/study/sweep/evaluation.h"
+#include "engine/study/sweep/sweep_parts.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* What is computed at once: counts of parts; rigidity as drawn; states; at rest; the step; the motion; its window. */

@@ -5,11 +5,10 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/table_choice.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/study/compare/compare.h"
 #include "engine/study/report/study_report.h"
-#include "engine/study/sweep/grid.h"
-#include "engine/study/sweep/study_runs.h"
+#include "engine/study/sweep/sweep.h"
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 

@@ -8,7 +8,7 @@
 
 #include "engine/study/fit/fit_parts.h"
 #include "engine/study/search/optimisers.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 
 /* Of motions a fit takes so much of the time first; and steps of the method in all but the last of them. */
 static const double shares[] = {0.125, 0.25, 0.5, 1.0};

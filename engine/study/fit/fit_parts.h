@@ -115,7 +115,7 @@ enum { STRUT_FIT_MOST_PLACES = 50 };
 /** Parameters (parameters) where a start begins: the first where the study says, the others spread evenly. */
 void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters);
 
-/* ---- fit_verdict.c ---- */
+/* ---- fit_report.c ---- */
 
 /** Is the sum of squares of a right model, in units of the noise, hardly ever so large? */
 bool strut_fit_is_unexplained(double sum, double freedom);

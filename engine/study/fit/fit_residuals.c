@@ -6,7 +6,7 @@
 #include "engine/integrate/integrator.h"
 #include "engine/run/simulate.h"
 #include "engine/study/fit/fit_parts.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 
 /* Runs are made by a method that controls its error, within this tolerance; derivatives need that. */
 static const double TOLERANCE = 1e-8;

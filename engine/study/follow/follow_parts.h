@@ -6,8 +6,8 @@
 #include "engine/base/flag.h"
 #include "engine/output/buffer.h"
 #include "engine/output/draw/figure.h"
-#include "engine/output/json_value.h"
 #include "engine/output/record_files.h"
+#include "engine/output/result_values.h"
 #include "engine/run/follow/follow.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
@@ -66,7 +66,7 @@ STRUT_API strut_status strut_follow_points_run(const strut_sweep_plan *plan, str
                                                const strut_sweep_options *options,
                                                strut_sweep_state *state, strut_error *error);
 
-/* follow_points_files.c */
+/* follow_points.c */
 
 /**
  * Writes directory/name with the branches of all points, by point; `partial`: with what was followed of

@@ -7,7 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/study/search/search_parts.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 
 static int by_point(const void *a, const void *b) {
   int64_t first = ((const strut_batch_point_wanted *)a)->point;

@@ -7,7 +7,7 @@
 #include "engine/run/measure/quantities.h"
 #include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Numbers on the stack of a program and its columns, at most: the reader bounds the text. */

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 
 /* Generations are multiples of this, on any machine, so that they fill processors. */
 enum { SIDE_BY_SIDE = 8 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/sweep/evaluation.h"
+#include "engine/study/sweep/sweep_parts.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -8,7 +8,6 @@
 #include "engine/scene/things.h"
 #include "engine/statics/rigidity/rigidity_parts.h"
 #include "engine/statics/search/critical.h"
-#include "engine/study/sweep/sweep_parts.h"
 
 static int32_t find_node(const strut_scene *scene, const char *name) {
   return strut_thing_find(scene, STRUT_THING_NODE, name);

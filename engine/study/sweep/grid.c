@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 
 #include <assert.h>
 #include <math.h>

@@ -11,7 +11,6 @@
 #include "engine/scene/things.h"
 #include "engine/statics/form/form.h"
 #include "engine/statics/rigidity/rigidity.h"
-#include "engine/study/sweep/evaluation.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Results of one point; those of the study's computation are filled. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The recorded runs of a study: their motion as one table, and figures of single runs. */
-#include "engine/study/sweep/study_runs.h"
+#include "engine/study/sweep/sweep.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -11,7 +11,6 @@
 #include "engine/base/text.h"
 #include "engine/output/figures/run_figure.h"
 #include "engine/output/trajectory.h"
-#include "engine/study/sweep/grid.h"
 
 /* ---- the recorded runs of a study ---- */
 

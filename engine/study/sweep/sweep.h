@@ -7,10 +7,37 @@
 
 #include "engine/base/flag.h"
 #include "engine/base/memory.h"
+#include "engine/output/record_files.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
 #include "engine/study/results/slots.h"
+
+/*
+ * The points of a study: from a point's number to its values, at once and without a list.
+ */
+
+/** Number of points; -1 beyond STRUT_STUDY_MOST_POINTS. Without axes there is one. */
+STRUT_API int64_t strut_grid_points(const strut_study *study);
+/** Number of columns: of all axes together, in their order. */
+STRUT_API size_t strut_grid_columns(const strut_study *study);
+/** The k-th column of all axes together, and through `axis` (may be NULL) whose it is. */
+STRUT_API const strut_study_column *strut_grid_column(const strut_study *study, size_t k,
+                                                      size_t *axis);
+/**
+ * Value i of a column whose axis has `count` values; a LIST must be one of numbers. What a range gives
+ * between its ends is rounded to 15 digits, so that round numbers come out round, and the same from
+ * every C library; the ends have their own bits.
+ */
+STRUT_API double strut_grid_value(const strut_study_column *column, int64_t i, int64_t count);
+/** The values of all columns (strut_grid_columns) at a point from 0 on; the last axis is the fastest. */
+STRUT_API void strut_grid_values(const strut_study *study, int64_t point,
+                                 strut_study_value *values);
+
+/**
+ * The value to the 15 digits that a double can represent, counted from the first digit of `scale`.
+ */
+STRUT_API double strut_grid_rounded(double value, double scale);
 
 /** Makes scenes of points; called from several threads at once. */
 typedef struct strut_sweep_scenes {
@@ -131,5 +158,30 @@ STRUT_API strut_status strut_sweep_derive_run(const strut_sweep_scenes *scenes,
 
 /** OMP_NUM_THREADS; else the processors that this process may use, SLURM_CPUS_PER_TASK at most. */
 STRUT_API int strut_sweep_threads(void);
+
+/*
+ * What the runs of a study recorded, where it has `trajectories: yes`: as a table, and as pictures.
+ */
+
+/** The i-th name of the columns behind those of the axes, or NULL after the last; "node" is first. */
+STRUT_API const char *strut_study_motion_column(size_t i);
+
+/**
+ * The motion as a table in an arena of its own: for each run in turn a row for each time and node,
+ * with the columns of the axes and `node`, `time`, `elapsed`, `x`, `y`, `dx`, `dy`. Only the rows that
+ * the figure draws, as far as its `only`, `from` and `to` say so. Numbers of runs have no texts.
+ * STRUT_USAGE where there are none, or too many; STRUT_NO_MEMORY, STRUT_FILE_TROUBLE.
+ */
+STRUT_API strut_status strut_study_motion(const strut_sweep_plan *plan, const char *directory,
+                                          const strut_study_figure *figure, strut_table *table,
+                                          strut_error *error);
+/**
+ * Draws each run by itself into directory/NAME.svg, or NAME-TEXT-TEXT.svg after the axes along which they
+ * differ (what is zipped by its first); with `difference` those of the second text, the others dashed over
+ * them. As strut_study_motion.
+ */
+STRUT_API strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
+                                            const strut_study_figure *figure, double width,
+                                            strut_error *error);
 
 #endif

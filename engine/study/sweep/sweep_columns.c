@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "engine/run/measure/quantities.h"
-#include "engine/study/sweep/evaluation.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,      STRUT_KEEP_MOTION,

@@ -14,7 +14,7 @@
 #include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */

@@ -8,13 +8,13 @@
 #include <unistd.h>
 
 #include "engine/output/hdf5_library.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "engine/output/results.h"
 #include "engine/scene/study.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/command/run_settings.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/command/schema.h"
 
 /* No call of the library reads or writes trajectory.h5. With this definition neither HDF5 nor the libraries for

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "engine/base/text.h"
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"
 

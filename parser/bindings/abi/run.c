@@ -16,8 +16,7 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
 #include "parser/program/command/plot_options.h"
-#include "parser/program/command/run_settings.h"
-#include "parser/program/command/varied_scenes.h"
+#include "parser/program/command/scene_options.h"
 
 /* No frame is left out: the caller decides how much is recorded. */
 static const size_t ROOM = SIZE_MAX / 64;

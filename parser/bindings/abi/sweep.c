@@ -15,8 +15,7 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/arguments.h"
-#include "parser/program/command/run_settings.h"
-#include "parser/program/command/varied_scenes.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
 
 static const char slots_name[] = "points.slots", table_name[] = "table.csv";

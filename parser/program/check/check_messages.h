@@ -3,7 +3,7 @@
 #ifndef STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
 #define STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
 
-#include "engine/run/cost_estimate.h"
+#include "engine/integrate/limit/step_limit.h"
 #include "engine/scene/checks/check.h"
 #include "engine/scene/value_rows.h"
 #include "parser/language/yaml/diagnostics.h"
@@ -45,7 +45,7 @@ void strut_messages_add_warnings(strut_messages *to, const strut_findings *found
 /** Warns on stderr of stick bands that a step passes over, in one line for all nodes. */
 void strut_check_bands(const strut_model *model, const strut_experiment *experiment);
 
-/* ---- check_values.c: what is found, as data ---- */
+/* ---- what is found, as data ---- */
 
 struct strut_sweep_study;
 

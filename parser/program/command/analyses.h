@@ -14,7 +14,7 @@
 #include "engine/statics/path/path.h"
 #include "engine/statics/rigidity/rigidity.h"
 #include "parser/program/command/arguments.h"
-#include "parser/program/command/varied_scenes.h"
+#include "parser/program/command/scene_options.h"
 
 /** ROW(name) for each analysis of the library. */
 #define STRUT_ANALYSES(ROW) ROW(equilibria) ROW(modes) ROW(rigidity) ROW(form) ROW(path)

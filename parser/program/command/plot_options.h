@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * Options of figures: width, title, axes, and what a figure of a run shows.
+ * Options of figures: width, title, axes, what a figure of a run shows; and tables that are drawn.
  */
 #ifndef STRUT_PARSER_PROGRAM_COMMAND_PLOT_OPTIONS_H
 #define STRUT_PARSER_PROGRAM_COMMAND_PLOT_OPTIONS_H
 
 #include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_figure.h"
+#include "engine/output/record_files.h"
 #include "parser/program/command/arguments.h"
 
 /** Tables of options: width; this and the title; what a figure of a run shows; labels and limits of one pair of axes. */
@@ -28,5 +29,13 @@ enum { STRUT_MOST_TIMES = 100 };
 /** Reads what a figure of a run shows; `times` has room for STRUT_MOST_TIMES and stays in place. As above. */
 strut_status strut_run_figure_read(const strut_arguments *arguments, const strut_plot *plot,
                                    strut_run_figure *figure, double *times);
+
+/* A table of numbers and texts, from a file or the standard input. */
+
+/**
+ * Reads the file, "-" being the standard input. The listener hears messages, with line and column;
+ * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).
+ */
+strut_status strut_table_read(const strut_listener *listener, const char *path, strut_table *table);
 
 #endif

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/output/json_value.h"
+#include "engine/output/result_values.h"
 #include "parser/language/write/writer.h"
 
 enum { DEEPEST = 64 };

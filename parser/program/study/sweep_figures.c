@@ -6,9 +6,9 @@
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
-#include "engine/study/sweep/study_runs.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/language/yaml/diagnostics.h"
-#include "parser/program/command/table_file.h"
+#include "parser/program/command/plot_options.h"
 #include "parser/program/study/sweep.h"
 
 /* The source of a figure: the table, or the recorded runs. */

@@ -16,11 +16,11 @@
 #include "engine/study/fit/fit.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 #include "parser/language/study/read_study.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/language/yaml/diagnostics.h"
-#include "parser/program/command/run_settings.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
 
 enum { MOST_MESSAGES = 50 };

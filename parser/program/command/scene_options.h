@@ -1,13 +1,32 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
- */
-#ifndef STRUT_PARSER_PROGRAM_COMMAND_VARIED_SCENES_H
-#define STRUT_PARSER_PROGRAM_COMMAND_VARIED_SCENES_H
+/** Scenes as options change them: method, step and span, accuracy; and over values of parameters. */
+#ifndef STRUT_PARSER_PROGRAM_COMMAND_SCENE_OPTIONS_H
+#define STRUT_PARSER_PROGRAM_COMMAND_SCENE_OPTIONS_H
 
+#include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/program/command/arguments.h"
+
+/**
+ * Tables of options that change how a scene is run without changing the file: method, step and accuracy; those of
+ * them that a run has which is advanced from outside; rigid bars, lumped masses and other laws; the first and these.
+ */
+extern const strut_option strut_run_setting_options[], strut_method_options[],
+    strut_fidelity_options[], strut_experiment_options[];
+#define STRUT_FORCE_OPTION                                                                         \
+  { STRUT_FILLS(force), "force", NULL, "run even if the step exceeds the stability limit" }
+
+/** The i-th of all these options that is given, or NULL. */
+const strut_option *strut_run_option_given(const strut_arguments *arguments, size_t i);
+/** What a scene is read for that is then run with them: its step may be given by them. */
+strut_purpose strut_run_options_purpose(const strut_arguments *arguments);
+/** Applies them to the scene and its experiment. STRUT_USAGE; the listener hears why. */
+strut_status strut_run_options_apply(const strut_arguments *arguments, strut_setup *setup);
+
+/*
+ * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
+ */
 
 /** Zero-initialise but for what stands before `own`. */
 typedef struct strut_varied_scenes {
