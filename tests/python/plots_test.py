@@ -19,7 +19,7 @@ matplotlib.use("agg")
 from matplotlib import pyplot  # noqa: E402
 
 import strut  # noqa: E402
-from strut import _plots, _views  # noqa: E402
+from strut import _plots  # noqa: E402
 
 CRAWLER = strut.load(MODELS / "crawler/crawler.yaml")
 FRAME = strut.load(MODELS / "gallery/x-frame.yaml")
@@ -145,7 +145,7 @@ class Notebooks(unittest.TestCase):
                     self.assertTrue(shown.startswith("<iframe srcdoc="))
                 again = pickle.loads(pickle.dumps(result))
                 self.assertIn("<table>", again._repr_html_())
-        self.assertIn("2 more", _views.things([{"a": 1.0}] * 14, 14))
+        self.assertIn("2 more", _plots.things([{"a": 1.0}] * 14, 14))
         self.assertNotIn("--", strut.load(MODELS / "basics/x-frame.yaml").run()._repr_html_().split("</iframe>")[1])
 
     def test_names_cannot_break_the_page(self):

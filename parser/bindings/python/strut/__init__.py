@@ -10,7 +10,6 @@ Names are those of the scene's file and of the program's JSON, numbers are in SI
 Results and scenes do not change. `models` is the folder of the models that come with strut.
 """
 
-from ._files import models
 from ._errors import (
     Error,
     FileError,
@@ -34,7 +33,7 @@ from ._results import (
 )
 from ._scene import Scene, load, loads, run
 from ._simulation import Motion, Simulation
-from ._strut import version as __version__
+from ._strut import models, version as __version__
 from ._studies import Fit, Study, fit, sweep
 from ._sweep import Table
 from ._values import Named, Words, unknown as _unknown

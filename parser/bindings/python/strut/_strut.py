@@ -25,7 +25,23 @@ from . import _errors
 
 Progress = Callable[[float], object]
 
-_LIBRARY = ctypes.CDLL(os.fspath(pathlib.Path(__file__).with_name("libstrut.so.0")))
+_HERE = pathlib.Path(__file__).parent
+
+#: the folder of the models that come with strut: in the package, or where the program has them
+models = next(
+    (
+        folder
+        for folder in (_HERE / "models", *(above / "share/strut/models" for above in _HERE.parents))
+        if folder.is_dir()
+    ),
+    _HERE / "models",
+)
+
+# A wheel brings fonts of its own for figures, for machines that have none.
+if (_HERE / "fonts").is_dir() and not os.path.exists("/etc/fonts/fonts.conf"):
+    os.environ.setdefault("FONTCONFIG_FILE", os.fspath(_HERE / "fonts/fonts.conf"))
+
+_LIBRARY = ctypes.CDLL(os.fspath(_HERE / "libstrut.so.0"))
 _LOOK, _PIECE = 0.05, 5e-3  # s: how often signals are looked for in calls and while a simulation is advanced
 _BUSY = "another thread is advancing this simulation; one simulation per thread"
 _NOTE = ctypes.CFUNCTYPE(c_int, c_void_p, c_double)

@@ -8,7 +8,7 @@ from array import array
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, NamedTuple, Sequence
 
-from . import _plots, _strut, _views
+from . import _plots, _strut
 from ._results import _Stored
 from ._values import Frozen, UnknownName, numpy, refuse_bytes, unknown
 
@@ -175,7 +175,7 @@ class Table(Frozen):
         return _plots.sweep(self, column, ax)
 
     def _repr_html_(self) -> str:
-        return _views.things(self, len(self))
+        return _plots.things(self, len(self))
 
     def __getstate__(self) -> dict[str, Any]:
         raw = self._raw if isinstance(self._raw, _Stored) else _Stored(self._raw)
