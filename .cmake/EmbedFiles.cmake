@@ -3,8 +3,8 @@
 #
 # strut_embed_files(SOURCE HEADER LIST...): generates SOURCE, which includes HEADER and defines for
 # each LIST "NAME|file|file ..." an array "const strut_embedded NAME[]" of its files in order, closed
-# by a row of NULL. HEADER declares the arrays and the type strut_embedded, which begins with the text
-# (const char *, a NUL behind it) and its length (size_t).
+# by a row of NULL. HEADER declares the type strut_embedded, which begins with the text (const char *,
+# a NUL behind it) and its length (size_t).
 #
 # The same file is the script that writes SOURCE (cmake -P).
 
@@ -53,6 +53,6 @@ function(strut_embed_files source header)
     COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${source}" "-DHEADER=${header}" "-DEMBED=${lists}" -P
             "${STRUT_EMBED_SCRIPT}"
     DEPENDS ${files} "${STRUT_EMBED_SCRIPT}"
-    COMMENT "Embedding ${header}"
+    COMMENT "Embedding files in ${source}"
     VERBATIM)
 endfunction()

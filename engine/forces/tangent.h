@@ -14,7 +14,7 @@
 
 #include "engine/forces/elements.h"
 #include "engine/model/algebra/hot.h"
-#include "engine/model/algebra/sparse.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/pose.h"
 #include "engine/model/state.h"
 

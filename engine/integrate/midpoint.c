@@ -10,7 +10,6 @@
 #include "engine/integrate/discrete_gradient.h"
 #include "engine/integrate/integrator.h"
 #include "engine/model/algebra/linear_solver.h"
-#include "engine/model/algebra/sparse.h"
 #include "engine/model/mass.h"
 
 typedef struct strut_midpoint_matrix {

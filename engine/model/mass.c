@@ -5,7 +5,7 @@
 
 #include "engine/base/indices.h"
 #include "engine/model/algebra/hot.h"
-#include "engine/model/algebra/sparse.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/mass_kernel.h"
 #include "engine/model/model.h"
 

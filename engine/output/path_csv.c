@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/output/path_csv.h"
-
+/* A path of equilibria as a curve in CSV. */
 #include <stdio.h>
 
 #include "engine/output/buffer.h"
+#include "engine/output/record_files.h"
 #include "engine/output/result_values.h"
+#include "engine/statics/path/path.h"
 
 static strut_result_object object_of(const strut_path_state *state,
                                      const strut_result_object *path) {

@@ -15,6 +15,17 @@ STRUT_API strut_sink *strut_csv_create(const char *directory);
 /** Frees the sink; abandons what was not ended. */
 STRUT_API void strut_csv_free(strut_sink *sink);
 
+/* ---- CSV: a path of equilibria as a curve ---- */
+
+struct strut_path;
+/**
+ * In a block of strut_allocate, NULL where memory was out: one row per point: the parameter ("factor" and, of
+ * loads that are alike, "force [N]"; else "value" with its unit), arc, eigenvalues below zero beyond the
+ * point; x and y of every node [m], tension of every member, reactions of what is held, normal forces of
+ * contacts [N]. Events stand among the points with their kind in the column "event".
+ */
+STRUT_API char *strut_path_csv(const struct strut_path *path, const strut_scene *scene);
+
 /* ---- HDF5: trajectory.h5, a dataset for each channel, with dimension scales ---- */
 
 /** A sink that writes directory/trajectory.h5; `scene_text` is kept in it as an attribute. */

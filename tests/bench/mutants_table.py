@@ -205,7 +205,7 @@ MUTANTS = [
            "{self->shape[0]}",
            "{0}",
            "each block of rows in HDF5 overwrites the first", "hdf5|trajectory"),
-    Mutant("json-exchanged-is-initial", "engine/run/measure/summary.c",
+    Mutant("json-exchanged-is-initial", "engine/run/measure/summary_values.c",
            'X("exchanged", "J", NUMBER(s->energy.moved)', 'X("exchanged", "J", NUMBER(s->energy.initial)',
            "the JSON summary tells the first energy as that exchanged", "json|cli_results|cli_numbers"),
     Mutant("csv-quote-not-doubled", "engine/output/buffer.c", "    if (text[i] == '\"') cell[written++] = '\"';\n", "",

@@ -7,7 +7,7 @@
 set -eu
 root=$(cd "$1" && pwd) build=$(cd "$2" && pwd) scratch=$3 cc=$4
 command -v patch >/dev/null || { echo "skipped: no patch here"; exit 77; }
-[ -f "$build/parser/libstrut_parser.a" ] || { echo "skipped: no static libraries here"; exit 77; }
+[ -f "$build/parser/language/libstrut_parser.a" ] || { echo "skipped: no static libraries here"; exit 77; }
 rm -rf "$scratch"
 mkdir -p "$scratch"
 cp -R "$root/engine" "$root/parser" "$scratch/"
@@ -18,14 +18,14 @@ expected="engine/statics/modes/modes_values.c parser/program/command/arguments.h
 [ "$touched" = "$expected" ] || { echo "the patches touch other files: $touched"; exit 1; }
 patch -s -p1 <rows.diff
 
-rules=$build/parser/CMakeFiles/strut.dir
+rules=$build/parser/program/CMakeFiles/strut.dir
 flags=$(sed -n 's/^C_[A-Z]* = //p' "$rules/flags.make" | tr '\n' ' ' | sed "s#-I$root #-I$PWD #g")
 printf '%s\n' parser/program/*.c parser/program/*/*.c engine/statics/modes/modes_values.c |
   xargs -P 2 -n 12 sh -c 'cc=$1 flags=$2; shift 2
     for file; do eval "$cc $flags -O0 -w -c $file -o $(echo "$file" | tr / _).o" || exit 255; done' sh "$cc" "$flags"
 libraries=$(tr ' ' '\n' <"$rules/link.txt" | grep -E '[.](a|so)$|^-l' | tr '\n' ' ')
 # shellcheck disable=SC2086
-(cd "$build/parser" && $cc -Wl,--export-dynamic "$OLDPWD"/*.o -o "$OLDPWD/strut" $libraries)
+(cd "$build/parser/program" && $cc -Wl,--export-dynamic "$OLDPWD"/*.o -o "$OLDPWD/strut" $libraries)
 ln -s "$build/modules" modules
 
 model=$root/models/crawler/crawler.yaml

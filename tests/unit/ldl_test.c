@@ -3,7 +3,7 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 
-#include "engine/model/algebra/sparse.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sparse symmetric matrices, their products and their factors, against dense ones. */
-#include "engine/model/algebra/sparse.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"

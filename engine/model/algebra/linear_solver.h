@@ -94,4 +94,31 @@ int32_t strut_refactor_apply(strut_refactor *refactor, const strut_sparse *matri
 /** b (n) becomes A^-1 b, in the matrix's own order. */
 void strut_refactor_solve(strut_refactor *refactor, double *b);
 
+/*
+ * Symmetric sparse matrices put together from contributions that may fall on the same place.
+ */
+
+/** Collects contributions; zero-initialise, then strut_triplets_reserve. */
+typedef struct strut_triplets {
+  size_t count, capacity;
+  int32_t *row, *column;
+  double *value;
+} strut_triplets;
+
+/** Room for `capacity` contributions in the arena; false: out of memory. */
+bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_arena *arena);
+
+/** Adds value at (row, column) and, being symmetric, at (column, row). Give each pair once. */
+void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, double value);
+
+/**
+ * The n x n matrix, in the arena: lower triangle, columns sorted, contributions summed in the order
+ * they were added. Every diagonal entry exists, if only as zero. NULL: out of memory.
+ */
+strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, strut_arena *arena);
+
+/** y = A x with the whole symmetric matrix. */
+STRUT_API void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict vector,
+                                     double *restrict y);
+
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/algebra/sparse.h"
+#include "engine/model/algebra/linear_solver.h"
 
 #include <assert.h>
 #include <string.h>

@@ -1,13 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/output/page/page.h"
-#include "engine/output/page/page_assets.h"
 
 #include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 
-/* The page put together: the template with the data and everything it needs inside. */
+/*
+ * The page put together: the template with the data and everything it needs inside.
+ *
+ * The parts that are the same for every run are embedded at build time; each ends with a row of NULL. In the
+ * template, page.html, four comments are replaced: strut:title by the title's text, strut:style by <style>
+ * elements, strut:data by the <script> element of the data, strut:scripts by <script> elements.
+ */
+extern const strut_embedded strut_page_template[], strut_page_styles[];
+extern const strut_embedded strut_page_notice[];  /* of dygraphs: whose it is, and its licence */
+extern const strut_embedded strut_page_scripts[]; /* in the order in which they run */
 
 /* Appends a text, escaped for HTML. */
 static void add_text(strut_buffer *to, const char *text) {

@@ -5,7 +5,7 @@
 #ifndef STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_PARTS_H
 #define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_PARTS_H
 
-#include "engine/model/algebra/sparse.h"
+#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"
 #include "engine/statics/rigidity/rigidity.h"
 

@@ -7,8 +7,11 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
-#include "engine/study/cluster/cluster_templates.h"
 #include "engine/study/results/study_table.h"
+
+/* slurm.sh, embedded at build time and followed by a row of NULL. @NAME@ is to be replaced, and a line whose NAME
+   has no value left out. */
+extern const strut_embedded strut_slurm_template[];
 
 enum { MOST_NAME = 60 };
 

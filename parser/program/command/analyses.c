@@ -10,7 +10,7 @@
 #include "engine/base/text.h"
 #include "engine/forces/history.h"
 #include "engine/output/figures/statics_figures.h"
-#include "engine/output/path_csv.h"
+#include "engine/output/record_files.h"
 #include "engine/output/result_values.h"
 #include "engine/scene/things.h"
 #include "parser/language/yaml/diagnostics.h"
