@@ -76,18 +76,20 @@ def tables(strut):
             wrong.append(f"{name}: {got!r}, expected {want!r} within {row['within']}")
         link = row["example"].removeprefix(row["by"].split()[0] + ", ")
         found, alike = origins.setdefault(row["by"], ([], []))
-        if row["model"].startswith("models/"):
-            link = f"[{link}](../{row['model']})"
-        elif difference(got, want) == SAME:  # a model of the tests, which are not installed beside the pages
+        # models of the tests are not installed beside the pages
+        link = f"[{link}](../{row['model']})" if row["model"].startswith("models/") else f"`{link}`"
+        if difference(got, want) == SAME:
             alike.append(link)
             continue
         found.append(f"| {link}: {row['what']} | {want:.9g} | {difference(got, want)} |")
     lines = []
     for origin, (found, alike) in origins.items():
-        lines += [f"### {TITLES.get(origin, origin)}", "", "| example | number | difference |", "|---|---|---|", *found, ""]
+        lines += [f"### {TITLES.get(origin, origin)}", ""]
+        if found:
+            lines += ["| example | number | difference |", "|---|---|---|", *found, ""]
         if alike:
-            names = ", ".join(f"`{name}`" for name in dict.fromkeys(alike))
-            lines += textwrap.wrap(f"The difference is {SAME} for {names}, too.", 120, break_on_hyphens=False) + [""]
+            names = ", ".join(dict.fromkeys(alike))
+            lines += textwrap.wrap(f"Less than 2e-8: {names}.", 120, break_on_hyphens=False) + [""]
     return lines, sum(len(found) + len(alike) for found, alike in origins.values()), wrong
 
 
