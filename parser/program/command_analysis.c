@@ -170,13 +170,13 @@ STATICS_OPTIONS(equilibria, "write equilibria.json into DIR", {.name = NULL})
 const strut_command strut_command_equilibria = {
     .name = "equilibria",
     .model = "MODEL",
-    .summary = "finds all equilibria, and the energy barriers between stable ones",
+    .summary = "searches for all equilibria and the energy barriers between stable ones",
     .details =
         "\nThe search holds pairs of contact nodes in turn in place of the ground and starts from\n"
-        "the drawn shape, mirrored copies and random shapes. Stable shapes are then released on\n"
-        "the real ground, without drive and friction. The table lists what stands there and the\n"
-        "energy barriers between; 'stiffness' is the lowest eigenvalue, 'found' the number of\n"
-        "starts that ended there. --all adds shapes that sink, tip over or are unstable.\n"
+        "the drawn shape, mirrored copies and random shapes. Stable equilibria are then released\n"
+        "on the real ground, without drive and friction. The table lists what stands there and\n"
+        "the energy barriers between; 'stiffness' is the lowest eigenvalue, 'found' the number of\n"
+        "starts that ended there. --all adds those that sink, tip over or are unstable.\n"
         "Names such as n1-n4-2 give the touching nodes and the rank by energy.\n"
         "Exit code 3 if nothing ever comes to rest.\n",
     .options = equilibria_options,

@@ -254,7 +254,7 @@ static const strut_option options[] = {
          STRUT_COMPARE_USUAL_PERCENT) "%)",
      STRUT_ACCURACY_RANGE},
     {STRUT_FILLS(no_motion), "no-motion", NULL, "skip the simulated motion"},
-    {STRUT_FILLS(no_states), "no-states", NULL, "skip the search for stable states"},
+    {STRUT_FILLS(no_states), "no-states", NULL, "skip the search for stable equilibria"},
     STRUT_OUTPUT_OPTION("DIR", "write compare.csv, .json, .svg and model-1.svg, ... into DIR"),
     STRUT_PRINT_OPTIONS,
     STRUT_THREADS_OPTION,
@@ -346,10 +346,10 @@ static const strut_refused_option refused[] = {
 
 static const char compare_details[] =
     "\nFor each model, the results of check, rigidity, equilibria, modes and run:\n"
-    "counts, mass, self-stress, mechanisms; stable states and the lowest escape barrier of the\n"
-    "starting one; forces, frequencies and stiffness at rest (of each node under a unit load in\n"
-    "x and y, contacts held); the largest step; and for a model with a run the velocity, travel\n"
-    "per period, drive energy, cost of transport (drive power over weight times speed) and\n"
+    "counts, mass, self-stress, mechanisms; stable equilibria and the lowest escape barrier of\n"
+    "the starting one; forces, frequencies and stiffness at rest (of each node under a unit load\n"
+    "in x and y, contacts held); the largest step; and for a model with a run the velocity,\n"
+    "travel per period, drive energy, cost of transport (drive power over weight times speed) and\n"
     "duty factor of the steady motion, with the cost of a simulated second.\n"
     "Then how the effective scenes differ from the first: + added, - removed, ~ changed.\n"
     "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"

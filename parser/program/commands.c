@@ -89,7 +89,7 @@ void strut_program_help(void) {
       "MODEL is a YAML file, or - for standard input. Without COMMAND, strut runs a model that\n"
       "describes a run, finds the equilibria of another, and computes the points of a study.\n\n"
       "Exit codes: 0 success, 1 wrong usage, 2 invalid scene, 3 computation failed,\n"
-      "4 file or memory trouble, 5 less accurate than requested, 130 interrupted.\n");
+      "4 file or memory error, 5 less accurate than requested, 130 interrupted.\n");
 }
 
 int strut_report_width(const strut_arguments *arguments) {

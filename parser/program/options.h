@@ -40,8 +40,8 @@ void strut_command_help(const strut_command *command);
   }
 #define STRUT_THREADS_OPTION                                                                       \
   {                                                                                                \
-    STRUT_FILLS(threads), "threads", "N", "most threads (default: one per processor)",             \
-        .least = 1, .most = 4096                                                                   \
+    STRUT_FILLS(threads), "threads", "N",                                                          \
+        "maximum number of threads (default: one per processor)", .least = 1, .most = 4096         \
   }
 #define STRUT_OUTPUT_OPTION(ARGUMENT, HELP)                                                        \
   { STRUT_FILLS(output), "output", ARGUMENT, HELP, .letter = 'o' }

@@ -5,7 +5,7 @@
   tests/bench/extremes.py STRUT [--write] [--quick] [ROW...]
 
 Prints a table with a column for each method and one for `--accuracy 0.1%`. ROW names kinds of rows (ROWS);
---quick takes a few that need seconds; --write puts the rows into the table in docs/numerics.md (ten minutes for
+--quick takes a few that need seconds; --write puts the rows into the table docs/extremes.txt (ten minutes for
 all). Cells:
 
   E           holds: the error E is within the bound of the row
@@ -33,8 +33,7 @@ import sys
 import tempfile
 from typing import Callable
 
-PAGE = pathlib.Path(__file__).parents[2] / "docs" / "numerics.md"
-BEGIN, END = "<!-- extremes -->\n", "<!-- /extremes -->\n"
+TABLE = pathlib.Path(__file__).parents[2] / "docs" / "extremes.txt"
 METHODS = ["rk4", "euler", "verlet", "rk4-events", "euler-events", "verlet-events", "adaptive", "adaptive8", "midpoint"]
 FORCES = {"adaptive": 6, "adaptive8": 13}  # per step
 COLUMNS = METHODS + ["--accuracy 0.1%"]
@@ -291,13 +290,10 @@ def main():
             lines.append("| " + " | ".join([ROWS[row[0]][0].format(row[1])] + [cell for cell, _ in results]) + " |")
     print("\n".join(lines))
     if "--write" in flags and not quick:
-        page = PAGE.read_text(encoding="utf-8")
-        before, rest = page.split(BEGIN)
-        table, after = rest.split(END)
-        known = {line.split(" | ")[0]: line for line in table.splitlines() + lines}
+        known = {line.split(" | ")[0]: line for line in TABLE.read_text(encoding="utf-8").splitlines() + lines}
         titles = ["| " + title.format(value) for title, _, values, _ in ROWS.values() for value in values]
         table = lines[:2] + [known[title] for title in titles]
-        PAGE.write_text(before + BEGIN + "\n".join(table) + "\n" + END + after, encoding="utf-8")
+        TABLE.write_text("\n".join(table) + "\n", encoding="utf-8")
     print(f"{len(lines) - 2} rows, {wrong} cells WRONG")
     return int(wrong > 0)
 

@@ -246,7 +246,7 @@ line = re.search(r"\n  accuracy    (.*)\n", run("run", f"{models}/crawler/crawle
 check(line == "not known: fixed steps of rk4 pass over touchdowns and changes between sticking and "
       "slipping; --accuracy 1% estimates the error", line)
 line = re.search(r"\n  accuracy    (.*)\n", run("run", "robot.yaml").stdout).group(1)
-check(re.fullmatch(r"right within 0\.\d+ % for this model; 1 % requested", line), line)
+check(re.fullmatch(r"accurate to within 0\.\d+ % for this model; 1 % requested", line), line)
 # Exit codes are listed where people look.
 check("less accurate than requested" in run("help").stdout, "no exit code 5")
 finish()

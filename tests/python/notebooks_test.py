@@ -45,7 +45,7 @@ class Notebooks(unittest.TestCase):
             done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=folder,
                                   env={**os.environ, "MPLCONFIGDIR": folder, "MPLBACKEND": "agg"})
             self.assertEqual(done.returncode, 0, done.stderr)
-            for words in ("right within", "at 8 Hz", "limit point"):
+            for words in ("accurate to within", "at 8 Hz", "limit point"):
                 self.assertIn(words, done.stdout.replace("_", " "))
 
 

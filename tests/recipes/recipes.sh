@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The recipes for a friction law, a law of members, a strain, a number, a kind of thing, an observable and a method do what they promise:
-# copies the sources, applies the ```diff blocks of docs/dev/recipes.md, compiles what recipes.c runs, and runs it.
+# copies the sources, applies docs/dev/recipes/*.diff, compiles what recipes.c runs, and runs it.
 # Usage: recipes.sh ROOT SCRATCH CC INCLUDES LIBRARIES
 set -eu
 root=$1 scratch=$2 cc=$3 includes=$4 libraries=$5
@@ -10,10 +10,9 @@ rm -rf "$scratch"
 mkdir -p "$scratch/tests"
 cp -R "$root/engine" "$root/parser" "$scratch/"
 cp -R "$root/tests/recipes" "$scratch/tests/"
-awk '/^```diff/ { inside = 1; blocks++; next } /^```/ { inside = 0 } inside { print }
-  END { exit blocks == 0 }' "$root/docs/dev/recipes.md" >"$scratch/recipes.diff"
+cat "$root"/docs/dev/recipes/*.diff >"$scratch/recipes.diff"
 # a number of a hinge that is read, checked, acts, is set from outside and recorded takes its row, its field and its use
-number=$(awk '/^## / { inside = /Add a number of a thing/ } inside && /^\+\+\+ b/' "$root/docs/dev/recipes.md" | wc -l)
+number=$(grep -c '^+++ b' "$root/docs/dev/recipes/number.diff")
 [ "$number" -eq 3 ] || { echo "a number of a hinge takes $number files"; exit 1; }
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' recipes.diff | sort -u | tr '\n' ' ')

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# An option and a value of a result are rows: the ```udiff blocks of docs/dev/recipes.md, applied to a copy of the
+# An option and a value of a result are rows: docs/dev/recipes/*.udiff, applied to a copy of the
 # program's sources and linked with the libraries of the build, make `strut modes` take the one, and print, write and
 # explain the other.
 # Usage: rows.sh ROOT BUILD SCRATCH CC
@@ -11,7 +11,7 @@ command -v patch >/dev/null || { echo "skipped: no patch here"; exit 77; }
 rm -rf "$scratch"
 mkdir -p "$scratch"
 cp -R "$root/engine" "$root/parser" "$scratch/"
-awk '/^```udiff/ { inside = 1; next } /^```/ { inside = 0 } inside' "$root/docs/dev/recipes.md" >"$scratch/rows.diff"
+cat "$root"/docs/dev/recipes/*.udiff >"$scratch/rows.diff"
 cd "$scratch"
 touched=$(sed -n 's/^+++ b\///p' rows.diff | tr '\n' ' ')
 expected="engine/statics/modes/modes_values.c parser/program/command/arguments.h parser/program/command/analyses.c "

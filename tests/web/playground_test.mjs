@@ -109,7 +109,7 @@ test("starts with the crawler, moving", async ({ page, browser }) => {
   console.log("  first picture after " + times.map(Math.round).join(", ") + " ms");
   assert.match(await velocity(page), /^10\.03 mm\/s/);
   assert.ok(await page.evaluate(() => window.strut.frames) > 100);
-  assert.match(await textOf(page, "#status"), /right within .* %/);
+  assert.match(await textOf(page, "#status"), /accurate to within .* %/);
   await photograph(page, "start");
 });
 

@@ -82,20 +82,20 @@ static void describe_error(const strut_summary *summary, char *text, size_t size
            accuracy_summary->assumed ? "taken, as the model has no solver" : "requested");
   if (isfinite(accuracy_summary->expected) && velocity &&
       fabs(summary->velocity) < accuracy_summary->scale)
-    snprintf(error, sizeof error, "within %.2g m/s",
+    snprintf(error, sizeof error, "to within %.2g m/s",
              accuracy_summary->expected * accuracy_summary->scale);
   else if (isfinite(accuracy_summary->expected))
-    snprintf(error, sizeof error, "within %.2g %%", 100.0 * accuracy_summary->expected);
+    snprintf(error, sizeof error, "to within %.2g %%", 100.0 * accuracy_summary->expected);
   if (accuracy_summary->kept && summary->steady.kind == STRUT_MOTION_CREEPING)
-    snprintf(text, size, "right %s for this model: it only creeps", error);
+    snprintf(text, size, "accurate %s for this model: it only creeps", error);
   else if (accuracy_summary->kept && velocity && summary->velocity_zero)
-    snprintf(text, size, "right for this model: the velocity is zero by symmetry%s%s",
+    snprintf(text, size, "exact for this model: the velocity is zero by symmetry%s%s",
              accuracy_summary->assumed ? "; " : "", accuracy_summary->assumed ? asked : "");
   else if (accuracy_summary->kept)
-    snprintf(text, size, "right %s for this model; %s", error, asked);
+    snprintf(text, size, "accurate %s for this model; %s", error, asked);
   else
     snprintf(text, size, "NOT kept: %s%s, but %s",
-             isfinite(accuracy_summary->expected) ? "right only " : "", error, asked);
+             isfinite(accuracy_summary->expected) ? "accurate only " : "", error, asked);
 }
 
 void strut_summary_worth(const strut_summary *summary, char *text, size_t size) {

@@ -547,7 +547,7 @@ const strut_option strut_path_analysis_options[] = {
      "or end earlier, where a node has moved so far along x or y"},
     {STRUT_FILLS(at), "at", "NAME", "equilibrium to start from (default: that of the start)"},
     {STRUT_FILLS(friction), "friction", "none|kept",
-     "kept: contacts stick and slide as the path goes (default: as the file says)",
+     "kept: contacts stick and slide along the path (default: as the file says)",
      .words = "none|kept"},
     {STRUT_FILLS(branches), "branches", "DEPTH",
      "follow paths that leave at bifurcations: 1 of this path, 2 of its branches too, ...",
