@@ -7,6 +7,9 @@
 
 static const strut_channels ALL_CHANNELS = ~(strut_channels)0;
 
+static void see_piece(strut_observer *observer, strut_state *state,
+                      const strut_motion_piece *piece);
+
 /* Names of the items of a channel, in the arena. */
 static const char *const *item_names(const strut_model *model, const strut_channel_row *row,
                                      size_t count, strut_arena *arena) {
@@ -115,40 +118,66 @@ static strut_status begin_sinks(strut_recording *recording, strut_error *error) 
   return STRUT_OK;
 }
 
+/* More samples in a step are a mistake. */
+static const double MOST_IN_STEP = 1e5;
+
 strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
                                     double begin, strut_recording *recording, strut_error *error) {
   *recording = (strut_recording){.sinks = recording->sinks,
                                  .sink_count = recording->sink_count,
                                  .grid = recording->grid,
+                                 .observer.see = see_piece,
                                  .last = -1};
   if (!recording->sink_count) return STRUT_OK;
   strut_span span = strut_experiment_span(experiment, model->scene);
   recording->start = begin + span.record_start;
   recording->every = span.record_every;
+  double in_step = experiment->output_every > 0.0 ? recording->grid.step / recording->every : 0.0;
+  if (!(in_step < MOST_IN_STEP))
+    return strut_fail(
+        error, STRUT_USAGE,
+        "'output: {every: %g s}' is %.3g samples in a step of %g s; at most %g are taken",
+        recording->every, in_step, recording->grid.step, MOST_IN_STEP);
+  recording->in_step = in_step > 0.0 ? 1 + (size_t)in_step : 0;
   strut_channels wanted = 0;
   for (size_t s = 0; s < recording->sink_count; s++)
     wanted |= requested_channels(experiment, recording->sinks[s]);
   bool ready = create_layout(model, wanted, recording) && find_columns(recording);
-  double expected =
-      (span.duration - span.record_start) / fmax(span.record_every, recording->grid.step) + 1.0;
+  double apart = fmax(span.record_every, recording->in_step ? 0.0 : recording->grid.step);
+  double expected = (span.duration - span.record_start) / apart + 1.0;
   recording->layout.expected_rows = expected < 1e15 ? (size_t)expected : (size_t)1e15;
   if (ready) {
-    recording->capacity = 1 + 65536 / recording->layout.width;
+    recording->capacity = recording->in_step + 1 + 65536 / recording->layout.width;
     recording->rows = strut_arena_allocate(
         &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
-    ready = recording->rows && create_parts(experiment, recording);
+    ready = recording->rows && create_parts(experiment, recording) &&
+            strut_dense_create(model, &recording->arena, &recording->dense);
   }
   if (!ready) return strut_no_memory(error, "for the recording");
   return begin_sinks(recording, error);
 }
 
-int64_t strut_recording_next_step(const strut_recording *recording) {
+/* A sample this close to the end of a step, in steps, is taken there. */
+static const double AT_END = 1e-6;
+
+/* When the next sample is due, without the offset of the grid [s]. */
+static double next_time(const strut_recording *recording) {
+  return recording->start + (double)recording->sampled * recording->every;
+}
+
+/* Is a sample due within step n, before its end? */
+static bool is_within(const strut_recording *recording, int64_t n) {
+  double due = next_time(recording), step = recording->grid.step, near = AT_END * step;
+  return recording->in_step && due > strut_time_grid_at(&recording->grid, n - 1) + near &&
+         due < strut_time_grid_at(&recording->grid, n) - near;
+}
+
+int64_t strut_recording_next_step(const strut_recording *recording, int64_t n) {
   if (!recording->sink_count) return INT64_MAX;
-  double step = ceil((recording->start + (double)recording->sampled * recording->every) /
-                         recording->grid.step -
-                     1e-6);
+  double step = ceil(next_time(recording) / recording->grid.step - AT_END);
   if (!(step < 9e18)) return INT64_MAX; /* never: beyond the integers */
   int64_t due = (int64_t)step;
+  if (is_within(recording, due)) return due - 1 > n ? due - 1 : due;
   return due > recording->last ? due : recording->last + 1;
 }
 
@@ -197,11 +226,10 @@ static unsigned needs_of(const strut_recording *recording, strut_channels wanted
   return needs;
 }
 
+/* Fills the channels of the state at time t [s], without its time_offset. */
 static void fill_row(strut_state *state, strut_recording *recording, strut_channels wanted,
-                     double *row) {
-  strut_instant_show(&recording->instant, state, needs_of(recording, wanted),
-                     strut_time_grid_at(&recording->grid, state->step));
-  row[0] = strut_time_grid_real(&recording->grid, state->step);
+                     double t, double *row) {
+  strut_instant_show(&recording->instant, state, needs_of(recording, wanted), t);
   for (size_t k = 0; k < recording->layout.channel_count; k++) {
     const strut_record_channel *channel = &recording->channel[k];
     double sum = 0.0;
@@ -217,15 +245,71 @@ static void fill_row(strut_state *state, strut_recording *recording, strut_chann
   }
 }
 
-strut_status strut_recording_sample(strut_state *state, strut_recording *recording,
-                                    strut_error *error) {
-  assert(recording->sink_count && recording->row_count < recording->capacity &&
-         state->step > recording->last);
-  fill_row(state, recording, ALL_CHANNELS,
-           recording->rows + recording->row_count++ * recording->layout.width);
-  recording->last = state->step;
+static void add_row(strut_state *state, strut_recording *recording, double t, double real) {
+  double *row = recording->rows + recording->row_count++ * recording->layout.width;
+  assert(recording->sink_count && recording->row_count <= recording->capacity);
+  row[0] = real;
+  fill_row(state, recording, ALL_CHANNELS, t, row);
   recording->sampled++;
-  return recording->row_count == recording->capacity ? flush_rows(recording, error) : STRUT_OK;
+}
+
+void strut_recording_sample(strut_state *state, strut_recording *recording) {
+  assert(state->step > recording->last);
+  add_row(state, recording, strut_time_grid_at(&recording->grid, state->step),
+          strut_time_grid_real(&recording->grid, state->step));
+  recording->last = state->step;
+}
+
+strut_status strut_recording_pass_on(strut_recording *recording, strut_error *error) {
+  bool full = recording->row_count + recording->in_step + 1 > recording->capacity;
+  return full ? flush_rows(recording, error) : STRUT_OK;
+}
+
+/* Takes the samples of step n that are due before the end of the piece, which stands `later` than it says [s]. */
+static void sample_piece(strut_recording *recording, strut_state *state, strut_motion_piece piece,
+                         double later, int64_t n) {
+  double begin = piece.begin + later, end = begin + piece.length, due;
+  while (is_within(recording, n) && (due = next_time(recording)) <= end) {
+    double s = fmin(fmax((due - begin) / piece.length, 0.0), 1.0);
+    double t = strut_dense_place(&recording->dense, state, &piece, s);
+    add_row(state, recording, t, recording->grid.offset + due);
+  }
+  strut_dense_return(&recording->dense, state, &piece);
+}
+
+/* The other observer is called as if it were the only one, since it may wish to see no more. */
+static void see_piece(strut_observer *observer, strut_state *state,
+                      const strut_motion_piece *piece) {
+  strut_recording *recording = (strut_recording *)observer;
+  sample_piece(recording, state, *piece, state->time_offset - recording->grid.offset,
+               state->step + 1);
+  if (!recording->other) return;
+  state->watched.observer = recording->other;
+  recording->other->see(recording->other, state, piece);
+  recording->other = state->watched.observer;
+  state->watched.observer = observer;
+}
+
+bool strut_recording_begin_step(strut_recording *recording, strut_state *state) {
+  if (!is_within(recording, state->step + 1)) return false;
+  recording->rows_before = recording->row_count;
+  recording->other = state->watched.observer;
+  state->watched.observer = &recording->observer;
+  strut_dense_keep(&recording->dense, state);
+  return true;
+}
+
+void strut_recording_end_step(strut_recording *recording, strut_state *state, bool lost) {
+  double begin = strut_time_grid_at(&recording->grid, state->step - 1);
+  double length = strut_time_grid_at(&recording->grid, state->step) - begin;
+  strut_motion_piece step = strut_dense_step(&recording->dense, state, begin, length);
+  state->watched.observer = recording->other;
+  if (!lost) { /* of methods without events */
+    sample_piece(recording, state, step, 0.0, state->step);
+    return;
+  }
+  recording->sampled -= (int64_t)(recording->row_count - recording->rows_before);
+  recording->row_count = recording->rows_before;
 }
 
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
@@ -239,7 +323,9 @@ strut_status strut_recording_create_alone(const strut_model *model, const strut_
 
 void strut_recording_observe(strut_state *state, strut_recording *recording,
                              strut_channels wanted) {
-  if (wanted) fill_row(state, recording, wanted, recording->rows);
+  if (wanted)
+    fill_row(state, recording, wanted, strut_time_grid_at(&recording->grid, state->step),
+             recording->rows);
 }
 
 strut_status strut_recording_finish(strut_recording *recording, strut_status run_status,

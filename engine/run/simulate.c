@@ -231,12 +231,12 @@ static strut_status prepare_run(strut_run *run) {
        strut_steady_detector_create(run->model, &run->experiment->steady, span.period, begin,
                                     &run->steady.detector)))
     return strut_no_memory(run->error, "for the model");
-  if (run->measure.quantities && run->method->observe &&
-      (run->options->samples || strut_quantities_need_pieces(run->measure.quantities))) {
-    if (!run->method->observe(run->model, run->state, run->workspace))
-      return strut_no_memory(run->error, "for the model");
-    strut_quantities_observe(run->measure.quantities);
-  }
+  bool measured = run->measure.quantities && run->method->observe &&
+                  (run->options->samples || strut_quantities_need_pieces(run->measure.quantities));
+  bool recorded = run->method->observe && run->experiment->output_every > 0.0;
+  if ((measured || recorded) && !run->method->observe(run->model, run->state, run->workspace))
+    return strut_no_memory(run->error, "for the model");
+  if (measured) strut_quantities_observe(run->measure.quantities);
   if ((status = place_state(run))) return status;
   if (run->model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(run->model, run->state, begin, run->state->q, run->state->v);
@@ -363,10 +363,15 @@ static void step_short(strut_run *run) {
 void strut_run_step(strut_run *run, int64_t stop) {
   assert(run->ready && stop > run->state->step);
   unsigned before = strut_subnormals_off();
-  if (run->state->step == run->grid.last - 1 && strut_time_grid_rest(&run->grid) > 0.0)
+  strut_state *state = run->state;
+  bool sampled = strut_recording_begin_step(&run->recording, state);
+  if (state->step == run->grid.last - 1 && strut_time_grid_rest(&run->grid) > 0.0)
     step_short(run); /* the last one, shorter than the others */
   else
     step_to(run, stop);
+  if (sampled)
+    strut_recording_end_step(&run->recording, state,
+                             state->trouble || strut_run_find_lost_node(run->model, state) >= 0);
   strut_subnormals_restore(before);
 }
 
@@ -435,11 +440,11 @@ strut_status strut_run_sample(strut_run *run, int64_t *stop) {
   if (run->steady.wanted) detect_steady_motion(run);
   if (n == strut_measure_first_step(&run->measure))
     strut_measure_begin(run->model, run->state, &run->measure);
-  if (lost < 0 && (n == strut_recording_next_step(&run->recording) ||
-                   (n >= run->steps && strut_recording_lacks(&run->recording, n)))) {
-    strut_status status = strut_recording_sample(run->state, &run->recording, run->error);
-    if (status) return status;
-  }
+  if (lost < 0 && (n == strut_recording_next_step(&run->recording, n) ||
+                   (n >= run->steps && strut_recording_lacks(&run->recording, n))))
+    strut_recording_sample(run->state, &run->recording);
+  strut_status passed = strut_recording_pass_on(&run->recording, run->error);
+  if (passed) return passed;
   if (n == run->answer.step) fill_summary(run, STRUT_OK);
   if (n >= run->steps) return STRUT_OK;
   if (options->interrupt && *options->interrupt)
@@ -457,7 +462,7 @@ strut_status strut_run_sample(strut_run *run, int64_t *stop) {
                       (double)(n - run->first) / (double)(run->steps - run->first));
     run->clock.progress = strut_run_clock();
   }
-  int64_t sample = strut_recording_next_step(&run->recording);
+  int64_t sample = strut_recording_next_step(&run->recording, n);
   run->check = find_next_check(run, run->chunk);
   *stop = sample > n && sample < run->check ? sample : run->check;
   return STRUT_OK;

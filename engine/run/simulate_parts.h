@@ -15,6 +15,7 @@
 
 /*
  * Recording: lays out the rows of a run, samples the state and hands rows to the sinks.
+ * Where the scene says how far samples are apart, those between two steps are taken by dense output.
  */
 
 /** Channels of one sink, as a layout of their own. */
@@ -26,6 +27,7 @@ typedef struct strut_recording_part {
 } strut_recording_part;
 
 typedef struct strut_recording {
+  strut_observer observer, *other; /* first: this is what the state knows; and the one behind it */
   strut_sink **sinks;
   size_t sink_count, begun;   /* sinks whose begin succeeded */
   strut_record_layout layout; /* union of the channels of all sinks */
@@ -35,8 +37,12 @@ typedef struct strut_recording {
   double *picked; /* (capacity, width) rows of one sink; NULL where every sink takes all channels */
   size_t row_count, capacity;
   strut_time_grid grid;
-  double start, every;   /* first sample, interval [s] */
-  int64_t sampled, last; /* samples so far; step of the latest, -1 before the first */
+  double start, every; /* first sample, interval [s] */
+  int64_t sampled,
+      last;           /* samples so far; step of the latest at an end of one, -1 before the first */
+  size_t in_step;     /* most samples between two ends of steps */
+  size_t rows_before; /* the step that is observed */
+  strut_dense dense;
   strut_instant instant;
   strut_column *column; /* (width) what each number of a row is, as strut_column_find finds it; */
   strut_observe **observe; /* its function; NULL: the sum of those before it, or the time */
@@ -49,13 +55,18 @@ typedef struct strut_recording {
  */
 strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
                                     double begin, strut_recording *recording, strut_error *error);
-/** Step at whose end the next sample is due; INT64_MAX without sinks. */
-int64_t strut_recording_next_step(const strut_recording *recording);
+/** Step after n at which to stop: a sample is due there or in the step after it; INT64_MAX without sinks. */
+int64_t strut_recording_next_step(const strut_recording *recording, int64_t n);
+/** Before a step. False: no sample is due within it, and strut_recording_end_step must not be called. */
+bool strut_recording_begin_step(strut_recording *recording, strut_state *state);
+/** Takes those samples. lost: the step failed, and leaves none. */
+void strut_recording_end_step(strut_recording *recording, strut_state *state, bool lost);
 /** Is a sample of step n missing? False without sinks. */
 bool strut_recording_lacks(const strut_recording *recording, int64_t n);
-/** Samples the state; passes rows on when the block is full. */
-strut_status strut_recording_sample(strut_state *state, strut_recording *recording,
-                                    strut_error *error);
+/** Samples the state at the end of a step. */
+void strut_recording_sample(strut_state *state, strut_recording *recording);
+/** Passes rows on where there is no room for those of another step. */
+strut_status strut_recording_pass_on(strut_recording *recording, strut_error *error);
 /**
  * Passes the remaining rows on and ends every sink with the status of the run; returns the first
  * failure.

@@ -443,6 +443,7 @@ TEST(statics_have_arrays_and_pictures) {
   result = strutlib_form(scene, 0, NULL, NULL, NULL, &error);
   assert_non_null(result);
   assert_int_equal(array_of(result, "forces").shape[0], 9);
+  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   char *yaml = strutlib_result_yaml(result, &error);
   strutlib_scene *found = strutlib_open_text("form", yaml, strlen(yaml), 0, NULL, NULL, &error);
   assert_non_null(found);

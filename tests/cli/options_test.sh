@@ -97,6 +97,32 @@ cp out one
 expect 0 run hung.yaml --quiet --json
 [ "$(grep energy one)" = "$(grep energy out)" ] || fail "a node by a text parameter: $(cat out)"
 tells 2 "unknown node 'bal' in parameter 'hung'; did you mean 'ball'" run hung.yaml --set hung=bal
+# So in expressions and keys of positions, and in parts, whose placements give it; only a group is named itself.
+sed 's/^run: .*/run: {duration: seconds, measure: {quantities: {far: {of: hung.y, take: final}}}}/' hung.yaml >far.yaml
+echo 'initial: {positions: {hung: [0, 10 mm]}}' >>far.yaml
+expect 0 run far.yaml --quiet --json
+cp out one
+sed -i 's/hung\.y/ball.y/; s/{hung:/{ball:/' far.yaml
+expect 0 run far.yaml --quiet --json
+[ "$(grep -v wall_time one)" = "$(grep -v wall_time out)" ] || fail "by a text parameter: $(cat out)"
+yaml arms.yaml <<'YAML'
+parameters: {which: "right"}
+parts:
+  arm:
+    parameters: {driven: "left"}
+    nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1}, c: {position: [0, 1], mass: 1}}
+    members: {left: {kind: spring, nodes: [a, c], stiffness: 9}, right: {kind: spring, nodes: [a, b], stiffness: 9}}
+    actuators: {drive: {member: driven, signal: {sine: {amplitude: 0.1, frequency: 1}}}}
+place: {one: {part: arm}, two: {part: arm, set: {driven: which}, at: [2, 0]}, three: {part: arm, at: [4, 0], set: {driven: right}}}
+YAML
+shows 0 "one.drive: {member: one.left" export arms.yaml
+shows 0 "two.drive: {member: two.right" export arms.yaml
+shows 0 "three.drive: {member: three.right" export arms.yaml
+tells 2 "unknown member 'rigt' in parameter 'driven'; did you mean 'right'" export arms.yaml --set which=rigt
+sed 's/ball: {position: \[0, 0\], mass: mass}/ball: {position: [0, 0], group: hung}/' hung.yaml >group.yaml
+tells 2 "unknown group 'hung' in 'group' of node 'ball'; a text parameter cannot name a group" check group.yaml
+sed 's/duration: seconds/duration: mass/' hop.yaml >heavy.yaml
+tells 2 "found a mass; line 2 gives 'mass'" check heavy.yaml
 
 # The same range of a path in two ways; the same words with other values elsewhere.
 expect 0 path truss.yaml --over load=1..3N --json

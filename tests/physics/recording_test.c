@@ -94,9 +94,7 @@ static void check_rows(double step, double duration, double last, double every, 
   double start = last > 0 ? duration - last : 0;
   for (size_t i = 0; i < count; i++) {
     const double *row = first.row[i];
-    double due = fmin(start + (double)i * every, duration); /* the first step at or after it */
-    double at = ceil(due / step - 1e-6) * step;
-    assert_near(row[0], at, 1e-12);
+    assert_near(row[0], fmin(start + (double)i * every, duration), 1e-12);
     assert_near(row[first.offset[0] + 2], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
     assert_near(row[first.offset[1]], 1 + 0.5 * row[0], 1e-12 + 1e-10 * row[0]);
     assert_true(row[first.offset[2]] == 0);
@@ -105,7 +103,8 @@ static void check_rows(double step, double duration, double last, double every, 
 
 TEST(rows_come_at_their_times) {
   check_rows(1e-3, 1, 0, 0.01, 101);
-  check_rows(1e-3, 1, 0, 0.0025, 401);  /* between steps: the next one */
+  check_rows(1e-3, 1, 0, 0.0025, 401);  /* between steps */
+  check_rows(0.01, 1, 0, 0.0007, 1430); /* many in a step */
   check_rows(1e-3, 1, 0.2, 0.01, 21);   /* the last 0.2 s only */
   check_rows(0.01, 1, 0, 0.3, 5);       /* 0, 0.3, 0.6, 0.9, and the end */
   check_rows(1e-4, 110, 1, 1 / 7.3, 9); /* far from 0 */
@@ -118,9 +117,9 @@ TEST(rows_are_a_thousandth_apart_if_nothing_is_said) {
   assert_near(first.row[1][0], 0.002, 1e-15);
 }
 
-/* More often than there are steps: each step once. */
+/* A thousandth of the time is less than a step: each step once. */
 TEST(no_step_is_recorded_twice) {
-  OWN(strut_setup) setup = gliding(0.01, 1, 0.001);
+  OWN(strut_setup) setup = gliding(0.01, 1, 0);
   assert_ok(run(&setup, NULL));
   assert_int_equal(first.count, 101);
   for (size_t i = 0; i < 101; i++) assert_near(first.row[i][0], 0.01 * (double)i, 1e-14);
@@ -205,20 +204,57 @@ TEST(each_sink_gets_the_channels_it_wants) {
   }
 }
 
-/* Recording looks on: a run with sinks ends with the bits of one without. */
+TEST(so_many_samples_in_a_step_are_a_mistake) {
+  strut_error error;
+  OWN(strut_setup) setup = gliding(0.01, 1, 1e-9);
+  assert_fails(run(&setup, &error), STRUT_USAGE, error, "100000");
+}
+
+/* Recording looks on: a run with sinks ends with the bits of one without, by any method, measured or not. */
 TEST(recording_changes_no_bit) {
-  OWN(strut_setup) setup = build_setup();
-  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&setup, 1e-4, 0.5);
-  setup.experiment.output_every = 0.5;
-  assert_ok(run(&setup, NULL));
-  double coarse[10];
-  memcpy(coarse, first.row[1] + 1, sizeof coarse);
-  clean();
-  setup.experiment.output_every = 0.0007, setup.experiment.channels = 63;
-  assert_ok(run(&setup, NULL));
-  OWN(strut_summary) s = motion_simulate(&setup);
-  assert_memory_equal(coarse, s.end.positions, sizeof coarse);
+  const double every[] = {0.03, 0.00031, 0.0000165};
+  for (size_t i = 0; strut_integrator_at(i); i++) {
+    if (strut_integrator_at(i)->no_ground) continue;
+    OWN(strut_setup) setup = build_setup();
+    structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+    motion_experiment(&setup, 2e-5, 0.03);
+    setup.experiment.integrator = strut_integrator_at(i)->name;
+    OWN(strut_summary) alone = motion_simulate(&setup);
+    for (size_t k = 0; k < sizeof every / sizeof *every; k++) {
+      clean();
+      setup.experiment.output_every = every[k], setup.experiment.channels = 63;
+      assert_ok(run(&setup, NULL));
+      assert_memory_equal(first.row[first.count - 1] + 1, alone.end.positions, 10 * sizeof(double));
+    }
+  }
+}
+
+/* A mass falls onto a spring: a parabola, then a cosine, whichever steps the touchdown is in. */
+TEST(samples_between_steps_do_not_reach_across_a_touchdown) {
+  const double g = 9.81, k = 4e4, mass = 1, height = 0.1, w = sqrt(k / mass);
+  const double touch = sqrt(2 * height / g), speed = g * touch, sag = mass * g / k;
+  static const char *const methods[] = {"rk4-events", "adaptive"};
+  for (int i = 0; i < 2; i++) {
+    OWN(strut_setup) setup = build_setup();
+    clean();
+    build_contact(&setup.scene, build_mass(&setup.scene, 0, height, mass), k, 0);
+    setup.scene.gravity[1] = -g;
+    motion_experiment(&setup, 1e-3, touch + 0.01);
+    setup.experiment.integrator = methods[i];
+    setup.experiment.tolerance = 1e-9;
+    setup.experiment.output_every = 1.7e-4;
+    setup.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY |
+                                STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY;
+    assert_ok(run(&setup, NULL));
+    for (size_t r = 0; r < first.count; r++) {
+      double t = first.row[r][0], s = fmax(0, t - touch), c = cos(w * s), n = sin(w * s);
+      double y = s > 0 ? -sag + sag * c - speed / w * n : height - 0.5 * g * t * t;
+      double v = s > 0 ? -w * sag * n - speed * c : -g * t;
+      assert_all_near(2e-7, first.row[r][2], y);
+      assert_near(first.row[r][4], v, 2e-4);
+      assert_near(first.row[r][5], s > 0 ? -k * y : 0, 1e-2);
+    }
+  }
 }
 
 TEST(a_sink_that_fails_stops_the_run) {

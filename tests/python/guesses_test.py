@@ -2,8 +2,9 @@
 """What people try first works, or the error says what does; every command of the program has its place in Python."""
 
 import os
-import re
 import pathlib
+import pickle
+import re
 import tempfile
 import unittest
 
@@ -24,6 +25,7 @@ class Guesses(unittest.TestCase):
         self.assertEqual(robot["nodes"]["top"].position, (0.05, 0.06))
         self.assertRaisesRegex(KeyError, "did you mean 'frequency'", lambda: robot["frequncy"])
         self.assertRaisesRegex(AttributeError, "did you mean 'equilibria'", lambda: robot.equlibria)
+        self.assertRaisesRegex(KeyError, "^no name 'frnt'; did you mean 'front'", lambda: robot.nodes["frnt"])
 
     def test_runs(self):
         robot = strut.load(ROBOT)
@@ -32,6 +34,9 @@ class Guesses(unittest.TestCase):
         self.assertAlmostEqual(robot.run(duration=0.3).duration, 0.3)
         self.assertNotIn("steady", robot.run(steady=False).summary)
         self.assertRaisesRegex(TypeError, "did you mean 'friction'", robot.run, fricton=1)
+        crawler = strut.load(MODELS / "crawler/crawler.yaml")  # records its last 10 periods
+        self.assertEqual(crawler.run(duration=0.05)["time"][-1], 0.05)
+        self.assertAlmostEqual(crawler.run(periods=2)["time"][-1], 0.2)
 
     def test_results(self):
         run = strut.load(ROBOT).run()
@@ -60,6 +65,9 @@ class Guesses(unittest.TestCase):
         motion = robot.run(controller=hold, duration=0.01, step="0.1 ms")
         self.assertEqual(len(calls), 100)
         self.assertEqual(motion["position"]["top"].shape, (100, 2))
+        self.assertEqual(pickle.loads(pickle.dumps(motion)).position["top"].shape, (100, 2))
+        self.assertRaisesRegex(AttributeError, "did you mean 'position'", lambda: motion.positon)
+        self.assertEqual(motion.velocity, robot.run(duration=0.01, step="0.1 ms").velocity)
         sim = robot.simulation(step="0.1 ms")
         sim.advance_to(0.01)
         self.assertAlmostEqual(sim.time, 0.01)

@@ -261,6 +261,57 @@ test("shows rigidity and form as tables", async ({ page }) => {
   await page.click("#rigidity");
   await idle(page);
   assert.match(await textOf(page, "#found"), /self-stress/);
+  await pick(page, "gallery/x-frame.yaml");
+  await page.click("#form");
+  await idle(page);
+  assert.match(await textOf(page, "#found"), /^Form[^]*force density/);
+  assert.match(await textOf(page, "#status"), /^Computed/);
+  await photograph(page, "form");
+});
+
+/* What a button may answer of some model: that the question does not fit it. */
+const REASONS = [/^Stopped/, /no constant load to follow/, /the load acts on nothing/, /neither a duration nor periods/,
+  /does not come to rest/, /no free node has mass/, /hold(s)? the (structure|drawn shape)/, /no equilibrium was found/,
+  /form finding by \w+ knows straight members/, /the nearest densities/];
+
+test("answers every button on every model, or says why not", async ({ page }) => {
+  const models = await page.$$eval("[data-model]", (buttons) => buttons.map((b) => b.dataset.model)), odd = [];
+  const answered = Object.fromEntries(["run", "equilibria", "modes", "rigidity", "path", "form"].map((c) => [c, 0]));
+  for (const model of models) {
+    await pick(page, model);
+    for (const call of Object.keys(answered)) {
+      await page.click("#" + call);
+      const stop = setTimeout(() => page.keyboard.press("Escape"), 15000);
+      await idle(page);
+      clearTimeout(stop);
+      const bad = await page.$eval("#status", (e) => e.classList.contains("bad")), text = await textOf(page, "#status");
+      if (!bad) answered[call]++;
+      else if (!REASONS.some((reason) => reason.test(text))) odd.push(model + " " + call + ": " + text);
+    }
+  }
+  console.log("  answers on " + models.length + " models: " + JSON.stringify(answered));
+  assert.deepEqual(odd, []);
+  for (const [call, count] of Object.entries(answered)) assert.ok(count >= 5, call + " answers " + count);
+});
+
+test("forgets values that were tried when another scene is pasted", async ({ page }) => {
+  await slide(page, "friction", 700);
+  const whole = await scene(page);
+  await rewrite(page, whole, whole.replace("name: Nine", "name: Pasted nine"));
+  assert.deepEqual(await page.evaluate(() => window.strutPlayground.settings), {});
+  assert.match(await velocity(page), /^10\.03 mm\/s/);
+});
+
+test("shows where a person writes an error that lies out of view", async ({ page }) => {
+  await rewrite(page, "frequency: 10 Hz", "frequency: 10 mm");
+  const notes = await page.$$eval(".code-note", (all) => all.map((note) => note.textContent));
+  assert.match(notes[0], /^line 52: expected a frequency .* line 15 gives 'frequency'/);
+  const place = await page.$eval(".code-note", (note) => note.getBoundingClientRect().right -
+    document.getElementById("editor").getBoundingClientRect().right);
+  assert.ok(place <= 0, "the note is cut");
+  const apart = await page.evaluate(() => document.getElementById("old-mark").getBoundingClientRect().top -
+    document.getElementById("clock").getBoundingClientRect().bottom);
+  assert.ok(apart >= 0, "the mark covers the clock");
 });
 
 test("opens several files that are dropped, and shares them by a link", async ({ page, browser }) => {

@@ -29,7 +29,8 @@ static const struct {
 strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_model *model,
                                     strut_error *error) {
   strut_span span = strut_experiment_span(figure->experiment, model->scene);
-  double every = fmax(span.record_every, figure->experiment->step), slack = 0.5 * every;
+  double least = figure->experiment->output_every > 0.0 ? 0.0 : figure->experiment->step;
+  double every = fmax(span.record_every, least), slack = 0.5 * every;
   double from = span.record_start - slack, to = span.duration + slack;
   for (size_t i = 0; i < figure->time_count; i++)
     if (!(figure->times[i] >= from && figure->times[i] <= to))

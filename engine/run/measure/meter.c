@@ -64,7 +64,10 @@ static double hermite_of_second_order(const strut_motion_piece *piece, int32_t i
 static void interpolate(strut_dense *matrix, const strut_motion_piece *piece, double s) {
   double h = piece->length;
   for (int32_t i = 0; i < matrix->model->length; i++) {
-    if (matrix->coarse) {
+    if (piece->ends_only) {
+      matrix->q[i] = piece->q[0][i] + s * (piece->q[1][i] - piece->q[0][i]);
+      matrix->v[i] = piece->v[s < 1.0 ? 0 : 1][i];
+    } else if (matrix->coarse) {
       double rise = piece->v[1][i] - piece->v[0][i] - h * piece->a[0][i];
       matrix->q[i] =
           strut_hermite(piece->q[0][i], piece->v[0][i], piece->q[1][i], piece->v[1][i], h, s);

@@ -482,8 +482,8 @@ STRUTLIB_API char *strutlib_result_svg(const strutlib_result *result, size_t cou
 /** The page that `strut view` writes of a run, or of equilibria; others: NULL with the error. */
 STRUTLIB_API char *strutlib_result_html(const strutlib_result *result, strutlib_error **error);
 /**
- * The data of that page alone, as a JSON object that engine/output/page/page.h describes. Of modes, rigidity and a
- * path, which have no page, it is that of the structure: strutlib_result_json has their numbers.
+ * The data of that page alone, as a JSON object that engine/output/page/page.h describes. Of modes, rigidity, a form
+ * and a path, which have no page, it is that of the structure: strutlib_result_json has their numbers.
  */
 STRUTLIB_API char *strutlib_result_page_data(const strutlib_result *result, strutlib_error **error);
 /** NULL is allowed. */

@@ -246,6 +246,8 @@ static strutlib_result *analyse(const strutlib_scene *scene, const strut_command
                   : build_matrices(&call, result, &what);
     if (status != STRUT_OK) abi_call_fail(&call, status, &what);
   }
+  if (status == STRUT_OK && kind && kind->uncompiled) /* of the scene that it has made, for pages */
+    (void)strut_model_compile(&result->setup.scene, &result->model, &what);
   return abi_result_leave(result, status == STRUT_OK);
 }
 

@@ -28,46 +28,45 @@ classdef strut
   %   program have strut:warning; points that fail and parameters that a fit does not identify are warnings, too: see
   %   table.status and found.parameters.NAME.verdict.
   %
-  %   The program is that of the environment variable STRUT, or of the build or installation to which this file
-  %   belongs, or of the PATH.
+  %   The program is that of the variable STRUT, of the build or installation of this file, or of the PATH.
 
   methods (Static)
-    function model = load(model, varargin)
-      model = model_of(model);
-      model.set = [model.set, settings_of(varargin)];
+    function model = load(varargin)
+      model = model_of(varargin, 'load');
+      model.set = [model.set, settings_of(varargin(2:end))];
       found = strut.command('check', model);
       found.file = model.file;
       found.set = model.set;
       model = found;
     end
 
-    function [result, motion] = run(model, varargin)
+    function [result, motion] = run(varargin)
       if nargout < 2 % without files
-        result = strut.command('run', model, varargin{:});
+        result = strut.command('run', varargin{:});
         return;
       end
-      [result, motion] = strut.command('run', model, varargin{:});
+      [result, motion] = strut.command('run', varargin{:});
       for name = fieldnames(motion)'
         motion.time = motion.(name{1}).time;
         motion.(name{1}) = rmfield(motion.(name{1}), 'time');
       end
     end
 
-    function result = equilibria(model, varargin)
-      result = strut.command('equilibria', model, varargin{:});
+    function result = equilibria(varargin)
+      result = strut.command('equilibria', varargin{:});
     end
 
-    function result = modes(model, varargin)
-      result = strut.command('modes', model, varargin{:});
+    function result = modes(varargin)
+      result = strut.command('modes', varargin{:});
     end
 
-    function result = path(model, varargin)
-      result = strut.command('path', model, varargin{:});
+    function result = path(varargin)
+      result = strut.command('path', varargin{:});
     end
 
-    function [table, study] = sweep(model, varargin)
-      model = model_of(model);
-      options = varargin;
+    function [table, study] = sweep(varargin)
+      model = model_of(varargin, 'sweep');
+      options = varargin(2:end);
       is_study = @(text) ~isempty(regexp(text, '^[{\s]*"?study"?\s*:', 'once', 'lineanchors'));
       if exist(model.file, 'file') == 2 && ~is_study(fileread(model.file))
         [model, options, folder] = study_of(model, options);
@@ -81,8 +80,8 @@ classdef strut
       end
     end
 
-    function [result, residuals] = fit(study, varargin)
-      [result, tables] = strut.command('sweep', study, varargin{:});
+    function [result, residuals] = fit(varargin)
+      [result, tables] = strut.command('sweep', model_of(varargin, 'fit'), varargin{2:end});
       if ~isfield(result, 'parameters')
         error('strut:usage', 'this study has no fit: use strut.sweep');
       end
@@ -101,14 +100,14 @@ classdef strut
       end
     end
 
-    function [result, tables] = command(name, model, varargin)
+    function [result, tables] = command(name, varargin)
       name = char(name);
-      model = model_of(model);
+      model = model_of(varargin, name);
       folder = tempname();
       mkdir(folder);
       cleaner = onCleanup(@() system(['rm -rf ' quoted(folder)])); %#ok<NASGU>
       known = options_of(name, folder);
-      [words, settings, output] = words_of(name, known, varargin);
+      [words, settings, output] = words_of(name, known, varargin(2:end));
       settings = [model.set, settings];
       [~, last] = unique(regexprep(settings, '=.*', ''), 'last'); % of two for one parameter
       words = [words, cellfun(@(setting) ['--set=' setting], settings(sort(last(:)')), 'UniformOutput', false)];
@@ -211,8 +210,10 @@ end
 
 % ---- arguments ----
 
-% A model as its file, settings NAME=VALUE, and the text of the file '-', which is standard input.
-function model = model_of(model)
+% The first argument as a file, settings NAME=VALUE, and the text of the file '-', which is standard input.
+function model = model_of(given, name)
+  assert(~isempty(given), 'strut:usage', 'strut.%s needs a file, as in strut.%s(''model.yaml'')', name, name);
+  model = given{1};
   if ~isstruct(model)
     model = struct('file', {model}, 'set', {cell(1, 0)});
   end

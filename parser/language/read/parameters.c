@@ -14,7 +14,7 @@ const char *strut_parameter_name(const void *context, size_t i) {
   return i < reader->parameter_count ? reader->parameters[i].name : NULL;
 }
 
-strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name) {
+strut_parameter_state *strut_parameter_find(const strut_reader *reader, const char *name) {
   int32_t index = strut_name_map_find(&reader->parameter_names, name);
   return index < 0 ? NULL : &reader->parameters[index];
 }
@@ -114,13 +114,30 @@ static bool adopt_dimension(strut_reader *reader, strut_parameter_state *paramet
   return false;
 }
 
-strut_parameter_state *strut_parameter_in_scope(strut_reader *reader, const char *name) {
-  for (const strut_copy *scope = reader->scope; scope; scope = scope->home) {
+strut_parameter_state *strut_parameter_in_scope(const strut_reader *reader, const strut_copy *scope,
+                                                const char *name) {
+  for (; scope; scope = scope->home) {
     for (size_t i = 0; i < scope->parameter_count; i++)
       if (strcmp(scope->parameters[i].name, name) == 0) return &scope->parameters[i];
     if (scope->closed) return NULL;
   }
   return strut_parameter_find(reader, name);
+}
+
+bool strut_text_parameter(const strut_reader *reader, const strut_copy *scope, const char *name,
+                          strut_tree *text) {
+  strut_parameter_state *parameter = strut_parameter_in_scope(reader, scope, name);
+  if (!parameter || !parameter->text || parameter->state != STRUT_READ) return false;
+  const strut_part_value *of_part = parameter->of_part;
+  const strut_setting *set = parameter->set;
+  parameter->used = true;
+  *text = of_part && of_part->given ? *of_part->given : *parameter->value;
+  if (of_part && of_part->given) /* itself the name of one, maybe */
+    (void)strut_text_parameter(reader, of_part->given_scope, of_part->given->text, text);
+  if (set)
+    *text = (strut_tree){.text = set->text,
+                         .place = set->place.line ? set->place : parameter->key->place};
+  return true;
 }
 
 /* The number i or j of a copy, within the keys of its placement. */
@@ -200,7 +217,7 @@ static int look_up_parameter(void *context, const char *name, size_t length,
   if (length >= sizeof text) return 0;
   memcpy(text, name, length);
   text[length] = '\0';
-  strut_parameter_state *parameters = strut_parameter_in_scope(reader, text);
+  strut_parameter_state *parameters = strut_parameter_in_scope(reader, reader->scope, text);
   if (!parameters && copy_number(reader, text, quantity)) return 1;
   if (!parameters && is_copy_number(reader, text)) {
     strut_report_error(reader, asking_place(reader),

@@ -204,7 +204,7 @@ bool strut_refuse_dimension(strut_reader *reader, const strut_tree *value, const
 static bool is_reported(strut_reader *reader, strut_piece name) {
   char text[LONGEST_NAME + 1];
   snprintf(text, sizeof text, "%.*s", (int)name.length, name.text);
-  strut_parameter_state *parameter = strut_parameter_in_scope(reader, text);
+  strut_parameter_state *parameter = strut_parameter_in_scope(reader, reader->scope, text);
   if (!parameter || parameter->ambiguous) return parameter != NULL;
   parameter->ambiguous = true;
   return false;
@@ -270,6 +270,15 @@ static double scale_of(const strut_reader *reader, const strut_tree *value,
   return scale == 1.0 || !length || dimension.m == 0.0f ? 1.0 : pow(scale, (double)dimension.m);
 }
 
+/* Of a value that is a parameter: where that is given. */
+static const char *parameter_given(strut_reader *reader, const strut_tree *value) {
+  const strut_parameter_state *parameter =
+      strut_parameter_in_scope(reader, strut_scope_of(reader, value), value->text);
+  if (!parameter || parameter->value->place.file != value->place.file) return "";
+  return strut_formatted(reader, &reader->scratch, "; line %u gives '%s'",
+                         (unsigned)parameter->value->place.line, parameter->name);
+}
+
 bool strut_read_number(strut_reader *reader, const strut_tree *value, const char *key,
                        strut_owner owner, strut_dimension dimension, strut_key_range range,
                        double *number) {
@@ -289,7 +298,7 @@ bool strut_read_number(strut_reader *reader, const strut_tree *value, const char
     return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
                               expected, key, strut_owner_text(reader, owner),
                               strut_dimension_name(quantity.dimension, found, sizeof found),
-                              per_angle ? "; write (...)/(1 rad)" : "");
+                              per_angle ? "; write (...)/(1 rad)" : parameter_given(reader, value));
   }
   *number = quantity.value;
   if (!in_range(reader, value, key, owner, range, quantity.value)) return false;
@@ -328,7 +337,11 @@ static const char *local_name(const void *context, size_t i) {
 static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
                                  const strut_namespace *namespace) {
   const local_names within = {reader, namespace};
+  strut_tree text;
   const char *word = value->text, *hint = strut_copy_hint(reader, value);
+  if (namespace->map == &reader->group_names &&
+      strut_text_parameter(reader, strut_scope_of(reader, value), word, &text))
+    return "; a text parameter cannot name a group";
   if (!*hint && reader->scope)
     hint = strut_hint(reader, word, local_name, &within, namespace->count);
   if (*hint) return hint;
@@ -337,25 +350,20 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
   return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
-/* The thing whose name is the text of a parameter, or -1, which was reported. */
+/* The thing whose name is the text of the parameter that the value names, or -1, which was reported. */
 static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *value,
-                                       strut_parameter_state *parameter,
-                                       const strut_namespace *names) {
-  const strut_setting *set = parameter->set;
-  strut_tree text = set ? (strut_tree){.text = set->text} : *parameter->value;
-  if (set) text.place = set->place.line ? set->place : parameter->key->place;
-  if (strut_find_named(reader, names->map, value, value->text) >= 0) {
+                                       const strut_tree *text, const strut_namespace *names) {
+  if (strut_find_literally(reader, names->map, value, value->text) >= 0) {
     strut_report_error(reader, value->place,
-                       "'%s' names a %s and a text parameter; rename one of them", parameter->name,
+                       "'%s' names a %s and a text parameter; rename one of them", value->text,
                        names->kind);
     return -1;
   }
-  parameter->used = true;
-  int32_t index = strut_find_named(reader, names->map, value, text.text);
+  int32_t index = strut_find_literally(reader, names->map, value, text->text);
   if (index < 0)
-    strut_report_error(reader, text.place, "unknown %s '%s' in parameter '%s'%s", names->kind,
-                       strut_sanitised_text(reader, text.text), parameter->name,
-                       hint_of_names(reader, &text, names));
+    strut_report_error(reader, text->place, "unknown %s '%s' in parameter '%s'%s", names->kind,
+                       strut_sanitised_text(reader, text->text), value->text,
+                       hint_of_names(reader, text, names));
   return index;
 }
 
@@ -368,9 +376,10 @@ int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const 
     strut_read_scalar(reader, value, key, owner, expected);
     return -1;
   }
-  strut_parameter_state *parameter = strut_parameter_find(reader, value->text);
-  if (parameter && parameter->text && names->map != &reader->group_names)
-    return find_named_by_parameter(reader, value, parameter, names);
+  strut_tree text;
+  if (names->map != &reader->group_names &&
+      strut_text_parameter(reader, strut_scope_of(reader, value), value->text, &text))
+    return find_named_by_parameter(reader, value, &text, names);
   int32_t index = strut_find_named(reader, names->map, value, value->text);
   const char *hiding = index < 0 && names->map == nodes ? strut_hiding_part(reader, value) : NULL;
   if (hiding)

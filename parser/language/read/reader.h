@@ -289,10 +289,13 @@ const strut_tree *strut_first_entry(strut_reader *reader, const strut_tree *map)
 const strut_tree *strut_following_entry(strut_reader *reader, const strut_tree *key);
 /** Enters the scope of an entry; returns the one before. */
 strut_copy *strut_enter_scope(strut_reader *reader, const strut_tree *key);
-/** The index of what `text` names in the scope of `value` (NULL: of the reader), or -1. */
+/** The index of what `text`, or the text parameter of that name, names in the scope of `value` (NULL: of the reader), or -1. */
 int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
                          const strut_tree *value, const char *text);
-/** The same of a thing of the scene. */
+/** The same without parameters. */
+int32_t strut_find_literally(const strut_reader *reader, const strut_name_map *map,
+                             const strut_tree *value, const char *text);
+/** The first of a thing of the scene. */
 static inline int32_t strut_find_thing(const strut_reader *reader, strut_thing kind,
                                        const strut_tree *value, const char *text) {
   return strut_find_named(reader, &reader->things[kind].names, value, text);
@@ -409,13 +412,17 @@ void strut_keep_parameters(strut_reader *reader);
 void strut_report_idle_settings(strut_reader *reader);
 strut_scope strut_parameter_scope(strut_reader *reader);
 /** The parameter that the name means in the reader's scope, or NULL. */
-strut_parameter_state *strut_parameter_in_scope(strut_reader *reader, const char *name);
+strut_parameter_state *strut_parameter_in_scope(const strut_reader *reader, const strut_copy *scope,
+                                                const char *name);
+/** Is the name that of a text parameter in the scope? *text: with its place. */
+bool strut_text_parameter(const strut_reader *reader, const strut_copy *scope, const char *name,
+                          strut_tree *text);
 /** Evaluates the parameters of a copy. */
 void strut_resolve_parameter(strut_reader *reader, strut_parameter_state *parameter);
 void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
                              strut_parameter_state *parameter);
 /** The scene's parameter of that name, or NULL. */
-strut_parameter_state *strut_parameter_find(strut_reader *reader, const char *name);
+strut_parameter_state *strut_parameter_find(const strut_reader *reader, const char *name);
 /** The name with that number, for suggestions. */
 const char *strut_parameter_name(const void *reader, size_t i);
 

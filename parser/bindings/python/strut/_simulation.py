@@ -15,19 +15,27 @@ if TYPE_CHECKING:
 class Motion(Frozen):
     """What a run under a controller has recorded: `time` (samples) [s], and arrays of channels by name.
 
-    motion["position"]["n1"] is (samples, 2).
+    motion["position"]["n1"] is (samples, 2); `velocity` is the mean one along x, of the centre of mass [m/s].
     """
 
     time: Any
+    velocity: float
     _arrays: dict[str, Named]
 
-    def __init__(self, time: Any, arrays: dict[str, Named]) -> None:
-        self.__dict__.update(time=time, _arrays=arrays)
+    def __init__(self, time: Any, arrays: dict[str, Named], velocity: float) -> None:
+        self.__dict__.update(time=time, velocity=velocity, _arrays=arrays)
 
     def __getitem__(self, channel: str) -> Named:
-        if channel not in self._arrays:
-            raise UnknownName(unknown(channel, self._arrays, "channel"))
-        return self._arrays[channel]
+        arrays = self.__dict__.get("_arrays", {})  # none while it comes out of a pickle
+        if channel not in arrays:
+            raise UnknownName(unknown(channel, arrays, "channel"))
+        return arrays[channel]  # type: ignore[no-any-return]
+
+    def __getattr__(self, name: str) -> Named:
+        try:
+            return self[name]
+        except KeyError as error:
+            raise AttributeError(str(error)) from None
 
     def __repr__(self) -> str:
         return f"<strut.Motion: {len(self.time)} samples of {', '.join(self._arrays)}>"
@@ -38,6 +46,7 @@ def controlled(
 ) -> Motion:
     """Advances by single steps, before each of which the controller sets inputs, and records after each."""
     time, rows = [], {name: [] for name in channels}  # type: ignore[var-annotated]
+    begin, place = sim.time, getattr(sim, "com.x").copy()
     while sim.time < until - 0.5 * sim.step:
         controller(sim)
         sim.advance(1)
@@ -45,7 +54,8 @@ def controlled(
         for name in channels:
             rows[name].append(getattr(sim, name).copy())
     arrays = {n: Named(fixed(each), getattr(sim, n).names, 1) for n, each in rows.items()}
-    return Motion(fixed(time), arrays)
+    way = float((getattr(sim, "com.x") - place).sum())
+    return Motion(fixed(time), arrays, way / (sim.time - begin))
 
 
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}

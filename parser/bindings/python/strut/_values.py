@@ -76,7 +76,7 @@ def numpy() -> Any:
     try:
         import numpy
     except ImportError as error:
-        raise ImportError("arrays need numpy (Debian: python3-numpy)") from error
+        raise ImportError("arrays need numpy: pip install numpy, or Debian's python3-numpy") from error
     return numpy
 
 
@@ -113,11 +113,14 @@ class Words(Frozen, dict[str, Any]):
 
     __slots__ = ()
 
+    def __missing__(self, name: str) -> Any:
+        raise UnknownName(unknown(str(name), self))
+
     def __getattr__(self, name: str) -> Any:
         try:
             return self[name]
-        except KeyError:
-            raise AttributeError(unknown(name, self)) from None
+        except KeyError as error:
+            raise AttributeError(str(error)) from None
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]

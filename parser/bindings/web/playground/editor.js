@@ -113,6 +113,11 @@ function diagnosticOf(doc, message) {
   return { from, to, severity: "error", message: text, line };
 }
 
+function isInView(view, at) {
+  const box = view.scrollDOM.getBoundingClientRect(), place = view.coordsAtPos(at);
+  return Boolean(place) && place.bottom > box.top && place.top < box.bottom;
+}
+
 /* ---- the editor ---- */
 
 const theme = EditorView.theme({
@@ -130,11 +135,18 @@ const theme = EditorView.theme({
   ".cm-foldPlaceholder": { backgroundColor: "var(--ground)", color: "var(--soft)", borderColor: "var(--line)" }
 });
 
-/** An editor in `host`. `onEdit()` hears what a person changes, not what setText does. */
+/* Has a person replaced all of the text, as by pasting another scene? */
+function replacesAll({ changes, startState }) {
+  let all = false;
+  changes.iterChanges((from, to) => { all = all || (from === 0 && to > 0 && to === startState.doc.length); });
+  return all;
+}
+
+/** An editor in `host`. `onEdit(replaced)` hears what a person changes, or replaces, not what setText does. */
 export function createEditor(host, onEdit) {
   let silent = false;
   const heard = EditorView.updateListener.of((update) => {
-    if (update.docChanged && !silent) onEdit();
+    if (update.docChanged && !silent) onEdit(replacesAll(update));
   });
   const extensions = [
     lineNumbers(), foldGutter(), history(), drawSelection(), indentOnInput(), bracketMatching(),
@@ -166,9 +178,12 @@ export function createEditor(host, onEdit) {
     showMessages(messages) {
       const { state } = view, found = messages.filter((m) => m.line > 0).map((m) => diagnosticOf(state.doc, m));
       found.sort((a, b) => a.from - b.from);
-      const below = found.map((d) => Decoration.widget({ widget: new Note(d.message), block: true, side: 1 })
-        .range(d.line.to));
-      view.dispatch({ effects: setNotes.of(Decoration.set(below, true)) });
+      const below = found.map((d) => ({ at: d.line.to, text: d.message }));
+      if (found.length && view.hasFocus && !found.some((d) => isInView(view, d.from))) /* where a person writes */
+        below.push({ at: state.doc.lineAt(state.selection.main.head).to,
+          text: "line " + found[0].line.number + ": " + found[0].message });
+      view.dispatch({ effects: setNotes.of(Decoration.set(below.map(({ at, text }) =>
+        Decoration.widget({ widget: new Note(text), block: true, side: 1 }).range(at)), true)) });
       view.dispatch(setDiagnostics(view.state, found.map(({ from, to, severity, message }) =>
         ({ from, to, severity, message }))));
       if (found.length && !view.hasFocus)

@@ -353,7 +353,14 @@ function wire() {
   wireStart();
 }
 
-function onEdit() {
+/* Values that were tried, and what was computed, belong to the text before. */
+function onEdit(replaced) {
+  if (replaced) {
+    Object.assign(state, { last: { call: "run" }, seconds: 0 });
+    settings.set({});
+    models.mark(null);
+    found.close();
+  }
   markOld(state.shown ? "of an earlier text" : "");
   clearTimeout(edited);
   edited = setTimeout(() => enqueue({}), PAUSE);

@@ -231,8 +231,8 @@ static int32_t find_seen(const strut_reader *reader, const strut_name_map *map,
              : index;
 }
 
-int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
-                         const strut_tree *value, const char *text) {
+int32_t strut_find_literally(const strut_reader *reader, const strut_name_map *map,
+                             const strut_tree *value, const char *text) {
   strut_full_name full;
   for (const strut_copy *scope = strut_scope_of(reader, value); scope; scope = scope->home) {
     if (scope->kind == STRUT_SCOPE_PLACE) continue;
@@ -241,6 +241,15 @@ int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
     if (scope->kind == STRUT_SCOPE_COPY && stays_within(reader, map)) return -1;
   }
   return find_seen(reader, map, NULL, text);
+}
+
+int32_t strut_find_named(const strut_reader *reader, const strut_name_map *map,
+                         const strut_tree *value, const char *text) {
+  strut_tree given;
+  int32_t index = strut_find_literally(reader, map, value, text);
+  bool by_parameter = index < 0 && map != &reader->group_names &&
+                      strut_text_parameter(reader, strut_scope_of(reader, value), text, &given);
+  return by_parameter ? strut_find_literally(reader, map, value, given.text) : index;
 }
 
 const char *strut_hiding_part(const strut_reader *reader, const strut_tree *value) {
