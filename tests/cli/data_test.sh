@@ -84,6 +84,15 @@ END
 tells 0 "loading and unloading differ by up to 2 N" check law.yaml
 gives '[.equilibria[].nodes.b[0]] | max' 1.003 1e-4 equilibria law.yaml
 
+# A part of that file has the data of the scene that uses it, which has to have them.
+yaml parts.yaml <<END
+parts: {arm: {use: law.yaml}}
+place: {arm: {part: arm}}
+END
+refuses 2 "law.yaml:4:69: error: unknown data 't' for the law of member 'm'; a part takes none of its file" check parts.yaml
+echo 'data: {t: {file: tensile.csv}}' >>parts.yaml
+expect 0 check parts.yaml
+
 # ---- studies ----
 
 yaml study.yaml <<END

@@ -145,6 +145,14 @@ keep: [gap, pull, motion]
 found = answer("sweep", "words.yaml", "-o", "words")["best"][0]
 check(found["values"]["start"] == "middle" and
       abs(found["values"]["phase"] / (1.5 * math.pi) - 1) < 1e-2, f"words and angles: {found}")
+NAMES = "strut: 1\nstudy: Names\nmodel: drop.yaml\nsearch: {maximise: pull, over: {start: %s}, evaluations: %d}\nkeep: [pull]\n"
+for count, end in ((1, "used up"), (2, "used up"), (3, "enumerated"), (4, "enumerated")):  # all that there may be
+    write("names.yaml", NAMES % ("[low, middle, high]", count))
+    found = answer("sweep", "names.yaml", "-o", f"names-{count}")
+    check(found["searches"][0]["end"] == end and found["searches"][0]["evaluations"] == min(count, 3) and
+          (count < 3 or found["best"][0]["values"] == {"start": "high"}), f"{count} evaluations of names: {found}")
+write("names.yaml", NAMES % ("[low, midle]", 1))
+run("sweep", "names.yaml", "-o", "names", code=2, err="did you mean 'middle'?")
 found = search("outer", "axes: [{mass: [1 kg, 2 kg, 3 kg]}]\nsearch: {" + GOAL + ", " + OVER + "}\n")
 for item, mass in zip(found["best"], (1, 2, 3)):
     check(abs(item["values"]["stiffness"] / (mass * wanted) - 1) < 1e-5, f"mass {mass}: {item}")

@@ -225,7 +225,8 @@ keep: [frequencies]
 """
     for more, words in (
             ("sensitivity: {of: [frequenci_1], over: {stiff: {uniform: [1 N/m, 2 N/m]}}}\n",
-             "no column 'frequenci_1'; did you mean 'frequency_1'"),
+             "wrong.yaml:6:20: error: the sensitivity analysis: the table has no column 'frequenci_1'; did you mean "
+             "'frequency_1'?"),
             ("sensitivity: {of: [frequency_1]}\n", "lacks 'over'"),
             ("sensitivity: {of: [], over: {stiff: {uniform: [1 N/m, 2 N/m]}}}\n",
              "expected columns of the table for 'of'"),

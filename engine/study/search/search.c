@@ -32,6 +32,7 @@ typedef struct search {
   int32_t count, new; /* new: first that has not been judged */
   int32_t *heads;     /* (hashes) latest known point of a hash, or -1 */
   uint32_t hashes;    /* a power of two */
+  int64_t all;        /* points that there are; 0: a continuum, or too many to count */
   int64_t repeats;    /* in a row */
   double first, scale, second_scale,
       worst; /* the first objective, its size, and the worst that was passed on */
@@ -61,6 +62,21 @@ static void choose_start(const conductor *self, const search *s, double *start) 
   }
 }
 
+/*
+ * How many points there are in all, of so many values of each variable; 0: a continuum, or too many to count. *names:
+ * their values have no order.
+ */
+static int64_t count_all(const conductor *self, int64_t *counts, bool *names) {
+  int64_t all = 1;
+  *names = true;
+  for (size_t i = 0; i < self->layout.variables; i++) {
+    counts[i] = strut_search_count(&self->what->variables[i]);
+    all = counts[i] > 0 && all < INT32_MAX / counts[i] ? all * counts[i] : 0;
+    *names = *names && self->what->variables[i].word;
+  }
+  return all;
+}
+
 static void free_search(search *self) {
   strut_dialogue_end(self->dialogue);
   strut_release(self->answers);
@@ -76,7 +92,8 @@ static search *begin_search(conductor *self, strut_search_outcome *outcome) {
   size_t n = self->layout.variables;
   int64_t most = self->what->evaluations;
   double *start = strut_arena_allocate(&s->arena, n, sizeof *start);
-  bool *wraps = strut_arena_allocate(&s->arena, n, sizeof *wraps);
+  bool *wraps = strut_arena_allocate(&s->arena, n, sizeof *wraps), names;
+  int64_t *counts = strut_arena_allocate(&s->arena, n, sizeof *counts);
   for (s->hashes = 64; s->hashes < 2 * most;) s->hashes *= 2;
   s->list = strut_allocate((size_t)most, sizeof *s->list);
   s->heads = strut_allocate(s->hashes, sizeof *s->heads);
@@ -88,7 +105,9 @@ static search *begin_search(conductor *self, strut_search_outcome *outcome) {
                                 .wraps = wraps,
                                 .evaluations = most,
                                 .seed = (uint32_t)(self->what->seed + outcome->start)};
-  if (start && wraps && s->list && s->heads) {
+  if (start && wraps && counts && s->list && s->heads) {
+    s->all = count_all(self, counts, &names);
+    if (s->all && (s->all <= most || names)) s->task.counts = counts;
     for (uint32_t i = 0; i < s->hashes; i++) s->heads[i] = -1;
     for (size_t i = 0; i < n; i++) wraps[i] = self->what->variables[i].wraps;
     choose_start(self, s, start);
@@ -148,16 +167,6 @@ static int32_t find_point(const conductor *self, search *s, const strut_study_va
 }
 
 /* ---- questions ---- */
-
-/* How many points there are in all; 0: a continuum, or too many to count. */
-static int64_t count_all(const conductor *self) {
-  int64_t all = 1;
-  for (size_t i = 0; i < self->layout.variables && all > 0; i++) {
-    int64_t count = strut_search_count(&self->what->variables[i]);
-    all = count > 0 && all < INT32_MAX / count ? all * count : 0;
-  }
-  return all;
-}
 
 /* Finds the points of the question, and lists those that are to be computed. */
 static bool take_question(conductor *self, search *s) {
@@ -266,14 +275,14 @@ double strut_search_size(const strut_search_outcome *outcome) {
 }
 
 /* Why the search must end now, if it must. */
-static bool must_end(const conductor *self, search *s, int64_t all) {
+static bool must_end(const conductor *self, search *s) {
   strut_search_outcome *outcome = s->outcome;
   bool used_up = false;
   for (size_t i = 0; i < s->question.count; i++) used_up = used_up || s->answers[i] < 0;
-  if (used_up || s->count >= self->what->evaluations)
-    outcome->end = STRUT_SEARCH_USED_UP;
-  else if (all > 0 && s->count >= all)
+  if (s->all > 0 && s->count >= s->all)
     outcome->end = STRUT_SEARCH_ENUMERATED;
+  else if (used_up || s->count >= self->what->evaluations)
+    outcome->end = STRUT_SEARCH_USED_UP;
   else if (s->repeats > MOST_REPEATS)
     outcome->end = STRUT_SEARCH_REPEATS;
   else
@@ -282,14 +291,14 @@ static bool must_end(const conductor *self, search *s, int64_t all) {
 }
 
 /* Answers the question of a search whose points are all in the file. */
-static strut_status answer_question(conductor *self, search *s, int64_t all) {
+static strut_status answer_question(conductor *self, search *s) {
   const strut_question *question = &s->question;
   size_t m = s->task.conditions;
   for (int32_t i = s->new; i < s->count; i++) {
     strut_status status = judge_point(self, s, i);
     if (status) return status;
   }
-  s->over = must_end(self, s, all);
+  s->over = must_end(self, s);
   for (size_t i = 0; i < question->count && !s->over; i++) {
     const known *k = &s->list[s->answers[i]];
     if (self->result->front_count) {
@@ -345,14 +354,13 @@ static bool collect_questions(conductor *self) {
 }
 
 static strut_status run_searches(conductor *self) {
-  int64_t all = count_all(self);
   strut_status status = STRUT_OK;
   while (!status && (self->active_count > 0 || self->next < self->result->outcome_count)) {
     if (!fill_active(self) || !collect_questions(self))
       return strut_no_memory(self->batch.points.error, "");
     status = strut_search_batch_run(&self->batch);
     for (size_t i = 0; i < self->active_count && !status; i++)
-      status = answer_question(self, self->active[i], all);
+      status = answer_question(self, self->active[i]);
   }
   return status;
 }

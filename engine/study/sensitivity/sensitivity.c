@@ -46,17 +46,6 @@ typedef struct analysis {
   strut_arena scratch;
 } analysis;
 
-bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
-                             size_t count, const char **missing) {
-  const strut_study_sensitivity *sensitivity = &study->sensitivity;
-  for (size_t i = 0; i < sensitivity->of_count; i++)
-    if (strut_slot_named(columns, count, sensitivity->of[i]) == count) {
-      *missing = sensitivity->of[i];
-      return false;
-    }
-  return true;
-}
-
 static bool add_target(analysis *self, target t) {
   if (self->target_count == self->target_room) return true; /* more texts than are described */
   self->targets[self->target_count++] = t;

@@ -82,9 +82,6 @@ typedef struct strut_sensitivity_result {
 /** The list "effects" of a strut_sensitivity_result, while its study and slots are there. */
 STRUT_API extern const strut_value_rows strut_sensitivity_values;
 
-/** Does every result of the analysis name a column? If not, *missing is the first that does not. */
-STRUT_API bool strut_sensitivity_check(const strut_study *study, const strut_slot_column *columns,
-                                       size_t count, const char **missing);
 /**
  * All rows, from a file of all points. What failed counts as missing. Release the arena, after a
  * failure too. STRUT_NO_MEMORY.

@@ -40,12 +40,14 @@ static void report_cycle(strut_reader *reader, const strut_parameter_state *para
                      strut_format_cycle(reader, stacked_name, first, reader->parameter_depth));
 }
 
-/* Reports a wrong setting: where the study gives it, or, for --set, where the parameter is declared. */
+/* Reports a wrong setting: where the study gives it; for --set, or a number to differentiate by, at the declaration. */
 static void report_setting(strut_reader *reader, const strut_setting *set, strut_place declared,
                            const char *message) {
   if (set->place.line)
     strut_report_error(reader, set->place, "in '%s' of the study: %s",
                        strut_sanitised_text(reader, set->name), message);
+  else if (set->known)
+    strut_report_error(reader, declared, "%s", message);
   else
     strut_report_error(reader, declared, "--set %s=%s: %s", strut_sanitised_text(reader, set->name),
                        strut_sanitised_text(reader, set->text), message);

@@ -468,6 +468,9 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
                         const strut_data_table *table) {
   const char *dot = strchr(value->text, '.');
   const char *name = strut_arena_text(&reader->scratch, value->text, strcspn(value->text, "."));
+  const char *hint = name ? strut_hint(reader, name, table_name, reader, reader->table_count) : "";
+  if (!*hint && value->place.file)
+    hint = "; a part takes none of its file: write them under 'data' of the scene that uses it";
   if (!name || (reader->tables_unknown && !table))
     reader->failed = true;
   else if (!dot)
@@ -479,8 +482,7 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
                        strut_hint(reader, dot + 1, column_name, table, table->column_count));
   else
     strut_report_error(reader, value->place, "unknown data '%s' for %s%s",
-                       strut_sanitised_text(reader, name), strut_owner_text(reader, owner),
-                       strut_hint(reader, name, table_name, reader, reader->table_count));
+                       strut_sanitised_text(reader, name), strut_owner_text(reader, owner), hint);
 }
 
 const strut_data_column *strut_read_data_column(strut_reader *reader, const strut_tree *value,

@@ -67,7 +67,7 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
 /* sweep_search.c; nothing where the study has no sensitivity analysis */
 
 /** Checks that what is analysed are columns. STRUT_BAD_SCENE with the reason. */
-strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_error *error);
+strut_status strut_sweep_sensitivity_check(strut_sweep_study *study);
 #define STRUT_PARTIAL_TABLE "table-partial.csv"
 
 /** A study that is computed, and where its results go. */

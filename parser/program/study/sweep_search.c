@@ -246,16 +246,22 @@ static const char *column_name(const void *context, size_t i) {
   return i < plan->column_count ? plan->columns[i].name : NULL;
 }
 
-strut_status strut_sweep_sensitivity_check(const strut_sweep_plan *plan, strut_error *error) {
-  const char *missing;
-  if (!plan->study->sensitivity.wanted ||
-      strut_sensitivity_check(plan->study, plan->columns, plan->column_count, &missing))
-    return STRUT_OK;
-  const char *near = strut_did_you_mean(missing, column_name, plan);
-  return strut_fail(error, STRUT_BAD_SCENE,
-                    "the sensitivity analysis: the table has no column '%.60s'%s%s%s; 'keep' lists "
-                    "what it has",
-                    missing, near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+strut_status strut_sweep_sensitivity_check(strut_sweep_study *study) {
+  const strut_sweep_plan *plan = &study->plan;
+  strut_study_file *file = &study->file;
+  if (!plan->study->sensitivity.wanted) return STRUT_OK;
+  const strut_tree *analysis = strut_tree_find(file->document.root, "sensitivity", NULL);
+  const strut_tree *of = strut_tree_find(analysis, "of", NULL);
+  for (const strut_tree *name = of->first; name; name = name->next) {
+    const char *near = strut_did_you_mean(name->text, column_name, plan);
+    if (strut_slot_named(plan->columns, plan->column_count, name->text) < plan->column_count)
+      continue;
+    strut_diagnose(&file->diagnostics, name->place,
+                   "the sensitivity analysis: the table has no column '%.60s'; %s%s%s", name->text,
+                   near ? "did you mean '" : "'keep' lists what it has", near ? near : "",
+                   near ? "'?" : "");
+  }
+  return file->diagnostics.count ? STRUT_BAD_SCENE : STRUT_OK;
 }
 
 strut_status strut_sweep_sensitivity_complete(const strut_study_job *job) {

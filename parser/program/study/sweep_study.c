@@ -41,13 +41,30 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
   return status ? status : strut_study_try_at(file, values, follow->to);
 }
 
-/* Tries the first point, then both ends of each axis with the others at their first values. */
+/* Tries each of the texts that a search chooses among, other values being the first ones. */
+static strut_status try_choices(strut_study_file *file, strut_study_value *values) {
+  const strut_study_search *search = file->study.search;
+  strut_status status = STRUT_OK;
+  for (size_t i = 0; search && i < search->variable_count; i++) {
+    const strut_search_variable *variable = &search->variables[i];
+    const strut_study_value first = values[search->column + i];
+    for (size_t k = 0; variable->word && k < variable->choice_count && !status; k++) {
+      values[search->column + i].word = variable->words[k];
+      status = try_point(file, values);
+    }
+    values[search->column + i] = first;
+  }
+  return status;
+}
+
+/* Tries the first point, each choice, then both ends of each axis, with the others at their first values. */
 static strut_status try_ends(strut_study_file *file) {
   const strut_study *study = &file->study;
   strut_study_value *values = strut_allocate(file->column_count + 1, sizeof *values);
   if (!values) return STRUT_NO_MEMORY;
   strut_grid_values(study, 0, values);
   strut_status status = try_point(file, values);
+  if (!status) status = try_choices(file, values);
   int64_t stride = 1;
   for (size_t a = study->axis_count; a-- > 0 && !status;) {
     bool evaluations = study->search && a == study->search->axis; /* no parameters */
@@ -167,7 +184,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
   if (!status && file->study.fit) status = bind_fit(study, error);
   if (!status) status = strut_sweep_figures_check(&study->plan, error);
-  if (!status) status = strut_sweep_sensitivity_check(&study->plan, error);
+  if (!status) status = strut_sweep_sensitivity_check(study);
   if (status) return status;
   if (!identify(arguments, file, study->slots.hash)) return strut_no_memory(error, "");
   study->slots.version = STRUT_VERSION;
