@@ -168,6 +168,13 @@ static strut_value method_limit(const strut_result_object *of, size_t i) {
   return STRUT_VALUE_AS_NUMBER(limit);
 }
 
+/* The largest step of the scene's method [s]. */
+static double limit_of_run(const strut_check_result *result) {
+  const strut_integrator *method = strut_integrator_find(result->setup->experiment.integrator);
+  return method ? strut_step_limit_of_method(&result->estimate->limits, method)
+                : result->estimate->step_limit;
+}
+
 static size_t method_count(void) {
   size_t count = 0;
   while (strut_integrator_at(count)) count++;
@@ -212,32 +219,46 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
 #define THINGS(X, THING, OF)                                                                       \
   X(#OF, "", NAMED(of->scene->OF, of->scene->THING##_count, THING##_name), "by name",              \
     .rows = &THING##_values, .label = {#THING})
+#define LINE .label = {""}
+#define NOT_ZERO .label = {"", "0"}
 #define SCENE(X)                                                                                   \
   X("language", "", COUNT(STRUT_LANGUAGE_VERSION), "version of the scene's language")              \
-  X("nodes", "", COUNT(e->count.nodes), "number")                                                  \
-  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes")                  \
-  X("bars", "", COUNT(e->count.bars), "number")                                                    \
-  X("springs", "", COUNT(e->count.springs), "number")                                              \
-  X("cables", "", COUNT(e->count.cables), "number")                                                \
-  X("running_cables", "", COUNT(e->count.running_cables), "of the cables")                         \
-  X("laws", "", COUNT(e->count.laws), "members with another law than the linear")                  \
-  X("stops", "", COUNT(e->count.stops), "members with stops")                                      \
-  X("contacts", "", COUNT(e->count.contacts), "number")                                            \
-  X("actuators", "", COUNT(e->count.actuators), "number")                                          \
-  X("loads", "", COUNT(e->count.loads), "number")                                                  \
-  X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix")             \
-  X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor")       \
+  X("nodes", "", COUNT(e->count.nodes), "number", LINE)                                            \
+  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes", LINE)            \
+  X("bars", "", COUNT(e->count.bars), "number", LINE)                                              \
+  X("springs", "", COUNT(e->count.springs), "number", LINE)                                        \
+  X("cables", "", COUNT(e->count.cables), "number", LINE)                                          \
+  X("running_cables", "", COUNT(e->count.running_cables), "of the cables", NOT_ZERO)               \
+  X("laws", "", COUNT(e->count.laws), "members with another law than the linear", NOT_ZERO)        \
+  X("stops", "", COUNT(e->count.stops), "members with stops", NOT_ZERO)                            \
+  X("contacts", "", COUNT(e->count.contacts), "number", LINE)                                      \
+  X("actuators", "", COUNT(e->count.actuators), "number", LINE)                                    \
+  X("loads", "", COUNT(e->count.loads), "number", LINE)                                            \
+  X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix", LINE)       \
+  X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor", LINE) \
   X("dense_entries", "", COUNT(e->matrix.dense_entries), "entries of dense inverses")              \
-  X("bytes", "", COUNT(e->bytes), "of the compiled model")                                         \
+  X("bytes", "B", COUNT(e->bytes), "of the compiled model", .label = {"memory"})                   \
   X("runnable", "", FLAG(e->runnable), "whether every free node has a mass")                       \
+  X(NULL, "", TEXT(e->runnable ? NULL : "a free node has no mass: statics only"), "",              \
+    .label = {"no run"})                                                                           \
   X("largest_frequency", "Hz", KNOWN(e->runnable, NUMBER(e->largest_frequency / STRUT_TAU)),       \
-    "undamped, all contacts closed")                                                               \
-  X("step", "s", NUMBER(c->setup->experiment.step), "of the scene; 0: none")                       \
+    "undamped, all contacts closed", .label = {"highest frequency"})                               \
+  X("step", "s", NUMBER(step), "of the scene; 0: none", NOT_ZERO)                                  \
+  X(NULL, "", TEXT(step > limit ? "too large: strut run rejects it" : NULL), "",                   \
+    .label = {"the step is"})                                                                      \
   X("step_limit", "s", KNOWN(e->runnable, NUMBER(e->step_limit)), "largest stable one of rk4")     \
+  X(NULL, "",                                                                                      \
+    TEXT(!e->runnable          ? NULL                                                              \
+         : e->limits.bound     ? "bounds: the structure is too large for estimates"                \
+         : e->step_limit_exact ? "from all eigenvalues"                                            \
+                               : "within 1 %"),                                                    \
+    "", .label = {"steps are known"})                                                              \
+  X(NULL, "", TEXT(e->feedback ? "not counted in this frequency and these steps" : NULL), "",      \
+    .label = {"feedback"})                                                                         \
   X("step_limit_exact", "", FLAG(e->step_limit_exact), "or within 1 %")                            \
   X("step_limit_bound", "", FLAG(e->limits.bound), "the limits are lower bounds")                  \
   X("step_limits", "s", MAP(e->runnable ? method_count() : 0, method_name, method_limit),          \
-    "of all methods")                                                                              \
+    "of all methods", .label = {"largest step of"})                                                \
   THINGS(X, member, members)                                                                       \
   THINGS(X, hinge, hinges)                                                                         \
   THINGS(X, cell, cells)                                                                           \
@@ -247,7 +268,8 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
     .rows = &data_table_values, .label = {"data"})                                                 \
   X("warnings", "", LIST(c->found.items, c->found.count), "of the scene", .rows = &warning_values)
 STRUT_VALUES_HERE(scene_values, SCENE, const strut_check_result *c = of->at;
-                  const strut_cost_estimate *e = c->estimate)
+                  const strut_cost_estimate *e = c->estimate;
+                  double step = c->setup->experiment.step, limit = limit_of_run(c))
 
 #define CHECKED(X)                                                                                 \
   X("valid", "", FLAG(c->valid), "whether there is no error")                                      \
@@ -269,10 +291,11 @@ strut_status strut_check_print(strut_check_result *c) {
   return strut_print_block(text);
 }
 
-void strut_check_print_things(const strut_check_result *checked) {
-  strut_buffer table = {0};
-  strut_values_add_tables(&table, &scene_values,
-                          &(strut_result_object){checked, NULL, checked->model->scene, 0},
-                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
-  if (table.length || table.failed) strut_print_block(strut_buffer_take(&table));
+strut_status strut_check_print_text(const strut_check_result *checked) {
+  strut_buffer text = {0};
+  const strut_scene *scene = checked->model->scene;
+  strut_buffer_add(&text, "%s%svalid\n", scene->name, *scene->name ? ": " : "");
+  strut_values_add_text(&text, &scene_values, &(strut_result_object){checked, NULL, scene, 0},
+                        &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
+  return strut_print_block(strut_buffer_take(&text));
 }
