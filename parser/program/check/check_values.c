@@ -221,19 +221,20 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
     .rows = &THING##_values, .label = {#THING})
 #define LINE .label = {""}
 #define NOT_ZERO .label = {"", "0"}
+#define COUNTED(X, NAME, WHAT, ...) X(#NAME, "", COUNT(e->count.NAME), WHAT, __VA_ARGS__)
 #define SCENE(X)                                                                                   \
   X("language", "", COUNT(STRUT_LANGUAGE_VERSION), "version of the scene's language")              \
-  X("nodes", "", COUNT(e->count.nodes), "number", LINE)                                            \
-  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes", LINE)            \
-  X("bars", "", COUNT(e->count.bars), "number", LINE)                                              \
-  X("springs", "", COUNT(e->count.springs), "number", LINE)                                        \
-  X("cables", "", COUNT(e->count.cables), "number", LINE)                                          \
-  X("running_cables", "", COUNT(e->count.running_cables), "of the cables", NOT_ZERO)               \
-  X("laws", "", COUNT(e->count.laws), "members with another law than the linear", NOT_ZERO)        \
-  X("stops", "", COUNT(e->count.stops), "members with stops", NOT_ZERO)                            \
-  X("contacts", "", COUNT(e->count.contacts), "number", LINE)                                      \
-  X("actuators", "", COUNT(e->count.actuators), "number", LINE)                                    \
-  X("loads", "", COUNT(e->count.loads), "number", LINE)                                            \
+  COUNTED(X, nodes, "number", LINE)                                                                \
+  COUNTED(X, degrees_of_freedom, "of the nodes", LINE)                                             \
+  COUNTED(X, bars, "number", LINE)                                                                 \
+  COUNTED(X, springs, "number", LINE)                                                              \
+  COUNTED(X, cables, "number", LINE)                                                               \
+  COUNTED(X, running_cables, "of the cables", NOT_ZERO)                                            \
+  COUNTED(X, laws, "members with another law than the linear", NOT_ZERO)                           \
+  COUNTED(X, stops, "members with stops", NOT_ZERO)                                                \
+  COUNTED(X, contacts, "number", LINE)                                                             \
+  COUNTED(X, actuators, "number", LINE)                                                            \
+  COUNTED(X, loads, "number", LINE)                                                                \
   X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix", LINE)       \
   X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor", LINE) \
   X("dense_entries", "", COUNT(e->matrix.dense_entries), "entries of dense inverses")              \
