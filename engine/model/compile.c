@@ -403,6 +403,16 @@ void strut_model_free(strut_model *model) {
   strut_release(model);
 }
 
+strut_model_inputs strut_model_inputs_of(strut_model *model) {
+  return (strut_model_inputs){
+      .rest = (double *)model->members.rest,
+      .stiffness = (double *)model->members.stiffness,
+      .element = (strut_element *)model->elements.element,
+      .element_stiffness = (double *)model->elements.stiffness,
+      .drive_signal = (int32_t *)model->drives.signal,
+      .actuator_force = (strut_actuator_force *)model->actuator_forces.item};
+}
+
 /* The lightest of nodes that are free to move [kg]. */
 static double lightest_of(const strut_model *model, const uint32_t *at, int count) {
   double lightest = HUGE_VAL;

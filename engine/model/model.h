@@ -327,6 +327,15 @@ STRUT_API strut_status strut_model_compile(const strut_scene *scene, strut_model
                                            strut_error *error);
 /** NULL is allowed. */
 STRUT_API void strut_model_free(strut_model *model);
+/** The tables that the only owner of a model may change between steps: a run stepped from outside, a path. */
+typedef struct strut_model_inputs {
+  double *rest, *stiffness;             /* of members, as in their table */
+  strut_element *element;               /* whose law's numbers may change, and with them: */
+  double *element_stiffness;            /* (elements) */
+  int32_t *drive_signal;                /* (drives) */
+  strut_actuator_force *actuator_force; /* (actuator forces) */
+} strut_model_inputs;
+STRUT_API strut_model_inputs strut_model_inputs_of(strut_model *model);
 /** Of members and contacts: the largest root of stiffness over the mass of the lightest free node [rad/s]. */
 STRUT_API double strut_model_fastest_spring(const strut_model *model);
 

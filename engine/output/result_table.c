@@ -57,6 +57,8 @@ static void add_value(strut_buffer *text, const strut_value_row *row, const stru
   if (value->kind == STRUT_VALUE_WORDS) value->write(of, room), written = room;
   if (value->kind == STRUT_VALUE_NUMBER)
     add_number(text, row, value, value->number, digits);
+  else if (value->kind == STRUT_VALUE_COUNT && strcmp(row->unit, "B") == 0)
+    add_number(text, row, value, (double)value->integer, digits);
   else if (value->kind == STRUT_VALUE_COUNT)
     strut_buffer_add(text, "%lld", (long long)value->integer);
   else if (value->kind == STRUT_VALUE_FLAG)
@@ -163,7 +165,8 @@ static void put_cells(cell_table *table, const strut_value_rows *rows, const cha
       bool titled = row->label[0] && *row->label[0] != ' ';
       put_cells(table, row->rows, titled ? title_of(row, part, NULL, title) : part,
                 value->items == of->at ? of : &within);
-    } else if (!row->label[0] || value->kind == STRUT_VALUE_PART || row->rows) {
+    } else if (!row->label[0] || value->kind == STRUT_VALUE_PART || row->rows ||
+               (row->label[1] && *row->label[1] == '0' && value->number == 0.0)) {
       continue;
     } else if (value->kind == STRUT_VALUE_MAP && value->name) {
       const char *before = *row->label[0] ? title_of(row, part, NULL, prefix) : part;
@@ -377,27 +380,32 @@ void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
   add_lists(text, rows, of, "", page);
 }
 
+void strut_values_add_text(strut_buffer *text, const strut_value_rows *rows,
+                           const strut_result_object *of, const strut_table_page *page) {
+  cell_table *table = strut_allocate(1, sizeof *table);
+  text->failed = text->failed || !table;
+  if (!table) return;
+  table->items = 1;
+  table->digits = page->digits;
+  put_cells(table, rows, "", of);
+  if (!table->failed && page->width == STRUT_REPORT_LATEX && table->count)
+    add_tabular(text, table, true);
+  else if (!table->failed && page->width != STRUT_REPORT_LATEX)
+    add_columns(text, table, page->width);
+  text->failed = text->failed || table->failed;
+  strut_arena_free(&table->arena);
+  strut_release(table);
+  add_lists(text, rows, of, "", page);
+}
+
 char *strut_values_text(const strut_value_rows *rows, const void *result, const strut_scene *scene,
                         int width, size_t most) {
-  const strut_table_page page = {width, most, 6};
+  const char *before = width == STRUT_REPORT_LATEX ? "% " : "";
   strut_buffer text = {0};
-  const strut_result_object whole = {result, NULL, scene, 0};
   strut_c_locale locale = strut_c_locale_enter();
-  cell_table *table = strut_allocate(1, sizeof *table);
-  bool latex = width == STRUT_REPORT_LATEX;
-  if (scene && *scene->name) strut_buffer_add(&text, "%s%s\n", latex ? "% " : "", scene->name);
-  if (table) {
-    table->items = 1;
-    table->digits = page.digits;
-    put_cells(table, rows, "", &whole);
-    if (!table->failed && latex && table->count) add_tabular(&text, table, true);
-    if (!table->failed && !latex) add_columns(&text, table, width);
-    text.failed = text.failed || table->failed;
-    strut_arena_free(&table->arena);
-    strut_release(table);
-    add_lists(&text, rows, &whole, "", &page);
-  }
-  text.failed = text.failed || !table;
+  if (scene && *scene->name) strut_buffer_add(&text, "%s%s\n", before, scene->name);
+  strut_values_add_text(&text, rows, &(strut_result_object){result, NULL, scene, 0},
+                        &(strut_table_page){width, most, 6});
   strut_c_locale_leave(locale);
   return strut_buffer_take(&text);
 }

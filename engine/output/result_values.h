@@ -78,7 +78,7 @@ enum { STRUT_REPORT_WIDTH = 100, STRUT_REPORT_LATEX = -1, STRUT_REPORT_ROWS = 60
  * What people read of a result, in a block of strut_allocate or NULL: values with a label, those of the struct
  * each in a line, those of a list in a table with a line for each struct or, of few that are wider than `width`, a
  * column for each. An empty label is the key, and " " of a part leaves
- * its own title out; behind it "%" says how a ratio is shown.
+ * its own title out; behind it "%" says how a ratio is shown, and "0" that a zero is not.
  */
 STRUT_API char *strut_values_text(const strut_value_rows *rows, const void *result,
                                   const struct strut_scene *scene, int width, size_t most);
@@ -89,6 +89,9 @@ typedef struct strut_table_page {
   size_t most;
   int digits;
 } strut_table_page;
+/** Appends all of that but the name of the scene. */
+STRUT_API void strut_values_add_text(strut_buffer *text, const strut_value_rows *rows,
+                                     const strut_result_object *of, const strut_table_page *page);
 /** Appends the tables alone. */
 STRUT_API void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
                                        const strut_result_object *of, const strut_table_page *page);

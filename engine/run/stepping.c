@@ -118,23 +118,21 @@ static strut_status check_inputs(const stepping_inputs *in, strut_error *error) 
 }
 
 /* EA over the rest length, of a member that no actuator drives: there the law follows by itself. */
-static void write_stiffness(const strut_model *model, int32_t member, double stiffness) {
-  const strut_element_table *elements = &model->elements;
-  strut_element *e = (strut_element *)(uintptr_t)strut_element_of_member(elements, member);
-  bool element = e && e->role == STRUT_ELEMENT_MEMBER;
-  if (element && e->law == STRUT_LAW_AXIAL) return;
-  if (element) {
-    e->numbers.stiffness = stiffness;
-    ((double *)(uintptr_t)elements->stiffness)[e - elements->element] = stiffness;
-    return;
+static void write_stiffness(strut_model *model, int32_t member, double stiffness) {
+  strut_model_inputs tables = strut_model_inputs_of(model);
+  int32_t i =
+      strut_member_is_element(&model->elements, member) ? model->elements.of_member[member] : -1;
+  if (i < 0) {
+    tables.stiffness[member] = stiffness;
+  } else if (tables.element[i].law != STRUT_LAW_AXIAL) {
+    tables.element[i].numbers.stiffness = tables.element_stiffness[i] = stiffness;
   }
-  ((double *)(uintptr_t)model->members.stiffness)[member] = stiffness;
 }
 
 /* The tables of a model that inputs change, which is why it belongs to one stepping alone. */
-static void write_rest(const stepping_inputs *in, const strut_model *model) {
+static void write_rest(const stepping_inputs *in, strut_model *model) {
   const strut_member *members = in->scene->members;
-  double *rest = (double *)(uintptr_t)model->members.rest;
+  double *rest = strut_model_inputs_of(model).rest;
   for (size_t i = 0; i < in->members; i++) {
     rest[i] = in->applied[i];
     if (members[i].axial_stiffness > 0.0)
@@ -143,10 +141,9 @@ static void write_rest(const stepping_inputs *in, const strut_model *model) {
 }
 
 /* Actuators of rest lengths and those of forces stand in two tables, each in the scene's order. */
-static void write_actuators(const stepping_inputs *in, const strut_model *model) {
+static void write_actuators(const stepping_inputs *in, strut_model *model) {
   const strut_scene *scene = in->scene;
-  int32_t *signal = (int32_t *)(uintptr_t)model->drives.signal;
-  strut_actuator_force *force = (strut_actuator_force *)(uintptr_t)model->actuator_forces.item;
+  strut_model_inputs tables = strut_model_inputs_of(model);
   size_t drives = 0, forces = 0;
   for (size_t i = 0; i < in->actuators; i++) {
     double value = in->applied[in->members + i];
@@ -154,9 +151,9 @@ static void write_actuators(const stepping_inputs *in, const strut_model *model)
     int32_t now = isnan(value) ? scene->actuators[i].signal : held;
     scene->signals[held].amplitude = isnan(value) ? 0.0 : value;
     if (scene->actuators[i].force)
-      force[forces++].signal = now;
+      tables.actuator_force[forces++].signal = now;
     else
-      signal[drives++] = now;
+      tables.drive_signal[drives++] = now;
   }
 }
 
@@ -168,7 +165,7 @@ static void write_loads(const stepping_inputs *in) {
   }
 }
 
-static void write_all(const stepping_inputs *in, const strut_model *model) {
+static void write_all(const stepping_inputs *in, strut_model *model) {
   write_rest(in, model);
   write_actuators(in, model);
   if (in->loads) write_loads(in);

@@ -354,7 +354,7 @@ edit 's/time: 0.5 s/time: 5 ms/' branch.yaml tells 3 'is above the largest stabl
 shows 0 'Maxwell branches, which have relaxed' modes branch.yaml
 edit 's/constant: 10 mm, lag: 0.5 s/constant: 10 mm, lag: 2 ms/' lag.yaml tells 3 'is above the largest stable step of rk4, 0.005571 s' run
 shows 0 'the feedback of sensors' modes pd.yaml
-shows 0 'feedback           not counted in this frequency and these steps' check pd.yaml
+shows 0 'not counted in this frequency and these steps' check pd.yaml
 shows 0 'without feedback' run pd.yaml
 
 # Sensors of cells, distances, contacts and collisions are the columns of the same things, all the way.

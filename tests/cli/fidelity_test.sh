@@ -43,5 +43,5 @@ for command in run check; do
 done
 
 # No step is too large for it.
-shows 0 "none" check "$rod" --integrator midpoint
+shows 0 "largest step of midpoint       any" check "$rod" --integrator midpoint
 finds '(.velocity + 2.069) | fabs < 0.01' run "$rod" --set stiffness=1e12 --integrator midpoint --step "5 ms"

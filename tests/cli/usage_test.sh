@@ -141,7 +141,7 @@ sed '/^#/d' out >second
 same first second
 expect 0 check "$hopper"
 err_empty
-out_has "Hopper: valid" "nodes              3, with 6 degrees of freedom" "bars 1, springs 1, cables 1" "largest step" \
+out_has "Hopper: valid" "degrees of freedom    " "springs   " "largest step of rk4" \
   "rest length" "force density"
 shows 0 '"degrees_of_freedom":	6,' check "$hopper" --json
 out_has '"rest_length":	0.055,'

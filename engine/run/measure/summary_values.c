@@ -173,6 +173,7 @@ static void write_worth(const strut_result_object *of, char text[STRUT_VALUE_ROO
   X("method", "1", TEXT(s->method), "of integration")                                              \
   X("step", "s", NUMBER(s->step), "its step")                                                      \
   X("step_limit", "s", NUMBER(s->step_limit), "largest stable one; null: none")                    \
+  X("feedback", "", IF(s->feedback, FLAG(true)), "which `step_limit` leaves out")                  \
   X("step_limit_violation", "", IF(s->limit_fell.limit > 0.0, PART(&s->limit_fell)),               \
     "where the largest stable step fell below the step", .rows = &fell_values)                     \
   X("steady", "", IF(s->steady.kind, PART(&s->steady)), "kind of motion", .rows = &steady_values)  \

@@ -188,7 +188,7 @@ static strut_status make_model(path_start *self, strut_error *error) {
 static void recall(path_start *self) {
   const strut_path *after = self->options->after;
   const strut_element_table *elements = &self->model->elements;
-  double *rest = (double *)self->model->members.rest; /* of this path alone */
+  double *rest = strut_model_inputs_of(self->model).rest;
   for (int32_t i = 0; i < elements->count && after; i++) {
     const strut_element *element = &elements->element[i];
     if (element->law == STRUT_LAW_FOLDING)

@@ -173,6 +173,13 @@ static strut_value method_limit(const strut_result_object *of, size_t i) {
   return STRUT_VALUE_AS_NUMBER(limit);
 }
 
+/* The largest step of the scene's method [s]. */
+static double limit_of_run(const strut_check_result *result) {
+  const strut_integrator *method = strut_integrator_find(result->setup->experiment.integrator);
+  return method ? strut_step_limit_of_method(&result->estimate->limits, method)
+                : result->estimate->step_limit;
+}
+
 static size_t method_count(void) {
   size_t count = 0;
   while (strut_integrator_at(count)) count++;
@@ -217,32 +224,47 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
 #define THINGS(X, THING, OF)                                                                       \
   X(#OF, "", NAMED(of->scene->OF, of->scene->THING##_count, THING##_name), "by name",              \
     .rows = &THING##_values, .label = {#THING})
+#define LINE .label = {""}
+#define NOT_ZERO .label = {"", "0"}
+#define COUNTED(X, NAME, WHAT, ...) X(#NAME, "", COUNT(e->count.NAME), WHAT, __VA_ARGS__)
 #define SCENE(X)                                                                                   \
   X("language", "", COUNT(STRUT_LANGUAGE_VERSION), "version of the scene's language")              \
-  X("nodes", "", COUNT(e->count.nodes), "number")                                                  \
-  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes")                  \
-  X("bars", "", COUNT(e->count.bars), "number")                                                    \
-  X("springs", "", COUNT(e->count.springs), "number")                                              \
-  X("cables", "", COUNT(e->count.cables), "number")                                                \
-  X("running_cables", "", COUNT(e->count.running_cables), "of the cables")                         \
-  X("laws", "", COUNT(e->count.laws), "members with another law than the linear")                  \
-  X("stops", "", COUNT(e->count.stops), "members with stops")                                      \
-  X("contacts", "", COUNT(e->count.contacts), "number")                                            \
-  X("actuators", "", COUNT(e->count.actuators), "number")                                          \
-  X("loads", "", COUNT(e->count.loads), "number")                                                  \
-  X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix")             \
-  X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor")       \
+  COUNTED(X, nodes, "number", LINE)                                                                \
+  COUNTED(X, degrees_of_freedom, "of the nodes", LINE)                                             \
+  COUNTED(X, bars, "number", LINE)                                                                 \
+  COUNTED(X, springs, "number", LINE)                                                              \
+  COUNTED(X, cables, "number", LINE)                                                               \
+  COUNTED(X, running_cables, "of the cables", NOT_ZERO)                                            \
+  COUNTED(X, laws, "members with another law than the linear", NOT_ZERO)                           \
+  COUNTED(X, stops, "members with stops", NOT_ZERO)                                                \
+  COUNTED(X, contacts, "number", LINE)                                                             \
+  COUNTED(X, actuators, "number", LINE)                                                            \
+  COUNTED(X, loads, "number", LINE)                                                                \
+  X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix", LINE)       \
+  X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor", LINE) \
   X("dense_entries", "", COUNT(e->matrix.dense_entries), "entries of dense inverses")              \
-  X("bytes", "", COUNT(e->bytes), "of the compiled model")                                         \
+  X("bytes", "B", COUNT(e->bytes), "of the compiled model", .label = {"memory"})                   \
   X("runnable", "", FLAG(e->runnable), "whether every free node has a mass")                       \
+  X(NULL, "", TEXT(e->runnable ? NULL : "a free node has no mass: statics only"), "",              \
+    .label = {"no run"})                                                                           \
   X("largest_frequency", "Hz", KNOWN(e->runnable, NUMBER(e->largest_frequency / STRUT_TAU)),       \
-    "undamped, all contacts closed")                                                               \
-  X("step", "s", NUMBER(c->setup->experiment.step), "of the scene; 0: none")                       \
+    "undamped, all contacts closed", .label = {"highest frequency"})                               \
+  X("step", "s", NUMBER(step), "of the scene; 0: none", NOT_ZERO)                                  \
+  X(NULL, "", TEXT(step > limit ? "too large: strut run rejects it" : NULL), "",                   \
+    .label = {"the step is"})                                                                      \
   X("step_limit", "s", KNOWN(e->runnable, NUMBER(e->step_limit)), "largest stable one of rk4")     \
+  X(NULL, "",                                                                                      \
+    TEXT(!e->runnable          ? NULL                                                              \
+         : e->limits.bound     ? "bounds: the structure is too large for estimates"                \
+         : e->step_limit_exact ? "from all eigenvalues"                                            \
+                               : "within 1 %"),                                                    \
+    "", .label = {"steps are known"})                                                              \
+  X(NULL, "", TEXT(e->feedback ? "not counted in this frequency and these steps" : NULL), "",      \
+    .label = {"feedback"})                                                                         \
   X("step_limit_exact", "", FLAG(e->step_limit_exact), "or within 1 %")                            \
   X("step_limit_bound", "", FLAG(e->limits.bound), "the limits are lower bounds")                  \
   X("step_limits", "s", MAP(e->runnable ? method_count() : 0, method_name, method_limit),          \
-    "of all methods")                                                                              \
+    "of all methods", .label = {"largest step of"})                                                \
   THINGS(X, member, members)                                                                       \
   THINGS(X, hinge, hinges)                                                                         \
   THINGS(X, cell, cells)                                                                           \
@@ -252,7 +274,8 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
     .rows = &data_table_values, .label = {"data"})                                                 \
   X("warnings", "", LIST(c->found.items, c->found.count), "of the scene", .rows = &warning_values)
 STRUT_VALUES_HERE(scene_values, SCENE, const strut_check_result *c = of->at;
-                  const strut_cost_estimate *e = c->estimate)
+                  const strut_cost_estimate *e = c->estimate;
+                  double step = c->setup->experiment.step, limit = limit_of_run(c))
 
 #define CHECKED(X)                                                                                 \
   X("valid", "", FLAG(c->valid), "whether there is no error")                                      \
@@ -274,12 +297,13 @@ strut_status strut_check_print(strut_check_result *c) {
   return strut_print_block(text);
 }
 
-void strut_check_print_things(const strut_check_result *checked) {
-  strut_buffer table = {0};
-  strut_values_add_tables(&table, &scene_values,
-                          &(strut_result_object){checked, NULL, checked->model->scene, 0},
-                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
-  if (table.length || table.failed) strut_print_block(strut_buffer_take(&table));
+strut_status strut_check_print_text(const strut_check_result *checked) {
+  strut_buffer text = {0};
+  const strut_scene *scene = checked->model->scene;
+  strut_buffer_add(&text, "%s%svalid\n", scene->name, *scene->name ? ": " : "");
+  strut_values_add_text(&text, &scene_values, &(strut_result_object){checked, NULL, scene, 0},
+                        &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
+  return strut_print_block(strut_buffer_take(&text));
 }
 
 static const strut_option options[] = {
@@ -288,70 +312,6 @@ static const strut_option options[] = {
     {STRUT_FILLS(json), "json", NULL, "print everything as one JSON object"},
     {.name = NULL},
 };
-
-static strut_rounded_quantity in(double value, const char *unit) {
-  return strut_quantity_of(value, DIGITS, unit);
-}
-
-static void print_counts(const strut_cost_estimate *estimate) {
-  size_t members = estimate->count.bars + estimate->count.springs + estimate->count.cables;
-  printf("  nodes              %zu, with %zu degrees of freedom\n", estimate->count.nodes,
-         estimate->count.degrees_of_freedom);
-  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members,
-         estimate->count.bars, estimate->count.springs, estimate->count.cables);
-  if (estimate->count.running_cables + estimate->count.laws + estimate->count.stops > 0)
-    printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
-           estimate->count.running_cables, estimate->count.laws, estimate->count.stops);
-  if (estimate->count.hinges) printf("  hinges             %zu\n", estimate->count.hinges);
-  if (estimate->count.cells) printf("  cells              %zu\n", estimate->count.cells);
-  if (estimate->count.collisions) printf("  collisions         %zu\n", estimate->count.collisions);
-  printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
-         estimate->count.contacts, estimate->count.actuators, estimate->count.loads);
-  printf("  memory             %s\n", in((double)estimate->bytes, "B").text);
-}
-
-/* Step limits of the other methods, on one line. */
-static void print_limits(const strut_cost_estimate *estimate) {
-  const char *between = "  of other methods   ";
-  for (size_t i = 0; strut_integrator_at(i); i++) {
-    const strut_integrator *method = strut_integrator_at(i);
-    double limit = strut_step_limit_of_method(&estimate->limits, method);
-    if (method->region == STRUT_REGION_RK4 || !isfinite(limit)) continue;
-    printf("%s%s %s", between, method->name, in(limit, "s").text);
-    between = ", ";
-  }
-  if (*between == ',') printf("\n");
-}
-
-static void print_run(const strut_cost_estimate *estimate, const strut_experiment *experiment) {
-  if (!estimate->runnable) {
-    printf("  no run             a free node has no mass: statics only\n");
-    return;
-  }
-  double step = experiment->step, hertz = estimate->largest_frequency / STRUT_TAU;
-  printf("  mass matrix        %zu nonzeros, %zu in its factor\n", estimate->matrix.mass_nonzeros,
-         estimate->matrix.factor_nonzeros);
-  bool bound = estimate->limits.bound;
-  printf("  highest frequency  %s%s (undamped, all contacts closed)\n", bound ? "at most " : "",
-         in(hertz, "Hz").text);
-  printf("  largest step       %s%s for rk4, with contacts and damping (%s)\n",
-         bound ? "at least " : "", in(estimate->step_limit, "s").text,
-         bound                        ? "a bound: the structure is too large for an estimate"
-         : estimate->step_limit_exact ? "from all eigenvalues"
-                                      : "within 1 %");
-  print_limits(estimate);
-  if (estimate->feedback)
-    printf("  feedback           not counted in this frequency and these steps\n");
-  const strut_integrator *method = strut_integrator_find(experiment->integrator);
-  double limit =
-      method ? strut_step_limit_of_method(&estimate->limits, method) : estimate->step_limit;
-  if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
-  if (step > limit) {
-    printf("  step               %s: too large, strut run rejects it\n", in(step, "s").text);
-  } else if (step > 0) {
-    printf("  step               %s\n", in(step, "s").text);
-  }
-}
 
 static strut_status print_json(strut_check_result *result, strut_open_report *report) {
   strut_status status = strut_setup_warn(result->setup, &result->found);
@@ -369,15 +329,8 @@ static strut_status print_valid(const strut_arguments *arguments, strut_check_re
   const strut_scene *scene = result->model->scene;
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     result->drawn[i] = scene->nodes[i / 2].position[i % 2];
-  strut_status status = STRUT_OK;
-  if (arguments->json) {
-    status = print_json(result, report);
-  } else {
-    printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
-    print_counts(result->estimate);
-    print_run(result->estimate, &result->setup->experiment);
-    strut_check_print_things(result);
-  }
+  strut_status status =
+      arguments->json ? print_json(result, report) : strut_check_print_text(result);
   strut_release(result->drawn);
   return status;
 }
