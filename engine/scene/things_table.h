@@ -459,7 +459,7 @@
   X(MEASURE, STEADY, "steady", STEADY, NONE, ANY, "false", OPTIONAL, 0, "", CHOICE(strut_experiment, steady.wanted, true, LATER(NESTED(strut_experiment, steady, STEADY))), "Stops the run as soon as the motion repeats itself. The run needs `periods`, which are then an upper bound.") \
   X(MEASURE, NODE, "node", NAME, NONE, ANY, "the centre of mass", OPTIONAL, 0, "", REFERENCE(strut_experiment, measure_node, NODE), "The node whose velocity is measured.") \
   X(MEASURE, QUANTITIES, "quantities", THINGS, NONE, ANY, "", OPTIONAL, 0, "an expression, whose mean is measured, or the keys of a [quantity](#quantity)", THINGS(QUANTITY), "Further quantities to measure over the window.") \
-  X(MEASURE, DERIVATIVES, "derivatives", NAMES, NONE, ANY, "", OPTIONAL, 0, "a parameter", NONE, "Parameters of the scene, numbers: the derivatives of everything measured by each of them, with an error, or that there is none. See [derivatives](numerics.md#derivatives).")
+  X(MEASURE, DERIVATIVES, "derivatives", NAMES, NONE, ANY, "", OPTIONAL, 0, "a parameter", NONE, "Parameters of the scene, numbers. Everything measured gets its derivative by each of them, with an error, or the verdict that it has none. See [derivatives](numerics.md#derivatives).")
 
 #define STRUT_QUANTITY_FIELDS(X) \
   X(QUANTITY, OF, "of", EXPRESSION, NONE, ANY, "", REQUIRED, 0, "", LATER(LIST(strut_quantity_definition, program, length)), "An expression of columns of the motion, which [the language](language.md#measured-quantities) lists.") \
