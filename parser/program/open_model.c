@@ -102,14 +102,15 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
   if (status == STRUT_OK) wanted = all || is_abbreviated(strut_scene_source_document(tree)->root);
   if (status == STRUT_OK && wanted)
     status = strut_short_write(tree, arguments->overrides, arguments->override_count, before, setup,
-                               result);
+                               arguments->output ? arguments->output : name, result);
   strut_scene_source_free(tree);
   if (status == STRUT_NO_MEMORY) return strut_print_out_of_memory();
   if (!*result && wanted)
     fputs(
         "strut: the scene is written without parameters, groups and parts: with them it would read "
         "as "
-        "another one, for example if a node of a copy has moved\n",
+        "another one, as where a node of a copy has moved, or a file that it names is in another "
+        "folder\n",
         stderr);
   return STRUT_OK;
 }

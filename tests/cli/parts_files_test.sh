@@ -279,6 +279,15 @@ expect 0 check form.yaml --set cells=4
 sed 's/rising: {group: bar/rising: {group: bar, rest_length: 1.6 m/' chain.yaml >moved.yaml
 tells 0 "strut: the scene is written without parameters, groups and parts" form moved.yaml --given lengths -o form.yaml
 expect 0 check form.yaml
+# Also where the file says start or shapes in another way than what is written, or names a file beside it.
+for form in bistable-chain:densities t-bar:densities voxel-with-network:prestress; do
+  model=$here/../../models/gallery/${form%:*}
+  cp "$model.yaml" model.yaml
+  [ ! -e "$model.csv" ] || cp "$model.csv" .
+  expect 0 form model.yaml --given "${form#*:}" -o form.yaml
+  grep -q '^# A scene with its parameters' form.yaml || fail "the form of $form is flat"
+  expect 0 check form.yaml
+done
 
 # 6. A study of a model that uses files: its results are its own, and stand alone.
 yaml study.yaml <<'END'

@@ -188,8 +188,8 @@ static char *write_parts(const strutlib_scene *scene, strutlib_error **error) {
   if (status == STRUT_OK) /* the tree is changed: it cannot be that of the scene */
     status = strut_scene_source_open(source->name, source->text, source->length, &unused, &tree);
   if (status == STRUT_OK)
-    status =
-        strut_short_write(tree, scene->overrides, scene->setting_count, flat, &scene->setup, &text);
+    status = strut_short_write(tree, scene->overrides, scene->setting_count, flat, &scene->setup,
+                               source->name, &text);
   if (status != STRUT_OK) abi_fail_with(error, status, NULL);
   strut_diagnostics_free(&unused);
   strut_scene_source_free(tree);

@@ -20,12 +20,13 @@ STRUT_API char *strut_setup_write(const strut_setup *setup);
  * The text of the source, in a block of strut_allocate, with its files written out, its parameters as they
  * were set, and what has been changed since laid over it: the differences between `before`, the text of
  * strut_setup_write of the scene as read, and `setup` as it is now. Reading it gives the same scene to
- * the bit, which is checked: *text is NULL with STRUT_OK where the text would differ, as where a node of a
- * copy has moved. STRUT_NO_MEMORY.
+ * the bit, which is checked as of a file `name`: *text is NULL with STRUT_OK where the text would differ, as
+ * where a node of a copy has moved. STRUT_NO_MEMORY.
  */
 STRUT_API strut_status strut_short_write(strut_scene_source *source,
                                          const strut_override *overrides, size_t override_count,
-                                         const char *before, const strut_setup *setup, char **text);
+                                         const char *before, const strut_setup *setup,
+                                         const char *name, char **text);
 
 /**
  * The text, a block of strut_allocate, that reads as this tree again; NULL: memory is out. Only texts of

@@ -182,9 +182,12 @@ static const strut_tree *find_from(const strut_tree *map, const strut_tree **at,
   return NULL;
 }
 
-/* The keys of `after` that `before` has not, or with another value, and removals of those that are gone. */
+/*
+ * The keys of `after` that `before` has not, or with another value, and removals of those that are gone. The start and
+ * configurations are replaced whole, since the file may say them in another way: `cut` has the removals of these alone.
+ */
 static strut_tree *difference(short_writer *self, strut_mapping_kind kind, const strut_tree *before,
-                              const strut_tree *after) {
+                              const strut_tree *after, bool cut) {
   strut_arena *arena = &self->document.arena;
   strut_tree_builder map = strut_tree_begin(arena, after);
   const strut_tree *at = before->first;
@@ -192,12 +195,17 @@ static strut_tree *difference(short_writer *self, strut_mapping_kind kind, const
   for (const strut_tree *tree = after->first; tree; tree = tree->next->next) {
     const strut_tree *was = find_from(before, &at, tree->text);
     if (was && strut_tree_equal(was->next, tree->next)) continue;
-    bool maps = was && was->next->kind == STRUT_TREE_MAP && tree->next->kind == STRUT_TREE_MAP;
     strut_mapping_kind below = strut_kind_below(kind, tree->text);
-    strut_tree *value =
-        maps ? difference(self, below, was->next, tree->next) : strut_tree_copy(arena, tree->next);
+    bool shape =
+        below.section == STRUT_SECTION_INITIAL || below.section == STRUT_SECTION_CONFIGURATION;
+    if (cut && !(was && shape)) continue;
+    bool maps = was && was->next->kind == STRUT_TREE_MAP && tree->next->kind == STRUT_TREE_MAP;
+    strut_tree *value = cut              ? strut_tree_scalar(arena, tree, "remove")
+                        : maps && !shape ? difference(self, below, was->next, tree->next, false)
+                                         : strut_tree_copy(arena, tree->next);
     if (!strut_tree_append(&map, strut_tree_copy(arena, tree), value)) return NULL;
   }
+  if (cut) return map.map;
   at = after->first;
   for (const strut_tree *k = before->first; k; k = k->next->next) {
     if (find_from(after, &at, k->text) || strut_says_otherwise(kind, map.map, k->text)) continue;
@@ -281,19 +289,21 @@ static strut_tree *whole_tree(short_writer *self, const strut_override *override
                               const char *before, const char *after) {
   const strut_tree *root = strut_scene_source_document((strut_scene_source *)self->source)->root;
   const strut_tree *old = read_flat(self, before), *now = old ? read_flat(self, after) : NULL;
-  const strut_tree *over = now ? difference(self, scene_kind, old, now) : NULL;
+  const strut_tree *over = now ? difference(self, scene_kind, old, now, false) : NULL;
+  const strut_tree *cut = now ? difference(self, scene_kind, old, now, true) : NULL;
   if (count) {
     const strut_tree *set = settings_tree(self, root, overrides, count);
     root = set ? lay_over(self, root, set) : NULL;
   }
+  root = root && cut ? lay_over(self, root, cut) : NULL;
   strut_tree *whole = root && over ? lay_over(self, root, over) : NULL;
   return whole && drop_unused_groups(self, whole) ? whole : NULL;
 }
 
-static strut_status reads_as(const char *text, const char *flat, bool *same) {
+static strut_status reads_as(const char *name, const char *text, const char *flat, bool *same) {
   strut_setup setup;
   strut_diagnostics diagnostics = {0};
-  strut_status status = strut_setup_read(&setup, "scene", text, strlen(text), NULL, 0,
+  strut_status status = strut_setup_read(&setup, name, text, strlen(text), NULL, 0,
                                          STRUT_FOR_ANY_STATICS, &diagnostics);
   strut_diagnostics_free(&diagnostics);
   *same = false;
@@ -308,7 +318,7 @@ static strut_status reads_as(const char *text, const char *flat, bool *same) {
 
 strut_status strut_short_write(strut_scene_source *source, const strut_override *overrides,
                                size_t override_count, const char *before, const strut_setup *setup,
-                               char **text) {
+                               const char *name, char **text) {
   short_writer w = {.source = source, .setup = setup};
   bool same = false;
   char *after = write_flat(setup);
@@ -317,7 +327,7 @@ strut_status strut_short_write(strut_scene_source *source, const strut_override 
   const strut_tree *root =
       after && first ? whole_tree(&w, overrides, override_count, first, after) : NULL;
   *text = root ? strut_tree_write(root, comment) : NULL;
-  strut_status status = *text ? reads_as(*text, after, &same) : STRUT_NO_MEMORY;
+  strut_status status = *text ? reads_as(name, *text, after, &same) : STRUT_NO_MEMORY;
   if (!same) {
     strut_release(*text);
     *text = NULL;
