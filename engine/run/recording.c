@@ -253,14 +253,13 @@ static void add_row(strut_state *state, strut_recording *recording, double t, do
   recording->sampled++;
 }
 
-void strut_recording_sample(strut_state *state, strut_recording *recording) {
-  assert(state->step > recording->last);
-  add_row(state, recording, strut_time_grid_at(&recording->grid, state->step),
-          strut_time_grid_real(&recording->grid, state->step));
-  recording->last = state->step;
-}
-
-strut_status strut_recording_pass_on(strut_recording *recording, strut_error *error) {
+strut_status strut_recording_sample(strut_state *state, strut_recording *recording, bool due,
+                                    strut_error *error) {
+  if (due) {
+    add_row(state, recording, strut_time_grid_at(&recording->grid, state->step),
+            strut_time_grid_real(&recording->grid, state->step));
+    recording->last = state->step;
+  }
   bool full = recording->row_count + recording->in_step + 1 > recording->capacity;
   return full ? flush_rows(recording, error) : STRUT_OK;
 }
@@ -269,6 +268,7 @@ strut_status strut_recording_pass_on(strut_recording *recording, strut_error *er
 static void sample_piece(strut_recording *recording, strut_state *state, strut_motion_piece piece,
                          double later, int64_t n) {
   double begin = piece.begin + later, end = begin + piece.length, due;
+  if (strut_run_find_lost_node(recording->dense.model, state) >= 0) return;
   while (is_within(recording, n) && (due = next_time(recording)) <= end) {
     double s = fmin(fmax((due - begin) / piece.length, 0.0), 1.0);
     double t = strut_dense_place(&recording->dense, state, &piece, s);
@@ -290,26 +290,20 @@ static void see_piece(strut_observer *observer, strut_state *state,
   state->watched.observer = observer;
 }
 
-bool strut_recording_begin_step(strut_recording *recording, strut_state *state) {
-  if (!is_within(recording, state->step + 1)) return false;
-  recording->rows_before = recording->row_count;
+void strut_recording_begin_step(strut_recording *recording, strut_state *state) {
+  if (!is_within(recording, state->step + 1)) return;
   recording->other = state->watched.observer;
   state->watched.observer = &recording->observer;
   strut_dense_keep(&recording->dense, state);
-  return true;
 }
 
-void strut_recording_end_step(strut_recording *recording, strut_state *state, bool lost) {
+void strut_recording_end_step(strut_recording *recording, strut_state *state) {
   double begin = strut_time_grid_at(&recording->grid, state->step - 1);
   double length = strut_time_grid_at(&recording->grid, state->step) - begin;
-  strut_motion_piece step = strut_dense_step(&recording->dense, state, begin, length);
+  if (state->watched.observer != &recording->observer) return;
   state->watched.observer = recording->other;
-  if (!lost) { /* of methods without events */
-    sample_piece(recording, state, step, 0.0, state->step);
-    return;
-  }
-  recording->sampled -= (int64_t)(recording->row_count - recording->rows_before);
-  recording->row_count = recording->rows_before;
+  sample_piece(recording, state, strut_dense_step(&recording->dense, state, begin, length), 0.0,
+               state->step);
 }
 
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,
