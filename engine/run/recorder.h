@@ -3,7 +3,7 @@
  * Channels over time: the rows that a run passes to its sinks.
  *
  * The recorder writes no files. It collects rows of doubles and passes them to the sinks in blocks,
- * between steps. A row is the time followed by the channels in the order of the layout.
+ * between steps. A row begins with the time; each channel has its offset. What is between them is for other sinks.
  */
 #ifndef STRUT_ENGINE_RUN_RECORDER_H
 #define STRUT_ENGINE_RUN_RECORDER_H

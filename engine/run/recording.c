@@ -75,35 +75,21 @@ static strut_channels requested_channels(const strut_experiment *experiment,
   return sink->channels ? sink->channels : experiment->channels;
 }
 
-/* Selects the channels of one sink from the full layout. */
-static void create_part_layout(const strut_recording *recording, strut_channels wanted,
-                               strut_recording_part *part) {
-  part->layout = (strut_record_layout){
-      .width = 1, .channels = part->channel, .expected_rows = recording->layout.expected_rows};
-  for (size_t k = 0; k < recording->layout.channel_count; k++) {
-    if (!(wanted & recording->channel[k].id)) continue;
-    strut_record_channel *channel = &part->channel[part->layout.channel_count];
-    *channel = recording->channel[k];
-    part->from[part->layout.channel_count++] = channel->offset;
-    channel->offset = part->layout.width;
-    part->layout.width += channel->items * channel->components;
-  }
-  part->whole = part->layout.channel_count == recording->layout.channel_count;
-}
-
+/* The channels of each sink, at their places in the full rows. */
 static bool create_parts(const strut_experiment *experiment, strut_recording *recording) {
-  bool all_whole = true;
   recording->parts =
       strut_arena_allocate(&recording->arena, recording->sink_count, sizeof *recording->parts);
   for (size_t s = 0; s < recording->sink_count && recording->parts; s++) {
-    create_part_layout(recording, requested_channels(experiment, recording->sinks[s]),
-                       &recording->parts[s]);
-    all_whole = all_whole && recording->parts[s].whole;
+    strut_recording_part *part = &recording->parts[s];
+    strut_channels wanted = requested_channels(experiment, recording->sinks[s]);
+    part->layout = recording->layout;
+    part->layout.channels = part->channel;
+    part->layout.channel_count = 0;
+    for (size_t k = 0; k < recording->layout.channel_count; k++)
+      if (wanted & recording->channel[k].id)
+        part->channel[part->layout.channel_count++] = recording->channel[k];
   }
-  if (recording->parts && !all_whole)
-    recording->picked = strut_arena_allocate(
-        &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
-  return recording->parts && (all_whole || recording->picked);
+  return recording->parts != NULL;
 }
 
 static strut_status begin_sinks(strut_recording *recording, strut_error *error) {
@@ -185,32 +171,14 @@ bool strut_recording_lacks(const strut_recording *recording, int64_t n) {
   return recording->sink_count && recording->last < n;
 }
 
-/* Rows of one sink: the full ones, or a copy of its channels. */
-static const double *select_rows(strut_recording *recording, const strut_recording_part *part,
-                                 size_t count) {
-  if (part->whole) return recording->rows;
-  for (size_t i = 0; i < count; i++) {
-    const double *row = recording->rows + i * recording->layout.width;
-    double *out = recording->picked + i * part->layout.width;
-    out[0] = row[0];
-    for (size_t k = 0; k < part->layout.channel_count; k++) {
-      const strut_record_channel *channel = &part->channel[k];
-      memcpy(out + channel->offset, row + part->from[k],
-             channel->items * channel->components * sizeof *out);
-    }
-  }
-  return recording->picked;
-}
-
 /* Passes all rows to the sinks; rows that a sink refuses are not offered again. */
 static strut_status flush_rows(strut_recording *recording, strut_error *error) {
   size_t count = recording->row_count;
   recording->row_count = 0;
   for (size_t s = 0; s < recording->begun && count; s++) {
-    const double *rows = select_rows(recording, &recording->parts[s], count);
-    if (!recording->sinks[s]->rows) continue;
+    const strut_sink *sink = recording->sinks[s];
     strut_status status =
-        recording->sinks[s]->rows(recording->sinks[s]->context, rows, count, error);
+        sink->rows ? sink->rows(sink->context, recording->rows, count, error) : STRUT_OK;
     if (status) return status;
   }
   return STRUT_OK;

@@ -18,12 +18,10 @@
  * Where the scene says how far samples are apart, those between two steps are taken by dense output.
  */
 
-/** Channels of one sink, as a layout of their own. */
+/** Channels of one sink. */
 typedef struct strut_recording_part {
-  bool whole; /* all channels: rows are passed on unchanged */
   strut_record_layout layout;
   strut_record_channel channel[STRUT_CHANNEL_COUNT];
-  size_t from[STRUT_CHANNEL_COUNT]; /* offset of each in a full row */
 } strut_recording_part;
 
 typedef struct strut_recording {
@@ -34,7 +32,6 @@ typedef struct strut_recording {
   strut_record_channel channel[STRUT_CHANNEL_COUNT];
   strut_recording_part *parts; /* (sink_count) */
   double *rows;                /* (capacity, width) rows not yet passed on */
-  double *picked; /* (capacity, width) rows of one sink; NULL where every sink takes all channels */
   size_t row_count, capacity;
   strut_time_grid grid;
   double start, every; /* first sample, interval [s] */
