@@ -75,30 +75,20 @@ static strut_channels requested_channels(const strut_experiment *experiment,
   return sink->channels ? sink->channels : experiment->channels;
 }
 
-/* The channels of each sink, at their places in the full rows. */
-static bool create_parts(const strut_experiment *experiment, strut_recording *recording) {
-  recording->parts =
-      strut_arena_allocate(&recording->arena, recording->sink_count, sizeof *recording->parts);
-  for (size_t s = 0; s < recording->sink_count && recording->parts; s++) {
-    strut_recording_part *part = &recording->parts[s];
-    strut_channels wanted = requested_channels(experiment, recording->sinks[s]);
-    part->layout = recording->layout;
-    part->layout.channels = part->channel;
-    part->layout.channel_count = 0;
-    for (size_t k = 0; k < recording->layout.channel_count; k++)
-      if (wanted & recording->channel[k].id)
-        part->channel[part->layout.channel_count++] = recording->channel[k];
-  }
-  return recording->parts != NULL;
-}
-
-static strut_status begin_sinks(strut_recording *recording, strut_error *error) {
+/* Each sink hears of its channels, which are at their places in the full rows. */
+static strut_status begin_sinks(const strut_experiment *experiment, strut_recording *recording,
+                                strut_error *error) {
   for (; recording->begun < recording->sink_count; recording->begun++) {
     strut_sink *sink = recording->sinks[recording->begun];
-    strut_status status =
-        !sink->begin
-            ? STRUT_OK
-            : sink->begin(sink->context, &recording->parts[recording->begun].layout, error);
+    strut_channels wanted = requested_channels(experiment, sink);
+    strut_record_channel channel[STRUT_CHANNEL_COUNT];
+    strut_record_layout layout = recording->layout;
+    layout.channels = channel;
+    layout.channel_count = 0;
+    for (size_t k = 0; k < recording->layout.channel_count; k++)
+      if (wanted & recording->channel[k].id)
+        channel[layout.channel_count++] = recording->channel[k];
+    strut_status status = sink->begin ? sink->begin(sink->context, &layout, error) : STRUT_OK;
     if (status) return status;
   }
   return STRUT_OK;
@@ -136,11 +126,10 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
     recording->capacity = recording->in_step + 1 + 65536 / recording->layout.width;
     recording->rows = strut_arena_allocate(
         &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
-    ready = recording->rows && create_parts(experiment, recording) &&
-            strut_dense_create(model, &recording->arena, &recording->dense);
+    ready = recording->rows && strut_dense_create(model, &recording->arena, &recording->dense);
   }
   if (!ready) return strut_no_memory(error, "for the recording");
-  return begin_sinks(recording, error);
+  return begin_sinks(experiment, recording, error);
 }
 
 /* A sample this close to the end of a step, in steps, is taken there. */

@@ -18,20 +18,13 @@
  * Where the scene says how far samples are apart, those between two steps are taken by dense output.
  */
 
-/** Channels of one sink. */
-typedef struct strut_recording_part {
-  strut_record_layout layout;
-  strut_record_channel channel[STRUT_CHANNEL_COUNT];
-} strut_recording_part;
-
 typedef struct strut_recording {
   strut_observer observer, *other; /* first: this is what the state knows; and the one behind it */
   strut_sink **sinks;
   size_t sink_count, begun;   /* sinks whose begin succeeded */
   strut_record_layout layout; /* union of the channels of all sinks */
   strut_record_channel channel[STRUT_CHANNEL_COUNT];
-  strut_recording_part *parts; /* (sink_count) */
-  double *rows;                /* (capacity, width) rows not yet passed on */
+  double *rows; /* (capacity, width) rows not yet passed on */
   size_t row_count, capacity;
   strut_time_grid grid;
   double start, every; /* first sample, interval [s] */
