@@ -3,7 +3,7 @@
  * Channels over time: the rows that a run passes to its sinks.
  *
  * The recorder writes no files. It collects rows of doubles and passes them to the sinks in blocks,
- * between steps. A row is the time followed by the channels in the order of the layout.
+ * between steps. A row begins with the time; each channel has its offset. What is between them is for other sinks.
  */
 #ifndef STRUT_ENGINE_RUN_RECORDER_H
 #define STRUT_ENGINE_RUN_RECORDER_H
@@ -33,7 +33,7 @@ typedef struct strut_record_layout {
 } strut_record_layout;
 
 /**
- * Receives the rows of a run. A sink that fails stops the run with its status. end is called once
+ * Receives the rows of a run; the layout is gone after begin. A sink that fails stops the run with its status. end is called once
  * if begin succeeded, with the status of the run: a sink that writes files completes them even when
  * the run diverged or was interrupted (and marks them so), and removes them for STRUT_FILE_TROUBLE
  * or STRUT_NO_MEMORY. NULL: it has nothing to do then.

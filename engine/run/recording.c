@@ -75,44 +75,20 @@ static strut_channels requested_channels(const strut_experiment *experiment,
   return sink->channels ? sink->channels : experiment->channels;
 }
 
-/* Selects the channels of one sink from the full layout. */
-static void create_part_layout(const strut_recording *recording, strut_channels wanted,
-                               strut_recording_part *part) {
-  part->layout = (strut_record_layout){
-      .width = 1, .channels = part->channel, .expected_rows = recording->layout.expected_rows};
-  for (size_t k = 0; k < recording->layout.channel_count; k++) {
-    if (!(wanted & recording->channel[k].id)) continue;
-    strut_record_channel *channel = &part->channel[part->layout.channel_count];
-    *channel = recording->channel[k];
-    part->from[part->layout.channel_count++] = channel->offset;
-    channel->offset = part->layout.width;
-    part->layout.width += channel->items * channel->components;
-  }
-  part->whole = part->layout.channel_count == recording->layout.channel_count;
-}
-
-static bool create_parts(const strut_experiment *experiment, strut_recording *recording) {
-  bool all_whole = true;
-  recording->parts =
-      strut_arena_allocate(&recording->arena, recording->sink_count, sizeof *recording->parts);
-  for (size_t s = 0; s < recording->sink_count && recording->parts; s++) {
-    create_part_layout(recording, requested_channels(experiment, recording->sinks[s]),
-                       &recording->parts[s]);
-    all_whole = all_whole && recording->parts[s].whole;
-  }
-  if (recording->parts && !all_whole)
-    recording->picked = strut_arena_allocate(
-        &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
-  return recording->parts && (all_whole || recording->picked);
-}
-
-static strut_status begin_sinks(strut_recording *recording, strut_error *error) {
+/* Each sink hears of its channels, which are at their places in the full rows. */
+static strut_status begin_sinks(const strut_experiment *experiment, strut_recording *recording,
+                                strut_error *error) {
   for (; recording->begun < recording->sink_count; recording->begun++) {
     strut_sink *sink = recording->sinks[recording->begun];
-    strut_status status =
-        !sink->begin
-            ? STRUT_OK
-            : sink->begin(sink->context, &recording->parts[recording->begun].layout, error);
+    strut_channels wanted = requested_channels(experiment, sink);
+    strut_record_channel channel[STRUT_CHANNEL_COUNT];
+    strut_record_layout layout = recording->layout;
+    layout.channels = channel;
+    layout.channel_count = 0;
+    for (size_t k = 0; k < recording->layout.channel_count; k++)
+      if (wanted & recording->channel[k].id)
+        channel[layout.channel_count++] = recording->channel[k];
+    strut_status status = sink->begin ? sink->begin(sink->context, &layout, error) : STRUT_OK;
     if (status) return status;
   }
   return STRUT_OK;
@@ -150,11 +126,10 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
     recording->capacity = recording->in_step + 1 + 65536 / recording->layout.width;
     recording->rows = strut_arena_allocate(
         &recording->arena, recording->capacity * recording->layout.width, sizeof(double));
-    ready = recording->rows && create_parts(experiment, recording) &&
-            strut_dense_create(model, &recording->arena, &recording->dense);
+    ready = recording->rows && strut_dense_create(model, &recording->arena, &recording->dense);
   }
   if (!ready) return strut_no_memory(error, "for the recording");
-  return begin_sinks(recording, error);
+  return begin_sinks(experiment, recording, error);
 }
 
 /* A sample this close to the end of a step, in steps, is taken there. */
@@ -185,32 +160,14 @@ bool strut_recording_lacks(const strut_recording *recording, int64_t n) {
   return recording->sink_count && recording->last < n;
 }
 
-/* Rows of one sink: the full ones, or a copy of its channels. */
-static const double *select_rows(strut_recording *recording, const strut_recording_part *part,
-                                 size_t count) {
-  if (part->whole) return recording->rows;
-  for (size_t i = 0; i < count; i++) {
-    const double *row = recording->rows + i * recording->layout.width;
-    double *out = recording->picked + i * part->layout.width;
-    out[0] = row[0];
-    for (size_t k = 0; k < part->layout.channel_count; k++) {
-      const strut_record_channel *channel = &part->channel[k];
-      memcpy(out + channel->offset, row + part->from[k],
-             channel->items * channel->components * sizeof *out);
-    }
-  }
-  return recording->picked;
-}
-
 /* Passes all rows to the sinks; rows that a sink refuses are not offered again. */
 static strut_status flush_rows(strut_recording *recording, strut_error *error) {
   size_t count = recording->row_count;
   recording->row_count = 0;
   for (size_t s = 0; s < recording->begun && count; s++) {
-    const double *rows = select_rows(recording, &recording->parts[s], count);
-    if (!recording->sinks[s]->rows) continue;
+    const strut_sink *sink = recording->sinks[s];
     strut_status status =
-        recording->sinks[s]->rows(recording->sinks[s]->context, rows, count, error);
+        sink->rows ? sink->rows(sink->context, recording->rows, count, error) : STRUT_OK;
     if (status) return status;
   }
   return STRUT_OK;
@@ -253,14 +210,13 @@ static void add_row(strut_state *state, strut_recording *recording, double t, do
   recording->sampled++;
 }
 
-void strut_recording_sample(strut_state *state, strut_recording *recording) {
-  assert(state->step > recording->last);
-  add_row(state, recording, strut_time_grid_at(&recording->grid, state->step),
-          strut_time_grid_real(&recording->grid, state->step));
-  recording->last = state->step;
-}
-
-strut_status strut_recording_pass_on(strut_recording *recording, strut_error *error) {
+strut_status strut_recording_sample(strut_state *state, strut_recording *recording, bool due,
+                                    strut_error *error) {
+  if (due) {
+    add_row(state, recording, strut_time_grid_at(&recording->grid, state->step),
+            strut_time_grid_real(&recording->grid, state->step));
+    recording->last = state->step;
+  }
   bool full = recording->row_count + recording->in_step + 1 > recording->capacity;
   return full ? flush_rows(recording, error) : STRUT_OK;
 }
@@ -269,6 +225,7 @@ strut_status strut_recording_pass_on(strut_recording *recording, strut_error *er
 static void sample_piece(strut_recording *recording, strut_state *state, strut_motion_piece piece,
                          double later, int64_t n) {
   double begin = piece.begin + later, end = begin + piece.length, due;
+  if (strut_run_find_lost_node(recording->dense.model, state) >= 0) return;
   while (is_within(recording, n) && (due = next_time(recording)) <= end) {
     double s = fmin(fmax((due - begin) / piece.length, 0.0), 1.0);
     double t = strut_dense_place(&recording->dense, state, &piece, s);
@@ -290,26 +247,20 @@ static void see_piece(strut_observer *observer, strut_state *state,
   state->watched.observer = observer;
 }
 
-bool strut_recording_begin_step(strut_recording *recording, strut_state *state) {
-  if (!is_within(recording, state->step + 1)) return false;
-  recording->rows_before = recording->row_count;
+void strut_recording_begin_step(strut_recording *recording, strut_state *state) {
+  if (!is_within(recording, state->step + 1)) return;
   recording->other = state->watched.observer;
   state->watched.observer = &recording->observer;
   strut_dense_keep(&recording->dense, state);
-  return true;
 }
 
-void strut_recording_end_step(strut_recording *recording, strut_state *state, bool lost) {
+void strut_recording_end_step(strut_recording *recording, strut_state *state) {
   double begin = strut_time_grid_at(&recording->grid, state->step - 1);
   double length = strut_time_grid_at(&recording->grid, state->step) - begin;
-  strut_motion_piece step = strut_dense_step(&recording->dense, state, begin, length);
+  if (state->watched.observer != &recording->observer) return;
   state->watched.observer = recording->other;
-  if (!lost) { /* of methods without events */
-    sample_piece(recording, state, step, 0.0, state->step);
-    return;
-  }
-  recording->sampled -= (int64_t)(recording->row_count - recording->rows_before);
-  recording->row_count = recording->rows_before;
+  sample_piece(recording, state, strut_dense_step(&recording->dense, state, begin, length), 0.0,
+               state->step);
 }
 
 strut_status strut_recording_create_alone(const strut_model *model, const strut_time_grid *grid,

@@ -295,23 +295,6 @@ void strut_relaxation_free(strut_relaxation *relaxation) {
   *relaxation = (strut_relaxation){.model = NULL};
 }
 
-strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
-                                strut_state *state, const strut_flag *interrupt, double *time,
-                                strut_error *error) {
-  strut_relaxation r;
-  size_t bytes = (size_t)model->length * sizeof(double);
-  strut_status status = strut_relaxation_create(model, experiment, &r, error);
-  r.interrupt = interrupt;
-  if (!status) status = strut_relaxation_run(&r, error);
-  if (!status) {
-    *time = r.time;
-    memcpy(state->q, r.state->q, bytes);
-    memset(state->v, 0, bytes);
-  }
-  strut_relaxation_free(&r);
-  return status;
-}
-
 /* ---- settling an experiment ---- */
 
 /* Part of the largest stiffness that rounding may give a motion without stiffness. */

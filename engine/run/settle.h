@@ -53,11 +53,6 @@ strut_status strut_relaxation_run(strut_relaxation *relaxation, strut_error *err
 strut_status strut_relaxation_check(strut_relaxation *relaxation, strut_error *error);
 void strut_relaxation_free(strut_relaxation *relaxation);
 
-/** A single relaxation with the given step; *time is the simulated time [s]. */
-strut_status strut_settle_state(const strut_model *model, const strut_experiment *experiment,
-                                strut_state *state, const strut_flag *interrupt, double *time,
-                                strut_error *error);
-
 /**
  * Settles the start of an experiment: q (length) are the positions [m], `how` the details. The step follows
  * from the stability limit where the scene gives no stable one, and is halved where it diverges. With

@@ -364,14 +364,12 @@ void strut_run_step(strut_run *run, int64_t stop) {
   assert(run->ready && stop > run->state->step);
   unsigned before = strut_subnormals_off();
   strut_state *state = run->state;
-  bool sampled = strut_recording_begin_step(&run->recording, state);
+  strut_recording_begin_step(&run->recording, state);
   if (state->step == run->grid.last - 1 && strut_time_grid_rest(&run->grid) > 0.0)
     step_short(run); /* the last one, shorter than the others */
   else
     step_to(run, stop);
-  if (sampled)
-    strut_recording_end_step(&run->recording, state,
-                             state->trouble || strut_run_find_lost_node(run->model, state) >= 0);
+  strut_recording_end_step(&run->recording, state);
   strut_subnormals_restore(before);
 }
 
@@ -440,10 +438,9 @@ strut_status strut_run_sample(strut_run *run, int64_t *stop) {
   if (run->steady.wanted) detect_steady_motion(run);
   if (n == strut_measure_first_step(&run->measure))
     strut_measure_begin(run->model, run->state, &run->measure);
-  if (lost < 0 && (n == strut_recording_next_step(&run->recording, n) ||
-                   (n >= run->steps && strut_recording_lacks(&run->recording, n))))
-    strut_recording_sample(run->state, &run->recording);
-  strut_status passed = strut_recording_pass_on(&run->recording, run->error);
+  bool recorded = lost < 0 && (n == strut_recording_next_step(&run->recording, n) ||
+                               (n >= run->steps && strut_recording_lacks(&run->recording, n)));
+  strut_status passed = strut_recording_sample(run->state, &run->recording, recorded, run->error);
   if (passed) return passed;
   if (n == run->answer.step) fill_summary(run, STRUT_OK);
   if (n >= run->steps) return STRUT_OK;

@@ -18,30 +18,19 @@
  * Where the scene says how far samples are apart, those between two steps are taken by dense output.
  */
 
-/** Channels of one sink, as a layout of their own. */
-typedef struct strut_recording_part {
-  bool whole; /* all channels: rows are passed on unchanged */
-  strut_record_layout layout;
-  strut_record_channel channel[STRUT_CHANNEL_COUNT];
-  size_t from[STRUT_CHANNEL_COUNT]; /* offset of each in a full row */
-} strut_recording_part;
-
 typedef struct strut_recording {
   strut_observer observer, *other; /* first: this is what the state knows; and the one behind it */
   strut_sink **sinks;
   size_t sink_count, begun;   /* sinks whose begin succeeded */
   strut_record_layout layout; /* union of the channels of all sinks */
   strut_record_channel channel[STRUT_CHANNEL_COUNT];
-  strut_recording_part *parts; /* (sink_count) */
-  double *rows;                /* (capacity, width) rows not yet passed on */
-  double *picked; /* (capacity, width) rows of one sink; NULL where every sink takes all channels */
+  double *rows; /* (capacity, width) rows not yet passed on */
   size_t row_count, capacity;
   strut_time_grid grid;
   double start, every; /* first sample, interval [s] */
   int64_t sampled,
-      last;           /* samples so far; step of the latest at an end of one, -1 before the first */
-  size_t in_step;     /* most samples between two ends of steps */
-  size_t rows_before; /* the step that is observed */
+      last;       /* samples so far; step of the latest at an end of one, -1 before the first */
+  size_t in_step; /* most samples between two ends of steps */
   strut_dense dense;
   strut_instant instant;
   strut_column *column; /* (width) what each number of a row is, as strut_column_find finds it; */
@@ -57,16 +46,15 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
                                     double begin, strut_recording *recording, strut_error *error);
 /** Step after n at which to stop: a sample is due there or in the step after it; INT64_MAX without sinks. */
 int64_t strut_recording_next_step(const strut_recording *recording, int64_t n);
-/** Before a step. False: no sample is due within it, and strut_recording_end_step must not be called. */
-bool strut_recording_begin_step(strut_recording *recording, strut_state *state);
-/** Takes those samples. lost: the step failed, and leaves none. */
-void strut_recording_end_step(strut_recording *recording, strut_state *state, bool lost);
+/** Before a step, within which samples may be due. */
+void strut_recording_begin_step(strut_recording *recording, strut_state *state);
+/** After it: takes those that no observer has taken. */
+void strut_recording_end_step(strut_recording *recording, strut_state *state);
 /** Is a sample of step n missing? False without sinks. */
 bool strut_recording_lacks(const strut_recording *recording, int64_t n);
-/** Samples the state at the end of a step. */
-void strut_recording_sample(strut_state *state, strut_recording *recording);
-/** Passes rows on where there is no room for those of another step. */
-strut_status strut_recording_pass_on(strut_recording *recording, strut_error *error);
+/** Samples the state where that is due; passes rows on where another step's may have no room. */
+strut_status strut_recording_sample(strut_state *state, strut_recording *recording, bool due,
+                                    strut_error *error);
 /**
  * Passes the remaining rows on and ends every sink with the status of the run; returns the first
  * failure.

@@ -26,8 +26,6 @@ export class Engine {
     this.#makeWorker = makeWorker;
   }
 
-  get busy() { return this.#asked !== null; }
-
   async #ready() {
     if (this.#worker) return this.#worker;
     const wasm = await this.#wasm;

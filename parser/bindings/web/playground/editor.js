@@ -113,10 +113,7 @@ function diagnosticOf(doc, message) {
   return { from, to, severity: "error", message: text, line };
 }
 
-function isInView(view, at) {
-  const box = view.scrollDOM.getBoundingClientRect(), place = view.coordsAtPos(at);
-  return Boolean(place) && place.bottom > box.top && place.top < box.bottom;
-}
+const NEAR = 6; /* lines from the one that is written, within which messages are seen */
 
 /* ---- the editor ---- */
 
@@ -179,16 +176,15 @@ export function createEditor(host, onEdit) {
       const { state } = view, found = messages.filter((m) => m.line > 0).map((m) => diagnosticOf(state.doc, m));
       found.sort((a, b) => a.from - b.from);
       const below = found.map((d) => ({ at: d.line.to, text: d.message }));
-      if (found.length && view.hasFocus && !found.some((d) => isInView(view, d.from))) /* where a person writes */
-        below.push({ at: state.doc.lineAt(state.selection.main.head).to,
-          text: "line " + found[0].line.number + ": " + found[0].message });
+      const here = state.doc.lineAt(state.selection.main.head);
+      if (found.length && view.hasFocus && !found.some((d) => Math.abs(d.line.number - here.number) < NEAR))
+        below.push({ at: here.to, text: "line " + found[0].line.number + ": " + found[0].message });
       view.dispatch({ effects: setNotes.of(Decoration.set(below.map(({ at, text }) =>
         Decoration.widget({ widget: new Note(text), block: true, side: 1 }).range(at)), true)) });
       view.dispatch(setDiagnostics(view.state, found.map(({ from, to, severity, message }) =>
         ({ from, to, severity, message }))));
       if (found.length && !view.hasFocus)
         view.dispatch({ effects: EditorView.scrollIntoView(found[0].from, { y: "center" }) });
-    },
-    focus: () => view.focus()
+    }
   };
 }

@@ -207,7 +207,6 @@ export function createFound({ onShow, onBack, onOver }) {
   }
 
   return { close,
-    get isOpen() { return !host.hidden; },
     showTable: (title, table) => open(title, make("pre", { textContent: page.micro(table) })),
     /** A table folded under a hint, where the page shows the result itself. */
     showHint: (title, hint, table) => open(title, make("p", { className: "hint", textContent: hint }), tableOf(table)),
