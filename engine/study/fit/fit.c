@@ -108,22 +108,23 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
 
 /*
  * Fits short motions first, so that long ones begin near, and in the end once more where they are better placed
- * elsewhere. Of five starts one has the given delay and one the second best: what repeats itself fits nearly as well
- * a period later.
+ * elsewhere.
  */
-static strut_status fit_from(strut_fit_case *one, int rank, double *parameters,
+static strut_status fit_from(strut_fit_case *one, strut_fit_delays delays, double *parameters,
                              strut_fit_solution *solution) {
   double placed[STRUT_LEAST_SQUARES_MOST];
   size_t bytes = one->layout->parameters * sizeof *placed;
   strut_status status = STRUT_OK;
   strut_fit_choose(one, PLACED, -1);
-  strut_fit_place(one, rank, parameters);
+  strut_fit_place(one, delays, parameters);
   for (int k = 0; k <= SHARES && !status; k++) {
     bool last = k + 1 >= SHARES;
     strut_fit_choose(one, last ? 1.0 : shares[k], -1);
     if (!last && one->used < FEW * one->layout->parameters) continue;
     memcpy(placed, parameters, bytes);
-    if (k == SHARES && !(strut_fit_place(one, 0, placed) < BETTER * solution->sum)) break;
+    if (k == SHARES &&
+        !(strut_fit_place(one, STRUT_FIT_BEST_DELAYS, placed) < BETTER * solution->sum))
+      break;
     memcpy(parameters, placed, bytes);
     strut_least_squares problem = strut_fit_problem(one);
     if (!last) problem.most_steps = STEPS_FIRST, problem.near = NEAR_FIRST;
@@ -136,11 +137,11 @@ static strut_status fit_from(strut_fit_case *one, int rank, double *parameters,
 /* The fit of a start, which begins elsewhere where the model cannot be computed there. */
 static strut_status fit_start(strut_fit_case *one, int64_t start, double *parameters,
                               strut_fit_solution *solution) {
-  static const int ranks[] = {0, -1, 0, 0, 1};
+  strut_fit_delays delays = start % 4 == 1 ? STRUT_FIT_GIVEN_DELAYS : STRUT_FIT_BEST_DELAYS;
   strut_status status = STRUT_OK;
   for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
     strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
-    status = fit_from(one, ranks[start % 5], parameters, solution);
+    status = fit_from(one, delays, parameters, solution);
     if (solution->end != STRUT_FIT_FAILED) break;
   }
   return status;
@@ -409,6 +410,33 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
                            "the model cannot be computed beside the best fit");
 }
 
+/*
+ * Fits from the best fit once more, but with the second best delay of each match in turn, since what repeats itself fits
+ * nearly as well a period later.
+ */
+static strut_status fit_elsewhere(fitting *self, strut_fit_case *one) {
+  strut_fit_result *result = self->result;
+  size_t n = result->parameters, matches = self->layout->fit->match_count;
+  strut_status status = STRUT_OK;
+  result->elsewhere = strut_arena_allocate(&result->arena, matches, sizeof *result->elsewhere);
+  for (size_t m = 0; result->elsewhere && m < matches && !status; m++) {
+    if (!self->layout->fit->matches[m].align.delay) continue;
+    strut_fit_row *row = &result->elsewhere[result->elsewhere_count];
+    strut_fit_solution solution;
+    strut_least_squares problem = strut_fit_problem(one);
+    row->parameters = strut_arena_copy(&result->arena, self->best, n, sizeof(double));
+    if (!row->parameters) return strut_no_memory(self->points.error, "");
+    strut_fit_place(one, (int32_t)m, row->parameters);
+    problem.most_steps = STEPS_FIRST;
+    status = strut_least_squares_solve(&problem, row->parameters, &solution);
+    row->end = solution.end, row->sum = solution.sum;
+    result->elsewhere_count++;
+  }
+  if (status || !result->elsewhere) return strut_no_memory(self->points.error, "");
+  return one->status ? strut_fail(self->points.error, one->status, "%s", one->error.message)
+                     : STRUT_OK;
+}
+
 /* The best start, its scale of errors, and the rise of the sum at the ends of intervals. */
 static strut_status find_best(fitting *self) {
   strut_fit_result *result = self->result;
@@ -435,6 +463,7 @@ static strut_status find_best(fitting *self) {
       self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
   strut_status status = find_spectrum(self, &one);
+  if (!status) status = fit_elsewhere(self, &one);
   strut_fit_case_free(&one);
   return status;
 }

@@ -76,10 +76,10 @@ typedef struct strut_fit_case {
   double *predicted[3]; /* (count) by the model, before and after by a short time, not aligned */
   double *latest;       /* (parameters) of that */
   bool known;
-  double *placing;   /* parameters whose alignments are to be found while the model is predicted */
-  int rank;          /* of the delay to take: 0 the best, -1 the given one */
-  double placed_sum; /* of squares, then */
-  double *buffer;    /* (3 count + 3) */
+  double *placing; /* parameters whose alignments are to be found while the model is predicted */
+  int32_t second;  /* the match of those that takes the second best delay; or a strut_fit_delays */
+  double placed_sum;   /* of squares, then */
+  double *buffer;      /* (3 count + 3) */
   strut_status status; /* of what must stop all */
   strut_error
       error; /* likewise, or why there were no residuals at the latest point that has none */
@@ -106,12 +106,17 @@ void strut_fit_case_free(strut_fit_case *one);
 strut_least_squares strut_fit_problem(strut_fit_case *one);
 /** The numbers of all series as the case has predicted them at the parameters, aligned: (count). */
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to);
+/** Which delays a placing takes. */
+typedef enum strut_fit_delays {
+  STRUT_FIT_BEST_DELAYS = -1,
+  STRUT_FIT_GIVEN_DELAYS = -2
+} strut_fit_delays;
 /**
- * Sets the alignments at the other parameters to those with the least sum, shifts and turns in closed form. Of delays
- * rank 0 is the best, 1 the next best, -1 that of the parameters. A turn needs both coordinates. Returns the sum;
+ * Sets the alignments at the other parameters to those with the least sum, shifts and turns in closed form. `second`: a
+ * match that takes the second best delay, or a strut_fit_delays. A turn needs both coordinates. Returns the sum;
  * HUGE_VAL, without a change, where the model cannot be computed or nothing is aligned.
  */
-double strut_fit_place(strut_fit_case *one, int rank, double *parameters);
+double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters);
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
 

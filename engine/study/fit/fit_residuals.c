@@ -166,9 +166,6 @@ static void take_samples(const prediction *self, size_t each, const double *samp
 /* Of so many delays the best is sought; of longer series not every number counts for that. */
 enum { MOST_DELAYS = 1000, COUNTED = 2000, NEWTON_STEPS = 4 };
 
-/* The second best delay is as good as the best where it leaves less than so much of its sum. */
-static const double NEARLY = 4.0;
-
 /* The turn with the least c'Qc, c = (cos, sin, -1): in closed form where Q is alike in both, then Newton's steps. */
 static double best_turn(double q[3][3]) {
   double turn = atan2(q[1][2], q[0][2]), across = q[1][1] - q[0][0];
@@ -238,7 +235,7 @@ static double place_delayed(const prediction *self, double delay, const double *
   return place(self->one, self->index, a);
 }
 
-/* Finds the delay of a match, and what else places it: of the delays with a least sum nearby, that of the rank. */
+/* Finds the delay of a match, and what else places it: of those with a least sum nearby the best or second best. */
 static void find_delay(prediction *self, const double *sampled, size_t count, double end) {
   double low = self->delay[0], high = self->delay[1];
   size_t delays = 3 * self->match->count < MOST_DELAYS ? 3 * self->match->count : MOST_DELAYS;
@@ -255,7 +252,7 @@ static void find_delay(prediction *self, const double *sampled, size_t count, do
     if (!rank) least[1] = least[0], at[1] = at[0];
     least[rank] = sum[1], at[rank] = low + step * ((double)j - 1.0 + part);
   }
-  int rank = least[1] < NEARLY * least[0] ? self->one->rank : 0;
+  int rank = isfinite(least[1]) && self->one->second == (int32_t)self->index;
   place_delayed(self, at[rank], sampled, count, end, &self->align);
 }
 
@@ -353,7 +350,8 @@ static bool predict_table(prediction *self) {
 /* The range of the delay that is to be found. */
 static void choose_delays(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
-  for (size_t i = 0; i < layout->aligned_count && self->one->placing && self->one->rank >= 0; i++) {
+  bool given = !self->one->placing || self->one->second == STRUT_FIT_GIVEN_DELAYS;
+  for (size_t i = 0; i < layout->aligned_count && !given; i++) {
     if (layout->aligned[i].match != self->index || layout->aligned[i].what != STRUT_FIT_DELAY)
       continue;
     self->delay[0] = strut_fit_value(layout, i, layout->low[i]);
@@ -454,9 +452,9 @@ static bool find_residuals(void *context, const double *parameters, double *resi
   return true;
 }
 
-double strut_fit_place(strut_fit_case *one, int rank, double *parameters) {
+double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters) {
   if (!one->layout->aligned_count) return HUGE_VAL;
-  one->known = false, one->placing = parameters, one->rank = rank, one->placed_sum = 0.0;
+  one->known = false, one->placing = parameters, one->second = second, one->placed_sum = 0.0;
   bool fine = predict(one, parameters);
   one->known = false, one->placing = NULL;
   return fine ? one->placed_sum : HUGE_VAL;
