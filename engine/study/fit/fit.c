@@ -17,6 +17,9 @@ enum { SHARES = sizeof shares / sizeof shares[0], STEPS_FIRST = 20, FEW = 2 };
 /* Short motions need not be fitted closer than to this part of the ranges. */
 static const double NEAR_FIRST = 1e-3;
 
+/* Share of the time by which motions are placed; a placing is better than a fit if it leaves so much of its sum. */
+static const double PLACED = 0.5, BETTER = 0.99;
+
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
@@ -91,37 +94,38 @@ void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const do
 
 /* ---- one fit ---- */
 
-/*
- * Where a start begins: the first one where the study says, the others spread evenly; so do the turns and delays of
- * every second one, since what repeats itself fits as well a period later.
- */
 void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, double *parameters) {
   const strut_study_fit *fit = layout->fit;
-  size_t dimensions = fit->variable_count + layout->aligned_count;
-  strut_search_spread spread = strut_search_spread_begin(dimensions, (uint64_t)fit->seed);
+  strut_search_spread spread =
+      strut_search_spread_begin(fit->variable_count + layout->aligned_count, (uint64_t)fit->seed);
   for (size_t i = 0; i < layout->parameters; i++) {
     size_t k = i - layout->aligned_count;
-    const strut_fit_aligned *aligned = i < layout->aligned_count ? &layout->aligned[i] : NULL;
-    bool spreads = aligned && start % 2 && aligned->spread[1] > aligned->spread[0];
-    double part =
-        spreads ? strut_search_spread_at(&spread, start - 1, fit->variable_count + i) : 0.0;
-    double own = spreads   ? aligned->spread[0] + part * (aligned->spread[1] - aligned->spread[0])
-                 : aligned ? aligned->start
-                           : 0.0;
-    parameters[i] = aligned      ? strut_fit_parameter(layout, i, own)
-                    : start == 0 ? 1.0 + strut_search_start(&fit->variables[k])
-                                 : 1.0 + strut_search_spread_at(&spread, start - 1, k);
+    parameters[i] = is_aligned(layout, i) ? strut_fit_parameter(layout, i, layout->aligned[i].start)
+                    : start == 0          ? 1.0 + strut_search_start(&fit->variables[k])
+                                          : 1.0 + strut_search_spread_at(&spread, start - 1, k);
   }
 }
 
-/* Fits short motions first, so that long ones begin near. */
-static strut_status fit_from(strut_fit_case *one, double *parameters,
+/*
+ * Fits short motions first, so that long ones begin near, and in the end once more where they are better placed
+ * elsewhere.
+ */
+static strut_status fit_from(strut_fit_case *one, strut_fit_delays delays, double *parameters,
                              strut_fit_solution *solution) {
+  double placed[STRUT_LEAST_SQUARES_MOST];
+  size_t bytes = one->layout->parameters * sizeof *placed;
   strut_status status = STRUT_OK;
-  for (int k = 0; k < SHARES && !status; k++) {
-    bool last = k + 1 == SHARES;
-    strut_fit_choose(one, shares[k], -1);
+  strut_fit_choose(one, PLACED, -1);
+  strut_fit_place(one, delays, parameters);
+  for (int k = 0; k <= SHARES && !status; k++) {
+    bool last = k + 1 >= SHARES;
+    strut_fit_choose(one, last ? 1.0 : shares[k], -1);
     if (!last && one->used < FEW * one->layout->parameters) continue;
+    memcpy(placed, parameters, bytes);
+    if (k == SHARES &&
+        !(strut_fit_place(one, STRUT_FIT_BEST_DELAYS, placed) < BETTER * solution->sum))
+      break;
+    memcpy(parameters, placed, bytes);
     strut_least_squares problem = strut_fit_problem(one);
     if (!last) problem.most_steps = STEPS_FIRST, problem.near = NEAR_FIRST;
     status = strut_least_squares_solve(&problem, parameters, solution);
@@ -133,10 +137,11 @@ static strut_status fit_from(strut_fit_case *one, double *parameters,
 /* The fit of a start, which begins elsewhere where the model cannot be computed there. */
 static strut_status fit_start(strut_fit_case *one, int64_t start, double *parameters,
                               strut_fit_solution *solution) {
+  strut_fit_delays delays = start % 4 == 1 ? STRUT_FIT_GIVEN_DELAYS : STRUT_FIT_BEST_DELAYS;
   strut_status status = STRUT_OK;
   for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
     strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
-    status = fit_from(one, parameters, solution);
+    status = fit_from(one, delays, parameters, solution);
     if (solution->end != STRUT_FIT_FAILED) break;
   }
   return status;
@@ -405,6 +410,33 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
                            "the model cannot be computed beside the best fit");
 }
 
+/*
+ * Fits from the best fit once more, but with the second best delay of each match in turn, since what repeats itself fits
+ * nearly as well a period later.
+ */
+static strut_status fit_elsewhere(fitting *self, strut_fit_case *one) {
+  strut_fit_result *result = self->result;
+  size_t n = result->parameters, matches = self->layout->fit->match_count;
+  strut_status status = STRUT_OK;
+  result->elsewhere = strut_arena_allocate(&result->arena, matches, sizeof *result->elsewhere);
+  for (size_t m = 0; result->elsewhere && m < matches && !status; m++) {
+    if (!self->layout->fit->matches[m].align.delay) continue;
+    strut_fit_row *row = &result->elsewhere[result->elsewhere_count];
+    strut_fit_solution solution;
+    strut_least_squares problem = strut_fit_problem(one);
+    row->parameters = strut_arena_copy(&result->arena, self->best, n, sizeof(double));
+    if (!row->parameters) return strut_no_memory(self->points.error, "");
+    strut_fit_place(one, (int32_t)m, row->parameters);
+    problem.most_steps = STEPS_FIRST;
+    status = strut_least_squares_solve(&problem, row->parameters, &solution);
+    row->end = solution.end, row->sum = solution.sum;
+    result->elsewhere_count++;
+  }
+  if (status || !result->elsewhere) return strut_no_memory(self->points.error, "");
+  return one->status ? strut_fail(self->points.error, one->status, "%s", one->error.message)
+                     : STRUT_OK;
+}
+
 /* The best start, its scale of errors, and the rise of the sum at the ends of intervals. */
 static strut_status find_best(fitting *self) {
   strut_fit_result *result = self->result;
@@ -431,6 +463,7 @@ static strut_status find_best(fitting *self) {
       self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
   strut_status status = find_spectrum(self, &one);
+  if (!status) status = fit_elsewhere(self, &one);
   strut_fit_case_free(&one);
   return status;
 }

@@ -81,6 +81,8 @@ typedef struct strut_fit_result {
   bool found;               /* some start has residuals: all below is there */
   strut_fit_row *starts;    /* (start_count) */
   strut_fit_row *ends;      /* (variables, 2) of the profiles, low and high */
+  size_t elsewhere_count;
+  strut_fit_row *elsewhere; /* (elsewhere_count) with other delays, without values */
   size_t omission_count;
   strut_fit_row *omissions; /* (omission_count) without each match; none where there is only one */
   strut_fit_estimate *estimates; /* (parameters) alignments first */

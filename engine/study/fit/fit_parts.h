@@ -13,7 +13,7 @@
 #include "engine/study/fit/least_squares.h"
 #include "engine/study/sweep/sweep_parts.h"
 
-/* ---- fit_residuals.c ---- */
+/* ---- fit_layout.c ---- */
 
 /** What an alignment's number does. */
 typedef enum strut_fit_aligns {
@@ -30,7 +30,6 @@ typedef struct strut_fit_aligned {
   strut_fit_aligns what;
   const char *name, *unit; /* "film.shift_x" */
   double start, scale;     /* SI */
-  double spread[2];        /* range in which starts begin; both 0: all at `start` */
 } strut_fit_aligned;
 
 /** A series as the model has it. */
@@ -77,6 +76,9 @@ typedef struct strut_fit_case {
   double *predicted[3]; /* (count) by the model, before and after by a short time, not aligned */
   double *latest;       /* (parameters) of that */
   bool known;
+  double *placing; /* parameters whose alignments are to be found while the model is predicted */
+  int32_t second;  /* the match of those that takes the second best delay; or a strut_fit_delays */
+  double placed_sum;   /* of squares, then */
   double *buffer;      /* (3 count + 3) */
   strut_status status; /* of what must stop all */
   strut_error
@@ -89,6 +91,14 @@ strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_fla
                                    strut_fit_layout *layout, strut_error *error);
 void strut_fit_layout_free(strut_fit_layout *layout);
 
+/* ---- fit_residuals.c ---- */
+
+/** The time that the numbers of a match take [s]. */
+double strut_fit_span(const strut_fit_match *match);
+/** The quantity of that name; NULL: there is none. */
+const strut_quantity_definition *strut_fit_quantity(const strut_experiment *experiment,
+                                                    const char *name);
+
 /** All residuals count. False: memory is out. */
 bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one);
 void strut_fit_case_free(strut_fit_case *one);
@@ -96,6 +106,17 @@ void strut_fit_case_free(strut_fit_case *one);
 strut_least_squares strut_fit_problem(strut_fit_case *one);
 /** The numbers of all series as the case has predicted them at the parameters, aligned: (count). */
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to);
+/** Which delays a placing takes. */
+typedef enum strut_fit_delays {
+  STRUT_FIT_BEST_DELAYS = -1,
+  STRUT_FIT_GIVEN_DELAYS = -2
+} strut_fit_delays;
+/**
+ * Sets the alignments at the other parameters to those with the least sum, shifts and turns in closed form. `second`: a
+ * match that takes the second best delay, or a strut_fit_delays. A turn needs both coordinates. Returns the sum;
+ * HUGE_VAL, without a change, where the model cannot be computed or nothing is aligned.
+ */
+double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters);
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
 

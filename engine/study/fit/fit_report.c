@@ -172,18 +172,22 @@ static bool is_another(const strut_fit_layout *layout, const strut_fit_result *r
 static const char *compare_starts(const strut_fit_layout *layout, const double *best, double rise,
                                   strut_fit_result *result) {
   double least = result->starts[result->best].sum;
+  bool better = false;
   const char *why = "";
-  for (size_t i = 0; i < result->start_count; i++) {
-    strut_fit_row *row = &result->starts[i];
+  for (size_t i = 0; i < result->start_count + result->elsewhere_count; i++) {
+    bool start = i < result->start_count;
+    strut_fit_row *row = start ? &result->starts[i] : &result->elsewhere[i - result->start_count];
+    if (row->sum < least - SAME * rise) better = true;
     if (row->end == STRUT_FIT_FAILED || !(row->sum <= least + rise)) continue;
     bool another = is_another(layout, result, row, best);
     row->agrees = !another && row->sum <= least + SAME * rise;
-    result->agreeing += row->agrees;
-    if (another) why = "a start ends elsewhere with residuals as small";
+    result->agreeing += start && row->agrees;
+    if (another) why = "a fit with residuals as small ends elsewhere";
   }
   for (size_t i = 0; i < 2 * result->variable_count; i++)
-    if (result->ends[i].sum < least - SAME * rise)
-      why = "beside the best fit there is a better one, which no start has found: give more starts";
+    better = better || result->ends[i].sum < least - SAME * rise;
+  if (better)
+    why = "beside the best fit there is a better one, which no start has found: give more starts";
   if (!*why && !layout->noise_known && result->start_count > 1 && result->agreeing < 2)
     why =
         "only one start ends at the best fit, and without the noise nothing says that it is right";

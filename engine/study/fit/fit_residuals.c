@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/integrate/integrator.h"
 #include "engine/run/simulate.h"
 #include "engine/study/fit/fit_parts.h"
@@ -42,6 +43,7 @@ typedef struct prediction {
   const strut_fit_match *match;
   size_t index; /* of the match */
   alignment align;
+  double delay[2];           /* in which range it is to be found; both 0: it is known */
   strut_study_value *values; /* of all columns of the axes */
 } prediction;
 
@@ -52,15 +54,14 @@ static bool settle_status(strut_fit_case *one, strut_status status, const strut_
   return status == STRUT_OK;
 }
 
-/* The time that the numbers of a match take [s]. */
-static double span_of(const strut_fit_match *match) {
+double strut_fit_span(const strut_fit_match *match) {
   return match->at ? match->at[match->count - 1] - match->at[0] : 0.0;
 }
 
 /* Is the number early enough to count? */
 static bool is_early(const strut_fit_case *one, const strut_fit_match *match, size_t i) {
   return match->kind != STRUT_FIT_MOTION ||
-         match->at[i] <= match->at[0] + one->share * span_of(match);
+         match->at[i] <= match->at[0] + one->share * strut_fit_span(match);
 }
 
 static size_t count_early(const strut_fit_case *one, const strut_fit_match *match) {
@@ -71,11 +72,11 @@ static size_t count_early(const strut_fit_case *one, const strut_fit_match *matc
 
 /* By how much samples are beside each other from which a rate is taken [s]. */
 static double beside(const strut_fit_match *match) {
-  return BESIDE * span_of(match) / (double)match->count;
+  return BESIDE * strut_fit_span(match) / (double)match->count;
 }
 
-static const strut_quantity_definition *find_quantity(const strut_experiment *experiment,
-                                                      const char *name) {
+const strut_quantity_definition *strut_fit_quantity(const strut_experiment *experiment,
+                                                    const char *name) {
   for (size_t i = 0; i < experiment->quantity_count; i++)
     if (strcmp(experiment->quantities[i].name, name) == 0) return &experiment->quantities[i];
   return NULL;
@@ -87,7 +88,7 @@ static bool choose_quantities(const strut_fit_match *match, strut_setup *setup) 
   strut_quantity_definition *chosen =
       strut_arena_allocate(&setup->scene.arena, match->series_count, sizeof *chosen);
   for (size_t s = 0; s < match->series_count && chosen; s++) {
-    const strut_quantity_definition *found = find_quantity(experiment, match->series[s].of);
+    const strut_quantity_definition *found = strut_fit_quantity(experiment, match->series[s].of);
     if (!found) return false;
     chosen[s] = *found;
   }
@@ -112,6 +113,15 @@ static void prepare_run(const strut_model *model, double duration, strut_experim
   experiment->tolerance = fmin(experiment->tolerance, TOLERANCE);
   if (experiment->step > duration) experiment->step = 0.0;
   strut_experiment_choose_step(experiment, model->scene);
+}
+
+/* Even times that cover all delays. */
+static size_t spread_samples(const prediction *self, double *time) {
+  const strut_fit_match *match = self->match;
+  size_t count = 3 * match->count + 3;
+  double end = match->at[count_early(self->one, match) - 1] - self->delay[0];
+  for (size_t i = 0; i < count; i++) time[i] = end * (double)i / (double)(count - 1);
+  return count;
 }
 
 /* Times of the samples of a match, `each` of them for every number; returns how many. */
@@ -151,12 +161,109 @@ static void take_samples(const prediction *self, size_t each, const double *samp
       self->one->predicted[0][source[s].first + i] = self->one->predicted[0][source[s].first];
 }
 
+/* ---- placing ---- */
+
+/* Of so many delays the best is sought; of longer series not every number counts for that. */
+enum { MOST_DELAYS = 1000, COUNTED = 2000, NEWTON_STEPS = 4 };
+
+/* The turn with the least c'Qc, c = (cos, sin, -1): in closed form where Q is alike in both, then Newton's steps. */
+static double best_turn(double q[3][3]) {
+  double turn = atan2(q[1][2], q[0][2]), across = q[1][1] - q[0][0];
+  for (int k = 0; k < NEWTON_STEPS; k++) {
+    double c = cos(turn), s = sin(turn);
+    double slope = across * c * s + q[0][1] * (c * c - s * s) + q[0][2] * s - q[1][2] * c;
+    double bend = across * (c * c - s * s) - 4.0 * q[0][1] * c * s + q[0][2] * c + q[1][2] * s;
+    if (bend > 0.0) turn -= slope / bend;
+  }
+  return turn;
+}
+
+/* Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. */
+static double place(const strut_fit_case *one, size_t m, alignment *a) {
+  const strut_fit_match *match = &one->layout->fit->matches[m];
+  const strut_fit_source *sources = one->layout->parts[m].sources;
+  const double *from = one->predicted[0];
+  double sums[2][4][4] = {{{0.0}}}, q[3][3] = {{0.0}}, rest = 0.0;
+  for (size_t s = 0; s < match->series_count; s++)
+    for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
+      size_t at = sources[s].first + i;
+      double weight = one->weight[at], measured = one->layout->measured[at];
+      if (!(weight > 0.0)) continue;
+      double other = sources[s].partner < 0 ? 0.0 : from[sources[sources[s].partner].first + i];
+      const double row[] = {from[at], sources[s].axis ? other : -other, measured, 1.0};
+      for (int j = 0; j < 4 && sources[s].axis >= 0; j++)
+        for (int k = 0; k < 4; k++)
+          sums[sources[s].axis][j][k] += weight * weight * row[j] * row[k];
+      if (sources[s].axis < 0) rest += pow(weight * (from[at] - measured), 2.0);
+    }
+  bool shifts[2];
+  for (int axis = 0; axis < 2; axis++) {
+    double(*of)[4] = sums[axis];
+    shifts[axis] = match->align.shift && of[3][3] > 0.0;
+    for (int j = 0; j < 3; j++)
+      for (int k = 0; k < 3; k++)
+        q[j][k] += of[j][k] - (shifts[axis] ? of[j][3] * of[k][3] / of[3][3] : 0.0);
+  }
+  bool turns = match->align.rotate && sums[0][3][3] > 0.0 && sums[1][3][3] > 0.0;
+  double turn = turns ? best_turn(q) : a->number[STRUT_FIT_ROTATE], sum = rest;
+  const double by[] = {cos(turn), sin(turn), -1.0};
+  a->number[STRUT_FIT_ROTATE] = turn;
+  for (int axis = 0; axis < 2; axis++) {
+    double shift = 0.0;
+    for (int j = 0; j < 3; j++) shift -= sums[axis][3][j] * by[j];
+    a->number[axis] = shifts[axis] ? shift / sums[axis][3][3] : 0.0;
+  }
+  for (int j = 0; j < 3; j++)
+    for (int k = 0; k < 3; k++) sum += by[j] * q[j][k] * by[k];
+  return sum;
+}
+
+/* The numbers of a match delayed so far, of samples (count, series) at even times up to `end`, and placed. */
+static double place_delayed(const prediction *self, double delay, const double *sampled,
+                            size_t count, double end, alignment *a) {
+  const strut_fit_match *match = self->match;
+  const strut_fit_source *sources = self->one->layout->parts[self->index].sources;
+  size_t n = match->series_count;
+  for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
+    double at = (double)(count - 1) * fmin(fmax(match->at[i] - delay, 0.0) / end, 1.0);
+    size_t k = (size_t)fmin(at, (double)(count - 2));
+    for (size_t s = 0; s < n; s++)
+      self->one->predicted[0][sources[s].first + i] =
+          sampled[k * n + s] + (at - (double)k) * (sampled[(k + 1) * n + s] - sampled[k * n + s]);
+  }
+  a->number[STRUT_FIT_DELAY] = delay;
+  return place(self->one, self->index, a);
+}
+
+/* Finds the delay of a match, and what else places it: of those with a least sum nearby the best or second best. */
+static void find_delay(prediction *self, const double *sampled, size_t count, double end) {
+  double low = self->delay[0], high = self->delay[1];
+  size_t delays = 3 * self->match->count < MOST_DELAYS ? 3 * self->match->count : MOST_DELAYS;
+  double step = (high - low) / (double)delays, sum[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  double least[2] = {HUGE_VAL, HUGE_VAL}, at[2] = {low, low};
+  for (size_t j = 0; j <= delays + 1; j++) {
+    sum[0] = sum[1], sum[1] = sum[2], sum[2] = HUGE_VAL;
+    if (j <= delays)
+      sum[2] = place_delayed(self, low + step * (double)j, sampled, count, end, &self->align);
+    if (!(sum[1] < sum[0] && sum[1] <= sum[2] && sum[1] < least[1])) continue;
+    double bend = sum[0] - 2.0 * sum[1] + sum[2];
+    double part = isfinite(bend) ? 0.5 * (sum[0] - sum[2]) / bend : 0.0;
+    int rank = sum[1] < least[0] ? 0 : 1;
+    if (!rank) least[1] = least[0], at[1] = at[0];
+    least[rank] = sum[1], at[rank] = low + step * ((double)j - 1.0 + part);
+  }
+  int rank = isfinite(least[1]) && self->one->second == (int32_t)self->index;
+  place_delayed(self, at[rank], sampled, count, end, &self->align);
+}
+
 /* Runs the model, and samples it. */
-static strut_status predict_motion(const prediction *self, strut_setup *setup,
-                                   const strut_model *model, strut_error *error) {
+static strut_status predict_motion(prediction *self, strut_setup *setup, const strut_model *model,
+                                   strut_error *error) {
   size_t each = self->match->align.delay ? 3 : 1;
+  bool delays = self->delay[0] < self->delay[1];
   double *time = self->one->buffer, *value = time + 3 * self->match->count + 3;
-  strut_run_samples samples = {place_samples(self, each, time), time, value};
+  strut_run_samples samples = {
+      delays ? spread_samples(self, time) : place_samples(self, each, time), time, value};
   const strut_run_options options = {
       .interrupt = self->one->layout->interrupt,
       .most_evaluations = self->one->layout->plan->study->limit.evaluations,
@@ -170,12 +277,15 @@ static strut_status predict_motion(const prediction *self, strut_setup *setup,
   prepare_run(model, end, &setup->experiment);
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);
-  if (!status) take_samples(self, each, value);
+  if (!status && delays)
+    find_delay(self, value, samples.count, end);
+  else if (!status)
+    take_samples(self, each, value);
   return status;
 }
 
-static strut_status predict_curve(const prediction *self, strut_setup *setup,
-                                  const strut_model *model, strut_error *error) {
+static strut_status predict_curve(prediction *self, strut_setup *setup, const strut_model *model,
+                                  strut_error *error) {
   const strut_fit_layout *layout = self->one->layout;
   const strut_fit_source *source = layout->parts[self->index].sources;
   strut_path path = {0};
@@ -193,7 +303,7 @@ static strut_status predict_curve(const prediction *self, strut_setup *setup,
 }
 
 /* The scene at the values, compiled where it starts. */
-static bool predict_scene(const prediction *self) {
+static bool predict_scene(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
   const strut_sweep_scenes *scenes = &layout->plan->scenes;
   strut_setup setup;
@@ -218,7 +328,7 @@ static void give_values(const void *context, int64_t point, strut_study_value *v
 }
 
 /* What a study with the match's `compute` keeps. */
-static bool predict_table(const prediction *self) {
+static bool predict_table(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
   const strut_fit_source *source = layout->parts[self->index].sources;
   const strut_sweep_options options = {
@@ -237,6 +347,28 @@ static bool predict_table(const prediction *self) {
   return fine;
 }
 
+/* The range of the delay that is to be found. */
+static void choose_delays(prediction *self) {
+  const strut_fit_layout *layout = self->one->layout;
+  bool given = !self->one->placing || self->one->second == STRUT_FIT_GIVEN_DELAYS;
+  for (size_t i = 0; i < layout->aligned_count && !given; i++) {
+    if (layout->aligned[i].match != self->index || layout->aligned[i].what != STRUT_FIT_DELAY)
+      continue;
+    self->delay[0] = strut_fit_value(layout, i, layout->low[i]);
+    self->delay[1] = strut_fit_value(layout, i, layout->high[i]);
+  }
+}
+
+/* Places a match that has been predicted, with the delay that has been found by then. */
+static void keep_placing(prediction *self) {
+  const strut_fit_layout *layout = self->one->layout;
+  self->one->placed_sum += place(self->one, self->index, &self->align);
+  for (size_t i = 0; i < layout->aligned_count; i++)
+    if (layout->aligned[i].match == self->index)
+      self->one->placing[i] =
+          strut_fit_parameter(layout, i, self->align.number[layout->aligned[i].what]);
+}
+
 /* Fills what the model predicts at the parameters, unless that is known. */
 static bool predict(strut_fit_case *one, const double *parameters) {
   const strut_fit_layout *layout = one->layout;
@@ -247,12 +379,14 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   one->known = values != NULL;
   if (!values) one->status = strut_no_memory(&one->error, "");
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
-    prediction p = {one, &fit->matches[m], m, align(layout, m, parameters), values};
+    prediction p = {one, &fit->matches[m], m, align(layout, m, parameters), {0.0, 0.0}, values};
     if ((int32_t)m == one->left_out) continue;
+    choose_delays(&p);
     strut_fit_fill_values(layout, 0, parameters, values);
     for (size_t k = 0; k < fit->set_count; k++)
       values[fit->column + fit->variable_count + k] = p.match->values[k];
     one->known = p.match->kind == STRUT_FIT_TABLE ? predict_table(&p) : predict_scene(&p);
+    if (one->known && one->placing) keep_placing(&p);
   }
   strut_release(values);
   memcpy(one->latest, parameters, bytes);
@@ -316,6 +450,14 @@ static bool find_residuals(void *context, const double *parameters, double *resi
     residual[k] =
         one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - one->layout->measured[k]) : 0.0;
   return true;
+}
+
+double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters) {
+  if (!one->layout->aligned_count) return HUGE_VAL;
+  one->known = false, one->placing = parameters, one->second = second, one->placed_sum = 0.0;
+  bool fine = predict(one, parameters);
+  one->known = false, one->placing = NULL;
+  return fine ? one->placed_sum : HUGE_VAL;
 }
 
 /* How fast the numbers of a match change with its delay, not aligned. */
@@ -382,234 +524,3 @@ bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) 
 }
 
 void strut_fit_case_free(strut_fit_case *one) { strut_arena_free(&one->arena); }
-
-/* ---- layout ---- */
-
-static const double MOST_TURN = 6.283185307179586;
-
-/* The number of a column among those of numbers, or -1. */
-static int64_t find_number(const strut_sweep_plan *plan, const char *name) {
-  int64_t number = 0;
-  for (size_t i = 0; i < plan->column_count; i++) {
-    if (plan->columns[i].word) continue;
-    if (i >= plan->axis_columns && strcmp(plan->columns[i].name, name) == 0) return number;
-    number++;
-  }
-  return -1;
-}
-
-/* The place whose coordinate a quantity is, if it is one, and which. */
-static int axis_of(const strut_quantity_definition *quantity, strut_column *place) {
-  if (!quantity || quantity->length != 1 ||
-      quantity->program[0].operation != STRUT_OPERATION_COLUMN)
-    return -1;
-  *place = quantity->program[0].column;
-  switch ((int)place->kind) {
-    case STRUT_COLUMN_NODE_X:
-    case STRUT_COLUMN_CENTRE_X: return 0;
-    case STRUT_COLUMN_NODE_Y:
-    case STRUT_COLUMN_CENTRE_Y: place->kind--; return 1;
-    default: return -1;
-  }
-}
-
-static strut_status refuse(strut_fit_layout *layout, size_t m, size_t s, const char *why,
-                           strut_error *error) {
-  const strut_fit_match *match = &layout->fit->matches[m];
-  layout->refused = &match->series[s];
-  return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s': '%.80s' %s", match->name,
-                    layout->refused->of, why);
-}
-
-/* What the series of a match are in the model. */
-static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut_setup *setup,
-                                 strut_error *error) {
-  const strut_fit_match *match = &layout->fit->matches[m];
-  strut_fit_source *sources = layout->parts[m].sources =
-      strut_arena_allocate(&layout->arena, match->series_count, sizeof *sources);
-  strut_column *places = strut_arena_allocate(&layout->arena, match->series_count, sizeof *places);
-  if (!sources || !places) return strut_no_memory(error, "");
-  for (size_t s = 0; s < match->series_count; s++) {
-    const strut_quantity_definition *quantity =
-        find_quantity(&setup->experiment, match->series[s].of);
-    bool moves = match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST;
-    int64_t column = match->kind == STRUT_FIT_TABLE
-                         ? find_number(&layout->parts[m].table, match->series[s].of)
-                         : 0;
-    if (column < 0)
-      return refuse(layout, m, s, "is no column of numbers of that computation", error);
-    bool follows = match->kind != STRUT_FIT_CURVE || setup->experiment.stage_count ||
-                   (layout->plan->study->path.over &&
-                    strut_coordinate_find(&setup->scene, layout->plan->study->path.over) >= 0);
-    if (!follows)
-      return refuse(layout, m, s, "needs a 'path' over a coordinate, such as b.y", error);
-    const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
-    if (unit && strcmp(unit, match->series[s].unit) != 0)
-      return refuse(layout, m, s, "has another unit than its numbers", error);
-    sources[s] =
-        (strut_fit_source){.first = layout->count, .partner = -1, .column = (size_t)column};
-    sources[s].axis = moves ? axis_of(quantity, &places[s]) : -1;
-    for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
-      if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
-          places[k].item == places[s].item)
-        sources[s].partner = (int32_t)k, sources[k].partner = (int32_t)s;
-    memcpy(layout->measured + layout->count, match->series[s].measured,
-           match->count * sizeof(double));
-    layout->count += match->count;
-  }
-  for (size_t s = 0; s < match->series_count && match->align.rotate; s++)
-    if (sources[s].axis >= 0 && sources[s].partner < 0)
-      return refuse(layout, m, s, "cannot be rotated without the other coordinate of the same node",
-                    error);
-  return STRUT_OK;
-}
-
-/* The range of the numbers of a match, which the size of its motions is taken for. */
-static double range_of(const strut_fit_match *match) {
-  double least = HUGE_VAL, most = -HUGE_VAL;
-  for (size_t s = 0; s < match->series_count; s++)
-    for (size_t i = 0; i < match->count; i++) { /* comparisons leave out NANs */
-      least = fmin(least, match->series[s].measured[i]);
-      most = fmax(most, match->series[s].measured[i]);
-    }
-  return most > least ? most - least : fmax(fabs(most), 1e-12);
-}
-
-/*
- * Turns and delays have a range, as parameters do: by a delay a motion begins no further from the run's start, or from
- * its own first time, than it lasts.
- */
-static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
-                        double scale) {
-  static const char *const names[] = {"shift_x", "shift_y", "rotate", "delay"};
-  static const char *const units[] = {"m", "m", "rad", "s"};
-  const strut_fit_match *match = &layout->fit->matches[m];
-  bool delay = what == STRUT_FIT_DELAY;
-  const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
-  double from = start - range[what], to = start + range[what];
-  if (delay) from = fmin(from, -scale), to = fmax(to, match->at[0] + scale);
-  const char *name =
-      strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
-  size_t i = layout->aligned_count++;
-  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale, {0.0, 0.0}};
-  if (delay || what == STRUT_FIT_ROTATE)
-    layout->aligned[i].spread[0] = 0.5 * from, layout->aligned[i].spread[1] = 0.5 * to;
-  if (delay) layout->aligned[i].spread[0] = from, layout->aligned[i].spread[1] = to;
-  layout->low[i] = 1.0 + from / scale;
-  layout->high[i] = 1.0 + to / scale;
-  return name != NULL;
-}
-
-/* Has a series numbers? A coordinate beside a measured one may have none. */
-static bool is_measured(const strut_fit_match *match, size_t s) {
-  size_t i = 0;
-  while (i < match->count && isnan(match->series[s].measured[i])) i++;
-  return i < match->count;
-}
-
-static bool add_alignments(strut_fit_layout *layout, size_t m) {
-  const strut_fit_match *match = &layout->fit->matches[m];
-  bool fine = true;
-  double range = range_of(match);
-  for (int axis = 0; axis < 2 && match->align.shift; axis++) {
-    bool there = false;
-    for (size_t s = 0; s < match->series_count; s++)
-      there = there || (layout->parts[m].sources[s].axis == axis && is_measured(match, s));
-    if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, 0.0, range) && fine;
-  }
-  if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
-  if (match->align.delay)
-    fine = add_aligned(layout, m, STRUT_FIT_DELAY,
-                       match->at[0] >= 0.0 && match->at[0] <= span_of(match) ? 0.0 : match->at[0],
-                       span_of(match)) &&
-           fine;
-  return fine;
-}
-
-/* Keeps all columns that the study can have. */
-static void keep_all(strut_study *study) {
-  const strut_study own = *study;
-  study->keep = (strut_keep_set){{0}};
-  for (unsigned k = 0; k < STRUT_KEEP_COUNT; k++) {
-    bool there = strut_kept_word_at(k)->of >> own.compute & 1u;
-    if (k == STRUT_KEEP_STIFFNESS) there = there && own.goal.stiffness_node;
-    if (k == STRUT_KEEP_SHAPE) there = there && (own.goal.like || own.goal.shape_count);
-    if (k == STRUT_KEEP_CURVE) there = there && own.goal.curve_count;
-    if (there) strut_keep_add(&study->keep, k);
-  }
-}
-
-/* The study that computes the columns of a match, or its path. */
-static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *error) {
-  const strut_fit_match *match = &layout->fit->matches[m];
-  layout->parts[m].study = *layout->plan->study;
-  layout->parts[m].study.compute =
-      match->kind == STRUT_FIT_CURVE ? (uint32_t)STRUT_COMPUTE_PATH : match->compute;
-  if (match->kind != STRUT_FIT_TABLE) return STRUT_OK;
-  keep_all(&layout->parts[m].study);
-  return strut_sweep_plan_make(&layout->parts[m].study, &layout->plan->scenes,
-                               &layout->parts[m].table, error);
-}
-
-static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
-  const strut_sweep_plan *plan = layout->plan;
-  strut_setup setup;
-  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
-  if (!values) return strut_no_memory(error, "");
-  strut_grid_values(plan->study, 0, values);
-  strut_status status = plan->scenes.setup(plan->scenes.context, values, &setup, error);
-  strut_release(values);
-  if (status) return status;
-  for (size_t m = 0; m < layout->fit->match_count && !status; m++) {
-    const strut_fit_match *match = &layout->fit->matches[m];
-    status = make_table(layout, m, error);
-    if (!status) status = find_sources(layout, m, &setup, error);
-    if (!status && !add_alignments(layout, m)) status = strut_no_memory(error, "");
-    layout->parts[m].noise = match->noise > 0.0 ? match->noise : range_of(match);
-    layout->noise_known = layout->noise_known && match->noise > 0.0;
-  }
-  strut_setup_free(&setup);
-  return status;
-}
-
-strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_flag *interrupt,
-                                   strut_fit_layout *layout, strut_error *error) {
-  const strut_study_fit *fit = plan->study->fit;
-  strut_arena *arena = &layout->arena;
-  size_t count = 0;
-  *layout =
-      (strut_fit_layout){.plan = plan, .fit = fit, .interrupt = interrupt, .noise_known = true};
-  for (size_t m = 0; m < fit->match_count; m++)
-    count += fit->matches[m].count * fit->matches[m].series_count;
-  size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
-  layout->aligned = strut_arena_allocate(arena, most, sizeof *layout->aligned);
-  layout->parts = strut_arena_allocate(arena, fit->match_count, sizeof *layout->parts);
-  layout->measured = strut_arena_allocate(arena, count, sizeof *layout->measured);
-  layout->low = strut_arena_allocate(arena, all, sizeof *layout->low);
-  layout->high = strut_arena_allocate(arena, all, sizeof *layout->high);
-  layout->standing = strut_equilibrium_cache_create();
-  if (!layout->aligned || !layout->parts || !layout->measured || !layout->low || !layout->high ||
-      !layout->standing)
-    return strut_no_memory(error, "");
-  strut_status status = find_all(layout, error);
-  layout->parameters = layout->aligned_count + fit->variable_count;
-  for (size_t k = count; k-- > 0;)
-    if (isnan(layout->measured[k])) count--;
-  if (!status && count < layout->parameters) {
-    layout->refused = fit->matches[0].series;
-    status = strut_fail(error, STRUT_BAD_SCENE,
-                        "%zu parameters and alignments need as many numbers, found %zu",
-                        layout->parameters, count);
-  }
-  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
-    layout->low[i] = 1.0, layout->high[i] = 2.0;
-  return status;
-}
-
-void strut_fit_layout_free(strut_fit_layout *layout) {
-  for (size_t m = 0; layout->fit && layout->parts && m < layout->fit->match_count; m++)
-    strut_sweep_plan_free(&layout->parts[m].table);
-  strut_equilibrium_cache_free(layout->standing);
-  strut_arena_free(&layout->arena);
-  *layout = (strut_fit_layout){0};
-}

@@ -22,30 +22,19 @@ bool strut_search_has_generations(strut_search_method method) {
   return method == STRUT_SEARCH_CMA || method == STRUT_SEARCH_NSGA2;
 }
 
-/* Is the largest number that divides both 1? */
-static bool is_coprime(int64_t a, int64_t b) {
-  while (b) {
-    const int64_t rest = a % b;
-    a = b, b = rest;
-  }
-  return a == 1;
-}
-
-/* Asks for all points of the grid at once, or for as many as may be, from the start on and spread over it. */
+/* Asks for all points of the grid at once, or for as many as may be, from the start on. */
 static bool look_at_grid(const strut_search_task *task, const strut_search_asker *asker) {
   const size_t n = task->dimension;
   strut_arena arena = {0};
-  int64_t all = 1, at = 0, stride = 1;
+  int64_t all = 1, at = 0;
   for (size_t i = 0; i < n; i++) {
     at += all * (int64_t)(task->start[i] * (double)task->counts[i]);
     all *= task->counts[i];
   }
   const size_t count = (size_t)(all < task->evaluations ? all : task->evaluations);
-  if (all > task->evaluations) stride = (int64_t)(0.618 * (double)all);
-  while (!is_coprime(stride, all)) stride++;
   double *points = strut_arena_allocate(&arena, count * n, sizeof *points);
   double *values = strut_arena_allocate(&arena, count * (2 + task->conditions), sizeof *values);
-  for (size_t k = 0; points && k < count; k++, at = (at + stride) % all) {
+  for (size_t k = 0; points && k < count; k++, at = (at + 1) % all) {
     int64_t rest = at;
     for (size_t i = 0; i < n; i++) {
       points[k * n + i] = ((double)(rest % task->counts[i]) + 0.5) / (double)task->counts[i];

@@ -302,7 +302,7 @@
 #define STRUT_FIT_KEYS(X) \
   X(FIT, OVER, "over", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [variable](#variable)", THINGS(VARIABLE), "The parameters to find, up to 20, by their ranges; the first start is at `start`.") \
   X(FIT, MATCH, "match", THINGS, NONE, ANY, "", REQUIRED, 0, "the keys of a [match](#match), and what is compared", THINGS(MATCH), "Sets of measured numbers, up to 10, all of which count together.") \
-  X(FIT, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "8", OPTIONAL, 0, "", FIELD(strut_study_fit, starts), "Number of fits from different starts; all but the first begin anywhere in the ranges, every second one with other turns and delays too.") \
+  X(FIT, STARTS, "starts", NUMBER, NONE, WHOLE(1, 1000), "8", OPTIONAL, 0, "", FIELD(strut_study_fit, starts), "Number of fits from different starts; all but the first begin anywhere in the ranges.") \
   X(FIT, SEED, "seed", NUMBER, NONE, WHOLE(1, 4294967295), "1", OPTIONAL, 0, "", FIELD(strut_study_fit, seed), "Seed of the starts; the same seed gives the same starts.")
 
 #define STRUT_MATCH_KEYS(X) \

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the numbers of all matches are in the model, and the numbers of their alignments. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/study/fit/fit_parts.h"
+#include "engine/study/sweep/grid.h"
+
+static const double MOST_TURN = 6.283185307179586;
+
+/* The number of a column among those of numbers, or -1. */
+static int64_t find_number(const strut_sweep_plan *plan, const char *name) {
+  int64_t number = 0;
+  for (size_t i = 0; i < plan->column_count; i++) {
+    if (plan->columns[i].word) continue;
+    if (i >= plan->axis_columns && strcmp(plan->columns[i].name, name) == 0) return number;
+    number++;
+  }
+  return -1;
+}
+
+/* The place whose coordinate a quantity is, if it is one, and which. */
+static int axis_of(const strut_quantity_definition *quantity, strut_column *place) {
+  if (!quantity || quantity->length != 1 ||
+      quantity->program[0].operation != STRUT_OPERATION_COLUMN)
+    return -1;
+  *place = quantity->program[0].column;
+  switch ((int)place->kind) {
+    case STRUT_COLUMN_NODE_X:
+    case STRUT_COLUMN_CENTRE_X: return 0;
+    case STRUT_COLUMN_NODE_Y:
+    case STRUT_COLUMN_CENTRE_Y: place->kind--; return 1;
+    default: return -1;
+  }
+}
+
+static strut_status refuse(strut_fit_layout *layout, size_t m, size_t s, const char *why,
+                           strut_error *error) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  layout->refused = &match->series[s];
+  return strut_fail(error, STRUT_BAD_SCENE, "match '%.60s': '%.80s' %s", match->name,
+                    layout->refused->of, why);
+}
+
+/* What the series of a match are in the model. */
+static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut_setup *setup,
+                                 strut_error *error) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  strut_fit_source *sources = layout->parts[m].sources =
+      strut_arena_allocate(&layout->arena, match->series_count, sizeof *sources);
+  strut_column *places = strut_arena_allocate(&layout->arena, match->series_count, sizeof *places);
+  if (!sources || !places) return strut_no_memory(error, "");
+  for (size_t s = 0; s < match->series_count; s++) {
+    const strut_quantity_definition *quantity =
+        strut_fit_quantity(&setup->experiment, match->series[s].of);
+    bool moves = match->kind == STRUT_FIT_MOTION || match->kind == STRUT_FIT_REST;
+    int64_t column = match->kind == STRUT_FIT_TABLE
+                         ? find_number(&layout->parts[m].table, match->series[s].of)
+                         : 0;
+    if (column < 0)
+      return refuse(layout, m, s, "is no column of numbers of that computation", error);
+    bool follows = match->kind != STRUT_FIT_CURVE || setup->experiment.stage_count ||
+                   (layout->plan->study->path.over &&
+                    strut_coordinate_find(&setup->scene, layout->plan->study->path.over) >= 0);
+    if (!follows)
+      return refuse(layout, m, s, "needs a 'path' over a coordinate, such as b.y", error);
+    const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
+    if (unit && strcmp(unit, match->series[s].unit) != 0)
+      return refuse(layout, m, s, "has another unit than its numbers", error);
+    sources[s] =
+        (strut_fit_source){.first = layout->count, .partner = -1, .column = (size_t)column};
+    sources[s].axis = moves ? axis_of(quantity, &places[s]) : -1;
+    for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
+      if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
+          places[k].item == places[s].item)
+        sources[s].partner = (int32_t)k, sources[k].partner = (int32_t)s;
+    memcpy(layout->measured + layout->count, match->series[s].measured,
+           match->count * sizeof(double));
+    layout->count += match->count;
+  }
+  for (size_t s = 0; s < match->series_count && match->align.rotate; s++)
+    if (sources[s].axis >= 0 && sources[s].partner < 0)
+      return refuse(layout, m, s, "cannot be rotated without the other coordinate of the same node",
+                    error);
+  return STRUT_OK;
+}
+
+/* The range of the numbers of a match, which the size of its motions is taken for. */
+static double range_of(const strut_fit_match *match) {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (size_t s = 0; s < match->series_count; s++)
+    for (size_t i = 0; i < match->count; i++) { /* comparisons leave out NANs */
+      least = fmin(least, match->series[s].measured[i]);
+      most = fmax(most, match->series[s].measured[i]);
+    }
+  return most > least ? most - least : fmax(fabs(most), 1e-12);
+}
+
+/*
+ * Turns and delays have a range, as parameters do: by a delay a motion begins no further from the run's start, or from
+ * its own first time, than it lasts.
+ */
+static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
+                        double scale) {
+  static const char *const names[] = {"shift_x", "shift_y", "rotate", "delay"};
+  static const char *const units[] = {"m", "m", "rad", "s"};
+  const strut_fit_match *match = &layout->fit->matches[m];
+  bool delay = what == STRUT_FIT_DELAY;
+  const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
+  double from = start - range[what], to = start + range[what];
+  if (delay) from = fmin(from, -scale), to = fmax(to, match->at[0] + scale);
+  const char *name =
+      strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
+  size_t i = layout->aligned_count++;
+  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale};
+  layout->low[i] = 1.0 + from / scale;
+  layout->high[i] = 1.0 + to / scale;
+  return name != NULL;
+}
+
+/* Has a series numbers? A coordinate beside a measured one may have none. */
+static bool is_measured(const strut_fit_match *match, size_t s) {
+  size_t i = 0;
+  while (i < match->count && isnan(match->series[s].measured[i])) i++;
+  return i < match->count;
+}
+
+static bool add_alignments(strut_fit_layout *layout, size_t m) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  bool fine = true;
+  double range = range_of(match);
+  for (int axis = 0; axis < 2 && match->align.shift; axis++) {
+    bool there = false;
+    for (size_t s = 0; s < match->series_count; s++)
+      there = there || (layout->parts[m].sources[s].axis == axis && is_measured(match, s));
+    if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, 0.0, range) && fine;
+  }
+  if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
+  if (match->align.delay)
+    fine = add_aligned(
+               layout, m, STRUT_FIT_DELAY,
+               match->at[0] >= 0.0 && match->at[0] <= strut_fit_span(match) ? 0.0 : match->at[0],
+               strut_fit_span(match)) &&
+           fine;
+  return fine;
+}
+
+/* Keeps all columns that the study can have. */
+static void keep_all(strut_study *study) {
+  const strut_study own = *study;
+  study->keep = (strut_keep_set){{0}};
+  for (unsigned k = 0; k < STRUT_KEEP_COUNT; k++) {
+    bool there = strut_kept_word_at(k)->of >> own.compute & 1u;
+    if (k == STRUT_KEEP_STIFFNESS) there = there && own.goal.stiffness_node;
+    if (k == STRUT_KEEP_SHAPE) there = there && (own.goal.like || own.goal.shape_count);
+    if (k == STRUT_KEEP_CURVE) there = there && own.goal.curve_count;
+    if (there) strut_keep_add(&study->keep, k);
+  }
+}
+
+/* The study that computes the columns of a match, or its path. */
+static strut_status make_table(strut_fit_layout *layout, size_t m, strut_error *error) {
+  const strut_fit_match *match = &layout->fit->matches[m];
+  layout->parts[m].study = *layout->plan->study;
+  layout->parts[m].study.compute =
+      match->kind == STRUT_FIT_CURVE ? (uint32_t)STRUT_COMPUTE_PATH : match->compute;
+  if (match->kind != STRUT_FIT_TABLE) return STRUT_OK;
+  keep_all(&layout->parts[m].study);
+  return strut_sweep_plan_make(&layout->parts[m].study, &layout->plan->scenes,
+                               &layout->parts[m].table, error);
+}
+
+static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
+  const strut_sweep_plan *plan = layout->plan;
+  strut_setup setup;
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  if (!values) return strut_no_memory(error, "");
+  strut_grid_values(plan->study, 0, values);
+  strut_status status = plan->scenes.setup(plan->scenes.context, values, &setup, error);
+  strut_release(values);
+  if (status) return status;
+  for (size_t m = 0; m < layout->fit->match_count && !status; m++) {
+    const strut_fit_match *match = &layout->fit->matches[m];
+    status = make_table(layout, m, error);
+    if (!status) status = find_sources(layout, m, &setup, error);
+    if (!status && !add_alignments(layout, m)) status = strut_no_memory(error, "");
+    layout->parts[m].noise = match->noise > 0.0 ? match->noise : range_of(match);
+    layout->noise_known = layout->noise_known && match->noise > 0.0;
+  }
+  strut_setup_free(&setup);
+  return status;
+}
+
+strut_status strut_fit_layout_make(const strut_sweep_plan *plan, const strut_flag *interrupt,
+                                   strut_fit_layout *layout, strut_error *error) {
+  const strut_study_fit *fit = plan->study->fit;
+  strut_arena *arena = &layout->arena;
+  size_t count = 0;
+  *layout =
+      (strut_fit_layout){.plan = plan, .fit = fit, .interrupt = interrupt, .noise_known = true};
+  for (size_t m = 0; m < fit->match_count; m++)
+    count += fit->matches[m].count * fit->matches[m].series_count;
+  size_t most = STRUT_FIT_ALIGNS_COUNT * fit->match_count, all = most + fit->variable_count;
+  layout->aligned = strut_arena_allocate(arena, most, sizeof *layout->aligned);
+  layout->parts = strut_arena_allocate(arena, fit->match_count, sizeof *layout->parts);
+  layout->measured = strut_arena_allocate(arena, count, sizeof *layout->measured);
+  layout->low = strut_arena_allocate(arena, all, sizeof *layout->low);
+  layout->high = strut_arena_allocate(arena, all, sizeof *layout->high);
+  layout->standing = strut_equilibrium_cache_create();
+  if (!layout->aligned || !layout->parts || !layout->measured || !layout->low || !layout->high ||
+      !layout->standing)
+    return strut_no_memory(error, "");
+  strut_status status = find_all(layout, error);
+  layout->parameters = layout->aligned_count + fit->variable_count;
+  for (size_t k = count; k-- > 0;)
+    if (isnan(layout->measured[k])) count--;
+  if (!status && count < layout->parameters) {
+    layout->refused = fit->matches[0].series;
+    status = strut_fail(error, STRUT_BAD_SCENE,
+                        "%zu parameters and alignments need as many numbers, found %zu",
+                        layout->parameters, count);
+  }
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    layout->low[i] = 1.0, layout->high[i] = 2.0;
+  return status;
+}
+
+void strut_fit_layout_free(strut_fit_layout *layout) {
+  for (size_t m = 0; layout->fit && layout->parts && m < layout->fit->match_count; m++)
+    strut_sweep_plan_free(&layout->parts[m].table);
+  strut_equilibrium_cache_free(layout->standing);
+  strut_arena_free(&layout->arena);
+  *layout = (strut_fit_layout){0};
+}
