@@ -27,7 +27,7 @@ YAML
 
 # What check prints: a table of each kind.
 expect 0 check all.yaml
-out_has "  hinges             1" "a, p, b" "compression" "table" \
+out_has "running cables                 1" "elbow" "a, p, b" "compression" "table" \
   "stop stiffness" "200 kN/m" "100 deg"
 expect 0 check all.yaml --json
 holds '.running_cables == 1 and .laws == 2 and .stops == 1 and .members.rope.nodes == ["a", "p", "b"]
