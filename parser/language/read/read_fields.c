@@ -129,7 +129,7 @@ int strut_key_named(strut_reader *reader, strut_section section, const strut_tre
 
 /* The words of a key, for suggestions. */
 typedef struct words_context {
-  char word[32][24];
+  char word[64][24];
   int count;
 } words_context;
 
@@ -158,7 +158,7 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   strut_words_text(key->words, expected, sizeof expected);
   if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
   words_context words = {.count = 0};
-  while (words.count < 32 &&
+  while (words.count < 64 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
   return strut_report_error(
