@@ -191,17 +191,6 @@ strut_member_values strut_member_measure_at(const strut_model *model, const stru
   return values;
 }
 
-void strut_members_measure(const strut_model *model, const strut_state *state, double *length,
-                           double *force) {
-  for (int32_t j = 0; j < model->members.count; j++) {
-    strut_member_values values = strut_member_measure_at(model, state, j, state->q, state->v);
-    length[j] = values.length;
-    force[j] = values.force;
-  }
-  if (state->rigid) strut_rigid_add_tensions(state->rigid, force);
-  strut_actuator_forces_add_tensions(model, state, force);
-}
-
 /*
  * Forces of more members than the energy balance adds up in one sum: called, so that smaller structures do
  * not pay for it.

@@ -41,9 +41,6 @@ typedef struct strut_member_values {
 STRUT_API strut_member_values strut_member_measure_at(const strut_model *model,
                                                       const strut_state *state, int32_t member,
                                                       const double *q, const double *velocity);
-/** Lengths [m] and forces [N] (tension positive) of all members at the state, (count) each. */
-STRUT_API void strut_members_measure(const strut_model *model, const strut_state *state,
-                                     double *length, double *force);
 
 /*
  * The energies that a state stores, and the work that constant loads have done.

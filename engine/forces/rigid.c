@@ -413,7 +413,3 @@ double strut_rigid_tension(const strut_rigid *rigid, int32_t member) {
     if (rigid->member[r] == member) return rigid->tension[r];
   return 0.0;
 }
-
-void strut_rigid_add_tensions(const strut_rigid *rigid, double *force) {
-  for (int32_t r = 0; r < rigid->bars; r++) force[rigid->member[r]] += rigid->tension[r];
-}

@@ -64,9 +64,7 @@ void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *ac
                         double *scratch);
 /** Puts q back onto the lengths, to 1e-12 of them, and takes stretching out of v. False: trouble. */
 bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *velocity);
-/** Adds the bars' tensions to `force`, (members). */
-void strut_rigid_add_tensions(const strut_rigid *rigid, double *force);
-/** That of one member [N]; 0 where it is no rigid bar. */
+/** Tension of a member [N]; 0 where it is no rigid bar. */
 double strut_rigid_tension(const strut_rigid *rigid, int32_t member);
 
 #endif

@@ -115,6 +115,8 @@ parts:
     actuators: {drive: {member: driven, signal: {sine: {amplitude: 0.1, frequency: 1}}}}
 place: {one: {part: arm}, two: {part: arm, set: {driven: which}, at: [2, 0]}, three: {part: arm, at: [4, 0], set: {driven: right}}}
 YAML
+sed "s/fixed: both/fixed: true/" hop.yaml >true.yaml
+shows 0 "fixed: both" export true.yaml
 shows 0 "one.drive: {member: one.left" export arms.yaml
 shows 0 "two.drive: {member: two.right" export arms.yaml
 shows 0 "three.drive: {member: three.right" export arms.yaml

@@ -45,7 +45,7 @@ static double pull(strut_member_kind kind, double stretch, double rate) {
   setup.scene.nodes[1].velocity[0] = rate;
   OWN(motion) m = motion_begin(&setup.scene, STEP);
   strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
-  strut_members_measure(m.model, m.state, &length, &tension);
+  motion_members(m.model, m.state, &length, &tension);
   double force = -m.state->latest->force[2];
   assert_near(tension, force, 1e-14 * fabs(force)); /* so slack: exactly 0 */
   assert_true(length == 1 + stretch);

@@ -54,7 +54,7 @@ static void check_forces(const strut_scene *scene, const strut_model *model, str
       fmax(slow_largest(slow->force, n), slow_largest(slow->tension, scene->member_count));
   scale = fmax(scale, slow_largest(slow->normal, scene->contact_count));
   strut_forces_evaluate(model, state, t, state->q, state->v);
-  strut_members_measure(model, state, length, tension);
+  motion_members(model, state, length, tension);
   for (size_t i = 0; i < n; i++)
     assert_near(state->latest->force[i], (double)slow->force[i], TOLERANCE * scale);
   for (size_t j = 0; j < scene->member_count; j++)

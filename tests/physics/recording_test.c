@@ -141,7 +141,7 @@ TEST(every_channel_holds_what_it_says) {
     const double *row = first.row[i], *energy = row + first.offset[5];
     double length[9], force[9];
     strut_forces_evaluate(m.model, m.state, row[0], m.state->q, m.state->v);
-    strut_members_measure(m.model, m.state, length, force);
+    motion_members(m.model, m.state, length, force);
     strut_energies stored = strut_energy_evaluate(m.model, m.state, row[0]);
     assert_memory_equal(row + first.offset[0], m.state->q, 10 * sizeof *row);
     assert_memory_equal(row + first.offset[1], m.state->v, 10 * sizeof *row);

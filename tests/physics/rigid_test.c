@@ -30,7 +30,7 @@ TEST(pendulum_has_the_period_of_the_elliptic_integral) {
     error[k] = fabs(m.state->q[2]) / L;
     double length[1], force[1];
     strut_forces_evaluate(m.model, m.state, 0, m.state->q, m.state->v);
-    strut_members_measure(m.model, m.state, length, force);
+    motion_members(m.model, m.state, length, force);
     assert_relative(length[0], L, 1e-12);
     assert_relative(force[0], 3 * 2 * G, 1e-6); /* weight and centrifugal force */
   }

@@ -115,7 +115,7 @@ static void check_rates(fixture *f, coverage *seen) {
     assert_near(state->latest->force[f->m.model->feedback.base + (int32_t)k], (double)r.z[k],
                 TOLERANCE * (scale + slow_largest(r.z, f->slow.states)));
   check_contacts(f, &r, scale, seen);
-  strut_members_measure(f->m.model, state, length, force);
+  motion_members(f->m.model, state, length, force);
   for (size_t j = 0; j < scene->member_count; j++)
     assert_near(force[j], (double)slow_world_member(&f->slow, &f->at, j), TOLERANCE * scale);
 }

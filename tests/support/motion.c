@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/support/motion.h"
 
+#include "engine/forces/observe.h"
 #include "engine/scene/checks/check.h"
 
 static void check(const strut_scene *scene) {
@@ -45,6 +46,15 @@ motion motion_begin_by(const strut_setup *setup, const char *method, double step
 
 void motion_steps(motion *m, int64_t count) {
   m->method->advance(m->model, m->state, m->workspace, m->step, count);
+}
+
+void motion_members(const strut_model *model, const strut_state *state, double *length,
+                    double *force) {
+  strut_instant instant = {.model = model, .state = state, .q = state->q, .v = state->v};
+  for (int32_t j = 0; j < model->members.count; j++) {
+    length[j] = strut_observe_item(&instant, STRUT_COLUMN_LENGTH, j);
+    force[j] = strut_observe_item(&instant, STRUT_COLUMN_FORCE, j);
+  }
 }
 
 void motion_free(motion *m) {

@@ -32,6 +32,10 @@ motion motion_begin_by(const strut_setup *setup, const char *method, double step
 void motion_steps(motion *m, int64_t count);
 void motion_free(motion *m);
 
+/** Lengths [m] and forces [N] (tension positive) of all members, as they are recorded. */
+void motion_members(const strut_model *model, const strut_state *state, double *length,
+                    double *force);
+
 /** Checks and compiles; whatever fails, fails the test. Free it with strut_model_free. */
 strut_model *motion_compile(const strut_scene *scene);
 

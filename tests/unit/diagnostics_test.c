@@ -191,9 +191,9 @@ static const char list_umlaut[] =
     "eres";
 
 static void expect_suggestion(const char *word, const char *expected) {
-  static const char *const list[] = {"stiffness",   "damping",   "mass", "nodes",
-                                     "rest_length", "kind",      "mm",   "a",
-                                     "node",        list_umlaut, NULL};
+  static const char *const list[] = {"stiffness",   "damping",   "mass",  "nodes",
+                                     "rest_length", "kind",      "mm",    "a",
+                                     "node",        list_umlaut, "com.x", NULL};
   const char *got = strut_did_you_mean(word, from_list, list);
   if (!expected)
     assert_null(got);
@@ -218,7 +218,8 @@ TEST(suggestions_are_near) {
   expect_suggestion("kidn", "kind");
   /* Two letters but four bytes away: letters count. */
   expect_suggestion("auseres", list_umlaut);
-  expect_suggestion("x", NULL); /* nothing in common */
+  expect_suggestion("com", "com.x"); /* what it begins */
+  expect_suggestion("x", NULL);      /* nothing in common */
   expect_suggestion("xy", NULL);
   expect_suggestion("", NULL);
   expect_suggestion("completely", NULL);

@@ -235,14 +235,6 @@ double strut_actuator_force_on(const strut_model *model, const strut_state *stat
   return sum;
 }
 
-void strut_actuator_forces_add_tensions(const strut_model *model, const strut_state *state,
-                                        double *force) {
-  const strut_actuator_force_table *table = &model->actuator_forces;
-  for (int32_t i = 0; i < table->count; i++)
-    if (table->item[i].member >= 0)
-      force[table->item[i].member] += state->latest->actuator_force[i];
-}
-
 STRUT_CLONES
 static void evaluate_ahead(const strut_model *model, strut_drives_ahead *drives) {
   const strut_drive_table *table = &model->drives;

@@ -59,9 +59,6 @@ void strut_actuator_forces_apply(const strut_model *model, const strut_state *st
 /** Sum of what actuators add to a member's own force or a hinge's moment, when last applied; the other one is -1. */
 double strut_actuator_force_on(const strut_model *model, const strut_state *state, int32_t member,
                                int32_t hinge);
-/** Adds the forces on all members to `force` (members). */
-void strut_actuator_forces_add_tensions(const strut_model *model, const strut_state *state,
-                                        double *force);
 
 /*
  * Hot: driven rest lengths for many evaluations to come, for methods that know beforehand when these are:

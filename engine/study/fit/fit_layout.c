@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/study/fit/fit_parts.h"
-#include "engine/study/sweep/grid.h"
+#include "engine/study/sweep/sweep.h"
 
 static const double MOST_TURN = 6.283185307179586;
 

@@ -83,7 +83,8 @@ static const char *other_home(const char *text) {
                {STRUT_SECTION_SOLVER, "; it belongs under 'solver'"},
                {STRUT_SECTION_RUN, "; it belongs under 'run'"},
                {STRUT_SECTION_INITIAL, "; it belongs under 'initial'"},
-               {STRUT_SECTION_OUTPUT, "; it belongs under 'output'"}};
+               {STRUT_SECTION_OUTPUT, "; it belongs under 'output'"},
+               {STRUT_SECTION_SIGNAL, "; it belongs under 'signal'"}};
   for (size_t i = 0; i < sizeof homes / sizeof homes[0]; i++)
     if (strut_key_find(homes[i].section, text) >= 0) return homes[i].advice;
   return "";
@@ -129,7 +130,7 @@ int strut_key_named(strut_reader *reader, strut_section section, const strut_tre
 
 /* The words of a key, for suggestions. */
 typedef struct words_context {
-  char word[32][24];
+  char word[64][24];
   int count;
 } words_context;
 
@@ -158,7 +159,7 @@ bool strut_read_word(strut_reader *reader, const strut_key *key, const strut_tre
   strut_words_text(key->words, expected, sizeof expected);
   if (!strut_read_scalar(reader, value, key->name, owner, expected)) return false;
   words_context words = {.count = 0};
-  while (words.count < 32 &&
+  while (words.count < 64 &&
          strut_word_at(key->words, words.count, words.word[words.count], sizeof words.word[0]))
     words.count++;
   return strut_report_error(
@@ -199,12 +200,15 @@ static bool read_fixed(strut_reader *reader, const strut_key *key, const strut_t
 }
 
 bool strut_refuse_form(strut_reader *reader, int key, const strut_tree *value, strut_owner owner) {
-  char expected[300];
+  char expected[300], keys[400] = "";
+  strut_section below = strut_section_below(strut_key_at(key));
+  if (strut_key_at(key)->type == STRUT_TYPE_MAP && below != STRUT_SECTION_COUNT)
+    known_keys(reader, &(sections_context){&below, 1}, keys, sizeof keys);
   return strut_report_error(reader, value->place, "expected %s for '%s' of %s, found %s%s",
                             strut_key_expected(key, expected, sizeof expected),
                             strut_key_at(key)->name, strut_owner_text(reader, owner),
                             strut_found(reader, value),
-                            strut_lacks_space(value) ? "; write a space after the colon" : "");
+                            strut_lacks_space(value) ? "; write a space after the colon" : keys);
 }
 
 static bool read_version(strut_reader *reader, const strut_tree *value) {

@@ -119,10 +119,11 @@ static void add_layer(strut_reader *reader, friction_layers *self, strut_fields 
 static void report_lack(strut_reader *reader, const friction_layers *self, int key) {
   char expected[200];
   bool speed = strut_key_at(key)->measure == STRUT_MEASURE_VELOCITY;
-  strut_report_error(reader, self->last->place, "%s lacks '%s', expected %s",
+  strut_report_error(reader, self->last->place, "%s lacks '%s', expected %s%s",
                      strut_owner_text(reader, self->owner), strut_key_at(key)->name,
                      speed ? strut_expected_number(STRUT_DIM_VELOCITY, expected, sizeof expected)
-                           : "a number such as 0.5");
+                           : "a number such as 0.5",
+                     key == STRUT_KEY_FRICTION_STICK_VELOCITY ? "; 'law: coulomb' has none" : "");
 }
 
 /* Reports static friction below kinetic friction, once for each top layer. False: there is some. */

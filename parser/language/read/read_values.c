@@ -313,12 +313,14 @@ bool strut_read_pair(strut_reader *reader, const strut_tree *value, const char *
     bool fine = strut_read_number(reader, tree, key, owner, dimension, STRUT_RANGE_ANY, &number[0]);
     return strut_read_number(reader, y, key, owner, dimension, STRUT_RANGE_ANY, &number[1]) && fine;
   }
-  const char *example = strut_dimension_example(dimension);
+  bool down = strut_dimension_equal(dimension, STRUT_DIM_ACCELERATION);
+  const char *example = down ? "0, -9.81 m/s^2" : strut_dimension_example(dimension);
   bool longer = value->kind == STRUT_TREE_LIST && value->count > 2;
-  return strut_report_error(
-      reader, value->place, "expected two numbers such as [%s, 0] for '%s' of %s, found %s%s",
-      example ? example : "1", key, strut_owner_text(reader, owner), strut_found(reader, value),
-      longer ? "; scenes are planar, and the decimal mark is a point" : "");
+  return strut_report_error(reader, value->place,
+                            "expected two numbers such as [%s%s] for '%s' of %s, found %s%s",
+                            example ? example : "1", down ? "" : ", 0", key,
+                            strut_owner_text(reader, owner), strut_found(reader, value),
+                            longer ? "; scenes are planar, and the decimal mark is a point" : "");
 }
 
 /* Names as they are called within a copy; those of other things are "". */

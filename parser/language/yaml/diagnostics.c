@@ -353,8 +353,10 @@ const char *strut_did_you_mean(const char *text, const char *(*next)(const void 
   word wanted, candidate;
   if (!decode(text, &wanted)) return NULL;
   size_t allowed = wanted.length / 3 > 1 ? wanted.length / 3 : 1;
-  const char *best = NULL, *name;
+  const char *best = NULL, *within = NULL, *name;
+  size_t bytes = strlen(text);
   for (size_t i = 0; i < CANDIDATE_MOST && (name = next(context, i)) != NULL; i++) {
+    if (!within && strncmp(name, text, bytes) == 0 && name[bytes] == '.') within = name;
     if (!decode(name, &candidate)) continue;
     size_t longer = wanted.length > candidate.length ? wanted.length : candidate.length;
     if (longer - least(wanted.length, candidate.length) > allowed) continue;
@@ -364,5 +366,5 @@ const char *strut_did_you_mean(const char *text, const char *(*next)(const void 
     if (steps == 0) return best;
     allowed = steps - 1; /* only a nearer one replaces it */
   }
-  return best;
+  return best ? best : within;
 }

@@ -116,7 +116,7 @@ STRUT_API void strut_diagnostics_free(strut_diagnostics *diagnostics);
 
 /**
  * The candidate nearest to `word` by Damerau-Levenshtein distance (at most max(1, length / 3), and
- * something must agree), or NULL. The first of equally near ones wins. Candidates come one by one:
+ * something must agree), else one that continues it by a dot, or NULL. The first of several wins.
  * next(context, i) returns the i-th or NULL after the last; only the first 10000 are compared.
  */
 STRUT_API const char *strut_did_you_mean(const char *word,
