@@ -338,6 +338,11 @@ fit:
     check([u["words"] for u in said["undetermined"]] == ["c and k and body together"], f"{said['undetermined']}")
     for name in ("c", "k", "body"):
         check(found[name]["verdict"] == "not determined by these data", f"{name}: {found[name]}")
+    logs = study.replace("c: {from: 1 N s/m, to: 9 N s/m}, k: {from: 50 N/m, to: 200 N/m}",
+                         "k: {from: 20 N/m, to: 900 N/m, scale: log}").replace("to: 1 kg}", "to: 1 kg, scale: log}")
+    write("scaled.yaml", read("ratio.yaml").decode().replace("damping: c", "damping: 0.03 s*k"))
+    found, said = fit("two", logs.replace("ratio.yaml", "scaled.yaml"), code=5)
+    check([u["determined"] for u in said["undetermined"]] == ["k/body"], f"{said['undetermined']}")
     found, _ = fit("bound", study.replace("k: {from: 50 N/m, to: 200 N/m}, body: {from: 10 g, to: 1 kg}",
                                           "k: {from: 50 N/m, to: 99 N/m}"), code=5)
     check(found["k"]["verdict"] == "ends at a bound of its range" and found["k"]["high"] is None, f"{found['k']}")

@@ -70,7 +70,7 @@ typedef struct strut_fit_direction {
   double error;           /* standard deviation along it, in such units */
   const double *part;     /* (variables) of length 1 */
   const char *words;      /* "friction and damping together" */
-  const char *determined; /* of two parameters: "friction + 0.98 damping"; else NULL */
+  const char *determined; /* of two parameters: "friction + 0.98 damping", "k/m"; else NULL */
 } strut_fit_direction;
 
 typedef struct strut_fit_result {

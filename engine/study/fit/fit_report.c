@@ -98,7 +98,8 @@ STRUT_VALUES_HERE(omission_values, OMISSION, )
 #define DIRECTION(X)                                                                               \
   X("words", "", TEXT(d->words), "what is not determined", .label = {"not determined"})            \
   X("determined", "", IF(d->determined, TEXT(d->determined)),                                      \
-    "of two parameters, each over its range", .label = {"but, over the ranges"})                   \
+    "of two parameters, each over its range; of logarithmic ones a product or ratio",              \
+    .label = {"but, over the ranges"})                                                             \
   X("error", "1", NUMBER(d->error), "standard deviation along it, in parts of the ranges",         \
     .label = {"error, of the ranges"})                                                             \
   X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")

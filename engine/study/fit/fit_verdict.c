@@ -28,6 +28,9 @@ static const double WIDE = 0.25;
  */
 static const double PART = 0.02, ERRORS = 2.0;
 
+/* A power this near to 1 is 1. */
+static const double WHOLE = 0.02;
+
 bool strut_fit_is_unexplained(double sum, double freedom) {
   return gsl_cdf_chisq_Q(sum, fmax(freedom, 1.0)) < RARE;
 }
@@ -99,6 +102,19 @@ static bool takes_part(const strut_fit_spectrum *spectrum, double scale, size_t 
   return part > PART && part > ERRORS * rest;
 }
 
+/* What of two parameters is determined where a direction is not: "k/m", "k*m", or "a + 0.98 b" over the ranges. */
+static const char *name_determined(strut_arena *arena, const strut_search_variable *first,
+                                   const strut_search_variable *second, double other) {
+  if (!first->logarithmic || !second->logarithmic)
+    return strut_arena_format(arena, "%.40s %c %.3g %.40s", first->name, other < 0.0 ? '-' : '+',
+                              fabs(other), second->name);
+  double power = other * log(first->to / first->from) / log(second->to / second->from);
+  char text[40] = "";
+  if (fabs(fabs(power) - 1.0) > WHOLE) snprintf(text, sizeof text, "^%.3g", fabs(power));
+  return strut_arena_format(arena, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*',
+                            second->name, text);
+}
+
 /* "friction and damping together", and what of two is determined. False: memory is out. */
 static bool describe_direction(strut_fit_result *result, const bool *takes,
                                strut_fit_direction *direction) {
@@ -116,10 +132,8 @@ static bool describe_direction(strut_fit_result *result, const bool *takes,
   if (taken > 1) snprintf(text + used, sizeof text - used, " together");
   direction->words = strut_arena_text(&result->arena, text, strlen(text));
   if (taken != 2) return direction->words != NULL;
-  double other = -direction->part[pair[0]] / direction->part[pair[1]];
-  direction->determined =
-      strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", variables[pair[0]].name,
-                         other < 0.0 ? '-' : '+', fabs(other), variables[pair[1]].name);
+  direction->determined = name_determined(&result->arena, &variables[pair[0]], &variables[pair[1]],
+                                          -direction->part[pair[0]] / direction->part[pair[1]]);
   return direction->words && direction->determined;
 }
 
