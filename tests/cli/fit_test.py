@@ -248,6 +248,11 @@ fit:
     identified(found, "k", k)
     identified(found, "height", h)
     check([o["without"] for o in said["omissions"]] == ["curve", "hammer", "shape"], "fits without each match")
+    write("none.yaml", f"strut: 1\nstudy: x\nmodel: truss.yaml\nfit:\n  over: {{k: {{from: 5 kN/m, to: 50 kN/m}}}}\n"
+          "  match: {hammer: {compute: modes, frequency_1: 12 Hz, frequency_2: 24 Hz, noise: 1 Hz}}\n")
+    for _ in range(2):  # also when its rows are there already
+        run("sweep", "none.yaml", "-o", "none", "-q", code=2,
+            err="none.yaml:6:56: error: the model has no 'frequency_2'")
     run("sweep", "truss-fit.yaml", "--plan", "-o", "planned", code=1, err="-o has no effect")
     plan = answer("sweep", "truss-fit.yaml", "--plan")["candidates"]
     check(plan[0]["name"] == "all" and plan[-1]["standard_errors"]["k"] is None, f"plan: {plan}")

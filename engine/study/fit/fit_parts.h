@@ -78,9 +78,10 @@ typedef struct strut_fit_case {
   bool known;
   double *placing; /* parameters whose alignments are to be found while the model is predicted */
   int32_t second;  /* the match of those that takes the second best delay; or a strut_fit_delays */
-  double placed_sum;   /* of squares, then */
-  double *buffer;      /* (3 count + 3) */
-  strut_status status; /* of what must stop all */
+  double placed_sum;               /* of squares, then */
+  const strut_fit_series *missing; /* the model has no such number at the latest point; or NULL */
+  double *buffer;                  /* (3 count + 3) */
+  strut_status status;             /* of what must stop all */
   strut_error
       error; /* likewise, or why there were no residuals at the latest point that has none */
   strut_arena arena;

@@ -159,14 +159,20 @@ static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
   return status ? status : strut_search_add_columns(plan, error);
 }
 
+strut_status strut_sweep_refuse_series(strut_sweep_study *study, const strut_fit_series *at,
+                                       const char *why) {
+  strut_diagnose(&study->file.diagnostics,
+                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s",
+                 why);
+  return STRUT_BAD_SCENE;
+}
+
 /* Columns of a fit; what does not fit the model is reported where the study says it. */
 static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
   const strut_fit_series *at;
   strut_status status = strut_fit_add_columns(&study->plan, &at, error);
   if (status != STRUT_BAD_SCENE || !at) return status;
-  strut_diagnose(&study->file.diagnostics,
-                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s",
-                 error->message);
+  strut_sweep_refuse_series(study, at, error->message);
   *error = (strut_error){0};
   return status;
 }
