@@ -440,6 +440,10 @@ def refusals():
         run("sweep", "refused.yaml", "-o", "refused", "-q", code=2, err=err)
 
 
+    write("long.yaml", "strut: 1\nstudy: long\n" + good.replace("decay.csv}", "decay.csv, units: {t: h}}"))
+    run("sweep", "long.yaml", "--count", err="long.yaml:10:21: note: the runs of match 'd' last 1800 s, 3.6e+03 times")
+
+
 def long():
     held = coverage(200)
     check(all(0.90 <= share <= 0.98 for share in held.values()), f"intervals of 200 noises hold: {held}")
