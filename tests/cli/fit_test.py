@@ -276,11 +276,11 @@ fit:
 SEEN_IN_PART = ", align: {shift: free, rotate: free, delay: free}"
 
 
-def decay(seed=3):
+def decay(seed=3, noise=1e-4):
     w, d = math.sqrt(100 / 0.1 - (3.0 / 0.2) ** 2), 3.0 / 0.2
     times = [0.005 * i for i in range(101)]
     table("decay.csv", {"t [s]": times, "x [m]": [
-        0.08 + 0.02 * math.exp(-d * t) * (math.cos(w * t) + d / w * math.sin(w * t)) for t in times]}, 1e-4, seed)
+        0.08 + 0.02 * math.exp(-d * t) * (math.cos(w * t) + d / w * math.sin(w * t)) for t in times]}, noise, seed)
 
 
 def alike():
@@ -319,6 +319,9 @@ run: {duration: 0.5 s}
     found, said = fit("unknown-noise", one.replace(", noise: 0.1 mm", ""), code=0)
     identified(found, "one", 1.0)
     check("probability" not in said, "a probability without a noise")
+    decay(noise=0.0)  # what is left is the runs' own error, which is no reason to refuse
+    identified(fit("exact", one.replace(", noise: 0.1 mm", ""))[0], "one", 1.0)
+    decay()
     wrong = one.replace("noise: 0.1 mm", "noise: 0.01 mm")
     refused(fit("small-noise", wrong, code=5)[0], "the model does not explain the data")
 
@@ -390,7 +393,7 @@ solver: {integrator: adaptive, tolerance: 1e-9, step: 5 ms}
 run: {duration: 2 s}
 output: {every: 10 ms, channels: [position]}
 """)
-    for turn, delay, starts in ((3.0, 0.3, 2), (-2.0, 0.62, 2), (0.5, 0.62, 3)):
+    for turn, delay, starts in ((3.0, 0.3, 2), (-2.0, 0.62, 2), (0.5, 0.62, 3), (2.8, 1000.3, 2)):  # the last by a clock
         film("cross.yaml", "cross.csv", ("n1",), turn, delay, 1e-4)
         found, said = fit(f"cross{turn}{delay}", f"""model: cross.yaml
 data: {{film: {{file: cross.csv}}}}
@@ -440,6 +443,12 @@ def refusals():
         run("sweep", "refused.yaml", "-o", "refused", "-q", code=2, err=err)
 
 
+    write("texts.yaml", read("alike.yaml").decode().replace("{one", "{start: \"low\", one") +
+          "configurations: {low: {}, high: {b: [0.2, 0]}}\ninitial: {configuration: start}\n")
+    write("set.yaml", "strut: 1\nstudy: x\nmodel: texts.yaml\n" + good[good.index("data:"):].replace(
+        "noise: 0.1 mm}", "noise: 0.1 mm, set: {start: low}}\n    e: {time: d.t, b.x: d.x, noise: 1 mm, set: {start: hihg}}").replace(
+        "match: {d", "match:\n    d").replace("}}}", "}}"))
+    run("sweep", "set.yaml", "-o", "set", "-q", code=2, err="did you mean 'high'?")
     write("long.yaml", "strut: 1\nstudy: long\n" + good.replace("decay.csv}", "decay.csv, units: {t: h}}"))
     run("sweep", "long.yaml", "--count", err="long.yaml:10:21: note: the runs of match 'd' last 1800 s, 3.6e+03 times")
 

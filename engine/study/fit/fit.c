@@ -470,6 +470,7 @@ static strut_status find_best(fitting *self) {
   result->used = (size_t)best->used;
   result->freedom = (double)best->used - (double)result->parameters;
   double variance = result->freedom > 0.0 ? best->sum / result->freedom : HUGE_VAL;
+  variance = fmax(variance, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
   double of_normal = gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0), of_student = HUGE_VAL;
   if (result->freedom > 0.0) {
     double t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, result->freedom);

@@ -131,6 +131,9 @@ double strut_fit_slope(const strut_fit_layout *layout, size_t i, double paramete
 void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
                            strut_study_value *values);
 
+/** Smaller residuals than this part of the range of the numbers are those of the runs themselves. */
+#define STRUT_FIT_EXACT 1e-8
+
 /** So many places are tried where the model cannot be computed at a start. */
 enum { STRUT_FIT_MOST_PLACES = 50 };
 

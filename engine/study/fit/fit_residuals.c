@@ -10,7 +10,7 @@
 #include "engine/study/sweep/grid.h"
 
 /* Runs are made by a method that controls its error, within this tolerance; derivatives need that. */
-static const double TOLERANCE = 1e-8;
+static const double TOLERANCE = STRUT_FIT_EXACT;
 
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
 static const double STEP = 1e-4, NEAR = 1e-6;

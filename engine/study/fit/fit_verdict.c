@@ -80,7 +80,7 @@ static const char *find_flaw(strut_fit_result *result) {
                               sqrt(result->chi_square / result->freedom), result->chi_square,
                               result->freedom);
   for (size_t m = 0; m < result->fit->match_count && flaw && !*flaw; m++)
-    if (fabs(result->residuals[m].lag) > CORRELATED)
+    if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
       flaw = strut_arena_format(&result->arena,
                                 "successive residuals of '%.40s' are correlated, by %.3g standard "
                                 "errors",

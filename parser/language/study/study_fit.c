@@ -412,6 +412,7 @@ static void check_durations(strut_study_reader *reader, const strut_tree *matche
   for (size_t m = 0; m < fit->match_count; m++, key = key->next->next) {
     const strut_fit_match *match = &fit->matches[m];
     double last = match->kind == STRUT_FIT_MOTION ? match->at[match->count - 1] : 0.0;
+    if (match->align.delay) last -= match->at[0];
     const strut_tree *value = strut_tree_find(key->next, "time", NULL);
     if (last > USUAL * own && own > 0.0)
       strut_note(reader->reader->diagnostics, value->place,
