@@ -217,7 +217,10 @@ static strut_status find(differences *self, strut_error *error) {
   status = evaluate_pairs(self, 0, n, error);
   if (status) return status;
   join_steps(self);
-  return evaluate_pairs(self, n, 1, error);
+  status = evaluate_pairs(self, n, 1, error);
+  for (size_t k = 2 * n + 2; k-- > 0 && !status && error;)
+    if (*self->pairs[k / 2].error[k % 2].message) *error = self->pairs[k / 2].error[k % 2];
+  return status;
 }
 
 strut_status strut_derivatives_find(const strut_derivatives_task *task,

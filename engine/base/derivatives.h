@@ -57,7 +57,7 @@ typedef struct strut_derivatives_task {
 
 /**
  * derivatives (output_count, parameter_count). The same bits whatever the number of threads. What evaluations
- * that end everything return, and STRUT_NO_MEMORY.
+ * that end everything return, and STRUT_NO_MEMORY. On success `error` says why the first point failed that did.
  */
 STRUT_API strut_status strut_derivatives_find(const strut_derivatives_task *task,
                                               strut_derivative *derivatives, strut_error *error);

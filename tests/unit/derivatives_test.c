@@ -57,6 +57,17 @@ TEST(formulas) {
   expect(d[2][2], 2.0, 1e-2);
 }
 
+/* Beside the point the function fails, and says why. */
+TEST(a_point_that_fails_says_why) {
+  const strut_derivatives_parameter by[] = {usual[0], usual[1], {3.0, 0.0, 9.0, 0.0}};
+  strut_derivative d[OUTPUTS][COUNT];
+  strut_error error = {0};
+  const strut_derivatives_task task = {COUNT, OUTPUTS, by, functions, NULL, NULL, NULL, 1};
+  assert_int_equal(strut_derivatives_find(&task, d[0], &error), STRUT_OK);
+  assert_int_equal(d[0][2].verdict, STRUT_DERIVATIVE_UNKNOWN);
+  assert_string_equal(error.message, "out of range");
+}
+
 TEST(kinks) {
   strut_derivative d[OUTPUTS][COUNT];
   find(usual, 1, d);

@@ -437,6 +437,19 @@ static strut_status fit_elsewhere(fitting *self, strut_fit_case *one) {
                      : STRUT_OK;
 }
 
+/* Why there are no residuals at the first start. */
+static strut_status find_failure(fitting *self, strut_fit_case *one) {
+  strut_fit_result *result = self->result;
+  double at[STRUT_LEAST_SQUARES_MOST];
+  double *residual = strut_arena_allocate(&one->arena, self->layout->count, sizeof *residual);
+  strut_least_squares problem = strut_fit_problem(one);
+  strut_fit_choose_start(self->layout, 0, at);
+  if (residual) problem.residuals(one, at, residual);
+  result->missing = one->missing;
+  result->reason = strut_arena_format(&result->arena, "%s", one->error.message);
+  return residual && result->reason ? STRUT_OK : strut_no_memory(self->points.error, "");
+}
+
 /* The best start, its scale of errors, and the rise of the sum at the ends of intervals. */
 static strut_status find_best(fitting *self) {
   strut_fit_result *result = self->result;
@@ -446,12 +459,18 @@ static strut_status find_best(fitting *self) {
     if (!has_residuals(&result->starts[i]) || !better) continue;
     result->best = i, result->found = true;
   }
-  if (!result->found) return STRUT_OK;
+  if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
+  if (!result->found) {
+    strut_status failed = find_failure(self, &one);
+    strut_fit_case_free(&one);
+    return failed;
+  }
   const strut_fit_row *best = &result->starts[result->best];
   self->best = best->parameters;
   result->used = (size_t)best->used;
   result->freedom = (double)best->used - (double)result->parameters;
   double variance = result->freedom > 0.0 ? best->sum / result->freedom : HUGE_VAL;
+  variance = fmax(variance, STRUT_FIT_EXACT * STRUT_FIT_EXACT);
   double of_normal = gsl_cdf_chisq_Pinv(1.0 - OUTSIDE, 1.0), of_student = HUGE_VAL;
   if (result->freedom > 0.0) {
     double t = gsl_cdf_tdist_Pinv(1.0 - 0.5 * OUTSIDE, result->freedom);
@@ -461,7 +480,6 @@ static strut_status find_best(fitting *self) {
   self->rise = self->layout->noise_known ? of_normal : of_student;
   self->unexplained =
       self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
-  if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
   strut_status status = find_spectrum(self, &one);
   if (!status) status = fit_elsewhere(self, &one);
   strut_fit_case_free(&one);

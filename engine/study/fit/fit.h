@@ -70,7 +70,7 @@ typedef struct strut_fit_direction {
   double error;           /* standard deviation along it, in such units */
   const double *part;     /* (variables) of length 1 */
   const char *words;      /* "friction and damping together" */
-  const char *determined; /* of two parameters: "friction + 0.98 damping"; else NULL */
+  const char *determined; /* of two parameters: "friction + 0.98 damping", "k/m"; else NULL */
 } strut_fit_direction;
 
 typedef struct strut_fit_result {
@@ -96,6 +96,8 @@ typedef struct strut_fit_result {
   double chi_square, freedom, probability; /* of a sum so large; NAN: the noise is not known */
   double scale;       /* by which standard errors of unit noise are multiplied */
   const char *reason; /* why the model does not explain the data or starts disagree; or "" */
+  const strut_fit_series
+      *missing; /* the model has no such number, so that nothing is found; or NULL */
   strut_arena arena;
 } strut_fit_result;
 

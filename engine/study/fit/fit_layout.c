@@ -97,8 +97,8 @@ static double range_of(const strut_fit_match *match) {
 }
 
 /*
- * Turns and delays have a range, as parameters do: by a delay a motion begins no further from the run's start, or from
- * its own first time, than it lasts.
+ * Turns and delays have a range, as parameters do: by a delay a motion begins no further from its start, or from its own
+ * first time, than it lasts.
  */
 static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
                         double scale) {
@@ -108,7 +108,7 @@ static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns wha
   bool delay = what == STRUT_FIT_DELAY;
   const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
   double from = start - range[what], to = start + range[what];
-  if (delay) from = fmin(from, -scale), to = fmax(to, match->at[0] + scale);
+  if (delay) to = fmax(to, match->at[0] + scale);
   const char *name =
       strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
   size_t i = layout->aligned_count++;

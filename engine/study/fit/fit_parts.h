@@ -78,9 +78,10 @@ typedef struct strut_fit_case {
   bool known;
   double *placing; /* parameters whose alignments are to be found while the model is predicted */
   int32_t second;  /* the match of those that takes the second best delay; or a strut_fit_delays */
-  double placed_sum;   /* of squares, then */
-  double *buffer;      /* (3 count + 3) */
-  strut_status status; /* of what must stop all */
+  double placed_sum;               /* of squares, then */
+  const strut_fit_series *missing; /* the model has no such number at the latest point; or NULL */
+  double *buffer;                  /* (3 count + 3) */
+  strut_status status;             /* of what must stop all */
   strut_error
       error; /* likewise, or why there were no residuals at the latest point that has none */
   strut_arena arena;
@@ -129,6 +130,9 @@ double strut_fit_slope(const strut_fit_layout *layout, size_t i, double paramete
 /** The values of all columns of the axes in a row, with those of the parameters. */
 void strut_fit_fill_values(const strut_fit_layout *layout, int64_t row, const double *parameters,
                            strut_study_value *values);
+
+/** Smaller residuals than this part of the range of the numbers are those of the runs themselves. */
+#define STRUT_FIT_EXACT 1e-8
 
 /** So many places are tried where the model cannot be computed at a start. */
 enum { STRUT_FIT_MOST_PLACES = 50 };

@@ -33,6 +33,9 @@ static const double WIDE = 0.25;
  */
 static const double PART = 0.02, ERRORS = 2.0;
 
+/* A power this near to 1 is 1. */
+static const double WHOLE = 0.02;
+
 bool strut_fit_is_unexplained(double sum, double freedom) {
   return gsl_cdf_chisq_Q(sum, fmax(freedom, 1.0)) < RARE;
 }
@@ -82,7 +85,7 @@ static const char *find_flaw(strut_fit_result *result) {
                               sqrt(result->chi_square / result->freedom), result->chi_square,
                               result->freedom);
   for (size_t m = 0; m < result->fit->match_count && flaw && !*flaw; m++)
-    if (fabs(result->residuals[m].lag) > CORRELATED)
+    if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
       flaw = strut_arena_format(&result->arena,
                                 "successive residuals of '%.40s' are correlated, by %.3g standard "
                                 "errors",
@@ -104,6 +107,19 @@ static bool takes_part(const strut_fit_spectrum *spectrum, double scale, size_t 
   return part > PART && part > ERRORS * rest;
 }
 
+/* What of two parameters is determined where a direction is not: "k/m", "k*m", or "a + 0.98 b" over the ranges. */
+static const char *name_determined(strut_arena *arena, const strut_search_variable *first,
+                                   const strut_search_variable *second, double other) {
+  if (!first->logarithmic || !second->logarithmic)
+    return strut_arena_format(arena, "%.40s %c %.3g %.40s", first->name, other < 0.0 ? '-' : '+',
+                              fabs(other), second->name);
+  double power = other * log(first->to / first->from) / log(second->to / second->from);
+  char text[40] = "";
+  if (fabs(fabs(power) - 1.0) > WHOLE) snprintf(text, sizeof text, "^%.3g", fabs(power));
+  return strut_arena_format(arena, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*',
+                            second->name, text);
+}
+
 /* "friction and damping together", and what of two is determined. False: memory is out. */
 static bool describe_direction(strut_fit_result *result, const bool *takes,
                                strut_fit_direction *direction) {
@@ -121,10 +137,8 @@ static bool describe_direction(strut_fit_result *result, const bool *takes,
   if (taken > 1) snprintf(text + used, sizeof text - used, " together");
   direction->words = strut_arena_text(&result->arena, text, strlen(text));
   if (taken != 2) return direction->words != NULL;
-  double other = -direction->part[pair[0]] / direction->part[pair[1]];
-  direction->determined =
-      strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", variables[pair[0]].name,
-                         other < 0.0 ? '-' : '+', fabs(other), variables[pair[1]].name);
+  direction->determined = name_determined(&result->arena, &variables[pair[0]], &variables[pair[1]],
+                                          -direction->part[pair[0]] / direction->part[pair[1]]);
   return direction->words && direction->determined;
 }
 
@@ -334,7 +348,8 @@ STRUT_VALUES_HERE(omission_values, OMISSION, )
 #define DIRECTION(X)                                                                               \
   X("words", "", TEXT(d->words), "what is not determined", .label = {"not determined"})            \
   X("determined", "", IF(d->determined, TEXT(d->determined)),                                      \
-    "of two parameters, each over its range", .label = {"but, over the ranges"})                   \
+    "of two parameters, each over its range; of logarithmic ones a product or ratio",              \
+    .label = {"but, over the ranges"})                                                             \
   X("error", "1", NUMBER(d->error), "standard deviation along it, in parts of the ranges",         \
     .label = {"error, of the ranges"})                                                             \
   X("part", "1", NUMBERS(d->part, result_of(of)->variable_count), "of each parameter in it")

@@ -10,7 +10,7 @@
 #include "engine/study/sweep/sweep.h"
 
 /* Runs are made by a method that controls its error, within this tolerance; derivatives need that. */
-static const double TOLERANCE = 1e-8;
+static const double TOLERANCE = STRUT_FIT_EXACT;
 
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
 static const double STEP = 1e-4, NEAR = 1e-6;
@@ -441,6 +441,20 @@ void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out) {
   }
 }
 
+/* Notes the first series with a number that counts, but which the model does not have. */
+static bool has_numbers(strut_fit_case *one, const double *residual) {
+  const strut_study_fit *fit = one->layout->fit;
+  for (size_t m = 0, k = 0; m < fit->match_count; m++)
+    for (size_t s = 0; s < fit->matches[m].series_count; s++)
+      for (size_t i = 0; i < fit->matches[m].count; i++, k++) {
+        if (isfinite(residual[k])) continue;
+        one->missing = &fit->matches[m].series[s];
+        strut_fail(&one->error, STRUT_DIVERGED, "the model has no '%.60s'", one->missing->of);
+        return false;
+      }
+  return true;
+}
+
 static bool find_residuals(void *context, const double *parameters, double *residual) {
   strut_fit_case *one = context;
   one->evaluations++;
@@ -449,7 +463,7 @@ static bool find_residuals(void *context, const double *parameters, double *resi
   for (size_t k = 0; k < one->layout->count; k++)
     residual[k] =
         one->weight[k] > 0.0 ? one->weight[k] * (residual[k] - one->layout->measured[k]) : 0.0;
-  return true;
+  return has_numbers(one, residual);
 }
 
 double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters) {

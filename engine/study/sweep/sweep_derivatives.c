@@ -225,6 +225,15 @@ static strut_derivatives_parameter parameter_of(const derivation *self, const st
                                        .scale = scale > 0.0 ? fmax(fabs(value), scale) : 0.0};
 }
 
+/* Warns that derivatives are missing: by a parameter, or, where that is NULL, some of them. */
+static void warn(strut_sweep_job *job, const char *by, const char *why) {
+  if (job->warning_count == STRUT_MOST_WARNINGS) return;
+  strut_warning *warning = &job->warnings[job->warning_count++];
+  warning->code = "derivatives";
+  snprintf(warning->text, sizeof warning->text, "there are no derivatives%s%.60s%s: %.400s",
+           by ? " by '" : " that need a point beside this one", by ? by : "", by ? "'" : "", why);
+}
+
 /* Lists what the scene of the job has scenes beside it for; derivatives by others are not known, or 0. */
 static void choose_parameters(derivation *self, strut_sweep_job *job, size_t count,
                               strut_derivatives_parameter *parameters, size_t *place) {
@@ -241,11 +250,7 @@ static void choose_parameters(derivation *self, strut_sweep_job *job, size_t cou
     for (size_t j = 0; j < plan->derived_count && !used; j++)
       job->derivatives[j * plan->by_count + i] =
           (strut_derivative){0.0, 0.0, STRUT_DERIVATIVE_THERE};
-    if (!used || job->warning_count == STRUT_MOST_WARNINGS) continue;
-    strut_warning *warning = &job->warnings[job->warning_count++];
-    warning->code = "derivatives";
-    snprintf(warning->text, sizeof warning->text, "there are no derivatives by '%.60s': %.500s",
-             plan->by[i].name, why.message);
+    if (used) warn(job, plan->by[i].name, why.message);
   }
 }
 
@@ -279,6 +284,7 @@ static strut_status find_derivatives(const strut_sweep_worker *worker, strut_swe
       .errors = errors,
       .threads = worker->options->threads > 0 ? worker->options->threads : strut_sweep_threads()};
   strut_status status = strut_derivatives_find(&task, found, &job->error);
+  if (!status && *job->error.message) warn(job, NULL, job->error.message);
   for (size_t k = 0; k < plan->derived_count * self.by_count && !status; k++)
     job->derivatives[k / self.by_count * plan->by_count + place[k % self.by_count]] = found[k];
   return status;

@@ -10,8 +10,8 @@ static const strut_owner fit_owner = {"the fit", NULL};
 
 /* Numbers and weights up to this have a finite sum of squares. */
 static const double MOST_NUMBER = 1e150;
-/* Steps of one run, at most. */
-static const double MOST_STEPS = 1e10;
+/* Steps of one run, at most; and how often a run is usually as long as the model's own. */
+static const double MOST_STEPS = 1e10, USUAL = 100.0;
 
 /* A match while it is read. */
 typedef struct reading {
@@ -397,7 +397,7 @@ static double time_scale_of(const strut_setup *setup, const char **name) {
   return stepped ? setup->experiment.step : fastest > 0.0 ? 1.0 / fastest : duration / 1000.0;
 }
 
-/* Times in another unit than that of their column make runs that do not end. */
+/* Times in another unit than that of their column make runs that do not end, or that are much longer than usual. */
 static void check_durations(strut_study_reader *reader, const strut_tree *matches,
                             const strut_study_fit *fit) {
   strut_setup setup;
@@ -407,12 +407,19 @@ static void check_durations(strut_study_reader *reader, const strut_tree *matche
   const strut_tree *key = matches->first;
   const strut_study_value *values = reader->reader->failed ? NULL : first_values(reader);
   if (!values || strut_study_setup(reader->file, values, &setup, &error)) return;
+  double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
   double scale = time_scale_of(&setup, &name);
   for (size_t m = 0; m < fit->match_count; m++, key = key->next->next) {
     const strut_fit_match *match = &fit->matches[m];
     double last = match->kind == STRUT_FIT_MOTION ? match->at[match->count - 1] : 0.0;
-    if (!(last > MOST_STEPS * scale)) continue;
+    if (match->align.delay) last -= match->at[0];
     const strut_tree *value = strut_tree_find(key->next, "time", NULL);
+    if (last > USUAL * own && own > 0.0)
+      strut_note(reader->reader->diagnostics, value->place,
+                 "the runs of match '%.40s' last %.4g s, %.3g times the model's own of %.4g s: is "
+                 "that the unit of this column?",
+                 match->name, last, last / own, own);
+    if (!(last > MOST_STEPS * scale)) continue;
     reading self = {0};
     strut_data_find(reader->reader->tables, reader->reader->table_count, value->text, &self.table);
     snprintf(message, sizeof message,

@@ -116,12 +116,18 @@ static strut_status write_fit(const strut_study_job *job, void *result, strut_er
 static strut_status report_fit(const strut_study_job *job, const void *of, const char *table) {
   const strut_fit_result *result = of;
   (void)table;
-  strut_status status = job->report(job, &strut_fit_values, result, NULL);
+  strut_status status = result->missing
+                            ? strut_sweep_refuse_series(job->study, result->missing, result->reason)
+                            : STRUT_OK;
+  if (status)
+    return strut_sweep_study_report(job->arguments->listener, job->study, status,
+                                    &(strut_error){0});
+  status = job->report(job, &strut_fit_values, result, NULL);
   if (status) return status;
   if (!result->found) {
     strut_tell(job->arguments->listener, STRUT_MESSAGE_REMARK, NULL,
-               "the model cannot be computed at any start: see 'message' of the table, or 'strut "
-               "run' with values of the ranges");
+               "the model cannot be computed at any start: %s; see 'message' of the table",
+               result->reason);
     return STRUT_DIVERGED;
   }
   if (strut_fit_is_identified(result)) return STRUT_OK;

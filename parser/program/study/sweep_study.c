@@ -41,19 +41,26 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
   return status ? status : strut_study_try_at(file, values, follow->to);
 }
 
-/* Tries each of the texts that a search chooses among, other values being the first ones. */
+/* Tries each of the texts that a search chooses among, and what matches set, other values being the first ones. */
 static strut_status try_choices(strut_study_file *file, strut_study_value *values) {
   const strut_study_search *search = file->study.search;
+  const strut_study_fit *fit = file->study.fit;
   strut_status status = STRUT_OK;
   for (size_t i = 0; search && i < search->variable_count; i++) {
     const strut_search_variable *variable = &search->variables[i];
-    const strut_study_value first = values[search->column + i];
+    strut_study_value *value = &values[search->column + i], first = *value;
     for (size_t k = 0; variable->word && k < variable->choice_count && !status; k++) {
-      values[search->column + i].word = variable->words[k];
+      value->word = variable->words[k];
       status = try_point(file, values);
     }
-    values[search->column + i] = first;
+    *value = first;
   }
+  for (size_t m = 1; fit && fit->set_count && m < fit->match_count && !status; m++) {
+    strut_study_value *set = &values[fit->column + fit->variable_count];
+    memcpy(set, fit->matches[m].values, fit->set_count * sizeof *set);
+    status = try_point(file, values);
+  }
+  strut_grid_values(&file->study, 0, values);
   return status;
 }
 
@@ -159,14 +166,20 @@ static strut_status bind_search(strut_sweep_study *study, strut_error *error) {
   return status ? status : strut_search_add_columns(plan, error);
 }
 
+strut_status strut_sweep_refuse_series(strut_sweep_study *study, const strut_fit_series *at,
+                                       const char *why) {
+  strut_diagnose(&study->file.diagnostics,
+                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s",
+                 why);
+  return STRUT_BAD_SCENE;
+}
+
 /* Columns of a fit; what does not fit the model is reported where the study says it. */
 static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
   const strut_fit_series *at;
   strut_status status = strut_fit_add_columns(&study->plan, &at, error);
   if (status != STRUT_BAD_SCENE || !at) return status;
-  strut_diagnose(&study->file.diagnostics,
-                 strut_place_at(at->place.line, at->place.column, (uint32_t)strlen(at->of)), "%s",
-                 error->message);
+  strut_sweep_refuse_series(study, at, error->message);
   *error = (strut_error){0};
   return status;
 }
