@@ -82,7 +82,11 @@ void strut_run_count_frames(strut_run_scene *run) {
   double period = strut_experiment_span(run->figure->experiment, run->model->scene).period;
   double all = run->frames ? strut_run_time_from(run, 0) : 0;
   bool fine = (double)(run->frames - 1) * period >= LEAST_SAMPLES * all * (1 - 1e-9);
-  if (run->frames > 1 && fine && period > 0) run->period = period;
+  if (!(run->frames > 1 && fine && period > 0)) return;
+  int32_t repeats = run->summary ? run->summary->steady.repeats : 0;
+  bool whole = repeats * period <= all + 1e-6 * period; /* of the orbit is recorded */
+  run->repeats = repeats > 1 && whole ? repeats : 1;
+  run->period = run->repeats * period;
 }
 
 double *strut_run_coordinates(const strut_run_scene *run, size_t frame) {

@@ -17,6 +17,9 @@ typedef struct picture {
   strut_panel *panel;
   strut_series *series; /* the last line */
   size_t line;          /* its number, from 1 on */
+  unsigned marked;      /* bits of `marks` */
+  unsigned looks;       /* bits of the first looks of lines */
+  bool has[2];          /* unstable, stable points */
   strut_figure figure;
 } picture;
 
@@ -29,12 +32,24 @@ typedef struct dot {
   const char *word, *node; /* node may be NULL */
 } dot;
 
-static strut_colour colour_of(strut_follow_kind kind) {
-  static const unsigned char thing[STRUT_FOLLOW_KINDS] = {[STRUT_FOLLOW_FOLD] = 6,
-                                                          [STRUT_FOLLOW_DOUBLING] = 3,
-                                                          [STRUT_FOLLOW_TORUS] = 4,
-                                                          [STRUT_FOLLOW_BRANCHING] = 4};
-  return thing[kind] ? strut_palette_thing(thing[kind] - 1U) : strut_grey(1.0);
+/* Marks by kind, the last for all others. */
+static const struct {
+  unsigned kinds; /* bits */
+  size_t thing;   /* of the colours, from 1 on; 0: white */
+  const char *text;
+} marks[] = {{1U << STRUT_FOLLOW_FOLD, 6, "fold"},
+             {1U << STRUT_FOLLOW_DOUBLING, 3, "period doubling"},
+             {1U << STRUT_FOLLOW_TORUS | 1U << STRUT_FOLLOW_BRANCHING, 4, "torus, branching"},
+             {~0U, 0, "an event that changes the stability"}};
+
+static size_t mark_of(strut_follow_kind kind) {
+  size_t i = 0;
+  while (!(marks[i].kinds >> kind & 1U)) i++;
+  return i;
+}
+
+static strut_colour mark_colour(size_t i) {
+  return marks[i].thing ? strut_palette_thing(marks[i].thing - 1) : strut_grey(1.0);
 }
 
 static void add_dot(picture *self, const dot *d) {
@@ -44,13 +59,16 @@ static void add_dot(picture *self, const dot *d) {
     self->line = d->line;
   }
   strut_add_point(&self->figure, self->series, d->x, d->y)->unstable = !d->stable;
+  self->has[d->stable] = true;
+  if (d->look < CURVE_KEYS) self->looks |= 1U << d->look;
   if (!d->marked) return;
+  self->marked |= 1U << mark_of(d->kind);
   bool node = d->node && *d->node;
   strut_label *mark = strut_add_mark(
       &self->figure, self->panel, d->x, d->y,
       strut_figure_text(&self->figure, "%s%s%.60s", d->word, node ? " " : "", node ? d->node : ""));
   mark->dot = true;
-  mark->colour = colour_of(d->kind);
+  mark->colour = mark_colour(mark_of(d->kind));
   mark->angle = 0.25 * STRUT_PI;
 }
 
@@ -60,21 +78,14 @@ static void add_line_key(picture *self, strut_colour colour, bool unstable, cons
   strut_add_key(&self->figure, STRUT_KEY_LINE, pen, text);
 }
 
-/* What every figure of branches explains. */
+/* Explains what the figure of branches has. */
 static void add_keys(picture *self) {
-  static const struct {
-    strut_follow_kind kind;
-    const char *text;
-  } points[] = {{STRUT_FOLLOW_FOLD, "fold"},
-                {STRUT_FOLLOW_DOUBLING, "period doubling"},
-                {STRUT_FOLLOW_TORUS, "torus, branching"},
-                {STRUT_FOLLOW_TOUCH, "an event that changes the stability"}};
   const strut_pen rim = {.colour = strut_grey(0.1), .width = 0.6};
-  add_line_key(self, strut_grey(0.2), false, "stable");
-  add_line_key(self, strut_grey(0.2), true, "unstable");
-  for (size_t i = 0; i < sizeof points / sizeof *points; i++)
-    strut_add_key(&self->figure, STRUT_KEY_DOT, rim, points[i].text)->fill.colour =
-        colour_of(points[i].kind);
+  if (self->has[true]) add_line_key(self, strut_grey(0.2), false, "stable");
+  if (self->has[false]) add_line_key(self, strut_grey(0.2), true, "unstable");
+  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+    if (self->marked >> i & 1U)
+      strut_add_key(&self->figure, STRUT_KEY_DOT, rim, marks[i].text)->fill.colour = mark_colour(i);
 }
 
 static void begin_picture(picture *self, const char *title, strut_axis along, strut_axis upwards) {
@@ -106,7 +117,6 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
   picture p;
   begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
                 height_axis(result->count && result->branches[0].branch.travels));
-  add_keys(&p);
   for (size_t i = 0; i < result->count; i++) {
     const strut_follow_branch *branch = &result->branches[i].branch;
     for (const strut_follow_point *at = branch->points; at < branch->points + branch->count; at++)
@@ -114,6 +124,7 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
                          at->stable, is_marked(at->kind, at->detail && at->changes), at->kind,
                          strut_follow_kind_word(at->kind), at->node});
   }
+  add_keys(&p);
   return draw_picture(plot, &p, error);
 }
 
@@ -127,9 +138,6 @@ strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_foll
   picture p;
   begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
                 strut_axis_of(result->second.name, result->second.unit));
-  for (size_t i = 0; i < CURVE_KEYS; i++) add_line_key(&p, strut_palette_thing(i), false, texts[i]);
-  add_line_key(&p, strut_grey(0.2), false, "of a motion that is stable beside it");
-  add_line_key(&p, strut_grey(0.2), true, "of an unstable motion");
   for (size_t i = 0, look; i < result->curve_count; i++) {
     const strut_follow_branch *curve = &result->curves[i];
     for (look = 0; look + 1 < CURVE_KEYS && kinds[look] != curve->kind;) look++;
@@ -137,6 +145,10 @@ strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_foll
       add_dot(&p, &(dot){i + 1, look, at->at.value[0], at->at.value[1], at->stable,
                          at->kind == STRUT_FOLLOW_CUSP, curve->kind, "cusp", NULL});
   }
+  for (size_t i = 0; i < CURVE_KEYS; i++)
+    if (p.looks >> i & 1U) add_line_key(&p, strut_palette_thing(i), false, texts[i]);
+  if (p.has[true]) add_line_key(&p, strut_grey(0.2), false, "of a motion that is stable beside it");
+  if (p.has[false]) add_line_key(&p, strut_grey(0.2), true, "of an unstable motion");
   return draw_picture(plot, &p, error);
 }
 

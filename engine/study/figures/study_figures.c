@@ -282,7 +282,8 @@ strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                            .no_motion = plan->study->compute != STRUT_COMPUTE_RUN,
                                            .no_states = true,
                                            .interrupt = interrupt};
-    const strut_plot plot = {.path = path, .title = figure->title, .width = width};
+    const strut_plot plot = {
+        .path = path, .title = figure->title ? figure->title : plan->study->name, .width = width};
     status = strut_compare_make(inputs, 2, &options, &result, error);
     if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);
     strut_compare_free(&result);
