@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "engine/base/c_locale.h"
+#include "engine/base/vec.h"
 
 strut_c_locale strut_c_locale_enter(void) {
   locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -121,18 +122,39 @@ strut_rounded_quantity strut_quantity_of(double value, int digits, const char *u
 }
 
 /* A prefix belongs to the unit's first word, whose power it would get. */
-static bool takes_prefix(const char *unit) {
-  size_t word = strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-  return word > 0 && unit[word] != '^' && strncmp(unit, "kg", 2) != 0;
+bool strut_unit_takes_prefix(const char *unit) {
+  static const char *const words[] = {"m", "s", "N", "J", "W", "Hz", "Pa", "rad", "B", "V", "A"};
+  size_t length = strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  for (size_t i = 0; i < sizeof words / sizeof *words && unit[length] != '^'; i++)
+    if (strlen(words[i]) == length && strncmp(unit, words[i], length) == 0) return true;
+  return false;
 }
 
 strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
-  if (!isfinite(value) || takes_prefix(unit)) return strut_quantity_of(value, digits, unit);
+  if (!isfinite(value) || strut_unit_takes_prefix(unit))
+    return strut_quantity_of(value, digits, unit);
   strut_rounded_quantity quantity;
   bool none = strcmp(unit, "1") == 0;
   strut_c_locale locale = strut_c_locale_enter();
   snprintf(quantity.text, sizeof quantity.text, "%.*g%s%.40s", digits, value, none ? "" : " ",
            none ? "" : unit);
+  strut_c_locale_leave(locale);
+  return quantity;
+}
+
+strut_file_unit strut_unit_shown(const char *unit, strut_file_unit given) {
+  bool angle = !given.name && unit && strcmp(unit, "rad") == 0;
+  return angle ? (strut_file_unit){"deg", STRUT_PI / 180} : given;
+}
+
+strut_rounded_quantity strut_quantity_shown(double value, int digits, const char *unit,
+                                            strut_file_unit given) {
+  const strut_file_unit shown = strut_unit_shown(unit, given);
+  strut_rounded_quantity quantity;
+  if (!shown.name || !isfinite(value)) return strut_quantity_of_any(value, digits, unit);
+  strut_c_locale locale = strut_c_locale_enter();
+  snprintf(quantity.text, sizeof quantity.text, "%.*g %.40s", digits, value / shown.size,
+           shown.name);
   strut_c_locale_leave(locale);
   return quantity;
 }

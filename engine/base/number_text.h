@@ -5,6 +5,7 @@
 #ifndef STRUT_ENGINE_BASE_NUMBER_TEXT_H
 #define STRUT_ENGINE_BASE_NUMBER_TEXT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "engine/base/status.h"
@@ -44,7 +45,20 @@ typedef struct strut_rounded_quantity {
   char text[STRUT_QUANTITY_TEXT];
 } strut_rounded_quantity;
 STRUT_API strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit);
-/** As strut_quantity_of for any unit; units that take no prefix ("1", "m^2", "kg m/s") stay unchanged. */
+/** Does the unit take a prefix? "m", "N/m", "Hz"; not "1", "m^2", "kg", nor one that has a prefix, such as "mm". */
+STRUT_API bool strut_unit_takes_prefix(const char *unit);
+/** As strut_quantity_of for any unit; one that takes no prefix stays unchanged. */
 STRUT_API strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit);
+
+/** The unit that a file gives a number in, such as mm, which figures show it in. */
+typedef struct strut_file_unit {
+  const char *name; /* NULL: none is known */
+  double size;      /* in the SI unit */
+} strut_file_unit;
+/** That of a number in an SI unit; where the file has none, angles are shown in degrees. */
+STRUT_API strut_file_unit strut_unit_shown(const char *unit, strut_file_unit given);
+/** As strut_quantity_of_any, in the unit of the file if there is one. */
+STRUT_API strut_rounded_quantity strut_quantity_shown(double value, int digits, const char *unit,
+                                                      strut_file_unit given);
 
 #endif

@@ -32,7 +32,7 @@ static const char *title_of(const strut_value_row *row, const char *part, const 
 static void add_number(strut_buffer *text, const strut_value_row *row, const strut_value *value,
                        double number, int digits) {
   const char *unit = value->own_unit ? value->own_unit : row->unit;
-  bool angle = strcmp(unit, "rad") == 0, percent = row->label[1] && *row->label[1] == '%';
+  bool percent = row->label[1] && *row->label[1] == '%';
   if (value->digits) digits = value->digits;
   if (isnan(number)) return;
   if (percent && isfinite(number))
@@ -40,12 +40,9 @@ static void add_number(strut_buffer *text, const strut_value_row *row, const str
   else if (isinf(number))
     strut_buffer_add(text, percent ? "diverged" : "any");
   else
-    strut_buffer_add(text, "%s",
-                     strut_quantity_of_any(angle ? number * 180.0 / STRUT_PI : number, digits,
-                                           angle   ? "deg"
-                                           : *unit ? unit
-                                                   : "1")
-                         .text);
+    strut_buffer_add(
+        text, "%s",
+        strut_quantity_shown(number, digits, *unit ? unit : "1", (strut_file_unit){0}).text);
 }
 
 /* Numbers, names and values of an array, one after the other. */

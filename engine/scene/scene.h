@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/number_text.h"
 #include "engine/base/status.h"
 #include "engine/scene/data.h"
 #include "engine/scene/friction.h"
@@ -260,6 +261,7 @@ typedef struct strut_parameter {
   const char *name;
   const char *text; /* as written, such as "10 Hz" */
   double value;     /* SI; NAN where it is a text, such as a configuration's name */
+  strut_file_unit shown;
 } strut_parameter;
 
 typedef enum strut_mass_model { STRUT_MASS_CONSISTENT, STRUT_MASS_LUMPED } strut_mass_model;

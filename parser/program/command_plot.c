@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/table_figure.h"
+#include "engine/output/figures/table_choice.h"
 #include "parser/language/yaml/diagnostics.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
@@ -29,6 +29,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(label), "label", "COLUMN", "values of a map"},
     {STRUT_FILLS(doubt), "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
     {STRUT_FILLS(log), "log", "AXES", "logarithmic axes: x, y or xy", .words = "x|y|xy"},
+    {STRUT_FILLS(labels), "labels", "TEXT,...", "what the legend calls the curves, in their order"},
     {STRUT_FILLS(title), "title", "TEXT", "title above the figure", .of_figure = true},
     {.table = strut_axis_options},
     {STRUT_FILLS(colors), "colors", "SCALE",
@@ -95,8 +96,26 @@ static strut_status read_y(const strut_arguments *arguments, const strut_table *
   }
 }
 
+/* Texts with commas between, in the table's arena. */
+static strut_status read_labels(const strut_arguments *arguments, strut_table *table,
+                                strut_table_figure *figure) {
+  enum { MOST = STRUT_MOST_Y * STRUT_MOST_TABLE_GROUPS };
+  const char **labels = strut_arena_allocate(&table->arena, MOST, sizeof *labels);
+  for (const char *at = arguments->labels; at && labels; at = *at ? at + 1 : NULL) {
+    size_t length = strcspn(at, ",");
+    if (figure->label_count == MOST)
+      return strut_usage_error(arguments, "--labels: at most %d labels", MOST);
+    const char *label = strut_arena_text(&table->arena, at, length);
+    if (!label) return strut_print_out_of_memory();
+    labels[figure->label_count++] = label;
+    at += length;
+  }
+  figure->labels = labels;
+  return labels ? STRUT_OK : strut_print_out_of_memory();
+}
+
 /* What the options choose of the table. */
-static strut_status read_figure(const strut_arguments *arguments, const strut_table *table,
+static strut_status read_figure(const strut_arguments *arguments, strut_table *table,
                                 strut_table_figure *figure) {
   bool map = arguments->kind.index == 1;
   const column_choice choices[] = {
@@ -113,8 +132,10 @@ static strut_status read_figure(const strut_arguments *arguments, const strut_ta
   figure->log_y = arguments->log.text && arguments->log.index != 0;
   figure->colours = (strut_colours)arguments->colors.index;
   if (map && table->column_count > 2) figure->value = 2;
+  if (arguments->model_count > 1) figure->by = (int)table->column_count - 1;
   strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
   if (!status) status = read_y(arguments, table, figure);
+  if (!status) status = read_labels(arguments, table, figure);
   if (!status && map && figure->value == STRUT_NO_COLUMN)
     status = strut_usage_error(arguments, "a map needs a third column");
   return status;
@@ -125,6 +146,7 @@ static strut_status check_kind(const strut_arguments *arguments) {
   const bool map = arguments->kind.index == 1;
   const char *other = map ? (arguments->by         ? "by"
                              : arguments->band     ? "band"
+                             : arguments->labels   ? "labels"
                              : arguments->log.text ? "log"
                                                    : NULL)
                           : (arguments->label         ? "label"
@@ -145,7 +167,8 @@ static strut_status run_plot(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   if (!plot.path) return strut_usage_error(arguments, "missing --plot FILE");
-  status = strut_table_read(arguments->listener, arguments->model, &table);
+  status =
+      strut_tables_read(arguments->listener, arguments->models, arguments->model_count, &table);
   if (status != STRUT_OK) return status;
   status = read_figure(arguments, &table, &figure);
   if (!status) status = strut_axes_read(arguments, figure.log_x, figure.log_y, &plot.x, &plot.y);
@@ -157,12 +180,14 @@ static strut_status run_plot(const strut_arguments *arguments) {
 
 const strut_command strut_command_plot = {
     .name = "plot",
-    .model = "TABLE",
+    .model = "TABLE...",
+    .many = true,
     .summary = "draws curves or a map from a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
         "strut writes it, or - for the standard input. Units get prefixes, curves differ\n"
-        "by colour, dashes and markers, and cells without a number break a curve.\n",
+        "by colour, dashes and markers, and cells without a number break a curve. Several tables\n"
+        "need the same columns; their rows get a further one, 'table', with the file's name.\n",
     .options = options,
     .run = run_plot,
 };

@@ -9,11 +9,13 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/number_text.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/study/cluster/cluster_script.h"
 #include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "parser/program/command/run_settings.h"
+#include "parser/program/command/table_file.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/options.h"
@@ -44,7 +46,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(plan), "plan", NULL,
      "only print which measurements would determine the parameters of a fit best"},
     {STRUT_FILLS(status), "status", NULL, "only print what is done, missing and failed in DIR"},
-    {STRUT_FILLS(json), "json", NULL, "print one JSON object"},
+    STRUT_PRINT_OPTIONS,
     {.name = NULL},
 };
 
@@ -260,10 +262,18 @@ static strut_status show_plan(const strut_arguments *arguments, const strut_swee
   return status;
 }
 
-/* --plot: the first result over the first axis, as `strut plot` draws it. */
+static int column_at(const strut_table *table, const strut_sweep_plan *plan, size_t i) {
+  return strut_table_column_of(table, plan->columns[i].name, strlen(plan->columns[i].name));
+}
+
+/* --plot: the first result over the first axis, a curve for each value of the second, or as a map of both. */
 static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study) {
   const strut_sweep_plan *plan = &study->plan;
   char path[PATH_MAX];
+  strut_plot plot;
+  strut_table table = {0};
+  strut_error error = {0};
+  strut_table_figure figure = STRUT_TABLE_FIGURE;
   size_t y = plan->axis_columns;
   bool map = plan->axis_columns == 2 && !plan->columns[0].word && !plan->columns[1].word;
   while (y < plan->column_count && plan->columns[y].word) y++;
@@ -271,17 +281,19 @@ static strut_status plot_table(const strut_arguments *arguments, const strut_swe
     return strut_usage_error(arguments, "--plot needs a number among the results, and an axis");
   if (snprintf(path, sizeof path, "%s/%s", arguments->output, table_name) >= (int)sizeof path)
     return strut_usage_error(arguments, "the path of the table is too long");
-  const strut_arguments own = {.command = &strut_command_plot,
-                               .listener = arguments->listener,
-                               .quiet = arguments->quiet,
-                               .model = path,
-                               .plot = arguments->plot,
-                               .kind.index = map,
-                               .x = plan->columns[0].name,
-                               .y = plan->columns[map ? 1 : y].name,
-                               .label = map ? plan->columns[y].name : NULL,
-                               .by = !map && plan->axis_columns > 1 ? plan->columns[1].name : NULL};
-  return strut_command_plot.run(&own);
+  strut_status status = strut_plot_read(arguments, 0, &plot);
+  if (!status) status = strut_table_read(arguments->listener, path, &table);
+  if (status) return status;
+  strut_sweep_show_units(plan, &table);
+  figure.kind = map ? STRUT_TABLE_MAP : STRUT_TABLE_CURVES;
+  figure.x = column_at(&table, plan, 0);
+  figure.y[0] = column_at(&table, plan, map ? 1 : y);
+  if (map) figure.value = column_at(&table, plan, y);
+  if (!map && plan->axis_columns > 1) figure.by = column_at(&table, plan, 1);
+  if (plan->axis_columns > 2) figure.panels = column_at(&table, plan, 2);
+  status = strut_table_draw(&plot, &figure, &table, &error);
+  strut_arena_free(&table.arena);
+  return strut_print_failure(status, &error);
 }
 
 /* Refuses what would have no effect beside the options that only print. */

@@ -8,7 +8,7 @@ import os
 import subprocess
 import time
 
-from svg_paths import near, read
+from svg_paths import near, read, texts
 
 from testing import check, finish, strut, work, write
 
@@ -154,6 +154,24 @@ check_curve("log.svg", [-float(i) for i in range(12)][::-1], logs[::-1], line[::
 # Columns share the y axis, so that they need one unit.
 write("two.csv", "f [Hz],v [m/s],w [J]\n" + "".join(f"{x!r},{a!r},{2e-3 * x * x!r}\n" for x, a in zip(xs, one)))
 plot("two.csv", "--y", "v,w", "--plot", "a.svg", code=1, err="different units (m/s, J)")
+
+# Legends show numbers with a prefix; labels that are given stand in their place; several tables are told apart.
+write("other.csv", "f [Hz],w [J],v [m/s]\n" + "".join(f"{x!r},1,{2 * a!r}\n" for x, a in zip(xs, one)))
+write("stiff.csv", "x [m],y [N],k [N/m],px [px]\n1,2,2000,0.1\n2,3,2000,0.1\n1,5,500,0.2\n2,1,500,0.2\n")
+for words, wanted in ((["stiff.csv", "--by", "k"], {"k 2 kN/m", "k 500 N/m"}),
+                      (["stiff.csv", "--y", "px"], {"px in px", "0.10", "0.20"}),
+                      (["stiff.csv", "--by", "k", "--labels", "hard,soft one"], {"hard", "soft one"}),
+                      (["two.csv", "other.csv", "--y", "v"], {"table two.csv", "table other.csv"}),
+                      (["two.csv", "other.csv", "--y", "v", "--labels", "mine,theirs"], {"mine", "theirs"})):
+    plot(*words, "--plot", "words.svg")
+    check(wanted <= set(texts("words.svg")), f"{words}: {texts('words.svg')}")
+lines = [curves(read("words.svg")[2], colour)[0] for colour in (FIRST, SECOND)]
+check_curve("first table", xs, one, lines[0])
+check_curve("second table", xs, [2 * a for a in one], lines[1])
+for words, err in ((["two.csv", "--y", "v", "--labels", "a,b"], "2 labels were given for 1 curve"),
+                   (["two.csv", "stiff.csv"], "'stiff.csv' has no column 'f' in Hz, which the first table has"),
+                   (["two.csv", "--kind", "map", "--labels", "a"], "has no option --labels")):
+    plot(*words, "--plot", "a.svg", code=1, err=err)
 
 # Limits and labels that are given.
 plot("two.csv", "--y", "v", "--x-limits", "0,10", "--y-limits", "-0.02,0.02", "--plot", "limits.svg",

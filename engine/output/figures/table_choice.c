@@ -32,6 +32,7 @@ strut_status strut_table_groups_find(const strut_table_rows *rows, int column, s
     if (groups->count == most)
       return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s", of->name, most,
                         what);
+    groups->row[groups->count] = i;
     groups->name[groups->count++] = of->text[i];
   }
   return STRUT_OK;

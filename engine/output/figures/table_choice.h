@@ -51,6 +51,7 @@ STRUT_API bool strut_table_differs(const strut_table_rows *rows, int column, siz
 typedef struct strut_table_groups {
   size_t count;
   const char *name[STRUT_MOST_TABLE_GROUPS];
+  size_t row[STRUT_MOST_TABLE_GROUPS]; /* the first of each */
 } strut_table_groups;
 
 /** STRUT_USAGE where there are more than `most`, named `what` in the message ("panels"). */

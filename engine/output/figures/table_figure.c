@@ -11,7 +11,11 @@
 #include "engine/output/figures/table_choice.h"
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
-enum { NAME = 46, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
+enum {
+  DIGITS = 9 /* of a group's number */,
+  NAME = 46,
+  MOST_NAMES = 3
+}; /* bytes and columns of an axis label; more are in the legend */
 enum { MOST_CELLS = 4000000 };
 
 /* A figure being filled in. */
@@ -31,6 +35,18 @@ static const strut_table_column *column_of(const maker *self, int column) {
 
 static double value_of(const maker *self, int column, size_t row) {
   return strut_table_number(&self->rows, column, row);
+}
+
+/* "stiffness 3 kN/m" of a group's first row, with `between` after the name; numbers without unit as they are written. */
+static const char *group_text(maker *self, int column, const strut_table_groups *groups, size_t i,
+                              const char *between) {
+  const strut_table_column *of = column_of(self, column);
+  double value = of->value ? of->value[groups->row[i]] : (double)NAN;
+  bool unit = isfinite(value) && (*of->unit || of->shown.name);
+  return strut_figure_text(
+      &self->page, "%s%s%s", of->name, between,
+      unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
+           : groups->name[i]);
 }
 
 /* "velocity", or "velocity, b less a". */
@@ -78,14 +94,13 @@ static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel
 /* What the legend says of y column k of a curve; NULL: there is one curve only. */
 static const char *curve_name(maker *self, size_t curve, int k) {
   const strut_table_figure *figure = self->figure;
-  const char *column = name_of(self, figure->y[k]), *group = self->curves.name[curve];
-  const strut_table_column *by = column_of(self, figure->by);
+  const char *column = name_of(self, figure->y[k]);
   bool several = figure->y_count > 1;
+  if (figure->label_count) return figure->labels[curve * (size_t)figure->y_count + (size_t)k];
   if (self->curves.count * (size_t)figure->y_count < 2) return NULL;
-  if (!group) return column;
-  return strut_figure_text(&self->page, "%s%s%s %s%s%s", several ? column : "", several ? ", " : "",
-                           by->name, group, by->value && *by->unit ? " " : "",
-                           by->value ? by->unit : "");
+  if (figure->by == STRUT_NO_COLUMN) return column;
+  return strut_figure_text(&self->page, "%s%s%s", several ? column : "", several ? ", " : "",
+                           group_text(self, figure->by, &self->curves, curve, " "));
 }
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
@@ -291,6 +306,10 @@ static strut_status prepare(maker *self) {
   if (!status && figure->kind == STRUT_TABLE_CURVES)
     status = strut_table_groups_find(&self->rows, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
                                      &self->curves, self->error);
+  size_t curves = self->curves.count * (size_t)figure->y_count;
+  if (!status && figure->label_count && figure->label_count != curves)
+    status = strut_fail(self->error, STRUT_USAGE, "%zu labels were given for %zu curve%s",
+                        figure->label_count, curves, curves == 1 ? "" : "s");
   if (!status && figure->kind == STRUT_TABLE_MAP) status = prepare_grid(self);
   return status;
 }
@@ -299,19 +318,20 @@ static void add_panel(maker *self, size_t i) {
   static void (*const fill[])(maker *, size_t, strut_panel *) = {add_curves, add_map, add_points};
   const strut_table_figure *figure = self->figure;
   const strut_table_column *x = column_of(self, figure->x), *y = column_of(self, figure->y[0]);
-  const strut_table_column *value = column_of(self, figure->value),
-                           *of = column_of(self, figure->panels);
+  const strut_table_column *value = column_of(self, figure->value);
   strut_panel *panel = strut_add_panel(&self->page);
   panel->x = strut_axis_of(x->name, x->unit);
   panel->y = strut_axis_of(name_y_axis(self), y->unit);
+  panel->x.shown = x->shown, panel->y.shown = y->shown;
   panel->x.logarithmic = figure->log_x, panel->y.logarithmic = figure->log_y;
   if (value && value->value)
-    panel->scale = (strut_colour_scale){
-        .name = name_of(self, figure->value), .unit = value->unit, .colours = figure->colours};
-  if (of) /* "a) friction = 0.1" */
-    panel->title =
-        strut_figure_text(&self->page, "%c) %s = %s%s%s", (char)('a' + (int)(i % 26)), of->name,
-                          self->panels.name[i], *of->unit ? " " : "", of->unit);
+    panel->scale = (strut_colour_scale){.name = name_of(self, figure->value),
+                                        .unit = value->unit,
+                                        .shown = value->shown,
+                                        .colours = figure->colours};
+  if (figure->panels != STRUT_NO_COLUMN) /* "a) friction = 0.1" */
+    panel->title = strut_figure_text(&self->page, "%c) %s", (char)('a' + (int)(i % 26)),
+                                     group_text(self, figure->panels, &self->panels, i, " = "));
   fill[figure->kind](self, i, panel);
 }
 

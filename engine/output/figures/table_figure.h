@@ -37,6 +37,8 @@ typedef struct strut_table_figure {
   int by;   /* a curve for each of its texts */
   int band; /* grey where it has the text `band_value`, midway to the next points */
   const char *band_value;
+  size_t label_count;
+  const char *const *labels; /* (label_count) of all curves in their order; none: by the columns */
   bool log_x, log_y,
       between; /* between: of a difference, the first side is interpolated linearly */
   /* Of maps and points. */

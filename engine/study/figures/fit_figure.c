@@ -5,6 +5,7 @@
 
 #include "engine/output/draw/figure.h"
 #include "engine/study/fit/fit.h"
+#include "engine/study/sweep/grid.h"
 
 /* Residuals within so many standard deviations are usual. */
 static const double USUAL = 2.0;
@@ -16,11 +17,6 @@ static bool is_measured(const strut_fit_match *match, size_t s) {
   bool some = false;
   for (size_t i = 0; i < match->count; i++) some = some || !isnan(match->series[s].measured[i]);
   return some;
-}
-
-/* An axis for values in a unit; "1": none. */
-static strut_axis axis_in(const char *name, const char *unit) {
-  return strut_axis_of(name, strcmp(unit, "1") == 0 ? "" : unit);
 }
 
 static strut_axis axis_of_match(const strut_fit_match *match) {
@@ -51,7 +47,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   const double *model = result->predicted + strut_fit_first(result->fit, m, s);
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
-  panel->y = axis_in(match->series[s].of, match->series[s].unit);
+  panel->y = strut_axis_in(match->series[s].of, match->series[s].unit, (strut_file_unit){0});
   panel->title = match->name;
   add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
   strut_series *line = strut_add_series(figure, panel, "model");
@@ -84,7 +80,7 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   const strut_fit_row *ends = &result->ends[2 * k];
   double best = result->starts[result->best].sum, variance = result->scale * result->scale;
   strut_panel *panel = strut_add_panel(figure);
-  panel->x = axis_in(e->name, e->unit);
+  panel->x = strut_axis_in(e->name, e->unit, strut_grid_unit(result->plan->study, e->name));
   panel->y = strut_axis_of("rise of the sum of squares over its variance", "");
   strut_series *line = strut_add_series(figure, panel, "by the standard error");
   line->look = 1, line->markers = STRUT_MARKERS_NONE;

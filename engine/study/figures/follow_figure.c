@@ -115,7 +115,7 @@ static bool is_marked(strut_follow_kind kind, bool changes) {
 strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_result *result,
                                  strut_error *error) {
   picture p;
-  begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
+  begin_picture(&p, result->title, strut_axis_in(result->name, result->unit, result->shown),
                 height_axis(result->count && result->branches[0].branch.travels));
   for (size_t i = 0; i < result->count; i++) {
     const strut_follow_branch *branch = &result->branches[i].branch;
@@ -136,8 +136,8 @@ strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_foll
                                                       STRUT_FOLLOW_TOUCH, STRUT_FOLLOW_LIFT};
   static const char *const texts[CURVE_KEYS] = {"fold", "period doubling", "grazing", "lift-off"};
   picture p;
-  begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
-                strut_axis_of(result->second.name, result->second.unit));
+  begin_picture(&p, result->title, strut_axis_in(result->name, result->unit, result->shown),
+                strut_axis_in(result->second.name, result->second.unit, result->second.shown));
   for (size_t i = 0, look; i < result->curve_count; i++) {
     const strut_follow_branch *curve = &result->curves[i];
     for (look = 0; look + 1 < CURVE_KEYS && kinds[look] != curve->kind;) look++;
@@ -186,9 +186,10 @@ static const char *row_label(const source *self, size_t row, picture *p) {
     const strut_table_column *column = &self->table->columns[i];
     double value = column->value ? column->value[row] : (double)NAN;
     const char *unit = column->unit && *column->unit ? column->unit : "1";
-    text = strut_figure_text(
-        &p->figure, "%s%s%.40s %.40s", text, i ? ", " : "", column->name,
-        isfinite(value) ? strut_quantity_of_any(value, 4, unit).text : text_of(column, row));
+    text =
+        strut_figure_text(&p->figure, "%s%s%.40s %.40s", text, i ? ", " : "", column->name,
+                          isfinite(value) ? strut_quantity_shown(value, 4, unit, column->shown).text
+                                          : text_of(column, row));
   }
   return text;
 }
@@ -233,7 +234,7 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
     s.column[i] = &table->columns[column];
   }
   picture p;
-  begin_picture(&p, plan->study->name, strut_axis_of(follow->over, follow->unit),
+  begin_picture(&p, plan->study->name, strut_axis_in(follow->over, follow->unit, follow->shown),
                 height_axis(!table->row_count || !isfinite(number_of(&s, AMPLITUDE, 0))));
   add_rows(&s, &p);
   add_keys(&p);

@@ -65,7 +65,8 @@ static void add_panel(strut_figure *figure, const strut_sensitivity_row *rows, s
   }
   panel->title = rows->of;
   panel->x.high = MOST;
-  panel->y = (strut_axis){"", "", false, -0.6, (double)count - 0.4, names, count};
+  panel->y =
+      (strut_axis){.low = -0.6, .high = (double)count - 0.4, .names = names, .name_count = count};
   panel->height = FRAME + ROW * (double)count;
 }
 
@@ -108,7 +109,7 @@ static strut_series *find_curve(strut_figure *figure, const strut_study_column *
   while (i < figure->panel_count && strcmp(figure->panels[i].title, row->of) != 0) i++;
   strut_panel *panel = i < figure->panel_count ? &figure->panels[i] : strut_add_panel(figure);
   panel->title = row->of;
-  panel->x = strut_axis_of(over->name, strcmp(over->unit, "1") ? over->unit : "");
+  panel->x = strut_axis_in(over->name, over->unit, over->shown);
   panel->y = strut_axis_of("total index", "");
   panel->outliers = true;
   while (k < panel->series_count && strcmp(panel->series[k].label, label) != 0) k++;

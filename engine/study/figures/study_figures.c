@@ -17,6 +17,14 @@ static int column_of(const strut_table *table, const char *name) {
   return strut_table_column_of(table, name, name ? strlen(name) : 0);
 }
 
+void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
+  for (size_t i = 0; i < plan->axis_columns; i++) {
+    int column = column_of(table, plan->columns[i].name);
+    if (column >= 0)
+      table->columns[column].shown = strut_grid_unit(plan->study, plan->columns[i].name);
+  }
+}
+
 /* COLUMN=TEXT. */
 static int column_of_match(const strut_table *table, const char *match, const char **text) {
   size_t length = match ? strcspn(match, "=") : 0;
@@ -54,6 +62,7 @@ static strut_status draw_table(const strut_study_figure *f, const char *path,
     figure.spread = refined;
   } else {
     figure.by = column_of(table, f->series);
+    figure.labels = f->labels, figure.label_count = f->label_count;
     figure.between = f->kind == STRUT_FIGURE_MOTION;
     figure.band = column_of_match(table, f->band, &figure.band_value);
   }
@@ -65,6 +74,7 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
                                 strut_error *error) {
   strut_table motion = {0};
   strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
+  strut_sweep_show_units(plan, &motion);
   if (!status) status = draw_table(figure, path, &motion, false, error);
   strut_arena_free(&motion.arena);
   return status;
@@ -218,6 +228,7 @@ static void choose_columns(const tracker *self, const strut_study_figure *f,
     figure->x = self->evaluation;
     figure->y[0] = (int)self->table->column_count; /* see extend */
     figure->by = column_of(self->table, series);
+    figure->labels = f->labels, figure->label_count = f->label_count;
     figure->panels = column_of(self->table, f->panels);
     return;
   }

@@ -126,6 +126,7 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
   strut_status status = strut_table_read(job->arguments->listener, path, &table);
+  strut_sweep_show_units(&job->study->plan, &table);
   for (size_t i = 0; i < study->figure_count && !status; i++) {
     strut_error error = {0};
     if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
@@ -186,6 +187,7 @@ static strut_status draw_branches(const strut_study_job *job, strut_error *error
                            .width = PAGE};
   if (!from || !plot.path) return strut_no_memory(error, "");
   strut_status status = strut_table_read(job->arguments->listener, from, &table);
+  strut_sweep_show_units(plan, &table);
   if (!status) status = strut_follow_points_figure(&plot, plan, &table, error);
   strut_arena_free(&table.arena);
   return status;
