@@ -213,7 +213,7 @@ static void add_lines(strut_buffer *text, const cell_table *table) {
       const char *cell = i ? column->cell[i - 1] : column->title;
       bool cut = k != last && letters(cell) > WIDEST;
       int width = k == last && !column->number ? 0 : width_of(column);
-      if (!column->width) continue;
+      if (!column->width || (k == last && !cell)) continue;
       if (cut)
         strut_buffer_add(text, "  %.*s...", bytes_of(cell, WIDEST - 3), cell);
       else
@@ -259,11 +259,12 @@ static void add_latex_cell(strut_buffer *text, const char *mark, const char *cel
   strut_buffer_add(text, "%s", mark);
   for (const char *c = cell ? cell : ""; *c; c++)
     strut_buffer_add(text,
-                     strchr("#$%&_{}", *c) ? "\\%c"
-                     : *c == '^'           ? "\\^{}"
-                     : *c == '~'           ? "\\~{}"
-                     : *c == '\\'          ? "\\textbackslash{}"
-                                           : "%c",
+                     strchr("#$%&_{}", *c)                                       ? "\\%c"
+                     : *c == 'u' && c > cell + 1 && c[-1] == ' ' && c[-2] <= '9' ? "\\textmu{}"
+                     : *c == '^'                                                 ? "\\^{}"
+                     : *c == '~'                                                 ? "\\~{}"
+                     : *c == '\\' ? "\\textbackslash{}"
+                                  : "%c",
                      *c);
 }
 
@@ -372,6 +373,19 @@ static void add_lists(strut_buffer *text, const strut_value_rows *rows,
 
 void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
                              const strut_result_object *of, const strut_table_page *page) {
+  cell_table *table = strut_allocate(1, sizeof *table);
+  bool latex = page->width == STRUT_REPORT_LATEX, any = false;
+  text->failed = text->failed || !table;
+  if (!table) return;
+  table->items = 1;
+  table->digits = page->digits;
+  put_cells(table, rows, "", of);
+  for (size_t k = 0; k < table->count; k++) any = any || table->column[k].width;
+  if (!table->failed && any && latex) add_tabular(text, table, true);
+  if (!table->failed && !latex) add_columns(text, table, page->width);
+  text->failed = text->failed || table->failed;
+  strut_arena_free(&table->arena);
+  strut_release(table);
   add_lists(text, rows, of, "", page);
 }
 
@@ -381,21 +395,9 @@ char *strut_values_text(const strut_value_rows *rows, const void *result, const 
   strut_buffer text = {0};
   const strut_result_object whole = {result, NULL, scene, 0};
   strut_c_locale locale = strut_c_locale_enter();
-  cell_table *table = strut_allocate(1, sizeof *table);
-  bool latex = width == STRUT_REPORT_LATEX;
-  if (scene && *scene->name) strut_buffer_add(&text, "%s%s\n", latex ? "% " : "", scene->name);
-  if (table) {
-    table->items = 1;
-    table->digits = page.digits;
-    put_cells(table, rows, "", &whole);
-    if (!table->failed && latex && table->count) add_tabular(&text, table, true);
-    if (!table->failed && !latex) add_columns(&text, table, width);
-    text.failed = text.failed || table->failed;
-    strut_arena_free(&table->arena);
-    strut_release(table);
-    add_lists(&text, rows, &whole, "", &page);
-  }
-  text.failed = text.failed || !table;
+  if (scene && *scene->name)
+    strut_buffer_add(&text, "%s%s\n", width == STRUT_REPORT_LATEX ? "% " : "", scene->name);
+  strut_values_add_tables(&text, rows, &whole, &page);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&text);
 }

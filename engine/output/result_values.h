@@ -49,7 +49,7 @@ typedef struct strut_table_page {
   size_t most;
   int digits;
 } strut_table_page;
-/** Appends the tables alone. */
+/** Appends what strut_values_text writes, without the scene's name. */
 STRUT_API void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
                                        const strut_result_object *of, const strut_table_page *page);
 

@@ -112,89 +112,72 @@ static void add_head(strut_buffer *table, const strut_summary *summary, const st
   add_claims(table, summary);
 }
 
-/* Why a quantity has no value. */
-static const char *missing(const strut_summary *summary, const strut_measured *measured) {
-  if (strut_measured_arrival(measured) && summary->status == STRUT_OK)
-    return "the target was not reached";
-  return summary->status == STRUT_OK ? "not finite" : "the window was not reached";
-}
-
-static void add_measured(strut_buffer *table, const strut_summary *summary) {
-  if (summary->measured_count)
-    strut_buffer_add(table, "\n  %-16s %14s %14s\n", "measured", "value", "spread");
-  for (size_t i = 0; i < summary->measured_count; i++) {
-    const strut_measured *measured = &summary->measured[i];
-    strut_buffer_add(table, "  %-16s %14s", measured->name,
-                     strut_quantity_of_any(measured->value, DIGITS, measured->unit).text);
-    if (isfinite(measured->spread))
-      strut_buffer_add(table, " %14s",
-                       strut_quantity_of_any(measured->spread, DIGITS, measured->unit).text);
-    if (measured->undecided)
-      strut_buffer_add(table, "  not decided");
-    else if (isnan(measured->value))
-      strut_buffer_add(table, "  %s", missing(summary, measured));
-    if (measured->zero) strut_buffer_add(table, "  zero up to rounding");
-    if (measured->member) strut_buffer_add(table, "  in %.40s", measured->member);
-    if (isfinite(measured->expected))
-      strut_buffer_add(table, "  %s within %s",
-                       measured->kept ? "known" : "NOT as accurate as requested, but",
-                       strut_quantity_of_any(measured->expected, 2, measured->unit).text);
-    strut_buffer_add(table, "\n");
-  }
-}
-
 /* The residual of the balance and what it means, in one statement. */
-static void add_balance(strut_buffer *table, const strut_summary *summary) {
+static void write_residual(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_summary *summary = of->at;
   const strut_energy *energy = &summary->energy;
   strut_rounded_quantity residual = in(energy->residual, "J");
-  if (summary->balance == STRUT_BALANCE_NOT_KEPT || !(energy->moved > 0.0)) {
-    if (energy->residual != 0.0)
-      strut_buffer_add(table, "  %-16s %14s\n", "residual", residual.text);
-    return;
-  }
+  bool kept = summary->balance != STRUT_BALANCE_NOT_KEPT && energy->moved > 0.0;
   double part = fabs(energy->residual) / energy->moved;
-  if (summary->balance == STRUT_BALANCE_OPEN)
-    strut_buffer_add(table, "  %-16s %14s   balance NOT closed: %.2g %% of the energy exchanged\n",
-                     "residual", residual.text, 100.0 * part);
-  else
-    strut_buffer_add(table, "  %-16s %14s   balance closed%s\n", "residual", residual.text,
-                     part <= 0.01 ? " within 1 % of the energy exchanged"
-                                  : " up to the rounding of the stored energy");
+  if (!kept && energy->residual != 0.0)
+    snprintf(text, STRUT_VALUE_ROOM, "%s", residual.text);
+  else if (kept && summary->balance == STRUT_BALANCE_OPEN)
+    snprintf(text, STRUT_VALUE_ROOM, "%s   balance NOT closed: %.2g %% of the energy exchanged",
+             residual.text, 100.0 * part);
+  else if (kept)
+    snprintf(text, STRUT_VALUE_ROOM, "%s   balance closed%s", residual.text,
+             part <= 0.01 ? " within 1 % of the energy exchanged"
+                          : " up to the rounding of the stored energy");
 }
 
 /* Energies below this part of all of them are rounding. */
 static const double ENERGY_ROUNDING = 4.0 * DBL_EPSILON;
 
-static void add_energy(strut_buffer *table, const strut_summary *summary) {
-  const strut_energy *energy = &summary->energy;
-  const struct {
-    const char *name;
-    double value;
-  } rows[] = {
-#define ENERGY_ROW(name, kind, label) {label, energy->name},
-      STRUT_ENERGY_TABLE(ENERGY_ROW)
-#undef ENERGY_ROW
-  };
+static double largest_energy(const strut_energy *energy) {
   double most = energy->moved + fabs(energy->initial);
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) most = fmax(most, fabs(rows[i].value));
-  strut_buffer_add(table, "\n  energy after %s, works and losses until then\n",
-                   in(summary->duration, "s").text);
-  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-    if (!(fabs(rows[i].value) > ENERGY_ROUNDING * most)) continue; /* not in this scene */
-    strut_buffer_add(table, "  %-16s %14s\n", rows[i].name, in(rows[i].value, "J").text);
-  }
+#define WIDEN(name, kind, label) most = fmax(most, fabs(energy->name));
+  STRUT_ENERGY_TABLE(WIDEN)
+#undef WIDEN
+  return most;
 }
 
-char *strut_summary_table(const strut_summary *summary, const strut_scene *scene) {
-  strut_buffer table = {0};
+/* Energies of what the scene has. */
+#define ENERGY(X)                                                                                  \
+  STRUT_ENERGY_TABLE(ENERGY_OF_##X)                                                                \
+  X(NULL, "", WORDS(write_residual), "", .label = {"residual"})
+#define ENERGY_OF_STRUT_VALUE_ROW(NAME, KIND, LABEL)                                               \
+  STRUT_VALUE_ROW(NULL, "J", , LABEL, .label = {LABEL})
+#define ENERGY_OF_STRUT_VALUE_FILL(NAME, KIND, LABEL)                                              \
+  STRUT_VALUE_FILL(NULL, "J",                                                                      \
+                   IF(fabs(energy->NAME) > ENERGY_ROUNDING * most, NUMBER(energy->NAME)), LABEL)
+STRUT_VALUES_HERE(energy_values, ENERGY,
+                  const strut_energy *energy = &((const strut_summary *)of->at)->energy;
+                  double most = largest_energy(energy))
+
+/* Appends a text, in LaTeX as a comment. */
+static void add_text(strut_buffer *table, const char *text, bool latex) {
+  for (const char *c = text; c && *c; c++)
+    strut_buffer_add(table, latex && (c == text || c[-1] == '\n') && *c != '\n' ? "%% %c" : "%c",
+                     *c);
+}
+
+char *strut_summary_table(const strut_summary *summary, const strut_scene *scene, int width) {
+  strut_buffer table = {0}, head = {0}, energy = {0};
   strut_c_locale locale = strut_c_locale_enter();
-  add_head(&table, summary, scene);
-  add_measured(&table, summary);
-  strut_values_add_tables(&table, &strut_summary_values,
-                          &(strut_result_object){summary, NULL, scene, 0},
-                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_ROWS, DIGITS});
-  add_energy(&table, summary);
-  add_balance(&table, summary);
+  const strut_result_object whole = {summary, NULL, scene, 0};
+  const strut_table_page page = {width == STRUT_REPORT_LATEX ? width : STRUT_REPORT_WIDTH,
+                                 MOST_ROWS, DIGITS};
+  bool latex = width == STRUT_REPORT_LATEX;
+  add_head(&head, summary, scene);
+  strut_buffer_add(&energy, "\n  energy after %s, works and losses until then\n",
+                   in(summary->duration, "s").text);
+  char *texts[] = {strut_buffer_take(&head), strut_buffer_take(&energy)};
+  table.failed = !texts[0] || !texts[1];
+  add_text(&table, texts[0], latex);
+  strut_values_add_tables(&table, &strut_summary_values, &whole, &page);
+  add_text(&table, texts[1], latex);
+  strut_values_add_tables(&table, &energy_values, &whole, &page);
+  for (int i = 0; i < 2; i++) strut_release(texts[i]);
   strut_c_locale_leave(locale);
   return strut_buffer_take(&table);
 }

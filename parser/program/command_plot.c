@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
-#include "engine/output/figures/table_choice.h"
+#include "engine/output/figures/table_figure.h"
 #include "parser/language/yaml/diagnostics.h"
 #include "parser/program/options.h"
 #include "parser/program/streams.h"
@@ -99,15 +99,13 @@ static strut_status read_y(const strut_arguments *arguments, const strut_table *
 /* Texts with commas between, in the table's arena. */
 static strut_status read_labels(const strut_arguments *arguments, strut_table *table,
                                 strut_table_figure *figure) {
-  enum { MOST = STRUT_MOST_Y * STRUT_MOST_TABLE_GROUPS };
-  const char **labels = strut_arena_allocate(&table->arena, MOST, sizeof *labels);
-  for (const char *at = arguments->labels; at && labels; at = *at ? at + 1 : NULL) {
+  const char *at = arguments->labels;
+  if (!at) return STRUT_OK;
+  const char **labels = strut_arena_allocate(&table->arena, strlen(at) + 1, sizeof *labels);
+  for (bool more = labels; more; more = *at++ == ',') {
     size_t length = strcspn(at, ",");
-    if (figure->label_count == MOST)
-      return strut_usage_error(arguments, "--labels: at most %d labels", MOST);
-    const char *label = strut_arena_text(&table->arena, at, length);
-    if (!label) return strut_print_out_of_memory();
-    labels[figure->label_count++] = label;
+    labels[figure->label_count] = strut_arena_text(&table->arena, at, length);
+    if (!labels[figure->label_count++]) return strut_print_out_of_memory();
     at += length;
   }
   figure->labels = labels;
@@ -132,7 +130,6 @@ static strut_status read_figure(const strut_arguments *arguments, strut_table *t
   figure->log_y = arguments->log.text && arguments->log.index != 0;
   figure->colours = (strut_colours)arguments->colors.index;
   if (map && table->column_count > 2) figure->value = 2;
-  if (arguments->model_count > 1) figure->by = (int)table->column_count - 1;
   strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
   if (!status) status = read_y(arguments, table, figure);
   if (!status) status = read_labels(arguments, table, figure);
@@ -167,8 +164,7 @@ static strut_status run_plot(const strut_arguments *arguments) {
   if (status == STRUT_OK) status = strut_plot_read(arguments, 0, &plot);
   if (status != STRUT_OK) return status;
   if (!plot.path) return strut_usage_error(arguments, "missing --plot FILE");
-  status =
-      strut_tables_read(arguments->listener, arguments->models, arguments->model_count, &table);
+  status = strut_table_read(arguments->listener, arguments->model, &table);
   if (status != STRUT_OK) return status;
   status = read_figure(arguments, &table, &figure);
   if (!status) status = strut_axes_read(arguments, figure.log_x, figure.log_y, &plot.x, &plot.y);
@@ -180,14 +176,12 @@ static strut_status run_plot(const strut_arguments *arguments) {
 
 const strut_command strut_command_plot = {
     .name = "plot",
-    .model = "TABLE...",
-    .many = true,
+    .model = "TABLE",
     .summary = "draws curves or a map from a table",
     .details =
         "\nTABLE is a CSV file with a header such as \"frequency [Hz],velocity [m/s],start\", as\n"
         "strut writes it, or - for the standard input. Units get prefixes, curves differ\n"
-        "by colour, dashes and markers, and cells without a number break a curve. Several tables\n"
-        "need the same columns; their rows get a further one, 'table', with the file's name.\n",
+        "by colour, dashes and markers, and cells without a number break a curve.\n",
     .options = options,
     .run = run_plot,
 };

@@ -63,7 +63,7 @@ static const char *complete_argument(const strut_command *command, completion *s
     offer(self, strut_section_name((strut_section)i));
   if (strcmp(model, "EXAMPLE") == 0) strut_examples_list(offer_example, self);
   if (strcmp(model, "DIR") == 0) return ":folders";
-  if (strncmp(model, "TABLE", 5) == 0) return ":files csv";
+  if (strcmp(model, "TABLE") == 0) return ":files csv";
   if (strstr(model, "RUN") || strncmp(model, "FILE", 4) == 0) return ":files";
   bool scene = strncmp(model, "MODEL", 5) == 0 || strcmp(model, "STUDY") == 0;
   return scene ? ":files yaml yml" : ":";

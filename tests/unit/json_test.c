@@ -9,8 +9,9 @@
 #include "tests/support/motion.h"
 
 static strut_node node = {.name = "n1"};
-static strut_parameter parameters[] = {
-    {"frequency", "10 Hz", 10.0}, {"amplitude", "0.1 mm", 1e-4}, {"start", "I", (double)NAN}};
+static strut_parameter parameters[] = {{.name = "frequency", .text = "10 Hz", .value = 10.0},
+                                       {.name = "amplitude", .text = "0.1 mm", .value = 1e-4},
+                                       {.name = "start", .text = "I", .value = (double)NAN}};
 static const char *names[] = {"n1", "a \"b\"\\\n"};
 static double positions[] = {0.1 + 0.2, -1e-300, 5e-324, 1.7976931348623157e308};
 static strut_contact_summary contacts[] = {{.node = "n1", .duty = 1.0 / 3.0, .max_height = 1.1e-3}};
@@ -171,7 +172,7 @@ TEST(no_memory) {
   strut_release(text);
   for (text = NULL, n = 0; !text; n++) {
     strut_fail_allocation_after(n);
-    text = strut_summary_table(&summary, &scene);
+    text = strut_summary_table(&summary, &scene, 0);
     strut_fail_allocation_after(-1);
   }
   assert_true(n > 1);
@@ -186,7 +187,7 @@ TEST(the_table) {
   summary.spent.steps = 1100000;
   summary.step_limit = 5.123456e-4;
   summary.velocity_spread = 2e-6;
-  RELEASED char *text = strut_summary_table(&summary, &scene);
+  RELEASED char *text = strut_summary_table(&summary, &scene, 0);
   static const char *const expected[] = {
       "Cr\xc3\xa4wler: completed\n",
       "  velocity    +9.781 mm/s along x, of the centre of mass, spread 2 um/s, from 100 s\n",
@@ -195,8 +196,8 @@ TEST(the_table) {
       "  computed    4400000 force evaluations in 250 ms, 227.3 ns per step\n",
       "  n1             300 mm",
       "  n1             0.3333      1.1 mm\n",
-      "  kinetic                142.9 mJ\n",
-      "  lost to friction           10 J\n",
+      "  kinetic           142.9 mJ\n",
+      "  lost to friction  10 J\n",
   };
   for (size_t i = 0; i < sizeof expected / sizeof expected[0]; i++)
     if (!strstr(text, expected[i])) fail_msg("'%s' is not in:\n%s", expected[i], text);
@@ -212,7 +213,7 @@ TEST(a_long_table_is_cut) {
   summary.end.node_names = many;
   summary.end.positions = places;
   summary.end.node_count = NODES;
-  RELEASED char *text = strut_summary_table(&summary, &scene);
+  RELEASED char *text = strut_summary_table(&summary, &scene, 0);
   assert_non_null(strstr(text, "  ... and 4990 more: JSON and CSV have all\n"));
   int lines = 0;
   for (const char *c = text; *c; c++) lines += *c == '\n';
@@ -257,14 +258,14 @@ TEST(the_locale_does_not_matter) {
   strut_scene scene = make_scene();
   strut_summary summary = make_summary();
   char *json = strut_summary_json(&summary, &scene, true);
-  char *table = strut_summary_table(&summary, &scene);
+  char *table = strut_summary_table(&summary, &scene, 0);
   if (!setlocale(LC_ALL, "de_DE.UTF-8") && !setlocale(LC_ALL, "fr_FR.UTF-8")) {
     strut_release(json);
     strut_release(table);
     skip();
   }
   RELEASED char *json_there = strut_summary_json(&summary, &scene, true);
-  RELEASED char *table_there = strut_summary_table(&summary, &scene);
+  RELEASED char *table_there = strut_summary_table(&summary, &scene, 0);
   setlocale(LC_ALL, "C");
   assert_all_texts(json_there, json, table_there, table);
   strut_release(json);

@@ -95,6 +95,7 @@ typedef struct strut_plot {
   const char *path;       /* ends with .svg, .pdf, .png or .json; NULL: no figure is wanted */
   double width;           /* [pt]; 0: 180 mm */
   const char *title;      /* replaces the figure's own; NULL: the model's name */
+  bool texts;             /* those of an SVG are texts, not outlines */
   strut_axis_choice x, y; /* of a figure with one pair of axes */
 } strut_plot;
 

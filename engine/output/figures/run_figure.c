@@ -225,18 +225,17 @@ static const char *describe_run(const strut_run_scene *run, const char *what) {
                                    : "");
 }
 
-strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
-                                   const strut_model *model, const strut_trajectory *motion,
-                                   const strut_summary *summary, strut_error *error) {
+strut_status strut_run_figure_draw(const strut_run_figure *figure, const strut_model *model,
+                                   const strut_trajectory *motion, const strut_summary *summary,
+                                   strut_error *error) {
   strut_figure page = {.title = model->scene->name,
                        .alarm = summary && summary->status != STRUT_OK};
   strut_run_scene run = {
       .figure = figure, .model = model, .motion = motion, .summary = summary, .page = &page};
-  const strut_plot plot = {.path = path, .width = figure->width, .title = figure->title};
   if (motion->position) strut_run_count_frames(&run);
   if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
   strut_run_find_limits(&run);
   page.note = describe_run(&run, views[figure->view].fill(&run, &page));
-  return strut_figure_draw(&plot, &page, error);
+  return strut_figure_draw(&figure->plot, &page, error);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a run has, a row for each value. */
 #include <math.h>
+#include <stdio.h>
 
+#include "engine/base/number_text.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 
@@ -85,17 +87,44 @@ static bool is_judged(const strut_measured *m, const strut_summary *s) {
   return isfinite(m->expected) || (strut_measured_arrival(m) && s->accuracy.wanted > 0.0);
 }
 
+/* What is to be known of it beside its value. */
+static void write_note(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_measured *m = of->at;
+  const strut_summary *s = summary_of(of->outer);
+  const char *missing = s->status != STRUT_OK       ? "the window was not reached"
+                        : strut_measured_arrival(m) ? "the target was not reached"
+                                                    : "not finite";
+  size_t used = 0;
+#define NOTE(IF, ...)                                                                              \
+  if (IF) {                                                                                        \
+    used += (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used, used ? "; " : "");              \
+    used += (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used, __VA_ARGS__);                   \
+  }
+  NOTE(m->undecided, "not decided")
+  NOTE(!m->undecided && isnan(m->value), "%s", missing)
+  NOTE(m->zero, "zero up to rounding")
+  NOTE(m->member, "in %.40s", m->member)
+  NOTE(isfinite(m->expected), "%s within %s",
+       m->kept ? "known" : "NOT as accurate as requested, but",
+       strut_quantity_of_any(m->expected, 2, m->unit).text)
+#undef NOTE
+}
+
 #define MEASURED(X)                                                                                \
-  X("value", "", NUMBER(m->value), "in its SI unit; null: its window was not reached")             \
+  X("value", "", CALLED(NULL, m->unit, m->value),                                                  \
+    "in its SI unit; null: its window was not reached", .label = {""})                             \
   X("unit", "", TEXT(m->unit), "SI")                                                               \
-  X("spread", "", NUMBER(m->spread), "standard deviation over the window's periods")               \
+  X("spread", "", CALLED(NULL, m->unit, m->spread),                                                \
+    "standard deviation over the window's periods", .label = {""})                                 \
   X("scale", "", NUMBER(m->scale), "its largest magnitude over the window, or that of its terms")  \
   X("zero", "", FLAG(m->zero), "whether it is zero up to rounding")                                \
   X("member", "", IF(m->member, TEXT(m->member)), "that has the largest force")                    \
   X("arrival", "", IF(strut_measured_arrival(m), TEXT(strut_measured_arrival(m))),                 \
     "reached, never, or not decided")                                                              \
   X("expected", "", IF(isfinite(m->expected), NUMBER(m->expected)), "error")                       \
-  X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)), "within what was asked for")
+  X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)),                            \
+    "within what was asked for")                                                                   \
+  X(NULL, "", WORDS(write_note), "", .label = {"note"})
 STRUT_VALUES_HERE(measured_values, MEASURED, const strut_measured *m = of->at)
 
 #define DERIVATIVE(X)                                                                              \
@@ -182,7 +211,7 @@ static void write_worth(const strut_result_object *of, char text[STRUT_VALUE_ROO
 #define THINGS(X)                                                                                  \
   X("measured", "",                                                                                \
     IF(s->measured_count, NAMED(s->measured, s->measured_count, name_of_measured)),                \
-    "quantities of `measure`", .rows = &measured_values)                                           \
+    "quantities of `measure`", .rows = &measured_values, .label = {""})                            \
   X("derivatives", "", IF(s->derivative_count, LIST(s->derivatives, s->derivative_count)),         \
     "of what is measured by parameters", .rows = &derivative_values, .label = {"derivatives"})     \
   X("parameters", "", PARAMETERS, "of the scene")                                                  \

@@ -66,8 +66,8 @@ extern const strut_value_rows strut_check_values;
 
 /** Prints it as JSON and releases what it has found. */
 strut_status strut_check_print(strut_check_result *checked);
-/** Prints a table for each kind of things of a model. */
-void strut_check_print_things(const strut_check_result *checked);
+/** Prints what a model has, and a table for each kind of its things, as wide or in LaTeX. */
+strut_status strut_check_print_tables(const strut_check_result *checked, int width);
 
 /* `strut check STUDY`: studies are edited beside models, and are checked likewise. */
 

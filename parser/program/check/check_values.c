@@ -212,32 +212,69 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
 #define THINGS(X, THING, OF)                                                                       \
   X(#OF, "", NAMED(of->scene->OF, of->scene->THING##_count, THING##_name), "by name",              \
     .rows = &THING##_values, .label = {#THING})
+/* How well the largest steps are known. */
+static const char *limit_words(const strut_cost_estimate *e) {
+  return !e->runnable          ? NULL
+         : e->limits.bound     ? "lower bounds: the structure is too large for estimates"
+         : e->step_limit_exact ? "from all eigenvalues"
+                               : "within 1 %";
+}
+
+/* The scene's step, and whether its method can have it. */
+static void write_step(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_check_result *c = of->at;
+  const strut_experiment *experiment = &c->setup->experiment;
+  const strut_integrator *method = strut_integrator_find(experiment->integrator);
+  double limit =
+      method ? strut_step_limit_of_method(&c->estimate->limits, method) : c->estimate->step_limit;
+  if (c->estimate->runnable && experiment->step > 0)
+    snprintf(text, STRUT_VALUE_ROOM, "%s%s", strut_quantity_of(experiment->step, DIGITS, "s").text,
+             experiment->step > limit ? ": too large, strut run rejects it" : "");
+}
+
+/* A line of text alone, and a number that is above 0. */
+#define SAYS(X, LABEL, TEXT_OF) X(NULL, "", IF(TEXT_OF, TEXT(TEXT_OF)), "", .label = {LABEL})
+#define SOME(X, LABEL, COUNT_OF)                                                                   \
+  X(NULL, "", IF((COUNT_OF) > 0, COUNT(COUNT_OF)), "", .label = {LABEL})
 #define SCENE(X)                                                                                   \
   X("language", "", COUNT(STRUT_LANGUAGE_VERSION), "version of the scene's language")              \
-  X("nodes", "", COUNT(e->count.nodes), "number")                                                  \
-  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes")                  \
-  X("bars", "", COUNT(e->count.bars), "number")                                                    \
-  X("springs", "", COUNT(e->count.springs), "number")                                              \
-  X("cables", "", COUNT(e->count.cables), "number")                                                \
+  X("nodes", "", COUNT(e->count.nodes), "number", COLUMN)                                          \
+  X("degrees_of_freedom", "", COUNT(e->count.degrees_of_freedom), "of the nodes", COLUMN)          \
+  X("bars", "", COUNT(e->count.bars), "number", COLUMN)                                            \
+  X("springs", "", COUNT(e->count.springs), "number", COLUMN)                                      \
+  X("cables", "", COUNT(e->count.cables), "number", COLUMN)                                        \
   X("running_cables", "", COUNT(e->count.running_cables), "of the cables")                         \
   X("laws", "", COUNT(e->count.laws), "members with another law than the linear")                  \
   X("stops", "", COUNT(e->count.stops), "members with stops")                                      \
-  X("contacts", "", COUNT(e->count.contacts), "number")                                            \
-  X("actuators", "", COUNT(e->count.actuators), "number")                                          \
-  X("loads", "", COUNT(e->count.loads), "number")                                                  \
+  SOME(X, "running cables", e->count.running_cables)                                               \
+  SOME(X, "members with a law", e->count.laws)                                                     \
+  SOME(X, "members with stops", e->count.stops)                                                    \
+  SOME(X, "hinges", e->count.hinges)                                                               \
+  SOME(X, "cells", e->count.cells)                                                                 \
+  SOME(X, "collisions", e->count.collisions)                                                       \
+  X("contacts", "", COUNT(e->count.contacts), "number", COLUMN)                                    \
+  X("actuators", "", COUNT(e->count.actuators), "number", COLUMN)                                  \
+  X("loads", "", COUNT(e->count.loads), "number", COLUMN)                                          \
   X("mass_nonzeros", "", COUNT(e->matrix.mass_nonzeros), "entries of the mass matrix")             \
   X("factor_nonzeros", "", COUNT(e->matrix.factor_nonzeros), "entries of its sparse factor")       \
   X("dense_entries", "", COUNT(e->matrix.dense_entries), "entries of dense inverses")              \
   X("bytes", "", COUNT(e->bytes), "of the compiled model")                                         \
+  X(NULL, "B", NUMBER((double)e->bytes), "", .label = {"memory"})                                  \
   X("runnable", "", FLAG(e->runnable), "whether every free node has a mass")                       \
+  SAYS(X, "no run", e->runnable ? NULL : "a free node has no mass: statics only")                  \
+  SOME(X, "nonzeros of the mass matrix", e->runnable ? e->matrix.mass_nonzeros : 0)                \
+  SOME(X, "and of its factor", e->runnable ? e->matrix.factor_nonzeros : 0)                        \
   X("largest_frequency", "Hz", KNOWN(e->runnable, NUMBER(e->largest_frequency / STRUT_TAU)),       \
-    "undamped, all contacts closed")                                                               \
+    "undamped, all contacts closed", .label = {"highest frequency"})                               \
   X("step", "s", NUMBER(c->setup->experiment.step), "of the scene; 0: none")                       \
   X("step_limit", "s", KNOWN(e->runnable, NUMBER(e->step_limit)), "largest stable one of rk4")     \
   X("step_limit_exact", "", FLAG(e->step_limit_exact), "or within 1 %")                            \
   X("step_limit_bound", "", FLAG(e->limits.bound), "the limits are lower bounds")                  \
   X("step_limits", "s", MAP(e->runnable ? method_count() : 0, method_name, method_limit),          \
-    "of all methods")                                                                              \
+    "of all methods", .label = {"largest step of"})                                                \
+  SAYS(X, "steps are known", limit_words(e))                                                       \
+  SAYS(X, "feedback", e->feedback ? "not counted in this frequency and these steps" : NULL)        \
+  X(NULL, "", WORDS(write_step), "", .label = {"step"})                                            \
   THINGS(X, member, members)                                                                       \
   THINGS(X, hinge, hinges)                                                                         \
   THINGS(X, cell, cells)                                                                           \
@@ -269,10 +306,12 @@ strut_status strut_check_print(strut_check_result *c) {
   return strut_print_block(text);
 }
 
-void strut_check_print_things(const strut_check_result *checked) {
-  strut_buffer table = {0};
-  strut_values_add_tables(&table, &scene_values,
-                          &(strut_result_object){checked, NULL, checked->model->scene, 0},
-                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
-  if (table.length || table.failed) strut_print_block(strut_buffer_take(&table));
+strut_status strut_check_print_tables(const strut_check_result *checked, int width) {
+  strut_buffer text = {0};
+  const strut_scene *scene = checked->model->scene;
+  strut_buffer_add(&text, "%s%s%svalid\n", width == STRUT_REPORT_LATEX ? "% " : "", scene->name,
+                   *scene->name ? ": " : "");
+  strut_values_add_tables(&text, &scene_values, &(strut_result_object){checked, NULL, scene, 0},
+                          &(strut_table_page){width, MOST_THINGS, DIGITS});
+  return strut_print_block(strut_buffer_take(&text));
 }

@@ -1,89 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/commands.h"
 
-#include <math.h>
-#include <stdio.h>
-
 #include "engine/base/memory.h"
-#include "engine/base/vec.h"
 #include "engine/integrate/integrator.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/command/run_settings.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 
-enum { DIGITS = 5 };
-
 static const strut_option options[] = {
     STRUT_SET_OPTION,
     {.table = strut_experiment_options},
-    {STRUT_FILLS(json), "json", NULL, "print everything as one JSON object"},
+    STRUT_PRINT_OPTIONS,
     {.name = NULL},
 };
-
-static strut_rounded_quantity in(double value, const char *unit) {
-  return strut_quantity_of(value, DIGITS, unit);
-}
-
-static void print_counts(const strut_cost_estimate *estimate) {
-  size_t members = estimate->count.bars + estimate->count.springs + estimate->count.cables;
-  printf("  nodes              %zu, with %zu degrees of freedom\n", estimate->count.nodes,
-         estimate->count.degrees_of_freedom);
-  printf("  members            %zu: bars %zu, springs %zu, cables %zu\n", members,
-         estimate->count.bars, estimate->count.springs, estimate->count.cables);
-  if (estimate->count.running_cables + estimate->count.laws + estimate->count.stops > 0)
-    printf("  of them            running cables %zu, with a law %zu, stops %zu\n",
-           estimate->count.running_cables, estimate->count.laws, estimate->count.stops);
-  if (estimate->count.hinges) printf("  hinges             %zu\n", estimate->count.hinges);
-  if (estimate->count.cells) printf("  cells              %zu\n", estimate->count.cells);
-  if (estimate->count.collisions) printf("  collisions         %zu\n", estimate->count.collisions);
-  printf("  contacts           %zu\n  actuators          %zu\n  loads              %zu\n",
-         estimate->count.contacts, estimate->count.actuators, estimate->count.loads);
-  printf("  memory             %s\n", in((double)estimate->bytes, "B").text);
-}
-
-/* Step limits of the other methods, on one line. */
-static void print_limits(const strut_cost_estimate *estimate) {
-  const char *between = "  of other methods   ";
-  for (size_t i = 0; strut_integrator_at(i); i++) {
-    const strut_integrator *method = strut_integrator_at(i);
-    double limit = strut_step_limit_of_method(&estimate->limits, method);
-    if (method->region == STRUT_REGION_RK4 || !isfinite(limit)) continue;
-    printf("%s%s %s", between, method->name, in(limit, "s").text);
-    between = ", ";
-  }
-  if (*between == ',') printf("\n");
-}
-
-static void print_run(const strut_cost_estimate *estimate, const strut_experiment *experiment) {
-  if (!estimate->runnable) {
-    printf("  no run             a free node has no mass: statics only\n");
-    return;
-  }
-  double step = experiment->step, hertz = estimate->largest_frequency / STRUT_TAU;
-  printf("  mass matrix        %zu nonzeros, %zu in its factor\n", estimate->matrix.mass_nonzeros,
-         estimate->matrix.factor_nonzeros);
-  bool bound = estimate->limits.bound;
-  printf("  highest frequency  %s%s (undamped, all contacts closed)\n", bound ? "at most " : "",
-         in(hertz, "Hz").text);
-  printf("  largest step       %s%s for rk4, with contacts and damping (%s)\n",
-         bound ? "at least " : "", in(estimate->step_limit, "s").text,
-         bound                        ? "a bound: the structure is too large for an estimate"
-         : estimate->step_limit_exact ? "from all eigenvalues"
-                                      : "within 1 %");
-  print_limits(estimate);
-  if (estimate->feedback)
-    printf("  feedback           not counted in this frequency and these steps\n");
-  const strut_integrator *method = strut_integrator_find(experiment->integrator);
-  double limit =
-      method ? strut_step_limit_of_method(&estimate->limits, method) : estimate->step_limit;
-  if (method && method->region == STRUT_REGION_ALL) printf("  limit of %-9s none\n", method->name);
-  if (step > limit) {
-    printf("  step               %s: too large, strut run rejects it\n", in(step, "s").text);
-  } else if (step > 0) {
-    printf("  step               %s\n", in(step, "s").text);
-  }
-}
 
 static strut_status print_json(strut_check_result *result, strut_open_report *report) {
   strut_status status = strut_setup_warn(result->setup, &result->found);
@@ -102,14 +32,10 @@ static strut_status print_valid(const strut_arguments *arguments, strut_check_re
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     result->drawn[i] = scene->nodes[i / 2].position[i % 2];
   strut_status status = STRUT_OK;
-  if (arguments->json) {
+  if (arguments->json)
     status = print_json(result, report);
-  } else {
-    printf("%s%svalid\n", scene->name, *scene->name ? ": " : "");
-    print_counts(result->estimate);
-    print_run(result->estimate, &result->setup->experiment);
-    strut_check_print_things(result);
-  }
+  else
+    status = strut_check_print_tables(result, strut_report_width(arguments));
   strut_release(result->drawn);
   return status;
 }

@@ -11,8 +11,5 @@
  * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).
  */
 strut_status strut_table_read(const strut_listener *listener, const char *path, strut_table *table);
-/** Several with the same columns, their rows below each other; the column `table` behind them has the files' names. */
-strut_status strut_tables_read(const strut_listener *listener, const char *const *paths,
-                               size_t count, strut_table *table);
 
 #endif
