@@ -255,7 +255,8 @@ open("driven.yaml", "w").write(
 LEGEND = {"bar", "spring", "cable", "driven"}
 for words, first, legend in ((["driven.yaml", "driven.yaml"], ["one", "driven"], {"driven"}),
                              (["one.yaml", "driven.yaml"], ["one", "one"], {"spring", "driven"}),
-                             (["two.yaml", "one.yaml"], ["two", "two 2 nodes, 2 members, 1 kg"], {"spring", "cable"})):
+                             (["two.yaml", "one.yaml"], ["two", "2 nodes, 2 members, 1 kg"], {"spring", "cable"}),
+                             ([X, "one.yaml"], ["x-frame", "Snelson's X, standing 4 nodes"], {"bar", "spring", "cable"})):
     said = written(*words)
     check(LEGEND & set(said) == legend and [said[0], said[1][:len(first[1])]] == first, f"{words}: {said}")
 

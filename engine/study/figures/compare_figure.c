@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 #include "engine/output/draw/figure.h"
 
@@ -57,7 +58,8 @@ static const char *words_of(sheet *self, const strut_compare_column *column) {
   double velocity = cell[STRUT_COMPARE_VELOCITY].value, mass = cell[STRUT_COMPARE_MASS].value;
   double transport = cell[STRUT_COMPARE_TRANSPORT].value;
   strut_figure *figure = &self->figure;
-  const char *name = *figure->title ? "" : column->model->scene->name;
+  const char *name = column->model->scene->name;
+  if (*figure->title || strcasecmp(name, column->input->label) == 0) name = "";
   const char *words =
       strut_figure_text(figure, "%s%s%.0f nodes, %.0f members", name, *name ? "\n" : "",
                         cell[STRUT_COMPARE_NODES].value, cell[STRUT_COMPARE_MEMBERS].value);
