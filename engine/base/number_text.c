@@ -88,16 +88,11 @@ enum { FIRST = -3, LAST = 3 }; /* nano to giga; smaller values have an exponent 
 
 static const char *const prefixes[] = {"n", "u", "m", "", "k", "M", "G"};
 
-const char *strut_quantity_text(double value, int digits, const char *unit,
-                                char text[STRUT_QUANTITY_TEXT]) {
-  if (isnan(value)) {
-    snprintf(text, STRUT_QUANTITY_TEXT, "none");
-    return text;
-  }
-  if (isinf(value)) {
-    snprintf(text, STRUT_QUANTITY_TEXT, "no limit");
-    return text;
-  }
+strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit) {
+  strut_rounded_quantity quantity = {"none"};
+  char *text = quantity.text;
+  if (isinf(value)) strcpy(text, "no limit");
+  if (!isfinite(value)) return quantity;
   strut_c_locale locale = strut_c_locale_enter();
   /* Rounded first: 0.99996 m to four digits is 1 m, not 1000 mm. */
   snprintf(text, STRUT_QUANTITY_TEXT, "%.*e", digits - 1, value);
@@ -112,12 +107,6 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
   snprintf(text, STRUT_QUANTITY_TEXT, "%.*g %s%s", digits < 3 ? 3 : digits, scaled,
            prefixes[thousands - FIRST], unit);
   strut_c_locale_leave(locale);
-  return text;
-}
-
-strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit) {
-  strut_rounded_quantity quantity;
-  strut_quantity_text(value, digits, unit, quantity.text);
   return quantity;
 }
 
@@ -130,9 +119,8 @@ bool strut_unit_takes_prefix(const char *unit) {
   return false;
 }
 
-strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
-  if (!isfinite(value) || strut_unit_takes_prefix(unit))
-    return strut_quantity_of(value, digits, unit);
+/* In a unit as it is; "1": none. */
+static strut_rounded_quantity plain_quantity(double value, int digits, const char *unit) {
   strut_rounded_quantity quantity;
   bool none = strcmp(unit, "1") == 0;
   strut_c_locale locale = strut_c_locale_enter();
@@ -140,6 +128,11 @@ strut_rounded_quantity strut_quantity_of_any(double value, int digits, const cha
            none ? "" : unit);
   strut_c_locale_leave(locale);
   return quantity;
+}
+
+strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
+  return !isfinite(value) || strut_unit_takes_prefix(unit) ? strut_quantity_of(value, digits, unit)
+                                                           : plain_quantity(value, digits, unit);
 }
 
 strut_file_unit strut_unit_shown(const char *unit, strut_file_unit given) {
@@ -150,11 +143,6 @@ strut_file_unit strut_unit_shown(const char *unit, strut_file_unit given) {
 strut_rounded_quantity strut_quantity_shown(double value, int digits, const char *unit,
                                             strut_file_unit given) {
   const strut_file_unit shown = strut_unit_shown(unit, given);
-  strut_rounded_quantity quantity;
-  if (!shown.name || !isfinite(value)) return strut_quantity_of_any(value, digits, unit);
-  strut_c_locale locale = strut_c_locale_enter();
-  snprintf(quantity.text, sizeof quantity.text, "%.*g %.40s", digits, value / shown.size,
-           shown.name);
-  strut_c_locale_leave(locale);
-  return quantity;
+  return shown.name && isfinite(value) ? plain_quantity(value / shown.size, digits, shown.name)
+                                       : strut_quantity_of_any(value, digits, unit);
 }

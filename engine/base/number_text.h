@@ -32,18 +32,15 @@ STRUT_API void strut_duration_text(double seconds, char text[STRUT_DURATION_TEXT
 
 enum { STRUT_QUANTITY_TEXT = 64 };
 
-/**
- * Writes value [unit] with an SI prefix and `digits` significant digits (1 to 12), trailing zeros
- * dropped, in any locale; returns text. The unit must take a prefix ("m", "N/m"; not "kg"). "none"
- * where the value is not a number, "no limit" where it is infinite.
- */
-STRUT_API const char *strut_quantity_text(double value, int digits, const char *unit,
-                                          char text[STRUT_QUANTITY_TEXT]);
-
-/** As strut_quantity_text, by value for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
+/** A text by value, for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
 typedef struct strut_rounded_quantity {
   char text[STRUT_QUANTITY_TEXT];
 } strut_rounded_quantity;
+/**
+ * The value [unit] with an SI prefix and `digits` significant digits (1 to 12), trailing zeros dropped, in any
+ * locale. The unit must take a prefix ("m", "N/m"; not "kg"). "none" where the value is not a number, "no limit" where
+ * it is infinite.
+ */
 STRUT_API strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit);
 /** Does the unit take a prefix? "m", "N/m", "Hz"; not "1", "m^2", "kg", nor one that has a prefix, such as "mm". */
 STRUT_API bool strut_unit_takes_prefix(const char *unit);

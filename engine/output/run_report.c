@@ -112,24 +112,6 @@ static void add_head(strut_buffer *table, const strut_summary *summary, const st
   add_claims(table, summary);
 }
 
-/* The residual of the balance and what it means, in one statement. */
-static void write_residual(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
-  const strut_summary *summary = of->at;
-  const strut_energy *energy = &summary->energy;
-  strut_rounded_quantity residual = in(energy->residual, "J");
-  bool kept = summary->balance != STRUT_BALANCE_NOT_KEPT && energy->moved > 0.0;
-  double part = fabs(energy->residual) / energy->moved;
-  if (!kept && energy->residual != 0.0)
-    snprintf(text, STRUT_VALUE_ROOM, "%s", residual.text);
-  else if (kept && summary->balance == STRUT_BALANCE_OPEN)
-    snprintf(text, STRUT_VALUE_ROOM, "%s   balance NOT closed: %.2g %% of the energy exchanged",
-             residual.text, 100.0 * part);
-  else if (kept)
-    snprintf(text, STRUT_VALUE_ROOM, "%s   balance closed%s", residual.text,
-             part <= 0.01 ? " within 1 % of the energy exchanged"
-                          : " up to the rounding of the stored energy");
-}
-
 /* Energies below this part of all of them are rounding. */
 static const double ENERGY_ROUNDING = 4.0 * DBL_EPSILON;
 
@@ -144,7 +126,7 @@ static double largest_energy(const strut_energy *energy) {
 /* Energies of what the scene has. */
 #define ENERGY(X)                                                                                  \
   STRUT_ENERGY_TABLE(ENERGY_OF_##X)                                                                \
-  X(NULL, "", WORDS(write_residual), "", .label = {"residual"})
+  X(NULL, "", WORDS(strut_write_residual), "", .label = {"residual"})
 #define ENERGY_OF_STRUT_VALUE_ROW(NAME, KIND, LABEL)                                               \
   STRUT_VALUE_ROW(NULL, "J", , LABEL, .label = {LABEL})
 #define ENERGY_OF_STRUT_VALUE_FILL(NAME, KIND, LABEL)                                              \

@@ -51,25 +51,17 @@ static void show(strut_shown *to, const cJSON *from, const char *key, const char
   if (isfinite(value)) strut_show(to, label, strut_quantity_of_any(value, DIGITS, unit).text);
 }
 
-/* A measured value and what is known of it: spread, member, error. One that there is not is "none". */
+/* A measured value, its spread, and what else is known of it. */
 static void show_measured(strut_shown *to, const cJSON *item) {
   const char *unit = cJSON_GetStringValue(find(item, "unit"));
-  const char *member = cJSON_GetStringValue(find(item, "member"));
-  const char *arrival = cJSON_GetStringValue(find(item, "arrival"));
-  double spread = number(item, "spread"), expected = number(item, "expected");
+  const char *note = cJSON_GetStringValue(find(item, "note"));
+  double value = number(item, "value"), spread = number(item, "spread");
   if (!unit || !item->string) return;
-  const char *text = TEXT("%s", strut_quantity_of_any(number(item, "value"), DIGITS, unit).text);
+  bool missing = isnan(value) && note;
+  const char *text = TEXT("%s", missing ? note : strut_quantity_of_any(value, DIGITS, unit).text);
   if (isfinite(spread))
     text = TEXT("%s, spread %s", text, strut_quantity_of_any(spread, DIGITS, unit).text);
-  if (cJSON_IsTrue(find(item, "zero"))) text = TEXT("%s, zero up to rounding", text);
-  if (member) text = TEXT("%s, in %s", text, member);
-  if (arrival && strcmp(arrival, "reached") != 0) text = TEXT("%s, %s", text, arrival);
-  if (isfinite(expected))
-    text =
-        TEXT("%s, %s within %s", text,
-             cJSON_IsTrue(find(item, "kept")) ? "known" : "not as accurate as requested, but known",
-             strut_quantity_of_any(expected, 2, unit).text);
-  strut_show(to, item->string, text);
+  strut_show(to, item->string, note && !missing ? TEXT("%s, %s", text, note) : text);
 }
 
 static void show_contacts(strut_shown *to, const cJSON *contacts) {
@@ -95,18 +87,7 @@ static void show_energy(strut_shown *to, const cJSON *energy) {
     show(to, energy, #name, label, "J");
   STRUT_ENERGY_TABLE(SHOW_PART)
 #undef SHOW_PART
-  double residual = number(energy, "residual"), moved = number(energy, "exchanged");
-  if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */
-  const char *balance = cJSON_GetStringValue(find(energy, "balance"));
-  bool open = balance && strcmp(balance, "open") == 0;
-  if (!isfinite(residual)) return;
-  const char *text = TEXT("%s", strut_quantity_of(residual, DIGITS, "J").text);
-  if (moved > 0)
-    text = TEXT("%s, %.1e of the energy exchanged%s", text, fabs(residual) / moved,
-                open                            ? ": the balance does not close"
-                : fabs(residual) > 0.01 * moved ? ", which is rounding of the stored energy"
-                                                : "");
-  strut_show(to, "energy residual", text);
+  show(to, energy, "note", "energy residual", "J");
 }
 
 static void show_all(strut_shown *to, const cJSON *summary, const strut_experiment *experiment,

@@ -59,6 +59,7 @@ typedef struct strut_search_place {
 /** A parameter that is searched for. */
 typedef struct strut_search_variable {
   const char *name, *unit; /* unit "1": none */
+  strut_file_unit shown;   /* as of a column */
   bool word;               /* a text parameter, with choices */
   bool logarithmic, wraps, integer;
   double from, to;     /* SI, from < to */
@@ -387,8 +388,10 @@ typedef struct strut_study_figure {
   const char *name;
   strut_study_figure_kind kind;
   /* columns of the table; NULL where none is named */
-  const char *x, *y, *series, *color, *panels, *difference;
-  const char *band, *only;         /* "COLUMN=TEXT", or NULL */
+  const char *x, *y, *series, *color, *panels, *difference; /* y: several with commas between */
+  const char *doubt;                                        /* of a MAP; NULL: flips */
+  const char *band, *only;                                  /* "COLUMN=TEXT", or NULL */
+  bool log_x, log_y;
   const char *title;               /* or NULL */
   size_t label_count;              /* 0: by the columns */
   const char **labels;             /* (label_count) of the curves */

@@ -262,36 +262,32 @@ static strut_status show_plan(const strut_arguments *arguments, const strut_swee
   return status;
 }
 
-static int column_at(const strut_table *table, const strut_sweep_plan *plan, size_t i) {
-  return strut_table_column_of(table, plan->columns[i].name, strlen(plan->columns[i].name));
-}
-
 /* --plot: the first result over the first axis, a curve for each value of the second, or as a map of both. */
 static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study) {
   const strut_sweep_plan *plan = &study->plan;
+  const strut_slot_column *columns = plan->columns;
   char path[PATH_MAX];
   strut_plot plot;
   strut_table table = {0};
   strut_error error = {0};
-  strut_table_figure figure = STRUT_TABLE_FIGURE;
-  size_t y = plan->axis_columns;
-  bool map = plan->axis_columns == 2 && !plan->columns[0].word && !plan->columns[1].word;
-  while (y < plan->column_count && plan->columns[y].word) y++;
-  if (y == plan->column_count || plan->axis_columns == 0)
+  size_t axes = plan->axis_columns, result = axes;
+  bool map = axes == 2 && !columns[0].word && !columns[1].word;
+  while (result < plan->column_count && columns[result].word) result++;
+  if (result == plan->column_count || axes == 0)
     return strut_usage_error(arguments, "--plot needs a number among the results, and an axis");
   if (snprintf(path, sizeof path, "%s/%s", arguments->output, table_name) >= (int)sizeof path)
     return strut_usage_error(arguments, "the path of the table is too long");
+  const strut_study_figure figure = {.kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES,
+                                     .x = columns[0].name,
+                                     .y = columns[map ? 1 : result].name,
+                                     .color = columns[result].name,
+                                     .series = axes > 1 ? columns[1].name : NULL,
+                                     .panels = axes > 2 ? columns[2].name : NULL};
   strut_status status = strut_plot_read(arguments, 0, &plot);
   if (!status) status = strut_table_read(arguments->listener, path, &table);
   if (status) return status;
   strut_sweep_show_units(plan, &table);
-  figure.kind = map ? STRUT_TABLE_MAP : STRUT_TABLE_CURVES;
-  figure.x = column_at(&table, plan, 0);
-  figure.y[0] = column_at(&table, plan, map ? 1 : y);
-  if (map) figure.value = column_at(&table, plan, y);
-  if (!map && plan->axis_columns > 1) figure.by = column_at(&table, plan, 1);
-  if (plan->axis_columns > 2) figure.panels = column_at(&table, plan, 2);
-  status = strut_table_draw(&plot, &figure, &table, &error);
+  status = strut_table_draw(&plot, &figure, &table, (strut_table_marks){0}, &error);
   strut_arena_free(&table.arena);
   return strut_print_failure(status, &error);
 }

@@ -106,6 +106,9 @@ typedef enum strut_motion {
   STRUT_MOTION_CREEPING   /* slower than matters; velocity known within `interval` */
 } strut_motion;
 
+/** The residual of a summary's energy balance and what it means, in one statement. */
+STRUT_API void strut_write_residual(const strut_result_object *of, char text[STRUT_VALUE_ROOM]);
+
 /** "periodic", "irregular", "transient", "creeping", or "" where not watched. */
 STRUT_API const char *strut_motion_name(strut_motion motion);
 

@@ -55,12 +55,31 @@ STRUT_VALUES_HERE(steady_values, STEADY, const strut_steady_summary *steady = of
   X("check_evaluations", "1", COUNT(accuracy->check_evaluations), "of forces, besides the run's")
 STRUT_VALUES_HERE(accuracy_values, ACCURACY, const strut_accuracy_summary *accuracy = of->at)
 
+/* The residual of the balance and what it means, in one statement. */
+void strut_write_residual(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_summary *summary = of->at;
+  const strut_energy *energy = &summary->energy;
+  strut_rounded_quantity residual = strut_quantity_of(energy->residual, 4, "J");
+  bool kept = summary->balance != STRUT_BALANCE_NOT_KEPT && energy->moved > 0.0;
+  double part = fabs(energy->residual) / energy->moved;
+  if (!kept && energy->residual != 0.0)
+    snprintf(text, STRUT_VALUE_ROOM, "%s", residual.text);
+  else if (kept && summary->balance == STRUT_BALANCE_OPEN)
+    snprintf(text, STRUT_VALUE_ROOM, "%s   balance NOT closed: %.2g %% of the energy exchanged",
+             residual.text, 100.0 * part);
+  else if (kept)
+    snprintf(text, STRUT_VALUE_ROOM, "%s   balance closed%s", residual.text,
+             part <= 0.01 ? " within 1 % of the energy exchanged"
+                          : " up to the rounding of the stored energy");
+}
+
 #define ENERGY(X)                                                                                  \
   STRUT_ENERGY_TABLE(ENERGY_OF_##X)                                                                \
   X("initial", "J", NUMBER(s->energy.initial), "at the beginning")                                 \
   X("residual", "J", NUMBER(s->energy.residual), "that appeared without a source")                 \
   X("exchanged", "J", NUMBER(s->energy.moved), "what the residual compares to")                    \
-  X("balance", "", TEXT(strut_balance_name(s->balance)), "closed or open; null: not kept")
+  X("balance", "", TEXT(strut_balance_name(s->balance)), "closed or open; null: not kept")         \
+  X("note", "", WORDS(strut_write_residual), "residual and balance in words")
 #define ENERGY_OF_STRUT_VALUE_ROW(NAME, KIND, LABEL) STRUT_VALUE_ROW(#NAME, "J", , LABEL)
 #define ENERGY_OF_STRUT_VALUE_FILL(NAME, KIND, LABEL)                                              \
   STRUT_VALUE_FILL(#NAME, "J", NUMBER(s->energy.NAME), LABEL)
@@ -124,7 +143,7 @@ static void write_note(const strut_result_object *of, char text[STRUT_VALUE_ROOM
   X("expected", "", IF(isfinite(m->expected), NUMBER(m->expected)), "error")                       \
   X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)),                            \
     "within what was asked for")                                                                   \
-  X(NULL, "", WORDS(write_note), "", .label = {"note"})
+  X("note", "", WORDS(write_note), "what else is known, in words", .label = {""})
 STRUT_VALUES_HERE(measured_values, MEASURED, const strut_measured *m = of->at)
 
 #define DERIVATIVE(X)                                                                              \

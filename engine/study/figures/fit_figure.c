@@ -5,7 +5,6 @@
 
 #include "engine/output/draw/figure.h"
 #include "engine/study/fit/fit.h"
-#include "engine/study/sweep/grid.h"
 
 /* Residuals within so many standard deviations are usual. */
 static const double USUAL = 2.0;
@@ -80,8 +79,8 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   const strut_fit_row *ends = &result->ends[2 * k];
   double best = result->starts[result->best].sum, variance = result->scale * result->scale;
   strut_panel *panel = strut_add_panel(figure);
-  panel->x = strut_axis_in(e->name, e->unit, strut_grid_unit(result->plan->study, e->name));
-  panel->y = strut_axis_of("rise of the sum of squares over its variance", "");
+  panel->x = strut_axis_in(e->name, e->unit, result->fit->variables[k].shown);
+  panel->y = strut_axis_of("rise of chi-square", "");
   strut_series *line = strut_add_series(figure, panel, "by the standard error");
   line->look = 1, line->markers = STRUT_MARKERS_NONE;
   for (int i = 0; i < CURVE && isfinite(e->error); i++) {
@@ -119,6 +118,8 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
     add_residuals(&residuals, result, m);
   }
   for (size_t k = 0; k < result->variable_count; k++) add_profile(&profiles, result, k);
+  strut_add_key(&profiles, STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.6},
+                "end of the 95 % interval");
   strut_status status = draw(&data, directory, "fit.svg", error);
   strut_status second = draw(&residuals, directory, "residuals.svg", status ? NULL : error);
   strut_status third = draw(&profiles, directory, "profiles.svg", status || second ? NULL : error);

@@ -9,7 +9,7 @@
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/follow/follow_study.h"
 
-static const double ASPECT = 0.6;
+static const double ASPECT = 0.6, WIDTH = 1.4; /* [1], of lines [pt] */
 enum { MOST_NAMES = 40, MOST_LINES = 12, CURVE_KEYS = 4, LABEL = 120 };
 
 /* A picture that is filled point by point. */
@@ -55,7 +55,7 @@ static strut_colour mark_colour(size_t i) {
 static void add_dot(picture *self, const dot *d) {
   if (d->line != self->line) {
     self->series = strut_add_series(&self->figure, self->panel, NULL);
-    self->series->pen = (strut_pen){.colour = strut_palette_thing(d->look), .width = 1.4};
+    self->series->pen = (strut_pen){.colour = strut_palette_thing(d->look), .width = WIDTH};
     self->line = d->line;
   }
   strut_add_point(&self->figure, self->series, d->x, d->y)->unstable = !d->stable;
@@ -73,7 +73,7 @@ static void add_dot(picture *self, const dot *d) {
 }
 
 static void add_line_key(picture *self, strut_colour colour, bool unstable, const char *text) {
-  strut_pen pen = {.colour = colour, .width = unstable ? 0.9 : 1.4};
+  strut_pen pen = {.colour = colour, .width = WIDTH, .butt = unstable};
   if (unstable) pen.dash[0] = 3.0, pen.dash[1] = 2.0;
   strut_add_key(&self->figure, STRUT_KEY_LINE, pen, text);
 }

@@ -34,14 +34,6 @@ const strut_study_column *strut_grid_column(const strut_study *study, size_t k, 
   return &study->axes[i].columns[k];
 }
 
-strut_file_unit strut_grid_unit(const strut_study *study, const char *name) {
-  for (size_t k = 0; k < strut_grid_columns(study); k++) {
-    const strut_study_column *column = strut_grid_column(study, k, NULL);
-    if (strcmp(column->name, name) == 0) return column->shown;
-  }
-  return (strut_file_unit){0};
-}
-
 /* So that 0.1 + 0.2 is 0.3. */
 double strut_grid_rounded(double value, double scale) {
   static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,

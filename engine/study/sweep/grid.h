@@ -14,8 +14,6 @@ STRUT_API size_t strut_grid_columns(const strut_study *study);
 /** The k-th column of all axes together, and through `axis` (may be NULL) whose it is. */
 STRUT_API const strut_study_column *strut_grid_column(const strut_study *study, size_t k,
                                                       size_t *axis);
-/** The unit that the study gives a column in; without a name where it has none. */
-STRUT_API strut_file_unit strut_grid_unit(const strut_study *study, const char *name);
 /**
  * Value i of a column whose axis has `count` values; a LIST must be one of numbers. What a range gives
  * between its ends is rounded to 15 digits, so that round numbers come out round, and the same from
