@@ -229,16 +229,16 @@ static void write_lines(strut_canvas *canvas, const double at[2], const double c
     PangoRectangle box;
     const PangoLayoutLine *line = pango_layout_iter_get_line_readonly(lines);
     pango_layout_iter_get_line_extents(lines, NULL, &box);
+    const strut_colour *colour = &font->colour;
     strut_buffer_add(
         out,
         "<text transform=\"translate(%.2f,%.2f)%s\" x=\"%.2f\" y=\"%.2f\" textLength=\"%.2f\" "
-        "font-size=\"%g\"%s%s fill=\"rgb(%.4g%%,%.4g%%,%.4g%%)\" fill-opacity=\"%g\">",
+        "font-size=\"%g\"%s%s fill=\"rgb(%.4g%%,%.4g%%,%.4g%%)\">",
         at[0], at[1], font->upwards ? " rotate(-90)" : "", corner[0] + (double)box.x / PANGO_SCALE,
         corner[1] + (double)pango_layout_iter_get_baseline(lines) / PANGO_SCALE,
         (double)box.width / PANGO_SCALE, font->size > 0 ? font->size : USUAL_SIZE,
         font->bold ? " font-weight=\"bold\"" : "", font->italic ? " font-style=\"italic\"" : "",
-        100 * font->colour.red, 100 * font->colour.green, 100 * font->colour.blue,
-        font->colour.alpha > 0 ? font->colour.alpha : 1);
+        100 * colour->red, 100 * colour->green, 100 * colour->blue);
     add_letters(out, text + line->start_index, (size_t)line->length);
     strut_buffer_add(out, "</text>\n");
   } while (pango_layout_iter_next_line(lines));

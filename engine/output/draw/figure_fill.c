@@ -10,8 +10,8 @@
 #include "engine/output/draw/cairo_page.h"
 #include "engine/output/file.h"
 
-enum { TEXT = 800 };                /* bytes of a text at most */
-static const double MARK_GAP = 4.2; /* [pt] */
+enum { TEXT = 800 };                            /* bytes of a text at most */
+static const double MARK_GAP = 4.2, NODE = 2.3; /* from a mark, of a node as drawn [pt] */
 
 /* One more item of a list, whose address that is: zeroed, in the arena, or the spare. Room doubles. */
 static void *add(strut_figure *figure, void *list, size_t *count, size_t size) {
@@ -119,6 +119,15 @@ strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel, strut_t
   strut_add_place(figure, trail, from);
   strut_add_place(figure, trail, to);
   return trail;
+}
+
+void strut_add_displacements(strut_figure *figure, strut_panel *panel, const strut_model *model,
+                             const double *from, const double *to) {
+  enum { MOST = 200 };
+  for (int32_t i = 0; i < model->node_count && model->node_count <= MOST; i++)
+    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, strut_displacement_pen(), from + 2 * i,
+                      to + 2 * i)
+        ->gap = NODE;
 }
 
 strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,

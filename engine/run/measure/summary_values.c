@@ -113,20 +113,20 @@ static void write_note(const strut_result_object *of, char text[STRUT_VALUE_ROOM
   const char *missing = s->status != STRUT_OK       ? "the window was not reached"
                         : strut_measured_arrival(m) ? "the target was not reached"
                                                     : "not finite";
-  size_t used = 0;
-#define NOTE(IF, ...)                                                                              \
-  if (IF) {                                                                                        \
-    used += (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used, used ? "; " : "");              \
-    used += (size_t)snprintf(text + used, STRUT_VALUE_ROOM - used, __VA_ARGS__);                   \
-  }
-  NOTE(m->undecided, "not decided")
-  NOTE(!m->undecided && isnan(m->value), "%s", missing)
-  NOTE(m->zero, "zero up to rounding")
-  NOTE(m->member, "in %.40s", m->member)
-  NOTE(isfinite(m->expected), "%s within %s",
-       m->kept ? "known" : "NOT as accurate as requested, but",
-       strut_quantity_of_any(m->expected, 2, m->unit).text)
-#undef NOTE
+  const char *plain[] = {m->undecided      ? "not decided"
+                         : isnan(m->value) ? missing
+                                           : NULL,
+                         m->zero ? "zero up to rounding" : NULL};
+  size_t used = 0, room = STRUT_VALUE_ROOM;
+  for (int i = 0; i < 2; i++)
+    if (plain[i])
+      used += (size_t)snprintf(text + used, room - used, "%s%s", used ? "; " : "", plain[i]);
+  if (m->member)
+    used += (size_t)snprintf(text + used, room - used, "%sin %.40s", used ? "; " : "", m->member);
+  if (isfinite(m->expected))
+    snprintf(text + used, room - used, "%s%s within %s", used ? "; " : "",
+             m->kept ? "known" : "NOT as accurate as requested, but",
+             strut_quantity_of_any(m->expected, 2, m->unit).text);
 }
 
 #define MEASURED(X)                                                                                \
