@@ -46,7 +46,7 @@ static strut_status read_pictures(const strut_arguments *arguments, run_pictures
   strut_status status = strut_plot_read(arguments, 0, &pictures->figure.plot);
   if (!status) status = strut_run_figure_read(arguments, &pictures->figure, pictures->times);
   pictures->quiet = arguments->quiet;
-  pictures->silent = arguments->quiet || arguments->json;
+  pictures->silent = arguments->quiet || arguments->json || arguments->format.index;
   pictures->film = (strut_film){.path = arguments->animate,
                                 .speed = arguments->speed.text ? arguments->speed.value : 1,
                                 .fps = arguments->fps.value};

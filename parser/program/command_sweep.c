@@ -232,7 +232,8 @@ static strut_status print_result(const strut_study_job *job, const strut_value_r
   const strut_arguments *arguments = job->arguments;
   if (json && arguments->json) return strut_print(json);
   strut_status status = strut_print_values(arguments, rows, of, NULL);
-  if (json && !arguments->quiet) printf("%s/branches.csv\n", arguments->output);
+  const char *mark = arguments->format.index ? "% " : "";
+  if (json && !arguments->quiet) printf("%s%s/branches.csv\n", mark, arguments->output);
   return status;
 }
 

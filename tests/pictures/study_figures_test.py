@@ -2,6 +2,7 @@
 """Figures of what the runs of a study recorded: closed forms found again in the pictures.
 usage: study_figures_test.py STRUT
 """
+import json
 import math
 import os
 import subprocess
@@ -148,6 +149,11 @@ for name, wanted, missing in (
         ("map", ("tilt in deg", "stretch in mm", "60", "20", "25"), ("tilt in rad",))):
     said = texts(f"out/{name}.svg")
     check(set(wanted) <= set(said) and not set(missing) & set(said), f"{name}.svg: {said}")
+subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet", "--plot", "all.json"], check=True)
+panels = json.load(open("all.json"))["panels"]  # a third axis makes panels
+check([panel["title"][3:] for panel in panels] == ["stiffness = 0.1 kN/m", "stiffness = 3 kN/m"], "all.json: panels")
+check(panels[0]["x"]["shown"] == "deg" and near([180 / math.pi * panels[0]["x"]["shown_size"]] * 3, (1, 1, 1)),
+      f"all.json: {panels[0]['x']}")
 said = sweep(UNITS.replace(", steep]", "]"), code=1)
 check("2 labels were given for 3 curves" in said, said)
 os.rename("out", "units")

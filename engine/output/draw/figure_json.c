@@ -8,6 +8,8 @@
 #define AXIS(X)                                                                                    \
   X("name", "", TEXT(a->name), "what is along it")                                                 \
   X("unit", "", TEXT(a->unit), "of its numbers")                                                   \
+  X("shown", "", IF(a->shown.name, TEXT(a->shown.name)), "the unit of the file")                   \
+  X("shown_size", "", IF(a->shown.name, NUMBER(a->shown.size)), "of it, in the unit")              \
   X("logarithmic", "", FLAG(a->logarithmic), "whether it is")                                      \
   X("from", "", NUMBER(a->low), "null: from the data")                                             \
   X("to", "", NUMBER(a->high), "null: from the data")                                              \
