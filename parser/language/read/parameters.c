@@ -299,6 +299,9 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
 
 void strut_keep_parameters(strut_reader *reader) {
   strut_scene *scene = reader->scene;
+  bool point = false; /* of a study, whose figures have the units of the study: no time is spent */
+  for (size_t i = 0; i < reader->parameter_count; i++)
+    point = point || (reader->parameters[i].set && reader->parameters[i].set->known);
   if (reader->failed) return; /* the scene will be discarded */
   scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
                                             sizeof *scene->parameters);
@@ -311,8 +314,8 @@ void strut_keep_parameters(strut_reader *reader) {
     kept->name = strut_arena_text(&scene->arena, parameters->name, strlen(parameters->name));
     kept->text = strut_arena_text(&scene->arena, text, strlen(text));
     kept->value = parameters->text ? (double)NAN : parameters->quantity.value;
-    kept->shown = strut_unit_of_text(text, &scene->arena);
-    if (!kept->shown.name) kept->shown = strut_unit_of_text(declared, &scene->arena);
+    if (!point) kept->shown = strut_unit_of_text(text, &scene->arena);
+    if (!point && !kept->shown.name) kept->shown = strut_unit_of_text(declared, &scene->arena);
     if (!kept->name || !kept->text) reader->out_of_memory = true;
   }
 }
