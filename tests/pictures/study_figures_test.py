@@ -154,8 +154,8 @@ panels = json.load(open("all.json"))["panels"]  # a third axis makes panels
 check([panel["title"][3:] for panel in panels] == ["stiffness = 0.1 kN/m", "stiffness = 3 kN/m"], "all.json: panels")
 check(panels[0]["x"]["shown"] == "deg" and near([180 / math.pi * panels[0]["x"]["shown_size"]] * 3, (1, 1, 1)),
       f"all.json: {panels[0]['x']}")
-said = sweep(UNITS.replace(", steep]", "]"), code=1)
-check("2 labels were given for 3 curves" in said, said)
+said = sweep(UNITS.replace(", steep]", "]"), code=2)
+check("figure 'named' of the study: 'labels' has 2 labels for the 3 values of 'tilt'" in said, said)
 os.rename("out", "units")
 os.rename("driven", "out")
 

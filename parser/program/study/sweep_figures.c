@@ -6,6 +6,7 @@
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
+#include "engine/study/sweep/grid.h"
 #include "engine/study/sweep/study_runs.h"
 #include "parser/language/yaml/diagnostics.h"
 #include "parser/program/command/table_file.h"
@@ -62,6 +63,22 @@ static strut_status check_match(const source *self, const strut_study_figure *fi
   return check_column(self, figure, name, false, error);
 }
 
+/* A label for each value of an axis by itself; of other columns the curves are counted when they are drawn. */
+static strut_status check_labels(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                                 strut_error *error) {
+  for (size_t i = 0, a; i < plan->axis_columns && figure->series && figure->label_count; i++) {
+    if (strcmp(plan->columns[i].name, figure->series) != 0) continue;
+    strut_grid_column(plan->study, i, &a);
+    const strut_study_axis *axis = &plan->study->axes[a];
+    if (axis->column_count == 1 && axis->count != (int64_t)figure->label_count)
+      return strut_fail(error, STRUT_BAD_SCENE,
+                        "figure '%.60s' of the study: 'labels' has %zu labels for the %lld values "
+                        "of '%.60s'",
+                        figure->name, figure->label_count, (long long)axis->count, figure->series);
+  }
+  return STRUT_OK;
+}
+
 static strut_status check_figure(const source *self, const strut_study_figure *figure,
                                  strut_error *error) {
   if (self->runs && !self->plan->study->trajectories)
@@ -79,6 +96,7 @@ static strut_status check_figure(const source *self, const strut_study_figure *f
   if (!status) status = check_column(self, figure, figure->color, false, error);
   if (!status) status = check_column(self, figure, figure->panels, false, error);
   if (!status) status = check_column(self, figure, figure->difference, false, error);
+  if (!status) status = check_labels(self->plan, figure, error);
   if (!status) status = check_match(self, figure, figure->band, "band", error);
   return status ? status : check_match(self, figure, figure->only, "only", error);
 }
