@@ -182,6 +182,7 @@ for t, (text, box) in zip(written, noted[0]):
     check(box[0] - 2 < x < box[0] + box[2] + 3 and box[1] - 1 < y < box[1] + box[3] + 3, f"texts.svg: {text} is at {x}, {y}")
 shapes = [[path.lines for path in read(f"{name}.svg")[2]] for name in ("outlines", "texts")]
 check(shapes[0] == shapes[1], "texts.svg: other lines")
+plot("stiff.csv", "--svg-text", "--plot", "a.pdf", code=1, err="--svg-text is for figures that end with .svg")
 
 # Limits and labels that are given.
 plot("two.csv", "--y", "v", "--x-limits", "0,10", "--y-limits", "-0.02,0.02", "--plot", "limits.svg",
