@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/vec.h"
 
 strut_c_locale strut_c_locale_enter(void) {
   locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
@@ -87,16 +88,11 @@ enum { FIRST = -3, LAST = 3 }; /* nano to giga; smaller values have an exponent 
 
 static const char *const prefixes[] = {"n", "u", "m", "", "k", "M", "G"};
 
-const char *strut_quantity_text(double value, int digits, const char *unit,
-                                char text[STRUT_QUANTITY_TEXT]) {
-  if (isnan(value)) {
-    snprintf(text, STRUT_QUANTITY_TEXT, "none");
-    return text;
-  }
-  if (isinf(value)) {
-    snprintf(text, STRUT_QUANTITY_TEXT, "no limit");
-    return text;
-  }
+strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit) {
+  strut_rounded_quantity quantity = {"none"};
+  char *text = quantity.text;
+  if (isinf(value)) strcpy(text, "no limit");
+  if (!isfinite(value)) return quantity;
   strut_c_locale locale = strut_c_locale_enter();
   /* Rounded first: 0.99996 m to four digits is 1 m, not 1000 mm. */
   snprintf(text, STRUT_QUANTITY_TEXT, "%.*e", digits - 1, value);
@@ -111,23 +107,20 @@ const char *strut_quantity_text(double value, int digits, const char *unit,
   snprintf(text, STRUT_QUANTITY_TEXT, "%.*g %s%s", digits < 3 ? 3 : digits, scaled,
            prefixes[thousands - FIRST], unit);
   strut_c_locale_leave(locale);
-  return text;
-}
-
-strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit) {
-  strut_rounded_quantity quantity;
-  strut_quantity_text(value, digits, unit, quantity.text);
   return quantity;
 }
 
 /* A prefix belongs to the unit's first word, whose power it would get. */
-static bool takes_prefix(const char *unit) {
-  size_t word = strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-  return word > 0 && unit[word] != '^' && strncmp(unit, "kg", 2) != 0;
+bool strut_unit_takes_prefix(const char *unit) {
+  static const char *const words[] = {"m", "s", "N", "J", "W", "Hz", "Pa", "rad", "B", "V", "A"};
+  size_t length = strspn(unit, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+  for (size_t i = 0; i < sizeof words / sizeof *words && unit[length] != '^'; i++)
+    if (strlen(words[i]) == length && strncmp(unit, words[i], length) == 0) return true;
+  return false;
 }
 
-strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
-  if (!isfinite(value) || takes_prefix(unit)) return strut_quantity_of(value, digits, unit);
+/* In a unit as it is; "1": none. */
+static strut_rounded_quantity plain_quantity(double value, int digits, const char *unit) {
   strut_rounded_quantity quantity;
   bool none = strcmp(unit, "1") == 0;
   strut_c_locale locale = strut_c_locale_enter();
@@ -135,6 +128,23 @@ strut_rounded_quantity strut_quantity_of_any(double value, int digits, const cha
            none ? "" : unit);
   strut_c_locale_leave(locale);
   return quantity;
+}
+
+strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit) {
+  return !isfinite(value) || strut_unit_takes_prefix(unit) ? strut_quantity_of(value, digits, unit)
+                                                           : plain_quantity(value, digits, unit);
+}
+
+strut_file_unit strut_unit_shown(const char *unit, strut_file_unit given) {
+  bool angle = !given.name && unit && strcmp(unit, "rad") == 0;
+  return angle ? (strut_file_unit){"deg", STRUT_PI / 180} : given;
+}
+
+strut_rounded_quantity strut_quantity_shown(double value, int digits, const char *unit,
+                                            strut_file_unit given) {
+  const strut_file_unit shown = strut_unit_shown(unit, given);
+  return shown.name && isfinite(value) ? plain_quantity(value / shown.size, digits, shown.name)
+                                       : strut_quantity_of_any(value, digits, unit);
 }
 
 bool strut_buffer_reserve(strut_buffer *buffer, size_t more) {

@@ -31,21 +31,31 @@ STRUT_API void strut_duration_text(double seconds, char text[STRUT_DURATION_TEXT
 
 enum { STRUT_QUANTITY_TEXT = 64 };
 
-/**
- * Writes value [unit] with an SI prefix and `digits` significant digits (1 to 12), trailing zeros
- * dropped, in any locale; returns text. The unit must take a prefix ("m", "N/m"; not "kg"). "none"
- * where the value is not a number, "no limit" where it is infinite.
- */
-STRUT_API const char *strut_quantity_text(double value, int digits, const char *unit,
-                                          char text[STRUT_QUANTITY_TEXT]);
-
-/** As strut_quantity_text, by value for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
+/** A text by value, for use in one call of printf: strut_quantity_of(v, 4, "m").text. */
 typedef struct strut_rounded_quantity {
   char text[STRUT_QUANTITY_TEXT];
 } strut_rounded_quantity;
+/**
+ * The value [unit] with an SI prefix and `digits` significant digits (1 to 12), trailing zeros dropped, in any
+ * locale. The unit must take a prefix ("m", "N/m"; not "kg"). "none" where the value is not a number, "no limit" where
+ * it is infinite.
+ */
 STRUT_API strut_rounded_quantity strut_quantity_of(double value, int digits, const char *unit);
-/** As strut_quantity_of for any unit; units that take no prefix ("1", "m^2", "kg m/s") stay unchanged. */
+/** Does the unit take a prefix? "m", "N/m", "Hz"; not "1", "m^2", "kg", nor one that has a prefix, such as "mm". */
+STRUT_API bool strut_unit_takes_prefix(const char *unit);
+/** As strut_quantity_of for any unit; one that takes no prefix stays unchanged. */
 STRUT_API strut_rounded_quantity strut_quantity_of_any(double value, int digits, const char *unit);
+
+/** The unit that a file gives a number in, such as mm, which figures show it in. */
+typedef struct strut_file_unit {
+  const char *name; /* NULL: none is known */
+  double size;      /* in the SI unit */
+} strut_file_unit;
+/** That of a number in an SI unit; where the file has none, angles are shown in degrees. */
+STRUT_API strut_file_unit strut_unit_shown(const char *unit, strut_file_unit given);
+/** As strut_quantity_of_any, in the unit of the file if there is one. */
+STRUT_API strut_rounded_quantity strut_quantity_shown(double value, int digits, const char *unit,
+                                                      strut_file_unit given);
 
 /*
  * Numbers look the same whatever locale the host program has chosen.

@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "engine/base/memory.h"
+#include "engine/base/text.h"
 #include "engine/run/recorder.h"
 
 /* ---- CSV: nodes.csv, members.csv, ..., energy.csv, as far as they have channels ---- */
@@ -42,6 +43,7 @@ STRUT_API void strut_hdf5_free(strut_sink *sink);
 
 typedef struct strut_table_column {
   const char *name, *unit; /* unit may be "" */
+  strut_file_unit shown;   /* what figures show its numbers in */
   const char *const *text; /* (rows) as written; NULL, or NULL entries, if only values are known */
   const double *value;     /* (rows), NAN for empty cells; NULL: not all are numbers */
 } strut_table_column;

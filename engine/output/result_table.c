@@ -31,7 +31,7 @@ static const char *title_of(const strut_value_row *row, const char *part, const 
 static void add_number(strut_buffer *text, const strut_value_row *row, const strut_value *value,
                        double number, int digits) {
   const char *unit = value->own_unit ? value->own_unit : row->unit;
-  bool angle = strcmp(unit, "rad") == 0, percent = row->label[1] && *row->label[1] == '%';
+  bool percent = row->label[1] && *row->label[1] == '%';
   if (value->digits) digits = value->digits;
   if (isnan(number)) return;
   if (percent && isfinite(number))
@@ -39,12 +39,9 @@ static void add_number(strut_buffer *text, const strut_value_row *row, const str
   else if (isinf(number))
     strut_buffer_add(text, percent ? "diverged" : "any");
   else
-    strut_buffer_add(text, "%s",
-                     strut_quantity_of_any(angle ? number * 180.0 / STRUT_PI : number, digits,
-                                           angle   ? "deg"
-                                           : *unit ? unit
-                                                   : "1")
-                         .text);
+    strut_buffer_add(
+        text, "%s",
+        strut_quantity_shown(number, digits, *unit ? unit : "1", (strut_file_unit){0}).text);
 }
 
 /* Numbers, names and values of an array, one after the other. */
@@ -189,11 +186,39 @@ static void put_cells(cell_table *table, const strut_value_rows *rows, const cha
 
 /* ---- layout ---- */
 
-static void add_padded(strut_buffer *text, const char *cell, int width, bool right) {
-  int fill = width > letters(cell) ? width - letters(cell) : 0;
-  strut_buffer_add(text, "  %*s%s%*s", right ? fill : 0, "", cell ? cell : "", right ? 0 : fill,
-                   "");
+/* A cell of LaTeX: signs that mean something there, and "50 us". */
+static void add_latex(strut_buffer *text, const char *cell) {
+  for (const char *c = cell ? cell : ""; *c; c++)
+    strut_buffer_add(text,
+                     strchr("#$%&_{}", *c)                                       ? "\\%c"
+                     : *c == 'u' && c > cell + 1 && c[-1] == ' ' && c[-2] <= '9' ? "\\textmu{}"
+                     : *c == '^'                                                 ? "\\^{}"
+                     : *c == '~'                                                 ? "\\~{}"
+                     : *c == '\\' ? "\\textbackslash{}"
+                                  : "%c",
+                     *c);
 }
+
+/* The next cell of a line: as wide as its column or, in LaTeX, behind a mark unless it is the first. */
+static void add_cell(strut_buffer *text, const char *cell, int width, bool right, bool first,
+                     bool latex) {
+  int fill = width > letters(cell) ? width - letters(cell) : 0;
+  if (!latex)
+    strut_buffer_add(text, "  %*s%s%*s", right ? fill : 0, "", cell ? cell : "", right ? 0 : fill,
+                     "");
+  if (latex && !first) strut_buffer_add(text, " & ");
+  if (latex) add_latex(text, cell);
+}
+
+/* What stands around a table in LaTeX: `across` has a line for each value. */
+static void begin_tabular(strut_buffer *text, const cell_table *table, bool across) {
+  strut_buffer_add(text, "\\begin{tabular}{%s", across ? "l" : "");
+  for (size_t i = 0; across && i < table->items; i++) strut_buffer_add(text, "r");
+  for (size_t k = 0; !across && k < table->count; k++)
+    if (table->column[k].width) strut_buffer_add(text, table->column[k].number ? "r" : "l");
+  strut_buffer_add(text, "}\n\\hline\n");
+}
+static const char END_TABULAR[] = "\\hline\n\\end{tabular}\n";
 
 static int width_of(const cell_column *column) {
   return column->width < WIDEST ? column->width : WIDEST;
@@ -208,24 +233,28 @@ static int bytes_of(const char *text, int most) {
 }
 
 /* A line for each struct; long texts end early, but in the last column. */
-static void add_lines(strut_buffer *text, const cell_table *table) {
+static void add_lines(strut_buffer *text, const cell_table *table, bool latex) {
   size_t last = 0;
   for (size_t k = 0; k < table->count; k++)
     if (table->column[k].width) last = k;
+  if (latex) begin_tabular(text, table, false);
   for (size_t i = 0; i <= table->items; i++) {
+    bool first = true;
     for (size_t k = 0; k < table->count; k++) {
       const cell_column *column = &table->column[k];
       const char *cell = i ? column->cell[i - 1] : column->title;
-      bool cut = k != last && letters(cell) > WIDEST;
+      bool cut = !latex && k != last && letters(cell) > WIDEST;
       int width = k == last && !column->number ? 0 : width_of(column);
-      if (!column->width) continue;
+      if (!column->width || (k == last && !cell && !latex)) continue;
       if (cut)
         strut_buffer_add(text, "  %.*s...", bytes_of(cell, WIDEST - 3), cell);
       else
-        add_padded(text, cell, width, column->number);
+        add_cell(text, cell, width, column->number, first, latex);
+      first = false;
     }
-    strut_buffer_add(text, "\n");
+    strut_buffer_add(text, !latex ? "\n" : i ? " \\\\\n" : " \\\\\n\\hline\n");
   }
+  if (latex) strut_buffer_add(text, END_TABULAR);
 }
 
 static int width_of_item(const cell_table *table, size_t item) {
@@ -237,64 +266,33 @@ static int width_of_item(const cell_table *table, size_t item) {
 
 /* A line for each value, with as many structs side by side as there is width for. */
 static void add_columns(strut_buffer *text, const cell_table *table, int width) {
+  bool latex = width == STRUT_REPORT_LATEX, any = false;
   int titles = 0;
-  for (size_t k = 0; k < table->count; k++)
+  for (size_t k = 0; k < table->count; k++) {
+    any = any || table->column[k].width;
     if (table->column[k].width && letters(table->column[k].title) > titles)
       titles = letters(table->column[k].title);
+  }
+  if (!any) return;
+  if (latex) begin_tabular(text, table, true);
   for (size_t first = 0, end; first < table->items; first = end) {
     int used = titles + 2;
     for (end = first; end < table->items; end++) {
       used += width_of_item(table, end) + 2;
-      if (used > width && end > first) break;
+      if (used > width && end > first && !latex) break;
     }
     if (first) strut_buffer_add(text, "\n");
     for (size_t k = 0; k < table->count; k++) {
       const cell_column *column = &table->column[k];
       if (!column->width) continue;
-      add_padded(text, column->title, titles, false);
+      add_cell(text, column->title, titles, false, true, latex);
       for (size_t i = first; i < end; i++)
-        add_padded(text, column->cell[i], table->items > 1 ? width_of_item(table, i) : 0, true);
-      strut_buffer_add(text, "\n");
+        add_cell(text, column->cell[i], table->items > 1 ? width_of_item(table, i) : 0, true, false,
+                 latex);
+      strut_buffer_add(text, latex ? " \\\\\n" : "\n");
     }
   }
-}
-
-/* A cell of LaTeX, after the mark between cells. */
-static void add_latex_cell(strut_buffer *text, const char *mark, const char *cell) {
-  strut_buffer_add(text, "%s", mark);
-  for (const char *c = cell ? cell : ""; *c; c++)
-    strut_buffer_add(text,
-                     strchr("#$%&_{}", *c) ? "\\%c"
-                     : *c == '^'           ? "\\^{}"
-                     : *c == '~'           ? "\\~{}"
-                     : *c == '\\'          ? "\\textbackslash{}"
-                                           : "%c",
-                     *c);
-}
-
-/* The table in LaTeX; `across`: a line for each value. */
-static void add_tabular(strut_buffer *text, const cell_table *table, bool across) {
-  strut_buffer_add(text, "\\begin{tabular}{%s", across ? "l" : "");
-  for (size_t i = 0; across && i < table->items; i++) strut_buffer_add(text, "r");
-  for (size_t k = 0; !across && k < table->count; k++)
-    if (table->column[k].width) strut_buffer_add(text, table->column[k].number ? "r" : "l");
-  strut_buffer_add(text, "}\n\\hline\n");
-  size_t lines = across ? table->count : table->items + 1;
-  for (size_t i = 0; i < lines; i++) {
-    if (across && !table->column[i].width) continue;
-    if (across) add_latex_cell(text, "", table->column[i].title);
-    for (size_t k = 0; across && k < table->items; k++)
-      add_latex_cell(text, " & ", table->column[i].cell[k]);
-    const char *mark = "";
-    for (size_t k = 0; !across && k < table->count; k++) {
-      const cell_column *column = &table->column[k];
-      if (!column->width) continue;
-      add_latex_cell(text, mark, i ? column->cell[i - 1] : column->title);
-      mark = " & ";
-    }
-    strut_buffer_add(text, " \\\\\n%s", i || across ? "" : "\\hline\n");
-  }
-  strut_buffer_add(text, "\\hline\n\\end{tabular}\n");
+  if (latex) strut_buffer_add(text, END_TABULAR);
 }
 
 static void add_lists(strut_buffer *text, const strut_value_rows *rows,
@@ -336,12 +334,10 @@ static void add_list(strut_buffer *text, const strut_value_row *row, const strut
   int width = latex ? STRUT_REPORT_WIDTH : page->width;
   bool across = all > (few ? width : 2 * width);
   if (all) strut_buffer_add(text, "\n%s%s%s\n", latex ? "% " : "", before, title);
-  if (all && latex && !text->failed)
-    add_tabular(text, table, across);
-  else if (across && !text->failed)
+  if (across && !text->failed)
     add_columns(text, table, page->width);
   else if (all && !text->failed)
-    add_lines(text, table);
+    add_lines(text, table, latex);
   if (more)
     strut_buffer_add(text, "%s ... and %zu more: JSON and CSV have all\n", latex ? "%" : " ", more);
   for (size_t i = 0; i < table->items && !text->failed; i++) {
@@ -377,21 +373,13 @@ static void add_lists(strut_buffer *text, const strut_value_rows *rows,
 
 void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
                              const strut_result_object *of, const strut_table_page *page) {
-  add_lists(text, rows, of, "", page);
-}
-
-void strut_values_add_text(strut_buffer *text, const strut_value_rows *rows,
-                           const strut_result_object *of, const strut_table_page *page) {
   cell_table *table = strut_allocate(1, sizeof *table);
   text->failed = text->failed || !table;
   if (!table) return;
   table->items = 1;
   table->digits = page->digits;
   put_cells(table, rows, "", of);
-  if (!table->failed && page->width == STRUT_REPORT_LATEX && table->count)
-    add_tabular(text, table, true);
-  else if (!table->failed && page->width != STRUT_REPORT_LATEX)
-    add_columns(text, table, page->width);
+  if (!table->failed) add_columns(text, table, page->width);
   text->failed = text->failed || table->failed;
   strut_arena_free(&table->arena);
   strut_release(table);
@@ -404,8 +392,8 @@ char *strut_values_text(const strut_value_rows *rows, const void *result, const 
   strut_buffer text = {0};
   strut_c_locale locale = strut_c_locale_enter();
   if (scene && *scene->name) strut_buffer_add(&text, "%s%s\n", before, scene->name);
-  strut_values_add_text(&text, rows, &(strut_result_object){result, NULL, scene, 0},
-                        &(strut_table_page){width, most, 6});
+  strut_values_add_tables(&text, rows, &(strut_result_object){result, NULL, scene, 0},
+                          &(strut_table_page){width, most, 6});
   strut_c_locale_leave(locale);
   return strut_buffer_take(&text);
 }

@@ -90,9 +90,6 @@ typedef struct strut_table_page {
   int digits;
 } strut_table_page;
 /** Appends all of that but the name of the scene. */
-STRUT_API void strut_values_add_text(strut_buffer *text, const strut_value_rows *rows,
-                                     const strut_result_object *of, const strut_table_page *page);
-/** Appends the tables alone. */
 STRUT_API void strut_values_add_tables(strut_buffer *text, const strut_value_rows *rows,
                                        const strut_result_object *of, const strut_table_page *page);
 

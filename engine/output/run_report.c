@@ -55,34 +55,17 @@ static void show(strut_shown *to, const cJSON *from, const char *key, const char
   if (isfinite(value)) strut_show(to, label, strut_quantity_of_any(value, DIGITS, unit).text);
 }
 
-/* Why a quantity has no value, or what else is known of it. */
-static const char *remark_of(const cJSON *item, bool completed) {
-  const char *arrival = cJSON_GetStringValue(find(item, "arrival"));
-  if (arrival && strcmp(arrival, "not decided") == 0) return ", not decided";
-  if (isfinite(number(item, "value")))
-    return cJSON_IsTrue(find(item, "zero")) ? ", zero up to rounding" : "";
-  return !completed ? ", the window was not reached"
-         : arrival  ? ", the target was not reached"
-                    : ", not finite";
-}
-
-/* A measured value and what is known of it: spread, member, error. One that there is not is "none". */
-static void show_measured(strut_shown *to, const cJSON *item, bool completed) {
+/* A measured value, its spread, and what else is known of it. */
+static void show_measured(strut_shown *to, const cJSON *item) {
   const char *unit = cJSON_GetStringValue(find(item, "unit"));
-  const char *member = cJSON_GetStringValue(find(item, "member"));
-  double spread = number(item, "spread"), expected = number(item, "expected");
+  const char *note = cJSON_GetStringValue(find(item, "note"));
+  double value = number(item, "value"), spread = number(item, "spread");
   if (!unit || !item->string) return;
-  const char *text = TEXT("%s", strut_quantity_of_any(number(item, "value"), DIGITS, unit).text);
+  bool missing = isnan(value) && note;
+  const char *text = TEXT("%s", missing ? note : strut_quantity_of_any(value, DIGITS, unit).text);
   if (isfinite(spread))
     text = TEXT("%s, spread %s", text, strut_quantity_of_any(spread, DIGITS, unit).text);
-  text = TEXT("%s%s%s%s", text, remark_of(item, completed), member ? ", in " : "",
-              member ? member : "");
-  if (isfinite(expected))
-    text =
-        TEXT("%s, %s within %s", text,
-             cJSON_IsTrue(find(item, "kept")) ? "known" : "NOT as accurate as requested, but known",
-             strut_quantity_of_any(expected, 2, unit).text);
-  strut_show(to, item->string, text);
+  strut_show(to, item->string, note && !missing ? TEXT("%s, %s", text, note) : text);
 }
 
 static void show_contacts(strut_shown *to, const cJSON *contacts) {
@@ -103,7 +86,7 @@ static void show_contacts(strut_shown *to, const cJSON *contacts) {
 
 /* Energies at the end, works and losses that are not zero, and the residual of the balance. */
 static void show_energy(strut_shown *to, const cJSON *energy) {
-  double residual = number(energy, "residual"), moved = number(energy, "exchanged");
+  double moved = number(energy, "exchanged");
   if (!isfinite(moved)) moved = number(energy, "moved"); /* its name up to version 0.1 */
   double most = moved + fabs(number(energy, "initial"));
 #define LARGEST(name, kind, label) most = fmax(most, fabs(number(energy, #name)));
@@ -112,17 +95,7 @@ static void show_energy(strut_shown *to, const cJSON *energy) {
     show(to, energy, #name, strcmp(#kind, "ENERGY") ? label : "energy, " label, "J");
   STRUT_ENERGY_TABLE(LARGEST)
   STRUT_ENERGY_TABLE(SHOW_PART)
-  const char *balance = cJSON_GetStringValue(find(energy, "balance"));
-  if (!isfinite(residual) || (residual == 0.0 && !balance)) return;
-  const char *text = TEXT("%s", strut_quantity_of(residual, DIGITS, "J").text);
-  double part = fabs(residual) / moved;
-  if (moved > 0 && balance && strcmp(balance, "open") == 0)
-    text = TEXT("%s, balance NOT closed: %.2g %% of the energy exchanged", text, 100.0 * part);
-  else if (moved > 0 && balance)
-    text = TEXT("%s, balance closed%s", text,
-                part <= 0.01 ? " within 1 % of the energy exchanged"
-                             : " up to the rounding of the stored energy");
-  strut_show(to, "energy residual", text);
+  show(to, energy, "note", "energy residual", "J");
 }
 
 /* Steady motion, and what is known of it. */
@@ -165,12 +138,11 @@ static void show_cost(strut_shown *to, const cJSON *summary) {
   strut_show(to, "computed", text);
 }
 
-/* Of a page: with warnings and contacts, which a terminal shows elsewhere. */
+/* Of a page: with warnings, measured quantities and contacts, which a terminal shows elsewhere. */
 static void show_all(strut_shown *to, const cJSON *summary, const char *node, bool page) {
   const cJSON *item, *accuracy = find(summary, "accuracy");
   const char *status = cJSON_GetStringValue(find(summary, "status"));
   const char *reason = cJSON_GetStringValue(find(summary, "reason"));
-  bool completed = status && strcmp(status, strut_status_text(STRUT_OK)) == 0;
   if (status && reason && strncmp(reason, status, strlen(status)) != 0)
     reason = TEXT("%s: %s", status, reason);
   if (status) strut_show(to, "run", reason ? reason : status);
@@ -189,7 +161,7 @@ static void show_all(strut_shown *to, const cJSON *summary, const char *node, bo
     show(to, accuracy, "why", find(summary, "worth") ? "because" : "accuracy", "");
   else if (!find(summary, "worth"))
     show(to, summary, "caveat", "accuracy", "");
-  cJSON_ArrayForEach(item, find(summary, "measured")) show_measured(to, item, completed);
+  if (page) cJSON_ArrayForEach(item, find(summary, "measured")) show_measured(to, item);
   show(to, summary, "duration", "duration", "s");
   if (number(summary, "settle_time") > 0) show(to, summary, "settle_time", "settling time", "s");
   show_cost(to, summary);
@@ -222,24 +194,26 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
                            summary, scene);
 }
 
-char *strut_summary_table(const strut_summary *summary, const strut_scene *scene) {
+char *strut_summary_table(const strut_summary *summary, const strut_scene *scene, int width) {
+  const char *before = width == STRUT_REPORT_LATEX ? "% " : "";
   strut_buffer table = {0};
   strut_shown rows = {0};
-  size_t width = 0;
+  size_t widest = 0;
   strut_c_locale locale = strut_c_locale_enter();
   char *json = strut_summary_json(summary, scene, true);
   table.failed = !json || !show_summary(&rows, json, summary->measured_node, false) || rows.failed;
   for (size_t i = 1; i < rows.count && !table.failed; i++)
-    if (strlen(rows.list[i].label) > width) width = strlen(rows.list[i].label);
+    if (strlen(rows.list[i].label) > widest) widest = strlen(rows.list[i].label);
   for (size_t i = 0; i < rows.count && !table.failed; i++)
     if (i == 0)
-      strut_buffer_add(&table, "%s%s%s\n", scene->name, *scene->name ? ": " : "",
+      strut_buffer_add(&table, "%s%s%s%s\n", before, scene->name, *scene->name ? ": " : "",
                        rows.list[0].value);
     else
-      strut_buffer_add(&table, "  %-*s  %s\n", (int)width, rows.list[i].label, rows.list[i].value);
+      strut_buffer_add(&table, "%s  %-*s  %s\n", before, (int)widest, rows.list[i].label,
+                       rows.list[i].value);
   strut_values_add_tables(&table, &strut_summary_values,
                           &(strut_result_object){summary, NULL, scene, 0},
-                          &(strut_table_page){STRUT_REPORT_WIDTH, MOST_TABLE_ROWS, DIGITS});
+                          &(strut_table_page){width, MOST_TABLE_ROWS, DIGITS});
   strut_c_locale_leave(locale);
   strut_shown_free(&rows);
   strut_release(json);

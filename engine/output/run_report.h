@@ -19,8 +19,9 @@
  */
 STRUT_API char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
                                    bool with_wall_time);
-/** A table of a screenful in a block of strut_allocate, or NULL when memory is out. */
-STRUT_API char *strut_summary_table(const strut_summary *summary, const strut_scene *scene);
+/** Tables of a screenful, or in LaTeX if `width` is STRUT_REPORT_LATEX; a block of strut_allocate, or NULL. */
+STRUT_API char *strut_summary_table(const strut_summary *summary, const strut_scene *scene,
+                                    int width);
 
 /* ---- rows of text, read back from summary.json ---- */
 

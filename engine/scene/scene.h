@@ -15,6 +15,7 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
+#include "engine/base/text.h"
 #include "engine/scene/data.h"
 #include "engine/scene/friction.h"
 #include "engine/scene/law.h"
@@ -260,6 +261,7 @@ typedef struct strut_parameter {
   const char *name;
   const char *text; /* as written, such as "10 Hz" */
   double value;     /* SI; NAN where it is a text, such as a configuration's name */
+  strut_file_unit shown;
 } strut_parameter;
 
 typedef enum strut_mass_model { STRUT_MASS_CONSISTENT, STRUT_MASS_LUMPED } strut_mass_model;

@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "engine/base/status.h"
+#include "engine/base/text.h"
 #include "engine/scene/data.h"
 #include "engine/scene/quantity.h"
 
@@ -58,6 +59,7 @@ typedef struct strut_search_place {
 /** A parameter that is searched for. */
 typedef struct strut_search_variable {
   const char *name, *unit; /* unit "1": none */
+  strut_file_unit shown;   /* as of a column */
   bool word;               /* a text parameter, with choices */
   bool logarithmic, wraps, integer;
   double from, to;     /* SI, from < to */
@@ -165,6 +167,7 @@ enum { STRUT_FIT_MOST_VARIABLES = 20, STRUT_FIT_MOST_MATCHES = 10, STRUT_FIT_MOS
 
 typedef struct strut_study_follow {
   const char *over, *unit; /* the parameter; unit "": none */
+  strut_file_unit shown;   /* as of a column */
   double from, to;         /* its range [SI], from < to */
   size_t at_count;         /* 0: the model's own value, or the middle */
   const double *at;        /* (at_count) values at which runs start branches [SI] */
@@ -198,6 +201,7 @@ typedef enum strut_range_kind {
 /** One parameter along its axis. */
 typedef struct strut_study_column {
   const char *name, *unit; /* unit "1": none */
+  strut_file_unit shown;   /* that the study gives its values in, else the model */
   bool word;               /* a text parameter: a LIST of words */
   strut_range_kind kind;
   double from, to, step;    /* SI */
@@ -384,9 +388,13 @@ typedef struct strut_study_figure {
   const char *name;
   strut_study_figure_kind kind;
   /* columns of the table; NULL where none is named */
-  const char *x, *y, *series, *color, *panels, *difference;
-  const char *band, *only;         /* "COLUMN=TEXT", or NULL */
+  const char *x, *y, *series, *color, *panels, *difference; /* y: several with commas between */
+  const char *doubt;                                        /* of a MAP; NULL: flips */
+  const char *band, *only;                                  /* "COLUMN=TEXT", or NULL */
+  bool log_x, log_y;
   const char *title;               /* or NULL */
+  size_t label_count;              /* 0: by the columns */
+  const char **labels;             /* (label_count) of the curves */
   const char *x_label, *y_label;   /* or NULL: the columns' names */
   double x_limits[2], y_limits[2]; /* in the columns' units; 0, 0: from the data */
   strut_study_colours colours;     /* of a MAP */

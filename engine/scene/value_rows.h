@@ -75,7 +75,7 @@ struct strut_value {
 typedef struct strut_value_rows strut_value_rows;
 
 typedef struct strut_value_row {
-  /* In files, NULL: only in a CSV, or a map or part without one; SI, "" for none; a phrase for readers. */
+  /* In files, NULL: only in a CSV or a printed table, or a map or part without one; SI, "" for none; a phrase for readers. */
   const char *key, *unit, *what;
   const strut_value_rows *rows; /* of a part, of a list */
   /* Of a CSV, and of a printed table, of nodes along x and y; NULL: not in it. Things: behind the name; before

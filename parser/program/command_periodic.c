@@ -141,10 +141,12 @@ static strut_status read_ranges(const strut_arguments *arguments, const strut_sc
   *dimension = dimensions[0];
   wanted->name = names[0];
   wanted->unit = strut_unit_of(dimensions[0]);
+  wanted->shown = strut_parameter_named(scene, names[0])->shown;
   wanted->scenes = (strut_follow_scenes){setup_at, source};
   if (!both) return STRUT_OK;
   second->name = names[1];
   second->unit = strut_unit_of(dimensions[1]);
+  second->shown = strut_parameter_named(scene, names[1])->shown;
   second->value = own_value(scene, names[1], second->low, second->high);
   return STRUT_OK;
 }

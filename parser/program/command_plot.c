@@ -29,6 +29,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(label), "label", "COLUMN", "values of a map"},
     {STRUT_FILLS(doubt), "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
     {STRUT_FILLS(log), "log", "AXES", "logarithmic axes: x, y or xy", .words = "x|y|xy"},
+    {STRUT_FILLS(labels), "labels", "TEXT,...", "what the legend calls the curves, in their order"},
     {STRUT_FILLS(title), "title", "TEXT", "title above the figure", .of_figure = true},
     {.table = strut_axis_options},
     {STRUT_FILLS(colors), "colors", "SCALE",
@@ -42,82 +43,85 @@ static const char *column_name_at(const void *context, size_t i) {
   return i < table->column_count ? table->columns[i].name : NULL;
 }
 
-/* The column of that name, of `length` bytes; STRUT_NO_COLUMN with a message. */
-static int find_column(const strut_arguments *arguments, const strut_table *table,
-                       const char *option, const char *name, size_t length) {
+/* STRUT_USAGE with a message if the table has no column of that name, of `length` bytes. */
+static strut_status check_column(const strut_arguments *arguments, const strut_table *table,
+                                 const char *option, const char *name, size_t length) {
   char word[200];
-  int column = strut_table_column_of(table, name, length);
-  if (column != STRUT_NO_COLUMN) return column;
+  if (strut_table_column_of(table, name, length) != STRUT_NO_COLUMN) return STRUT_OK;
   snprintf(word, sizeof word, "%.*s", (int)length, name);
   const char *near = strut_did_you_mean(word, column_name_at, table);
-  strut_usage_error(arguments, "--%s: the table has no column '%s'%s%s%s", option, word,
-                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-  return STRUT_NO_COLUMN;
+  return strut_usage_error(arguments, "--%s: the table has no column '%s'%s%s%s", option, word,
+                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
-/* Options that name a column, and where it goes. */
-typedef struct column_choice {
-  const char *option, *text;
-  int *column;
-  const char **value; /* of COLUMN=TEXT, else NULL */
-} column_choice;
-
-/* STRUT_USAGE with a message if the table has no such column. */
-static strut_status read_columns(const strut_arguments *arguments, const strut_table *table,
-                                 const column_choice *choices, size_t count) {
-  for (const column_choice *c = choices; c < choices + count; c++) {
-    if (!c->text) continue;
-    size_t length = c->value ? strcspn(c->text, "=") : strlen(c->text);
-    if (c->value && !c->text[length])
-      return strut_usage_error(arguments, "--%s expects COLUMN=TEXT, not '%s'", c->option, c->text);
-    if (c->value) *c->value = c->text + length + 1;
-    *c->column = find_column(arguments, table, c->option, c->text, length);
-    if (*c->column == STRUT_NO_COLUMN) return STRUT_USAGE;
+/* The same of all that options name. */
+static strut_status check_columns(const strut_arguments *arguments, const strut_table *table,
+                                  const strut_study_figure *f) {
+  const struct {
+    const char *option, *text, *before; /* NULL: not given, and what ends a name */
+  } names[] = {{"x", f->x, ""},         {"by", f->series, ""},
+               {"label", f->color, ""}, {"panels", f->panels, ""},
+               {"doubt", f->doubt, ""}, {"band", f->band, "="},
+               {"only", f->only, "="},  {"difference", f->difference, ""}};
+  strut_status status = STRUT_OK;
+  int count = 0;
+  for (size_t i = 0; i < sizeof names / sizeof *names && !status; i++) {
+    size_t length = names[i].text ? strcspn(names[i].text, names[i].before) : 0;
+    if (!names[i].text) continue;
+    if (*names[i].before && !names[i].text[length])
+      return strut_usage_error(arguments, "--%s expects COLUMN=TEXT, not '%s'", names[i].option,
+                               names[i].text);
+    status = check_column(arguments, table, names[i].option, names[i].text, length);
   }
-  return STRUT_OK;
-}
-
-static strut_status read_y(const strut_arguments *arguments, const strut_table *table,
-                           strut_table_figure *figure) {
-  figure->y_count = 1;
-  figure->y[0] = table->column_count > 1 ? 1 : 0;
-  if (!arguments->y) return STRUT_OK;
-  figure->y_count = 0;
-  for (const char *at = arguments->y;; at++) {
-    size_t length = strcspn(at, ",");
-    if (figure->y_count == STRUT_MOST_Y)
+  for (const char *y = f->y, *end; y && !status; y = *end ? end + 1 : NULL) {
+    end = y + strcspn(y, ",");
+    if (count++ == STRUT_MOST_Y)
       return strut_usage_error(arguments, "--y: at most %d columns", STRUT_MOST_Y);
-    int column = find_column(arguments, table, "y", at, length);
-    if (column == STRUT_NO_COLUMN) return STRUT_USAGE;
-    figure->y[figure->y_count++] = column;
-    at += length;
-    if (!*at) return STRUT_OK;
+    status = check_column(arguments, table, "y", y, (size_t)(end - y));
   }
+  return status;
+}
+
+/* Texts with commas between, in the table's arena. */
+static strut_status read_labels(const strut_arguments *arguments, strut_table *table,
+                                strut_study_figure *figure) {
+  const char *at = arguments->labels;
+  if (!at) return STRUT_OK;
+  figure->labels = strut_arena_allocate(&table->arena, strlen(at) + 1, sizeof *figure->labels);
+  for (bool more = figure->labels; more; more = *at++ == ',') {
+    const char *label = strut_arena_text(&table->arena, at, strcspn(at, ","));
+    if (!label) return strut_print_out_of_memory();
+    figure->labels[figure->label_count++] = label;
+    at += strlen(label);
+  }
+  return figure->labels ? STRUT_OK : strut_print_out_of_memory();
 }
 
 /* What the options choose of the table. */
-static strut_status read_figure(const strut_arguments *arguments, const strut_table *table,
-                                strut_table_figure *figure) {
-  bool map = arguments->kind.index == 1;
-  const column_choice choices[] = {
-      {"x", arguments->x, &figure->x, NULL},
-      {"by", arguments->by, &figure->by, NULL},
-      {"label", arguments->label, &figure->value, NULL},
-      {"panels", arguments->panels, &figure->panels, NULL},
-      {"doubt", arguments->doubt, &figure->doubt, NULL},
-      {"band", arguments->band, &figure->band, &figure->band_value},
-      {"only", arguments->only, &figure->choice.only, &figure->choice.only_value},
-      {"difference", arguments->difference, &figure->choice.difference, NULL}};
-  figure->kind = map ? STRUT_TABLE_MAP : STRUT_TABLE_CURVES;
-  figure->log_x = arguments->log.text && arguments->log.index != 1;
-  figure->log_y = arguments->log.text && arguments->log.index != 0;
-  figure->colours = (strut_colours)arguments->colors.index;
-  if (map && table->column_count > 2) figure->value = 2;
-  strut_status status = read_columns(arguments, table, choices, sizeof choices / sizeof *choices);
-  if (!status) status = read_y(arguments, table, figure);
-  if (!status && map && figure->value == STRUT_NO_COLUMN)
+static strut_status read_figure(const strut_arguments *arguments, strut_table *table,
+                                strut_study_figure *figure) {
+  const strut_table_column *columns = table->columns;
+  bool map = arguments->kind.index == 1, third = map && table->column_count > 2;
+  const char *second = columns[table->column_count > 1 ? 1 : 0].name;
+  const strut_given_word *log = &arguments->log;
+  *figure =
+      (strut_study_figure){.kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES,
+                           .x = arguments->x ? arguments->x : columns[0].name,
+                           .y = arguments->y ? arguments->y : second,
+                           .series = arguments->by,
+                           .panels = arguments->panels,
+                           .color = third && !arguments->label ? columns[2].name : arguments->label,
+                           .doubt = arguments->doubt,
+                           .band = arguments->band,
+                           .only = arguments->only,
+                           .difference = arguments->difference,
+                           .log_x = log->text && log->index != 1,
+                           .log_y = log->text && log->index != 0,
+                           .colours = (strut_study_colours)arguments->colors.index};
+  strut_status status = check_columns(arguments, table, figure);
+  if (!status && map && !figure->color)
     status = strut_usage_error(arguments, "a map needs a third column");
-  return status;
+  return status ? status : read_labels(arguments, table, figure);
 }
 
 /* Refuses options that belong to the other kind of diagram. */
@@ -125,6 +129,7 @@ static strut_status check_kind(const strut_arguments *arguments) {
   const bool map = arguments->kind.index == 1;
   const char *other = map ? (arguments->by         ? "by"
                              : arguments->band     ? "band"
+                             : arguments->labels   ? "labels"
                              : arguments->log.text ? "log"
                                                    : NULL)
                           : (arguments->label         ? "label"
@@ -139,7 +144,7 @@ static strut_status check_kind(const strut_arguments *arguments) {
 static strut_status run_plot(const strut_arguments *arguments) {
   strut_plot plot;
   strut_table table;
-  strut_table_figure figure = STRUT_TABLE_FIGURE;
+  strut_study_figure figure;
   strut_error error = {0};
   strut_status status = check_kind(arguments);
   if (status == STRUT_OK) status = strut_plot_read(arguments, 0, &plot);
@@ -149,7 +154,7 @@ static strut_status run_plot(const strut_arguments *arguments) {
   if (status != STRUT_OK) return status;
   status = read_figure(arguments, &table, &figure);
   if (!status) status = strut_axes_read(arguments, figure.log_x, figure.log_y, &plot.x, &plot.y);
-  if (!status) status = strut_table_draw(&plot, &figure, &table, &error);
+  if (!status) status = strut_table_draw(&plot, &figure, &table, (strut_table_marks){0}, &error);
   if (error.message[0]) strut_print_error(&error);
   strut_arena_free(&table.arena);
   return status;

@@ -21,7 +21,6 @@
 
 /* What is drawn and filmed of a run. Zero-initialise. */
 typedef struct run_pictures {
-  strut_plot plot;
   strut_run_figure figure;
   strut_film film;
   bool quiet, silent; /* no progress bar; no report of the film on stdout */
@@ -41,11 +40,10 @@ static const strut_option film_options[] = {
     {.name = NULL}};
 
 static strut_status read_pictures(const strut_arguments *arguments, run_pictures *pictures) {
-  strut_status status = strut_plot_read(arguments, 0, &pictures->plot);
-  if (!status)
-    status = strut_run_figure_read(arguments, &pictures->plot, &pictures->figure, pictures->times);
+  strut_status status = strut_plot_read(arguments, 0, &pictures->figure.plot);
+  if (!status) status = strut_run_figure_read(arguments, &pictures->figure, pictures->times);
   pictures->quiet = arguments->quiet;
-  pictures->silent = arguments->quiet || arguments->json;
+  pictures->silent = arguments->quiet || arguments->json || arguments->format.index;
   pictures->film = (strut_film){.path = arguments->animate,
                                 .speed = arguments->speed.text ? arguments->speed.value : 1,
                                 .fps = arguments->fps.value};
@@ -62,7 +60,7 @@ static strut_status check_pictures(run_pictures *pictures, const strut_experimen
   strut_status status = STRUT_OK;
   if (pictures->film.path)
     status = strut_film_check(&pictures->film, span.duration - span.record_start, error);
-  if (status != STRUT_OK || !pictures->plot.path) return status;
+  if (status != STRUT_OK || !pictures->figure.plot.path) return status;
   return strut_run_figure_check(&pictures->figure, model, error);
 }
 
@@ -70,9 +68,9 @@ static strut_status check_pictures(run_pictures *pictures, const strut_experimen
 static strut_sink *create_pictures_sink(run_pictures *pictures, const strut_scene *scene,
                                         strut_status *status) {
   *status = STRUT_OK;
-  if (!pictures->plot.path && !pictures->film.path) return NULL;
+  if (!pictures->figure.plot.path && !pictures->film.path) return NULL;
   strut_channels channels =
-      pictures->plot.path ? strut_run_figure_channels(pictures->figure.view) : 0;
+      pictures->figure.plot.path ? strut_run_figure_channels(pictures->figure.view) : 0;
   if (scene->table_count) channels |= pictures->figure.experiment->channels; /* beside data */
   if (pictures->film.path) channels |= strut_run_figure_channels(STRUT_RUN_SNAPSHOTS);
   pictures->sink = strut_trajectory_sink(&pictures->motion, scene, channels, STRUT_TRAJECTORY_ROOM);
@@ -82,9 +80,8 @@ static strut_sink *create_pictures_sink(run_pictures *pictures, const strut_scen
 
 static strut_status draw_picture(run_pictures *pictures, const strut_model *model,
                                  const strut_summary *summary, strut_error *error) {
-  if (!pictures->plot.path) return STRUT_OK;
-  return strut_run_figure_draw(pictures->plot.path, &pictures->figure, model, &pictures->motion,
-                               summary, error);
+  if (!pictures->figure.plot.path) return STRUT_OK;
+  return strut_run_figure_draw(&pictures->figure, model, &pictures->motion, summary, error);
 }
 
 /* And what would make it better: a speed at which it lasts five seconds, more recorded frames. */
@@ -133,7 +130,7 @@ static void free_pictures(run_pictures *pictures) {
 static const strut_option options[] = {
     STRUT_SET_OPTION,
     STRUT_OUTPUT_OPTION("DIR", "write summary, scene and trajectories into DIR"),
-    {STRUT_FILLS(json), "json", NULL, "print the summary as one JSON object"},
+    STRUT_PRINT_OPTIONS,
     STRUT_FORCE_OPTION,
     {.table = strut_experiment_options},
     STRUT_THREADS_OPTION,
@@ -237,7 +234,8 @@ static strut_status run_model(const strut_arguments *arguments, const strut_setu
     if (written != STRUT_OK) status = written;
     strut_status printed = strut_print_report(
         arguments, arguments->json ? strut_summary_json(&summary, model->scene, true)
-                                   : strut_summary_table(&summary, model->scene));
+                                   : strut_summary_table(&summary, model->scene,
+                                                         strut_report_width(arguments)));
     if (status == STRUT_OK) status = printed;
     if (written == STRUT_OK) written = make_film(pictures, model);
     if (written != STRUT_OK) status = written;

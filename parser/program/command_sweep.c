@@ -9,10 +9,12 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/study/cluster/cluster_script.h"
 #include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
+#include "parser/program/command/plot_options.h"
 #include "parser/program/command/scene_options.h"
 #include "parser/program/commands.h"
 #include "parser/program/open_model.h"
@@ -43,7 +45,7 @@ static const strut_option options[] = {
     {STRUT_FILLS(plan), "plan", NULL,
      "only print which measurements would determine the parameters of a fit best"},
     {STRUT_FILLS(status), "status", NULL, "only print what is done, missing and failed in DIR"},
-    {STRUT_FILLS(json), "json", NULL, "print one JSON object"},
+    STRUT_PRINT_OPTIONS,
     {.name = NULL},
 };
 
@@ -229,7 +231,8 @@ static strut_status print_result(const strut_study_job *job, const strut_value_r
   const strut_arguments *arguments = job->arguments;
   if (json && arguments->json) return strut_print(json);
   strut_status status = strut_print_values(arguments, rows, of, NULL);
-  if (json && !arguments->quiet) printf("%s/branches.csv\n", arguments->output);
+  const char *mark = arguments->format.index ? "% " : "";
+  if (json && !arguments->quiet) printf("%s%s/branches.csv\n", mark, arguments->output);
   return status;
 }
 
@@ -259,28 +262,34 @@ static strut_status show_plan(const strut_arguments *arguments, const strut_swee
   return status;
 }
 
-/* --plot: the first result over the first axis, as `strut plot` draws it. */
+/* --plot: the first result over the first axis, a curve for each value of the second, or as a map of both. */
 static strut_status plot_table(const strut_arguments *arguments, const strut_sweep_study *study) {
   const strut_sweep_plan *plan = &study->plan;
+  const strut_slot_column *columns = plan->columns;
   char path[PATH_MAX];
-  size_t y = plan->axis_columns;
-  bool map = plan->axis_columns == 2 && !plan->columns[0].word && !plan->columns[1].word;
-  while (y < plan->column_count && plan->columns[y].word) y++;
-  if (y == plan->column_count || plan->axis_columns == 0)
+  strut_plot plot;
+  strut_table table = {0};
+  strut_error error = {0};
+  size_t axes = plan->axis_columns, result = axes;
+  bool map = axes == 2 && !columns[0].word && !columns[1].word;
+  while (result < plan->column_count && columns[result].word) result++;
+  if (result == plan->column_count || axes == 0)
     return strut_usage_error(arguments, "--plot needs a number among the results, and an axis");
   if (snprintf(path, sizeof path, "%s/%s", arguments->output, table_name) >= (int)sizeof path)
     return strut_usage_error(arguments, "the path of the table is too long");
-  const strut_arguments own = {.command = &strut_command_plot,
-                               .listener = arguments->listener,
-                               .quiet = arguments->quiet,
-                               .model = path,
-                               .plot = arguments->plot,
-                               .kind.index = map,
-                               .x = plan->columns[0].name,
-                               .y = plan->columns[map ? 1 : y].name,
-                               .label = map ? plan->columns[y].name : NULL,
-                               .by = !map && plan->axis_columns > 1 ? plan->columns[1].name : NULL};
-  return strut_command_plot.run(&own);
+  const strut_study_figure figure = {.kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES,
+                                     .x = columns[0].name,
+                                     .y = columns[map ? 1 : result].name,
+                                     .color = columns[result].name,
+                                     .series = axes > 1 ? columns[1].name : NULL,
+                                     .panels = axes > 2 ? columns[2].name : NULL};
+  strut_status status = strut_plot_read(arguments, 0, &plot);
+  if (!status) status = strut_table_read(arguments->listener, path, &table);
+  if (status) return status;
+  strut_sweep_show_units(plan, &table);
+  status = strut_table_draw(&plot, &figure, &table, (strut_table_marks){0}, &error);
+  strut_arena_free(&table.arena);
+  return strut_print_failure(status, &error);
 }
 
 /* Refuses what would have no effect beside the options that only print. */

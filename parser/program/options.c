@@ -202,6 +202,8 @@ strut_status strut_plot_read(const strut_arguments *arguments, double usual, str
   strut_error error = {0};
   strut_status status = strut_plot_settings_read(arguments, usual, plot);
   if (status) return status;
+  if (plot->texts && strut_picture_format_of(plot->path) != STRUT_PICTURE_SVG)
+    return strut_usage_error(arguments, "--svg-text is for figures that end with .svg");
   status = strut_figure_check_name(plot->path, &error);
   return status ? strut_print_failure(status, &error) : strut_try_file(plot->path);
 }

@@ -242,6 +242,24 @@ check(len(files_in("kept")) == 4, "a picture of an earlier comparison stays")
 run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
 tree.parse("sheet.svg")
 
+
+def written(*words):
+    """The texts of a figure: of its title, panels and legend."""
+    run("compare", *words, "--no-states", "--no-motion", "-q", "--plot", "sheet.svg")
+    return [t.text for t in tree.parse("sheet.svg").iter("{urn:strut:texts}t")]
+
+
+# The title is the name of all scenes; the legend has what is to be seen, and a driven spring is seen as driven.
+open("driven.yaml", "w").write(
+    text + "actuators: {drive: {member: ab, signal: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}}\n")
+LEGEND = {"bar", "spring", "cable", "driven"}
+for words, first, legend in ((["driven.yaml", "driven.yaml"], ["one", "driven"], {"driven"}),
+                             (["one.yaml", "driven.yaml"], ["one", "one"], {"spring", "driven"}),
+                             (["two.yaml", "one.yaml"], ["two", "2 nodes, 2 members, 1 kg"], {"spring", "cable"}),
+                             ([X, "one.yaml"], ["x-frame", "Snelson's X, standing 4 nodes"], {"bar", "spring", "cable"})):
+    said = written(*words)
+    check(LEGEND & set(said) == legend and [said[0], said[1][:len(first[1])]] == first, f"{words}: {said}")
+
 # ---- one, twenty ----
 for i in range(20):
     open(f"m{i}.yaml", "w").write(text.replace("100 N/m", f"{100 + i} N/m"))

@@ -59,7 +59,9 @@ for row in table:
     want = math.pi * 0.5 * turn * float(row["amplitude [m]"])**2
     near(float(row["work [J]"]), want, f"work at {f}", 1e-4)
     check(row["stable"] == "yes" and row["period_multiple"] == "1", "not stable")
-check(os.path.exists(os.path.join(work, "linear", "branches.svg")), "no figure")
+figure = open(os.path.join(work, "linear", "branches.svg")).read()
+check(">stable</t>" in figure and not any(f">{word}</t>" in figure for word in ("unstable", "fold", "period doubling")),
+      "the legend explains what is not there")
 
 # ---- Duffing: folds of the harmonic balance, small amplitude
 

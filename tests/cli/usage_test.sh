@@ -141,8 +141,15 @@ sed '/^#/d' out >second
 same first second
 expect 0 check "$hopper"
 err_empty
-out_has "Hopper: valid" "degrees of freedom    " "springs   " "largest step of rk4" \
-  "rest length" "force density"
+out_has "Hopper: valid" "largest step of rk4 " "rest length" "force density"
+for row in 'nodes +3' 'degrees of freedom +6' 'bars +1' 'springs +1' 'cables +1'; do
+  grep -qE "^  $row\$" out || fail "check prints no row '$row'"
+done
+expect 0 check "$hopper" --format latex
+out_has '% Hopper: valid' 'degrees of freedom & 6 \\' 'memory & ' '\begin{tabular}'
+expect 0 run "$hopper" --format latex
+out_has '%   mean velocity ' '% node' 'node & x & y \\' '%   energy residual '
+grep -qE '^[^%\]*(velocity|energy)' out && fail "a line of text is no comment in LaTeX"
 shows 0 '"degrees_of_freedom":	6,' check "$hopper" --json
 out_has '"rest_length":	0.055,'
 

@@ -58,6 +58,22 @@ def check_clock(driver, name):
     check(run(driver, "strutPage.decimalsOf([0, 1e-9])") == 6, "more than six digits")
 
 
+def check_names_below_clock(driver, name):
+    """No name of a node lies on the time or the number of the frame."""
+    covered = driver.execute_async_script("""
+      const kind = CanvasRenderingContext2D.prototype, own = kind.fillText, found = [], done = arguments[0];
+      const clock = document.querySelector("#clock"), right = clock.offsetLeft + clock.offsetWidth;
+      kind.fillText = function (text, x, y) {
+        const wide = this.measureText(text).width;
+        const left = x - { left: 0, right: wide }[this.textAlign] ?? wide / 2;
+        if (this.canvas.id === "canvas" && left < right && y - 6 < clock.offsetTop + clock.offsetHeight) found.push(text);
+        own.call(this, text, x, y);
+      };
+      strut.seek(0);
+      requestAnimationFrame(() => requestAnimationFrame(() => { kind.fillText = own; done(found); }));""")
+    check(not covered, f"{name}: {covered} on the clock")
+
+
 def check_player(driver, name):
     driver.execute_script("strut.seek(0)")
     span = run(driver, "strut.data.motion.frames && [strut.time, (strut.seek(strut.frames - 1), "
@@ -503,6 +519,8 @@ def check_narrow(driver, width):
 
 
 def check_run(driver, width):
+    open_page(driver, "frame.html")
+    check_names_below_clock(driver, "frame.html")
     open_page(driver, "crawler.html")
     check_layout(driver, "crawler.html", width)
     wait_for_drawing(driver)

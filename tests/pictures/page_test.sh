@@ -33,6 +33,17 @@ sed '/^frequency:/d; s/^output: .*/output: {last: 5, every: 1 ms, channels: [pos
 "$strut" run "$root/models/gallery/two-mass-crawler.yaml" --quiet --set friction=0.3 -o rougher
 "$strut" view two-mass rougher --quiet -o two.html
 
+cat >frame.yaml <<'END'
+strut: 1
+nodes: {a: {position: [0, 0], fixed: both}, upper-left: {position: [0, 1.2], mass: 1}, b: {position: [3, 1.2], fixed: both}}
+groups: {soft: {kind: spring, stiffness: 10}}
+members: {one: {group: soft, nodes: [a, upper-left]}, two: {group: soft, nodes: [b, upper-left]}}
+run: {duration: 1}
+solver: {step: 1 ms}
+END
+"$strut" run frame.yaml --quiet -o frame
+"$strut" view frame --quiet -o frame.html
+
 # Texts that would be markup, end a script or turn the direction of writing. The language keeps names
 # of nodes simple, a program that fills a scene need not: page_test.py puts such names in.
 cat >hostile.yaml <<'END'

@@ -5,10 +5,12 @@ usage: plot_test.py STRUT
 """
 import math
 import os
+import re
 import subprocess
 import time
+import xml.etree.ElementTree as tree
 
-from svg_paths import near, read
+from svg_paths import near, read, texts
 
 from testing import check, finish, strut, work, write
 
@@ -154,6 +156,33 @@ check_curve("log.svg", [-float(i) for i in range(12)][::-1], logs[::-1], line[::
 # Columns share the y axis, so that they need one unit.
 write("two.csv", "f [Hz],v [m/s],w [J]\n" + "".join(f"{x!r},{a!r},{2e-3 * x * x!r}\n" for x, a in zip(xs, one)))
 plot("two.csv", "--y", "v,w", "--plot", "a.svg", code=1, err="different units (m/s, J)")
+
+# Legends show numbers with a prefix; labels that are given stand in their place.
+write("stiff.csv", "x [m],y [N],k [N/m],px [px]\n1,2,2000,0.1\n2,3,2000,0.1\n1,5,500,0.2\n2,1,500,0.2\n")
+for words, wanted in ((["stiff.csv", "--by", "k"], {"k 2 kN/m", "k 500 N/m"}),
+                      (["stiff.csv", "--y", "px"], {"px in px", "0.10", "0.20"}),
+                      (["stiff.csv", "--by", "k", "--labels", "hard,soft one"], {"hard", "soft one"})):
+    plot(*words, "--plot", "words.svg")
+    check(wanted <= set(texts("words.svg")), f"{words}: {texts('words.svg')}")
+for words, err in ((["two.csv", "--y", "v", "--labels", "a,b"], "2 labels were given for 1 curve"),
+                   (["two.csv", "--kind", "map", "--labels", "a"], "has no option --labels")):
+    plot(*words, "--plot", "a.svg", code=1, err=err)
+
+# With --svg-text texts are texts, the same and in the same boxes as the outlines; nothing else changes.
+plot("stiff.csv", "--by", "k", "--title", "<a> & b", "--plot", "outlines.svg")
+plot("stiff.csv", "--by", "k", "--title", "<a> & b", "--plot", "texts.svg", "--svg-text")
+noted = [tree.parse(f"{name}.svg").iter("{urn:strut:texts}t") for name in ("outlines", "texts")]
+noted = [[(t.text, [float(n) for n in t.get("box").split()]) for t in each] for each in noted]
+written = list(tree.parse("texts.svg").iter("{http://www.w3.org/2000/svg}text"))
+check(noted[0] == noted[1] and [t.text for t in written] == [text for text, _ in noted[0]], "texts.svg: other texts")
+for t, (text, box) in zip(written, noted[0]):
+    at, turned = [float(n) for n in re.findall(r"[-\d.]+", t.get("transform"))], "rotate" in t.get("transform")
+    x, y = float(t.get("x")), float(t.get("y"))
+    x, y = (at[0] + y, at[1] - x) if turned else (at[0] + x, at[1] + y)
+    check(box[0] - 2 < x < box[0] + box[2] + 3 and box[1] - 1 < y < box[1] + box[3] + 3, f"texts.svg: {text} is at {x}, {y}")
+shapes = [[path.lines for path in read(f"{name}.svg")[2]] for name in ("outlines", "texts")]
+check(shapes[0] == shapes[1], "texts.svg: other lines")
+plot("stiff.csv", "--svg-text", "--plot", "a.pdf", code=1, err="--svg-text is for figures that end with .svg")
 
 # Limits and labels that are given.
 plot("two.csv", "--y", "v", "--x-limits", "0,10", "--y-limits", "-0.02,0.02", "--plot", "limits.svg",

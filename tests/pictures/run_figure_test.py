@@ -12,7 +12,7 @@ import signal
 import subprocess
 import time
 
-from svg_paths import distance, has_segment, near, read, segments
+from svg_paths import distance, has_segment, near, read, segments, texts
 
 from testing import check, fail, finish, strut, work
 
@@ -165,6 +165,16 @@ def check_period(here, model, factors):
     check(max(f[3][1] for f in last) > 1e-4 > max(f[0][1] for f in last), "node 4 does not lift, or node 1 does")
 
 
+def check_two_periods(here):
+    """A motion that repeats after two periods of its drive is drawn over both, from where it began to where it is again."""
+    file = os.path.join(here, "two.svg")
+    setting = ("friction=0.1", "frequency=13.613 Hz", "amplitude=0.2986 mm")
+    run("models/crawler/crawler.yaml", "-q", "--accuracy", "2%", "--draw", "period", "--plot", file,
+        *(word for each in setting for word in ("--set", each)))
+    said = " ".join(texts(file))
+    check("over the 2 periods of the drive after which they repeat (146.9 ms)" in said, f"two periods: {said}")
+
+
 def check_overview(here, model):
     """The last shape, and the curve of the measured node's displacement over the last periods."""
     file, out = os.path.join(here, "c.svg"), os.path.join(here, "out3")
@@ -308,6 +318,7 @@ check_snapshots(work, short, [], [1.4, 1.52, 1.64, 1.76, 1.88, 2.0], True)
 check_ground(work)
 check_period(work, short, (1, 1))
 check_period(work, short, (10, 2))
+check_two_periods(work)
 check_overview(work, short)
 check_data(work)
 check_same_bytes(work, short)

@@ -2,11 +2,12 @@
 """Figures of what the runs of a study recorded: closed forms found again in the pictures.
 usage: study_figures_test.py STRUT
 """
+import json
 import math
 import os
 import subprocess
 
-from svg_paths import near, read
+from svg_paths import near, read, texts
 
 from testing import check, finish, strut, work, write
 
@@ -114,6 +115,49 @@ check(names == ["one-1.svg", "one-2.svg", "way-1.svg", "way-2.svg"], f"pictures:
 ways = [path.lines[0] for path in read("out/way-2.svg")[2] if path.dash and near(path.stroke, DASHED)]
 check(ways and max(abs(a[1] - b[1]) for way in ways for a, b in zip(way, way[1:])) < 0.01,
       "way-2.svg: the other's way lies along x")
+
+# Axes, legends, panels and colours are in the units of the study, else of the model, else in SI with a prefix; the
+# table, `only` and limits stay in SI. Labels of the study stand in their place.
+write("slider.yaml", """strut: 1
+parameters: {stretch: 20 mm, stiffness: 0.1 kN/m, tilt: 0.1, mass: 1 kg}
+nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: mass, fixed: y}}
+members: {spring: {kind: spring, nodes: [wall, block], stiffness: stiffness}}
+gravity: [9.81*sin(tilt), 0]
+initial: {positions: {block: [1 m + stretch, 0]}}
+solver: {step: 1 ms}
+run: {duration: 50 ms, measure: {node: block}}
+""")
+UNITS = """strut: 1
+study: units
+model: slider.yaml
+axes:
+  - tilt: {from: 0 deg, to: 60 deg, step: 30 deg}
+  - stretch: [0.5 mm, 20 mm]
+  - stiffness: [100, 3000]
+keep: [velocity]
+figures:
+  lines: {x: tilt, y: velocity, series: stretch, panels: stiffness, only: stretch=0.02, x_limits: [0, 0.5]}
+  named: {x: stiffness, y: velocity, series: tilt, labels: [level, "half, way", steep], panels: stretch}
+  map: {kind: map, x: tilt, y: stretch, color: velocity, panels: stiffness}
+"""
+os.rename("out", "driven")
+sweep(UNITS)
+check(open("out/table.csv").read().startswith("point,tilt [rad],stretch [m],stiffness [N/m],velocity [m/s],"), "units: table")
+for name, wanted, missing in (
+        ("lines", ("tilt in deg", "velocity in mm/s", "a) stiffness = 0.1 kN/m", "b) stiffness = 3 kN/m", "25"), ("30",)),
+        ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep"), ()),
+        ("map", ("tilt in deg", "stretch in mm", "60", "20", "25"), ("tilt in rad",))):
+    said = texts(f"out/{name}.svg")
+    check(set(wanted) <= set(said) and not set(missing) & set(said), f"{name}.svg: {said}")
+subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet", "--plot", "all.json"], check=True)
+panels = json.load(open("all.json"))["panels"]  # a third axis makes panels
+check([panel["title"][3:] for panel in panels] == ["stiffness = 0.1 kN/m", "stiffness = 3 kN/m"], "all.json: panels")
+check(panels[0]["x"]["shown"] == "deg" and near([180 / math.pi * panels[0]["x"]["shown_size"]] * 3, (1, 1, 1)),
+      f"all.json: {panels[0]['x']}")
+said = sweep(UNITS.replace(", steep]", "]"), code=2)
+check("figure 'named' of the study: 'labels' has 2 labels for the 3 values of 'tilt'" in said, said)
+os.rename("out", "units")
+os.rename("driven", "out")
 
 # Refusals.
 for figure, wanted in (

@@ -36,6 +36,11 @@ def colour(text):
     return {"black": (0, 0, 0), "white": (1, 1, 1)}.get(text)
 
 
+def texts(path):
+    """What is written in the picture, as its metadata say."""
+    return re.findall(r"<t [^>]*>([^<]*)</t>", open(path, encoding="utf-8").read())
+
+
 class Path:
     """fill, stroke: colours or None; width, dash; lines: lists of points, `curved` if some bend."""
 

@@ -97,7 +97,7 @@ class Plots(unittest.TestCase):
 
     def test_prefixes_are_those_of_the_programs_figures(self):
         for largest, unit, label in ((2e-3, "m", "a in mm"), (999e-6, "m", "a in µm"), (1000, "N/m", "a in kN/m"),
-                                     (1e-3, "kg", "a in kg"), (0, "m", "a in m"), (5, "1", "a"), (3, "", "a"),
+                                     (1e-3, "kg", "a in kg"), (2e-6, "m^2", "a in m^2"), (0.1, "mm", "a in mm"), (0, "m", "a in m"), (5, "1", "a"), (3, "", "a"),
                                      (float("nan"), "s", "a in s"), (1e30, "J", "a in J")):
             scale = _plots.Scale(np.array([-largest, 0.0]), unit)
             self.assertEqual(scale.label("a"), label)

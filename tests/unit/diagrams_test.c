@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What diagrams are made of: round ticks, prefixes, thinned curves, the front of the best. */
+#include "engine/base/vec.h"
 #include "engine/output/draw/painter.h"
 #include "engine/output/figures/work_precision.h"
 #include "tests/support/random.h"
@@ -45,10 +46,11 @@ TEST(prefixes) {
     double largest;
     const char *unit, *prefix;
     double factor;
-  } cases[] = {{0.0214, "m/s", "m", 1e-3}, {1, "m", "", 1},          {999, "N", "", 1},
-               {1000, "N", "k", 1e3},      {2e-7, "J", "n", 1e-9},   {0.02, "%", "", 1},
-               {0.02, "kg", "", 1},        {0.02, "", "", 1},        {0, "m", "", 1},
-               {1e40, "m", "", 1},         {(double)NAN, "m", "", 1}};
+  } cases[] = {{0.0214, "m/s", "m", 1e-3}, {1, "m", "", 1},           {999, "N", "", 1},
+               {1000, "N", "k", 1e3},      {2e-7, "J", "n", 1e-9},    {0.02, "%", "", 1},
+               {0.02, "kg", "", 1},        {0.02, "", "", 1},         {0, "m", "", 1},
+               {1e40, "m", "", 1},         {(double)NAN, "m", "", 1}, {2e-6, "m^2", "", 1},
+               {2e-6, "mm", "", 1},        {2000, "N/m", "k", 1e3},   {20, "kN/m", "", 1}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     double factor;
     assert_string_equal(strut_prefix(cases[i].largest, cases[i].unit, &factor), cases[i].prefix);
@@ -73,8 +75,11 @@ TEST(outliers) {
   for (int i = 0; i < 40; i++) values[i] = i == 20 ? 100 : i % 10;
   strut_range_without_outliers(values, 40, &low, &high, &beyond);
   assert_true(low == 0 && high == 9 && beyond.above == 1 && beyond.below == 0);
-  assert_string_equal(strut_beyond_text(&beyond, "point", "J", text),
+  const strut_file_unit cal = {"cal", 4.184}, none = {0};
+  assert_string_equal(strut_beyond_text(&beyond, "point", "J", none, text),
                       "1 point beyond the scale, up to 100 J");
+  assert_string_equal(strut_beyond_text(&beyond, "point", "J", cal, text),
+                      "1 point beyond the scale, up to 23.9 cal");
   for (int i = 0; i < 40; i++) values[i] = i % 4 ? i % 10 : 100;
   low = 0, high = 100;
   strut_range_without_outliers(values, 40, &low, &high, &beyond);
@@ -83,7 +88,7 @@ TEST(outliers) {
   assert_true(beyond.above == 1 && beyond.farthest == 167e3);
   assert_true(strut_limit_without_outliers(two, 2, 0, 1.0 / 3, &beyond) == 100);
   assert_true(beyond.above == 0);
-  assert_string_equal(strut_beyond_text(&beyond, "point", "J", text), "");
+  assert_string_equal(strut_beyond_text(&beyond, "point", "J", none, text), "");
 }
 
 TEST(tick_texts) {
@@ -103,6 +108,23 @@ TEST(tick_texts) {
   assert_string_equal(set.text[1], "2×10⁻³⁰⁰");
   set = ticks_of("", false, -9e299, 0);
   assert_string_equal(set.text[0], "-8×10²⁹⁹");
+  set = ticks_of("rad", false, 0, STRUT_PI / 3);
+  assert_string_equal(set.label, "error in deg");
+  assert_string_equal(set.text[1], "10");
+  assert_true(fabs(set.at[1] - STRUT_PI / 18) < 1e-12);
+  strut_axis micro = {.name = "a", .unit = "m", .high = 2e-3, .shown = {"um", 1e-6}};
+  strut_axis_ticks(&micro, 5, &set); /* in the unit that the file gives, whatever the range */
+  assert_string_equal(set.label, "a in \xc2\xb5m");
+  assert_string_equal(set.text[set.count - 1], "2000");
+  micro = (strut_axis){.name = "c",
+                       .unit = "N/m",
+                       .logarithmic = true,
+                       .low = 1e3,
+                       .high = 1e6,
+                       .shown = {"kN/m", 1e3}};
+  strut_axis_ticks(&micro, 5, &set);
+  assert_string_equal(set.label, "c in kN/m");
+  assert_true(fabs(set.at[0] / 1e3 - 1) < 1e-12 && !strcmp(set.text[0], "10⁰"));
   set = ticks_of("", true, 2, 8);
   assert_string_equal(set.text[0], "2");
   assert_string_equal(set.text[1], "5");

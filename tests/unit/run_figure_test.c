@@ -35,12 +35,12 @@ AFTER_ALL {
 static strut_status draw(strut_run_view view, const strut_trajectory *frames, strut_error *error) {
   const strut_run_figure figure = {.experiment = &setup.experiment,
                                    .view = view,
-                                   .width = 250,
+                                   .plot = {.path = scratch_path("a.svg"), .width = 250},
                                    .scale = {3, 2},
                                    .other = beside,
                                    .other_name = "another"};
   if (error) *error = (strut_error){0};
-  return strut_run_figure_draw(scratch_path("a.svg"), &figure, model, frames, &summary, error);
+  return strut_run_figure_draw(&figure, model, frames, &summary, error);
 }
 
 /* Every so many-th allocation fails: nothing but the message, and no file, is left; nor is a picture

@@ -119,6 +119,34 @@ TEST(examples_fit) {
   assert_null(strut_dimension_example((strut_dimension){1, 1, 1, 1}));
 }
 
+/* What stands behind a plain number, and nothing behind an expression. */
+TEST(units_of_texts) {
+  static const struct {
+    const char *text, *name;
+    double size;
+  } cases[] = {{"0.5 mm", "mm", 1e-3},
+               {"-3e1 kN/m", "kN/m", 1e3},
+               {"20deg", "deg", 3.14159265358979323846 / 180},
+               {"1 %", "%", 1e-2},
+               {"5 N s/m", "N s/m", 1},
+               {"3", NULL, 0},
+               {"", NULL, 0},
+               {"2 mm + 1 m", NULL, 0},
+               {"2*width", NULL, 0},
+               {"2 cows", NULL, 0},
+               {"mm", NULL, 0},
+               {"sqrt(2) m", NULL, 0}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const strut_file_unit unit = strut_unit_of_text(cases[i].text, NULL);
+    if (!cases[i].name) {
+      assert_null(unit.name);
+      continue;
+    }
+    assert_string_equal(unit.name, cases[i].name);
+    assert_true(unit.size == cases[i].size);
+  }
+}
+
 TEST(equality_allows_for_roots) {
   float third = 1.0f / 3;
   assert_true(

@@ -42,12 +42,9 @@ size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_
 }
 
 const char *strut_prefix(double largest, const char *unit, double *factor) {
-  static const char *const plain[] = {"", "%", "kg", "deg", "°"};
   static const char *const names[] = {"f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"};
   *factor = 1;
-  for (size_t i = 0; i < sizeof plain / sizeof *plain; i++)
-    if (strcmp(unit, plain[i]) == 0) return "";
-  if (!(largest > 0) || !isfinite(largest)) return "";
+  if (!strut_unit_takes_prefix(unit) || !(largest > 0) || !isfinite(largest)) return "";
   double group = floor(log10(largest) / 3 + 1e-12);
   if (group < -5 || group > 5) return "";
   *factor = pow(1000.0, group);
@@ -76,7 +73,8 @@ static void write_number(char *text, size_t size, const char *format, int decima
 
 static void write_label(const strut_axis *axis, const char *prefix, const char *offset,
                         strut_tick_set *set) {
-  const char *name = axis->name ? axis->name : "", *unit = axis->unit ? axis->unit : "";
+  const char *name = axis->name ? axis->name : "", *unit = axis->unit;
+  if (axis->shown.name && *unit == 'u') prefix = "µ", unit++;
   snprintf(set->label, sizeof set->label, "%s%s%s%s%s", name, offset,
            *unit ? (*name ? " in " : "in ") : "", *unit ? prefix : "", unit);
 }
@@ -91,12 +89,12 @@ static void linear_ticks(const strut_axis *axis, int wanted, strut_tick_set *set
     offset = common_part(axis->low, axis->high);
     largest = fmax(fabs(axis->low - offset), fabs(axis->high - offset));
   }
-  const char *prefix = strut_prefix(largest, axis->unit ? axis->unit : "", &factor);
+  const char *prefix = strut_prefix(largest, axis->shown.name ? "" : axis->unit, &factor);
   if (far) {
     char number[48];
     write_number(number, sizeof number, "%.*g", 12, fabs(offset));
     snprintf(offset_text, sizeof offset_text, " %s %s%s%s", offset > 0 ? "\xe2\x88\x92" : "+",
-             number, axis->unit && *axis->unit ? " " : "", axis->unit ? axis->unit : "");
+             number, *axis->unit ? " " : "", axis->unit);
   }
   write_label(axis, prefix, offset_text, set);
   step /= factor;
@@ -146,14 +144,21 @@ static void name_ticks(const strut_axis *axis, strut_tick_set *set) {
 
 void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
   strut_c_locale locale = strut_c_locale_enter();
+  strut_axis in = *axis; /* in the unit that is shown */
   assert(!(axis->low > axis->high));
   *set = (strut_tick_set){0};
+  in.shown = strut_unit_shown(axis->unit, axis->shown);
+  in.unit = in.shown.name ? in.shown.name : axis->unit ? axis->unit : "";
+  double size = in.shown.name ? in.shown.size : 1;
+  in.low /= size, in.high /= size;
   if (axis->names)
-    name_ticks(axis, set);
+    name_ticks(&in, set);
   else if (axis->logarithmic)
-    logarithmic_ticks(axis, wanted, set);
+    logarithmic_ticks(&in, wanted, set);
   else
-    linear_ticks(axis, wanted, set);
+    linear_ticks(&in, wanted, set);
+  for (size_t i = 0; i < set->count && !axis->names; i++) set->at[i] *= size;
+  for (size_t i = 0; i < set->minor_count; i++) set->minor[i] *= size;
   strut_c_locale_leave(locale);
 }
 

@@ -29,6 +29,8 @@ struct strut_canvas {
   strut_file file;    /* zero for pixels in memory */
   strut_buffer svg;   /* gathered; its surfaces are renumbered at the end */
   strut_buffer texts; /* of an SVG: where its texts are, which are drawn as outlines */
+  strut_buffer lines; /* or themselves, if they are kept */
+  bool keep_texts;
   strut_labels labels;
 };
 
@@ -192,6 +194,17 @@ static bool is_unclipped(const strut_canvas *canvas, const strut_box *box) {
          box->y + box->height <= y2 + hair;
 }
 
+/* Adds letters of a text. */
+static void add_letters(strut_buffer *out, const char *text, size_t count) {
+  for (const char *end = text + count; text < end; text++) {
+    unsigned char letter = (unsigned char)*text;
+    if (*text == '<' || *text == '&' || *text == '>')
+      strut_buffer_add(out, "&#%d;", (int)letter);
+    else
+      strut_buffer_add(out, "%c", letter < ' ' ? ' ' : *text);
+  }
+}
+
 /* Notes the text of the layout and the box of its ink for the SVG's metadata, where programs find it. */
 static void note_text(strut_canvas *canvas, const strut_box *ink) {
   strut_buffer *out = &canvas->texts;
@@ -200,14 +213,37 @@ static void note_text(strut_canvas *canvas, const strut_box *ink) {
   strut_buffer_add(out, "<t box=\"%.1f %.1f %.1f %.1f\"%s>", ink->x, ink->y, ink->width,
                    ink->height, is_unclipped(canvas, ink) ? "" : " cut=\"\"");
   strut_c_locale_leave(locale);
-  for (const char *text = pango_layout_get_text(canvas->layout); *text; text++) {
-    unsigned char letter = (unsigned char)*text;
-    if (*text == '<' || *text == '&' || *text == '>')
-      strut_buffer_add(out, "&#%d;", (int)letter);
-    else
-      strut_buffer_add(out, "%c", letter < ' ' ? ' ' : *text);
-  }
+  const char *text = pango_layout_get_text(canvas->layout);
+  add_letters(out, text, strlen(text));
   strut_buffer_add(out, pango_layout_is_ellipsized(canvas->layout) ? "\u2026</t>\n" : "</t>\n");
+}
+
+/* Writes the layout's lines from the corner on, as wide as Pango sets them, about the place of the text. */
+static void write_lines(strut_canvas *canvas, const double at[2], const double corner[2],
+                        const strut_font *font) {
+  strut_buffer *out = &canvas->lines;
+  const char *text = pango_layout_get_text(canvas->layout);
+  PangoLayoutIter *lines = pango_layout_get_iter(canvas->layout);
+  strut_c_locale locale = strut_c_locale_enter();
+  do {
+    PangoRectangle box;
+    const PangoLayoutLine *line = pango_layout_iter_get_line_readonly(lines);
+    pango_layout_iter_get_line_extents(lines, NULL, &box);
+    const strut_colour *colour = &font->colour;
+    strut_buffer_add(
+        out,
+        "<text transform=\"translate(%.2f,%.2f)%s\" x=\"%.2f\" y=\"%.2f\" textLength=\"%.2f\" "
+        "font-size=\"%g\"%s%s fill=\"rgb(%.4g%%,%.4g%%,%.4g%%)\">",
+        at[0], at[1], font->upwards ? " rotate(-90)" : "", corner[0] + (double)box.x / PANGO_SCALE,
+        corner[1] + (double)pango_layout_iter_get_baseline(lines) / PANGO_SCALE,
+        (double)box.width / PANGO_SCALE, font->size > 0 ? font->size : USUAL_SIZE,
+        font->bold ? " font-weight=\"bold\"" : "", font->italic ? " font-style=\"italic\"" : "",
+        100 * colour->red, 100 * colour->green, 100 * colour->blue);
+    add_letters(out, text + line->start_index, (size_t)line->length);
+    strut_buffer_add(out, "</text>\n");
+  } while (pango_layout_iter_next_line(lines));
+  strut_c_locale_leave(locale);
+  pango_layout_iter_free(lines);
 }
 
 void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text, strut_font font) {
@@ -237,7 +273,10 @@ void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
     cairo_move_to(cairo, corner[0], corner[1]);
   }
   set_ink(cairo, font.colour.alpha > 0 ? font.colour : strut_grey(0));
-  pango_cairo_show_layout(cairo, canvas->layout);
+  if (canvas->keep_texts && !pango_layout_is_ellipsized(canvas->layout))
+    write_lines(canvas, (const double[2]){x, y}, corner, &font);
+  else
+    pango_cairo_show_layout(cairo, canvas->layout);
   cairo_new_path(cairo);
   cairo_restore(cairo);
 }
@@ -339,13 +378,15 @@ const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride) {
 /* Writes the gathered SVG with its metadata before the last tag; false with the reason in errno. */
 static bool write_svg(strut_canvas *canvas) {
   char *svg = strut_buffer_take(&canvas->svg), *end = svg;
-  bool good = svg && !canvas->texts.failed;
+  bool good = svg && !canvas->texts.failed && !canvas->lines.failed;
   errno = ENOMEM;
   if (good) {
     renumber_surfaces(svg);
     end = strstr(svg, "</svg>");
     errno = 0;
     good = end && fprintf(canvas->file.stream, "%.*s", (int)(end - svg), svg) >= 0;
+    if (good && canvas->lines.length)
+      fprintf(canvas->file.stream, "<g font-family=\"%s\">\n%s</g>\n", FAMILY, canvas->lines.text);
     if (good && canvas->texts.length)
       fprintf(canvas->file.stream,
               "<metadata><texts xmlns=\"urn:strut:texts\">\n%s</texts></metadata>\n",
@@ -386,9 +427,14 @@ void strut_canvas_free(strut_canvas *canvas) {
   cairo_destroy(canvas->ink);
   strut_release(strut_buffer_take(&canvas->svg));
   strut_release(strut_buffer_take(&canvas->texts));
+  strut_release(strut_buffer_take(&canvas->lines));
   strut_labels_free(&canvas->labels);
   strut_file_abandon(&canvas->file);
   strut_release(canvas);
+}
+
+void strut_canvas_keep_texts(strut_canvas *canvas) {
+  canvas->keep_texts = canvas->format == STRUT_PICTURE_SVG;
 }
 
 strut_file *strut_canvas_file(strut_canvas *canvas) { return &canvas->file; }

@@ -66,6 +66,8 @@ typedef struct strut_font {
 STRUT_API strut_status strut_canvas_open(const char *path, double width, double height,
                                          const char *title, strut_canvas **canvas,
                                          strut_error *error);
+/** Has an SVG's texts be texts, which programs can edit, rather than outlines. */
+STRUT_API void strut_canvas_keep_texts(strut_canvas *canvas);
 /** A page of width by height pixels, white, on which `scale` pixels are a point. */
 STRUT_API strut_status strut_canvas_open_pixels(int width, int height, double scale,
                                                 strut_canvas **canvas, strut_error *error);

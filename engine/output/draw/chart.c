@@ -452,7 +452,9 @@ static void mark_beyond(const chart *self) {
         beyond.above++;
         if (fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
       } else if (farthest) {
-        const strut_rounded_quantity value = strut_quantity_of(farthest->y, 3, axis->unit);
+        const char *unit = axis->unit && *axis->unit ? axis->unit : "1";
+        const strut_rounded_quantity value =
+            strut_quantity_shown(farthest->y, 3, unit, axis->shown);
         strut_label mark =
             strut_mark_of(farthest->x, farthest->y, labelled++ < MOST_LABELLED ? value.text : NULL);
         mark.steady = 0.2;
@@ -461,8 +463,8 @@ static void mark_beyond(const chart *self) {
       }
     }
   }
-  draw_note(self, &self->axes.frame, strut_beyond_text(&beyond, "point", axis->unit, text),
-            NOTE_WIDTH);
+  draw_note(self, &self->axes.frame,
+            strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text), NOTE_WIDTH);
 }
 
 static void draw_data(const chart *self) {

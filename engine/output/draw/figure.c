@@ -136,6 +136,7 @@ static strut_status draw(const strut_plot *plot, strut_figure *figure, strut_err
   strut_canvas_free(canvas);
   status = strut_canvas_open(plot->path, width, height, p.title ? p.title : "", &canvas, error);
   if (status) return status;
+  if (plot->texts) strut_canvas_keep_texts(canvas);
   put_page(&p, canvas, width, &fine);
   status = fine ? strut_canvas_commit(canvas, error) : strut_no_memory(error, "while drawing");
   strut_canvas_free(canvas);

@@ -93,8 +93,7 @@ typedef struct strut_shape {
   const strut_model *model;
   const double *q; /* (model->length) [m] */
   strut_structure_style style;
-  const double *from; /* (model->length) arrows lead from there to the nodes [m]; or NULL */
-  bool ground;        /* below it; moved as it is at style.time if `moving` */
+  bool ground; /* below it; moved as it is at style.time if `moving` */
   bool moving;
   bool names;                /* beside its nodes, where they cover little */
   const double (*forces)[2]; /* (contacts) of the ground [N]; or NULL */
@@ -209,6 +208,10 @@ STRUT_API void strut_add_place(strut_figure *figure, strut_trail *trail, const d
 STRUT_API strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel,
                                          strut_trail_kind kind, strut_pen pen, const double from[2],
                                          const double to[2]);
+/** Arrows from where a shape was to its nodes, unless there are many. */
+STRUT_API void strut_add_displacements(strut_figure *figure, strut_panel *panel,
+                                       const strut_model *model, const double *from,
+                                       const double *to);
 /** An item of the key below the figure; without a text none. */
 STRUT_API strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                                         const char *text);

@@ -11,8 +11,8 @@
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"
 
-enum { TEXT = 800 };                /* bytes of a text at most */
-static const double MARK_GAP = 4.2; /* [pt] */
+enum { TEXT = 800 };                            /* bytes of a text at most */
+static const double MARK_GAP = 4.2, NODE = 2.3; /* from a mark, of a node as drawn [pt] */
 
 /* One more item of a list, whose address that is: zeroed, in the arena, or the spare. Room doubles. */
 static void *add(strut_figure *figure, void *list, size_t *count, size_t size) {
@@ -122,6 +122,15 @@ strut_trail *strut_add_segment(strut_figure *figure, strut_panel *panel, strut_t
   return trail;
 }
 
+void strut_add_displacements(strut_figure *figure, strut_panel *panel, const strut_model *model,
+                             const double *from, const double *to) {
+  enum { MOST = 200 };
+  for (int32_t i = 0; i < model->node_count && model->node_count <= MOST; i++)
+    strut_add_segment(figure, panel, STRUT_TRAIL_ARROW, strut_displacement_pen(), from + 2 * i,
+                      to + 2 * i)
+        ->gap = NODE;
+}
+
 strut_key_item *strut_add_key(strut_figure *figure, strut_key_sign sign, strut_pen pen,
                               const char *text) {
   strut_key_item *item = ADD(figure, figure->keys, figure->key_count);
@@ -218,6 +227,8 @@ strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, str
 #define AXIS(X)                                                                                    \
   X("name", "", TEXT(a->name), "what is along it")                                                 \
   X("unit", "", TEXT(a->unit), "of its numbers")                                                   \
+  X("shown", "", IF(a->shown.name, TEXT(a->shown.name)), "the unit of the file")                   \
+  X("shown_size", "", IF(a->shown.name, NUMBER(a->shown.size)), "of it, in the unit")              \
   X("logarithmic", "", FLAG(a->logarithmic), "whether it is")                                      \
   X("from", "", NUMBER(a->low), "null: from the data")                                             \
   X("to", "", NUMBER(a->high), "null: from the data")                                              \

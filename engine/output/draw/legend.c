@@ -67,8 +67,11 @@ static void draw_shades(strut_canvas *canvas, strut_box strip, const strut_colou
 
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
   bool upright = box.height > box.width;
-  const strut_axis axis = {
-      .name = scale->name, .unit = scale->unit, .low = scale->low, .high = scale->high};
+  const strut_axis axis = {.name = scale->name,
+                           .unit = scale->unit,
+                           .low = scale->low,
+                           .high = scale->high,
+                           .shown = scale->shown};
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
   strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
   strut_tick_set set;
@@ -97,7 +100,9 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   if (scale->beyond.below + scale->beyond.above) {
     size_t used = strlen(set.label);
     snprintf(set.label + used, sizeof set.label - used, ", up to %s",
-             strut_quantity_of(scale->beyond.farthest, 3, scale->unit).text);
+             strut_quantity_shown(scale->beyond.farthest, 3, *scale->unit ? scale->unit : "1",
+                                  scale->shown)
+                 .text);
   }
   /* A long name ends where the box does, rather than beyond the page. */
   bool wide = strut_text_width(canvas, set.label, font) > box.width;

@@ -35,8 +35,8 @@ enum { STRUT_MOST_TICKS = 40, STRUT_TICK_TEXT = 64, STRUT_MOST_MINOR = 120 };
 /** Round values in [low, high], about `wanted` of them: 1, 2 or 5 times a power of ten. */
 size_t strut_ticks(double low, double high, int wanted, double ticks[STRUT_MOST_TICKS]);
 /**
- * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). The
- * units "", "%", "kg" and "deg" get no prefix.
+ * The prefix for values up to `largest`: factor such as 1e-3 and text such as "m" ("" for 1). A
+ * unit that takes none gets none.
  */
 const char *strut_prefix(double largest, const char *unit, double *factor);
 /** The ticks of a settled axis and their texts. */

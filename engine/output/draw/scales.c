@@ -192,12 +192,13 @@ void strut_range_without_outliers(double *values, size_t count, double *low, dou
 }
 
 const char *strut_beyond_text(const strut_beyond *beyond, const char *what, const char *unit,
-                              char text[STRUT_BEYOND_TEXT]) {
+                              strut_file_unit shown, char text[STRUT_BEYOND_TEXT]) {
   size_t count = beyond->below + beyond->above;
   text[0] = '\0';
   if (count)
     snprintf(text, STRUT_BEYOND_TEXT, "%zu %s%s beyond the scale, up to %s", count, what,
-             count > 1 ? "s" : "", strut_quantity_of(beyond->farthest, 3, unit ? unit : "").text);
+             count > 1 ? "s" : "",
+             strut_quantity_shown(beyond->farthest, 3, unit && *unit ? unit : "1", shown).text);
   return text;
 }
 

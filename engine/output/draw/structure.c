@@ -453,26 +453,6 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *window, const st
   }
 }
 
-/* ---- arrows ---- */
-
-static const double NODE = 2.3; /* radius of a node as drawn [pt] */
-
-/* From where a shape was to its nodes, unless there are many. */
-static void draw_displacements(strut_canvas *canvas, const strut_window *window,
-                               const strut_shape *shape) {
-  enum { LED = 200 };
-  for (int32_t i = 0; i < shape->model->node_count && shape->model->node_count <= LED; i++) {
-    double from[2], to[2];
-    strut_window_point(window, shape->from + 2 * i, from);
-    strut_window_point(window, shape->q + 2 * i, to);
-    double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
-    double part = length > 3.0 * NODE ? 1.0 - NODE / length : 1.0;
-    if (!(length < 2.0 * NODE))
-      strut_draw_arrow(canvas, from[0], from[1], to[0] - (1 - part) * x, to[1] - (1 - part) * y, 5,
-                       strut_displacement_pen());
-  }
-}
-
 /* Forces of the ground on its contacts: normal and friction. */
 static void draw_forces(strut_canvas *canvas, const strut_window *window,
                         const strut_shape *shape) {
@@ -493,7 +473,6 @@ static void draw_forces(strut_canvas *canvas, const strut_window *window,
 
 void strut_draw_shape(strut_canvas *canvas, const strut_window *window, const strut_shape *shape) {
   strut_draw_structure(canvas, window, shape->model, shape->q, &shape->style);
-  if (shape->from) draw_displacements(canvas, window, shape);
   if (shape->forces) draw_forces(canvas, window, shape);
 }
 

@@ -138,7 +138,8 @@ static void add_ladder(picture *self) {
   strut_panel *panel = strut_add_panel(&self->figure);
   panel->height = LADDER;
   panel->whole = true;
-  panel->x = (strut_axis){"", "", false, -wider, (double)self->cards - 1 + wider, no_names, 0};
+  panel->x =
+      (strut_axis){.low = -wider, .high = (double)self->cards - 1 + wider, .names = no_names};
   panel->y = find_axis(level, self->cards, passes, count, &beyond);
   for (int i = 0; i < 3; i++) {
     strut_series *series = strut_add_series(&self->figure, panel, NULL);
@@ -154,8 +155,8 @@ static void add_ladder(picture *self) {
       if (i == 0) add_name(self, panel, (double)p->place[0] + 0.5, p->top, p->text, false);
     }
   }
-  panel->remark =
-      strut_figure_text(&self->figure, "%s", strut_beyond_text(&beyond, "barrier", "J", text));
+  panel->remark = strut_figure_text(
+      &self->figure, "%s", strut_beyond_text(&beyond, "barrier", "J", (strut_file_unit){0}, text));
 }
 
 /* ---- cards ---- */

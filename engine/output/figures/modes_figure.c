@@ -98,7 +98,7 @@ static void add_mode(picture *self, const strut_mode *mode) {
   shape->style.slack_forces = self->taut;
   shape->style.no_supports = true;
   shape->ground = false;
-  shape->from = q;
+  strut_add_displacements(&self->figure, panel, model, q, moved);
   shape->names = model->node_count <= NAMED;
   for (int32_t k = 0; k < self->modes->closed_count; k++) {
     const double *at = q + 2 * self->modes->closed[k];

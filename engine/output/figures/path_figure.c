@@ -6,6 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/statics_figures.h"
+#include "engine/scene/things.h"
 #include "engine/statics/path/path.h"
 
 enum { MOST_STOPS = 10 };
@@ -205,6 +206,15 @@ static void add_curves(path_picture *picture, strut_panel *panel, strut_panel *v
   }
 }
 
+/* The unit that the scene gives the parameter in. */
+static strut_file_unit shown_unit(const path_picture *picture) {
+  const strut_path *path = picture->path;
+  const strut_parameter *parameter = path->over == STRUT_PATH_OVER_SCENE
+                                         ? strut_parameter_named(picture->model->scene, path->name)
+                                         : NULL;
+  return parameter ? parameter->shown : (strut_file_unit){0};
+}
+
 /* Names the axes of motion and parameter. */
 static void name_axes(path_picture *picture, strut_panel *panel) {
   static const char *const directions[] = {"to the left", "to the right", "downwards", "upwards"};
@@ -223,7 +233,7 @@ static void name_axes(path_picture *picture, strut_panel *panel) {
       strut_figure_text(&picture->figure, "%s%.*s", of, all ? 20 : length, all ? each : path->name);
   *(picture->upright ? &panel->y : &panel->x) = strut_axis_of(motion, "m");
   *(picture->upright ? &panel->x : &panel->y) =
-      strut_axis_of(value, force || path->coordinate >= 0 ? "N" : path->unit);
+      strut_axis_in(value, force || path->coordinate >= 0 ? "N" : path->unit, shown_unit(picture));
 }
 
 static strut_colour colour_of(const path_picture *picture, size_t stop) {
@@ -317,11 +327,9 @@ static void add_shapes(path_picture *picture, strut_panel *panel) {
 static const char *describe_stop(path_picture *picture, const path_stop *stop) {
   double reference = picture->path->reference;
   double value = stop->at->factor * (reference > 0 ? reference : 1.0);
-  const char *unit = reference > 0 ? "N" : picture->path->unit;
-  if (*unit)
-    return strut_figure_text(&picture->figure, "%s, %s", stop->text,
-                             strut_quantity_of(value, 5, unit).text);
-  return strut_figure_text(&picture->figure, "%s, %.5g", stop->text, value);
+  const char *unit = reference > 0 ? "N" : *picture->path->unit ? picture->path->unit : "1";
+  return strut_figure_text(&picture->figure, "%s, %s", stop->text,
+                           strut_quantity_shown(value, 5, unit, shown_unit(picture)).text);
 }
 
 static void add_keys(path_picture *picture) {

@@ -32,18 +32,18 @@ typedef enum kind {
 static const struct {
   strut_channels channel; /* 0: derived */
   const char *name, *unit;
-  double factor, least; /* least, of the model's size: smaller ranges are rounding */
-  bool change;          /* from the first frame */
-} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1, 1e-6, true},
-             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 1, 0, false},
-             [DRIVE] = {0, "change", "m", 1, 1e-6, false},
-             [HEIGHTS] = {0, "height", "m", 1, 1e-6, false},
-             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 1, 0, false},
-             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "deg", 180.0 / STRUT_PI, 0, false},
-             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 1, 0, false},
-             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 1, 0, false},
-             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 1, 0, false},
-             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 1, 0, true}};
+  double least; /* of the model's size: smaller ranges are rounding */
+  bool change;  /* from the first frame */
+} kinds[] = {[DISPLACEMENT] = {0, "displacement", "m", 1e-6, true},
+             [NORMALS] = {STRUT_CHANNEL_CONTACT, "contact force", "N", 0, false},
+             [DRIVE] = {0, "change", "m", 1e-6, false},
+             [HEIGHTS] = {0, "height", "m", 1e-6, false},
+             [FORCES] = {STRUT_CHANNEL_FORCE, "member force", "N", 0, false},
+             [ANGLES] = {STRUT_CHANNEL_ANGLE, "angle", "rad", 0, false},
+             [MOMENTS] = {STRUT_CHANNEL_MOMENT, "moment", "N m", 0, false},
+             [PRESSURES] = {STRUT_CHANNEL_PRESSURE, "pressure", "N/m", 0, false},
+             [AREAS] = {STRUT_CHANNEL_AREA, "area", "m^2", 0, false},
+             [ENERGIES] = {STRUT_CHANNEL_ENERGY, "energy change", "J", 0, true}};
 
 /* The values of a kind: curve i is column `stride` * i. */
 typedef struct block {
@@ -53,13 +53,13 @@ typedef struct block {
   const char *name, *unit;
   const double *values; /* (frames, columns) */
   size_t columns, stride, count, first;
-  double factor, least; /* smaller ranges are rounding */
+  double least; /* smaller ranges are rounding */
   bool change;
   int32_t driven[MOST_CURVES / 2]; /* of DRIVE: members */
 } block;
 
 static double value_at(const block *self, size_t item, size_t f) {
-  return self->factor * self->values[f * self->columns + self->stride * item];
+  return self->values[f * self->columns + self->stride * item];
 }
 
 /* The actuated change of a member's rest length at a time [m]. */
@@ -104,14 +104,14 @@ static double derive(const block *self, size_t item, size_t f) {
 /* The values of a kind that begins at frame `first`; a count of 0 where there are none. */
 static block find_block(const strut_run_scene *run, kind of, size_t first) {
   const strut_scene *scene = run->model->scene;
-  block b = {.run = run, .of = of, .first = first, .stride = 1, .factor = 1};
+  block b = {.run = run, .of = of, .first = first, .stride = 1};
   b.row = of >= KINDS         ? strut_channel_at((size_t)of - KINDS)
           : kinds[of].channel ? strut_channel_row_of(kinds[of].channel)
                               : NULL;
   if (of < KINDS) {
     b.name = kinds[of].name, b.unit = kinds[of].unit;
-    b.factor = kinds[of].factor, b.change = kinds[of].change;
-    b.least = of == ANGLES ? STANDING * b.factor : kinds[of].least * run->model->size;
+    b.change = kinds[of].change;
+    b.least = of == ANGLES ? STANDING : kinds[of].least * run->model->size;
   } else {
     b.name = b.row->name, b.unit = b.row->unit;
   }
@@ -212,8 +212,7 @@ static void add_dots(const block *self, strut_panel *panel, size_t item, size_t 
       strut_add_series(page, panel, strut_figure_text(page, "%s measured", label_of(self, item)));
   series->cloud = true;
   series->pen = (strut_pen){.colour = strut_faded(strut_series_pen(look).colour, 0.4), .width = 1};
-  for (size_t k = 0; k < count; k++)
-    strut_add_point(page, series, dots[k][0], self->factor * dots[k][1]);
+  for (size_t k = 0; k < count; k++) strut_add_point(page, series, dots[k][0], dots[k][1]);
 }
 
 /* Adds the panel of a kind from frame `first` on, if anything changes in the whole record. */
@@ -301,7 +300,7 @@ static bool add_paths(const strut_run_scene *run, size_t first, strut_panel *pan
 const char *strut_run_overview(strut_run_scene *run, strut_figure *figure) {
   static const kind order[] = {DISPLACEMENT, NORMALS, DRIVE, HEIGHTS, ANGLES, FORCES};
   size_t last = run->frames - 1, first = strut_run_first(run, 1, PART);
-  size_t most = run->figure->width >= WIDE ? MOST_PANELS : MOST_STACKED;
+  size_t most = run->figure->plot.width >= WIDE ? MOST_PANELS : MOST_STACKED;
   strut_run_expect_frame(run, last);
   strut_panel *panel = strut_add_panel(figure);
   strut_run_add_shape(run, panel, last)->names = true;

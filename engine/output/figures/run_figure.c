@@ -83,7 +83,11 @@ void strut_run_count_frames(strut_run_scene *run) {
   double period = strut_experiment_span(run->figure->experiment, run->model->scene).period;
   double all = run->frames ? strut_run_time_from(run, 0) : 0;
   bool fine = (double)(run->frames - 1) * period >= LEAST_SAMPLES * all * (1 - 1e-9);
-  if (run->frames > 1 && fine && period > 0) run->period = period;
+  if (!(run->frames > 1 && fine && period > 0)) return;
+  int32_t repeats = run->summary ? run->summary->steady.repeats : 0;
+  bool whole = repeats * period <= all + 1e-6 * period; /* of the orbit is recorded */
+  run->repeats = repeats > 1 && whole ? repeats : 1;
+  run->period = run->repeats * period;
 }
 
 double *strut_run_coordinates(const strut_run_scene *run, size_t frame) {
@@ -222,18 +226,17 @@ static const char *describe_run(const strut_run_scene *run, const char *what) {
                                    : "");
 }
 
-strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
-                                   const strut_model *model, const strut_trajectory *motion,
-                                   const strut_summary *summary, strut_error *error) {
+strut_status strut_run_figure_draw(const strut_run_figure *figure, const strut_model *model,
+                                   const strut_trajectory *motion, const strut_summary *summary,
+                                   strut_error *error) {
   strut_figure page = {.title = model->scene->name,
                        .alarm = summary && summary->status != STRUT_OK};
   strut_run_scene run = {
       .figure = figure, .model = model, .motion = motion, .summary = summary, .page = &page};
-  const strut_plot plot = {.path = path, .width = figure->width, .title = figure->title};
   if (motion->position) strut_run_count_frames(&run);
   if (!run.frames)
     return strut_fail(error, STRUT_USAGE, "there is nothing to draw: no positions were recorded");
   strut_run_find_limits(&run);
   page.note = describe_run(&run, views[figure->view].fill(&run, &page));
-  return strut_figure_draw(&plot, &page, error);
+  return strut_figure_draw(&figure->plot, &page, error);
 }

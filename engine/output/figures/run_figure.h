@@ -8,6 +8,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
+#include "engine/output/draw/chart.h"
 #include "engine/output/trajectory.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
@@ -22,8 +23,7 @@ typedef enum strut_run_view {
 typedef struct strut_run_figure {
   const strut_experiment *experiment; /* of the run */
   strut_run_view view;
-  const char *title;   /* NULL: the scene's name */
-  double width;        /* [pt] */
+  strut_plot plot;     /* path NULL: nothing is drawn */
   double scale[2];     /* of PERIOD: enlargement of motion along x and y; 0: 1 */
   size_t time_count;   /* of SNAPSHOTS; 0: six, spread over the record */
   const double *times; /* (time_count) [s]; the frame nearest to each is drawn */
@@ -51,11 +51,11 @@ static inline unsigned strut_run_figure_channels(strut_run_view view) {
 STRUT_API strut_status strut_run_figure_check(const strut_run_figure *figure,
                                               const strut_model *model, strut_error *error);
 /**
- * Draws it into the file `path`. The summary provides velocity, status and duration. STRUT_USAGE
+ * Draws it. The summary provides velocity, status and duration. STRUT_USAGE
  * where there is no frame to draw; STRUT_NO_MEMORY; else as strut_canvas_open and
  * strut_canvas_commit.
  */
-STRUT_API strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
+STRUT_API strut_status strut_run_figure_draw(const strut_run_figure *figure,
                                              const strut_model *model,
                                              const strut_trajectory *motion,
                                              const strut_summary *summary, strut_error *error);

@@ -15,7 +15,8 @@ typedef struct strut_run_scene {
   const strut_trajectory *motion;
   const strut_summary *summary;
   size_t frames;        /* that can be drawn; a diverged run ends earlier */
-  double period;        /* [s]; 0: not periodic, or too few frames */
+  double period;        /* of the motion [s]; 0: not periodic, or too few frames */
+  int32_t repeats;      /* periods of the drive in it */
   double force_limit;   /* of the colours: largest force of a member in any frame [N] */
   strut_beyond beyond;  /* but for frames with far larger ones */
   double contact_limit; /* largest force of the ground in the frames drawn [N] */

@@ -99,10 +99,12 @@ static const char *describe_period(const strut_run_scene *run, bool grounded) {
   /* The period itself: the frames drawn of it span a whole number of samples. */
   double span =
       run->period > 0 ? run->period : strut_run_time_from(run, strut_run_first(run, 1, 1));
-  const char *note =
-      strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s",
-                        run->period > 0 ? "one period (" : "", strut_quantity_of(span, 4, "s").text,
-                        run->period > 0 ? ")" : "", other_text(run));
+  const char *over = run->period > 0 ? "one period (" : "", *note;
+  if (run->repeats > 1)
+    over = strut_figure_text(run->page, "the %d periods of the drive after which they repeat (",
+                             (int)run->repeats);
+  note = strut_figure_text(run->page, "node trajectories over %s%s%s, dark to bright%s", over,
+                           strut_quantity_of(span, 4, "s").text, *over ? ")" : "", other_text(run));
   if (!is_enlarged(run)) return note;
   return strut_figure_text(
       run->page,

@@ -94,8 +94,8 @@ static void add_mechanism(picture *self, int32_t number) {
     shape->style.thinness = 0.5;
     shape->style.no_supports = k == 1;
     if (k) shape->style.colour = strut_palette_thing(0);
-    shape->from = k ? self->q : NULL;
   }
+  if (moved) strut_add_displacements(&self->figure, panel, self->model, self->q, moved);
 }
 
 /* Forces, states of self-stress, mechanisms: as many as go in; the last two share the room. Returns how many do not. */

@@ -35,6 +35,7 @@ strut_status strut_table_groups_find(const strut_table_rows *rows, int column, s
     if (groups->count == most)
       return strut_fail(error, STRUT_USAGE, "column '%s' makes more than %zu %s", of->name, most,
                         what);
+    groups->row[groups->count] = i;
     groups->name[groups->count++] = of->text[i];
   }
   return STRUT_OK;
@@ -164,12 +165,29 @@ strut_status strut_table_rows_choose(const strut_table *table, const strut_table
 }
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
-enum { NAME = 46, MOST_NAMES = 3 }; /* bytes and columns of an axis label; more are in the legend */
+enum {
+  DIGITS = 9 /* of a group's number */,
+  NAME = 46,
+  MOST_NAMES = 3
+}; /* bytes and columns of an axis label; more are in the legend */
 enum { MOST_CELLS = 4000000 };
+
+/* The columns that a figure names, by number. */
+typedef struct resolved {
+  strut_study_figure_kind kind;
+  int x, y[STRUT_MOST_Y], y_count, panels;
+  strut_table_choice choice;
+  int by, band; /* of curves */
+  const char *band_value;
+  int value, doubt; /* of maps and points */
+  strut_colours colours;
+  strut_table_marks marks;
+} resolved;
 
 /* A figure being filled in. */
 typedef struct maker {
-  const strut_table_figure *figure;
+  const strut_study_figure *wanted;
+  resolved *figure;
   strut_table_rows rows;
   strut_table_groups panels, curves; /* curves, or categories of a map */
   double *at[2];                     /* of a map: the grid's positions */
@@ -184,6 +202,18 @@ static const strut_table_column *column_of(const maker *self, int column) {
 
 static double value_of(const maker *self, int column, size_t row) {
   return strut_table_number(&self->rows, column, row);
+}
+
+/* "stiffness 3 kN/m" of a group's first row, with `between` after the name; numbers without unit as they are written. */
+static const char *group_text(maker *self, int column, const strut_table_groups *groups, size_t i,
+                              const char *between) {
+  const strut_table_column *of = column_of(self, column);
+  double value = of->value ? of->value[groups->row[i]] : (double)NAN;
+  bool unit = isfinite(value) && (*of->unit || of->shown.name);
+  return strut_figure_text(
+      &self->page, "%s%s%s", of->name, between,
+      unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
+           : groups->name[i]);
 }
 
 /* "velocity", or "velocity, b less a". */
@@ -230,19 +260,19 @@ static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel
 
 /* What the legend says of y column k of a curve; NULL: there is one curve only. */
 static const char *curve_name(maker *self, size_t curve, int k) {
-  const strut_table_figure *figure = self->figure;
-  const char *column = name_of(self, figure->y[k]), *group = self->curves.name[curve];
-  const strut_table_column *by = column_of(self, figure->by);
+  const resolved *figure = self->figure;
+  const char *column = name_of(self, figure->y[k]);
   bool several = figure->y_count > 1;
+  if (self->wanted->label_count)
+    return self->wanted->labels[curve * (size_t)figure->y_count + (size_t)k];
   if (self->curves.count * (size_t)figure->y_count < 2) return NULL;
-  if (!group) return column;
-  return strut_figure_text(&self->page, "%s%s%s %s%s%s", several ? column : "", several ? ", " : "",
-                           by->name, group, by->value && *by->unit ? " " : "",
-                           by->value ? by->unit : "");
+  if (figure->by == STRUT_NO_COLUMN) return column;
+  return strut_figure_text(&self->page, "%s%s%s", several ? column : "", several ? ", " : "",
+                           group_text(self, figure->by, &self->curves, curve, " "));
 }
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
-  const strut_table_figure *figure = self->figure;
+  const resolved *figure = self->figure;
   size_t *row =
       strut_arena_allocate(&self->page.arena, self->rows.table->row_count + 1, sizeof *row);
   panel->outliers = true;
@@ -263,18 +293,21 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
 
 /* A cloud of the points that are marked, with a ring around each, over one of the others. */
 static void add_points(maker *self, size_t number, strut_panel *panel) {
-  const strut_table_figure *figure = self->figure;
+  const resolved *figure = self->figure;
   for (int marked = 0; marked < 2; marked++) {
     strut_series *cloud = strut_add_series(&self->page, panel, NULL);
     cloud->cloud = true;
     cloud->look = 0;
     for (size_t i = 0; i < self->rows.table->row_count; i++) {
-      if (!is_in_panel(self, number, i) || figure->marked[i] != marked) continue;
+      if (!is_in_panel(self, number, i) || figure->marks.marked[i] != marked) continue;
       double x = value_of(self, figure->x, i), y = value_of(self, figure->y[0], i);
       strut_add_point(&self->page, cloud, x, y)->value = value_of(self, figure->value, i);
       if (marked) strut_add_mark(&self->page, panel, x, y, NULL)->ring = true;
     }
   }
+  if (panel->mark_count && !self->page.key_count)
+    strut_add_key(&self->page, STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.9},
+                  "best");
   panel->room = 0.04;
 }
 
@@ -315,7 +348,7 @@ static int by_text(const void *first, const void *second) {
 
 /* Finds the grid's positions and the categories. */
 static strut_status prepare_grid(maker *self) {
-  const strut_table_figure *figure = self->figure;
+  const resolved *figure = self->figure;
   strut_table_groups *names = &self->curves;
   strut_status status = STRUT_OK;
   names->count = 0;
@@ -362,7 +395,7 @@ static uint32_t *find_rows(maker *self, size_t number) {
     row[nearest_index(self->at[1], self->count[1], y) * self->count[0] +
         nearest_index(self->at[0], self->count[0], x)] = (uint32_t)i + 1;
   }
-  if (row && self->figure->spread)
+  if (row && self->figure->marks.spread)
     spread(self, row, strut_arena_allocate(&self->page.arena, cells, sizeof *row));
   return row;
 }
@@ -408,7 +441,7 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
 
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *self) {
-  const strut_table_figure *figure = self->figure;
+  const resolved *figure = self->figure;
   const char *text = name_of(self, figure->y[0]);
   if (figure->y_count > MOST_NAMES) return "";
   for (int k = 1; k < figure->y_count; k++)
@@ -432,68 +465,104 @@ static strut_status check_column(const maker *self, int column) {
 
 /* Checks the columns and finds the groups of rows. */
 static strut_status prepare(maker *self) {
-  const strut_table_figure *figure = self->figure;
+  const resolved *figure = self->figure;
   strut_status status = check_column(self, figure->x);
   for (int k = 0; k < figure->y_count && !status; k++) status = check_column(self, figure->y[k]);
-  if (!status && figure->kind == STRUT_TABLE_POINTS && figure->value >= 0 &&
+  if (!status && figure->kind == STRUT_FIGURE_POINTS && figure->value >= 0 &&
       !column_of(self, figure->value)->value)
     status = strut_fail(self->error, STRUT_USAGE, "points are drawn over columns of numbers");
   if (!status)
     status = strut_table_groups_find(&self->rows, figure->panels, STRUT_MOST_PANELS, "panels",
                                      &self->panels, self->error);
-  if (!status && figure->kind == STRUT_TABLE_CURVES)
+  if (!status && figure->kind == STRUT_FIGURE_LINES)
     status = strut_table_groups_find(&self->rows, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
                                      &self->curves, self->error);
-  if (!status && figure->kind == STRUT_TABLE_MAP) status = prepare_grid(self);
+  size_t curves = self->curves.count * (size_t)figure->y_count;
+  if (!status && self->wanted->label_count && self->wanted->label_count != curves)
+    status = strut_fail(self->error, STRUT_USAGE, "%zu labels were given for %zu curve%s",
+                        self->wanted->label_count, curves, curves == 1 ? "" : "s");
+  if (!status && figure->kind == STRUT_FIGURE_MAP) status = prepare_grid(self);
   return status;
 }
 
 static void add_panel(maker *self, size_t i) {
-  static void (*const fill[])(maker *, size_t, strut_panel *) = {add_curves, add_map, add_points};
-  const strut_table_figure *figure = self->figure;
+  const resolved *figure = self->figure;
   const strut_table_column *x = column_of(self, figure->x), *y = column_of(self, figure->y[0]);
-  const strut_table_column *value = column_of(self, figure->value),
-                           *of = column_of(self, figure->panels);
+  const strut_table_column *value = column_of(self, figure->value);
   strut_panel *panel = strut_add_panel(&self->page);
   panel->x = strut_axis_of(x->name, x->unit);
   panel->y = strut_axis_of(name_y_axis(self), y->unit);
-  panel->x.logarithmic = figure->log_x, panel->y.logarithmic = figure->log_y;
+  panel->x.shown = x->shown, panel->y.shown = y->shown;
+  panel->x.logarithmic = self->wanted->log_x, panel->y.logarithmic = self->wanted->log_y;
   if (value && value->value)
-    panel->scale = (strut_colour_scale){
-        .name = name_of(self, figure->value), .unit = value->unit, .colours = figure->colours};
-  if (of) /* "a) friction = 0.1" */
-    panel->title =
-        strut_figure_text(&self->page, "%c) %s = %s%s%s", (char)('a' + (int)(i % 26)), of->name,
-                          self->panels.name[i], *of->unit ? " " : "", of->unit);
-  fill[figure->kind](self, i, panel);
+    panel->scale = (strut_colour_scale){.name = name_of(self, figure->value),
+                                        .unit = value->unit,
+                                        .shown = value->shown,
+                                        .colours = figure->colours};
+  if (figure->panels != STRUT_NO_COLUMN) /* "a) friction = 0.1" */
+    panel->title = strut_figure_text(&self->page, "%c) %s", (char)('a' + (int)(i % 26)),
+                                     group_text(self, figure->panels, &self->panels, i, " = "));
+  (figure->kind == STRUT_FIGURE_MAP      ? add_map
+   : figure->kind == STRUT_FIGURE_POINTS ? add_points
+                                         : add_curves)(self, i, panel);
 }
 
 /* The rows that are compared are equal in these columns. */
-static strut_table_pairing pair_rows(const strut_table_figure *figure) {
-  bool map = figure->kind == STRUT_TABLE_MAP;
+static strut_table_pairing pair_rows(const resolved *figure, bool between) {
+  bool map = figure->kind == STRUT_FIGURE_MAP;
   return (strut_table_pairing){.keys = {map ? figure->y[0] : figure->by, figure->panels, figure->x},
                                .key_count = 3,
-                               .between = figure->between,
+                               .between = between,
                                .values = map ? &figure->value : figure->y,
                                .value_count = map ? 1 : (size_t)figure->y_count};
 }
 
-strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,
-                              const strut_table *table, strut_error *error) {
-  strut_table_figure drawn = *figure;
-  const strut_table_pairing pairing = pair_rows(&drawn);
-  bool map = figure->kind == STRUT_TABLE_MAP;
-  maker m = {.figure = &drawn,
+/* COLUMN=TEXT, or a column alone. */
+static int find_column(const strut_table *table, const char *name, const char **text) {
+  size_t length = name ? strcspn(name, text ? "=" : "") : 0;
+  if (name && text) *text = name + length + 1;
+  return strut_table_column_of(table, name, length);
+}
+
+static resolved resolve(const strut_study_figure *wanted, const strut_table *table,
+                        strut_table_marks marks) {
+  bool map = wanted->kind == STRUT_FIGURE_MAP, points = wanted->kind == STRUT_FIGURE_POINTS;
+  resolved r = {.kind = map || points ? wanted->kind : STRUT_FIGURE_LINES,
+                .x = find_column(table, wanted->x, NULL),
+                .panels = find_column(table, wanted->panels, NULL),
+                .choice.difference = find_column(table, wanted->difference, NULL),
+                .by = find_column(table, map ? NULL : wanted->series, NULL),
+                .value = find_column(table, map || points ? wanted->color : NULL, NULL),
+                .doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL),
+                .colours = (strut_colours)wanted->colours,
+                .marks = marks};
+  r.choice.only = find_column(table, wanted->only, &r.choice.only_value);
+  r.band = find_column(table, map ? NULL : wanted->band, &r.band_value);
+  for (const char *y = wanted->y, *end; y && r.y_count < STRUT_MOST_Y; y = *end ? end + 1 : NULL) {
+    end = y + strcspn(y, ",");
+    r.y[r.y_count++] = strut_table_column_of(table, y, (size_t)(end - y));
+  }
+  return r;
+}
+
+strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *figure,
+                              const strut_table *table, strut_table_marks marks,
+                              strut_error *error) {
+  resolved drawn = resolve(figure, table, marks);
+  const strut_table_pairing pairing = pair_rows(&drawn, figure->kind == STRUT_FIGURE_MOTION);
+  bool map = figure->kind == STRUT_FIGURE_MAP;
+  maker m = {.wanted = figure,
+             .figure = &drawn,
              .error = error,
              .page = {.least_width = map ? MAP_WIDTH : CURVES_WIDTH,
                       .aspect = map ? 0.8 : 0.62,
                       .shared_axes = true,
                       .one_legend = true}};
-  assert(figure->y_count > 0 && figure->y_count <= STRUT_MOST_Y);
+  assert(drawn.y_count > 0);
   strut_status status =
-      strut_table_rows_choose(table, &figure->choice, &pairing, &m.page.arena, &m.rows, error);
-  for (size_t i = 0; i < table->row_count && figure->shown && !status; i++)
-    m.rows.shown[i] = m.rows.shown[i] && figure->shown[i];
+      strut_table_rows_choose(table, &drawn.choice, &pairing, &m.page.arena, &m.rows, error);
+  for (size_t i = 0; i < table->row_count && marks.shown && !status; i++)
+    m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
   if (map && m.rows.partner && drawn.colours == STRUT_COLOURS_AUTO)
     drawn.colours = STRUT_COLOURS_DIVERGING;
   if (!status) status = prepare(&m);

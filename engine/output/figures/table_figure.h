@@ -10,6 +10,7 @@
 #include "engine/base/status.h"
 #include "engine/output/draw/figure.h"
 #include "engine/output/record_files.h"
+#include "engine/scene/study.h"
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 
@@ -21,51 +22,23 @@ typedef struct strut_table_choice {
                      second with doubt where the first differs */
 } strut_table_choice;
 
-typedef enum strut_table_kind {
-  STRUT_TABLE_CURVES, /* y over x, all y of one unit */
-  STRUT_TABLE_MAP,    /* value over x and y: texts are categories, numbers get a colour scale */
-  STRUT_TABLE_POINTS  /* y over x, coloured by value; the marked ones on top, in a ring */
-} strut_table_kind;
-
-/** What is drawn of a table. Columns by number, STRUT_NO_COLUMN for none. */
-typedef struct strut_table_figure {
-  strut_table_kind kind;
-  int x, y[STRUT_MOST_Y], y_count;
-  int panels; /* a panel for each of its texts */
-  strut_table_choice choice;
-  /* Of curves. */
-  int by;   /* a curve for each of its texts */
-  int band; /* grey where it has the text `band_value`, midway to the next points */
-  const char *band_value;
-  bool log_x, log_y,
-      between; /* between: of a difference, the first side is interpolated linearly */
-  /* Of maps and points. */
-  int value, doubt; /* doubt: hatched where it is not empty, 0, false or no */
-  strut_colours colours;
-  bool spread;                /* cells of a map without a row are as the nearest that have one */
+/** What a figure of a search shows besides. Zero: all rows, without rings. */
+typedef struct strut_table_marks {
   const bool *shown, *marked; /* (rows) shown, NULL: all; of points those with a ring */
-} strut_table_figure;
-
-/** One without any column but the first as x and y. */
-#define STRUT_TABLE_FIGURE                                                                         \
-  (strut_table_figure) {                                                                           \
-    .y_count = 1, .panels = STRUT_NO_COLUMN, .by = STRUT_NO_COLUMN, .band = STRUT_NO_COLUMN,       \
-    .value = STRUT_NO_COLUMN, .doubt = STRUT_NO_COLUMN, .choice = {                                \
-      .only = STRUT_NO_COLUMN,                                                                     \
-      .difference = STRUT_NO_COLUMN                                                                \
-    }                                                                                              \
-  }
+  bool spread;                /* cells of a map without a row are as the nearest that have one */
+} strut_table_marks;
 
 /** Number of the column of that name, of `length` bytes; STRUT_NO_COLUMN where there is none, or no name. */
 STRUT_API int strut_table_column_of(const strut_table *table, const char *name, size_t length);
 
 /**
- * Draws into the plot's file. Rows of a map are in any order; points of its grid without a row have no answer.
- * STRUT_USAGE for a column without numbers where numbers are needed, y of different units, too many panels or
- * curves, or too large a grid; otherwise as strut_figure_draw.
+ * Draws lines, a map or points as a figure of a study says, whose columns the table has. Rows of a map are in any order;
+ * points of its grid without a row have no answer. STRUT_USAGE for a column without numbers where numbers are needed, y
+ * of different units, too many panels or curves, or too large a grid; otherwise as strut_figure_draw.
  */
-STRUT_API strut_status strut_table_draw(const strut_plot *plot, const strut_table_figure *figure,
-                                        const strut_table *table, strut_error *error);
+STRUT_API strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *figure,
+                                        const strut_table *table, strut_table_marks marks,
+                                        strut_error *error);
 
 /* Rows of a table that are drawn: all, those of a text, or those of a second side less the first. */
 
@@ -115,6 +88,7 @@ STRUT_API bool strut_table_differs(const strut_table_rows *rows, int column, siz
 typedef struct strut_table_groups {
   size_t count;
   const char *name[STRUT_MOST_TABLE_GROUPS];
+  size_t row[STRUT_MOST_TABLE_GROUPS]; /* the first of each */
 } strut_table_groups;
 
 /** STRUT_USAGE where there are more than `most`, named `what` in the message ("panels"). */

@@ -11,7 +11,7 @@
 "use strict";
 (function (page) {
   const element = (id) => document.getElementById(id);
-  const MARGIN = 46, DRAW_TIMES = 600;
+  const MARGIN = 46, CLOCK = 22, DRAW_TIMES = 600; /* CLOCK: its height above the structure */
   let run = null, ghost = null, theme = page.theme();
   let picked = -1, decimals = 0, camera = { x: 0, y: 0, scale: 1 }, waiting = false;
   let elsewhere = true; /* another shape is shown: even a free camera moves to it */
@@ -49,7 +49,8 @@
     const follows = picked < 0 && run.motion && !run.made && (mode !== "whole" || run.still);
     if (picked < 0 && run.motion) bounds = follows ? run.extent : run.whole;
     if (ghost && picked < 0 && !follows) bounds = page.union(bounds, ghostBounds());
-    camera = page.fit(bounds, width, height, MARGIN, run.data.size);
+    camera = page.fit(bounds, width, height - CLOCK, MARGIN, run.data.size);
+    camera.y += 0.5 * CLOCK / camera.scale;
     if (follows)
       camera.x = run.data.nodes.length > 1 ? run.track(player.frame) + run.offset : middle;
     camera.x += 0.5 * key / camera.scale;
@@ -60,8 +61,9 @@
   }
 
   function paint(surface, shape) {
-    const limits = currentLimits(shape);
+    const limits = currentLimits(shape), clock = element("clock");
     page.drawStructure(surface, run.structure, shape, camera, { theme, key: true,
+      clock: clock.offsetLeft + clock.offsetWidth,
       colour: element("colour").checked, arrows: element("arrows").checked,
       names: element("names").checked, limit: limits.force, contactLimit: limits.contact });
   }

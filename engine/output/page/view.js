@@ -222,7 +222,8 @@
       c.stroke();
     }
     if (!options.names || count > page.MOST_NAMES) return;
-    const taken = [], middle = (p) => p.reduce((a, b) => a + b, 0) / count;
+    const taken = [14, 30].map((y) => [0, options.clock || 0, y]); /* by the time */
+    const middle = (p) => p.reduce((a, b) => a + b, 0) / count;
     const [mx, my] = [middle(px), middle(py)]; /* names stand outside of a structure */
     c.font = "italic 13px system-ui, 'DejaVu Sans', sans-serif";
     c.textBaseline = "middle";

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a run has, a row for each value. */
 #include <math.h>
+#include <stdio.h>
 
+#include "engine/base/text.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
 
@@ -53,12 +55,31 @@ STRUT_VALUES_HERE(steady_values, STEADY, const strut_steady_summary *steady = of
   X("check_evaluations", "1", COUNT(accuracy->check_evaluations), "of forces, besides the run's")
 STRUT_VALUES_HERE(accuracy_values, ACCURACY, const strut_accuracy_summary *accuracy = of->at)
 
+/* The residual of the balance and what it means, in one statement. */
+static void write_residual(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_summary *summary = of->at;
+  const strut_energy *energy = &summary->energy;
+  strut_rounded_quantity residual = strut_quantity_of(energy->residual, 4, "J");
+  bool kept = summary->balance != STRUT_BALANCE_NOT_KEPT && energy->moved > 0.0;
+  double part = fabs(energy->residual) / energy->moved;
+  if (!kept && energy->residual != 0.0)
+    snprintf(text, STRUT_VALUE_ROOM, "%s", residual.text);
+  else if (kept && summary->balance == STRUT_BALANCE_OPEN)
+    snprintf(text, STRUT_VALUE_ROOM, "%s, balance NOT closed: %.2g %% of the energy exchanged",
+             residual.text, 100.0 * part);
+  else if (kept)
+    snprintf(text, STRUT_VALUE_ROOM, "%s, balance closed%s", residual.text,
+             part <= 0.01 ? " within 1 % of the energy exchanged"
+                          : " up to the rounding of the stored energy");
+}
+
 #define ENERGY(X)                                                                                  \
   STRUT_ENERGY_TABLE(ENERGY_OF_##X)                                                                \
   X("initial", "J", NUMBER(s->energy.initial), "at the beginning")                                 \
   X("residual", "J", NUMBER(s->energy.residual), "that appeared without a source")                 \
   X("exchanged", "J", NUMBER(s->energy.moved), "what the residual compares to")                    \
-  X("balance", "", TEXT(strut_balance_name(s->balance)), "closed or open; null: not kept")
+  X("balance", "", TEXT(strut_balance_name(s->balance)), "closed or open; null: not kept")         \
+  X("note", "", WORDS(write_residual), "residual and balance in words")
 #define ENERGY_OF_STRUT_VALUE_ROW(NAME, KIND, LABEL) STRUT_VALUE_ROW(#NAME, "J", , LABEL)
 #define ENERGY_OF_STRUT_VALUE_FILL(NAME, KIND, LABEL)                                              \
   STRUT_VALUE_FILL(#NAME, "J", NUMBER(s->energy.NAME), LABEL)
@@ -85,17 +106,44 @@ static bool is_judged(const strut_measured *m, const strut_summary *s) {
   return isfinite(m->expected) || (strut_measured_arrival(m) && s->accuracy.wanted > 0.0);
 }
 
+/* What is to be known of it beside its value. */
+static void write_note(const strut_result_object *of, char text[STRUT_VALUE_ROOM]) {
+  const strut_measured *m = of->at;
+  const strut_summary *s = summary_of(of->outer);
+  const char *missing = s->status != STRUT_OK       ? "the window was not reached"
+                        : strut_measured_arrival(m) ? "the target was not reached"
+                                                    : "not finite";
+  const char *plain[] = {m->undecided      ? "not decided"
+                         : isnan(m->value) ? missing
+                                           : NULL,
+                         m->zero ? "zero up to rounding" : NULL};
+  size_t used = 0, room = STRUT_VALUE_ROOM;
+  for (int i = 0; i < 2; i++)
+    if (plain[i])
+      used += (size_t)snprintf(text + used, room - used, "%s%s", used ? "; " : "", plain[i]);
+  if (m->member)
+    used += (size_t)snprintf(text + used, room - used, "%sin %.40s", used ? "; " : "", m->member);
+  if (isfinite(m->expected))
+    snprintf(text + used, room - used, "%s%s within %s", used ? "; " : "",
+             m->kept ? "known" : "NOT as accurate as requested, but",
+             strut_quantity_of_any(m->expected, 2, m->unit).text);
+}
+
 #define MEASURED(X)                                                                                \
-  X("value", "", NUMBER(m->value), "in its SI unit; null: its window was not reached")             \
+  X("value", "", CALLED(NULL, m->unit, m->value),                                                  \
+    "in its SI unit; null: its window was not reached", .label = {""})                             \
   X("unit", "", TEXT(m->unit), "SI")                                                               \
-  X("spread", "", NUMBER(m->spread), "standard deviation over the window's periods")               \
+  X("spread", "", CALLED(NULL, m->unit, m->spread),                                                \
+    "standard deviation over the window's periods", .label = {""})                                 \
   X("scale", "", NUMBER(m->scale), "its largest magnitude over the window, or that of its terms")  \
   X("zero", "", FLAG(m->zero), "whether it is zero up to rounding")                                \
   X("member", "", IF(m->member, TEXT(m->member)), "that has the largest force")                    \
   X("arrival", "", IF(strut_measured_arrival(m), TEXT(strut_measured_arrival(m))),                 \
     "reached, never, or not decided")                                                              \
   X("expected", "", IF(isfinite(m->expected), NUMBER(m->expected)), "error")                       \
-  X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)), "within what was asked for")
+  X("kept", "", IF(is_judged(m, summary_of(of->outer)), FLAG(m->kept)),                            \
+    "within what was asked for")                                                                   \
+  X("note", "", WORDS(write_note), "what else is known, in words", .label = {""})
 STRUT_VALUES_HERE(measured_values, MEASURED, const strut_measured *m = of->at)
 
 #define DERIVATIVE(X)                                                                              \
@@ -183,7 +231,7 @@ static void write_worth(const strut_result_object *of, char text[STRUT_VALUE_ROO
 #define THINGS(X)                                                                                  \
   X("measured", "",                                                                                \
     IF(s->measured_count, NAMED(s->measured, s->measured_count, name_of_measured)),                \
-    "quantities of `measure`", .rows = &measured_values)                                           \
+    "quantities of `measure`", .rows = &measured_values, .label = {""})                            \
   X("derivatives", "", IF(s->derivative_count, LIST(s->derivatives, s->derivative_count)),         \
     "of what is measured by parameters", .rows = &derivative_values, .label = {"derivatives"})     \
   X("parameters", "", PARAMETERS, "of the scene")                                                  \

@@ -18,20 +18,19 @@ static const char *stress_source_words(strut_stress_source source) {
 static void write_test(const strut_result_object *of, char words[STRUT_VALUE_ROOM]) {
   const strut_mechanisms *all = &((const strut_rigidity *)strut_result_whole(of))->mechanisms;
   const strut_mechanism *motion = of->at;
-  char moved[STRUT_QUANTITY_TEXT], stiff[STRUT_QUANTITY_TEXT];
   bool followed = isfinite(motion->moved) && motion->kind == STRUT_MOTION_FINITE;
   if (motion->kind == STRUT_MOTION_RIGID_BODY) {
     snprintf(words, STRUT_VALUE_ROOM, "not prevented by the supports");
   } else if (motion->kind == STRUT_MOTION_INFINITESIMAL && all->by_forces) {
     snprintf(words, STRUT_VALUE_ROOM, "stiffened by the member forces: %s",
-             strut_quantity_text(motion->stiffness, FEW_DIGITS, "N/m", stiff));
+             strut_quantity_of(motion->stiffness, FEW_DIGITS, "N/m").text);
   } else if (motion->kind == STRUT_MOTION_INFINITESIMAL) {
     snprintf(
         words, STRUT_VALUE_ROOM, "stiffened by a self-stress state%s",
         all->stiffener_pulls ? "" : ", but none is known that does so without compressing a cable");
   } else if (followed) {
     snprintf(words, STRUT_VALUE_ROOM, "member lengths constant within %.0e over %s", motion->strain,
-             strut_quantity_text(motion->moved, FEW_DIGITS, "m", moved));
+             strut_quantity_of(motion->moved, FEW_DIGITS, "m").text);
   } else if (motion->kind == STRUT_MOTION_FINITE) {
     snprintf(words, STRUT_VALUE_ROOM,
              "finite: without self-stress the member lengths are independent");

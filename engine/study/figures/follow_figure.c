@@ -9,7 +9,7 @@
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/follow/follow_study.h"
 
-static const double ASPECT = 0.6;
+static const double ASPECT = 0.6, WIDTH = 1.4; /* [1], of lines [pt] */
 enum { MOST_NAMES = 40, MOST_LINES = 12, CURVE_KEYS = 4, LABEL = 120 };
 
 /* A picture that is filled point by point. */
@@ -17,6 +17,9 @@ typedef struct picture {
   strut_panel *panel;
   strut_series *series; /* the last line */
   size_t line;          /* its number, from 1 on */
+  unsigned marked;      /* bits of `marks` */
+  unsigned looks;       /* bits of the first looks of lines */
+  bool has[2];          /* unstable, stable points */
   strut_figure figure;
 } picture;
 
@@ -29,52 +32,60 @@ typedef struct dot {
   const char *word, *node; /* node may be NULL */
 } dot;
 
-static strut_colour colour_of(strut_follow_kind kind) {
-  static const unsigned char thing[STRUT_FOLLOW_KINDS] = {[STRUT_FOLLOW_FOLD] = 6,
-                                                          [STRUT_FOLLOW_DOUBLING] = 3,
-                                                          [STRUT_FOLLOW_TORUS] = 4,
-                                                          [STRUT_FOLLOW_BRANCHING] = 4};
-  return thing[kind] ? strut_palette_thing(thing[kind] - 1U) : strut_grey(1.0);
+/* Marks by kind, the last for all others. */
+static const struct {
+  unsigned kinds; /* bits */
+  size_t thing;   /* of the colours, from 1 on; 0: white */
+  const char *text;
+} marks[] = {{1U << STRUT_FOLLOW_FOLD, 6, "fold"},
+             {1U << STRUT_FOLLOW_DOUBLING, 3, "period doubling"},
+             {1U << STRUT_FOLLOW_TORUS | 1U << STRUT_FOLLOW_BRANCHING, 4, "torus, branching"},
+             {~0U, 0, "an event that changes the stability"}};
+
+static size_t mark_of(strut_follow_kind kind) {
+  size_t i = 0;
+  while (!(marks[i].kinds >> kind & 1U)) i++;
+  return i;
+}
+
+static strut_colour mark_colour(size_t i) {
+  return marks[i].thing ? strut_palette_thing(marks[i].thing - 1) : strut_grey(1.0);
 }
 
 static void add_dot(picture *self, const dot *d) {
   if (d->line != self->line) {
     self->series = strut_add_series(&self->figure, self->panel, NULL);
-    self->series->pen = (strut_pen){.colour = strut_palette_thing(d->look), .width = 1.4};
+    self->series->pen = (strut_pen){.colour = strut_palette_thing(d->look), .width = WIDTH};
     self->line = d->line;
   }
   strut_add_point(&self->figure, self->series, d->x, d->y)->unstable = !d->stable;
+  self->has[d->stable] = true;
+  if (d->look < CURVE_KEYS) self->looks |= 1U << d->look;
   if (!d->marked) return;
+  self->marked |= 1U << mark_of(d->kind);
   bool node = d->node && *d->node;
   strut_label *mark = strut_add_mark(
       &self->figure, self->panel, d->x, d->y,
       strut_figure_text(&self->figure, "%s%s%.60s", d->word, node ? " " : "", node ? d->node : ""));
   mark->dot = true;
-  mark->colour = colour_of(d->kind);
+  mark->colour = mark_colour(mark_of(d->kind));
   mark->angle = 0.25 * STRUT_PI;
 }
 
 static void add_line_key(picture *self, strut_colour colour, bool unstable, const char *text) {
-  strut_pen pen = {.colour = colour, .width = unstable ? 0.9 : 1.4};
+  strut_pen pen = {.colour = colour, .width = WIDTH, .butt = unstable};
   if (unstable) pen.dash[0] = 3.0, pen.dash[1] = 2.0;
   strut_add_key(&self->figure, STRUT_KEY_LINE, pen, text);
 }
 
-/* What every figure of branches explains. */
+/* Explains what the figure of branches has. */
 static void add_keys(picture *self) {
-  static const struct {
-    strut_follow_kind kind;
-    const char *text;
-  } points[] = {{STRUT_FOLLOW_FOLD, "fold"},
-                {STRUT_FOLLOW_DOUBLING, "period doubling"},
-                {STRUT_FOLLOW_TORUS, "torus, branching"},
-                {STRUT_FOLLOW_TOUCH, "an event that changes the stability"}};
   const strut_pen rim = {.colour = strut_grey(0.1), .width = 0.6};
-  add_line_key(self, strut_grey(0.2), false, "stable");
-  add_line_key(self, strut_grey(0.2), true, "unstable");
-  for (size_t i = 0; i < sizeof points / sizeof *points; i++)
-    strut_add_key(&self->figure, STRUT_KEY_DOT, rim, points[i].text)->fill.colour =
-        colour_of(points[i].kind);
+  if (self->has[true]) add_line_key(self, strut_grey(0.2), false, "stable");
+  if (self->has[false]) add_line_key(self, strut_grey(0.2), true, "unstable");
+  for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+    if (self->marked >> i & 1U)
+      strut_add_key(&self->figure, STRUT_KEY_DOT, rim, marks[i].text)->fill.colour = mark_colour(i);
 }
 
 static void begin_picture(picture *self, const char *title, strut_axis along, strut_axis upwards) {
@@ -104,9 +115,8 @@ static bool is_marked(strut_follow_kind kind, bool changes) {
 strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_result *result,
                                  strut_error *error) {
   picture p;
-  begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
+  begin_picture(&p, result->title, strut_axis_in(result->name, result->unit, result->shown),
                 height_axis(result->count && result->branches[0].branch.travels));
-  add_keys(&p);
   for (size_t i = 0; i < result->count; i++) {
     const strut_follow_branch *branch = &result->branches[i].branch;
     for (const strut_follow_point *at = branch->points; at < branch->points + branch->count; at++)
@@ -114,6 +124,7 @@ strut_status strut_follow_figure(const strut_plot *plot, const strut_follow_resu
                          at->stable, is_marked(at->kind, at->detail && at->changes), at->kind,
                          strut_follow_kind_word(at->kind), at->node});
   }
+  add_keys(&p);
   return draw_picture(plot, &p, error);
 }
 
@@ -125,11 +136,8 @@ strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_foll
                                                       STRUT_FOLLOW_TOUCH, STRUT_FOLLOW_LIFT};
   static const char *const texts[CURVE_KEYS] = {"fold", "period doubling", "grazing", "lift-off"};
   picture p;
-  begin_picture(&p, result->title, strut_axis_of(result->name, result->unit),
-                strut_axis_of(result->second.name, result->second.unit));
-  for (size_t i = 0; i < CURVE_KEYS; i++) add_line_key(&p, strut_palette_thing(i), false, texts[i]);
-  add_line_key(&p, strut_grey(0.2), false, "of a motion that is stable beside it");
-  add_line_key(&p, strut_grey(0.2), true, "of an unstable motion");
+  begin_picture(&p, result->title, strut_axis_in(result->name, result->unit, result->shown),
+                strut_axis_in(result->second.name, result->second.unit, result->second.shown));
   for (size_t i = 0, look; i < result->curve_count; i++) {
     const strut_follow_branch *curve = &result->curves[i];
     for (look = 0; look + 1 < CURVE_KEYS && kinds[look] != curve->kind;) look++;
@@ -137,6 +145,10 @@ strut_status strut_follow_curves_figure(const strut_plot *plot, const strut_foll
       add_dot(&p, &(dot){i + 1, look, at->at.value[0], at->at.value[1], at->stable,
                          at->kind == STRUT_FOLLOW_CUSP, curve->kind, "cusp", NULL});
   }
+  for (size_t i = 0; i < CURVE_KEYS; i++)
+    if (p.looks >> i & 1U) add_line_key(&p, strut_palette_thing(i), false, texts[i]);
+  if (p.has[true]) add_line_key(&p, strut_grey(0.2), false, "of a motion that is stable beside it");
+  if (p.has[false]) add_line_key(&p, strut_grey(0.2), true, "of an unstable motion");
   return draw_picture(plot, &p, error);
 }
 
@@ -174,9 +186,10 @@ static const char *row_label(const source *self, size_t row, picture *p) {
     const strut_table_column *column = &self->table->columns[i];
     double value = column->value ? column->value[row] : (double)NAN;
     const char *unit = column->unit && *column->unit ? column->unit : "1";
-    text = strut_figure_text(
-        &p->figure, "%s%s%.40s %.40s", text, i ? ", " : "", column->name,
-        isfinite(value) ? strut_quantity_of_any(value, 4, unit).text : text_of(column, row));
+    text =
+        strut_figure_text(&p->figure, "%s%s%.40s %.40s", text, i ? ", " : "", column->name,
+                          isfinite(value) ? strut_quantity_shown(value, 4, unit, column->shown).text
+                                          : text_of(column, row));
   }
   return text;
 }
@@ -221,7 +234,7 @@ strut_status strut_follow_points_figure(const strut_plot *plot, const strut_swee
     s.column[i] = &table->columns[column];
   }
   picture p;
-  begin_picture(&p, plan->study->name, strut_axis_of(follow->over, follow->unit),
+  begin_picture(&p, plan->study->name, strut_axis_in(follow->over, follow->unit, follow->shown),
                 height_axis(!table->row_count || !isfinite(number_of(&s, AMPLITUDE, 0))));
   add_rows(&s, &p);
   add_keys(&p);

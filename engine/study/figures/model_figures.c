@@ -3,6 +3,8 @@
 #include "engine/study/compare/compare.h"
 
 #include <math.h>
+#include <string.h>
+#include <strings.h>
 
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/work_precision.h"
@@ -13,7 +15,7 @@ static const double MARGIN = 16, NARROWEST = 150, ASPECT = 0.6; /* [pt], [1] */
 static const double FOOT = 0.08; /* space for a scale bar, relative to the extent */
 static const double DOT = 4.0;   /* radius around a node [pt] */
 static const double UNLIKE = 4.0;
-enum { NAMED = 40, DRIVEN = 2 };
+enum { NAMED = 40, DRIVEN = STRUT_CABLE + 1 /* beside the kinds of members */ };
 
 typedef struct sheet {
   const strut_compare_column *columns; /* (count) */
@@ -35,11 +37,13 @@ static void find_sizes(sheet *self) {
   self->alike = most <= UNLIKE * least;
 }
 
+static strut_colour driven_colour(void) { return strut_palette_thing(2); }
+
 /* The segments of driven members, as broad lines that leave their nodes visible. */
 static void mark_driven(sheet *self, const strut_compare_column *column, strut_panel *panel) {
   const strut_scene *scene = column->model->scene;
   const strut_pen pens[] = {{.colour = strut_grey(1.0), .width = 4.2},
-                            {.colour = strut_palette_thing(DRIVEN), .width = 2.6}};
+                            {.colour = driven_colour(), .width = 2.6}};
   for (size_t i = 0; i < scene->actuator_count; i++) {
     if (scene->actuators[i].member < 0) continue;
     const strut_member *member = &scene->members[scene->actuators[i].member];
@@ -51,16 +55,18 @@ static void mark_driven(sheet *self, const strut_compare_column *column, strut_p
   }
 }
 
-/* The most important results, in three lines. */
+/* The most important results, in three lines, below the name that is not in the title. */
 static const char *words_of(sheet *self, const strut_compare_column *column) {
   const strut_compare_cell *cell = column->cell;
   double states = cell[STRUT_COMPARE_STATES].value, lowest = cell[STRUT_COMPARE_FREQUENCY_1].value;
   double velocity = cell[STRUT_COMPARE_VELOCITY].value, mass = cell[STRUT_COMPARE_MASS].value;
   double transport = cell[STRUT_COMPARE_TRANSPORT].value;
   strut_figure *figure = &self->figure;
+  const char *name = column->model->scene->name;
+  if (*figure->title || strcasecmp(name, column->input->label) == 0) name = "";
   const char *words =
-      strut_figure_text(figure, "%.0f nodes, %.0f members", cell[STRUT_COMPARE_NODES].value,
-                        cell[STRUT_COMPARE_MEMBERS].value);
+      strut_figure_text(figure, "%s%s%.0f nodes, %.0f members", name, *name ? "\n" : "",
+                        cell[STRUT_COMPARE_NODES].value, cell[STRUT_COMPARE_MEMBERS].value);
 #define ADD(FORMAT, ...) words = strut_figure_text(figure, "%s" FORMAT, words, __VA_ARGS__)
   if (mass > 0) ADD(", %s", strut_quantity_of(1000 * mass, 3, "g").text);
   if (states > 0) ADD("\n%.0f stable state%s", states, states > 1 ? "s" : "");
@@ -94,25 +100,43 @@ static void add_panel(sheet *self, const strut_compare_column *column) {
   mark_driven(self, column, panel);
 }
 
+/* Is a member of the kind, which is not drawn as driven, to be seen in any panel? */
+static bool is_seen(const sheet *self, int kind) {
+  for (size_t i = 0; i < self->count; i++) {
+    const strut_scene *scene = self->columns[i].model->scene;
+    for (size_t j = 0; j < scene->member_count; j++) {
+      bool driven = false;
+      for (size_t k = 0; k < scene->actuator_count; k++)
+        driven = driven || scene->actuators[k].member == (int32_t)j;
+      if (driven ? kind == DRIVEN : (int)scene->members[j].kind == kind) return true;
+    }
+  }
+  return false;
+}
+
 static void add_keys(sheet *self) {
   const struct {
-    strut_compare_quantity quantity;
     strut_colour colour;
     double width;
     const char *text;
-  } all[] = {{STRUT_COMPARE_BARS, strut_grey(0.13), 3.0, "bar"},
-             {STRUT_COMPARE_SPRINGS, strut_palette_thing(0), 1.4, "spring"},
-             {STRUT_COMPARE_CABLES, strut_palette_thing(1), 1.0, "cable"},
-             {STRUT_COMPARE_ACTUATORS, strut_palette_thing(DRIVEN), 2.6, "driven"}};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-    const strut_pen pen = {.colour = all[k].colour, .width = all[k].width};
-    bool any = false;
-    for (size_t i = 0; i < self->count; i++)
-      any = any || self->columns[i].cell[all[k].quantity].value > 0;
-    if (any) strut_add_key(&self->figure, STRUT_KEY_LINE, pen, all[k].text);
-  }
+  } kinds[] = {[STRUT_BAR] = {strut_grey(0.13), 3.0, "bar"},
+               [STRUT_SPRING] = {strut_palette_thing(0), 1.4, "spring"},
+               [STRUT_CABLE] = {strut_palette_thing(1), 1.0, "cable"},
+               [DRIVEN] = {driven_colour(), 2.6, "driven"}};
+  for (int k = 0; k <= DRIVEN; k++)
+    if (is_seen(self, k))
+      strut_add_key(&self->figure, STRUT_KEY_LINE,
+                    (strut_pen){.colour = kinds[k].colour, .width = kinds[k].width}, kinds[k].text);
   if (self->alike && self->count > 1)
     strut_add_key(&self->figure, STRUT_KEY_WORDS, (strut_pen){0}, "same scale");
+}
+
+/* The name of all scenes; "" where they differ. */
+static const char *common_name(const sheet *self) {
+  const char *name = self->columns[0].model->scene->name;
+  for (size_t i = 1; i < self->count; i++)
+    if (strcmp(self->columns[i].model->scene->name, name) != 0) return "";
+  return name;
 }
 
 strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *result, size_t first,
@@ -121,6 +145,7 @@ strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *r
              .count = count,
              .figure = {.least_width = NARROWEST, .aspect = ASPECT}};
   find_sizes(&s);
+  s.figure.title = common_name(&s);
   for (size_t i = 0; i < count; i++) add_panel(&s, &s.columns[i]);
   add_keys(&s);
   s.figure.yardstick = s.alike;

@@ -19,11 +19,6 @@ static bool is_measured(const strut_fit_match *match, size_t s) {
   return some;
 }
 
-/* An axis for values in a unit; "1": none. */
-static strut_axis axis_in(const char *name, const char *unit) {
-  return strut_axis_of(name, strcmp(unit, "1") == 0 ? "" : unit);
-}
-
 static strut_axis axis_of_match(const strut_fit_match *match) {
   if (match->kind == STRUT_FIT_MOTION) return strut_axis_of("time", "s");
   if (match->kind == STRUT_FIT_CURVE) return strut_axis_of("displacement", "m");
@@ -52,7 +47,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   const double *model = result->predicted + strut_fit_first(result->fit, m, s);
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
-  panel->y = axis_in(match->series[s].of, match->series[s].unit);
+  panel->y = strut_axis_in(match->series[s].of, match->series[s].unit, (strut_file_unit){0});
   panel->title = match->name;
   add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
   strut_series *line = strut_add_series(figure, panel, "model");
@@ -85,8 +80,8 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   const strut_fit_row *ends = &result->ends[2 * k];
   double best = result->starts[result->best].sum, variance = result->scale * result->scale;
   strut_panel *panel = strut_add_panel(figure);
-  panel->x = axis_in(e->name, e->unit);
-  panel->y = strut_axis_of("rise of the sum of squares over its variance", "");
+  panel->x = strut_axis_in(e->name, e->unit, result->fit->variables[k].shown);
+  panel->y = strut_axis_of("rise of chi-square", "");
   strut_series *line = strut_add_series(figure, panel, "by the standard error");
   line->look = 1, line->markers = STRUT_MARKERS_NONE;
   for (int i = 0; i < CURVE && isfinite(e->error); i++) {
@@ -124,6 +119,8 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
     add_residuals(&residuals, result, m);
   }
   for (size_t k = 0; k < result->variable_count; k++) add_profile(&profiles, result, k);
+  strut_add_key(&profiles, STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.6},
+                "end of the 95 % interval");
   strut_status status = draw(&data, directory, "fit.svg", error);
   strut_status second = draw(&residuals, directory, "residuals.svg", status ? NULL : error);
   strut_status third = draw(&profiles, directory, "profiles.svg", status || second ? NULL : error);
@@ -191,7 +188,8 @@ static void add_panel(strut_figure *figure, const strut_sensitivity_row *rows, s
   }
   panel->title = rows->of;
   panel->x.high = MOST;
-  panel->y = (strut_axis){"", "", false, -0.6, (double)count - 0.4, names, count};
+  panel->y =
+      (strut_axis){.low = -0.6, .high = (double)count - 0.4, .names = names, .name_count = count};
   panel->height = FRAME + ROW * (double)count;
 }
 
@@ -234,7 +232,7 @@ static strut_series *find_curve(strut_figure *figure, const strut_study_column *
   while (i < figure->panel_count && strcmp(figure->panels[i].title, row->of) != 0) i++;
   strut_panel *panel = i < figure->panel_count ? &figure->panels[i] : strut_add_panel(figure);
   panel->title = row->of;
-  panel->x = strut_axis_of(over->name, strcmp(over->unit, "1") ? over->unit : "");
+  panel->x = strut_axis_in(over->name, over->unit, over->shown);
   panel->y = strut_axis_of("total index", "");
   panel->outliers = true;
   while (k < panel->series_count && strcmp(panel->series[k].label, label) != 0) k++;

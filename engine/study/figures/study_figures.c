@@ -16,11 +16,12 @@ static int column_of(const strut_table *table, const char *name) {
   return strut_table_column_of(table, name, name ? strlen(name) : 0);
 }
 
-/* COLUMN=TEXT. */
-static int column_of_match(const strut_table *table, const char *match, const char **text) {
-  size_t length = match ? strcspn(match, "=") : 0;
-  if (match) *text = match + length + 1;
-  return strut_table_column_of(table, match, length);
+void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
+  for (size_t k = 0; k < strut_grid_columns(plan->study); k++) {
+    const strut_study_column *of = strut_grid_column(plan->study, k, NULL);
+    int column = column_of(table, of->name);
+    if (column >= 0) table->columns[column].shown = of->shown;
+  }
 }
 
 static strut_axis_choice axis_of(const char *label, const double limits[2]) {
@@ -34,37 +35,14 @@ static strut_plot plot_of(const strut_study_figure *figure, const char *path) {
                       .y = axis_of(figure->y_label, figure->y_limits)};
 }
 
-/* A table; of a refined grid, of which points were left out as equal to those beside them. */
-static strut_status draw_table(const strut_study_figure *f, const char *path,
-                               const strut_table *table, bool refined, strut_error *error) {
-  const strut_plot plot = plot_of(f, path);
-  strut_table_figure figure = STRUT_TABLE_FIGURE;
-  bool map = f->kind == STRUT_FIGURE_MAP;
-  figure.kind = map ? STRUT_TABLE_MAP : STRUT_TABLE_CURVES;
-  figure.x = column_of(table, f->x);
-  figure.y[0] = column_of(table, f->y);
-  figure.panels = column_of(table, f->panels);
-  figure.choice.difference = column_of(table, f->difference);
-  figure.choice.only = column_of_match(table, f->only, &figure.choice.only_value);
-  if (map) {
-    figure.value = column_of(table, f->color);
-    figure.colours = (strut_colours)f->colours;
-    figure.doubt = column_of(table, "flips");
-    figure.spread = refined;
-  } else {
-    figure.by = column_of(table, f->series);
-    figure.between = f->kind == STRUT_FIGURE_MOTION;
-    figure.band = column_of_match(table, f->band, &figure.band_value);
-  }
-  return strut_table_draw(&plot, &figure, table, error);
-}
-
 static strut_status draw_motion(const strut_sweep_plan *plan, const char *directory,
                                 const strut_study_figure *figure, const char *path,
                                 strut_error *error) {
   strut_table motion = {0};
   strut_status status = strut_study_motion(plan, directory, figure, &motion, error);
-  if (!status) status = draw_table(figure, path, &motion, false, error);
+  strut_sweep_show_units(plan, &motion);
+  const strut_plot plot = plot_of(figure, path);
+  if (!status) status = strut_table_draw(&plot, figure, &motion, (strut_table_marks){0}, error);
   strut_arena_free(&motion.arena);
   return status;
 }
@@ -74,6 +52,7 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
                                 const strut_refinement *refinement, strut_error *error) {
   strut_arena arena = {0};
   const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, figure->name);
+  const strut_plot plot = plot_of(figure, file);
   strut_status status = STRUT_OK;
   if (!file)
     status = strut_no_memory(error, "");
@@ -84,12 +63,15 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
   else if (strut_figure_of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, PAGE, error);
   else
-    status = draw_table(figure, file, table, refinement != NULL, error);
+    status = strut_table_draw(&plot, figure, table,
+                              (strut_table_marks){.spread = refinement != NULL}, error);
   strut_arena_free(&arena);
   return status;
 }
 
 /* Figures of a search: its best objective over evaluations, and its points over two variables, its best point. */
+
+static const char BEST[] = "best so far"; /* a column */
 
 /* What a row of the table means to a search. */
 typedef struct tracker {
@@ -203,28 +185,8 @@ static strut_status extend(const strut_table *from, const double *best, const ch
   to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
   if (!to->columns) return strut_no_memory(error, "while drawing");
   memcpy(to->columns, from->columns, from->column_count * sizeof *to->columns);
-  to->columns[from->column_count] =
-      (strut_table_column){.name = "best so far", .unit = unit, .value = best};
+  to->columns[from->column_count] = (strut_table_column){.name = BEST, .unit = unit, .value = best};
   return STRUT_OK;
-}
-
-/* What is drawn: the best objective over the evaluations of each search, or points over two variables, the best ringed. */
-static void choose_columns(const tracker *self, const strut_study_figure *f,
-                           strut_table_figure *figure) {
-  const char *series = f->series ? f->series : self->search->starts > 1 ? "search" : NULL;
-  figure->choice.only = column_of_match(self->table, f->only, &figure->choice.only_value);
-  if (f->kind == STRUT_FIGURE_BEST) {
-    figure->x = self->evaluation;
-    figure->y[0] = (int)self->table->column_count; /* see extend */
-    figure->by = column_of(self->table, series);
-    figure->panels = column_of(self->table, f->panels);
-    return;
-  }
-  figure->kind = STRUT_TABLE_POINTS;
-  figure->x = column_of(self->table, f->x);
-  figure->y[0] = column_of(self->table, f->y);
-  figure->value = column_of(self->table, f->color ? f->color : "objective");
-  figure->colours = (strut_colours)f->colours;
 }
 
 strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
@@ -232,7 +194,7 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
   const tracker t = track(plan, table);
   strut_table own = {0};
   strut_plot plot = plot_of(f, path);
-  strut_table_figure figure = STRUT_TABLE_FIGURE;
+  strut_study_figure figure = *f; /* points over two variables, the best ringed; else: */
   size_t rows = table->row_count;
   double *best = strut_arena_allocate(&own.arena, rows, sizeof *best);
   bool *shown = strut_arena_allocate(&own.arena, rows, sizeof *shown);
@@ -243,10 +205,15 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
   if (fine && t.second >= 0) fine = mark_front(&t, shown, marked, &own.arena);
   strut_status status = fine ? extend(table, best, strcmp(unit, "1") == 0 ? "" : unit, &own, error)
                              : strut_no_memory(error, "while drawing");
-  choose_columns(&t, f, &figure);
-  figure.shown = shown, figure.marked = marked;
-  if (f->kind == STRUT_FIGURE_BEST && !plot.y.label) plot.y.label = t.search->goal.text;
-  if (!status) status = strut_table_draw(&plot, &figure, &own, error);
+  if (!figure.color) figure.color = "objective";
+  if (f->kind == STRUT_FIGURE_BEST) {
+    figure.x = "evaluation", figure.y = BEST;
+    if (!figure.series && t.search->starts > 1) figure.series = "search";
+    if (!plot.y.label) plot.y.label = t.search->goal.text;
+  }
+  if (!status)
+    status = strut_table_draw(&plot, &figure, &own,
+                              (strut_table_marks){.shown = shown, .marked = marked}, error);
   strut_arena_free(&own.arena);
   return status;
 }
@@ -281,7 +248,8 @@ strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                            .no_motion = plan->study->compute != STRUT_COMPUTE_RUN,
                                            .no_states = true,
                                            .interrupt = interrupt};
-    const strut_plot plot = {.path = path, .title = figure->title, .width = width};
+    const strut_plot plot = {
+        .path = path, .title = figure->title ? figure->title : plan->study->name, .width = width};
     status = strut_compare_make(inputs, 2, &options, &result, error);
     if (!status) status = strut_compare_figure(&plot, &result, 0, result.count, error);
     strut_compare_free(&result);

@@ -328,6 +328,7 @@ strut_status strut_follow_make(const strut_follow_options *options, strut_follow
                            .progress = options->progress,
                            .progress_context = options->progress_context}};
   result->second = options->second;
+  result->shown = options->shown;
   result->name = strut_follow_text(result, options->name);
   result->unit = strut_follow_text(result, options->unit);
   result->second.name = strut_follow_text(result, options->second.name);

@@ -24,12 +24,14 @@ typedef struct strut_follow_start {
 /** A second parameter, over which curves of special points are followed. */
 typedef struct strut_follow_second {
   const char *name, *unit; /* name NULL: there is none; unit "": none */
+  strut_file_unit shown;   /* in figures */
   double low, high;        /* its range [SI] */
   double value;            /* where the branches are [SI] */
 } strut_follow_second;
 
 typedef struct strut_follow_options {
   const char *name, *unit; /* of the parameter; unit "": none */
+  strut_file_unit shown;   /* in figures; its name lives longer than the result */
   double low, high;        /* its range [SI], low < high */
   size_t start_count;
   const strut_follow_start *starts; /* (start_count) at least one */
@@ -65,6 +67,7 @@ STRUT_API const char *strut_follow_kick_name(int i);
 typedef struct strut_follow_result {
   char *title;       /* of the model */
   char *name, *unit; /* of the parameter */
+  strut_file_unit shown;
   char method[32];
   double low, high, tolerance;
   size_t count;

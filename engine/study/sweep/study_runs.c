@@ -280,16 +280,15 @@ static strut_status draw(const pictures *self, opened_run *opened, const opened_
   const strut_run_figure picture = {
       .experiment = &opened->setup.experiment,
       .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
-      .width = self->width,
+      .plot = {.path = file_of(self->plan, self->directory, figure, opened), .width = self->width},
       .scale = {figure->scale[0], figure->scale[1]},
       .time_count = figure->time_count,
       .times = figure->times,
       .other = other ? &other->motion : NULL,
       .other_name = other_name};
-  const char *path = file_of(self->plan, self->directory, figure, opened);
-  if (!path) return strut_no_memory(error, "while drawing");
+  if (!picture.plot.path) return strut_no_memory(error, "while drawing");
   strut_status status = strut_model_compile(&opened->setup.scene, &model, error);
-  if (!status) status = strut_run_figure_draw(path, &picture, model, &opened->motion, NULL, error);
+  if (!status) status = strut_run_figure_draw(&picture, model, &opened->motion, NULL, error);
   strut_model_free(model);
   return status;
 }

@@ -87,10 +87,10 @@ static void describe(const tradeoff_study *study, kind what, strut_model_variant
       [KARNOPP] = "Karnopp friction, ",
       [COULOMB] = "Coulomb friction",
       [SMOOTH] = "smooth friction, "};
-  char speed[STRUT_QUANTITY_TEXT] = "";
+  strut_rounded_quantity speed = {""};
   if (what == KARNOPP || what == SMOOTH)
-    strut_quantity_text(regularisation_speed(study, &scene->contacts[0].friction), 3, "m/s", speed);
-  snprintf(variant->name, sizeof variant->name, "%s%s", names[what], speed);
+    speed = strut_quantity_of(regularisation_speed(study, &scene->contacts[0].friction), 3, "m/s");
+  snprintf(variant->name, sizeof variant->name, "%s%s", names[what], speed.text);
   if (what != GROUND) return;
   snprintf(variant->remark, sizeof variant->remark,
            "damped as by the scene's law at the depth at which the ground carries the weight, %s",

@@ -113,7 +113,7 @@ static bool add_arrays(strutlib_result *result, const strut_trajectory *trajecto
 static bool complete(strutlib_result *result, run_detail *run) {
   const strut_scene *scene = &result->setup.scene;
   result->json = strut_summary_json(&run->summary, scene, false);
-  result->table = strut_summary_table(&run->summary, scene);
+  result->table = strut_summary_table(&run->summary, scene, 0);
   for (size_t i = 0; i < run->summary.warning_count; i++)
     abi_add_warning(&result->messages, run->summary.warnings[i].text);
   return result->json && result->table && !result->messages.out_of_memory &&
@@ -125,14 +125,13 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
   const run_detail *run = result->detail;
   strut_run_figure figure = {.experiment = &result->setup.experiment};
   double times[STRUT_MOST_TIMES];
-  strut_plot plot;
-  strut_status status = abi_plot_read(arguments, path, &plot);
-  if (status == STRUT_OK) status = strut_run_figure_read(arguments, &plot, &figure, times);
+  strut_status status = abi_plot_read(arguments, path, &figure.plot);
+  if (status == STRUT_OK) status = strut_run_figure_read(arguments, &figure, times);
   if (status != STRUT_OK) return status;
   unsigned needed = strut_run_figure_channels(figure.view);
   if (!run->motion.position || ((needed & STRUT_CHANNEL_FORCE) && !run->motion.force))
     return strut_fail(error, STRUT_USAGE, "the run has not recorded what the figure shows");
-  return strut_run_figure_draw(path, &figure, result->model, &run->motion, &run->summary, error);
+  return strut_run_figure_draw(&figure, result->model, &run->motion, &run->summary, error);
 }
 
 /* Runs what is open, and completes the result; sets the error of a run that ended early, too. */

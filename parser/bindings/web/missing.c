@@ -44,9 +44,9 @@ strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *mo
                                    const strut_rigidity *rigidity, strut_error *error) {
   return no_figures(error);
 }
-strut_status strut_run_figure_draw(const char *path, const strut_run_figure *figure,
-                                   const strut_model *model, const strut_trajectory *motion,
-                                   const strut_summary *summary, strut_error *error) {
+strut_status strut_run_figure_draw(const strut_run_figure *figure, const strut_model *model,
+                                   const strut_trajectory *motion, const strut_summary *summary,
+                                   strut_error *error) {
   return no_figures(error);
 }
 

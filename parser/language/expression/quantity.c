@@ -328,6 +328,22 @@ const strut_unit *strut_unit_find(const char *name, size_t length) {
 
 const strut_unit *strut_unit_at(size_t i) { return i < UNIT_COUNT ? &units[i] : NULL; }
 
+strut_file_unit strut_unit_of_text(const char *text, strut_arena *arena) {
+  strut_file_unit unit = {0};
+  strut_quantity one;
+  strut_expression_error unused;
+  char whole[40];
+  text += *text == '-' || *text == '+';
+  const char *rest = text + strut_number_scan(text, strlen(text));
+  bool number = rest > text;
+  rest += strspn(rest, " ");
+  bool word = number && *rest && !strpbrk(rest, "+-*(),");
+  if (word && snprintf(whole, sizeof whole, "1 %s", rest) < (int)sizeof whole &&
+      strut_expression_evaluate(whole, NULL, &one, &unused))
+    unit = (strut_file_unit){arena ? strut_arena_text(arena, rest, strlen(rest)) : rest, one.value};
+  return unit;
+}
+
 /* Exponents result from roots and powers: in floats, 3 * (1/3) is only nearly 1. */
 static bool same(float a, float b) { return fabsf(a - b) < 1e-4f; }
 

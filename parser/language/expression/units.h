@@ -8,7 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "engine/base/status.h"
+#include "engine/base/memory.h"
+#include "engine/base/text.h"
 #include "engine/scene/observables.h"
 
 /** The dimensions that keys of the language expect. */
@@ -45,6 +46,9 @@ typedef struct strut_unit {
 STRUT_API const strut_unit *strut_unit_find(const char *name, size_t length);
 /** The i-th unit of the table, or NULL after the last. */
 STRUT_API const strut_unit *strut_unit_at(size_t i);
+
+/** The unit behind a plain number, such as mm of "-0.5 mm"; its name is in the arena or, without one, in the text. */
+STRUT_API strut_file_unit strut_unit_of_text(const char *text, strut_arena *arena);
 
 STRUT_API bool strut_dimension_equal(strut_dimension a, strut_dimension b);
 /** "a length", "a frequency", ... or "kg m/s" for one without a name; written into buffer. */

@@ -207,6 +207,7 @@
   X(FIGURE, SCALE, "scale", PAIR, NONE, ANY, "[1, 1]", OPTIONAL, 0, "", FIELD(strut_study_figure, scale), "Period: magnification of the motion along x and y.") \
   X(FIGURE, TIMES, "times", TIMES, NONE, ANY, "six", OPTIONAL, 0, "", LIST(strut_study_figure, times, time_count), "Snapshots: instants to draw.") \
   X(FIGURE, TITLE, "title", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, title), "Title of the figure.") \
+  X(FIGURE, LABELS, "labels", NAMES, NONE, ANY, "by the columns", OPTIONAL, 0, "a label", LIST(strut_study_figure, labels, label_count), "Lines, motion and best: what the legend calls the curves, in their order.") \
   X(FIGURE, X_LABEL, "x_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_label), "Lines, map and motion: label of the x axis, by default the column's name. The unit is added.") \
   X(FIGURE, Y_LABEL, "y_label", TEXT, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y_label), "Likewise for the y axis.") \
   X(FIGURE, X_LIMITS, "x_limits", PAIR, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x_limits), "Lines, map and motion: ends of the x axis, ascending, in the column's SI unit.") \

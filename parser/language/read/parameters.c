@@ -72,21 +72,13 @@ static bool evaluate_set(strut_reader *reader, strut_parameter_state *parameters
   return fine;
 }
 
-/* The unit that a declared number is written with, such as "mm" of "2 mm"; "" without a unit. */
-static const char *unit_of(const char *text) {
-  const char *rest = text + strspn(text, "+-.0123456789eE");
-  if (rest == text) return "";
-  rest += strspn(rest, " ");
-  bool letters = (*rest >= 'a' && *rest <= 'z') || (*rest >= 'A' && *rest <= 'Z');
-  return letters && !strpbrk(rest, "+-() ,#") ? rest : "";
-}
-
 /* Notes that a number without unit is in SI units, where it differs from the declared value by more
    than a factor of 100: then a unit was probably forgotten. */
 static void note_scale(strut_reader *reader, const strut_parameter_state *parameters,
                        const strut_quantity *declared) {
   double times = fabs(parameters->quantity.value / declared->value);
-  const char *unit = unit_of(parameters->value->text), *given = parameters->set->text;
+  const char *unit = strut_unit_of_text(parameters->value->text, NULL).name;
+  const char *given = parameters->set->text;
   if (parameters->set->place.line || !(times > 100.0 * (1.0 + 1e-9) || times < 0.01 * (1.0 - 1e-9)))
     return;
   if (declared->value == 0.0 || parameters->quantity.value == 0.0) return;
@@ -95,7 +87,7 @@ static void note_scale(strut_reader *reader, const strut_parameter_state *parame
              "is in SI units; write --set %s=\"%s %s\" if that is meant",
              parameters->name, strut_sanitised_text(reader, given), given, times,
              parameters->value->text, parameters->name, strut_sanitised_text(reader, given),
-             *unit ? unit : "UNIT");
+             unit ? unit : "UNIT");
 }
 
 /* Does what is given fit what the file declares? A bare value takes the declared dimension. */
@@ -326,17 +318,23 @@ void strut_read_parameters(strut_reader *reader, const strut_setting *settings, 
 
 void strut_keep_parameters(strut_reader *reader) {
   strut_scene *scene = reader->scene;
+  bool point = false; /* of a study, whose figures have the units of the study: no time is spent */
+  for (size_t i = 0; i < reader->parameter_count; i++)
+    point = point || (reader->parameters[i].set && reader->parameters[i].set->known);
   if (reader->failed) return; /* the scene will be discarded */
   scene->parameters = strut_reader_allocate(reader, &scene->arena, reader->parameter_count,
                                             sizeof *scene->parameters);
   for (size_t i = 0; scene->parameters && i < reader->parameter_count; i++) {
     const strut_parameter_state *parameters = &reader->parameters[i];
     if (parameters->value->kind != STRUT_TREE_SCALAR) return; /* reported */
-    const char *text = parameters->set ? parameters->set->text : parameters->value->text;
+    const char *declared = parameters->value->text;
+    const char *text = parameters->set ? parameters->set->text : declared;
     strut_parameter *kept = &scene->parameters[scene->parameter_count++];
     kept->name = strut_arena_text(&scene->arena, parameters->name, strlen(parameters->name));
     kept->text = strut_arena_text(&scene->arena, text, strlen(text));
     kept->value = parameters->text ? (double)NAN : parameters->quantity.value;
+    if (!point) kept->shown = strut_unit_of_text(text, &scene->arena);
+    if (!point && !kept->shown.name) kept->shown = strut_unit_of_text(declared, &scene->arena);
     if (!kept->name || !kept->text) reader->out_of_memory = true;
   }
 }

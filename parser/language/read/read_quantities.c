@@ -453,8 +453,7 @@ static bool find_declared(strut_reader *reader, const strut_scene_source *source
   const strut_declared *of_source = source ? strut_scene_source_parameter(source, name) : NULL;
   const strut_parameter_state *own = source ? NULL : strut_parameter_find(reader, name);
   if (of_source) *declared = *of_source;
-  if (own)
-    *declared = (strut_declared){own->name, own->text, own->quantity.bare, own->quantity.dimension};
+  if (own) *declared = strut_declaration_of(own);
   return of_source || own;
 }
 

@@ -283,17 +283,21 @@ static void enter_used(const strut_scene_source *source, strut_diagnostics *diag
   }
 }
 
+strut_declared strut_declaration_of(const strut_parameter_state *parameter) {
+  bool scalar = parameter->value->kind == STRUT_TREE_SCALAR;
+  return (strut_declared){.name = parameter->name, /* the tree's */
+                          .text = parameter->text,
+                          .bare = parameter->quantity.bare,
+                          .dimension = parameter->quantity.dimension,
+                          .shown = strut_unit_of_text(scalar ? parameter->value->text : "", NULL)};
+}
+
 static strut_status keep_declared(strut_reader *reader, strut_scene_source *source) {
   source->count = reader->parameter_count;
   source->declared = strut_arena_allocate(&source->arena, source->count, sizeof *source->declared);
   if (!source->declared) return STRUT_NO_MEMORY;
-  for (size_t i = 0; i < source->count; i++) {
-    const strut_parameter_state *parameters = &reader->parameters[i];
-    source->declared[i] = (strut_declared){.name = parameters->name, /* the tree's */
-                                           .text = parameters->text,
-                                           .bare = parameters->quantity.bare,
-                                           .dimension = parameters->quantity.dimension};
-  }
+  for (size_t i = 0; i < source->count; i++)
+    source->declared[i] = strut_declaration_of(&reader->parameters[i]);
   return STRUT_OK;
 }
 

@@ -45,6 +45,7 @@ typedef struct strut_declared {
   const char *name;
   bool text, bare; /* a text; a number that fits any dimension */
   strut_dimension dimension;
+  strut_file_unit shown;
 } strut_declared;
 
 /**

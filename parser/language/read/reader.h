@@ -91,6 +91,9 @@ typedef struct strut_parameter_state {
   strut_part_value *of_part; /* NULL: it is the scene's */
 } strut_parameter_state;
 
+/** What others may know of it; the texts are the tree's. */
+strut_declared strut_declaration_of(const strut_parameter_state *parameter);
+
 /** A named thing: its place, and whether it was read completely, so that findings about it make sense. */
 typedef struct strut_source {
   const strut_tree *key, *value;

@@ -19,6 +19,8 @@ bool strut_study_read_value(strut_study_reader *study_reader, along *self, const
   strut_setting *setting = self->setting;
   if (!strut_read_any_quantity(reader, value, key, owner_of(self), "a number", &q)) return false;
   *number = q.value;
+  const strut_file_unit unit = strut_unit_of_text(value->text, NULL);
+  if (unit.name) self->column->shown = unit;
   if (first && setting->bare && !q.bare) {
     setting->bare = false;
     setting->dimension = q.dimension;
@@ -151,6 +153,7 @@ bool strut_study_begin_along(strut_study_reader *reader, strut_study_axis *axis,
   *self->column =
       (strut_study_column){.name = parameter->name,
                            .unit = plain ? "1" : strut_dimension_unit(parameter->dimension),
+                           .shown = parameter->shown,
                            .word = parameter->text};
   *self->setting = (strut_setting){.name = parameter->name,
                                    .text = "",
@@ -525,6 +528,7 @@ static void read_over(strut_study_reader *reader, strut_fields *fields,
   follow->over = a.parameter->name;
   read_values(reader, fields, &a, follow);
   follow->unit = a.setting->bare ? "" : strut_dimension_unit(a.setting->dimension);
+  follow->shown = unused.shown;
   if (strcmp(follow->unit, "1") == 0 || strcmp(follow->unit, "SI") == 0) follow->unit = "";
 }
 

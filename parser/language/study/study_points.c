@@ -158,7 +158,11 @@ static void read_column(table *self, size_t i, strut_study_axis *axis) {
   if (!self->columns) a.advice = "; {points: {file: ..., columns: [...]}} chooses columns";
   if (!strut_study_begin_along(self->r, axis, &a)) return;
   a.setting->place = self->name->place;
-  if (check_unit(self, i, &a, &unit)) read_cells(self, i, &a, unit);
+  if (!check_unit(self, i, &a, &unit)) return;
+  read_cells(self, i, &a, unit);
+  strut_arena *arena = &self->r->file->arena;
+  const char *one = *unit ? strut_arena_format(arena, "1 %s", unit) : NULL;
+  if (one) a.column->shown = strut_unit_of_text(one, NULL);
 }
 
 static void read_columns(table *self, strut_study_axis *axis) {

@@ -113,6 +113,7 @@ static bool read_variable(strut_study_reader *reader, strut_study_axis *axis,
   if (!fine) return false;
   variable->name = along->parameter->name;
   variable->unit = along->column->unit;
+  variable->shown = along->column->shown;
   variable->word = along->parameter->text;
   return true;
 }

@@ -258,7 +258,7 @@ static const char *data_table_name(const strut_result_object *of, size_t i) {
          : e->limits.bound     ? "bounds: the structure is too large for estimates"                \
          : e->step_limit_exact ? "from all eigenvalues"                                            \
                                : "within 1 %"),                                                    \
-    "", .label = {"steps are known"})                                                              \
+    "", .label = {"step limits"})                                                                  \
   X(NULL, "", TEXT(e->feedback ? "not counted in this frequency and these steps" : NULL), "",      \
     .label = {"feedback"})                                                                         \
   X("step_limit_exact", "", FLAG(e->step_limit_exact), "or within 1 %")                            \
@@ -297,19 +297,20 @@ strut_status strut_check_print(strut_check_result *c) {
   return strut_print_block(text);
 }
 
-strut_status strut_check_print_text(const strut_check_result *checked) {
+strut_status strut_check_print_text(const strut_check_result *checked, int width) {
   strut_buffer text = {0};
   const strut_scene *scene = checked->model->scene;
-  strut_buffer_add(&text, "%s%svalid\n", scene->name, *scene->name ? ": " : "");
-  strut_values_add_text(&text, &scene_values, &(strut_result_object){checked, NULL, scene, 0},
-                        &(strut_table_page){STRUT_REPORT_WIDTH, MOST_THINGS, DIGITS});
+  strut_buffer_add(&text, "%s%s%svalid\n", width == STRUT_REPORT_LATEX ? "% " : "", scene->name,
+                   *scene->name ? ": " : "");
+  strut_values_add_tables(&text, &scene_values, &(strut_result_object){checked, NULL, scene, 0},
+                          &(strut_table_page){width, MOST_THINGS, DIGITS});
   return strut_print_block(strut_buffer_take(&text));
 }
 
 static const strut_option options[] = {
     STRUT_SET_OPTION,
     {.table = strut_experiment_options},
-    {STRUT_FILLS(json), "json", NULL, "print everything as one JSON object"},
+    STRUT_PRINT_OPTIONS,
     {.name = NULL},
 };
 
@@ -329,8 +330,9 @@ static strut_status print_valid(const strut_arguments *arguments, strut_check_re
   const strut_scene *scene = result->model->scene;
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     result->drawn[i] = scene->nodes[i / 2].position[i % 2];
-  strut_status status =
-      arguments->json ? print_json(result, report) : strut_check_print_text(result);
+  strut_status status = arguments->json
+                            ? print_json(result, report)
+                            : strut_check_print_text(result, strut_report_width(arguments));
   strut_release(result->drawn);
   return status;
 }

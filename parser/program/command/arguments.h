@@ -90,7 +90,8 @@ typedef struct strut_arguments {
   const char *output, *plot, *animate, *width, *title, *scale, *times;
   const char *at, *supports, *load, *from, *until, *stop, *values;
   const char *shard, *time, *memory;
-  const char *x, *y, *by, *panels, *band, *only, *difference, *label, *doubt;
+  const char *x, *y, *by, *panels, *band, *only, *difference, *label, *labels, *doubt;
+  bool svg_text;
   const char *x_label, *y_label, *x_limits, *y_limits;
   strut_given_word integrator, bars, mass_model, friction_law, damping_law, friction, given;
   strut_given_word objective, draw, kind, colors, log, equilibria, measure, emit, record, compute;

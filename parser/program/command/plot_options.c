@@ -12,6 +12,8 @@ const strut_option strut_width_options[] = {
     {STRUT_FILLS(width), "width", "WIDTH",
      "width of the figure: page (180 mm, default), column (88 mm) or a length", .of_figure = true,
      .words = "page|column"},
+    {STRUT_FILLS(svg_text), "svg-text", NULL, "texts of an SVG can be edited, rather than outlines",
+     .of_figure = true},
     {.name = NULL}};
 
 const strut_option strut_plot_setting_options[] = {
@@ -47,6 +49,7 @@ strut_status strut_plot_settings_read(const strut_arguments *arguments, double u
   bool column = text && strcmp(text, "column") == 0, page = !text || strcmp(text, "page") == 0;
   double width = column ? COLUMN : PAGE;
   plot->title = arguments->title;
+  plot->texts = arguments->svg_text;
   if (!column && !page) {
     strut_status status = strut_quantity_read(arguments, "width", text, STRUT_DIM_LENGTH, &width);
     if (status) return status;
@@ -83,20 +86,18 @@ strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool 
 
 /* ---- of runs ---- */
 
-strut_status strut_run_figure_read(const strut_arguments *arguments, const strut_plot *plot,
-                                   strut_run_figure *figure, double *times) {
+strut_status strut_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
+                                   double *times) {
   const char *scale = arguments->scale, *text = arguments->times;
   figure->view = (strut_run_view)arguments->draw.index;
-  figure->width = plot->width;
-  figure->title = plot->title;
-  if (scale && !(plot->path && figure->view == STRUT_RUN_PERIOD))
+  if (scale && !(figure->plot.path && figure->view == STRUT_RUN_PERIOD))
     return strut_usage_error(arguments, "--scale goes with --plot FILE --draw period");
   if (scale && !(strut_quantities_read(scale, STRUT_DIM_NONE, figure->scale, 2) == 2 &&
                  figure->scale[0] > 0 && figure->scale[1] > 0))
     return strut_usage_error(arguments,
                              "--scale expects two numbers above 0, such as 10,2; not '%s'", scale);
   if (!text) return STRUT_OK;
-  if (!(plot->path && figure->view == STRUT_RUN_SNAPSHOTS))
+  if (!(figure->plot.path && figure->view == STRUT_RUN_SNAPSHOTS))
     return strut_usage_error(arguments, "--times goes with --plot FILE --draw snapshots");
   figure->time_count = strut_quantities_read(text, STRUT_DIM_TIME, times, STRUT_MOST_TIMES);
   figure->times = times;

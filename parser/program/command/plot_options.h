@@ -27,8 +27,8 @@ strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool 
 enum { STRUT_MOST_TIMES = 100 };
 
 /** Reads what a figure of a run shows; `times` has room for STRUT_MOST_TIMES and stays in place. As above. */
-strut_status strut_run_figure_read(const strut_arguments *arguments, const strut_plot *plot,
-                                   strut_run_figure *figure, double *times);
+strut_status strut_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
+                                   double *times);
 
 /* A table of numbers and texts, from a file or the standard input. */
 

@@ -62,6 +62,22 @@ static strut_status check_match(const source *self, const strut_study_figure *fi
   return check_column(self, figure, name, false, error);
 }
 
+/* A label for each value of an axis by itself; of other columns the curves are counted when they are drawn. */
+static strut_status check_labels(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                                 strut_error *error) {
+  for (size_t i = 0, a; i < plan->axis_columns && figure->series && figure->label_count; i++) {
+    if (strcmp(plan->columns[i].name, figure->series) != 0) continue;
+    strut_grid_column(plan->study, i, &a);
+    const strut_study_axis *axis = &plan->study->axes[a];
+    if (axis->column_count == 1 && axis->count != (int64_t)figure->label_count)
+      return strut_fail(error, STRUT_BAD_SCENE,
+                        "figure '%.60s' of the study: 'labels' has %zu labels for the %lld values "
+                        "of '%.60s'",
+                        figure->name, figure->label_count, (long long)axis->count, figure->series);
+  }
+  return STRUT_OK;
+}
+
 static strut_status check_figure(const source *self, const strut_study_figure *figure,
                                  strut_error *error) {
   if (self->runs && !self->plan->study->trajectories)
@@ -79,6 +95,7 @@ static strut_status check_figure(const source *self, const strut_study_figure *f
   if (!status) status = check_column(self, figure, figure->color, false, error);
   if (!status) status = check_column(self, figure, figure->panels, false, error);
   if (!status) status = check_column(self, figure, figure->difference, false, error);
+  if (!status) status = check_labels(self->plan, figure, error);
   if (!status) status = check_match(self, figure, figure->band, "band", error);
   return status ? status : check_match(self, figure, figure->only, "only", error);
 }
@@ -126,6 +143,7 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
   strut_table table = {0};
   if (study->figure_count == 0) return STRUT_OK;
   strut_status status = strut_table_read(job->arguments->listener, path, &table);
+  strut_sweep_show_units(&job->study->plan, &table);
   for (size_t i = 0; i < study->figure_count && !status; i++) {
     strut_error error = {0};
     if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
@@ -186,6 +204,7 @@ static strut_status draw_branches(const strut_study_job *job, strut_error *error
                            .width = PAGE};
   if (!from || !plot.path) return strut_no_memory(error, "");
   strut_status status = strut_table_read(job->arguments->listener, from, &table);
+  strut_sweep_show_units(plan, &table);
   if (!status) status = strut_follow_points_figure(&plot, plan, &table, error);
   strut_arena_free(&table.arena);
   return status;

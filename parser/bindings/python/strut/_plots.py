@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import html
 import math
+import re
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping
 
 from ._errors import in_python
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from ._sweep import Table
 
 _PREFIXES = "fpnµm kMGTP"
-_PLAIN = ("", "1", "%", "kg", "deg", "°")  #: units without prefix
+_PREFIXED = re.compile(r"(m|s|N|J|W|Hz|Pa|rad|B|V|A)(?![\w^])")  #: units that take one
 
 
 def axes(ax: Any) -> Any:
@@ -39,7 +40,7 @@ class Scale:
         finite = numpy().abs(values)[numpy().isfinite(values)]
         largest = float(finite.max()) if finite.size else 0.0
         self.unit, self.factor = unit or "", 1.0
-        if self.unit not in _PLAIN and largest > 0:
+        if _PREFIXED.match(self.unit) and largest > 0:
             group = math.floor(math.log10(largest) / 3 + 1e-12)
             if -5 <= group <= 5:
                 self.factor = 1000.0**group
@@ -52,25 +53,6 @@ class Scale:
         """The label of an axis: "velocity in mm/s"."""
         name = name.replace("_", " ")
         return name if self.unit in ("", "1") else f"{name} in {self.unit}"
-
-
-def scene(drawn: Scene, ax: Any) -> Any:
-    ax = axes(ax)
-    place = drawn.array("nodes.position")
-    scale = Scale(place, "m")
-    place = scale(place)
-    for a, b in drawn.array("members.nodes").astype(int):
-        ax.plot(place[[a, b], 0], place[[a, b], 1], color="C0")
-    ax.plot(place[:, 0], place[:, 1], "o", color="C0")
-    for name, (x, y) in zip(drawn.names("nodes"), place):
-        ax.annotate(name, (x, y), (3, 3), textcoords="offset points")
-    ax.set(xlabel=scale.label("x"), ylabel=scale.label("y"), aspect="equal")
-    return ax
-
-
-def _legend(ax: Any, count: int) -> None:
-    if 1 < count <= 12:
-        ax.legend()
 
 
 def run(result: Run, name: str | None, ax: Any) -> Any:
@@ -95,7 +77,8 @@ def run(result: Run, name: str | None, ax: Any) -> Any:
         line.set_label(label)
     ax.set_xlabel(time.label("time"))
     ax.set_ylabel(scale.label(name))
-    _legend(ax, len(lines))
+    if 1 < len(lines) <= 12:
+        ax.legend()
     return ax
 
 
@@ -158,17 +141,19 @@ def path(result: Path, ax: Any) -> Any:
     return ax
 
 
-def forces(scene: Scene, nodes: Any, force: Any, ax: Any) -> Any:
-    """The structure, with tension red and compression blue, as wide as the forces are large."""
-    largest = float(numpy().abs(force).max(initial=0.0)) or 1.0
-    ax = axes(ax)
-    for (a, b), value in zip(scene.array("members.nodes").astype(int), force):
-        colour = "0.6" if abs(value) < 1e-9 * largest else "tab:red" if value > 0 else "tab:blue"
-        ax.plot(*nodes[[a, b]].T, color=colour, linewidth=0.5 + 3 * abs(value) / largest)
-    ax.plot(*nodes.T, "o", color="0.2", markersize=3)
-    ax.set_aspect("equal")
-    ax.set_xlabel("x in m")
-    ax.set_ylabel("y in m")
+def structure(scene: Scene, nodes: Any, force: Any, ax: Any) -> Any:
+    """The structure and the names of its nodes; with forces tension red and compression blue, as wide as they are large."""
+    largest = 1.0 if force is None else float(numpy().abs(force).max(initial=0.0)) or 1.0
+    scale, ax = Scale(nodes, "m"), axes(ax)
+    place = scale(nodes)
+    for k, (a, b) in enumerate(scene.array("members.nodes").astype(int)):
+        part = None if force is None else force[k] / largest
+        colour = "C0" if part is None else "0.6" if abs(part) < 1e-9 else "tab:red" if part > 0 else "tab:blue"
+        ax.plot(*place[[a, b]].T, color=colour, linewidth=1.5 if part is None else 0.5 + 3 * abs(part))
+    ax.plot(*place.T, "o", color="0.2", markersize=3)
+    for name, at in zip(scene.names("nodes"), place):
+        ax.annotate(name, at, (3, 3), textcoords="offset points")
+    ax.set(xlabel=scale.label("x"), ylabel=scale.label("y"), aspect="equal")
     return ax
 
 
