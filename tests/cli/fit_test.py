@@ -450,7 +450,7 @@ def refusals():
         "match: {d", "match:\n    d").replace("}}}", "}}"))
     run("sweep", "set.yaml", "-o", "set", "-q", code=2, err="did you mean 'high'?")
     write("long.yaml", "strut: 1\nstudy: long\n" + good.replace("decay.csv}", "decay.csv, units: {t: h}}"))
-    run("sweep", "long.yaml", "--count", err="long.yaml:10:21: note: the runs of match 'd' last 1800 s, 3.6e+03 times")
+    run("sweep", "long.yaml", "--count", err="long.yaml:10:21: note: the runs of match 'd' would last 1800 s, 3.6e+03 times")
 
 
 def long():

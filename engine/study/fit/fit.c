@@ -481,7 +481,7 @@ static strut_status find_best(fitting *self) {
   self->unexplained =
       self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   strut_status status = find_spectrum(self, &one);
-  if (!status) status = fit_elsewhere(self, &one);
+  if (!status && !self->unexplained) status = fit_elsewhere(self, &one);
   strut_fit_case_free(&one);
   return status;
 }

@@ -276,7 +276,7 @@ static bool is_skewed(const strut_fit_estimate *e) {
 }
 
 #define ESTIMATE(X)                                                                                \
-  X("parameter", "", TEXT(e->name), "its name", .label = {""})                                     \
+  X("parameter", "", TEXT(e->name), "its name", .column = {"parameter"}, .label = {""})            \
   X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
   X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""})                          \
   X("standard_error", "", IN(e->unit, e->error), "by the derivatives; null: there is none",        \
@@ -284,8 +284,13 @@ static bool is_skewed(const strut_fit_estimate *e) {
   X("low", "", IN(e->unit, e->low), "95 % interval, by the profile; null: not given",              \
     .label = {"95 %, from"})                                                                       \
   X("high", "", IN(e->unit, e->high), "likewise", .label = {"to"})                                 \
+  X(NULL, "", NUMBER(e->value), "", .column = {"value"})                                           \
+  X(NULL, "", NUMBER(isfinite(e->error) ? e->error : (double)NAN), "",                             \
+    .column = {"standard_error"})                                                                  \
+  X(NULL, "", NUMBER(e->low), "", .column = {"low"})                                               \
+  X(NULL, "", NUMBER(e->high), "", .column = {"high"})                                             \
   X("verdict", "", TEXT(verdicts[e->verdict]), "whether it is identified, or why not",             \
-    .label = {""})                                                                                 \
+    .column = {"verdict"}, .label = {""})                                                          \
   X("linear_low", "", IF(is_skewed(e), NUMBER(e->linear_low)),                                     \
     "95 % interval by the standard error, where it differs by more than a fifth")                  \
   X("linear_high", "", IF(is_skewed(e), NUMBER(e->linear_high)), "likewise")
@@ -430,20 +435,6 @@ static void add_cells(strut_buffer *csv, const double *numbers, size_t count) {
   }
 }
 
-static char *estimates_csv(const strut_fit_result *result) {
-  strut_buffer csv = {0};
-  strut_buffer_add(&csv, "parameter,value,standard_error,low,high,verdict\n");
-  for (size_t i = result->aligned_count; i < result->parameters; i++) {
-    const strut_fit_estimate *e = &result->estimates[i];
-    const double numbers[] = {e->value, isfinite(e->error) ? e->error : (double)NAN, e->low,
-                              e->high};
-    strut_buffer_add(&csv, "%s", e->name);
-    add_cells(&csv, numbers, 4);
-    strut_buffer_add(&csv, ",%s\n", verdicts[e->verdict]);
-  }
-  return strut_buffer_take(&csv);
-}
-
 /* Of the errors of the parameters, SI. */
 static char *covariance_csv(const strut_fit_result *result) {
   strut_buffer csv = {0};
@@ -525,7 +516,9 @@ static char *uncertain_yaml(const strut_fit_result *result) {
 strut_status strut_fit_write(const strut_fit_result *result, const char *directory,
                              const char *model, strut_error *error) {
   if (!result->found) return STRUT_OK;
-  strut_status status = strut_file_write_block(directory, "fit.csv", estimates_csv(result), error);
+  strut_status status = strut_file_write_block(
+      directory, "fit.csv", strut_values_csv(&strut_fit_values, "parameters", NULL, result, NULL),
+      error);
   if (!status)
     status = strut_file_write_block(directory, "covariance.csv", covariance_csv(result), error);
   if (!status)

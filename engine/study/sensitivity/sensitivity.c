@@ -193,28 +193,19 @@ static bool add_derivatives(analysis *self, int64_t first, const target *t) {
 
 static const double NORMAL_95 = 1.959963984540054;
 
-/* Standard deviation of the values themselves; NANs are left out. */
-static double deviation_of(const double *values, size_t count) {
-  double sum = 0.0, square = 0.0;
-  size_t known = 0;
+/* Mean of values with its standard error as of independent ones, and their own deviation; NANs are left out. */
+static strut_estimate mean_of(const double *values, size_t count, double *deviation) {
+  double sum = 0.0, square = 0.0, known = 0.0;
   for (size_t i = 0; i < count; i++)
-    if (isfinite(values[i])) sum += values[i], known++;
-  if (known < 2) return (double)NAN;
-  double mean = sum / (double)known;
+    if (isfinite(values[i])) sum += values[i], known += 1.0;
+  double mean = sum / known;
   for (size_t i = 0; i < count; i++)
     if (isfinite(values[i])) square += (values[i] - mean) * (values[i] - mean);
-  return sqrt(square / (double)(known - 1));
-}
-
-/* Mean of values, and its standard error as of independent ones; NANs are left out. */
-static strut_estimate mean_of(const double *values, size_t count) {
-  double sum = 0.0, deviation = deviation_of(values, count);
-  size_t known = 0;
-  for (size_t i = 0; i < count; i++)
-    if (isfinite(values[i])) sum += values[i], known++;
-  if (!known) return MISSING;
-  double mean = sum / (double)known, error = deviation / sqrt((double)known);
-  return (strut_estimate){mean, error, mean - NORMAL_95 * error, mean + NORMAL_95 * error};
+  *deviation = known < 2.0 ? (double)NAN : sqrt(square / (known - 1.0));
+  double error = *deviation / sqrt(known);
+  return known == 0.0
+             ? MISSING
+             : (strut_estimate){mean, error, mean - NORMAL_95 * error, mean + NORMAL_95 * error};
 }
 
 /* Share of ones among values that are 0 or 1, with Wilson's interval; NANs are left out. */
@@ -247,11 +238,12 @@ static bool add_statistics(analysis *self, int64_t first, const target *t) {
   }
   row.unit = self->columns[t->column].unit;
   row.measure = STRUT_SENSITIVITY_MEAN;
-  row.estimate = mean_of(self->design, n);
+  double deviation;
+  row.estimate = mean_of(self->design, n, &deviation);
   if (!add_row(self, row)) return false;
   row.measure = STRUT_SENSITIVITY_DEVIATION;
   row.estimate = MISSING;
-  row.estimate.value = deviation_of(self->design, n);
+  row.estimate.value = deviation;
   return add_row(self, row);
 }
 

@@ -10,8 +10,8 @@ static const strut_owner fit_owner = {"the fit", NULL};
 
 /* Numbers and weights up to this have a finite sum of squares. */
 static const double MOST_NUMBER = 1e150;
-/* Steps of one run, at most; and how often a run is usually as long as the model's own. */
-static const double MOST_STEPS = 1e10, USUAL = 100.0;
+/* How often a run may be as long as the model's own, and how often it is usually. */
+static const double MOST = 1e7, USUAL = 100.0;
 
 /* A match while it is read. */
 typedef struct reading {
@@ -384,49 +384,32 @@ static strut_study_value *first_values(strut_study_reader *reader) {
   return values;
 }
 
-/* The model's step, the period of its fastest drive, or a thousandth of its run [s]; and its name. */
-static double time_scale_of(const strut_setup *setup, const char **name) {
-  double fastest = 0.0,
-         duration = strut_experiment_span(&setup->experiment, &setup->scene).duration;
-  for (size_t i = 0; i < setup->scene.signal_count; i++)
-    fastest = fmax(fastest, setup->scene.signals[i].frequency);
-  bool stepped = setup->experiment.step > 0.0 && !setup->experiment.step_chosen;
-  *name = stepped         ? "steps"
-          : fastest > 0.0 ? "periods of the fastest drive"
-                          : "thousandths of the model's own run";
-  return stepped ? setup->experiment.step : fastest > 0.0 ? 1.0 / fastest : duration / 1000.0;
-}
-
-/* Times in another unit than that of their column make runs that do not end, or that are much longer than usual. */
+/* Times in another unit than that of their column make runs that are much longer than the model's own, or do not end. */
 static void check_durations(strut_study_reader *reader, const strut_tree *matches,
                             const strut_study_fit *fit) {
   strut_setup setup;
   strut_error error = {0};
   char message[200];
-  const char *name;
   const strut_tree *key = matches->first;
   const strut_study_value *values = reader->reader->failed ? NULL : first_values(reader);
   if (!values || strut_study_setup(reader->file, values, &setup, &error)) return;
   double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
-  double scale = time_scale_of(&setup, &name);
   for (size_t m = 0; m < fit->match_count; m++, key = key->next->next) {
     const strut_fit_match *match = &fit->matches[m];
     double last = match->kind == STRUT_FIT_MOTION ? match->at[match->count - 1] : 0.0;
     if (match->align.delay) last -= match->at[0];
+    if (!(last > USUAL * own && own > 0.0)) continue;
     const strut_tree *value = strut_tree_find(key->next, "time", NULL);
-    if (last > USUAL * own && own > 0.0)
-      strut_note(reader->reader->diagnostics, value->place,
-                 "the runs of match '%.40s' last %.4g s, %.3g times the model's own of %.4g s: is "
-                 "that the unit of this column?",
-                 match->name, last, last / own, own);
-    if (!(last > MOST_STEPS * scale)) continue;
     reading self = {0};
     strut_data_find(reader->reader->tables, reader->reader->table_count, value->text, &self.table);
     snprintf(message, sizeof message,
-             "the run of match '%.40s' would last %.4g s, %.3g %s of %.3g s, a fit may have 1e10: "
+             "the runs of match '%.40s' would last %.4g s, %.3g times the model's own of %.4g s: "
              "check the unit of this column",
-             match->name, last, last / scale, name, scale);
-    refuse_number(reader, &self, value, match->at, match->count - 1, message);
+             match->name, last, last / own, own);
+    if (last > MOST * own)
+      refuse_number(reader, &self, value, match->at, match->count - 1, message);
+    else
+      strut_note(reader->reader->diagnostics, value->place, "%s", message);
   }
   strut_setup_free(&setup);
 }
