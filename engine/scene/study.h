@@ -236,7 +236,9 @@ enum {
 #define STRUT_OF_ENUM(name, word) STRUT_OF_##name = 1 << STRUT_COMPUTE_##name,
   STRUT_COMPUTE_TABLE(STRUT_OF_ENUM)
 #undef STRUT_OF_ENUM
-      STRUT_OF_ALL = (1 << STRUT_COMPUTE_COUNT) - 1
+      STRUT_OF_ALL = (1 << STRUT_COMPUTE_COUNT) - 1,
+  STRUT_KEEP_SMOOTH =
+      1 << STRUT_COMPUTE_COUNT /* follows parameters smoothly: no counts, words and settings do */
 };
 
 /**
@@ -244,13 +246,13 @@ enum {
  * table.
  */
 #define STRUT_KEEP_TABLE(X)                                                                        \
-  X(VELOCITY, "velocity", STRUT_OF_RUN)                                                            \
+  X(VELOCITY, "velocity", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                        \
   X(SPREAD, "velocity_spread", STRUT_OF_RUN)                                                       \
   X(INTERVAL, "velocity_interval", STRUT_OF_RUN)                                                   \
   X(MOTION, "motion", STRUT_OF_RUN)                                                                \
   X(REPEATS, "repeats", STRUT_OF_RUN)                                                              \
   X(PERIODS, "periods", STRUT_OF_RUN)                                                              \
-  X(DISTANCE, "distance", STRUT_OF_RUN)                                                            \
+  X(DISTANCE, "distance", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                        \
   X(DURATION, "duration", STRUT_OF_RUN)                                                            \
   X(SETTLE_TIME, "settle_time", STRUT_OF_RUN)                                                      \
   X(STEPS, "steps", STRUT_OF_RUN)                                                                  \
@@ -261,29 +263,29 @@ enum {
   X(STEP, "step", STRUT_OF_RUN)                                                                    \
   X(STEP_LIMIT, "step_limit", STRUT_OF_RUN)                                                        \
   X(EXPECTED, "expected_error", STRUT_OF_RUN)                                                      \
-  X(ENERGY, "energy", STRUT_OF_RUN)                                                                \
-  X(WORK, "work", STRUT_OF_RUN)                                                                    \
-  X(LOSSES, "losses", STRUT_OF_RUN)                                                                \
+  X(ENERGY, "energy", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                            \
+  X(WORK, "work", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                                \
+  X(LOSSES, "losses", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                            \
   X(RESIDUAL, "residual", STRUT_OF_RUN | STRUT_OF_RIGIDITY | STRUT_OF_FORM)                        \
   X(CONTACTS, "contacts", STRUT_OF_RUN)                                                            \
-  X(POSITIONS, "positions", STRUT_OF_RUN | STRUT_OF_FORM)                                          \
+  X(POSITIONS, "positions", STRUT_OF_RUN | STRUT_OF_FORM | STRUT_KEEP_SMOOTH)                      \
   X(OUTCOME, "outcome", STRUT_OF_RUN)                                                              \
-  X(QUANTITIES, "quantities", STRUT_OF_RUN)                                                        \
+  X(QUANTITIES, "quantities", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                    \
   X(KEPT, "accuracy_kept", STRUT_OF_RUN)                                                           \
   X(NODES, "node_count", STRUT_OF_ALL)                                                             \
   X(MEMBERS, "member_count", STRUT_OF_ALL)                                                         \
   X(FREEDOMS, "degrees_of_freedom", STRUT_OF_ALL)                                                  \
-  X(TOTAL_MASS, "total_mass", STRUT_OF_ALL)                                                        \
+  X(TOTAL_MASS, "total_mass", STRUT_OF_ALL | STRUT_KEEP_SMOOTH)                                    \
   X(STABLE, "stable_count", STRUT_OF_EQUILIBRIA)                                                   \
   X(FOUND, "equilibrium_count", STRUT_OF_EQUILIBRIA)                                               \
   X(STATES, "states", STRUT_OF_EQUILIBRIA)                                                         \
-  X(ENERGIES, "energies", STRUT_OF_EQUILIBRIA)                                                     \
-  X(BARRIERS, "barriers", STRUT_OF_EQUILIBRIA)                                                     \
+  X(ENERGIES, "energies", STRUT_OF_EQUILIBRIA | STRUT_KEEP_SMOOTH)                                 \
+  X(BARRIERS, "barriers", STRUT_OF_EQUILIBRIA | STRUT_KEEP_SMOOTH)                                 \
   X(STARTS, "starts", STRUT_OF_EQUILIBRIA)                                                         \
   X(MISSED, "missed_probability", STRUT_OF_EQUILIBRIA)                                             \
   X(AT, "at", STRUT_OF_MODES)                                                                      \
-  X(FREQUENCIES, "frequencies", STRUT_OF_MODES)                                                    \
-  X(DAMPING_RATIOS, "damping_ratios", STRUT_OF_MODES)                                              \
+  X(FREQUENCIES, "frequencies", STRUT_OF_MODES | STRUT_KEEP_SMOOTH)                                \
+  X(DAMPING_RATIOS, "damping_ratios", STRUT_OF_MODES | STRUT_KEEP_SMOOTH)                          \
   X(MODE_COUNTS, "mode_counts", STRUT_OF_MODES)                                                    \
   X(CONDITION, "condition", STRUT_OF_MODES)                                                        \
   X(RANK, "rank", STRUT_OF_RIGIDITY)                                                               \
@@ -292,22 +294,23 @@ enum {
   X(MECHANISM_KINDS, "mechanism_kinds", STRUT_OF_RIGIDITY)                                         \
   X(SUPER_STABLE, "super_stable", STRUT_OF_RIGIDITY)                                               \
   X(LABEL, "label", STRUT_OF_RIGIDITY)                                                             \
-  X(LIMIT, "limit_factor", STRUT_OF_PATH)                                                          \
-  X(BIFURCATION, "bifurcation_factor", STRUT_OF_PATH)                                              \
-  X(CRITICAL, "critical_factor", STRUT_OF_PATH)                                                    \
+  X(LIMIT, "limit_factor", STRUT_OF_PATH | STRUT_KEEP_SMOOTH)                                      \
+  X(BIFURCATION, "bifurcation_factor", STRUT_OF_PATH | STRUT_KEEP_SMOOTH)                          \
+  X(CRITICAL, "critical_factor", STRUT_OF_PATH | STRUT_KEEP_SMOOTH)                                \
   X(LAST_FACTOR, "last_factor", STRUT_OF_PATH)                                                     \
   X(PATH_EVENTS, "event_count", STRUT_OF_PATH)                                                     \
   X(END, "end", STRUT_OF_PATH)                                                                     \
-  X(MOVED, "moved", STRUT_OF_FORM)                                                                 \
-  X(DENSITY_CHANGE, "density_change", STRUT_OF_FORM)                                               \
-  X(LEAST_TENSION, "least_tension", STRUT_OF_FORM)                                                 \
-  X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM)                                                 \
-  X(LENGTHS, "lengths", STRUT_OF_FORM)                                                             \
-  X(COST, "cost_of_transport", STRUT_OF_RUN)                                                       \
-  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA)                                         \
-  X(STIFFNESS, "stiffness", STRUT_OF_MODES)                                                        \
-  X(SHAPE, "shape_distance", STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES)                  \
-  X(CURVE, "curve_distance", STRUT_OF_PATH)
+  X(MOVED, "moved", STRUT_OF_FORM | STRUT_KEEP_SMOOTH)                                             \
+  X(DENSITY_CHANGE, "density_change", STRUT_OF_FORM | STRUT_KEEP_SMOOTH)                           \
+  X(LEAST_TENSION, "least_tension", STRUT_OF_FORM | STRUT_KEEP_SMOOTH)                             \
+  X(LARGEST_FORCE, "largest_force", STRUT_OF_FORM | STRUT_KEEP_SMOOTH)                             \
+  X(LENGTHS, "lengths", STRUT_OF_FORM | STRUT_KEEP_SMOOTH)                                         \
+  X(COST, "cost_of_transport", STRUT_OF_RUN | STRUT_KEEP_SMOOTH)                                   \
+  X(LOWEST_BARRIER, "lowest_barrier", STRUT_OF_EQUILIBRIA | STRUT_KEEP_SMOOTH)                     \
+  X(STIFFNESS, "stiffness", STRUT_OF_MODES | STRUT_KEEP_SMOOTH)                                    \
+  X(SHAPE, "shape_distance",                                                                       \
+    STRUT_OF_RUN | STRUT_OF_EQUILIBRIA | STRUT_OF_MODES | STRUT_KEEP_SMOOTH)                       \
+  X(CURVE, "curve_distance", STRUT_OF_PATH | STRUT_KEEP_SMOOTH)
 
 /** The key's words, "velocity|velocity_spread|...". */
 #define STRUT_KEEP_WORD(NAME, word, of) "|" word

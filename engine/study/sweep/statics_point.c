@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Points of a study that computes what is at rest: the columns, and their cells by the functions of the
+/* The columns of what a point computes; points of a study that computes what is at rest, by the functions of the
  * commands. */
 #include <math.h>
 #include <stdio.h>
@@ -16,6 +16,8 @@
 /* Results of one point; those of the study's computation are filled. */
 typedef struct rest_result {
   const strut_model *model;
+  const strut_setup *setup;     /* of a run, */
+  const strut_summary *summary; /* and what it gave; NULL: nothing */
   strut_equilibria equilibria;
   size_t stable_count;
   int32_t *stable; /* (stable_count) equilibria that stand, by energy; in the arena */
@@ -106,6 +108,56 @@ static double super_stability(const strut_rigidity *rigidity) {
   return known ? (double)rigidity->stress.super_stable : (double)NAN;
 }
 
+/* The value of a run's summary at a path of keys. */
+static strut_value value_at(const rest_result *result, const strut_value_rows *rows,
+                            const char *path) {
+  strut_value value = {0};
+  if (result->summary)
+    strut_value_at(rows, path,
+                   &(strut_result_object){.at = result->summary, .scene = &result->setup->scene},
+                   &value);
+  return value;
+}
+
+/* NAN if the summary has none. */
+static double number_at(const rest_result *result, const strut_value_rows *rows, const char *path) {
+  strut_value value = value_at(result, rows, path);
+  bool number = value.kind == STRUT_VALUE_NUMBER || value.kind == STRUT_VALUE_COUNT ||
+                value.kind == STRUT_VALUE_FLAG;
+  return number ? value.number : (double)NAN;
+}
+
+static double found(const rest_result *result, const char *path) {
+  return number_at(result, &strut_summary_values, path);
+}
+
+static double run_cost(const rest_result *result, const char *path) {
+  return number_at(result, &strut_summary_column_values, path);
+}
+
+/* Drive periods of a run, or the distance that it travels in one; NAN: it has none. */
+static double over_periods(const rest_result *result, bool distance) {
+  const strut_summary *summary = result->summary;
+  if (!summary) return (double)NAN;
+  double period = strut_experiment_span(&result->setup->experiment, &result->setup->scene).period;
+  if (!distance && summary->steady.kind != STRUT_MOTION_NOT_WATCHED)
+    return (double)summary->steady.periods;
+  if (!(period > 0.0)) return (double)NAN;
+  return distance ? summary->velocity * period : summary->duration / period;
+}
+
+static double count_freedoms(const strut_model *model) {
+  double count = 0.0;
+  for (int32_t i = 0; i < 2 * model->node_count; i++) count += !model->fixed[i];
+  return count;
+}
+
+static double total_mass(const strut_model *model) {
+  double mass = 0.0;
+  for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
+  return mass;
+}
+
 /* ---- the columns ---- */
 
 typedef enum column_shape {
@@ -115,8 +167,38 @@ typedef enum column_shape {
   WORDS
 } column_shape;
 
-/* The columns: computation, word, name, unit (NULL: that of a path's parameter), shape, value of a number (the i-th). */
+/*
+ * The columns: computation (COUNT: any; then of the structure), word, name, unit (NULL: that of a path's parameter),
+ * shape, value of a number (the i-th).
+ */
 #define COLUMN_TABLE(X)                                                                            \
+  X(COUNT, NODES, "node_count", "1", NUMBER, (double)model->scene->node_count)                     \
+  X(COUNT, MEMBERS, "member_count", "1", NUMBER, (double)model->scene->member_count)               \
+  X(COUNT, FREEDOMS, "degrees_of_freedom", "1", NUMBER, count_freedoms(model))                     \
+  X(COUNT, TOTAL_MASS, "total_mass", "kg", NUMBER, total_mass(model))                              \
+  X(RUN, VELOCITY, "velocity", "m/s", NUMBER, found(result, "velocity"))                           \
+  X(RUN, SPREAD, "velocity_spread", "m/s", NUMBER, found(result, "velocity_spread"))               \
+  X(RUN, INTERVAL, "velocity_interval", "m/s", NUMBER, found(result, "steady.velocity_interval"))  \
+  X(RUN, MOTION, "motion", "1", WORD, (double)NAN)                                                 \
+  X(RUN, REPEATS, "repeats", "1", NUMBER, found(result, "steady.repeats"))                         \
+  X(RUN, PERIODS, "periods", "1", NUMBER, over_periods(result, false))                             \
+  X(RUN, DISTANCE, "distance", "m", NUMBER, over_periods(result, true))                            \
+  X(RUN, DURATION, "duration", "s", NUMBER, found(result, "duration"))                             \
+  X(RUN, SETTLE_TIME, "settle_time", "s", NUMBER, found(result, "settle_time"))                    \
+  X(RUN, STEPS, "steps", "1", NUMBER, found(result, "steps"))                                      \
+  X(RUN, EVALUATIONS, "force_evaluations", "1", NUMBER, found(result, "force_evaluations"))        \
+  X(RUN, CHECKS, "check_evaluations", "1", NUMBER,                                                 \
+    result->summary ? (double)result->summary->accuracy.check_evaluations : (double)NAN)           \
+  X(RUN, EVENTS, "events", "1", NUMBER, found(result, "events"))                                   \
+  X(RUN, METHOD, "method", "1", WORD, (double)NAN)                                                 \
+  X(RUN, STEP, "step", "s", NUMBER, found(result, "step"))                                         \
+  X(RUN, STEP_LIMIT, "step_limit", "s", NUMBER, found(result, "step_limit"))                       \
+  X(RUN, EXPECTED, "expected_error", "1", NUMBER, found(result, "accuracy.expected"))              \
+  X(RUN, KEPT, STRUT_KEPT_COLUMN, "1", NUMBER, found(result, "accuracy.kept"))                     \
+  STRUT_ENERGY_TABLE(ENERGY_OF_##X)                                                                \
+  X(RUN, RESIDUAL, "residual", "J", NUMBER, found(result, "energy.residual"))                      \
+  X(RUN, COST, "cost_of_transport", "1", NUMBER, run_cost(result, "cost_of_transport"))            \
+  X(RUN, COST, "work_per_distance", "N", NUMBER, run_cost(result, "work_per_distance"))            \
   X(EQUILIBRIA, STABLE, "stable_count", "1", NUMBER, (double)result->stable_count)                 \
   X(EQUILIBRIA, FOUND, "equilibrium_count", "1", NUMBER, (double)result->equilibria.count)         \
   X(EQUILIBRIA, STATES, "state", "1", WORDS, (double)NAN)                                          \
@@ -179,6 +261,7 @@ typedef struct column {
 } column;
 
 static const column columns[] = {
+#define ENERGY_OF_COLUMN(name, kind, label) COLUMN(RUN, kind, #name, "J", NUMBER, )
 #define COLUMN(compute, keep, name, unit, shape, value)                                            \
   {STRUT_COMPUTE_##compute, STRUT_KEEP_##keep, name, unit, shape},
     COLUMN_TABLE(COLUMN)};
@@ -186,6 +269,10 @@ enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
 /* The i-th value of the k-th column. */
 static double value_of(const rest_result *result, size_t k, size_t i) {
+  const strut_model *model = result->model;
+  if (columns[k].compute == STRUT_COMPUTE_COUNT && !model) return (double)NAN;
+#define ENERGY_OF_VALUE(name, kind, label)                                                         \
+  VALUE(RUN, kind, #name, "J", NUMBER, found(result, "energy." #name))
 #define VALUE(compute, keep, name, unit, shape, value)                                             \
   if (k-- == 0) return value;
   COLUMN_TABLE(VALUE)
@@ -206,6 +293,11 @@ static const char *word_of(const rest_result *result, strut_keep keep, size_t i,
   if (keep == STRUT_KEEP_STATES)
     return i < result->stable_count ? result->equilibria.list[result->stable[i]].name : "";
   if (keep == STRUT_KEEP_AT) return result->modes.at;
+  if (keep == STRUT_KEEP_MOTION || keep == STRUT_KEEP_METHOD) {
+    const char *path = keep == STRUT_KEEP_MOTION ? "steady.kind" : "method";
+    const char *text = value_at(result, &strut_summary_values, path).text;
+    return text ? text : "";
+  }
   if (keep == STRUT_KEEP_LABEL) return short_label(result->rigidity.tensegrity.label, word);
   return strut_path_end_word(result->path.end);
 }
@@ -229,8 +321,9 @@ static size_t lowest_of(const strut_study *study) {
 }
 
 static bool is_kept(const strut_sweep_plan *plan, const column *self) {
-  return self->compute == (strut_compute)plan->study->compute &&
-         strut_keep_has(&plan->keep, self->keep);
+  bool computed =
+      self->compute == STRUT_COMPUTE_COUNT || self->compute == (strut_compute)plan->study->compute;
+  return computed && strut_keep_has(&plan->keep, self->keep);
 }
 
 /* ---- what a path follows ---- */
@@ -303,7 +396,7 @@ strut_status strut_statics_check(const strut_study *study, const strut_setup *se
   return choose_path(study, setup, &options, &unit, error);
 }
 
-bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup) {
+bool strut_kept_columns(strut_sweep_plan *plan, const strut_setup *setup) {
   strut_path_options options;
   strut_error error = {0};
   const char *factor = "1";
@@ -430,19 +523,31 @@ static strut_status compute(const strut_sweep_worker *worker, strut_sweep_job *j
   return STRUT_OK;
 }
 
-static void fill_columns(const strut_sweep_plan *plan, const rest_result *result,
+/* The cells of the structure, or of what is computed. */
+static void fill_columns(const strut_sweep_plan *plan, const rest_result *result, bool structure,
                          strut_row_buffer *cells) {
   for (size_t k = 0; k < COLUMNS; k++) {
     const column *self = &columns[k];
     size_t count = self->shape == NUMBERS || self->shape == WORDS ? lowest_of(plan->study) : 1;
     char word[STRUT_SLOT_WORD];
-    for (size_t i = 0; i < count && is_kept(plan, self); i++) {
+    if (!is_kept(plan, self) || (self->compute == STRUT_COMPUTE_COUNT) != structure) continue;
+    for (size_t i = 0; i < count; i++) {
       if (self->shape == WORD || self->shape == WORDS)
         strut_sweep_word(cells, word_of(result, self->keep, i, word));
       else
         strut_sweep_number(cells, value_of(result, k, i));
     }
   }
+}
+
+void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *model,
+                             strut_row_buffer *cells) {
+  fill_columns(plan, &(rest_result){.model = model}, true, cells);
+}
+
+void strut_kept_fill_run(const strut_sweep_plan *plan, const strut_setup *setup,
+                         const strut_summary *summary, strut_row_buffer *cells) {
+  fill_columns(plan, &(rest_result){.setup = setup, .summary = summary}, false, cells);
 }
 
 /* Positions and lengths of a form: its start, which a new model has. */
@@ -474,7 +579,7 @@ strut_status strut_statics_point(const strut_sweep_worker *worker, strut_sweep_j
   job->setup.experiment.interrupt = strut_sweep_interrupt_of(worker, job);
   strut_sweep_fill_counts(worker->plan, model, &job->cells);
   if (!status) status = compute(worker, job, result);
-  if (!status) fill_columns(worker->plan, result, &job->cells);
+  if (!status) fill_columns(worker->plan, result, false, &job->cells);
   if (!status && worker->plan->study->compute == STRUT_COMPUTE_FORM)
     status = fill_form(worker->plan, job);
   strut_equilibria_free(&result->equilibria);

@@ -13,84 +13,8 @@ static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,     
                                    STRUT_KEEP_PERIODS,   STRUT_KEEP_EVALUATIONS, STRUT_KEEP_OUTCOME,
                                    STRUT_KEEP_QUANTITIES};
 
-/*
- * The columns of each word of `keep`, in order: word, name, and where a summary has it. Those that it has nowhere are
- * made of several (combine).
- */
-typedef struct entry {
-  strut_keep keep;
-  const char *name, *path;
-} entry;
-
-static const entry entries[] = {
-#define ENERGY_ENTRY(name, kind, label) {STRUT_KEEP_##kind, #name, "energy." #name},
-    {STRUT_KEEP_VELOCITY, "velocity", "velocity"},
-    {STRUT_KEEP_SPREAD, "velocity_spread", "velocity_spread"},
-    {STRUT_KEEP_INTERVAL, "velocity_interval", "steady.velocity_interval"},
-    {STRUT_KEEP_MOTION, "motion", "steady.kind"},
-    {STRUT_KEEP_REPEATS, "repeats", "steady.repeats"},
-    {STRUT_KEEP_PERIODS, "periods", NULL},
-    {STRUT_KEEP_DISTANCE, "distance", NULL},
-    {STRUT_KEEP_DURATION, "duration", "duration"},
-    {STRUT_KEEP_SETTLE_TIME, "settle_time", "settle_time"},
-    {STRUT_KEEP_STEPS, "steps", "steps"},
-    {STRUT_KEEP_EVALUATIONS, "force_evaluations", "force_evaluations"},
-    {STRUT_KEEP_CHECKS, "check_evaluations", NULL},
-    {STRUT_KEEP_EVENTS, "events", "events"},
-    {STRUT_KEEP_METHOD, "method", "method"},
-    {STRUT_KEEP_STEP, "step", "step"},
-    {STRUT_KEEP_STEP_LIMIT, "step_limit", "step_limit"},
-    {STRUT_KEEP_EXPECTED, "expected_error", "accuracy.expected"},
-    {STRUT_KEEP_KEPT, STRUT_KEPT_COLUMN, "accuracy.kept"},
-    STRUT_ENERGY_TABLE(ENERGY_ENTRY){STRUT_KEEP_RESIDUAL, "residual", "energy.residual"},
-    {STRUT_KEEP_COST, "cost_of_transport", "cost_of_transport"},
-    {STRUT_KEEP_COST, "work_per_distance", "work_per_distance"}};
-enum { ENTRIES = sizeof entries / sizeof entries[0] };
-
-static const strut_value_rows *rows_of(const entry *self) {
-  return self->keep == STRUT_KEEP_COST ? &strut_summary_column_values : &strut_summary_values;
-}
-
-static const char *unit_of(const entry *self) {
-  if (self->keep == STRUT_KEEP_DISTANCE) return "m";
-  if (!self->path) return "1";
-  const char *unit = strut_value_at(rows_of(self), self->path, NULL, NULL)->unit;
-  return *unit ? unit : "1";
-}
-
-static bool is_word(const entry *self) {
-  return self->keep == STRUT_KEEP_MOTION || self->keep == STRUT_KEEP_METHOD;
-}
-
-/* The structure of a point: word, name, unit, value of a model. */
-#define COUNT_TABLE(X)                                                                             \
-  X(NODES, "node_count", "1", (double)model->scene->node_count)                                    \
-  X(MEMBERS, "member_count", "1", (double)model->scene->member_count)                              \
-  X(FREEDOMS, "degrees_of_freedom", "1", count_freedoms(model))                                    \
-  X(TOTAL_MASS, "total_mass", "kg", total_mass(model))
-
-static const struct {
-  strut_keep keep;
-  const char *name, *unit;
-} counts[] = {
-#define COUNT(keep, name, unit, value) {STRUT_KEEP_##keep, name, unit},
-    COUNT_TABLE(COUNT)};
-enum { COUNTS = sizeof counts / sizeof counts[0] };
-
 void strut_sweep_begin_smooth(strut_sweep_plan *plan, strut_keep keep) {
-  static const strut_keep smooth[] = {
-      STRUT_KEEP_VELOCITY,       STRUT_KEEP_DISTANCE,       STRUT_KEEP_ENERGY,
-      STRUT_KEEP_WORK,           STRUT_KEEP_LOSSES,         STRUT_KEEP_COST,
-      STRUT_KEEP_TOTAL_MASS,     STRUT_KEEP_ENERGIES,       STRUT_KEEP_BARRIERS,
-      STRUT_KEEP_LOWEST_BARRIER, STRUT_KEEP_FREQUENCIES,    STRUT_KEEP_DAMPING_RATIOS,
-      STRUT_KEEP_STIFFNESS,      STRUT_KEEP_SHAPE,          STRUT_KEEP_CURVE,
-      STRUT_KEEP_LIMIT,          STRUT_KEEP_BIFURCATION,    STRUT_KEEP_CRITICAL,
-      STRUT_KEEP_MOVED,          STRUT_KEEP_DENSITY_CHANGE, STRUT_KEEP_LEAST_TENSION,
-      STRUT_KEEP_LARGEST_FORCE,  STRUT_KEEP_QUANTITIES,     STRUT_KEEP_POSITIONS,
-      STRUT_KEEP_LENGTHS};
-  plan->smooth = false;
-  for (size_t i = 0; i < sizeof smooth / sizeof smooth[0]; i++)
-    plan->smooth = plan->smooth || keep == smooth[i];
+  plan->smooth = strut_kept_word_at(keep)->of & STRUT_KEEP_SMOOTH;
 }
 
 static bool keeps(const strut_sweep_plan *plan, strut_keep keep) {
@@ -183,18 +107,6 @@ static bool add_quantities(strut_sweep_plan *plan, const strut_experiment *exper
   return true;
 }
 
-/* What a run gives, apart from the structure's things. */
-static bool add_entries(strut_sweep_plan *plan) {
-  bool fine = true;
-  for (size_t i = 0; i < ENTRIES && fine; i++) {
-    strut_sweep_begin_smooth(plan, entries[i].keep);
-    if (keeps(plan, entries[i].keep))
-      fine = strut_sweep_add_column(plan, "", entries[i].name, unit_of(&entries[i]),
-                                    is_word(&entries[i]));
-  }
-  return fine;
-}
-
 /* What is kept of a point. */
 static bool add_kept(strut_sweep_plan *plan, const strut_setup *setup) {
   bool fine = keep_names(plan, &setup->scene), run = plan->study->compute == STRUT_COMPUTE_RUN;
@@ -202,12 +114,7 @@ static bool add_kept(strut_sweep_plan *plan, const strut_setup *setup) {
     const strut_study_column *column = strut_grid_column(plan->study, i, NULL);
     fine = strut_sweep_add_column(plan, "", column->name, column->unit, column->word);
   }
-  for (size_t i = 0; i < COUNTS && fine; i++) {
-    strut_sweep_begin_smooth(plan, counts[i].keep);
-    if (keeps(plan, counts[i].keep))
-      fine = strut_sweep_add_column(plan, "", counts[i].name, counts[i].unit, false);
-  }
-  fine = fine && (run ? add_entries(plan) : strut_statics_columns(plan, setup)) && add_things(plan);
+  fine = fine && strut_kept_columns(plan, setup) && add_things(plan);
   if (!fine || !run) return fine;
   fine = add_quantities(plan, &setup->experiment);
   if (fine && keeps(plan, STRUT_KEEP_OUTCOME))
@@ -261,9 +168,8 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
     if (status) return status;
   }
   size_t quantities = setup->experiment.quantity_count;
-  size_t most = plan->axis_columns + ENTRIES + COUNTS + STRUT_STATICS_COLUMNS + 8 +
-                2 * scene->contact_count + 2 * scene->node_count + scene->member_count +
-                2 * quantities;
+  size_t most = plan->axis_columns + STRUT_KEPT_COLUMNS + 8 + 2 * scene->contact_count +
+                2 * scene->node_count + scene->member_count + 2 * quantities;
   size_t by =
       study->derivative_count ? study->derivative_count : setup->experiment.derivative_count;
   if (study->sensitivity.wanted) by += study->axes[study->sensitivity.axis].column_count;
@@ -339,66 +245,6 @@ bool strut_sweep_stops(strut_status status) {
   return status == STRUT_NO_MEMORY || status == STRUT_FILE_TROUBLE || status == STRUT_INTERRUPTED;
 }
 
-/* The value of an entry without a result of its own. */
-static double combine(const strut_summary *summary, const strut_setup *setup, strut_keep keep) {
-  double period = strut_experiment_span(&setup->experiment, &setup->scene).period;
-  bool watched = summary->steady.kind != STRUT_MOTION_NOT_WATCHED;
-  if (keep == STRUT_KEEP_CHECKS) return (double)summary->accuracy.check_evaluations;
-  if (keep == STRUT_KEEP_PERIODS && watched) return (double)summary->steady.periods;
-  if (!(period > 0.0)) return (double)NAN;
-  return keep == STRUT_KEEP_PERIODS ? summary->duration / period : summary->velocity * period;
-}
-
-static strut_value value_at(const strut_summary *summary, const strut_scene *scene,
-                            const strut_value_rows *rows, const char *path) {
-  strut_value value = {0};
-  strut_value_at(rows, path, &(strut_result_object){.at = summary, .scene = scene}, &value);
-  return value;
-}
-
-/* NAN if the summary has none. */
-static double result_of(const strut_summary *summary, const strut_scene *scene,
-                        const strut_value_rows *rows, const char *path) {
-  strut_value value = value_at(summary, scene, rows, path);
-  bool number = value.kind == STRUT_VALUE_NUMBER || value.kind == STRUT_VALUE_COUNT ||
-                value.kind == STRUT_VALUE_FLAG;
-  return number ? value.number : (double)NAN;
-}
-
-static double number_of(const strut_summary *summary, const strut_setup *setup, const entry *self) {
-  return self->path ? result_of(summary, &setup->scene, rows_of(self), self->path)
-                    : combine(summary, setup, self->keep);
-}
-
-static const char *word_of(const strut_summary *summary, const strut_scene *scene, size_t index) {
-  const char *word = value_at(summary, scene, &strut_summary_values, entries[index].path).text;
-  return word ? word : "";
-}
-
-static double count_freedoms(const strut_model *model) {
-  double count = 0.0;
-  for (int32_t i = 0; i < 2 * model->node_count; i++) count += !model->fixed[i];
-  return count;
-}
-
-static double total_mass(const strut_model *model) {
-  double mass = 0.0;
-  for (int32_t i = 0; i < model->node_count; i++) mass += model->weight[i];
-  return mass;
-}
-
-void strut_sweep_fill_counts(const strut_sweep_plan *plan, const strut_model *model,
-                             strut_row_buffer *cells) {
-  bool any = false;
-  for (size_t i = 0; i < COUNTS; i++) any = any || keeps(plan, counts[i].keep);
-  if (!any) return;
-  const double values[] = {
-#define COUNT_VALUE(keep, name, unit, value) model ? value : (double)NAN,
-      COUNT_TABLE(COUNT_VALUE)};
-  for (size_t i = 0; i < COUNTS; i++)
-    if (keeps(plan, counts[i].keep)) strut_sweep_number(cells, values[i]);
-}
-
 int64_t strut_sweep_named(const char *name, size_t i, const strut_scene *scene,
                           strut_channel_owner owner) {
   size_t count = strut_owner_count(owner, scene);
@@ -447,13 +293,7 @@ static void fill_measured(const strut_sweep_plan *plan, const strut_summary *sum
 
 void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
                       const strut_summary *summary, const char *outcome, strut_row_buffer *cells) {
-  for (size_t i = 0; i < ENTRIES; i++) {
-    if (!keeps(plan, entries[i].keep)) continue;
-    if (is_word(&entries[i]))
-      strut_sweep_word(cells, summary ? word_of(summary, &setup->scene, i) : "");
-    else
-      strut_sweep_number(cells, summary ? number_of(summary, setup, &entries[i]) : (double)NAN);
-  }
+  strut_kept_fill_run(plan, setup, summary, cells);
   if (summary) {
     bool known = summary->end.node_count == setup->scene.node_count;
     fill_contacts(plan, &setup->scene, summary, cells);
@@ -468,7 +308,7 @@ void strut_sweep_fill(const strut_sweep_plan *plan, const strut_setup *setup,
   if (plan->start)
     strut_sweep_number(cells, summary ? (double)summary->settle.unstable : (double)NAN);
   if (plan->accurate)
-    strut_sweep_number(
-        cells, summary ? result_of(summary, &setup->scene, &strut_summary_values, "accuracy.kept")
-                       : (double)NAN);
+    strut_sweep_number(cells, summary && summary->accuracy.wanted > 0.0
+                                  ? (double)summary->accuracy.kept
+                                  : (double)NAN);
 }

@@ -174,12 +174,15 @@ strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_jo
 
 /* statics_point.c */
 
-/** Most columns that strut_statics_columns adds, apart from those of nodes and members. */
-enum { STRUT_STATICS_COLUMNS = 16 + 3 * STRUT_STUDY_MOST_LOWEST };
+/** Most columns that strut_kept_columns adds. */
+enum { STRUT_KEPT_COLUMNS = 64 + 3 * STRUT_STUDY_MOST_LOWEST };
 /** What is usual to keep of a computation that is no run. */
 strut_keep_set strut_statics_usual(strut_compute compute);
-/** Adds the columns of what is computed at rest. False: no memory. */
-bool strut_statics_columns(strut_sweep_plan *plan, const strut_setup *setup);
+/** Adds the columns of the structure and of what is computed, but those of its things. False: no memory. */
+bool strut_kept_columns(strut_sweep_plan *plan, const strut_setup *setup);
+/** Appends the cells of what a run gave; summary NULL: all missing. */
+void strut_kept_fill_run(const strut_sweep_plan *plan, const strut_setup *setup,
+                         const strut_summary *summary, strut_row_buffer *cells);
 /** STRUT_BAD_SCENE where the study asks for what the scene does not have. */
 strut_status strut_statics_check(const strut_study *study, const strut_setup *setup,
                                  strut_error *error);
