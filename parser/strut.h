@@ -7,8 +7,7 @@
  *
  * The libraries are written in C17; C++ programs may include this header as it stands.
  */
-#ifndef STRUT_PARSER_STRUT_H
-#define STRUT_PARSER_STRUT_H
+#pragma once
 
 /* System headers come first, so that none is included inside the extern "C" below. */
 #include <math.h>
@@ -66,6 +65,4 @@ extern "C" {
 #ifdef __cplusplus
 }
 #undef restrict
-#endif
-
 #endif

@@ -5,8 +5,7 @@
  * Sums and products after Dekker (1971) and Knuth, made of plain doubles, so that every compiler
  * gives the same bits as long as it neither contracts nor reorders.
  */
-#ifndef STRUT_ENGINE_BASE_ARITHMETIC_H
-#define STRUT_ENGINE_BASE_ARITHMETIC_H
+#pragma once
 
 #include <math.h>
 
@@ -108,7 +107,5 @@ static inline void strut_subnormals_restore(unsigned before) {
 static inline unsigned strut_subnormals_mode(void) { return 0; }
 static inline unsigned strut_subnormals_off(void) { return 0; }
 static inline void strut_subnormals_restore(unsigned before) { (void)before; }
-
-#endif
 
 #endif

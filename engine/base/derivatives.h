@@ -8,8 +8,7 @@
  * where a contact only just grazes, there is no derivative. What a pair does not change by a bit has the derivative 0,
  * with an error of 0.
  */
-#ifndef STRUT_ENGINE_BASE_DERIVATIVES_H
-#define STRUT_ENGINE_BASE_DERIVATIVES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -63,5 +62,3 @@ STRUT_API strut_status strut_derivatives_find(const strut_derivatives_task *task
                                               strut_derivative *derivatives, strut_error *error);
 /** "differentiable", ... */
 STRUT_API const char *strut_derivative_words(strut_derivative_verdict verdict);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The word by which signal handlers and other threads ask computations to end. */
-#ifndef STRUT_ENGINE_BASE_FLAG_H
-#define STRUT_ENGINE_BASE_FLAG_H
+#pragma once
 
 #include <signal.h>
 
@@ -10,6 +9,4 @@ typedef volatile sig_atomic_t strut_flag; /* its size; C++ has atomics of its ow
 #else
 /** Non-zero asks for an end. It is free of locks, so that handlers of signals may set it. */
 typedef _Atomic sig_atomic_t strut_flag;
-#endif
-
 #endif

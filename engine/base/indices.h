@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Searches among indices, and trees over consecutive items. */
-#ifndef STRUT_ENGINE_BASE_INDICES_H
-#define STRUT_ENGINE_BASE_INDICES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -51,5 +50,3 @@ static inline size_t strut_subtree_nodes(size_t count) {
   for (; count > STRUT_SUBTREE_LEAF; count -= count / 2) nodes = 2 * nodes + 1;
   return nodes;
 }
-
-#endif

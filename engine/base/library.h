@@ -9,8 +9,7 @@
  * installed.c), which loads a module with that file and its library when a command first needs one. What
  * such a file calls of strut has STRUT_API: a module finds it in the program.
  */
-#ifndef STRUT_ENGINE_BASE_LIBRARY_H
-#define STRUT_ENGINE_BASE_LIBRARY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -24,5 +23,3 @@ typedef struct strut_library_stamp {
 
 #define STRUT_LIBRARY_STAMP(table_type)                                                            \
   { STRUT_VERSION, sizeof(table_type) }
-
-#endif

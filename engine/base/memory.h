@@ -5,8 +5,7 @@
  * All memory of strut itself comes from strut_allocate, so that a test can count allocations and
  * make the n-th one fail. Scenes, documents and models each own one arena.
  */
-#ifndef STRUT_ENGINE_BASE_MEMORY_H
-#define STRUT_ENGINE_BASE_MEMORY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -57,5 +56,3 @@ STRUT_API void strut_arena_store(const strut_arena *arena, void *to);
 STRUT_API void strut_arena_restore(strut_arena *arena, const void *from);
 /** Frees all blocks; the arena may be used again. */
 STRUT_API void strut_arena_free(strut_arena *arena);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * A map from names to indices: a hash table that grows as names are added.
- */
-#ifndef STRUT_ENGINE_BASE_NAME_MAP_H
-#define STRUT_ENGINE_BASE_NAME_MAP_H
+/** A map from names to indices: a hash table that grows as names are added. */
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -26,5 +23,3 @@ STRUT_API int strut_name_map_reserve(strut_name_map *map, size_t count);
 /** The index of a name, or -1. */
 STRUT_API int32_t strut_name_map_find(const strut_name_map *map, const char *name);
 STRUT_API void strut_name_map_free(strut_name_map *map);
-
-#endif

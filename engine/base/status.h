@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The mark of an exported symbol: everything else is hidden by the build. */
-#ifndef STRUT_ENGINE_BASE_STATUS_H
-#define STRUT_ENGINE_BASE_STATUS_H
+#pragma once
 
 #define STRUT_API __attribute__((visibility("default")))
 
@@ -52,5 +51,3 @@ STRUT_API strut_status strut_fail(strut_error *error, strut_status status, const
 
 /** The same for STRUT_NO_MEMORY: "out of memory", and what for, such as "while drawing", or "". */
 STRUT_API strut_status strut_no_memory(strut_error *error, const char *purpose);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Texts: numbers as text in any locale, and a text that grows. */
-#ifndef STRUT_ENGINE_BASE_TEXT_H
-#define STRUT_ENGINE_BASE_TEXT_H
+#pragma once
 
 #include <stdarg.h>
 #include <stdbool.h>
@@ -74,9 +73,7 @@ STRUT_API strut_c_locale strut_c_locale_enter(void);
 /** Restores what enter found. */
 STRUT_API void strut_c_locale_leave(strut_c_locale locale);
 
-/*
- * A text that grows.
- */
+/* A text that grows. */
 
 /** Zero-initialise it. */
 typedef struct strut_buffer {
@@ -96,5 +93,3 @@ STRUT_API void strut_buffer_add_list(strut_buffer *buffer, const char *format, v
     __attribute__((format(printf, 2, 0)));
 /** Returns the text, to be released by the caller, and zeroes the buffer; NULL if memory was out. */
 STRUT_API char *strut_buffer_take(strut_buffer *buffer);
-
-#endif

@@ -5,8 +5,7 @@
  * Lengths are roots of sums of squares, never hypot: that has the same bits on every machine, and the
  * check of scenes keeps coordinates far from where squares overflow.
  */
-#ifndef STRUT_ENGINE_BASE_VEC_H
-#define STRUT_ENGINE_BASE_VEC_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -106,5 +105,3 @@ static inline void strut_sincos_turns(double turns, double *sine, double *cosine
   *sine = quadrant & 2 ? -first : first;
   *cosine = (quadrant + 1) & 2 ? -second : second;
 }
-
-#endif

@@ -14,8 +14,7 @@
  * freely, as statics and settling take it. Methods with events freeze which guides slip, and where to; with others
  * that follows from the tensions. Both kinds renew the materials at the end of each step.
  */
-#ifndef STRUT_ENGINE_FORCES_CAPSTAN_H
-#define STRUT_ENGINE_FORCES_CAPSTAN_H
+#pragma once
 
 #include "engine/forces/elements.h"
 
@@ -93,5 +92,3 @@ double strut_capstan_energy(const strut_model *model, int32_t i, const double *r
                             const double *q);
 /** k (2 nodes, 2 nodes): the stiffness along the segments while the cable sticks at all guides. */
 void strut_capstan_stiffness(const strut_model *model, int32_t i, const double *q, double *k);
-
-#endif

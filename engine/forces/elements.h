@@ -7,8 +7,7 @@
  * carries one sign only acts where x = e - e0 and t both have that sign. `rest` (slots) holds natural
  * strains: the model's own, or a state's driven ones.
  */
-#ifndef STRUT_ENGINE_FORCES_ELEMENTS_H
-#define STRUT_ENGINE_FORCES_ELEMENTS_H
+#pragma once
 
 #include "engine/model/state.h"
 
@@ -88,5 +87,3 @@ strut_element_motion strut_element_move(const strut_model *model, const strut_st
     is filled as well. */
 double strut_element_measure_at(const strut_model *model, const strut_state *state, int32_t element,
                                 const double *q, const double *velocity, strut_element_pose *pose);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * Only the terms in the model's terms are evaluated. Coordinate arrays are (length).
  */
-#ifndef STRUT_ENGINE_FORCES_FORCES_H
-#define STRUT_ENGINE_FORCES_FORCES_H
+#pragma once
 
 #include "engine/model/state.h"
 
@@ -42,9 +41,7 @@ STRUT_API strut_member_values strut_member_measure_at(const strut_model *model,
                                                       const strut_state *state, int32_t member,
                                                       const double *q, const double *velocity);
 
-/*
- * The energies that a state stores, and the work that constant loads have done.
- */
+/* The energies that a state stores, and the work that constant loads have done. */
 
 /** All in [J]. */
 typedef struct strut_energies {
@@ -81,5 +78,3 @@ STRUT_API void strut_energy_reset_load_work(const strut_model *model, strut_stat
  * work that these do is that of `power`. Needs state->buffers->support_answer.
  */
 STRUT_API void strut_impulse_apply(const strut_model *model, strut_state *state, strut_power power);
-
-#endif

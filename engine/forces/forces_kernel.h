@@ -5,8 +5,7 @@
  * An integrator includes this to have one copy in its own loop. Only what the terms names is
  * evaluated.
  */
-#ifndef STRUT_ENGINE_FORCES_FORCES_KERNEL_H
-#define STRUT_ENGINE_FORCES_FORCES_KERNEL_H
+#pragma once
 
 #include <math.h>
 
@@ -333,5 +332,3 @@ STRUT_LOOP void forces_kernel(const strut_model *model, const strut_state *state
     else                                                                                           \
       name##_without_balance(__VA_ARGS__);                                                         \
   }
-
-#endif

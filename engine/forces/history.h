@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What members remember: breaks, yields, releases, folds, and the forces of Maxwell's branches. */
-#ifndef STRUT_ENGINE_FORCES_HISTORY_H
-#define STRUT_ENGINE_FORCES_HISTORY_H
+#pragma once
 
 #include "engine/forces/elements.h"
 #include "engine/model/state.h"
@@ -155,5 +154,3 @@ void strut_maxwell_apply(const strut_model *model, const strut_state *state, con
 double strut_maxwell_force(const strut_model *model, const double *velocity, int32_t member);
 /** Energy stored in all of them [J]. */
 double strut_maxwell_energy(const strut_model *model, const double *velocity);
-
-#endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Texts of laws for four things side by side, the vectors of model/algebra/hot.h: members, and coordinates in a
     step. */
-#ifndef STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
-#define STRUT_ENGINE_FORCES_MEMBERS_KERNEL_H
+#pragma once
 
 #include <math.h>
 
@@ -197,5 +196,3 @@ STRUT_INLINE void members_kernel(const strut_model *model, const strut_state *st
   for (int32_t b = 0; b < t.blocks; b++)
     members_of_block(&t, state, q, v, force, b, balance, powers);
 }
-
-#endif

@@ -7,8 +7,7 @@
  * longer, and that from all elements. Elements that are not listed exert nothing, so the forces are the same, bit by
  * bit, whichever list is in use.
  */
-#ifndef STRUT_ENGINE_FORCES_NEARBY_H
-#define STRUT_ENGINE_FORCES_NEARBY_H
+#pragma once
 
 #include "engine/model/state.h"
 
@@ -29,5 +28,3 @@ double strut_nearby_least_gap(const strut_model *model, const strut_state *state
                               int32_t *which);
 /** The place in the list of the first element that is not below `element`. */
 int32_t strut_nearby_find(const strut_nearby *near, int32_t element);
-
-#endif

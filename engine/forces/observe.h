@@ -3,8 +3,7 @@
  * Values of observables (engine/scene/observables.h): of the state, for recording and measuring, and at positions and
  * velocities within a step, for sensors.
  */
-#ifndef STRUT_ENGINE_FORCES_OBSERVE_H
-#define STRUT_ENGINE_FORCES_OBSERVE_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/forces/forces.h"
@@ -48,5 +47,3 @@ bool strut_instant_create(const strut_model *model, strut_arena *arena, strut_in
  * strut_observed_need. Updates forces and rest lengths of the state, which follow from q, v and t.
  */
 void strut_instant_show(strut_instant *instant, const strut_state *state, unsigned needs, double t);
-
-#endif

@@ -9,8 +9,7 @@
  * stick band adds the row of its tangent while its friction lasts: bar forces and stick are solved
  * together. The matrix is dense, with the inverse mass between the nodes of bars and contacts.
  */
-#ifndef STRUT_ENGINE_FORCES_RIGID_H
-#define STRUT_ENGINE_FORCES_RIGID_H
+#pragma once
 
 #include "engine/base/vec.h"
 #include "engine/model/state.h"
@@ -66,5 +65,3 @@ void strut_rigid_filter(const strut_model *model, strut_rigid *rigid, double *ac
 bool strut_rigid_project(const strut_model *model, strut_state *state, double *q, double *velocity);
 /** Tension of a member [N]; 0 where it is no rigid bar. */
 double strut_rigid_tension(const strut_rigid *rigid, int32_t member);
-
-#endif

@@ -3,8 +3,7 @@
  * Reactions of surfaces (engine/model/surfaces.h): the laws of forces_kernel.h, each contact with its own
  * tangent and normal, and several contacts of one node at once.
  */
-#ifndef STRUT_ENGINE_FORCES_SURFACES_H
-#define STRUT_ENGINE_FORCES_SURFACES_H
+#pragma once
 
 #include <assert.h>
 
@@ -63,5 +62,3 @@ double strut_rubbing_bristle_decay(const strut_model *model, const strut_state *
 /** Writes the forces of feet over those of their nodes' contacts, which touch nothing themselves. */
 void strut_rubbing_show_feet(const strut_model *model, const strut_state *state, const double *q,
                              const double *velocity);
-
-#endif

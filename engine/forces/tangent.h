@@ -9,8 +9,7 @@
  *   strut_force_visit visit = {.model = model, .q = q, .rest = rest, .closed = STRUT_CLOSED_TOUCHING};
  *   for (const strut_force *force; (force = strut_force_next(&visit));) ...
  */
-#ifndef STRUT_ENGINE_FORCES_TANGENT_H
-#define STRUT_ENGINE_FORCES_TANGENT_H
+#pragma once
 
 #include "engine/forces/elements.h"
 #include "engine/model/algebra/hot.h"
@@ -157,5 +156,3 @@ static inline size_t strut_mass_damping_entries(const strut_model *model) {
 }
 /** Adds alpha M at the rows of free coordinates: row_of (length), -1 of the others. */
 void strut_mass_damping_add(const strut_model *model, const int32_t *row_of, strut_triplets *sum);
-
-#endif

@@ -11,8 +11,7 @@
  * A rest length that jumps changes a spring at once and gives a damper no blow, as everywhere else.
  * Ground and rigid bars are not in it.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_DISCRETE_GRADIENT_H
-#define STRUT_ENGINE_INTEGRATE_DISCRETE_GRADIENT_H
+#pragma once
 
 #include "engine/model/state.h"
 
@@ -50,5 +49,3 @@ void strut_discrete_gradient_forces(const strut_model *model, const strut_state 
 /** Tensions as (1) gives them at the state's q, with its rest lengths, into `tension` (count). */
 void strut_discrete_gradient_tensions(const strut_model *model, const strut_state *state,
                                       double *tension);
-
-#endif

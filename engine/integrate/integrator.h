@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Methods of integration: one file per method, one row per method in the table.
- */
-#ifndef STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
-#define STRUT_ENGINE_INTEGRATE_INTEGRATOR_H
+/** Methods of integration: one file per method, one row per method in the table. */
+#pragma once
 
 #include "engine/model/state.h"
 #include "engine/scene/experiment.h"
@@ -150,5 +147,3 @@ typedef struct strut_motion_piece {
 typedef struct strut_observer {
   void (*see)(struct strut_observer *observer, strut_state *state, const strut_motion_piece *piece);
 } strut_observer;
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What methods of plain steps share. */
-#ifndef STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
-#define STRUT_ENGINE_INTEGRATE_PLAIN_STEPS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -65,5 +64,3 @@ STRUT_LOOP void rk4_end_of_step(int32_t n, double h, const double *z, const doub
                                    strut_lanes_load(k2 + i) + strut_lanes_load(k3 + i),
                                    strut_lanes_load_pairs(k4 + i)));
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The parts of compiling a scene: elements, feedback, and what slides. */
-#ifndef STRUT_ENGINE_MODEL_COMPILE_PARTS_H
-#define STRUT_ENGINE_MODEL_COMPILE_PARTS_H
+#pragma once
 
 #include "engine/model/model.h"
 
@@ -56,5 +55,3 @@ bool strut_feedback_compile(strut_model *model);
 bool strut_sliding_masses_compile(strut_model *model);
 /** Finds the answers; after the mass matrix. STRUT_OK or STRUT_NO_MEMORY. */
 strut_status strut_sliding_masses_solve(strut_model *model);
-
-#endif

@@ -7,8 +7,7 @@
  * by the vector kernel from the member table instead. All other pairs are elements: members that run
  * over guides, with other laws or with stops, hinges, cells, and collisions.
  */
-#ifndef STRUT_ENGINE_MODEL_ELEMENTS_H
-#define STRUT_ENGINE_MODEL_ELEMENTS_H
+#pragma once
 
 #include <assert.h>
 #include <math.h>
@@ -225,5 +224,3 @@ typedef struct strut_actuator_force_table {
   const strut_actuator_force *item; /* (count) in the scene's order */
   const uint32_t *at;               /* where the nodes' x stand in coordinate arrays: 2 * node */
 } strut_actuator_force_table;
-
-#endif

@@ -6,8 +6,7 @@
  * alike too, only one. Nodes that no mass couples are divided; small connected groups keep their
  * dense inverse; the rest is one sparse L D L' by CHOLMOD. Each part costs nothing where it is empty.
  */
-#ifndef STRUT_ENGINE_MODEL_MASS_H
-#define STRUT_ENGINE_MODEL_MASS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -73,5 +72,3 @@ void strut_mass_factor_single(const strut_mass_operator *op, const double *restr
  */
 strut_status strut_mass_matrix(strut_model *model, int coordinate, strut_arena *scratch,
                                strut_sparse **matrix, int32_t **node);
-
-#endif

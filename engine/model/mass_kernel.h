@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Hot: the inverse of the mass matrix applied once per force evaluation. See mass.h.
- */
-#ifndef STRUT_ENGINE_MODEL_MASS_KERNEL_H
-#define STRUT_ENGINE_MODEL_MASS_KERNEL_H
+/** Hot: the inverse of the mass matrix applied once per force evaluation. See mass.h. */
+#pragma once
 
 #include "engine/model/algebra/hot.h"
 #include "engine/model/mass.h"
@@ -73,5 +70,3 @@ STRUT_LOOP void mass_kernel(const strut_model *model, const double *restrict f, 
       strut_mass_factor_single(&mass->coordinate[c], f + c, a + c, work);
   }
 }
-
-#endif

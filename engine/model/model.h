@@ -8,8 +8,7 @@
  * from the mass matrix, and their coordinates simply never accelerate. Members keep the scene's order, so
  * that a term left out changes no bit of the others.
  */
-#ifndef STRUT_ENGINE_MODEL_MODEL_H
-#define STRUT_ENGINE_MODEL_MODEL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -353,5 +352,3 @@ typedef struct strut_connected_part {
  */
 STRUT_API void strut_connected_parts_find(const strut_model *model, const double *force,
                                           int32_t *part_of, strut_connected_part *part);
-
-#endif

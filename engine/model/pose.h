@@ -6,8 +6,7 @@
  * above the ground. The step's vector kernels (members_kernel.h, forces_kernel.h) repeat
  * it for several members at once; tests/unit/pose_test.c compares them.
  */
-#ifndef STRUT_ENGINE_MODEL_POSE_H
-#define STRUT_ENGINE_MODEL_POSE_H
+#pragma once
 
 #include <assert.h>
 #include <float.h>
@@ -255,5 +254,3 @@ int32_t strut_surface_lowest(const strut_surface *first, const double p[2], doub
 /** strut_contacts_near of all nodes, with no margin; all contacts where there is one straight line at rest. */
 int32_t strut_contacts_all_near(const strut_contact_table *contacts, const double *positions,
                                 const strut_ground_motion *motion, int32_t *list);
-
-#endif

@@ -5,8 +5,7 @@
  * Coordinate arrays are (length): x, y of node 0, x, y of node 1, ... Read from top to bottom it is the order
  * in which a force evaluation works.
  */
-#ifndef STRUT_ENGINE_MODEL_STATE_H
-#define STRUT_ENGINE_MODEL_STATE_H
+#pragma once
 
 #include <math.h>
 
@@ -227,5 +226,3 @@ STRUT_API strut_status strut_state_create(const strut_model *model, strut_state 
 STRUT_API void strut_state_reset(const strut_model *model, strut_state *state);
 /** NULL is allowed. */
 STRUT_API void strut_state_free(strut_state *state);
-
-#endif

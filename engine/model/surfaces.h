@@ -7,8 +7,7 @@
  * and along the tangent the gap bends by the curvature. Of a line normal and tangent are constant, of a
  * circle they turn with the node, of a piece of a profile they are those of its nearest segment or corner.
  */
-#ifndef STRUT_ENGINE_MODEL_SURFACES_H
-#define STRUT_ENGINE_MODEL_SURFACES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -79,5 +78,3 @@ STRUT_API double strut_surface_margin(const strut_surface *surface, const double
 struct strut_model;
 /** Compiles the surfaces and contacts of a scene with `grounds`; false: out of memory. */
 STRUT_API bool strut_surfaces_compile(struct strut_model *model);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Texts that grow by cells of CSV and by base64, and files put into the program.
- */
-#ifndef STRUT_ENGINE_OUTPUT_BUFFER_H
-#define STRUT_ENGINE_OUTPUT_BUFFER_H
+/** Texts that grow by cells of CSV and by base64, and files put into the program. */
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,5 +28,3 @@ typedef struct strut_embedded {
   const char *text;
   size_t length;
 } strut_embedded;
-
-#endif

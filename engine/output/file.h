@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Files that appear whole or not at all: written beside, synchronised, renamed.
- */
-#ifndef STRUT_ENGINE_OUTPUT_FILE_H
-#define STRUT_ENGINE_OUTPUT_FILE_H
+/** Files that appear whole or not at all: written beside, synchronised, renamed. */
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -70,5 +67,3 @@ STRUT_API strut_status strut_stage_create(strut_stage *stage, const char *direct
 STRUT_API void strut_stage_remove(strut_stage *stage);
 /** Removes the folders that killed processes left in the directory; true if there were any. */
 STRUT_API bool strut_stage_sweep(const char *directory);
-
-#endif

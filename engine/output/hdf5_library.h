@@ -4,8 +4,7 @@
  *
  * Only the files named hdf5_* and trajectory.c see hdf5.h.
  */
-#ifndef STRUT_ENGINE_OUTPUT_HDF5_LIBRARY_H
-#define STRUT_ENGINE_OUTPUT_HDF5_LIBRARY_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -46,5 +45,3 @@ STRUT_API double **strut_trajectory_array(strut_trajectory *trajectory, strut_ch
 /** STRUT_FILE_TROUBLE: the file cannot be read, for that reason. */
 STRUT_API strut_status strut_trajectory_trouble(const char *path, const char *reason,
                                                 strut_error *error);
-
-#endif

@@ -8,8 +8,7 @@
  * equal runs would differ; here the attributes are written packed. Functions return false (or a
  * negative id) when the library fails.
  */
-#ifndef STRUT_ENGINE_OUTPUT_HDF5_PARTS_H
-#define STRUT_ENGINE_OUTPUT_HDF5_PARTS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -63,5 +62,3 @@ bool strut_hdf5_scale_end(const strut_hdf5_scale *scale);
 
 /** A new HDF5 file, without times in it, in place of an empty one. Negative on failure. */
 hid_t strut_hdf5_create_file(const char *path);
-
-#endif

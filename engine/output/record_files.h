@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Sinks that write what a run records: CSV and HDF5. */
-#ifndef STRUT_ENGINE_OUTPUT_RECORD_FILES_H
-#define STRUT_ENGINE_OUTPUT_RECORD_FILES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -54,5 +53,3 @@ typedef struct strut_table {
   strut_table_column *columns;
   strut_arena arena;
 } strut_table;
-
-#endif

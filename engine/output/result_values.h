@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** JSON; and emitters of results that are described by rows, as engine/scene/value_rows.h has them. */
-#ifndef STRUT_ENGINE_OUTPUT_RESULT_VALUES_H
-#define STRUT_ENGINE_OUTPUT_RESULT_VALUES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -96,5 +95,3 @@ STRUT_API void strut_values_add_tables(strut_buffer *text, const strut_value_row
 /** Appends rows of a Markdown table about the values, their keys after `before`. */
 STRUT_API void strut_values_describe(strut_buffer *page, const strut_value_rows *rows,
                                      const char *before);
-
-#endif

@@ -5,8 +5,7 @@
  * The files are written into a hidden directory inside the final one and moved at the end. Files of
  * an earlier run that this run does not have are removed then, so that no two runs get mixed.
  */
-#ifndef STRUT_ENGINE_OUTPUT_RESULTS_H
-#define STRUT_ENGINE_OUTPUT_RESULTS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -69,5 +68,3 @@ STRUT_API strut_status strut_ownership_claim_path(const char *path, const char *
  */
 STRUT_API strut_status strut_data_copy(const strut_data_table *tables, size_t count,
                                        const char *directory, strut_error *error);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * A run's summary as JSON, as a short table for people, and as rows of a page.
- */
-#ifndef STRUT_ENGINE_OUTPUT_RUN_REPORT_H
-#define STRUT_ENGINE_OUTPUT_RUN_REPORT_H
+/** A run's summary as JSON, as a short table for people, and as rows of a page. */
+#pragma once
 
 #include <stdbool.h>
 
@@ -46,5 +43,3 @@ STRUT_API void strut_shown_free(strut_shown *shown);
  */
 STRUT_API void strut_summary_rows(strut_shown *to, const char *summary,
                                   const strut_experiment *experiment, const strut_scene *scene);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * A recorded motion in memory: taken while a run records, or read back from its directory.
- */
-#ifndef STRUT_ENGINE_OUTPUT_TRAJECTORY_H
-#define STRUT_ENGINE_OUTPUT_TRAJECTORY_H
+/** A recorded motion in memory: taken while a run records, or read back from its directory. */
+#pragma once
 
 #include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
@@ -62,5 +59,3 @@ enum { STRUT_DATA_DOTS = 1000 };
  */
 STRUT_API size_t strut_data_dots(const strut_scene *scene, const strut_channel_row *row, size_t k,
                                  const double span[2], double (*dots)[2]);
-
-#endif

@@ -5,8 +5,7 @@
  * The recorder writes no files. It collects rows of doubles and passes them to the sinks in blocks,
  * between steps. A row begins with the time; each channel has its offset. What is between them is for other sinks.
  */
-#ifndef STRUT_ENGINE_RUN_RECORDER_H
-#define STRUT_ENGINE_RUN_RECORDER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -45,5 +44,3 @@ typedef struct strut_sink {
   strut_status (*end)(void *context, strut_status run_status, strut_error *error);
   strut_channels channels; /* of its rows; 0: those of the experiment */
 } strut_sink;
-
-#endif

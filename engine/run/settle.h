@@ -7,8 +7,7 @@
  * uses the classical Runge-Kutta method with settle.step. Every command gets it from
  * strut_settle_experiment, hence the same bits.
  */
-#ifndef STRUT_ENGINE_RUN_SETTLE_H
-#define STRUT_ENGINE_RUN_SETTLE_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/integrate/limit/step_limit.h"
@@ -82,5 +81,3 @@ STRUT_API strut_status strut_settle_model(const strut_model *model,
                                           const strut_flag *interrupt, strut_settled_start *start,
                                           strut_error *error);
 STRUT_API void strut_settled_start_free(strut_settled_start *start);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** A run: from a compiled model to its summary, with rows for recorders. */
-#ifndef STRUT_ENGINE_RUN_SIMULATE_H
-#define STRUT_ENGINE_RUN_SIMULATE_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
@@ -62,5 +61,3 @@ STRUT_API double strut_run_clock(void);
 static inline bool strut_run_has_results(strut_status status) {
   return status == STRUT_OK || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Parts of a run, which simulate.c steps to its end and stepping.c as it is asked. */
-#ifndef STRUT_ENGINE_RUN_SIMULATE_PARTS_H
-#define STRUT_ENGINE_RUN_SIMULATE_PARTS_H
+#pragma once
 
 #include "engine/forces/observe.h"
 #include "engine/integrate/limit/step_limit.h"
@@ -171,5 +170,3 @@ strut_status strut_run_fail_method(const strut_run *run);
 
 /** Adds all warnings about the result to the summary, which must be complete. */
 void strut_run_warn(const strut_run *run);
-
-#endif

@@ -6,8 +6,7 @@
  * measured or summarised. Inputs may change between two calls; a change is an event from which methods begin
  * anew, and what it does to the stored energy is work of the drive.
  */
-#ifndef STRUT_ENGINE_RUN_STEPPING_H
-#define STRUT_ENGINE_RUN_STEPPING_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/run/recorder.h"
@@ -64,5 +63,3 @@ STRUT_API bool strut_stepping_restore(strut_stepping *stepping,
                                       const strut_stepping_snapshot *snapshot);
 STRUT_API void strut_stepping_snapshot_free(
     strut_stepping_snapshot *snapshot); /* NULL is allowed */
-
-#endif

@@ -5,8 +5,7 @@
  * An observable that is RECORDED is a channel by its name. Those that have other names in C, or several observables,
  * are rows of STRUT_CHANNEL_TABLE.
  */
-#ifndef STRUT_ENGINE_SCENE_CHANNELS_H
-#define STRUT_ENGINE_SCENE_CHANNELS_H
+#pragma once
 
 #include "engine/scene/observables.h"
 
@@ -128,5 +127,3 @@ STRUT_API size_t strut_channel_things(const strut_channel_row *row,
                                       const struct strut_scene *scene);
 STRUT_API const char *strut_channel_thing(const strut_channel_row *row,
                                           const struct strut_scene *scene, size_t i);
-
-#endif

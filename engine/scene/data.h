@@ -5,8 +5,7 @@
  * Tables are constant. They are read once, and all scenes that are made of one text share them; the memory is
  * that of the scene, of the source of scenes, or of the study.
  */
-#ifndef STRUT_ENGINE_SCENE_DATA_H
-#define STRUT_ENGINE_SCENE_DATA_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -55,5 +54,3 @@ typedef struct strut_data_table {
 STRUT_API const strut_data_column *strut_data_find(const strut_data_table *tables, size_t count,
                                                    const char *name,
                                                    const strut_data_table **table);
-
-#endif

@@ -6,8 +6,7 @@
  * A scene compiles to one model, on which any number of experiments can run. Indices refer to the
  * arrays of the scene.
  */
-#ifndef STRUT_ENGINE_SCENE_EXPERIMENT_H
-#define STRUT_ENGINE_SCENE_EXPERIMENT_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/scene/channels.h"
@@ -192,5 +191,3 @@ STRUT_API strut_span strut_experiment_span(const strut_experiment *experiment,
 STRUT_API bool strut_experiment_is_adaptive(const char *integrator);
 /** Sets the longest step of such a method, if missing, to a part of the period or of the run. */
 STRUT_API void strut_experiment_choose_step(strut_experiment *experiment, const strut_scene *scene);
-
-#endif

@@ -5,8 +5,7 @@
  * The laws are rows and texts of laws/friction.h, over which reader, writer, checks, step limit, contact
  * modes and forces loop.
  */
-#ifndef STRUT_ENGINE_SCENE_FRICTION_H
-#define STRUT_ENGINE_SCENE_FRICTION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -212,5 +211,3 @@ static inline double strut_friction_slope(const strut_friction *f, double normal
   }
   return 0.0;
 }
-
-#endif

@@ -8,8 +8,7 @@
  * Reader, checks, forces, energies, stiffness, statics and located events loop over this table, so that a
  * law is added only here; see docs/dev/recipes.md.
  */
-#ifndef STRUT_ENGINE_SCENE_LAW_H
-#define STRUT_ENGINE_SCENE_LAW_H
+#pragma once
 
 #include "engine/base/status.h"
 #include "engine/scene/laws/cells.h"
@@ -304,5 +303,3 @@ STRUT_API size_t strut_curve_room(const strut_law *law);
 STRUT_API size_t strut_curve_trace(const strut_law *law, strut_curve_point *point);
 /** What is wrong with the points of a law that has some, at least two, if their numbers are finite, or NULL. */
 STRUT_API const char *strut_curve_fault(const strut_law *law);
-
-#endif

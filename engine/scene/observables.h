@@ -6,8 +6,7 @@
  * What a run records, what quantities measure, what sensors see, what studies keep, CSV, HDF5, pages, the library
  * and Python loop over the table.
  */
-#ifndef STRUT_ENGINE_SCENE_OBSERVABLES_H
-#define STRUT_ENGINE_SCENE_OBSERVABLES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -229,5 +228,3 @@ typedef struct strut_owner_row {
 } strut_owner_row;
 
 STRUT_API const strut_owner_row *strut_owner_row_of(strut_channel_owner owner);
-
-#endif

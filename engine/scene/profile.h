@@ -2,8 +2,7 @@
 /**
  * Surfaces of grounds: profiles and their convex pieces, where lines cross them, and their outlines.
  */
-#ifndef STRUT_ENGINE_SCENE_PROFILE_H
-#define STRUT_ENGINE_SCENE_PROFILE_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
@@ -92,5 +91,3 @@ STRUT_API size_t strut_outline_of(const strut_ground *ground, const double *plac
 /** Displacement of a ground at time t [s]. */
 STRUT_API void strut_ground_place(const strut_scene *scene, size_t ground, double t,
                                   double place[2]);
-
-#endif

@@ -7,8 +7,7 @@
  * with all names resolved and dimensions checked; the engine evaluates it after each step of the
  * window.
  */
-#ifndef STRUT_ENGINE_SCENE_QUANTITY_H
-#define STRUT_ENGINE_SCENE_QUANTITY_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -108,5 +107,3 @@ static inline double strut_quantity_allowed_error(const strut_quantity_definitio
   double part = definition->accuracy > 0.0 ? definition->accuracy : accuracy;
   return part * fmax(fabs(value), 1e-3 * scale);
 }
-
-#endif

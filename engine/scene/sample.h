@@ -4,8 +4,7 @@
  * sequence, by strata or at random; and the points of a sensitivity analysis. The same bits whenever and
  * wherever they are made.
  */
-#ifndef STRUT_ENGINE_SCENE_SAMPLE_H
-#define STRUT_ENGINE_SCENE_SAMPLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -75,5 +74,3 @@ STRUT_API int64_t strut_sensitivity_sample(const strut_study_sensitivity *sensit
 STRUT_API bool strut_sensitivity_fill(const strut_study_sensitivity *sensitivity, size_t count,
                                       const strut_distribution *distributions,
                                       double *const *values);
-
-#endif

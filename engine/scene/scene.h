@@ -6,8 +6,7 @@
  * to each other by array index; -1 means none. However a scene was filled, strut_setup_check
  * decides whether it is valid, and strut_model_compile turns it into a model to run.
  */
-#ifndef STRUT_ENGINE_SCENE_SCENE_H
-#define STRUT_ENGINE_SCENE_SCENE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -454,5 +453,3 @@ STRUT_API double strut_hinge_rest(const strut_scene *scene, size_t hinge);
 
 /** Area of a cell as drawn, positive where its nodes run counter-clockwise [m^2]. */
 STRUT_API double strut_cell_drawn(const strut_scene *scene, size_t cell);
-
-#endif

@@ -5,8 +5,7 @@
  * A signal is a plain description; a scene owns an array of them and refers to them by index. The
  * unit of a value is the one its user expects (m for an actuator, N for a load's force factor).
  */
-#ifndef STRUT_ENGINE_SCENE_SIGNAL_H
-#define STRUT_ENGINE_SCENE_SIGNAL_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -166,5 +165,3 @@ STRUT_API bool strut_signal_has_corners(const strut_signal *signals, int32_t ind
 /** Is the signal a function of the time alone, whose acceleration is known: no expression, nothing that
     lags, is sampled or started? */
 STRUT_API bool strut_signal_is_wave(const strut_signal *signals, int32_t index);
-
-#endif

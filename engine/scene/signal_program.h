@@ -7,8 +7,7 @@
  * SENSOR_RATE, SIGNAL and STATE; each number has a value and a rate, so that the rate of the result is
  * known exactly.
  */
-#ifndef STRUT_ENGINE_SCENE_SIGNAL_PROGRAM_H
-#define STRUT_ENGINE_SCENE_SIGNAL_PROGRAM_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -184,5 +183,3 @@ STRUT_API double strut_signal_longest_step(const strut_signal *signals,
 
 /** Must steps be short enough for the signal? Other waves are smooth between their breaks, and as long as they say. */
 STRUT_API bool strut_signal_is_looked_at(const strut_signal *signal);
-
-#endif

@@ -7,8 +7,7 @@
  * need no memory. Variants of the model are the first axis, with the single column "variant". Texts
  * and arrays are owned by the creator of the study.
  */
-#ifndef STRUT_ENGINE_SCENE_STUDY_H
-#define STRUT_ENGINE_SCENE_STUDY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -480,5 +479,3 @@ typedef struct strut_study {
   size_t table_count;
   const strut_data_table *tables; /* (table_count) measured data of the study itself */
 } strut_study;
-
-#endif

@@ -3,8 +3,7 @@
  * What follows from the tables of things (things_table.h): arrays and names of a scene by kind, the fields
  * of an object, the ranges of its numbers, and the numbers on which what is at rest depends.
  */
-#ifndef STRUT_ENGINE_SCENE_THINGS_H
-#define STRUT_ENGINE_SCENE_THINGS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -257,5 +256,3 @@ typedef struct strut_difference {
  * False: out of memory.
  */
 STRUT_API bool strut_scene_remove_feedback(strut_scene *scene, strut_arena *arena);
-
-#endif

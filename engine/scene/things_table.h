@@ -35,8 +35,7 @@
  * All but BY_HAND are read and written by rows alone, unless their measure is CONTEXT: the unit of such
  * numbers is known to the section's reader.
  */
-#ifndef STRUT_ENGINE_SCENE_THINGS_TABLE_H
-#define STRUT_ENGINE_SCENE_THINGS_TABLE_H
+#pragma once
 
 #include "engine/scene/channels.h"
 
@@ -478,5 +477,3 @@
   X(OUTPUT, CHANNELS, "channels", WORDS, NONE, ANY, "[position, length, force]", WRITTEN, 0, STRUT_CHANNEL_WORDS, FIELD(strut_experiment, channels), STRUT_CHANNEL_DESCRIPTION)
 
 /* clang-format on */
-
-#endif

@@ -8,8 +8,7 @@
  *       X("shape", "1", OF(NODE, m->shape), "the largest entry is 1")
  *     STRUT_VALUES(mode_values, MODE, const strut_mode *m = of->at)
  */
-#ifndef STRUT_ENGINE_SCENE_VALUE_ROWS_H
-#define STRUT_ENGINE_SCENE_VALUE_ROWS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -205,5 +204,3 @@ static inline strut_value strut_value_rounded(strut_value value, int digits) {
 /** null where it is not known. */
 #define STRUT_VALUE_AS_KNOWN(KNOWN, VALUE)                                                         \
   (KNOWN) ? STRUT_VALUE_AS_##VALUE : (strut_value) { .kind = STRUT_VALUE_TEXT }
-
-#endif

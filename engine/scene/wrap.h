@@ -7,8 +7,7 @@
  * Where it touches, the arc is up to three quarters of a turn. Length and slope of the length are continuous where
  * the cable unwraps.
  */
-#ifndef STRUT_ENGINE_SCENE_WRAP_H
-#define STRUT_ENGINE_SCENE_WRAP_H
+#pragma once
 
 #include <assert.h>
 #include <math.h>
@@ -80,5 +79,3 @@ static inline double strut_wrap_find(const double (*p)[2], int n, uint32_t right
   for (int k = 1; k + 1 < wrap->count; k++) sum += radius * strut_wrap_turn(wrap, k, right);
   return sum;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Linear algebra of statics: dense and sparse matrices, linear programs, parts of a spectrum. */
-#ifndef STRUT_ENGINE_STATICS_ALGEBRA_H
-#define STRUT_ENGINE_STATICS_ALGEBRA_H
+#pragma once
 
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_permutation.h>
@@ -237,5 +236,3 @@ typedef struct strut_mode_form {
   double part;            /* the largest part that an element has in the diagonal */
 } strut_mode_form;
 void strut_mode_form_add(strut_mode_form *form, const strut_force *force, const double *q);
-
-#endif

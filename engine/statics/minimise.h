@@ -7,8 +7,7 @@
  * Directions without stiffness and without force (free bodies, mechanisms) are left alone.
  * Deterministic.
  */
-#ifndef STRUT_ENGINE_STATICS_MINIMISE_H
-#define STRUT_ENGINE_STATICS_MINIMISE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -123,5 +122,3 @@ typedef struct strut_quadratic {
  * that of Newton for the values + mu, and modes much stiffer than mu do not feel the radius.
  */
 double strut_trust_step(const strut_quadratic *quadratic, double radius, double *vector);
-
-#endif

@@ -6,8 +6,7 @@
  * coordinates are those that neither the scene nor `held` fixes. Positions q are (length) as
  * everywhere; g and the Hessian are over the free coordinates, in their order.
  */
-#ifndef STRUT_ENGINE_STATICS_POTENTIAL_H
-#define STRUT_ENGINE_STATICS_POTENTIAL_H
+#pragma once
 
 #include "engine/forces/tangent.h"
 
@@ -117,5 +116,3 @@ STRUT_API int32_t strut_rigid_motions(const strut_potential *potential, const do
  */
 int32_t strut_rigid_motions_free(int32_t n, double tolerance, int32_t count, double *motion,
                                  double *image);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The program's commands (in files command_*.c), and the table that finds them by name.
- */
-#ifndef STRUT_PARSER_PROGRAM_COMMANDS_H
-#define STRUT_PARSER_PROGRAM_COMMANDS_H
+/** The program's commands (in files command_*.c), and the table that finds them by name. */
+#pragma once
 
 #include "engine/scene/value_rows.h"
 #include "parser/program/options.h"
@@ -62,5 +59,3 @@ strut_status strut_analysis_open(struct strut_analysis *analysis, char **text);
 
 /** Prints the words that complete the last of `words` (count >= 0), which may be empty. */
 strut_status strut_complete(int count, char **words);
-
-#endif

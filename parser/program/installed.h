@@ -3,8 +3,7 @@
  * What is installed with the program: found from where the program is, so that all may be moved. And
  * files of the user's.
  */
-#ifndef STRUT_PARSER_PROGRAM_INSTALLED_H
-#define STRUT_PARSER_PROGRAM_INSTALLED_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -15,5 +14,3 @@ enum { STRUT_LONGEST_PATH = 4096 };
  * neither exists.
  */
 bool strut_find_installed(const char *name, const char *built, char path[STRUT_LONGEST_PATH]);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What every command with a MODEL begins with: the scene, or all that is wrong with it.
- */
-#ifndef STRUT_PARSER_PROGRAM_OPEN_MODEL_H
-#define STRUT_PARSER_PROGRAM_OPEN_MODEL_H
+/** What every command with a MODEL begins with: the scene, or all that is wrong with it. */
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/output/trajectory.h"
@@ -78,5 +75,3 @@ typedef struct strut_opened {
 strut_status strut_open_run(const strut_arguments *arguments, size_t room, strut_opened *opened);
 /** A zeroed struct is allowed. */
 void strut_opened_free(strut_opened *opened);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * Abbreviated option names are rejected: accepting one today could make a new option ambiguous.
  */
-#ifndef STRUT_PARSER_PROGRAM_OPTIONS_H
-#define STRUT_PARSER_PROGRAM_OPTIONS_H
+#pragma once
 
 #include "engine/output/draw/chart.h"
 #include "parser/program/command/arguments.h"
@@ -54,5 +53,3 @@ extern const strut_option strut_plot_options[];
  * `usual` is the default width [pt]; 0: a page's.
  */
 strut_status strut_plot_read(const strut_arguments *arguments, double usual, strut_plot *plot);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Standard streams: reports on stdout, messages on stderr, and whether all of it was written.
- */
-#ifndef STRUT_PARSER_PROGRAM_STREAMS_H
-#define STRUT_PARSER_PROGRAM_STREAMS_H
+/** Standard streams: reports on stdout, messages on stderr, and whether all of it was written. */
+#pragma once
 
 #include <signal.h>
 #include <stdbool.h>
@@ -70,5 +67,3 @@ void strut_progress_phase(void *context, const char *name);
 void strut_progress_bar(char *bar, int width, double fraction);
 /** Erases the bar. */
 void strut_progress_end(strut_progress *progress);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** A falling, bouncing triangle: small, with a duration of its own; `duration` and what is recorded as texts. */
-#ifndef STRUT_TESTS_ABI_TRIANGLE_H
-#define STRUT_TESTS_ABI_TRIANGLE_H
+#pragma once
 
 #define TRIANGLE(duration, channels)                                                               \
   "strut: 1\nname: triangle\nparameters: {drop: 20 mm}\ngravity: [0, -9.81]\n"                     \
@@ -13,5 +12,3 @@
   "ground: {stiffness: 20 kN/m, damping: 5 N s/m, nodes: all}\n"                                   \
   "solver: {integrator: rk4-events, step: 0.1 ms}\n"                                               \
   "run: {duration: " duration "}\noutput: {every: 1 ms" channels "}\n"
-
-#endif

@@ -5,8 +5,7 @@
  * Table 1 is compiled in; equations (1) to (10) with the laws (8) and (9) as printed, RK4, drive
  * a sin(2 pi f t) on member 8, mu for both friction coefficients.
  */
-#ifndef STRUT_TESTS_BENCH_HAND_KERNEL_H
-#define STRUT_TESTS_BENCH_HAND_KERNEL_H
+#pragma once
 
 /** Nodes 1 to 5 at time n * dt; SI units. */
 typedef struct hand_crawler_state {
@@ -20,5 +19,3 @@ void hand_crawler_place(hand_crawler_state *state, int mirrored);
 /** Advances by so many steps of dt [s]; drive f [Hz], a [m]. Plain scalar straight-line code. */
 void hand_crawler_run_scalar(hand_crawler_state *state, double dt, double f, double a, double mu,
                              long long steps);
-
-#endif

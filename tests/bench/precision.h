@@ -5,8 +5,7 @@
  * The right-hand side of all is strut_forces_acceleration; strut's own methods evaluate the same law in their loops.
  * An answer is the mean x-velocity over the scene's window, of the node or the centre of mass that the scene measures.
  */
-#ifndef STRUT_TESTS_BENCH_PRECISION_H
-#define STRUT_TESTS_BENCH_PRECISION_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
@@ -121,5 +120,3 @@ strut_status precision_draw(const char *path, const precision_scene *scene,
 int bench_precision(const char *folder, double limit, char *const *names, int count);
 /** One scene, few tolerances: do all methods converge to one answer? Returns the exit code. */
 int bench_precision_check(void);
-
-#endif

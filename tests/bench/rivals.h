@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Everything that steps the crawler, behind one face, so that it can be timed in turns. */
-#ifndef STRUT_TESTS_BENCH_RIVALS_H
-#define STRUT_TESTS_BENCH_RIVALS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -27,5 +26,3 @@ const rival *rival_at(size_t i);
 
 /** CPU time of this thread [s]. */
 double bench_seconds(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Scenes of the bench, ready to step: the paper's crawler, and chains of X-frames. */
-#ifndef STRUT_TESTS_BENCH_SCENES_H
-#define STRUT_TESTS_BENCH_SCENES_H
+#pragma once
 
 #include "engine/integrate/integrator.h"
 
@@ -30,5 +29,3 @@ bool bench_crawler(bench_motion *m, const char *method, double step);
  */
 bool bench_chain(bench_motion *m, size_t members, strut_mass_model mass);
 void bench_free(bench_motion *m);
-
-#endif

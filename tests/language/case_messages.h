@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The messages that faulty cases announce, and those that are found. */
-#ifndef STRUT_TESTS_LANGUAGE_CASE_MESSAGES_H
-#define STRUT_TESTS_LANGUAGE_CASE_MESSAGES_H
+#pragma once
 
 #include "parser/language/read/read_scene.h"
 #include "tests/language/cases.h"
@@ -16,5 +15,3 @@ size_t strike_messages(faulty_case *c, const strut_diagnostics *found,
                        const char *(*file_of)(const strut_diagnostics *found, strut_place place));
 /** Says which of the announced messages are left, and returns how many. */
 size_t missing_messages(const faulty_case *c);
-
-#endif

@@ -3,8 +3,7 @@
  * Faulty scenes and studies, of documents that hold many: a base, and cases that change lines of it.
  * docs/dev/testing.md describes the format.
  */
-#ifndef STRUT_TESTS_LANGUAGE_CASES_H
-#define STRUT_TESTS_LANGUAGE_CASES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -36,5 +35,3 @@ void free_faulty_cases(faulty_cases *cases);
 const faulty_case *find_faulty_case(const faulty_cases *cases, const char *name);
 /** Writes the text as FOLDER/NAME.yaml; false, with a message, where that fails. */
 bool write_faulty_case(const faulty_case *c, const char *folder);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * The valid scenes of the repository, for tests that go through all of them.
  */
-#ifndef STRUT_TESTS_LANGUAGE_SCENES_H
-#define STRUT_TESTS_LANGUAGE_SCENES_H
+#pragma once
 
 #include <stddef.h>
 
@@ -27,5 +26,3 @@ strut_status read_quietly(const char *text, size_t length, strut_setup *setup);
 strut_status read_quietly_as(const char *path, const char *text, size_t length, strut_setup *setup);
 /** The scene in the text of that path, written back; NULL where it is refused. strut_release it. */
 char *read_and_write(const char *path, const char *text, size_t length);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * A model file read, compiled and run in one call, with its rows kept.
  */
-#ifndef STRUT_TESTS_MODELS_RUN_MODEL_H
-#define STRUT_TESTS_MODELS_RUN_MODEL_H
+#pragma once
 
 #include "engine/run/recorder.h"
 #include "engine/run/simulate.h"
@@ -38,5 +37,3 @@ const double *model_position(const model_run *run, const char *node);
 /** Value in a row, e.g. (run, row, STRUT_CHANNEL_FORCE, "top", 0). */
 double model_value(const model_run *run, size_t row, strut_channels channel, const char *item,
                    size_t component);
-
-#endif

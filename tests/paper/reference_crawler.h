@@ -4,8 +4,7 @@
  *
  * A state z holds positions and then velocities: (x1, y1, ..., x5, y5, their rates), in SI units.
  */
-#ifndef STRUT_TESTS_PAPER_REFERENCE_CRAWLER_H
-#define STRUT_TESTS_PAPER_REFERENCE_CRAWLER_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -37,5 +36,3 @@ double reference_centre(const double *q);
 /** Runs so many periods from z on, and measures over the last `window` of them. */
 void reference_run(const reference_crawler *it, double dt, double periods, double window, double *z,
                    reference_figures *figures);
-
-#endif

@@ -3,8 +3,7 @@
  * The crawler at rest, written straight from Table 1 and equation (13), and slow searches on that
  * energy: shares no code with the engine. Coordinates are x1, y1, ..., x5, y5 [m].
  */
-#ifndef STRUT_TESTS_PAPER_REFERENCE_STATICS_H
-#define STRUT_TESTS_PAPER_REFERENCE_STATICS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -28,5 +27,3 @@ int statics_eigenvalues(const statics *s, const double q[STATICS], double value[
                         double vector[STATICS][STATICS]);
 /** True where the lengths between all pairs of nodes are the same to `within` [m]. */
 bool statics_congruent(const double a[STATICS], const double b[STATICS], double within);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * Driven scenes of one coordinate, whose motions are known, with runs that stop when they are steady.
  */
-#ifndef STRUT_TESTS_PHYSICS_DRIVEN_SCENES_H
-#define STRUT_TESTS_PHYSICS_DRIVEN_SCENES_H
+#pragma once
 
 #include "engine/scene/experiment.h"
 
@@ -16,5 +15,3 @@ void driven_oscillator(strut_setup *setup, double w, double zeta);
  * 500 N/m; it can move up and down only, and is pushed so.
  */
 void driven_snap(strut_setup *setup, double damping, double push, double frequency);
-
-#endif

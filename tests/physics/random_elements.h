@@ -2,8 +2,7 @@
 /**
  * Random scenes of elements: running cables, hinges, members with every law, and stops.
  */
-#ifndef STRUT_TESTS_PHYSICS_RANDOM_ELEMENTS_H
-#define STRUT_TESTS_PHYSICS_RANDOM_ELEMENTS_H
+#pragma once
 
 #include "engine/scene/scene.h"
 
@@ -17,5 +16,3 @@ strut_law random_law(strut_scene *scene, strut_law_kind kind, double size, doubl
  * `damping` times its usual value. Free it with strut_scene_free.
  */
 void random_elements(strut_scene *scene, uint64_t seed, double damping);
-
-#endif

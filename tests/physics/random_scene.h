@@ -2,8 +2,7 @@
 /**
  * Random scenes that use everything a scene can have, and random motions of them.
  */
-#ifndef STRUT_TESTS_PHYSICS_RANDOM_SCENE_H
-#define STRUT_TESTS_PHYSICS_RANDOM_SCENE_H
+#pragma once
 
 #include "engine/scene/scene.h"
 
@@ -12,5 +11,3 @@ void random_scene(strut_scene *scene, uint64_t seed);
 
 /** Positions about the drawn ones, velocities, and a time [s]; q and v: 2 * node_count each. */
 void random_motion(const strut_scene *scene, uint64_t seed, double *t, double *q, double *v);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * Random scenes in the language that have every element, with the texts of their expressions beside them.
  */
-#ifndef STRUT_TESTS_PHYSICS_RANDOM_WORLD_H
-#define STRUT_TESTS_PHYSICS_RANDOM_WORLD_H
+#pragma once
 
 #include "tests/physics/slow_world.h"
 
@@ -36,5 +35,3 @@ typedef struct random_world {
 
 /** Fills the world; parts: bits of world_part. */
 void random_world_make(random_world *w, uint64_t seed, unsigned parts);
-
-#endif

@@ -3,8 +3,7 @@
  * Strains and laws once more, in long double and by their definitions; gradients are differences. No code
  * is shared with the engine. Coordinates are (x1, y1, x2, y2, ...).
  */
-#ifndef STRUT_TESTS_PHYSICS_SLOW_ELEMENTS_H
-#define STRUT_TESTS_PHYSICS_SLOW_ELEMENTS_H
+#pragma once
 
 #include "engine/scene/scene.h"
 #include "tests/support/widening.h"
@@ -37,5 +36,3 @@ void slow_strain_gradient(const slow_strain *s, long double *q, long double *b);
 
 /** A law by its words in the language, without memory; k: the element's stiffness. */
 long double slow_law_force(const strut_law *law, long double k, long double e, long double e0);
-
-#endif

@@ -3,8 +3,7 @@
  * Expressions of the language once more: read and computed in one pass over their text, in long double.
  * Numbers are in SI units, which may be written behind them and mean nothing here.
  */
-#ifndef STRUT_TESTS_PHYSICS_SLOW_EXPRESSION_H
-#define STRUT_TESTS_PHYSICS_SLOW_EXPRESSION_H
+#pragma once
 
 #include <stddef.h>
 
@@ -12,5 +11,3 @@
 typedef long double slow_variable(void *context, const char *name, int rate);
 
 long double slow_expression(const char *text, slow_variable *variable, void *context);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * Coordinates are (x1, y1, x2, y2, ...), n = 2 * node_count of them; the caller frees the arrays.
  */
-#ifndef STRUT_TESTS_PHYSICS_SLOW_MODEL_H
-#define STRUT_TESTS_PHYSICS_SLOW_MODEL_H
+#pragma once
 
 #include "engine/scene/scene.h"
 #include "tests/support/widening.h"
@@ -36,5 +35,3 @@ void slow_member_rest(const strut_scene *scene, const strut_member *m, long doub
 void slow_solve(long double *a, size_t n, long double *x);
 /** The largest size of n numbers. */
 double slow_largest(const long double *x, size_t n);
-
-#endif

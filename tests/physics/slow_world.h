@@ -4,8 +4,7 @@
  * definitions, dense and slow in long double, with a Runge-Kutta step of its own. It reads a scene's plain
  * numbers; expressions it reads from their texts.
  */
-#ifndef STRUT_TESTS_PHYSICS_SLOW_WORLD_H
-#define STRUT_TESTS_PHYSICS_SLOW_WORLD_H
+#pragma once
 
 #include "tests/physics/slow_elements.h"
 
@@ -67,5 +66,3 @@ long double slow_world_member(const slow_world *w, const slow_instant *at, size_
 /** Gap and outward normal of a node at p against the surface of a contact at rest. In slow_grounds.c. */
 long double slow_ground_gap(const strut_scene *scene, const strut_contact *contact,
                             const long double *p, long double *normal);
-
-#endif

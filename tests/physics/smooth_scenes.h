@@ -2,8 +2,7 @@
 /**
  * Scenes without any jump, on which RK4 must show its order.
  */
-#ifndef STRUT_TESTS_PHYSICS_SMOOTH_SCENES_H
-#define STRUT_TESTS_PHYSICS_SMOOTH_SCENES_H
+#pragma once
 
 #include "engine/scene/scene.h"
 
@@ -16,5 +15,3 @@ typedef struct smooth_scene {
 
 enum { SMOOTH_SCENES = 6 };
 extern const smooth_scene smooth_scenes[SMOOTH_SCENES];
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * A scene's model and its path of equilibria; whatever fails, fails the test.
  */
-#ifndef STRUT_TESTS_PHYSICS_WALK_H
-#define STRUT_TESTS_PHYSICS_WALK_H
+#pragma once
 
 #include "engine/statics/path/path.h"
 #include "tests/support/motion.h"
@@ -36,5 +35,3 @@ static inline size_t walk_count(const strut_path *path, strut_path_event_kind ki
   for (size_t i = 0; i < path->event_count; i++) sum += path->events[i].kind == kind;
   return sum;
 }
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * Counts every allocation of the whole process, those of foreign libraries too.
  */
-#ifndef STRUT_TESTS_SUPPORT_ALLOCATIONS_H
-#define STRUT_TESTS_SUPPORT_ALLOCATIONS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -11,5 +10,3 @@
 uint64_t allocations_so_far(void);
 /** Most memory that the process has had [kB]. */
 long resident(void);
-
-#endif

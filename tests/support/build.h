@@ -5,8 +5,7 @@
  * Begin with build_scene or build_setup and end with strut_scene_free or strut_setup_free. Things are called n1, n2, ..., m1, ...
  * A function that is refused memory fails the test.
  */
-#ifndef STRUT_TESTS_SUPPORT_BUILD_H
-#define STRUT_TESTS_SUPPORT_BUILD_H
+#pragma once
 
 #include "engine/scene/experiment.h"
 
@@ -43,5 +42,3 @@ int32_t build_rough_contact(strut_scene *scene, int32_t node, double stiffness, 
                             double mu_static, double mu_kinetic, double stick_velocity);
 /** A copy of count doubles that the scene owns. */
 const double *build_numbers(strut_scene *scene, const double *numbers, size_t count);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * Tests, assertions about numbers that say the numbers, and memory that is refused.
  */
-#ifndef STRUT_TESTS_SUPPORT_CHECK_H
-#define STRUT_TESTS_SUPPORT_CHECK_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -99,5 +98,3 @@ static inline bool refuse_another(int64_t status, int64_t n, int64_t least) {
   assert_true(n > least);
   return false;
 }
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * How much memory the process holds, to find leaks by: what is done again and again must not add up.
  */
-#ifndef STRUT_TESTS_SUPPORT_HEAP_H
-#define STRUT_TESTS_SUPPORT_HEAP_H
+#pragma once
 
 #include <malloc.h>
 #include <stddef.h>
@@ -16,5 +15,3 @@ static inline size_t heap_in_use(void) {
   struct mallinfo2 now = mallinfo2();
   return now.uordblks + now.hblkhd;
 }
-
-#endif

@@ -3,8 +3,7 @@
  * A compiled scene on its way through time: model, state and a method's workspace in one. With it come
  * scenes made by hand and assertions about numbers.
  */
-#ifndef STRUT_TESTS_SUPPORT_MOTION_H
-#define STRUT_TESTS_SUPPORT_MOTION_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/forces/forces.h"
@@ -43,5 +42,3 @@ strut_model *motion_compile(const strut_scene *scene);
 strut_summary motion_simulate(const strut_setup *setup);
 /** Sets the experiment: step and duration [s]. */
 void motion_experiment(strut_setup *setup, double step, double duration);
-
-#endif

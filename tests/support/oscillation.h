@@ -2,8 +2,7 @@
 /**
  * What RK4 makes of an undamped oscillation, exactly.
  */
-#ifndef STRUT_TESTS_SUPPORT_OSCILLATION_H
-#define STRUT_TESTS_SUPPORT_OSCILLATION_H
+#pragma once
 
 #include <complex.h>
 #include <math.h>
@@ -26,5 +25,3 @@ static inline void rk4_oscillation(double z, int64_t n, double *re, double *im) 
   *re = (double)creall(power);
   *im = (double)cimagl(power);
 }
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * Random numbers that are the same on every machine, random_scale to rounding (splitmix64).
  */
-#ifndef STRUT_TESTS_SUPPORT_RANDOM_H
-#define STRUT_TESTS_SUPPORT_RANDOM_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -35,5 +34,3 @@ static inline int32_t random_below(uint64_t *state, int32_t count) {
 static inline int random_once_in(uint64_t *state, int32_t times) {
   return random_below(state, times) == 0;
 }
-
-#endif

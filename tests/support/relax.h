@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** A state at rest by a single relaxation with the step of the experiment. */
-#ifndef STRUT_TESTS_SUPPORT_RELAX_H
-#define STRUT_TESTS_SUPPORT_RELAX_H
+#pragma once
 
 #include <string.h>
 
@@ -19,5 +18,3 @@ static inline double relax(const strut_model *model, const strut_experiment *exp
   strut_relaxation_free(&r);
   return time;
 }
-
-#endif

@@ -3,8 +3,7 @@
  * Sanitizers take memory and time of their own, and stop the program where memory is refused.
  * ADDRESS_SANITIZED: 1 under the address sanitizer. SANITIZED: 1 under that of addresses or threads.
  */
-#ifndef STRUT_TESTS_SUPPORT_SANITIZED_H
-#define STRUT_TESTS_SUPPORT_SANITIZED_H
+#pragma once
 
 #ifndef __has_feature
 #define __has_feature(x) 0
@@ -20,6 +19,4 @@
 #define SANITIZED 1
 #else
 #define SANITIZED 0
-#endif
-
 #endif

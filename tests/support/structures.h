@@ -2,8 +2,7 @@
 /**
  * The structures that several tests look at.
  */
-#ifndef STRUT_TESTS_SUPPORT_STRUCTURES_H
-#define STRUT_TESTS_SUPPORT_STRUCTURES_H
+#pragma once
 
 #include "tests/support/motion.h"
 
@@ -49,5 +48,3 @@ void structure_grid(strut_scene *scene, int32_t columns, int32_t rows, strut_mas
  * from below, a second one at angle b if `second`.
  */
 void structure_pendulum(strut_scene *scene, double stiffness, double a, bool second, double b);
-
-#endif

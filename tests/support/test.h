@@ -7,8 +7,7 @@
  *
  * A program has no main() of its own; test.c has it.
  */
-#ifndef STRUT_TESTS_SUPPORT_TEST_H
-#define STRUT_TESTS_SUPPORT_TEST_H
+#pragma once
 
 /* What cmocka.h needs, and what most tests do: they have no need to say so. */
 #include <math.h>
@@ -68,5 +67,3 @@ double test_number(int n, double otherwise);
 #define FREED __attribute__((cleanup(own_free)))
 
 static inline void own_free(void *pointer) { free(*(void **)pointer); }
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a YAML text must become: its tree in short, and its messages. */
-#ifndef STRUT_TESTS_DOCUMENT_SUPPORT_H
-#define STRUT_TESTS_DOCUMENT_SUPPORT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,5 +21,3 @@ void expect_error(const char *text, const char *message);
 char *shown_end(char *out);
 /** before, count times part, after; free it. */
 char *repeat(const char *before, const char *part, size_t count, const char *after);
-
-#endif

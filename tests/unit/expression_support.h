@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What an expression must give, with a scope of a few parameters. */
-#ifndef STRUT_TESTS_EXPRESSION_SUPPORT_H
-#define STRUT_TESTS_EXPRESSION_SUPPORT_H
+#pragma once
 
 #include <stddef.h>
 
@@ -18,5 +17,3 @@ void expect_bare(const char *text, double value);
 void expect_quantity(const char *text, double value, strut_dimension dimension);
 /** A refusal at these characters of the text, in these words; the result is left alone. */
 void expect_error(const char *text, size_t offset, size_t length, const char *message);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** A layout with every channel and rows that exercise numbers, for tests of the writers. */
-#ifndef STRUT_TESTS_UNIT_SAMPLE_H
-#define STRUT_TESTS_UNIT_SAMPLE_H
+#pragma once
 
 #include "engine/run/recorder.h"
 
@@ -14,5 +13,3 @@ double *sample_rows(const strut_record_layout *layout, size_t first, size_t coun
 /** begin, all rows in uneven portions, end with the status; stops at the first failure. */
 strut_status sample_feed(strut_sink *sink, size_t rows, strut_status run_status,
                          strut_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** For tests of the writers: a directory of their own, a full disk, and looking at files. */
-#ifndef STRUT_TESTS_UNIT_SCRATCH_H
-#define STRUT_TESTS_UNIT_SCRATCH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,5 +17,3 @@ char *scratch_read(const char *path, size_t *length);
 /** Puts a file system of `kilobytes` onto a directory; false where that is not allowed. */
 bool scratch_mount_small_disk(const char *directory, int kilobytes);
 void scratch_unmount(const char *directory);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * Drives: terms that change with time alone, applied to the state, and computed for many evaluations at once.
  */
-#ifndef STRUT_ENGINE_FORCES_DRIVES_DRIVES_H
-#define STRUT_ENGINE_FORCES_DRIVES_DRIVES_H
+#pragma once
 
 #include "engine/model/algebra/hot.h"
 #include "engine/model/state.h"
@@ -227,5 +226,3 @@ void strut_threshold_pass(const strut_model *model, strut_state *state, int32_t 
 
 /** Switches every relay that is not sampled and whose input is beyond its threshold. True if one was. */
 bool strut_relays_follow(const strut_model *model, strut_state *state, double t);
-
-#endif

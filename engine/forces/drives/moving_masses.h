@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What moves in the structure by signals: masses along members, masses out of balance, and supports. */
-#ifndef STRUT_ENGINE_FORCES_DRIVES_MOVING_MASSES_H
-#define STRUT_ENGINE_FORCES_DRIVES_MOVING_MASSES_H
+#pragma once
 
 #include "engine/model/state.h"
 
@@ -80,5 +79,3 @@ bool strut_moving_kick(const strut_model *model, strut_state *state, double from
 double strut_support_motion_work(const strut_model *model, const strut_state *state);
 /** Makes the present velocities those from which that work counts. */
 void strut_support_motion_reset_work(const strut_model *model, strut_state *state);
-
-#endif

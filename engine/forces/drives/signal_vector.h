@@ -3,8 +3,7 @@
  * Hot: a signal at many times at once. Sines go by vectors, with the bits of strut_signal_evaluate; all other
  * signals through it.
  */
-#ifndef STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
-#define STRUT_ENGINE_FORCES_DRIVES_SIGNAL_VECTOR_H
+#pragma once
 
 #include "engine/base/vec.h"
 #include "engine/model/algebra/hot.h"
@@ -63,5 +62,3 @@ STRUT_INLINE void signal_at_times(const strut_signal *signals, int32_t index, co
   else
     signal_at_times_otherwise(signals, index, time, count, value, rate);
 }
-
-#endif

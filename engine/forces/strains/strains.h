@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Each strain's value with its gradient b (2n), and t times its second derivative, added to h (2n x 2n). */
-#ifndef STRUT_ENGINE_FORCES_STRAINS_STRAINS_H
-#define STRUT_ENGINE_FORCES_STRAINS_STRAINS_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -334,5 +333,3 @@ static inline void strut_strain_angle_bend(const uint32_t *at, int n, const doub
   strut_strain_angle_arm(at, n, q, n - 2, n - 1, t, h);
   if (n > 2) strut_strain_angle_arm(at, n, q, 1, 0, -t, h);
 }
-
-#endif

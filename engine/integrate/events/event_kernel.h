@@ -4,8 +4,7 @@
  *
  * `terms` are those that a copy knows, see STRUT_TERMS_RARE in model.h.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_KERNEL_H
+#pragma once
 
 #include <float.h>
 #include <math.h>
@@ -369,5 +368,3 @@ STRUT_INLINE double law_value(const strut_event_stepper *stepper, const strut_st
     if (state->watched.rehearsals) strut_event_rehearse(name##_once, model, state, stepper, t, h); \
     name##_once(model, state, stepper, t, h);                                                      \
   }
-
-#endif

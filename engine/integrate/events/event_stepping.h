@@ -7,8 +7,7 @@
  * where that began; there the mode changes, and the rest of the step follows. Steps so end on the
  * grid n dt as those of any other method.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_EVENT_STEPPING_H
+#pragma once
 
 #include <assert.h>
 
@@ -552,5 +551,3 @@ static inline const strut_contact_axes *strut_axes_of_contact(const strut_contac
  */
 int32_t strut_surface_candidates(const strut_model *model, const strut_event_stepper *stepper,
                                  double h, int32_t *list);
-
-#endif

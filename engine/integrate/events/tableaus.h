@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Pairs of explicit Runge-Kutta methods: of each the better one steps, and their difference is the local error. */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_TABLEAUS_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_TABLEAUS_H
+#pragma once
 
 #include "engine/integrate/events/event_stepping.h"
 
@@ -60,5 +59,3 @@ static const strut_tableau strut_verner = {
                    0.0001211723589784759, -20.142336771313868, 5.2371785994398286,
                    -8.156744408794658, 22.938283273988784, -0.2361324633071542,
                    0.36016794372897754}};
-
-#endif

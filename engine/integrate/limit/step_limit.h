@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Largest stable steps of the explicit methods for one damped mode, z^2 + d z + k = 0.
- */
-#ifndef STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
-#define STRUT_ENGINE_INTEGRATE_LIMIT_STEP_LIMIT_H
+/** Largest stable steps of the explicit methods for one damped mode, z^2 + d z + k = 0. */
+#pragma once
 
 #include "engine/forces/tangent.h"
 #include "engine/integrate/integrator.h"
@@ -115,5 +112,3 @@ typedef struct strut_cost_estimate {
 STRUT_API strut_status strut_cost_estimate_describe(const strut_model *model,
                                                     strut_cost_estimate *estimate,
                                                     strut_error *error);
-
-#endif

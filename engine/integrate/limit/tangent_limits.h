@@ -2,8 +2,7 @@
 /**
  * Limits of the step from the tangent: the Krylov basis, the bound from entries, the limits themselves.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
-#define STRUT_ENGINE_INTEGRATE_LIMIT_TANGENT_LIMITS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -101,5 +100,3 @@ bool strut_tangent_limits_create(int most, strut_arena *arena, strut_tangent_lim
 /** Of the space as it is; `damped`: D is not zero; rk4: look for RK4's. False: out of memory. */
 bool strut_tangent_limits_find(const strut_krylov_basis *space, bool damped, bool rk4,
                                strut_tangent_limits *limits);
-
-#endif

@@ -5,8 +5,7 @@
  * Only cholmod_factor.c sees cholmod.h. The factor is simplicial, so that its bits do not depend on the
  * installed BLAS.
  */
-#ifndef STRUT_ENGINE_MODEL_ALGEBRA_CHOLMOD_FACTOR_H
-#define STRUT_ENGINE_MODEL_ALGEBRA_CHOLMOD_FACTOR_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -40,5 +39,3 @@ typedef struct strut_cholmod_library {
 
 /** Fails where the library cannot be loaded (engine/base/library.h). */
 strut_status strut_cholmod_load(const strut_cholmod_library **library, strut_error *error);
-
-#endif

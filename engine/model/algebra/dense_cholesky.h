@@ -3,8 +3,7 @@
  * Cholesky factor L (n, n; lower triangle, in rows) of a small dense matrix, such as that by which stuck
  * contacts hold each other. first: (n) the column where each row of L begins; NULL: the first.
  */
-#ifndef STRUT_ENGINE_MODEL_ALGEBRA_DENSE_CHOLESKY_H
-#define STRUT_ENGINE_MODEL_ALGEBRA_DENSE_CHOLESKY_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -54,5 +53,3 @@ STRUT_INLINE void strut_cholesky_solve(int32_t n, const double *f, double *vecto
     vector[i] /= f[i * n + i];
   }
 }
-
-#endif

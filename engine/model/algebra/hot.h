@@ -7,8 +7,7 @@
  * functions only, each with a name of its own: clang names the clones of a public one otherwise than
  * gcc, and makes those of equal names in two files collide.
  */
-#ifndef STRUT_ENGINE_MODEL_ALGEBRA_HOT_H
-#define STRUT_ENGINE_MODEL_ALGEBRA_HOT_H
+#pragma once
 
 #include <math.h>
 
@@ -99,5 +98,3 @@ STRUT_DEFINE_LAW_WORDS(STRUT_INLINE, four)
 STRUT_INLINE four_real four_root(four_real a) {
   return (four_real){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])};
 }
-
-#endif

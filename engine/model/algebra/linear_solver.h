@@ -3,8 +3,7 @@
  * A sparse symmetric matrix and its L D L' factor, which CHOLMOD computes (cholmod_factor.h). The factor is
  * copied out, so that solving in the step loop allocates nothing.
  */
-#ifndef STRUT_ENGINE_MODEL_ALGEBRA_LINEAR_SOLVER_H
-#define STRUT_ENGINE_MODEL_ALGEBRA_LINEAR_SOLVER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -94,9 +93,7 @@ int32_t strut_refactor_apply(strut_refactor *refactor, const strut_sparse *matri
 /** b (n) becomes A^-1 b, in the matrix's own order. */
 void strut_refactor_solve(strut_refactor *refactor, double *b);
 
-/*
- * Symmetric sparse matrices put together from contributions that may fall on the same place.
- */
+/* Symmetric sparse matrices put together from contributions that may fall on the same place. */
 
 /** Collects contributions; zero-initialise, then strut_triplets_reserve. */
 typedef struct strut_triplets {
@@ -120,5 +117,3 @@ strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, stru
 /** y = A x with the whole symmetric matrix. */
 STRUT_API void strut_sparse_multiply(const strut_sparse *matrix, const double *restrict vector,
                                      double *restrict y);
-
-#endif

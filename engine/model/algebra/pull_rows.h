@@ -7,8 +7,7 @@
  * pulls has several rows, one with fewer adds -0 as well, which changes no bit. Each node adds its pulls in
  * the order of the table's members.
  */
-#ifndef STRUT_ENGINE_MODEL_ALGEBRA_PULL_ROWS_H
-#define STRUT_ENGINE_MODEL_ALGEBRA_PULL_ROWS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -55,5 +54,3 @@ static inline uint16_t strut_pull_at(int32_t k, bool second) {
  */
 STRUT_API strut_pull_rows *strut_pull_rows_create(strut_arena *arena, int32_t count,
                                                   const uint32_t *from, const uint32_t *to);
-
-#endif

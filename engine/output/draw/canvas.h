@@ -6,8 +6,7 @@
  * from the upper left corner. Drawing never fails: strut_canvas_commit reports errors. The same
  * drawing gives the same bytes; there is no date in them.
  */
-#ifndef STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
-#define STRUT_ENGINE_OUTPUT_DRAW_CANVAS_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -182,5 +181,3 @@ enum { STRUT_PALETTE_THINGS = 7 };
 STRUT_API strut_colour strut_grey(double brightness);
 /** The same colour with its opacity multiplied by alpha. */
 STRUT_API strut_colour strut_faded(strut_colour colour, double alpha);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What charts are described with: axes, scales of colours, values beyond them; and where a figure goes. */
-#ifndef STRUT_ENGINE_OUTPUT_DRAW_CHART_H
-#define STRUT_ENGINE_OUTPUT_DRAW_CHART_H
+#pragma once
 
 #include <math.h>
 
@@ -98,5 +97,3 @@ typedef struct strut_plot {
   bool texts;             /* those of an SVG are texts, not outlines */
   strut_axis_choice x, y; /* of a figure with one pair of axes */
 } strut_plot;
-
-#endif

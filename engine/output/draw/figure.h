@@ -8,8 +8,7 @@
  * texts, lays panels out, settles axes, leaves outliers out, places legends and labels clear of all else, and
  * writes the file: a picture, or the same data as JSON.
  */
-#ifndef STRUT_ENGINE_OUTPUT_DRAW_FIGURE_H
-#define STRUT_ENGINE_OUTPUT_DRAW_FIGURE_H
+#pragma once
 
 #include "engine/base/library.h"
 #include "engine/base/memory.h"
@@ -273,5 +272,3 @@ typedef struct strut_cairo_library {
 
 /** Fails where the libraries cannot be loaded. */
 STRUT_API strut_status strut_cairo_load(const strut_cairo_library **library, strut_error *error);
-
-#endif

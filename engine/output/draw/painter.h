@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What the files of the painter share: labels, axes, keys, charts, views. For these files and their tests. */
-#ifndef STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
-#define STRUT_ENGINE_OUTPUT_DRAW_PAINTER_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/output/draw/figure.h"
@@ -126,5 +125,3 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
  */
 double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
                        const strut_window *window, bool draw);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Structures drawn to scale: members, nodes, supports, and what they are seen through. */
-#ifndef STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
-#define STRUT_ENGINE_OUTPUT_DRAW_STRUCTURE_H
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/output/draw/canvas.h"
@@ -65,5 +64,3 @@ typedef struct strut_structure_style {
 STRUT_API void strut_draw_structure(strut_canvas *canvas, const strut_window *window,
                                     const strut_model *model, const double *positions,
                                     const strut_structure_style *style);
-
-#endif

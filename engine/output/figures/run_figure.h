@@ -3,8 +3,7 @@
  * Figures of a run from its recorded motion: an overview, node trajectories over one period,
  * snapshots, curves over time.
  */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_RUN_FIGURE_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_RUN_FIGURE_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
@@ -88,5 +87,3 @@ STRUT_API strut_status strut_film_check(strut_film *film, double motion, strut_e
     with what ffmpeg says, STRUT_DIVERGED without a frame, STRUT_INTERRUPTED, STRUT_NO_MEMORY. */
 STRUT_API strut_status strut_film_make(strut_film *film, const strut_model *model,
                                        const strut_trajectory *motion, strut_error *error);
-
-#endif

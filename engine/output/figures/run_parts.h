@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Shared by the views of a run.
- */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_RUN_PARTS_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_RUN_PARTS_H
+/** Shared by the views of a run. */
+#pragma once
 
 #include "engine/output/draw/figure.h"
 #include "engine/output/figures/run_figure.h"
@@ -66,5 +63,3 @@ const char *strut_run_overview(strut_run_scene *run, strut_figure *figure);
 const char *strut_run_period(strut_run_scene *run, strut_figure *figure);
 const char *strut_run_snapshots(strut_run_scene *run, strut_figure *figure);
 const char *strut_run_curves(strut_run_scene *run, strut_figure *figure);
-
-#endif

@@ -3,8 +3,7 @@
  * Figures of statics: equilibria, forms, modes, paths, rigidity. Each writes the file of its plot and
  * fails as strut_canvas_open and strut_canvas_commit, or with STRUT_NO_MEMORY.
  */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_STATICS_FIGURES_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_STATICS_FIGURES_H
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/output/draw/chart.h"
@@ -62,5 +61,3 @@ STRUT_API strut_status strut_path_figure(const strut_plot *plot, const strut_mod
 STRUT_API strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
                                              const double *positions, const char *at,
                                              const strut_rigidity *rigidity, strut_error *error);
-
-#endif

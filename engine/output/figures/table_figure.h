@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Figures of tables: curves in panels with grey bands, maps, clouds of points.
- */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_TABLE_FIGURE_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_TABLE_FIGURE_H
+/** Figures of tables: curves in panels with grey bands, maps, clouds of points. */
+#pragma once
 
 #include <stdbool.h>
 
@@ -98,5 +95,3 @@ STRUT_API strut_status strut_table_groups_find(const strut_table_rows *rows, int
 /** True if a row is shown and belongs to a group of that column. */
 STRUT_API bool strut_table_belongs(const strut_table_rows *rows, int column, const char *name,
                                    size_t row);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Work-precision diagrams: error over cost, both logarithmic, with the Pareto front.
- */
-#ifndef STRUT_ENGINE_OUTPUT_FIGURES_WORK_PRECISION_H
-#define STRUT_ENGINE_OUTPUT_FIGURES_WORK_PRECISION_H
+/** Work-precision diagrams: error over cost, both logarithmic, with the Pareto front. */
+#pragma once
 
 #include "engine/output/draw/figure.h"
 
@@ -21,5 +18,3 @@ STRUT_API void strut_pareto_front(const strut_saving *savings, size_t count, boo
 STRUT_API strut_panel *strut_add_work_precision(strut_figure *figure, strut_axis cost,
                                                 strut_axis error, const strut_saving *savings,
                                                 size_t count);
-
-#endif

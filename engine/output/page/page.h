@@ -26,8 +26,7 @@
  * little-endian groups of 7 bits, all of it deflated (raw, RFC 1951) and in base64. Numbers stay
  * below 2^53. Scripts may give {values: [number, ...]} instead.
  */
-#ifndef STRUT_ENGINE_OUTPUT_PAGE_PAGE_H
-#define STRUT_ENGINE_OUTPUT_PAGE_PAGE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -111,5 +110,3 @@ STRUT_API void strut_block_free(strut_block *block);
  * from the first that is not finite, or far out of all bounds, are left out; then as many evenly as it takes.
  */
 STRUT_API char *strut_page_motion(const strut_page *page, size_t room, strut_page_frames *frames);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Runs to a wanted accuracy: chooses method and step by cost, and checks the answer. */
-#ifndef STRUT_ENGINE_RUN_ACCURACY_ACCURACY_H
-#define STRUT_ENGINE_RUN_ACCURACY_ACCURACY_H
+#pragma once
 
 #include <math.h>
 
@@ -198,5 +197,3 @@ void strut_ladder_extend_coarse(strut_ladder *ladder);
 void strut_ladder_judge_last(strut_ladder *ladder);
 /** Fills the summary's accuracy and quantities. */
 void strut_ladder_report(strut_ladder *ladder);
-
-#endif

@@ -3,8 +3,7 @@
  * Finding the periodic orbit for a wanted accuracy: state and steps shared by accuracy_orbit.c and
  * orbit_solve.c.
  */
-#ifndef STRUT_ENGINE_RUN_ACCURACY_ORBIT_SOLVE_H
-#define STRUT_ENGINE_RUN_ACCURACY_ORBIT_SOLVE_H
+#pragma once
 
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/orbit/orbit.h"
@@ -139,11 +138,7 @@ bool strut_orbit_solve_is_stuck(const strut_orbit_solve *solve);
  * solve->answer if both agree.
  */
 void strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve);
-/**
- * The coarse run creeps. Runs it on with half the step; sets solve->answer if that is as slow.
- */
+/** The coarse run creeps. Runs it on with half the step; sets solve->answer if that is as slow. */
 void strut_orbit_solve_confirm_creep(strut_orbit_solve *solve);
 /** Fills the request's summary from the answer; orbit: the run of its periods. */
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit);
-
-#endif

@@ -7,8 +7,7 @@
  * where a multiplier passes the unit circle, where the branch turns, and where the sequence of touchdowns,
  * slips and other events changes.
  */
-#ifndef STRUT_ENGINE_RUN_FOLLOW_FOLLOW_H
-#define STRUT_ENGINE_RUN_FOLLOW_FOLLOW_H
+#pragma once
 
 #include "engine/base/status.h"
 #include "engine/integrate/events/location/event_log.h"
@@ -289,5 +288,3 @@ STRUT_API strut_status strut_follow_curve_make(strut_follow_system *system,
 STRUT_API bool strut_follow_curve_passes(const strut_follow_system *system,
                                          const strut_follow_branch *curve,
                                          const strut_follow_curve_start *start);
-
-#endif

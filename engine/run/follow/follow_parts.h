@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What the parts of following share. Internal to engine/run/follow. */
-#ifndef STRUT_ENGINE_RUN_FOLLOW_FOLLOW_PARTS_H
-#define STRUT_ENGINE_RUN_FOLLOW_FOLLOW_PARTS_H
+#pragma once
 
 #include "engine/run/follow/follow.h"
 
@@ -125,5 +124,3 @@ void strut_follow_order(strut_follow_branch *branch, size_t forth);
 /** Has the way come back to where it began? */
 bool strut_follow_is_closed(const strut_follow_walk *walk, const strut_follow_orbit *begin,
                             const strut_follow_orbit *orbit, double step);
-
-#endif

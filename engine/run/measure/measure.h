@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Measures over the window: mean velocity (14) and its spread, contact duty and height. */
-#ifndef STRUT_ENGINE_RUN_MEASURE_MEASURE_H
-#define STRUT_ENGINE_RUN_MEASURE_MEASURE_H
+#pragma once
 
 #include "engine/forces/forces.h"
 #include "engine/model/state.h"
@@ -131,5 +130,3 @@ void strut_measure_finish(const strut_measurement *measure, strut_summary *summa
 /** Is the mean velocity of a finished window only rounding, as of a symmetric motion? */
 bool strut_measure_is_zero(const strut_measurement *measure, const strut_summary *summary);
 void strut_measure_free(strut_measurement *measure);
-
-#endif

@@ -8,8 +8,7 @@
  * until a parabola through its samples meets those between. There integrals are by Simpson's rule,
  * extremes and arrivals are searched for where the samples show one.
  */
-#ifndef STRUT_ENGINE_RUN_MEASURE_METER_H
-#define STRUT_ENGINE_RUN_MEASURE_METER_H
+#pragma once
 
 #include <stdint.h>
 
@@ -165,5 +164,3 @@ void strut_meter_add_even(strut_meter *meter, double value, double begin, double
 bool strut_meter_is_resolved(const strut_meter *meter, const strut_samples *samples);
 /** Adds a part by its samples, searching for extremes and arrivals between them. */
 void strut_meter_add(strut_meter *meter, const strut_samples *samples);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Monitors of a run: does its step stay stable, and do contacts that should stick pass over the stick band? */
-#ifndef STRUT_ENGINE_RUN_MEASURE_MONITORS_H
-#define STRUT_ENGINE_RUN_MEASURE_MONITORS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -152,5 +151,3 @@ double strut_states_rate(const strut_model *model, strut_state *state, double t,
 
 /** The tie most strained by creeping, where that may release a node; otherwise NULL. */
 const strut_band_tie *strut_stick_band_strained(const strut_stick_band *band);
-
-#endif

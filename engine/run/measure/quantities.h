@@ -2,8 +2,7 @@
 /**
  * Measured quantities: columns of the motion, the programs over them, and their values over a window.
  */
-#ifndef STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
-#define STRUT_ENGINE_RUN_MEASURE_QUANTITIES_H
+#pragma once
 
 #include "engine/base/status.h"
 #include "engine/forces/observe.h"
@@ -111,5 +110,3 @@ void strut_quantities_begin(strut_quantities *quantities, const strut_marks *mar
 void strut_quantities_step(strut_quantities *quantities, double length, strut_state *state);
 /** Fills summary->measured from the marks passed so far. */
 void strut_quantities_finish(strut_quantities *quantities, strut_summary *summary);
-
-#endif

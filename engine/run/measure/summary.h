@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Summary of a run: its results. */
-#ifndef STRUT_ENGINE_RUN_MEASURE_SUMMARY_H
-#define STRUT_ENGINE_RUN_MEASURE_SUMMARY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -260,5 +259,3 @@ typedef struct strut_run_samples {
   const double *time; /* (count) ascending, from the start of the run, the last its end [s] */
   double *value;      /* (count, quantities) those that are not reached stay as they are */
 } strut_run_samples;
-
-#endif

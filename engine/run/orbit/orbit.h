@@ -6,8 +6,7 @@
  * steps after a touchdown. Travel along the ground is removed after each period, so that a gait is
  * a fixed point.
  */
-#ifndef STRUT_ENGINE_RUN_ORBIT_ORBIT_H
-#define STRUT_ENGINE_RUN_ORBIT_ORBIT_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
@@ -99,5 +98,3 @@ typedef struct strut_extrapolation {
  */
 strut_status strut_orbit_limit(strut_period_map *map, strut_extrapolation *to, double *y,
                                double *travel);
-
-#endif

@@ -10,8 +10,7 @@
  * started or ended, or where the signals do not repeat themselves. Where it is wanted, a motion without a
  * period ends, too, if it has long been slower than matters, and its shape does not change more and more.
  */
-#ifndef STRUT_ENGINE_RUN_ORBIT_STEADY_DETECTOR_H
-#define STRUT_ENGINE_RUN_ORBIT_STEADY_DETECTOR_H
+#pragma once
 
 #include "engine/model/state.h"
 #include "engine/run/measure/measure.h"
@@ -79,5 +78,3 @@ bool strut_steady_detector_period(const strut_state *state, double x,
  */
 void strut_steady_detector_finish(strut_steady_detector *detector, strut_summary *summary);
 void strut_steady_detector_free(strut_steady_detector *detector);
-
-#endif

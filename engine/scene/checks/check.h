@@ -5,8 +5,7 @@
  * The rules apply to the plain description, however it was made. A finding names its subject and
  * key, by which a reader of text finds the position.
  */
-#ifndef STRUT_ENGINE_SCENE_CHECKS_CHECK_H
-#define STRUT_ENGINE_SCENE_CHECKS_CHECK_H
+#pragma once
 
 #include "engine/scene/things.h"
 
@@ -66,5 +65,3 @@ STRUT_API strut_status strut_setup_check(const strut_setup *setup, strut_purpose
  */
 STRUT_API strut_status strut_setup_warn(const strut_setup *setup, strut_findings *warnings);
 STRUT_API void strut_findings_free(strut_findings *findings);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Shared by the rules of the check; internal to engine/scene. */
-#ifndef STRUT_ENGINE_SCENE_CHECKS_CHECK_RULES_H
-#define STRUT_ENGINE_SCENE_CHECKS_CHECK_RULES_H
+#pragma once
 
 #include "engine/scene/checks/check.h"
 #include "engine/scene/things.h"
@@ -101,5 +100,3 @@ void strut_check_signals(strut_checker *checker);
 void strut_check_drives(strut_checker *checker);
 void strut_check_shapes(strut_checker *checker);
 void strut_check_experiment(strut_checker *checker);
-
-#endif

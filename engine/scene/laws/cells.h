@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The laws of cells, of an area e with the pressure e0 as drawn; see engine/scene/law.h. */
-#ifndef STRUT_ENGINE_SCENE_LAWS_CELLS_H
-#define STRUT_ENGINE_SCENE_LAWS_CELLS_H
+#pragma once
 
 #include "engine/scene/laws/numbers.h"
 
@@ -68,5 +67,3 @@ STRUT_LAW_WITHOUT_KINKS(isentropic)
   X(PRESSURE, pressure, "pressure", 0, context)                                                    \
   X(ISOTHERMAL, isothermal, "isothermal", 0, context)                                              \
   X(ISENTROPIC, isentropic, "isentropic", 0, context)
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Laws through points: tables, and curves that may fold back; see engine/scene/law.h. */
-#ifndef STRUT_ENGINE_SCENE_LAWS_CURVES_H
-#define STRUT_ENGINE_SCENE_LAWS_CURVES_H
+#pragma once
 
 #include "engine/scene/laws/numbers.h"
 
@@ -105,5 +104,3 @@ static inline int strut_law_folding_kinks(const strut_law_numbers *n) {
 static inline double strut_law_folding_kink(const strut_law_numbers *n, int k) {
   return n->curve->x[k + 1];
 }
-
-#endif

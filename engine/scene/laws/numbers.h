@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What the functions of all laws take and return; see engine/scene/law.h. */
-#ifndef STRUT_ENGINE_SCENE_LAWS_NUMBERS_H
-#define STRUT_ENGINE_SCENE_LAWS_NUMBERS_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -88,5 +87,3 @@ static inline double strut_law_log_rest(double u) {
     (void)n, (void)k;                                                                              \
     return 0.0;                                                                                    \
   }
-
-#endif

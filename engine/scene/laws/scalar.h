@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The words of laws (laws/words.h) for single doubles. */
-#ifndef STRUT_ENGINE_SCENE_LAWS_SCALAR_H
-#define STRUT_ENGINE_SCENE_LAWS_SCALAR_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -27,5 +26,3 @@ static inline double strut_law_root(double a) { return sqrt(a); }
 /** Sign of x: -1, 0 or 1. */
 static inline double strut_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 static inline double strut_law_against(double a, double b) { return -a * strut_sign(b); }
-
-#endif

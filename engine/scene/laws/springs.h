@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Springs of members and hinges, x = e - e0; see engine/scene/law.h. */
-#ifndef STRUT_ENGINE_SCENE_LAWS_SPRINGS_H
-#define STRUT_ENGINE_SCENE_LAWS_SPRINGS_H
+#pragma once
 
 #include "engine/scene/laws/numbers.h"
 
@@ -98,5 +97,3 @@ static inline strut_law_response strut_law_elastic_plastic(const strut_law_numbe
   return strut_law_linear(n, e, e0, piece);
 }
 STRUT_LAW_WITHOUT_KINKS(elastic_plastic)
-
-#endif

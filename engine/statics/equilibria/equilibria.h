@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** One equilibrium on the real ground, by name, for modes, matrices and starts of runs. */
-#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
-#define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
@@ -131,5 +130,3 @@ STRUT_API strut_status strut_equilibria_find(const strut_model *model,
                                              const strut_equilibria_options *options,
                                              strut_equilibria *equilibria, strut_error *error);
 STRUT_API void strut_equilibria_free(strut_equilibria *equilibria);
-
-#endif

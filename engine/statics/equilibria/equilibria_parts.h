@@ -2,8 +2,7 @@
 /**
  * What the search for equilibria is made of: the landscape, supports, relaxation, the search itself, and names.
  */
-#ifndef STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
-#define STRUT_ENGINE_STATICS_EQUILIBRIA_EQUILIBRIA_PARTS_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/scene/experiment.h"
@@ -308,5 +307,3 @@ bool strut_rests_on_set(const strut_configuration *configuration, const int32_t 
 
 /** Writes "n1, n2 and n3" for the nodes with a flag; many become "n1, n2, n3 and 5 more". */
 void strut_list_nodes(const strut_scene *scene, const uint8_t *flag, size_t size, char *text);
-
-#endif

@@ -3,8 +3,7 @@
  * Form finding: from what a scene gives of a structure to a shape, rest lengths and start positions
  * that stand still when the scene is run.
  */
-#ifndef STRUT_ENGINE_STATICS_FORM_FORM_H
-#define STRUT_ENGINE_STATICS_FORM_FORM_H
+#pragma once
 
 #include "engine/scene/experiment.h"
 #include "engine/scene/value_rows.h"
@@ -62,5 +61,3 @@ STRUT_API extern const strut_value_rows strut_form_values;
  */
 STRUT_API strut_status strut_form_find(strut_setup *setup, const strut_form_options *options,
                                        strut_form *form, strut_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The methods of form finding and their shared parts, for the files of this folder. */
-#ifndef STRUT_ENGINE_STATICS_FORM_PARTS_H
-#define STRUT_ENGINE_STATICS_FORM_PARTS_H
+#pragma once
 
 #include "engine/statics/form/form.h"
 #include "engine/statics/potential.h"
@@ -49,5 +48,3 @@ strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool 
  */
 bool strut_bounded_squares(int32_t rows, int32_t count, const double *equations,
                            const double *weight, const double *low, double *vector);
-
-#endif

@@ -9,8 +9,7 @@
  *
  * Friction and drives do not act; a closed contact is a spring both ways, its damper too.
  */
-#ifndef STRUT_ENGINE_STATICS_MODES_MODES_H
-#define STRUT_ENGINE_STATICS_MODES_MODES_H
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/run/measure/summary.h"
@@ -91,5 +90,3 @@ STRUT_API strut_status strut_modes_find(const strut_model *model,
                                         const strut_modes_options *options, strut_modes *modes,
                                         strut_error *error);
 STRUT_API void strut_modes_free(strut_modes *modes);
-
-#endif

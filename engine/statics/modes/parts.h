@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What modes are made of: the matrices of small vibrations, solvers, and the parts of the search. */
-#ifndef STRUT_ENGINE_STATICS_MODES_PARTS_H
-#define STRUT_ENGINE_STATICS_MODES_PARTS_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/model/algebra/linear_solver.h"
@@ -155,5 +154,3 @@ strut_status strut_modes_measure(strut_modes_work *work, strut_error *error);
 /** Damping of the modes into the list; `exactly`: the set holds all modes. */
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,
                                  strut_error *error);
-
-#endif

@@ -11,8 +11,7 @@
  * A phase is in turns: 1/2 is opposite motion of neighbouring cells. Frequencies are in Hz, below
  * zero where the wave grows without swinging, at the rate of 2 pi times their size.
  */
-#ifndef STRUT_ENGINE_STATICS_MODES_WAVES_H
-#define STRUT_ENGINE_STATICS_MODES_WAVES_H
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/scene/experiment.h"
@@ -85,5 +84,3 @@ STRUT_API strut_status strut_waves_find(const strut_model *model,
                                         const strut_waves_options *options, strut_waves *waves,
                                         strut_error *error);
 STRUT_API void strut_waves_free(strut_waves *waves);
-
-#endif

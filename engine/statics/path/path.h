@@ -9,8 +9,7 @@
  * and stability is judged on both. Positions carry twice a double's digits, so that stiff bars do
  * not spoil the forces.
  */
-#ifndef STRUT_ENGINE_STATICS_PATH_PATH_H
-#define STRUT_ENGINE_STATICS_PATH_PATH_H
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/scene/experiment.h"
@@ -211,5 +210,3 @@ STRUT_API strut_status strut_path_follow_stages(const strut_model *model,
                                                 const strut_experiment *experiment,
                                                 const strut_path_options *usual, strut_path *path,
                                                 strut_error *error);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What an equilibrium path is made of: its parameter, its equations, events on it, and the walk. */
-#ifndef STRUT_ENGINE_STATICS_PATH_PATH_PARTS_H
-#define STRUT_ENGINE_STATICS_PATH_PATH_PARTS_H
+#pragma once
 
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_permutation.h>
@@ -91,9 +90,7 @@ typedef struct strut_path_elements {
   int *guide_mode; /* (slots) STRUT_GUIDE_*, by the same places */
 } strut_path_elements;
 
-/**
- * Pieces of laws that fold, at system->latest->q, as they follow from what the model remembers.
- */
+/** Pieces of laws that fold, at system->latest->q, as they follow from what the model remembers. */
 void strut_path_find_pieces(struct strut_path_system *system);
 /** Elements on a piece of their law that goes back: each is unstable by itself, whatever holds its ends. */
 int32_t strut_path_count_folded(const struct strut_path_system *system);
@@ -524,5 +521,3 @@ void strut_path_add_point(strut_path_walk *walk, int32_t negative);
 /** Keeps y, in the order of the path. `detail` is copied. */
 void strut_path_add_event(strut_path_walk *walk, strut_path_event_kind kind, const double *unknowns,
                           int32_t index, int32_t before, int32_t after, const char *detail);
-
-#endif

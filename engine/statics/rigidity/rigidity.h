@@ -3,8 +3,7 @@
  * Statics of a shape: self-stress, mechanisms, their counts, and what the forces in the shape make
  * of them. In the plane: there is no third coordinate to move along.
  */
-#ifndef STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H
-#define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_H
+#pragma once
 
 #include "engine/model/model.h"
 #include "engine/scene/value_rows.h"
@@ -191,9 +190,7 @@ typedef struct strut_mechanisms {
 STRUT_API double strut_stress_form(const strut_model *model, const strut_equilibrium_matrix *matrix,
                                    const double *density, const double *vector, const double *y);
 
-/**
- * The form on the span of `count` motions (count, rows), as a symmetric (count, count) matrix.
- */
+/** The form on the span of `count` motions (count, rows), as a symmetric (count, count) matrix. */
 STRUT_API void strut_stress_form_on(const strut_model *model,
                                     const strut_equilibrium_matrix *matrix, const double *density,
                                     const double *motion, int32_t count, double *form);
@@ -296,5 +293,3 @@ STRUT_API void strut_rigidity_free(strut_rigidity *rigidity);
 
 /** Rows of a strut_rigidity. */
 STRUT_API extern const strut_value_rows strut_rigidity_values;
-
-#endif

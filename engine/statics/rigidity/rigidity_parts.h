@@ -2,8 +2,7 @@
 /**
  * What the statics of a shape is made of: null spaces, matrices of small motions, stiffness of nodes.
  */
-#ifndef STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_PARTS_H
-#define STRUT_ENGINE_STATICS_RIGIDITY_RIGIDITY_PARTS_H
+#pragma once
 
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"
@@ -59,5 +58,3 @@ STRUT_API strut_status strut_node_stiffness_create(const strut_model *model,
 STRUT_API double strut_node_stiffness_along(strut_node_stiffness *stiffness, int32_t node,
                                             const double direction[2]);
 STRUT_API void strut_node_stiffness_free(strut_node_stiffness *stiffness); /* NULL is allowed */
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * All stationary points of one potential: found from many starts, merged, classified and connected.
  */
-#ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
-#define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/statics/minimise.h"
@@ -184,5 +183,3 @@ bool strut_climb_away(strut_climber *climber, int32_t mode, double far, double *
 /** Number of folds of a shape: mirror images of the whole, of either side of a member, and
     of single nodes across the line through two of their neighbours. */
 int64_t strut_fold_count(const strut_potential *potential);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** A stationary point of a potential, its kind, and what is known of those not found. */
-#ifndef STRUT_ENGINE_STATICS_SEARCH_CRITICAL_POINT_H
-#define STRUT_ENGINE_STATICS_SEARCH_CRITICAL_POINT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -47,5 +46,3 @@ typedef struct strut_missed {
   double one;         /* upper 95 % limit of the share of starts of any one minimum not met */
   double count;       /* lower 95 % limit of the number of all minima, met or not: Chao's bound */
 } strut_missed;
-
-#endif

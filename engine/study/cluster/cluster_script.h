@@ -3,8 +3,7 @@
  * A shell script that runs the shards of a study as a job array of Slurm and merges them. Its text is
  * slurm.sh, embedded at build time.
  */
-#ifndef STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
-#define STRUT_ENGINE_STUDY_CLUSTER_CLUSTER_SCRIPT_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -31,5 +30,3 @@ typedef struct strut_cluster_script {
  */
 STRUT_API strut_status strut_cluster_script_write(const strut_cluster_script *script, char **text,
                                                   strut_error *error);
-
-#endif

@@ -5,8 +5,7 @@
  * Every number equals that of the single command: `strut check`, `rigidity`, `equilibria`, `modes`,
  * `run --accuracy --steady`. Missing values are empty cells with a reason.
  */
-#ifndef STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
-#define STRUT_ENGINE_STUDY_COMPARE_COMPARE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -185,5 +184,3 @@ STRUT_API extern const strut_value_rows strut_compare_values;
  */
 STRUT_API strut_status strut_compare_figure(const strut_plot *plot, const strut_compare *result,
                                             size_t first, size_t count, strut_error *error);
-
-#endif

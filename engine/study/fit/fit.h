@@ -9,8 +9,7 @@
  *
  * The rows of the study's table are the fits: of each start, of both ends of each interval, and without each match.
  */
-#ifndef STRUT_ENGINE_STUDY_FIT_FIT_H
-#define STRUT_ENGINE_STUDY_FIT_FIT_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/scene/value_rows.h"
@@ -152,5 +151,3 @@ typedef struct strut_fit_plan {
 STRUT_API strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *interrupt,
                                            strut_fit_plan *plan, strut_error *error);
 STRUT_API extern const strut_value_rows strut_fit_plan_values;
-
-#endif

@@ -6,8 +6,7 @@
  * ones. An alignment's is 1 + value / scale; a fitted one's is 1 at its least value, 2 at its largest, and its
  * logarithm is even between them where the study says so.
  */
-#ifndef STRUT_ENGINE_STUDY_FIT_FIT_PARTS_H
-#define STRUT_ENGINE_STUDY_FIT_FIT_PARTS_H
+#pragma once
 
 #include "engine/study/fit/fit.h"
 #include "engine/study/fit/least_squares.h"
@@ -151,5 +150,3 @@ bool strut_fit_is_unexplained(double sum, double freedom);
  */
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
                      const double *best, strut_fit_result *result);
-
-#endif

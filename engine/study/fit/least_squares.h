@@ -7,8 +7,7 @@
  * those of the nearest point of the box, and further ones draw back to it. A parameter that would leave the box, or go
  * where there are no residuals, stays where it is as long as that is so.
  */
-#ifndef STRUT_ENGINE_STUDY_FIT_LEAST_SQUARES_H
-#define STRUT_ENGINE_STUDY_FIT_LEAST_SQUARES_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
@@ -72,5 +71,3 @@ typedef struct strut_fit_spectrum {
 /** From the matrix (count, parameters), which is overwritten, in the arena. False: memory is out. */
 STRUT_API bool strut_fit_spectrum_find(double *jacobian, size_t count, size_t parameters,
                                        strut_arena *arena, strut_fit_spectrum *spectrum);
-
-#endif

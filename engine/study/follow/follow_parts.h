@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What the parts of a study of branches share. Internal to engine/study/follow. */
-#ifndef STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_PARTS_H
-#define STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_PARTS_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/output/buffer.h"
@@ -92,5 +91,3 @@ STRUT_API extern const strut_value_rows strut_follow_points_values;
 STRUT_API strut_status strut_follow_points_figure(const strut_plot *plot,
                                                   const strut_sweep_plan *plan,
                                                   const strut_table *table, strut_error *error);
-
-#endif

@@ -3,8 +3,7 @@
  * All branches of periodic motions of a model over one parameter: from steady motions at some of its
  * values, and where a branch doubles its period, from there.
  */
-#ifndef STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_STUDY_H
-#define STRUT_ENGINE_STUDY_FOLLOW_FOLLOW_STUDY_H
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/output/draw/chart.h"
@@ -105,5 +104,3 @@ STRUT_API strut_status strut_follow_curves_figure(const strut_plot *plot,
 /** Velocity over the parameter: stable solid, unstable dashed, special points marked. */
 STRUT_API strut_status strut_follow_figure(const strut_plot *plot,
                                            const strut_follow_result *result, strut_error *error);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * Texts are released by strut_release; NULL: out of memory.
  */
-#ifndef STRUT_ENGINE_STUDY_REPORT_STUDY_REPORT_H
-#define STRUT_ENGINE_STUDY_REPORT_STUDY_REPORT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -93,5 +92,3 @@ strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                         const strut_study_figure *figure, const char *path,
                                         const strut_search_point *best, double width,
                                         const strut_flag *interrupt, strut_error *error);
-
-#endif

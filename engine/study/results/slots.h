@@ -12,8 +12,7 @@
  * Numbers are in the machine's own byte order, which the header tells; a machine of another order
  * refuses the file. The file grows as slots are written, and memory is a bit for each point.
  */
-#ifndef STRUT_ENGINE_STUDY_RESULTS_SLOTS_H
-#define STRUT_ENGINE_STUDY_RESULTS_SLOTS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -135,5 +134,3 @@ STRUT_API strut_status strut_slots_sync(strut_slots *slots, strut_error *error);
  * at a time.
  */
 STRUT_API bool strut_slots_get(strut_slots *slots, int64_t point, strut_result_slot *row);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What slots.c, slots_header.c and tables of slots share. Internal to engine/study.
- */
-#ifndef STRUT_ENGINE_STUDY_RESULTS_SLOTS_PARTS_H
-#define STRUT_ENGINE_STUDY_RESULTS_SLOTS_PARTS_H
+/** What slots.c, slots_header.c and tables of slots share. Internal to engine/study. */
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
@@ -54,5 +51,3 @@ strut_status strut_slots_trouble(strut_error *error, const char *what, const cha
  */
 int64_t strut_slots_pread(int descriptor, void *bytes, size_t length, int64_t offset);
 bool strut_slots_pwrite(int descriptor, const void *bytes, size_t length, int64_t offset);
-
-#endif

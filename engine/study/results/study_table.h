@@ -6,8 +6,7 @@
  * `status` and `message`, "completed" and nothing or why it failed. A number that there is not is an
  * empty cell; every other reads back to the same bits.
  */
-#ifndef STRUT_ENGINE_STUDY_RESULTS_STUDY_TABLE_H
-#define STRUT_ENGINE_STUDY_RESULTS_STUDY_TABLE_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/study/results/slots.h"
@@ -103,5 +102,3 @@ typedef strut_status strut_merge_check(void *context, strut_slots *const *source
 /** The same of the rows that there are, where `check` accepts them. */
 STRUT_API strut_status strut_merge_if(const char *directory, strut_merge_check *check,
                                       void *context, strut_merged *merged, strut_error *error);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What searches a study's variables: the unit box they live in, the optimisers' interface.
- */
-#ifndef STRUT_ENGINE_STUDY_SEARCH_OPTIMISERS_H
-#define STRUT_ENGINE_STUDY_SEARCH_OPTIMISERS_H
+/** What searches a study's variables: the unit box they live in, the optimisers' interface. */
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -89,5 +86,3 @@ void strut_search_spread_points(const strut_search_task *task, size_t count, dou
 
 /** The same of methods of NLopt, in nlopt_optimiser.c. */
 bool strut_search_optimise_by_nlopt(const strut_search_task *task, const strut_search_asker *asker);
-
-#endif

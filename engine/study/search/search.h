@@ -2,8 +2,7 @@
 /**
  * What a row of the table is worth to a search: its goal, and by how much conditions are broken.
  */
-#ifndef STRUT_ENGINE_STUDY_SEARCH_SEARCH_H
-#define STRUT_ENGINE_STUDY_SEARCH_SEARCH_H
+#pragma once
 
 #include "engine/study/sweep/sweep.h"
 
@@ -122,5 +121,3 @@ STRUT_API double strut_search_size(const strut_search_outcome *outcome);
 STRUT_API bool strut_search_better(const strut_study_search *search,
                                    const strut_search_point *first,
                                    const strut_search_point *second);
-
-#endif

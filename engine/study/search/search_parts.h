@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the parts of a search share. Internal to engine/study/search.
- */
-#ifndef STRUT_ENGINE_STUDY_SEARCH_SEARCH_PARTS_H
-#define STRUT_ENGINE_STUDY_SEARCH_SEARCH_PARTS_H
+/** What the parts of a search share. Internal to engine/study/search. */
+#pragma once
 
 #include "engine/base/status.h"
 #include "engine/study/search/optimisers.h"
@@ -95,5 +92,3 @@ bool strut_dialogue_question(strut_dialogue *dialogue, strut_question *question)
 void strut_dialogue_answer(strut_dialogue *dialogue);
 /** Ends the optimiser, after a question or its end. False: it had no memory. NULL is allowed. */
 bool strut_dialogue_end(strut_dialogue *dialogue);
-
-#endif

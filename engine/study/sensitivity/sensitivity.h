@@ -5,8 +5,7 @@
  * First order: Saltelli et al., Computer Physics Communications 181 (2010) 259, (b) of table 2; total:
  * Jansen's, (f) there. Errors by the bootstrap over base samples.
  */
-#ifndef STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H
-#define STRUT_ENGINE_STUDY_SENSITIVITY_SENSITIVITY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -102,5 +101,3 @@ STRUT_API strut_status strut_sensitivity_figure(const strut_plot *plot, const st
                                                 strut_slots *slots,
                                                 const strut_sensitivity_result *result, bool *drawn,
                                                 strut_error *error);
-
-#endif

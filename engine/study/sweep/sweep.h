@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * The points of a study run side by side, each into its slot.
- */
-#ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_H
-#define STRUT_ENGINE_STUDY_SWEEP_SWEEP_H
+/** The points of a study run side by side, each into its slot. */
+#pragma once
 
 #include "engine/base/flag.h"
 #include "engine/base/memory.h"
@@ -13,9 +10,7 @@
 #include "engine/scene/study.h"
 #include "engine/study/results/slots.h"
 
-/*
- * The points of a study: from a point's number to its values, at once and without a list.
- */
+/* The points of a study: from a point's number to its values, at once and without a list. */
 
 /** Number of points; -1 beyond STRUT_STUDY_MOST_POINTS. Without axes there is one. */
 STRUT_API int64_t strut_grid_points(const strut_study *study);
@@ -183,5 +178,3 @@ STRUT_API strut_status strut_study_motion(const strut_sweep_plan *plan, const ch
 STRUT_API strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
                                             const strut_study_figure *figure, double width,
                                             strut_error *error);
-
-#endif

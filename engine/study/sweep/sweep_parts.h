@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the parts of the sweep share. Internal to engine/study.
- */
-#ifndef STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
-#define STRUT_ENGINE_STUDY_SWEEP_SWEEP_PARTS_H
+/** What the parts of the sweep share. Internal to engine/study. */
+#pragma once
 
 #include "engine/base/derivatives.h"
 #include "engine/base/flag.h"
@@ -278,5 +275,3 @@ STRUT_API void strut_refinement_count(const strut_refinement *refinement, strut_
                                       int64_t *wanted, int64_t *done);
 /** Points of the coarsest grid. */
 STRUT_API int64_t strut_refinement_coarse(const strut_sweep_plan *plan);
-
-#endif

@@ -13,8 +13,7 @@
  * force evaluations, or of those of the scene's own run where no accuracy is requested and these
  * are more. Costs are force evaluations, so that the same study gives the same numbers.
  */
-#ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
-#define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -172,5 +171,3 @@ STRUT_API extern const strut_value_rows strut_tradeoff_values;
 /** Draws it. Over several operating points a marker is the median and a bar leads to the worst. */
 STRUT_API strut_status strut_tradeoff_figure(const strut_plot *plot, const strut_tradeoff *result,
                                              strut_error *error);
-
-#endif

@@ -3,8 +3,7 @@
  * What the parts of a tradeoff share: single runs, the budget. What stops the study is its `status`, after which
  * nothing more is run.
  */
-#ifndef STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_PARTS_H
-#define STRUT_ENGINE_STUDY_TRADEOFF_TRADEOFF_PARTS_H
+#pragma once
 
 #include "engine/output/buffer.h"
 #include "engine/study/tradeoff/tradeoff.h"
@@ -173,5 +172,3 @@ const char *strut_tradeoff_base_text(const strut_tradeoff *result,
                                      char text[3 * STRUT_TRADEOFF_TEXT]);
 /** "velocity", "position", "energy". */
 const char *strut_tradeoff_measure_text(strut_tradeoff_measure measure);
-
-#endif

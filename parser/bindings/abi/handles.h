@@ -2,8 +2,7 @@
 /**
  * What the handles of abi.h are, and what all calls share: errors, messages, entering and leaving.
  */
-#ifndef STRUT_PARSER_BINDINGS_ABI_HANDLES_H
-#define STRUT_PARSER_BINDINGS_ABI_HANDLES_H
+#pragma once
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -247,5 +246,3 @@ void abi_scratch_end(const abi_scratch *scratch, const char *const *names);
 
 /** The equilibria that a result of strutlib_equilibria holds, or NULL. */
 const strut_equilibria *abi_result_equilibria(const strutlib_result *result);
-
-#endif

@@ -5,8 +5,7 @@
  * A value carries its dimension. A *bare* value is made of plain numbers only and fits any
  * dimension: plain numbers are SI.
  */
-#ifndef STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_H
-#define STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -112,5 +111,3 @@ size_t strut_number_scan(const char *text, size_t left);
  */
 STRUT_API bool strut_number_read_scaled(const char *text, size_t length, int decimal,
                                         double *value);
-
-#endif

@@ -2,8 +2,7 @@
 /**
  * What the files of the expression reader share: the text under the reader's eye, and its errors.
  */
-#ifndef STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_PARTS_H
-#define STRUT_PARSER_LANGUAGE_EXPRESSION_EXPRESSION_PARTS_H
+#pragma once
 
 #include "parser/language/expression/expression.h"
 
@@ -74,5 +73,3 @@ strut_operation strut_function_operation(const strut_function *function);
 /** Applies the function to its arguments. False with the reason. The result is finite. */
 bool strut_function_apply(const strut_function *function, const strut_quantity *arguments,
                           size_t count, strut_quantity *result, strut_reason *reason);
-
-#endif

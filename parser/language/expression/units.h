@@ -2,8 +2,7 @@
 /**
  * Units and dimensions. One table of unit names; a dimension is the exponents of kg, m, s and angle.
  */
-#ifndef STRUT_PARSER_LANGUAGE_EXPRESSION_UNITS_H
-#define STRUT_PARSER_LANGUAGE_EXPRESSION_UNITS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -59,5 +58,3 @@ STRUT_API const char *strut_dimension_example(strut_dimension dimension);
 STRUT_API const char *strut_dimension_suffix(strut_dimension dimension, char *buffer, size_t size);
 /** The SI unit to write beside a number: "m", "N s/m"; "1" for none; "SI" for one without a name. */
 STRUT_API const char *strut_dimension_unit(strut_dimension dimension);
-
-#endif

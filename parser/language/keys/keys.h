@@ -4,8 +4,7 @@
  * and default, and in which field of which struct the value is kept. The reader, its messages, the
  * writer and the reference page all come from it.
  */
-#ifndef STRUT_PARSER_LANGUAGE_KEYS_KEYS_H
-#define STRUT_PARSER_LANGUAGE_KEYS_KEYS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -276,5 +275,3 @@ STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size
 
 /** Size of the buffer of strut_dimension_suffix. */
 enum { STRUT_SUFFIX_TEXT = 120 };
-
-#endif

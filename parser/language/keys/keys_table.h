@@ -11,8 +11,7 @@
  * from the default. set: a mapping may give only one of the keys of a set (not 0). Words are separated
  * by '|'; those of a nested mapping are what messages call it, if not by its key, and of NAMES what they are.
  */
-#ifndef STRUT_PARSER_LANGUAGE_KEYS_KEYS_TABLE_H
-#define STRUT_PARSER_LANGUAGE_KEYS_KEYS_TABLE_H
+#pragma once
 
 #include "engine/scene/things_table.h"
 
@@ -410,5 +409,3 @@
   X(MATCH, "match", STRUT_MATCH_KEYS, "`match: {NAME: {...}}` of a fit: with `time`, a motion; with `displacement`, a curve of a path; with `compute`, columns of a table; otherwise a shape, where the run starts. The other keys are what the model has, such as `n1.x` or `m3.force`, and their values columns of `data`, or numbers.") \
   X(ALIGN, "align", STRUT_ALIGN_KEYS, "`align: {...}` of a match.")
 /* clang-format on */
-
-#endif

@@ -3,8 +3,7 @@
  * Tables as text: cells separated by commas, semicolons or tabs (RFC 4180) below a header such as
  * "velocity [m/s]".
  */
-#ifndef STRUT_PARSER_LANGUAGE_READ_CSV_H
-#define STRUT_PARSER_LANGUAGE_READ_CSV_H
+#pragma once
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
@@ -49,5 +48,3 @@ STRUT_API bool strut_csv_number(const char *text, int decimal, double *value);
 bool strut_csv_unit(const char *text, strut_quantity *one);
 /** "1" or "-" */
 bool strut_csv_is_dimensionless(const char *text);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * From YAML text to a checked scene.
- */
-#ifndef STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
-#define STRUT_PARSER_LANGUAGE_READ_READ_SCENE_H
+/** From YAML text to a checked scene. */
+#pragma once
 
 #include "engine/base/text.h"
 #include "engine/scene/checks/check.h"
@@ -94,5 +91,3 @@ STRUT_API bool strut_setting_put(const strut_scene_source *source, const char *n
  */
 STRUT_API strut_status strut_file_read(const char *path, char **text, size_t *length,
                                        strut_error *error);
-
-#endif

@@ -7,8 +7,7 @@
  * be read is reported and marked BROKEN; nothing that depends on it is reported, so that one mistake
  * gives one message.
  */
-#ifndef STRUT_PARSER_LANGUAGE_READ_READER_H
-#define STRUT_PARSER_LANGUAGE_READ_READER_H
+#pragma once
 
 #include "engine/base/name_map.h"
 #include "engine/scene/checks/check.h"
@@ -629,5 +628,3 @@ bool strut_ends_at_comma(strut_reader *reader, const strut_tree *of, const char 
 
 /** Reports findings where they belong, except those that follow from what was reported before. */
 void strut_place_findings(strut_reader *reader, const strut_findings *findings);
-
-#endif

@@ -5,8 +5,7 @@
  * The model's text becomes a tree once; each point's scene is read from that tree with the point's
  * parameters.
  */
-#ifndef STRUT_PARSER_LANGUAGE_STUDY_READ_STUDY_H
-#define STRUT_PARSER_LANGUAGE_STUDY_READ_STUDY_H
+#pragma once
 
 #include "engine/scene/study.h"
 #include "parser/language/read/read_scene.h"
@@ -111,5 +110,3 @@ typedef struct strut_table_name {
  */
 STRUT_API strut_status strut_study_search_bind(strut_study_file *file,
                                                const strut_table_name *columns, size_t count);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the parts of the study reader share. Internal to parser/.
- */
-#ifndef STRUT_PARSER_LANGUAGE_STUDY_STUDY_READER_H
-#define STRUT_PARSER_LANGUAGE_STUDY_STUDY_READER_H
+/** What the parts of the study reader share. Internal to parser/. */
+#pragma once
 
 #include "engine/scene/sample.h"
 #include "parser/language/read/reader.h"
@@ -120,5 +117,3 @@ void strut_study_read_follow(strut_study_reader *reader, strut_fields *top);
 /** Reports those of the keys that are given: the study has `own`, which excludes them. */
 void strut_study_exclude(strut_study_reader *reader, strut_fields *top, const strut_slot *own,
                          const int *keys, size_t count);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Scenes as YAML.
- */
-#ifndef STRUT_PARSER_LANGUAGE_WRITE_WRITE_SCENE_H
-#define STRUT_PARSER_LANGUAGE_WRITE_WRITE_SCENE_H
+/** Scenes as YAML. */
+#pragma once
 
 #include "engine/base/status.h"
 #include "engine/scene/experiment.h"
@@ -33,5 +30,3 @@ STRUT_API strut_status strut_short_write(strut_scene_source *source,
  * several lines that were not quoted become quoted. Aliases are written out. `comment`: the first line.
  */
 STRUT_API char *strut_tree_write(const strut_tree *root, const char *comment);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Growing YAML text: what the parts of the scene writer share. Internal to parser/.
- */
-#ifndef STRUT_PARSER_LANGUAGE_WRITE_WRITER_H
-#define STRUT_PARSER_LANGUAGE_WRITE_WRITER_H
+/** Growing YAML text: what the parts of the scene writer share. Internal to parser/. */
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -111,5 +108,3 @@ bool strut_default_is_described(const strut_key *key);
  * Appends Markdown as plain text: `[text](link)` becomes its text; backticks are kept where `ticks`.
  */
 void strut_put_without_links(strut_writer *writer, const char *markdown, bool ticks);
-
-#endif

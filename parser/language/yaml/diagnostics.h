@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Located messages about a text: collected, sorted, shown with the line and a caret.
- */
-#ifndef STRUT_PARSER_LANGUAGE_YAML_DIAGNOSTICS_H
-#define STRUT_PARSER_LANGUAGE_YAML_DIAGNOSTICS_H
+/** Located messages about a text: collected, sorted, shown with the line and a caret. */
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -122,5 +119,3 @@ STRUT_API void strut_diagnostics_free(strut_diagnostics *diagnostics);
 STRUT_API const char *strut_did_you_mean(const char *word,
                                          const char *(*next)(const void *context, size_t i),
                                          const void *context);
-
-#endif

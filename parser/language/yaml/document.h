@@ -7,8 +7,7 @@
  * text is refused at once. An alias is a copy of the anchored node that shares its children: branches
  * may be shared but there is no cycle, and no way down has more than 64 levels.
  */
-#ifndef STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_H
-#define STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -89,5 +88,3 @@ STRUT_API bool strut_tree_share(strut_tree_builder *builder, strut_arena *arena,
 STRUT_API void strut_tree_drop(strut_tree *map, const char *key);
 /** Do two values say the same, wherever they stand? */
 STRUT_API bool strut_tree_equal(const strut_tree *first, const strut_tree *second);
-
-#endif

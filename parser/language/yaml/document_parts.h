@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the files of the document reader share; nobody else includes it.
- */
-#ifndef STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_PARTS_H
-#define STRUT_PARSER_LANGUAGE_YAML_DOCUMENT_PARTS_H
+/** What the files of the document reader share; nobody else includes it. */
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -25,5 +22,3 @@ bool strut_document_syntax_error(const yaml_parser_t *parser, const strut_tree *
 
 /** Reports keys that may not be, and takes them out of the map. False: memory is out. */
 bool strut_document_check_keys(strut_tree *map, strut_diagnostics *diagnostics);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * Lines end where libyaml ends them: at LF, CR, CR LF, NEL (U+0085), LS (U+2028) and PS (U+2029).
  */
-#ifndef STRUT_PARSER_LANGUAGE_YAML_TEXT_H
-#define STRUT_PARSER_LANGUAGE_YAML_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,5 +48,3 @@ void strut_cursor_to_offset(strut_cursor *cursor, size_t offset);
 void strut_cursor_to_index(strut_cursor *cursor, size_t index);
 /** Advances to the beginning of the line with that number, or to the end of the text. */
 void strut_cursor_to_line(strut_cursor *cursor, uint32_t line);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** What `strut check` prints of a scene's messages, and of a study. */
-#ifndef STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
-#define STRUT_PARSER_PROGRAM_CHECK_CHECK_MESSAGES_H
+#pragma once
 
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/scene/checks/check.h"
@@ -75,5 +74,3 @@ strut_status strut_check_print_text(const strut_check_result *checked, int width
 bool strut_is_study(const char *path);
 /** Checks the study that the arguments name and reports on it. */
 strut_status strut_check_study(const strut_arguments *arguments);
-
-#endif

@@ -3,8 +3,7 @@
  * Analyses: what `strut equilibria`, `modes`, `rigidity`, `form` and `path` compute of a model and report. The
  * program, the library and what is built on it do the same by these rows; the program has further kinds of its own.
  */
-#ifndef STRUT_PARSER_PROGRAM_COMMAND_ANALYSES_H
-#define STRUT_PARSER_PROGRAM_COMMAND_ANALYSES_H
+#pragma once
 
 #include "engine/output/draw/chart.h"
 #include "engine/statics/equilibria/equilibria.h"
@@ -101,5 +100,3 @@ char *strut_analysis_text(const strut_analysis *analysis, int width);
 /** Computes; a->result is zero before. Call strut_analysis_free in any case. */
 strut_status strut_analysis_compute(strut_analysis *analysis, strut_error *error);
 void strut_analysis_free(strut_analysis *analysis);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Commands and the options that they are called with, from the command line or by the library.
- */
-#ifndef STRUT_PARSER_PROGRAM_COMMAND_ARGUMENTS_H
-#define STRUT_PARSER_PROGRAM_COMMAND_ARGUMENTS_H
+/** Commands and the options that they are called with, from the command line or by the library. */
+#pragma once
 
 #include <float.h>
 #include <math.h>
@@ -222,5 +219,3 @@ strut_status strut_quantity_read(const strut_arguments *arguments, const char *n
  */
 size_t strut_quantities_read(const char *text, strut_dimension dimension, double *values,
                              size_t most);
-
-#endif

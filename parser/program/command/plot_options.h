@@ -2,8 +2,7 @@
 /**
  * Options of figures: width, title, axes, what a figure of a run shows; and tables that are drawn.
  */
-#ifndef STRUT_PARSER_PROGRAM_COMMAND_PLOT_OPTIONS_H
-#define STRUT_PARSER_PROGRAM_COMMAND_PLOT_OPTIONS_H
+#pragma once
 
 #include "engine/output/draw/chart.h"
 #include "engine/output/figures/run_figure.h"
@@ -37,5 +36,3 @@ strut_status strut_run_figure_read(const strut_arguments *arguments, strut_run_f
  * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).
  */
 strut_status strut_table_read(const strut_listener *listener, const char *path, strut_table *table);
-
-#endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** Scenes as options change them: method, step and span, accuracy; and over values of parameters. */
-#ifndef STRUT_PARSER_PROGRAM_COMMAND_SCENE_OPTIONS_H
-#define STRUT_PARSER_PROGRAM_COMMAND_SCENE_OPTIONS_H
+#pragma once
 
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
@@ -73,5 +72,3 @@ void strut_varied_scenes_free(strut_varied_scenes *scenes);
 
 /** The unit to print behind values of a dimension, "" where there is none. */
 const char *strut_unit_of(strut_dimension dimension);
-
-#endif

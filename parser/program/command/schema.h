@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /** The language as a JSON Schema, for editors. */
-#ifndef STRUT_PARSER_PROGRAM_COMMAND_SCHEMA_H
-#define STRUT_PARSER_PROGRAM_COMMAND_SCHEMA_H
+#pragma once
 
 #include <stdbool.h>
 
 /** Of a scene, or of a study, in a block of strut_allocate (release it); NULL: no memory. */
 char *strut_schema_write(bool study);
-
-#endif

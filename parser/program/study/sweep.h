@@ -3,8 +3,7 @@
  * Studies by file, for `strut sweep` and the library: the study that is opened, copies of its texts, what
  * computes it, its results and figures. All messages go to the arguments' listener.
  */
-#ifndef STRUT_PARSER_PROGRAM_STUDY_SWEEP_H
-#define STRUT_PARSER_PROGRAM_STUDY_SWEEP_H
+#pragma once
 
 #include "engine/output/record_files.h"
 #include "engine/study/report/study_report.h"
@@ -140,5 +139,3 @@ static inline bool strut_study_has_stages(const strut_study *study) {
 bool strut_sweep_search_is_finished(const char *directory);
 /** Adds the columns of a study that follows motions, and checks that its first point has some. */
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error);
-
-#endif

@@ -6,8 +6,7 @@
  * couples contacts is therefore solved for among them alone, and the structure then accelerates once, by one
  * solution with the factor of the mass matrix.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_CONTACT_COUPLING_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_CONTACT_COUPLING_H
+#pragma once
 
 #include "engine/integrate/events/event_stepping.h"
 
@@ -40,5 +39,3 @@ void strut_contact_coupling_push(const strut_model *model, const strut_event_ste
 /** As implicit_ground_together; a1 contains the springs, and friction without the dampers' part. */
 void strut_contact_coupling_ground(const strut_model *model, strut_event_stepper *stepper, double h,
                                    double *a1);
-
-#endif

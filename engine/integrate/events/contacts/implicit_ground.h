@@ -6,8 +6,7 @@
  * own are solved one by one, exactly; contacts of one body are coupled through its mass, and sweeps
  * over them converge fast, since the scaled consistent mass has its eigenvalues in [1/2, 3/2].
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_IMPLICIT_GROUND_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_IMPLICIT_GROUND_H
+#pragma once
 
 #include "engine/integrate/events/event_kernel.h"
 
@@ -226,5 +225,3 @@ STRUT_INLINE void implicit_ground_leave(const strut_model *model, const strut_st
   strut_lanes_store(high,
                     strut_lanes_load(high) + (strut_lanes){contact, friction, exchanged, 0.0});
 }
-
-#endif

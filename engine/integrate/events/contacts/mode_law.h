@@ -5,8 +5,7 @@
  * `side` is the direction of a mode, 1 or -1. What friction holds and what it slides with may depend on the direction
  * in which the other forces push, or in which the node moves.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_MODE_LAW_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_CONTACTS_MODE_LAW_H
+#pragma once
 
 #include <math.h>
 
@@ -180,5 +179,3 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *con
 #undef STRUT_ENDS
   return STRUT_EVENT_NONE;
 }
-
-#endif

@@ -5,8 +5,7 @@
  * Items are the contacts, then the members (a cable is taut or slack), then the elements that carry one
  * sign, then the elements again for the smooth pieces of their laws.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_LOCATION_EVENT_LOG_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_LOCATION_EVENT_LOG_H
+#pragma once
 
 #include "engine/model/state.h"
 
@@ -43,5 +42,3 @@ void strut_event_log_begin(const strut_model *model, const strut_state *state,
 /** Notes what has changed at the time t. */
 void strut_event_log_note(const strut_model *model, const strut_state *state,
                           const struct strut_event_stepper *stepper, double t);
-
-#endif

@@ -8,8 +8,7 @@
  * change by the jump of the acceleration times that time (the saltation matrix of Aizerman and Gantmacher
  * 1958). At once with the step it costs no motion of its own.
  */
-#ifndef STRUT_ENGINE_INTEGRATE_EVENTS_LOCATION_VARIATION_H
-#define STRUT_ENGINE_INTEGRATE_EVENTS_LOCATION_VARIATION_H
+#pragma once
 
 #include "engine/integrate/events/event_stepping.h"
 #include "engine/integrate/integrator.h"
@@ -91,5 +90,3 @@ void strut_mode_tangent_evaluate(const strut_model *model, strut_state *state,
                                  const strut_event_stepper *stepper, double t,
                                  const double *positions, const double *velocity,
                                  strut_mode_tangent *tangent);
-
-#endif

@@ -7,8 +7,7 @@
  * thing of a copy is read, the copy is the reader's *scope*: names are looked up in it, parameters too,
  * and what has a direction or a length is turned and scaled with it.
  */
-#ifndef STRUT_PARSER_LANGUAGE_READ_REUSE_COPIES_H
-#define STRUT_PARSER_LANGUAGE_READ_REUSE_COPIES_H
+#pragma once
 
 #include "parser/language/read/reader.h"
 
@@ -229,5 +228,3 @@ void strut_join_entries(strut_expansion *expansion, int key);
 /** The frame of the first copy by the placement's own keys; false: it was reported. */
 bool strut_read_frame(strut_expansion *expansion, strut_placing *placing, strut_copy *copy,
                       strut_frame *frame);
-
-#endif

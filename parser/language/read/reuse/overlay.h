@@ -7,8 +7,7 @@
  * the place of others that say the same in another way, and `NAME: remove` takes the key away. A node's
  * `[x, y]` counts as {position: [x, y]}. A part that uses a file replaces the one of its name as a whole.
  */
-#ifndef STRUT_PARSER_LANGUAGE_READ_REUSE_OVERLAY_H
-#define STRUT_PARSER_LANGUAGE_READ_REUSE_OVERLAY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -56,5 +55,3 @@ bool strut_is_removal(const strut_tree *value);
 STRUT_API strut_status strut_text_differences(const char *first, const char *second,
                                               strut_arena *arena, strut_difference **list,
                                               size_t *count);
-
-#endif

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Files that scenes and studies name: only those below the folder of the file that names them.
- */
-#ifndef STRUT_PARSER_LANGUAGE_READ_REUSE_USED_FILES_H
-#define STRUT_PARSER_LANGUAGE_READ_REUSE_USED_FILES_H
+/** Files that scenes and studies name: only those below the folder of the file that names them. */
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -42,5 +39,3 @@ STRUT_API char *strut_folder_of(const char *path, strut_arena *arena);
 STRUT_API strut_status strut_safe_read(const char *root, const char *from, const char *name,
                                        size_t most, strut_safe_text *file, strut_error *error);
 STRUT_API void strut_safe_text_free(strut_safe_text *file);
-
-#endif
