@@ -23,7 +23,6 @@
 typedef enum strut_derivative_verdict {
 #define STRUT_DERIVATIVE_ENUM(name, words) STRUT_DERIVATIVE_##name,
   STRUT_DERIVATIVE_VERDICTS(STRUT_DERIVATIVE_ENUM)
-#undef STRUT_DERIVATIVE_ENUM
 } strut_derivative_verdict;
 
 typedef struct strut_derivative {

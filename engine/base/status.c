@@ -10,9 +10,7 @@ static const struct {
   const char *text;
 } table[] = {
 #define STRUT_STATUS_ROW(code, exit_code, text) {exit_code, text},
-    STRUT_STATUS_TABLE(STRUT_STATUS_ROW)
-#undef STRUT_STATUS_ROW
-};
+    STRUT_STATUS_TABLE(STRUT_STATUS_ROW)};
 
 _Static_assert(sizeof table / sizeof table[0] == STRUT_STATUS_COUNT, "one row for each status");
 

@@ -28,9 +28,7 @@
 
 typedef enum strut_status {
 #define STRUT_STATUS_ENUM(code, exit_code, text) code,
-  STRUT_STATUS_TABLE(STRUT_STATUS_ENUM)
-#undef STRUT_STATUS_ENUM
-      STRUT_STATUS_COUNT
+  STRUT_STATUS_TABLE(STRUT_STATUS_ENUM) STRUT_STATUS_COUNT
 } strut_status;
 
 /** One sentence that describes an error. Zeroed: no error. */

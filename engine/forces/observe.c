@@ -375,9 +375,7 @@ VALUE(SLIDER_SHARE, share_of(instant, item))
 strut_observe *strut_observe_at(strut_column_kind kind) {
   static strut_observe *const functions[] = {
 #define FUNCTION(ID, ...) observe_##ID,
-      STRUT_OBSERVABLES(FUNCTION)
-#undef FUNCTION
-  };
+      STRUT_OBSERVABLES(FUNCTION)};
   assert(kind < STRUT_COLUMN_COUNT);
   return functions[kind];
 }

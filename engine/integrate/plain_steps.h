@@ -36,8 +36,6 @@ static inline void end_moving_step(const strut_model *model, strut_state *state,
 #define STRUT_RK4_WEIGHT(time, weight) weight,
 static const double STRUT_RK4_AHEAD[4] = {STRUT_RK4_STAGES(STRUT_RK4_TIME)},
                     STRUT_RK4_WEIGHTS[4] = {STRUT_RK4_STAGES(STRUT_RK4_WEIGHT)};
-#undef STRUT_RK4_TIME
-#undef STRUT_RK4_WEIGHT
 
 /* Positions and velocities h after the begin of the step, by the rates v and a of the stage before. */
 STRUT_LOOP void rk4_next_stage(int32_t n, double h, const double *restrict q0,

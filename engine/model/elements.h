@@ -35,9 +35,7 @@
 
 typedef enum strut_strain_kind {
 #define STRUT_STRAIN_ROW(NAME, ...) STRUT_STRAIN_##NAME,
-  STRUT_STRAINS(STRUT_STRAIN_ROW, )
-#undef STRUT_STRAIN_ROW
-      STRUT_STRAIN_COUNT
+  STRUT_STRAINS(STRUT_STRAIN_ROW, ) STRUT_STRAIN_COUNT
 } strut_strain_kind;
 
 /** What an element is in the scene. */

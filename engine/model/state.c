@@ -78,7 +78,6 @@ static bool make_arrays(const strut_model *model, strut_state *state) {
   good = good && (state->field =                                                                   \
                       strut_arena_allocate(&state->arena, (size_t)(count), sizeof *state->field));
   STRUT_STATE_ARRAYS(STRUT_STATE_ARRAY)
-#undef STRUT_STATE_ARRAY
   return good && make_surfaces(model, state);
 }
 

@@ -20,7 +20,6 @@ typedef struct strut_trajectory {
     struct {
 #define STRUT_TRAJECTORY_FIELD(NAME, name, ...) double *name;
       STRUT_CHANNEL_TABLE(STRUT_TRAJECTORY_FIELD)
-#undef STRUT_TRAJECTORY_FIELD
     };
     double *channel[STRUT_CHANNEL_COUNT];
   };

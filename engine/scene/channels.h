@@ -49,7 +49,6 @@ struct strut_scene;
 
 #define STRUT_ENERGY_ONE(name, kind, label) +1
 enum { STRUT_ENERGIES = STRUT_ENERGY_TABLE(STRUT_ENERGY_ONE) };
-#undef STRUT_ENERGY_ONE
 
 /* Something for each observable that is a channel of its own. */
 #define STRUT_OF_RECORDED(...) __VA_ARGS__
@@ -61,8 +60,6 @@ enum {
 #define STRUT_CHANNEL_OWN_PLACE(ID, OWNER, NAME, word, DIMENSION, NEED, RECORD, ...)               \
   STRUT_OF_##RECORD(STRUT_CHANNEL_PLACE_OF_##ID, )
   STRUT_CHANNEL_TABLE(STRUT_CHANNEL_PLACE) STRUT_OBSERVABLES(STRUT_CHANNEL_OWN_PLACE)
-#undef STRUT_CHANNEL_OWN_PLACE
-#undef STRUT_CHANNEL_PLACE
       STRUT_CHANNEL_COUNT
 };
 
@@ -72,7 +69,6 @@ typedef uint64_t strut_channels;
 enum {
 #define STRUT_CHANNEL_BIT(NAME, ...) STRUT_CHANNEL_##NAME = 1 << STRUT_CHANNEL_PLACE_##NAME,
   STRUT_CHANNEL_TABLE(STRUT_CHANNEL_BIT)
-#undef STRUT_CHANNEL_BIT
 };
 
 /** The key's words, "position|velocity|...", and its description. */

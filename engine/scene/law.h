@@ -146,7 +146,6 @@ static inline const strut_law_parameter *strut_law_parameter_at(int p) {
 #define STRUT_LAW_LIST(NAME, field, ...) {#field, false, 0, 0},
       STRUT_LAW_PARAMETERS(STRUT_LAW_ROW) STRUT_LAW_LISTS(STRUT_LAW_LIST)
 #undef STRUT_LAW_ROW
-#undef STRUT_LAW_LIST
   };
   return &rows[p];
 }

@@ -50,9 +50,7 @@ typedef struct strut_dimension {
 
 typedef enum strut_channel_owner {
 #define STRUT_OWNER_ENUM(OWNER, ...) STRUT_OWNER_##OWNER,
-  STRUT_OWNERS(STRUT_OWNER_ENUM)
-#undef STRUT_OWNER_ENUM
-      STRUT_OWNER_COUNT
+  STRUT_OWNERS(STRUT_OWNER_ENUM) STRUT_OWNER_COUNT
 } strut_channel_owner;
 
 /* Their dimensions: X(unit, powers of kg, m, s, angle). */
@@ -181,9 +179,7 @@ typedef enum strut_channel_owner {
 
 typedef enum strut_column_kind {
 #define STRUT_COLUMN_ENUM(ID, ...) STRUT_COLUMN_##ID,
-  STRUT_OBSERVABLES(STRUT_COLUMN_ENUM)
-#undef STRUT_COLUMN_ENUM
-      STRUT_COLUMN_COUNT
+  STRUT_OBSERVABLES(STRUT_COLUMN_ENUM) STRUT_COLUMN_COUNT
 } strut_column_kind;
 
 /** An observable of a thing: a number at every step, a column over time. */

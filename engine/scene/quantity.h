@@ -59,9 +59,7 @@ typedef enum strut_sensitivity {
 
 typedef enum strut_operation {
 #define STRUT_OPERATION_ENUM(id, ...) STRUT_OPERATION_##id,
-  STRUT_OPERATION_TABLE(STRUT_OPERATION_ENUM)
-#undef STRUT_OPERATION_ENUM
-      STRUT_OPERATION_COUNT
+  STRUT_OPERATION_TABLE(STRUT_OPERATION_ENUM) STRUT_OPERATION_COUNT
 } strut_operation;
 
 /** One operation: pushes a number or a column, or replaces its operands by their result. */

@@ -250,7 +250,6 @@ static double steps_per_period(const char *integrator) {
 #define STRUT_INTEGRATOR_STEPS(row, word, steps)                                                   \
   if (strcmp(integrator, word) == 0) return steps;
   STRUT_INTEGRATORS(STRUT_INTEGRATOR_STEPS)
-#undef STRUT_INTEGRATOR_STEPS
   return 0.0;
 }
 

@@ -43,9 +43,7 @@ typedef struct strut_study_value {
 
 typedef enum strut_search_method {
 #define STRUT_SEARCH_METHOD_ENUM(name, word) STRUT_SEARCH_##name,
-  STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_ENUM)
-#undef STRUT_SEARCH_METHOD_ENUM
-      STRUT_SEARCH_METHOD_COUNT
+  STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_ENUM) STRUT_SEARCH_METHOD_COUNT
 } strut_search_method;
 
 enum { STRUT_SEARCH_MOST_CONDITIONS = 32, STRUT_SEARCH_MOST_VARIABLES = 100 };
@@ -225,17 +223,13 @@ typedef struct strut_study_axis {
 
 typedef enum strut_compute {
 #define STRUT_COMPUTE_ENUM(name, word) STRUT_COMPUTE_##name,
-  STRUT_COMPUTE_TABLE(STRUT_COMPUTE_ENUM)
-#undef STRUT_COMPUTE_ENUM
-      STRUT_COMPUTE_COUNT
+  STRUT_COMPUTE_TABLE(STRUT_COMPUTE_ENUM) STRUT_COMPUTE_COUNT
 } strut_compute;
 
 /** Sets of these. */
 enum {
 #define STRUT_OF_ENUM(name, word) STRUT_OF_##name = 1 << STRUT_COMPUTE_##name,
-  STRUT_COMPUTE_TABLE(STRUT_OF_ENUM)
-#undef STRUT_OF_ENUM
-      STRUT_OF_ALL = (1 << STRUT_COMPUTE_COUNT) - 1,
+  STRUT_COMPUTE_TABLE(STRUT_OF_ENUM) STRUT_OF_ALL = (1 << STRUT_COMPUTE_COUNT) - 1,
   STRUT_KEEP_SMOOTH =
       1 << STRUT_COMPUTE_COUNT /* follows parameters smoothly: no counts, words and settings do */
 };
@@ -317,9 +311,7 @@ enum {
 
 typedef enum strut_keep {
 #define STRUT_KEEP_ENUM(name, word, of) STRUT_KEEP_##name,
-  STRUT_KEEP_TABLE(STRUT_KEEP_ENUM)
-#undef STRUT_KEEP_ENUM
-      STRUT_KEEP_COUNT
+  STRUT_KEEP_TABLE(STRUT_KEEP_ENUM) STRUT_KEEP_COUNT
 } strut_keep;
 
 /** A word of `keep`, and the set of what has it. */
@@ -332,9 +324,7 @@ typedef struct strut_kept_word {
 static inline const strut_kept_word *strut_kept_word_at(size_t i) {
   static const strut_kept_word words[] = {
 #define STRUT_KEPT_WORD(name, word, of) {word, of},
-      STRUT_KEEP_TABLE(STRUT_KEPT_WORD)
-#undef STRUT_KEPT_WORD
-  };
+      STRUT_KEEP_TABLE(STRUT_KEPT_WORD)};
   return i < STRUT_KEEP_COUNT ? &words[i] : NULL;
 }
 

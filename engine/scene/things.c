@@ -26,9 +26,7 @@ static const strut_thing_row kinds[] = {
    offsetof(strut_scene, array),                                                                   \
    offsetof(strut_scene, number),                                                                  \
    &usual_##KIND},
-    STRUT_THINGS(KIND_ROW)
-#undef KIND_ROW
-};
+    STRUT_THINGS(KIND_ROW)};
 
 const strut_thing_row *strut_thing_at(strut_thing kind) {
   assert((unsigned)kind < STRUT_THING_COUNT);
@@ -96,9 +94,7 @@ int32_t strut_coordinate_find(const strut_scene *scene, const char *name) {
 strut_thing strut_thing_of_owner(strut_channel_owner owner) {
   static const strut_thing things[] = {
 #define OWNER_THING(OWNER, THING, ...) STRUT_THING_##THING,
-      STRUT_OWNERS(OWNER_THING)
-#undef OWNER_THING
-  };
+      STRUT_OWNERS(OWNER_THING)};
   return things[owner];
 }
 
@@ -129,18 +125,14 @@ static const struct {
 } sections[] = {
 #define SECTION_ROW(SECTION, ...)                                                                  \
   {fields_##SECTION, sizeof fields_##SECTION / sizeof fields_##SECTION[0]},
-    STRUT_THINGS(SECTION_ROW) STRUT_FURTHER_SECTIONS(SECTION_ROW)
-#undef SECTION_ROW
-};
+    STRUT_THINGS(SECTION_ROW) STRUT_FURTHER_SECTIONS(SECTION_ROW)};
 
 static const struct {
   strut_thing_section section;
   strut_field field;
 } inner[] = {
 #define INNER_ROW(SECTION, field) {STRUT_FIELDS_##SECTION, {STRUT_FIELD_OF_##field}},
-    STRUT_INNER_FIELDS(INNER_ROW)
-#undef INNER_ROW
-};
+    STRUT_INNER_FIELDS(INNER_ROW)};
 
 const strut_field_row *strut_fields_of(strut_thing_section section, size_t *count) {
   *count = sections[section].count;
@@ -292,9 +284,7 @@ void strut_setup_at_rest(const strut_setup *setup, strut_number_sink *sink, void
   enum { AT_REST, OF_RUNS, BY_HAND };
   static const int rest[] = {
 #define REST_OF(KIND, word, things, object, array, count, rest, ...) rest,
-      STRUT_THINGS(REST_OF)
-#undef REST_OF
-  };
+      STRUT_THINGS(REST_OF)};
   const strut_scene *scene = &setup->scene;
   const strut_search *search = &setup->experiment.search;
   const numbers to = {sink, context};

@@ -14,9 +14,7 @@
 
 typedef enum strut_thing {
 #define STRUT_THING_ROW(KIND, ...) STRUT_THING_##KIND,
-  STRUT_THINGS(STRUT_THING_ROW)
-#undef STRUT_THING_ROW
-      STRUT_THING_COUNT
+  STRUT_THINGS(STRUT_THING_ROW) STRUT_THING_COUNT
 } strut_thing;
 
 /** A kind of things. */

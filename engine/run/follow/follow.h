@@ -181,9 +181,7 @@ double strut_follow_extremum(double rise, double a, double b);
 
 typedef enum strut_follow_kind {
 #define STRUT_FOLLOW_ENUM(name, word, what) STRUT_FOLLOW_##name,
-  STRUT_FOLLOW_TABLE(STRUT_FOLLOW_ENUM)
-#undef STRUT_FOLLOW_ENUM
-      STRUT_FOLLOW_KINDS
+  STRUT_FOLLOW_TABLE(STRUT_FOLLOW_ENUM) STRUT_FOLLOW_KINDS
 } strut_follow_kind;
 
 /** The word of a kind, "" of a regular point. */

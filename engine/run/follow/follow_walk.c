@@ -23,9 +23,7 @@ static const double LEAVE = 0.02;
 const char *strut_follow_kind_word(strut_follow_kind kind) {
   static const char *const words[] = {
 #define STRUT_FOLLOW_WORD(name, word, what) word,
-      STRUT_FOLLOW_TABLE(STRUT_FOLLOW_WORD)
-#undef STRUT_FOLLOW_WORD
-  };
+      STRUT_FOLLOW_TABLE(STRUT_FOLLOW_WORD)};
   return words[kind];
 }
 

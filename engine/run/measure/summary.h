@@ -15,7 +15,6 @@
 typedef struct strut_energy {
 #define STRUT_ENERGY_FIELD(name, kind, label) double name;
   STRUT_ENERGY_TABLE(STRUT_ENERGY_FIELD)
-#undef STRUT_ENERGY_FIELD
   double initial;  /* kinetic + elastic + gravity + contact at t = 0, and what later corrections of
                       the state (to an orbit) added */
   double residual; /* end total - initial - works + losses; 0 but for the integration error */

@@ -12,9 +12,7 @@
 /** What a finding is about: a thing, or one of the scene's own mappings. */
 typedef enum strut_subject {
 #define STRUT_SUBJECT_ROW(KIND, ...) STRUT_ON_##KIND,
-  STRUT_THINGS(STRUT_SUBJECT_ROW)
-#undef STRUT_SUBJECT_ROW
-      STRUT_ON_SCENE,
+  STRUT_THINGS(STRUT_SUBJECT_ROW) STRUT_ON_SCENE,
   STRUT_ON_EQUILIBRIA,
   STRUT_ON_INITIAL,
   STRUT_ON_SOLVER,

@@ -45,7 +45,6 @@ enum { STRUT_PATH_COORDINATES = 600 };
 typedef enum strut_path_event_kind {
 #define STRUT_PATH_EVENT(NAME, text) STRUT_PATH_##NAME,
   STRUT_PATH_EVENTS(STRUT_PATH_EVENT)
-#undef STRUT_PATH_EVENT
 } strut_path_event_kind;
 
 STRUT_API const char *strut_path_event_name(strut_path_event_kind kind);
@@ -94,7 +93,6 @@ typedef struct strut_path_event {
 typedef enum strut_path_end {
 #define STRUT_PATH_END(NAME, text) STRUT_PATH_##NAME,
   STRUT_PATH_ENDS(STRUT_PATH_END)
-#undef STRUT_PATH_END
 } strut_path_end;
 
 STRUT_API const char *strut_path_end_word(strut_path_end end);

@@ -90,9 +90,7 @@ enum { STRUT_COMPARE_MOST = 100 };
 
 typedef enum strut_compare_quantity {
 #define STRUT_COMPARE_ENUM(name, ...) STRUT_COMPARE_##name,
-  STRUT_COMPARE_TABLE(STRUT_COMPARE_ENUM)
-#undef STRUT_COMPARE_ENUM
-      STRUT_COMPARE_QUANTITIES
+  STRUT_COMPARE_TABLE(STRUT_COMPARE_ENUM) STRUT_COMPARE_QUANTITIES
 } strut_compare_quantity;
 
 /** Description of a row. */

@@ -26,9 +26,7 @@
 
 typedef enum strut_fit_verdict {
 #define STRUT_FIT_VERDICT_ENUM(NAME, words) STRUT_FIT_##NAME,
-  STRUT_FIT_VERDICTS(STRUT_FIT_VERDICT_ENUM)
-#undef STRUT_FIT_VERDICT_ENUM
-      STRUT_FIT_VERDICT_COUNT
+  STRUT_FIT_VERDICTS(STRUT_FIT_VERDICT_ENUM) STRUT_FIT_VERDICT_COUNT
 } strut_fit_verdict;
 
 /** A parameter of the study, or a number of an alignment. SI. */

@@ -54,9 +54,7 @@ STRUT_API strut_status strut_sensitivity_indices(const double *result, size_t sa
 
 typedef enum strut_sensitivity_measure {
 #define STRUT_SENSITIVITY_ENUM(name, word) STRUT_SENSITIVITY_##name,
-  STRUT_SENSITIVITY_MEASURES(STRUT_SENSITIVITY_ENUM)
-#undef STRUT_SENSITIVITY_ENUM
-      STRUT_SENSITIVITY_MEASURE_COUNT
+  STRUT_SENSITIVITY_MEASURES(STRUT_SENSITIVITY_ENUM) STRUT_SENSITIVITY_MEASURE_COUNT
 } strut_sensitivity_measure;
 
 typedef struct strut_sensitivity_row {

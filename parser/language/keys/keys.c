@@ -146,7 +146,6 @@ strut_dimension strut_measure_dimension(strut_measure measure) {
 #define MEASURE_ROW(MEASURE, dimension)                                                            \
   case STRUT_MEASURE_##MEASURE: return STRUT_DIM_##dimension;
     STRUT_MEASURES(MEASURE_ROW)
-#undef MEASURE_ROW
   }
   return STRUT_DIM_NONE;
 }
@@ -168,9 +167,7 @@ static const struct type_row {
 } types[] = {
 #define TYPE_ROW(TYPE, shapes, least, most, expected, reference)                                   \
   {STRUT_SHAPE_##shapes, least, most, expected, reference},
-    STRUT_KEY_TYPES(TYPE_ROW)
-#undef TYPE_ROW
-};
+    STRUT_KEY_TYPES(TYPE_ROW)};
 
 const char *strut_type_reference(strut_key_type type) { return types[type].reference; }
 

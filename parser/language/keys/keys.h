@@ -74,13 +74,11 @@ typedef enum strut_section {
 typedef enum strut_key_type {
 #define STRUT_KEY_TYPE_ROW(TYPE, ...) STRUT_TYPE_##TYPE,
   STRUT_KEY_TYPES(STRUT_KEY_TYPE_ROW)
-#undef STRUT_KEY_TYPE_ROW
 } strut_key_type;
 
 typedef enum strut_measure {
 #define STRUT_MEASURE_ROW(MEASURE, dimension) STRUT_MEASURE_##MEASURE,
   STRUT_MEASURES(STRUT_MEASURE_ROW)
-#undef STRUT_MEASURE_ROW
 } strut_measure;
 /* clang-format on */
 
@@ -200,10 +198,7 @@ enum {
 #define STRUT_KEY_ENUM(section, id, ...) STRUT_KEY_##section##_##id,
 #define STRUT_KEYS_OF(NAME, name, rows, ...)                                                       \
   STRUT_FIRST_OF_##NAME, STRUT_BEFORE_##NAME = STRUT_FIRST_OF_##NAME - 1, rows(STRUT_KEY_ENUM)
-  STRUT_SECTIONS(STRUT_KEYS_OF)
-#undef STRUT_KEYS_OF
-#undef STRUT_KEY_ENUM
-      STRUT_KEY_COUNT
+  STRUT_SECTIONS(STRUT_KEYS_OF) STRUT_KEY_COUNT
 };
 
 enum { STRUT_MOST_KEYS = 48 }; /* of one section */

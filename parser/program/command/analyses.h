@@ -57,7 +57,6 @@ struct strut_analysis_kind {
   extern const strut_analysis_kind strut_##NAME##_analysis;                                        \
   extern const strut_option strut_##NAME##_analysis_options[];
 STRUT_ANALYSES(STRUT_ANALYSIS_KIND)
-#undef STRUT_ANALYSIS_KIND
 
 /** An analysis under way. What stands before `found` is the caller's, and stays while there are results. */
 struct strut_analysis {

@@ -188,9 +188,7 @@ strut_status strut_sweep_search_check_workers(const strut_arguments *arguments,
                                               strut_sweep_study *study) {
   static const char *const words[] = {
 #define STRUT_SEARCH_METHOD_WORD(name, word) word,
-      STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_WORD)
-#undef STRUT_SEARCH_METHOD_WORD
-  };
+      STRUT_SEARCH_METHOD_TABLE(STRUT_SEARCH_METHOD_WORD)};
   strut_study_file *file = &study->file;
   if (strut_search_is_parallel(&study->plan)) return STRUT_OK;
   const strut_tree *search = strut_tree_find(file->document.root, "search", NULL);

@@ -176,6 +176,5 @@ STRUT_INLINE strut_event_kind contradicting_event(const strut_contact_entry *con
     case STRUT_MODE_OPEN:
     case STRUT_MODE_SLIDE: break;
   }
-#undef STRUT_ENDS
   return STRUT_EVENT_NONE;
 }
