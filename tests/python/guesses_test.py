@@ -25,6 +25,9 @@ class Guesses(unittest.TestCase):
         self.assertEqual(robot["nodes"]["top"].position, (0.05, 0.06))
         self.assertRaisesRegex(KeyError, "did you mean 'frequency'", lambda: robot["frequncy"])
         self.assertRaisesRegex(AttributeError, "did you mean 'equilibria'", lambda: robot.equlibria)
+        self.assertRaisesRegex(AttributeError, r"scene\['frequency'\]", lambda: robot.frequency)
+        self.assertRaisesRegex(AttributeError, "scene.NAME=VALUE.", lambda: robot.copy)
+        self.assertRaisesRegex(TypeError, "scene.NAME=VALUE.", lambda: robot.__setitem__("frequency", 6))
         self.assertRaisesRegex(KeyError, "^no name 'frnt'; did you mean 'front'", lambda: robot.nodes["frnt"])
 
     def test_runs(self):
@@ -43,6 +46,11 @@ class Guesses(unittest.TestCase):
         self.assertEqual(run.t.tolist(), run.time.tolist())
         self.assertRaisesRegex(AttributeError, "run.nodes", lambda: run.x)
         self.assertRaisesRegex(AttributeError, "view", lambda: run.animate)
+        self.assertEqual(run.position["top"].tolist(), run["position"]["top"].tolist())
+        self.assertRaisesRegex(AttributeError, "did you mean 'position'", lambda: run.positions)
+        self.assertRaisesRegex(AttributeError, "to_pandas", lambda: run.df)
+        self.assertRaisesRegex(KeyError, r"run.nodes\['top'\]", lambda: run["top.x"])
+        self.assertRaisesRegex(KeyError, r"run.members\['muscle'\]", lambda: run["muscle"])
         self.assertRaisesRegex(AttributeError, "^no word in this result 'qqq'; there are [a-z]", lambda: run.qqq)
         with tempfile.TemporaryDirectory() as made:
             folder = pathlib.Path(made)
@@ -82,6 +90,7 @@ class Guesses(unittest.TestCase):
             if not hasattr(strut, command):
                 self.assertRaisesRegex(AttributeError, f"no 'strut.{command}': .", getattr, strut, command)
         self.assertRaisesRegex(AttributeError, "did you mean 'load'", lambda: strut.laod)
+        self.assertRaisesRegex(AttributeError, "strut.load", lambda: strut.Model)
 
 
 if __name__ == "__main__":

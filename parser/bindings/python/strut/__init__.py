@@ -74,6 +74,8 @@ __all__ = [
 
 #: commands of the program that are no functions here, and what does it
 _ELSEWHERE = {
+    **dict.fromkeys(("Model", "open", "read"), "strut.load(FILE)"),
+    "simulate": "strut.run(FILE), or strut.load(FILE).run()",
     "check": "strut.load(FILE) checks it; its `warnings` are those of the command",
     "compare": "the program does that: strut compare FILE FILE --json",
     "examples": "strut.models is the folder of them",
