@@ -18,7 +18,6 @@
 #include "parser/language/write/writer.h"
 #include "parser/language/yaml/diagnostics.h"
 #include "parser/program/check/check_messages.h"
-#include "parser/program/command/schema.h"
 #include "parser/program/commands.h"
 #include "parser/program/streams.h"
 
