@@ -233,10 +233,12 @@ void strut_json_values(strut_json *json, struct cJSON *to, const strut_value_row
 
 char *strut_values_json(const strut_value_rows *rows, const void *result,
                         const strut_scene *scene) {
+  strut_c_locale locale = strut_c_locale_enter();
   strut_json json = strut_json_begin();
   if (scene) strut_json_text(&json, json.root, "name", scene->name);
   if (scene) strut_json_text(&json, json.root, "strut_version", STRUT_VERSION);
   strut_json_values(&json, json.root, rows, &(strut_result_object){result, NULL, scene, 0});
+  strut_c_locale_leave(locale);
   return strut_json_end(&json);
 }
 

@@ -195,7 +195,8 @@ char *strut_summary_json(const strut_summary *summary, const strut_scene *scene,
 }
 
 char *strut_summary_table(const strut_summary *summary, const strut_scene *scene, int width) {
-  const char *before = width == STRUT_REPORT_LATEX ? "% " : "";
+  const bool latex = width == STRUT_REPORT_LATEX;
+  const char *before = latex ? "% " : "";
   strut_buffer table = {0};
   strut_shown rows = {0};
   size_t widest = 0;
@@ -211,9 +212,9 @@ char *strut_summary_table(const strut_summary *summary, const strut_scene *scene
     else
       strut_buffer_add(&table, "%s  %-*s  %s\n", before, (int)widest, rows.list[i].label,
                        rows.list[i].value);
-  strut_values_add_tables(&table, &strut_summary_values,
-                          &(strut_result_object){summary, NULL, scene, 0},
-                          &(strut_table_page){width, MOST_TABLE_ROWS, DIGITS});
+  strut_values_add_tables(
+      &table, &strut_summary_values, &(strut_result_object){summary, NULL, scene, 0},
+      &(strut_table_page){latex ? width : STRUT_REPORT_WIDTH, MOST_TABLE_ROWS, DIGITS});
   strut_c_locale_leave(locale);
   strut_shown_free(&rows);
   strut_release(json);

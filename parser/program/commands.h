@@ -59,6 +59,3 @@ strut_status strut_analysis_open(struct strut_analysis *analysis, char **text);
 
 /** Prints the words that complete the last of `words` (count >= 0), which may be empty. */
 strut_status strut_complete(int count, char **words);
-
-/** The language as a JSON Schema, for editors: of a scene or a study. A block of strut_allocate, or NULL. */
-char *strut_schema_write(bool study);

@@ -14,8 +14,8 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/program/command/analyses.h"
+#include "parser/program/command/arguments.h"
 #include "parser/program/command/scene_options.h"
-#include "parser/program/commands.h"
 
 /* No call of the library reads or writes trajectory.h5. With this definition neither HDF5 nor the libraries for
    network files that it needs are linked. */

@@ -219,3 +219,6 @@ strut_status strut_quantity_read(const strut_arguments *arguments, const char *n
  */
 size_t strut_quantities_read(const char *text, strut_dimension dimension, double *values,
                              size_t most);
+
+/** The language as a JSON Schema, for editors: of a scene or a study. A block of strut_allocate, or NULL. */
+char *strut_schema_write(bool study);

@@ -4,7 +4,7 @@
  * a property's own description only, never that of a definition behind it, and report alternatives
  * ("anyOf") vaguely; so every property has its description, and alternatives are "if type ... then".
  */
-#include "parser/program/commands.h"
+#include "parser/program/command/arguments.h"
 
 #include <assert.h>
 #include <stdio.h>
