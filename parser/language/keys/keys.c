@@ -86,6 +86,7 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_SCENE, NULL, "forces", "loads", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_NODE, NULL, "coordinates", "position", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_NODE, NULL, "pos", "position", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_NODE, NULL, "at", "position", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_NODE, NULL, "support", "fixed", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "type", "kind", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_NODE, NULL, "m", "mass", STRUT_SPELLING_MISTAKE},
@@ -94,6 +95,7 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_MEMBER, NULL, "d", "damping", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "l0", "rest_length", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "from", "nodes", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_MEMBER, NULL, "between", "nodes", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "to", "nodes", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "preload", "pretension", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "EA", "axial_stiffness", STRUT_SPELLING_MISTAKE},
@@ -106,7 +108,8 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_SOLVER, NULL, "dt", "step", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_SOLVER, NULL, "method", "integrator", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_RUN, NULL, "time", "duration", STRUT_SPELLING_MISTAKE},
-    {STRUT_SECTION_RUN, NULL, "length", "duration", STRUT_SPELLING_MISTAKE}};
+    {STRUT_SECTION_RUN, NULL, "length", "duration", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_STUDY, NULL, "over", "axes", STRUT_SPELLING_MISTAKE}};
 
 const strut_spelling *strut_spelling_find(strut_section section, const char *key,
                                           const char *text) {
