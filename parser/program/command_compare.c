@@ -352,7 +352,7 @@ static const char compare_details[] =
     "travel per period, drive energy, cost of transport (drive power over weight times speed) and\n"
     "duty factor of the steady motion, with the cost of a simulated second.\n"
     "Then how the effective scenes differ from the first: + added, - removed, ~ changed.\n"
-    "Missing values are '-', left empty in CSV, and null with a reason in JSON.\n"
+    "Missing values are left empty, and null with a reason in JSON.\n"
     "'strut compare m.yaml m.yaml --set mu=0.2' compares a model with a variant of itself.\n";
 
 const strut_command strut_command_compare = {

@@ -80,3 +80,15 @@ for what in equilibria "modes --at start" rigidity; do
   shift
   expect 0 "$command" all.yaml "$@" --quiet --plot "$command.svg"
 done
+
+# A member that yields at 5 N has that force in each row while it does, also where samples are closer than steps.
+yaml yields.yaml <<'YAML'
+nodes: {w: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, moves: {x: {ramp: {amplitude: 20 mm, stop: 0.2 s}}}}}
+members: {s: {kind: spring, nodes: [w, b], stiffness: 1 kN/m, law: {kind: elastic_plastic, yield: 5 N}}}
+solver: {integrator: rk4-events, step: 10 ms}
+run: {duration: 0.2 s}
+output: {every: 2.5 ms, channels: [force, plastic]}
+YAML
+expect 0 run yields.yaml --quiet -o yields
+awk -F, 'NR > 1 && $1 > 0.051 && ($2 - 5) ^ 2 > 1e-18 { bad++ } END { exit !(NR > 10 && !bad) }' yields/members.csv ||
+  fail "the force changes while the member yields"

@@ -406,6 +406,19 @@ fit:
             identified(found, name, truth)
         for alignment, truth in zip(said["alignments"][2:], (turn, delay)):
             near(alignment["value"], truth, alignment["name"], 0.02)
+    # A clip that begins later than it is long, by the clock of the run: its free delay is 0.
+    film("cross.yaml", "cross.csv", ("n1",), 0.0, 0.0, 1e-4)
+    with open(os.path.join(work, "cross.csv")) as file:
+        head, *rows = file.read().splitlines()
+    write("clip.csv", "\n".join([head, *(row for row in rows if 1.0 <= float(row.split(",")[0]) <= 1.8)]) + "\n")
+    found, said = fit("clip", f"""model: cross.yaml
+data: {{film: {{file: clip.csv}}}}
+fit:
+  over: {{k: {{from: 50, to: 200}}, c: {{from: 0.1, to: 2}}}}
+  match: {{film: {{time: film.t, n1.x: film.x1, n1.y: film.y1, noise: 0.1 mm, {FREE}}}}}
+""")
+    for name, truth in (("k", 100.0), ("c", 0.5)):
+        identified(found, name, truth)
 
 
 def coverage(count, align=""):

@@ -137,7 +137,8 @@ axes:
 keep: [velocity]
 figures:
   lines: {x: tilt, y: velocity, series: stretch, panels: stiffness, only: stretch=0.02, x_limits: [0, 0.5]}
-  named: {x: stiffness, y: velocity, series: tilt, labels: [level, "half, way", steep], panels: stretch}
+  named: {x: stiffness, y: velocity, series: tilt, labels: [level, "half, way", steep], panels: stretch,
+          band: status=completed}
   map: {kind: map, x: tilt, y: stretch, color: velocity, panels: stiffness}
 """
 os.rename("out", "driven")
@@ -145,7 +146,7 @@ sweep(UNITS)
 check(open("out/table.csv").read().startswith("point,tilt [rad],stretch [m],stiffness [N/m],velocity [m/s],"), "units: table")
 for name, wanted, missing in (
         ("lines", ("tilt in deg", "velocity in mm/s", "a) stiffness = 0.1 kN/m", "b) stiffness = 3 kN/m", "25"), ("30",)),
-        ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep"), ()),
+        ("named", ("stiffness in kN/m", "a) stretch = 0.5 mm", "b) stretch = 20 mm", "level", "half, way", "steep", "status completed"), ()),
         ("map", ("tilt in deg", "stretch in mm", "60", "20", "25"), ("tilt in rad",))):
     said = texts(f"out/{name}.svg")
     check(set(wanted) <= set(said) and not set(missing) & set(said), f"{name}.svg: {said}")

@@ -60,7 +60,8 @@ static void write_residual(const strut_result_object *of, char text[STRUT_VALUE_
   const strut_summary *summary = of->at;
   const strut_energy *energy = &summary->energy;
   strut_rounded_quantity residual = strut_quantity_of(energy->residual, 4, "J");
-  bool kept = summary->balance != STRUT_BALANCE_NOT_KEPT && energy->moved > 0.0;
+  bool kept = summary->balance != STRUT_BALANCE_NOT_KEPT && energy->moved > 0.0 &&
+              isfinite(energy->residual);
   double part = fabs(energy->residual) / energy->moved;
   if (!kept && energy->residual != 0.0)
     snprintf(text, STRUT_VALUE_ROOM, "%s", residual.text);

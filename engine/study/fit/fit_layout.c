@@ -125,6 +125,9 @@ static bool is_measured(const strut_fit_match *match, size_t s) {
   return i < match->count;
 }
 
+/* A film that begins this many of its lengths late, or before 0, is taken to have a clock of its own. */
+static const double OWN_CLOCK = 10.0;
+
 static bool add_alignments(strut_fit_layout *layout, size_t m) {
   const strut_fit_match *match = &layout->fit->matches[m];
   bool fine = true;
@@ -137,10 +140,11 @@ static bool add_alignments(strut_fit_layout *layout, size_t m) {
   }
   if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
   if (match->align.delay)
-    fine = add_aligned(
-               layout, m, STRUT_FIT_DELAY,
-               match->at[0] >= 0.0 && match->at[0] <= strut_fit_span(match) ? 0.0 : match->at[0],
-               strut_fit_span(match)) &&
+    fine = add_aligned(layout, m, STRUT_FIT_DELAY,
+                       match->at[0] >= 0.0 && match->at[0] <= OWN_CLOCK * strut_fit_span(match)
+                           ? 0.0
+                           : match->at[0],
+                       strut_fit_span(match)) &&
            fine;
   return fine;
 }

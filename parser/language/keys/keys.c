@@ -102,6 +102,7 @@ static const strut_spelling spellings[] = {
     {STRUT_SECTION_MEMBER, NULL, "prestress", "pretension", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_MEMBER, NULL, "length", "rest_length", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_GROUND, NULL, "angle", "slope", STRUT_SPELLING_MISTAKE},
+    {STRUT_SECTION_GROUND, NULL, "mu", "friction", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_FRICTION, NULL, "coefficient", "mu", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_SOLVER, NULL, "timestep", "step", STRUT_SPELLING_MISTAKE},
     {STRUT_SECTION_SOLVER, NULL, "time_step", "step", STRUT_SPELLING_MISTAKE},
