@@ -127,6 +127,20 @@ void strut_read_moves(strut_reader *reader) {
 
 /* ---- positions and velocities by node ---- */
 
+/* Does another key name the node that this one names by a text parameter? */
+static bool is_named_twice(strut_reader *reader, const strut_tree *map, const strut_tree *tree,
+                           int32_t node) {
+  if (strcmp(reader->scene->nodes[node].name, tree->text) == 0) return false;
+  for (const strut_tree *other = map->first; other; other = other->next->next)
+    if (other != tree && strut_find_thing(reader, STRUT_THING_NODE, other, other->text) == node) {
+      strut_report_error(reader, tree->place, "'%s' and '%s' are one node",
+                         strut_sanitised_text(reader, other->text),
+                         strut_sanitised_text(reader, tree->text));
+      return true;
+    }
+  return false;
+}
+
 bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_owner owner,
                            strut_dimension dimension, strut_pair_taker *take) {
   bool fine = true;
@@ -142,7 +156,7 @@ bool strut_read_node_pairs(strut_reader *reader, const strut_tree *map, strut_ow
     bool measured = length && tree->next->kind == STRUT_TREE_MAP;
     bool read = measured ? strut_read_data_point(reader, tree->next, owner, pair)
                          : strut_read_pair(reader, tree->next, tree->text, owner, dimension, pair);
-    if (!read || node < 0)
+    if (!read || node < 0 || is_named_twice(reader, map, tree, node))
       fine = false;
     else if (take) {
       if (length) strut_place_point(reader, tree->next, pair);
