@@ -19,7 +19,7 @@ BASES = {"%": ("%", 0.01), "degrees": ("rad", math.pi / 180), "deg": ("rad", mat
 BASES.update({base: (base, 1.0) for base in "N/m m/s rad/s m/s² Hz rad N J W g s m".split()})
 UNIT = re.compile(r" ?([" + "".join(PREFIXES) + r"]?)(" + "|".join(sorted(BASES, key=len, reverse=True)) +
                   r")(?![\w/²^])")
-NUMBER = re.compile(r"(?<![\w.])([-+−]?)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)(e[-+]?\d+)?(?![\d]|\.\d)")
+NUMBER = re.compile(r"(?<![\w.])([-+−]?)(\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?)([eE][-+]?\d+)?(?![\d]|\.\d)")
 SLACK = 0.6  # of a unit of the last digit: rounding, and last bits that differ from machine to machine
 
 
