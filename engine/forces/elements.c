@@ -2,7 +2,6 @@
 #include "engine/forces/elements.h"
 
 #include <assert.h>
-#include <string.h>
 
 #include "engine/forces/capstan.h"
 #include "engine/forces/history.h"

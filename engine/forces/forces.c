@@ -3,7 +3,6 @@
 #include "engine/forces/forces.h"
 
 #include <assert.h>
-#include <math.h>
 
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"

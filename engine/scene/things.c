@@ -3,7 +3,6 @@
 #include "engine/scene/things.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -65,8 +65,6 @@ STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, dou
  */
 bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector);
 
-/** Gives each pointer of the list, which ends with NULL, `count` zeros owned by the arena; false: out of memory. */
-STRUT_API bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list);
 /** Zeros, owned by the arena; NULL: out of memory. */
 gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns);
 gsl_vector *strut_arena_vector(strut_arena *arena, size_t size);

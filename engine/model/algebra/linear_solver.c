@@ -280,9 +280,8 @@ struct strut_refactor {
 /* A matrix of the pattern that is positive definite beyond doubt: -1 beside a heavier diagonal. */
 static bool fill_example(const strut_sparse *pattern, strut_sparse *example, strut_arena *arena) {
   *example = *pattern;
-  example->value =
-      strut_arena_allocate(arena, (size_t)pattern->start[pattern->n], sizeof *example->value);
-  if (!example->value) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(example->value, (size_t)pattern->start[pattern->n])))
+    return false;
   for (int32_t j = 0; j < pattern->n; j++) example->value[pattern->start[j]] = 1.0;
   for (int32_t j = 0; j < pattern->n; j++)
     for (int32_t k = pattern->start[j] + 1; k < pattern->start[j + 1]; k++) {
@@ -296,12 +295,10 @@ static bool fill_example(const strut_sparse *pattern, strut_sparse *example, str
 static bool copy_factor(const strut_factor *from, strut_factor *to, strut_arena *arena) {
   size_t n = (size_t)from->n, nonzeros = (size_t)from->start[from->n];
   to->n = from->n;
-  to->order = strut_arena_allocate(arena, n, sizeof *to->order);
-  to->start = strut_arena_allocate(arena, n + 1, sizeof *to->start);
-  to->row = strut_arena_allocate(arena, nonzeros, sizeof *to->row);
-  to->value = strut_arena_allocate(arena, nonzeros, sizeof *to->value);
-  to->inverse_diagonal = strut_arena_allocate(arena, n, sizeof *to->inverse_diagonal);
-  if (!to->order || !to->start || !to->row || !to->value || !to->inverse_diagonal) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(to->order, n), STRUT_NEW(to->start, n + 1),
+                      STRUT_NEW(to->row, nonzeros), STRUT_NEW(to->value, nonzeros),
+                      STRUT_NEW(to->inverse_diagonal, n)))
+    return false;
   memcpy(to->order, from->order, n * sizeof *to->order);
   memcpy(to->start, from->start, (n + 1) * sizeof *to->start);
   memcpy(to->row, from->row, nonzeros * sizeof *to->row);
@@ -345,9 +342,8 @@ strut_refactor *strut_refactor_create(const strut_sparse *pattern, strut_arena *
   size_t counts[] = {nonzeros, nonzeros, n, n, n, n + 1};
   for (size_t i = 0; i < sizeof indices / sizeof indices[0]; i++)
     if (!(*indices[i] = strut_arena_allocate(arena, counts[i], sizeof **indices[i]))) return NULL;
-  refactor->diagonal = strut_arena_allocate(arena, n, sizeof *refactor->diagonal);
-  refactor->work = strut_arena_allocate(arena, n, sizeof *refactor->work);
-  if (!refactor->diagonal || !refactor->work) return NULL;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(refactor->diagonal, n), STRUT_NEW(refactor->work, n)))
+    return NULL;
   place_entries(pattern, refactor);
   return refactor;
 }

@@ -8,7 +8,6 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"

@@ -280,8 +280,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   const strut_configuration *configuration = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
-  rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
-  if (!rest->q) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(rest->q, model->length))) return strut_no_memory(error, "");
   if (name && (configuration = strut_configuration_named(scene, name)))
     start = drawn = false; /* a configuration has this name */
   if (!configuration && !start && !drawn) {

@@ -58,21 +58,13 @@ static int32_t find_oblique_node(const strut_scene *scene) {
 
 static bool copy_arrays(strut_level_frame *level) {
   strut_scene *scene = &level->scene;
-  scene->nodes =
-      strut_arena_copy(&level->arena, scene->nodes, scene->node_count, sizeof *scene->nodes);
-  scene->members =
-      strut_arena_copy(&level->arena, scene->members, scene->member_count, sizeof *scene->members);
-  scene->hinges =
-      strut_arena_copy(&level->arena, scene->hinges, scene->hinge_count, sizeof *scene->hinges);
-  scene->contacts = strut_arena_copy(&level->arena, scene->contacts, scene->contact_count,
-                                     sizeof *scene->contacts);
-  scene->loads =
-      strut_arena_copy(&level->arena, scene->loads, scene->load_count, sizeof *scene->loads);
-  scene->configurations =
-      strut_arena_copy(&level->arena, scene->configurations, scene->configuration_count,
-                       sizeof *scene->configurations);
-  if (!scene->nodes || !scene->members || !scene->hinges || !scene->contacts || !scene->loads ||
-      !scene->configurations)
+  if (!STRUT_ALLOCATE(
+          &level->arena, STRUT_COPY(scene->nodes, scene->nodes, scene->node_count),
+          STRUT_COPY(scene->members, scene->members, scene->member_count),
+          STRUT_COPY(scene->hinges, scene->hinges, scene->hinge_count),
+          STRUT_COPY(scene->contacts, scene->contacts, scene->contact_count),
+          STRUT_COPY(scene->loads, scene->loads, scene->load_count),
+          STRUT_COPY(scene->configurations, scene->configurations, scene->configuration_count)))
     return false;
   for (size_t i = 0; i < scene->configuration_count; i++) {
     strut_configuration *configuration = &scene->configurations[i];
@@ -233,8 +225,7 @@ static strut_status use_requested_set(const strut_scene *scene, const strut_node
           "node '%s' is no contact node, so it cannot be a support; name contact nodes",
           scene->nodes[node].name);
   }
-  supports->sets = strut_arena_allocate(arena, 1, sizeof *supports->sets);
-  if (!supports->sets) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(supports->sets, 1))) return strut_no_memory(error, "");
   supports->sets[0] = *wanted;
   supports->count = 1;
   return STRUT_OK;

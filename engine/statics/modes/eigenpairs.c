@@ -3,7 +3,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
@@ -84,11 +83,8 @@ static void store_eigenpairs(const dense *self) {
 static bool allocate_set(strut_modes_work *work) {
   strut_eigen_set *set = &work->set;
   size_t count = (size_t)set->count;
-  return strut_arena_numbers(
-             work->arena, count,
-             (double **[]){&set->value, &set->noise, &set->error, &set->residual, NULL}) &&
-         strut_arena_numbers(work->arena, count * (size_t)set->n,
-                             (double **[]){&set->vector, NULL});
+  return STRUT_NUMBERS(work->arena, count, &set->value, &set->noise, &set->error, &set->residual) &&
+         STRUT_NUMBERS(work->arena, count * (size_t)set->n, &set->vector);
 }
 
 static bool allocate_dense(dense *self) {

@@ -133,8 +133,7 @@ static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *
   size_t count = (size_t)strut_force_count(vibration->model, false);
   strut_arena scratch = {0};
   double *x, *one;
-  bool good = strut_arena_numbers(&scratch, (size_t)vibration->n, (double **[]){&x, NULL}) &&
-              strut_arena_numbers(&scratch, count, (double **[]){&one, NULL});
+  bool good = STRUT_NUMBERS(&scratch, vibration->n, &x) && STRUT_NUMBERS(&scratch, count, &one);
   if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
   for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
     sample_noise(work, at_rest, sample, one, x);
@@ -346,7 +345,7 @@ strut_status strut_modes_measure(strut_modes_work *work, strut_error *error) {
   size_t n = (size_t)work->v->n;
   strut_arena scratch = {0};
   double *kx, *mx;
-  bool good = strut_arena_numbers(&scratch, n, (double **[]){&kx, &mx, NULL});
+  bool good = STRUT_NUMBERS(&scratch, n, &kx, &mx);
   strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
   for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) measure_value(work, i, mx);
   if (status == STRUT_OK) sort(&work->set);

@@ -328,9 +328,9 @@ static bool create_stages(stages *self) {
   self->held = strut_arena_copy(arena, self->model->fixed, length, sizeof *self->held);
   self->path = strut_allocate(experiment->stage_count, sizeof *self->path);
   if (!self->staged || !self->held || !self->path ||
-      !strut_arena_numbers(arena, length, (double **[]){&self->q, &self->moved, NULL}) ||
-      !strut_arena_numbers(arena, scene->load_count, (double **[]){&self->factor, NULL}) ||
-      !strut_arena_numbers(arena, scene->actuator_count, (double **[]){&self->drive, NULL}))
+      !STRUT_NUMBERS(arena, length, &self->q, &self->moved) ||
+      !STRUT_NUMBERS(arena, scene->load_count, &self->factor) ||
+      !STRUT_NUMBERS(arena, scene->actuator_count, &self->drive))
     return false;
   for (size_t i = 0; i < scene->load_count; i++) {
     self->factor[i] = 1.0;

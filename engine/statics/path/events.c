@@ -59,8 +59,8 @@ typedef struct trials {
 
 static bool make_trials(const strut_path_system *system, strut_arena *arena, trials *self) {
   for (int k = 0; k < KEPT; k++) {
-    self->kept[k].y = strut_arena_allocate(arena, 2 * ((size_t)system->n + 1), sizeof(double));
-    if (!self->kept[k].y) return false;
+    if (!STRUT_ALLOCATE(arena, STRUT_NEW(self->kept[k].y, 2 * ((size_t)system->n + 1))))
+      return false;
   }
   return true;
 }

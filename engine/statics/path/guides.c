@@ -6,7 +6,6 @@
  * follows from the tensions (capstan.h), so that forces depend on positions alone and their derivatives are
  * found by differences.
  */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -4,7 +4,6 @@
  */
 #include "engine/statics/path/path_parts.h"
 
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -22,8 +21,7 @@ static size_t count_terms(const strut_model *model) {
 bool strut_path_terms_create(const strut_model *model, strut_arena *arena,
                              strut_path_terms *terms) {
   size_t length = (size_t)model->length, slots = (size_t)model->members.slots;
-  terms->stiffness = strut_arena_allocate(arena, count_terms(model), sizeof(double));
-  if (!terms->stiffness) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(terms->stiffness, count_terms(model)))) return false;
   terms->rest = terms->stiffness + slots, terms->rest_low = terms->rest + slots;
   terms->position = terms->rest_low + slots, terms->position_low = terms->position + length;
   terms->force = terms->position_low + length;
@@ -377,10 +375,9 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
   const strut_element_table *t = &model->elements;
   *elements = (strut_path_elements){0};
   if (t->count == 0) return true;
-  elements->element = strut_arena_allocate(arena, (size_t)t->count, sizeof *elements->element);
-  elements->switches =
-      strut_arena_allocate(arena, (size_t)count_switches(t) + 1, sizeof *elements->switches);
-  if (!elements->element || !elements->switches) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(elements->element, t->count),
+                      STRUT_NEW(elements->switches, (size_t)count_switches(t) + 1)))
+    return false;
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *element = &t->element[i];
     int kinks = strut_law_kinks(element->law, &element->numbers);

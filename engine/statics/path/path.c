@@ -136,11 +136,10 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
                                      strut_arena *arena, strut_scene *scene, strut_error *error) {
   const strut_actuator *a = &scene->actuators[actuator];
   double rest = drawn->members.rest[strut_actuator_slot(drawn, (size_t)actuator)] + value;
-  scene->cells = strut_arena_copy(arena, scene->cells, scene->cell_count, sizeof *scene->cells);
-  scene->hinges = strut_arena_copy(arena, scene->hinges, scene->hinge_count, sizeof *scene->hinges);
-  scene->members =
-      strut_arena_copy(arena, scene->members, scene->member_count, sizeof *scene->members);
-  if (!scene->cells || !scene->hinges || !scene->members) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(arena, STRUT_COPY(scene->cells, scene->cells, scene->cell_count),
+                      STRUT_COPY(scene->hinges, scene->hinges, scene->hinge_count),
+                      STRUT_COPY(scene->members, scene->members, scene->member_count)))
+    return strut_no_memory(error, "");
   if (a->member < 0 && a->hinge < 0) scene->cells[a->cell].pressure = rest;
   if (a->member < 0 && a->hinge >= 0) scene->hinges[a->hinge].rest_angle = rest;
   if (a->member < 0) return STRUT_OK;
@@ -282,8 +281,7 @@ static bool allocate_walk(strut_path_walk *walk) {
                        &walk->values, &walk->scale,   &walk->part.from, &walk->part.tangent,
                        &walk->part.to};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    *arrays[i] = strut_arena_allocate(&walk->system.arena, count, sizeof(double));
-    if (!*arrays[i]) return false;
+    if (!STRUT_ALLOCATE(&walk->system.arena, STRUT_NEW(*arrays[i], count))) return false;
   }
   walk->upward[walk->system.n] = 1.0;
   walk->step = 0.01;

@@ -91,10 +91,9 @@ typedef struct check {
 } check;
 
 static bool allocate_check(const strut_path_walk *walk, check *self) {
-  return strut_arena_numbers(&self->arena, 2 * ((size_t)walk->system.n + 1),
-                             (double **[]){&self->whole.y, &self->whole.tangent, &self->whole.end,
-                                           &self->inner.y, &self->inner.tangent, &self->inner.end,
-                                           &self->y, &self->tangent, &self->next_tangent, NULL});
+  return STRUT_NUMBERS(&self->arena, 2 * ((size_t)walk->system.n + 1), &self->whole.y,
+                       &self->whole.tangent, &self->whole.end, &self->inner.y, &self->inner.tangent,
+                       &self->inner.end, &self->y, &self->tangent, &self->next_tangent);
 }
 
 /*

@@ -122,10 +122,8 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   matrix->row = strut_arena_allocate(arena, most, sizeof *matrix->row);
   if (!matrix->coordinate || !matrix->row_of || !matrix->direction || !matrix->start ||
       !matrix->row || !matrix->curved || !matrix->bend ||
-      !strut_arena_numbers(arena, most, (double **[]){&matrix->value, NULL}) ||
-      !strut_arena_numbers(
-          arena, columns + 1,
-          (double **[]){&matrix->length, &matrix->scale, &matrix->curvature, NULL}))
+      !STRUT_NUMBERS(arena, most, &matrix->value) ||
+      !STRUT_NUMBERS(arena, columns + 1, &matrix->length, &matrix->scale, &matrix->curvature))
     return STRUT_NO_MEMORY;
   matrix->rows = strut_number_free(model, NULL, matrix->row_of, matrix->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
@@ -266,9 +264,9 @@ static bool allocate_tall(const strut_equilibrium_matrix *matrix, strut_arena *a
   self->turned = matrix->columns > matrix->rows;
   self->rows = (size_t)(self->turned ? matrix->columns : matrix->rows);
   self->columns = (size_t)(self->turned ? matrix->rows : matrix->columns);
-  return strut_arena_numbers(arena, self->rows * self->columns, (double **[]){&self->u, NULL}) &&
-         strut_arena_numbers(arena, self->columns * self->columns, (double **[]){&self->v, NULL}) &&
-         strut_arena_numbers(arena, self->columns, (double **[]){&self->s, &self->work, NULL});
+  return STRUT_NUMBERS(arena, self->rows * self->columns, &self->u) &&
+         STRUT_NUMBERS(arena, self->columns * self->columns, &self->v) &&
+         STRUT_NUMBERS(arena, self->columns, &self->s, &self->work);
 }
 
 static void fill_tall(const strut_equilibrium_matrix *matrix, tall *self) {

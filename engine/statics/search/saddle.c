@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/minimise.h"
@@ -37,12 +36,9 @@ strut_climber *strut_climber_create(const strut_potential *potential) {
   climber->spectra = strut_spectrum_create(potential);
   climber->idle = strut_arena_allocate(&climber->arena, n, sizeof *climber->idle);
   if (climber->spectra && climber->idle &&
-      strut_arena_numbers(
-          &climber->arena, n,
-          (double **[]){&climber->g, &climber->part, &climber->value, &climber->x, &climber->step,
-                        &climber->follow, &climber->straight, &climber->g_trial, NULL}) &&
-      strut_arena_numbers(&climber->arena, (size_t)potential->model->length,
-                          (double **[]){&climber->trial, &climber->begin, NULL}))
+      STRUT_NUMBERS(&climber->arena, n, &climber->g, &climber->part, &climber->value, &climber->x,
+                    &climber->step, &climber->follow, &climber->straight, &climber->g_trial) &&
+      STRUT_NUMBERS(&climber->arena, potential->model->length, &climber->trial, &climber->begin))
     return climber;
   strut_climber_free(climber);
   return NULL;

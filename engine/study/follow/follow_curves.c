@@ -5,8 +5,6 @@
 #include <string.h>
 
 #include "engine/base/text.h"
-#include "engine/output/buffer.h"
-#include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
 
 /* Longest step of a parameter in its range; steps each way; drive steps that show a gap's extrema. */

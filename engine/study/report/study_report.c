@@ -5,7 +5,6 @@
 #include <stdio.h>
 
 #include "engine/base/text.h"
-#include "engine/output/result_values.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Points that searches ask for at the same time, on all threads. See search_parts.h. */
-#include <math.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <stdlib.h>

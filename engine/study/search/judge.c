@@ -266,9 +266,8 @@ static bool list_points(strut_search_batch *batch, strut_search_result *result,
   size_t n = search->variable_count;
   worth->agreeing = count_agreeing(result, worth->best);
   worth->checked = batch->plan->study->compute == STRUT_COMPUTE_RUN;
-  worth->bound = strut_arena_allocate(&result->arena, n, sizeof *worth->bound);
-  worth->neighbours = strut_arena_allocate(&result->arena, n, sizeof *worth->neighbours);
-  if (!worth->bound || !worth->neighbours) return false;
+  if (!STRUT_ALLOCATE(&result->arena, STRUT_NEW(worth->bound, n), STRUT_NEW(worth->neighbours, n)))
+    return false;
   worth->check.values = outcome->best.values;
   bool fine = !worth->checked || strut_search_batch_add(batch, outcome->outer, batch->first_check,
                                                         outcome->best.values);

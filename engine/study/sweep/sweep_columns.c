@@ -175,11 +175,9 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   if (study->sensitivity.wanted) by += study->axes[study->sensitivity.axis].column_count;
   if (plan->scenes.vary) most += 3 * by * most;
   plan->column_capacity = most;
-  plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
-  plan->derived = strut_arena_allocate(&plan->arena, most, sizeof *plan->derived);
-  plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
-  plan->names_member = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->names_member);
-  if (!plan->columns || !plan->derived || !plan->quantities || !plan->names_member ||
+  if (!STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->columns, most), STRUT_NEW(plan->derived, most),
+                      STRUT_NEW(plan->quantities, quantities),
+                      STRUT_NEW(plan->names_member, quantities)) ||
       !add_kept(plan, setup))
     return strut_no_memory(error, "");
   plan->smooth = false;

@@ -2,7 +2,6 @@
 /* The whole study, from the base to the Pareto front. */
 #include "engine/study/tradeoff/tradeoff.h"
 
-#include <assert.h>
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
