@@ -10,8 +10,6 @@
  */
 #pragma once
 
-#include <stddef.h>
-
 #include "engine/base/status.h"
 
 /** X(NAME, words): what a derivative is worth. */

@@ -3,9 +3,6 @@
 
 #include <stdarg.h>
 #include <stdatomic.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { FIRST_CHUNK = 16 * 1024, LARGEST_CHUNK = 1024 * 1024, ALIGNMENT = 64 };
 
@@ -112,8 +109,7 @@ bool strut_arena_arrays(strut_arena *arena, const strut_array *list) {
 
 bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list) {
   bool all = true;
-  for (; *list; list++)
-    all = (**list = strut_arena_allocate(arena, count, sizeof(double))) && all;
+  for (; *list; list++) all = (**list = strut_arena_allocate(arena, count, sizeof(double))) && all;
   return all;
 }
 

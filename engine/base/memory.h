@@ -7,10 +7,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/base/status.h"
 
 /** count * size zeroed bytes, or NULL (also when the product overflows). Free with strut_release. */
@@ -46,14 +42,16 @@ typedef struct strut_array {
   const void *from;
   size_t count, size;
 } strut_array;
-#define STRUT_NEW(pointer, count) {&(pointer), NULL, (size_t)(count), sizeof *(pointer)}
-#define STRUT_COPY(pointer, from, count) {&(pointer), (from), (size_t)(count), sizeof *(pointer)}
+#define STRUT_NEW(pointer, count)                                                                  \
+  { &(pointer), NULL, (size_t)(count), sizeof *(pointer) }
+#define STRUT_COPY(pointer, from, count)                                                           \
+  { &(pointer), (from), (size_t)(count), sizeof *(pointer) }
 /** Gives arrays to the pointers of all STRUT_NEW and STRUT_COPY listed; false: to some NULL, since memory is out. */
-#define STRUT_ALLOCATE(arena, ...) \
+#define STRUT_ALLOCATE(arena, ...)                                                                 \
   strut_arena_arrays(arena, (const strut_array[]){__VA_ARGS__, {NULL, NULL, 0, 0}})
 STRUT_API bool strut_arena_arrays(strut_arena *arena, const strut_array *list);
 /** The same of pointers to double whose addresses are listed, with `count` zeros each. */
-#define STRUT_NUMBERS(arena, count, ...) \
+#define STRUT_NUMBERS(arena, count, ...)                                                           \
   strut_arena_numbers(arena, (size_t)(count), (double **[]){__VA_ARGS__, NULL})
 STRUT_API bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list);
 /** A copy of the first length bytes of text with a terminating NUL; aligned to 1. */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/elements.h"
 
-#include <assert.h>
-
 #include "engine/forces/capstan.h"
 #include "engine/forces/history.h"
 #include "engine/forces/members_kernel.h"

@@ -5,8 +5,6 @@
  */
 #pragma once
 
-#include <assert.h>
-
 #include "engine/model/pose.h"
 #include "engine/model/state.h"
 

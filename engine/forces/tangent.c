@@ -4,9 +4,6 @@
 #include "engine/forces/capstan.h"
 #include "engine/forces/surfaces.h"
 
-#include <assert.h>
-#include <string.h>
-
 #include "engine/base/indices.h"
 #include "engine/forces/nearby.h"
 

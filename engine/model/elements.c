@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/elements.h"
 
-#include <assert.h>
-#include <math.h>
-
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/model.h"

@@ -9,11 +9,6 @@
  */
 #pragma once
 
-#include <assert.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "engine/scene/scene.h"
 #include "engine/scene/things.h"
 

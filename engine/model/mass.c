@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/mass.h"
 
-
 #include "engine/base/indices.h"
 #include "engine/model/algebra/hot.h"
 #include "engine/model/algebra/linear_solver.h"

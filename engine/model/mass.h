@@ -8,10 +8,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/base/status.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"

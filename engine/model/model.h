@@ -10,9 +10,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/model/algebra/pull_rows.h"

@@ -8,9 +8,6 @@
  */
 #pragma once
 
-#include <assert.h>
-#include <float.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/model.h"

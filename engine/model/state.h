@@ -7,8 +7,6 @@
  */
 #pragma once
 
-#include <math.h>
-
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
 

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 
-#include <assert.h>
-#include <math.h>
-
 #include "engine/base/indices.h"
 #include "engine/base/vec.h"
 #include "engine/model/model.h"

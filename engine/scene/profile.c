@@ -2,8 +2,6 @@
 /* Surfaces of grounds: their pieces, crossings and outlines. See profile.h. */
 #include "engine/scene/profile.h"
 
-#include <math.h>
-
 #include "engine/base/indices.h"
 #include "engine/base/vec.h"
 

@@ -9,10 +9,6 @@
  */
 #pragma once
 
-#include <math.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/scene/observables.h"
 
 /** How a result changes with its operands; see engine/run/measure/quantities.c. */

@@ -8,10 +8,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "engine/base/text.h"

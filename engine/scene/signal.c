@@ -2,9 +2,6 @@
 /* Waveforms: values, rates, breaks, periods and second derivatives. See signal.h. */
 #include "engine/scene/signal.h"
 
-#include <math.h>
-#include <stdbool.h>
-
 #include "engine/base/vec.h"
 #include "engine/scene/signal_program.h"
 

@@ -2,10 +2,6 @@
 /* Interval arithmetic of signals. See signal_program.h. */
 #include "engine/scene/signal_program.h"
 
-#include <assert.h>
-#include <float.h>
-#include <math.h>
-
 #include "engine/base/vec.h"
 
 /* What an evaluation goes by, and what it has found. */

@@ -9,8 +9,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-
 #include "engine/scene/quantity.h"
 #include "engine/scene/signal.h"
 

@@ -9,11 +9,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "engine/base/status.h"
 #include "engine/base/text.h"
 #include "engine/scene/data.h"

@@ -39,8 +39,6 @@
 
 #include "engine/scene/channels.h"
 
-#include <math.h>
-
 #include "engine/base/text.h"
 #include "engine/scene/experiment.h"
 

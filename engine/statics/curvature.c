@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/minimise.h"
 
-#include <assert.h>
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/potential.h"

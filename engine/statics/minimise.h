@@ -9,8 +9,6 @@
  */
 #pragma once
 
-#include <stdint.h>
-
 #include "engine/base/flag.h"
 #include "engine/statics/potential.h"
 

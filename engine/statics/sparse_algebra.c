@@ -3,12 +3,8 @@
 
 #include <SuiteSparseQR_C.h>
 #include <arpack.h>
-#include <assert.h>
 #include <cholmod.h>
-#include <math.h>
 #include <pthread.h>
-#include <stdbool.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 

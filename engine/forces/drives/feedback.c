@@ -2,9 +2,6 @@
 /* Hot where a scene has sensors. See drives.h. */
 #include "engine/forces/drives/drives.h"
 
-#include <assert.h>
-#include <math.h>
-
 #include "engine/forces/observe.h"
 #include "engine/scene/signal_program.h"
 

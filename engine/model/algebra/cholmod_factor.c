@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/algebra/cholmod_factor.h"
 
-#include <assert.h>
 #include <cholmod.h>
 
 #include "engine/base/memory.h"

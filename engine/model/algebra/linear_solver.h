@@ -5,10 +5,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 
@@ -28,6 +24,7 @@ typedef struct strut_factor {
   int32_t *row;
   double *value;
   double *inverse_diagonal; /* (n) 1 / D */
+  strut_arena arena;        /* of strut_factor_create's */
 } strut_factor;
 
 /** Loads what computes factors; fails where that cannot be loaded. */

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/algebra/linear_solver.h"
 
-#include <assert.h>
-#include <string.h>
-
 #include "engine/model/algebra/pull_rows.h"
 
 bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_arena *arena) {

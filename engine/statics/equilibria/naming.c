@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/equilibria_parts.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"

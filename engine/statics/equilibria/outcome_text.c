@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/equilibria_parts.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/model/model.h"
 #include "engine/statics/minimise.h"
 

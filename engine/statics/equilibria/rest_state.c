@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/equilibria.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "engine/base/text.h"
 #include "engine/forces/tangent.h"
 #include "engine/run/settle.h"

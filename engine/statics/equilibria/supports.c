@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/equilibria_parts.h"
 
-#include <assert.h>
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"

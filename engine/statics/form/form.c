@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/form/parts.h"
 
-#include <assert.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/algebra/linear_solver.h"

@@ -2,7 +2,6 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
-#include <math.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"

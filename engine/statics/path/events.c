@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/path/path_parts.h"
 
-#include <assert.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* Regula falsi with the Illinois correction; each trial is corrected back onto the path. */
 
 enum { MOST_TRIALS = 60, KEPT = 4 };

@@ -4,10 +4,6 @@
  */
 #include "engine/statics/path/path_parts.h"
 
-#include <float.h>
-#include <math.h>
-#include <string.h>
-
 #include "engine/model/compile_parts.h"
 
 static const double VALUE_STEP =

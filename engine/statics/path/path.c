@@ -2,10 +2,6 @@
 /* Parameter, start equilibrium and walk of a path. */
 #include "engine/statics/path/path.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/base/text.h"
 #include "engine/forces/capstan.h"
 #include "engine/model/compile_parts.h"
@@ -275,14 +271,11 @@ static strut_status list_held(const path_start *self, strut_path *path, strut_er
 }
 
 static bool allocate_walk(strut_path_walk *walk) {
-  size_t count = 2 * ((size_t)walk->system.n + 1);
-  double **arrays[] = {&walk->y,      &walk->tangent, &walk->next,      &walk->next_tangent,
-                       &walk->trial,  &walk->spare,   &walk->upward,    &walk->fork,
-                       &walk->values, &walk->scale,   &walk->part.from, &walk->part.tangent,
-                       &walk->part.to};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    if (!STRUT_ALLOCATE(&walk->system.arena, STRUT_NEW(*arrays[i], count))) return false;
-  }
+  if (!STRUT_NUMBERS(&walk->system.arena, 2 * (walk->system.n + 1), &walk->y, &walk->tangent,
+                     &walk->next, &walk->next_tangent, &walk->trial, &walk->spare, &walk->upward,
+                     &walk->fork, &walk->values, &walk->scale, &walk->part.from,
+                     &walk->part.tangent, &walk->part.to))
+    return false;
   walk->upward[walk->system.n] = 1.0;
   walk->step = 0.01;
   return true;
@@ -322,17 +315,14 @@ static strut_status create_walk(path_start *self, double until, strut_path_walk 
 
 /* Keeps on which piece of its law each element is, and materials between guides; false: out of memory. */
 static bool keep_pieces(const strut_path_system *system, strut_path *path) {
-  size_t count = (size_t)system->model->elements.count;
-  int *piece = strut_arena_allocate(&path->arena, count + 1, sizeof *piece);
-  for (size_t i = 0; i < count && piece; i++) piece[i] = system->elements.element[i].piece;
+  int32_t count = system->model->elements.count, slots = system->model->members.slots;
+  int *piece = strut_arena_allocate(&path->arena, (size_t)count + 1, sizeof *piece);
+  for (int32_t i = 0; i < count && piece; i++) piece[i] = system->elements.element[i].piece;
   path->piece = piece;
-  if (system->elements.material)
-    path->material = strut_arena_copy(&path->arena, system->elements.material,
-                                      (size_t)system->model->members.slots, sizeof(double));
-  if (system->elements.material)
-    path->guide_mode = strut_arena_copy(&path->arena, system->elements.guide_mode,
-                                        (size_t)system->model->members.slots, sizeof(int));
-  return piece && ((path->material && path->guide_mode) || !system->elements.material);
+  return piece &&
+         (!system->elements.material ||
+          STRUT_ALLOCATE(&path->arena, STRUT_COPY(path->material, system->elements.material, slots),
+                         STRUT_COPY(path->guide_mode, system->elements.guide_mode, slots)));
 }
 
 /* How much of the path, or of its steps, is done. */
@@ -431,7 +421,6 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
                       model->scene->actuators[options->index].name);
   strut_status place = check_place(model, error);
   if (place) return place;
-  size_t length = (size_t)model->length;
   bool over_load = options->over == STRUT_PATH_OVER_LOAD;
   bool unsaid = over_load && options->until == 0 && options->from == 0;
   double until = unsaid ? 1.0 : options->until;
@@ -443,10 +432,10 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (!(fabs(until - options->from) < LONGEST_RANGE))
     return strut_fail(error, STRUT_USAGE, "the path's range from %g to %g is too large",
                       options->from, until);
-  b.load = strut_arena_allocate(&b.arena, length + (size_t)model->members.slots, sizeof *b.load);
-  b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
+  bool made = STRUT_ALLOCATE(&b.arena, STRUT_NEW(b.load, model->length + model->members.slots),
+                             STRUT_NEW(b.q, model->length));
   strut_status status =
-      b.load && b.q ? name_parameter(model, options, path, error) : strut_no_memory(error, "");
+      made ? name_parameter(model, options, path, error) : strut_no_memory(error, "");
   if (status == STRUT_OK && over_load)
     status = choose_loads(model, options->load, b.load, path, error);
   if (status == STRUT_OK) status = make_model(&b, error);

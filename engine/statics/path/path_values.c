@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a path has, a row for each value. */
-#include <math.h>
 
 #include "engine/statics/path/path.h"
 

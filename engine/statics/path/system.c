@@ -3,10 +3,7 @@
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
-#include <assert.h>
 #include <gsl/gsl_blas.h>
-#include <math.h>
-#include <string.h>
 
 enum { MOST_ITERATIONS = 14 };
 
@@ -38,18 +35,16 @@ static bool make_matrices(strut_path_system *system) {
 }
 
 static bool make_arrays(strut_path_system *system) {
-  size_t length = (size_t)system->model->length, members = (size_t)system->model->members.count;
-  double **arrays[] = {&system->latest.q,       &system->latest.q_low,  &system->latest.g,
-                       &system->latest.slope,   &system->latest.row,    &system->held.motion[0],
-                       &system->held.motion[1], &system->held.motion[2]};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    if (!(*arrays[i] = strut_arena_allocate(&system->arena, length + 1, sizeof(double))))
-      return false;
-  system->latest.pulling = strut_arena_allocate(&system->arena, members, 1);
-  system->latest.ahead = strut_arena_allocate(&system->arena, 2 * members, sizeof(double));
+  size_t members = (size_t)system->model->members.count;
   int32_t forces = strut_force_count(system->model, true);
-  system->force = strut_arena_allocate(&system->arena, (size_t)forces, sizeof *system->force);
-  if (!system->latest.pulling || !system->latest.ahead || !system->force) return false;
+  double **motion = system->held.motion;
+  if (!STRUT_NUMBERS(&system->arena, system->model->length + 1, &system->latest.q,
+                     &system->latest.q_low, &system->latest.g, &system->latest.slope,
+                     &system->latest.row, &motion[0], &motion[1], &motion[2]) ||
+      !STRUT_ALLOCATE(&system->arena, STRUT_NEW(system->latest.pulling, members),
+                      STRUT_NEW(system->latest.ahead, 2 * members),
+                      STRUT_NEW(system->force, forces)))
+    return false;
   for (int32_t i = 0; i < forces; i++) strut_force_begin(system->model, i, &system->force[i]);
   memset(system->latest.pulling, 1, members);
   return strut_path_elements_create(system->model, &system->arena, &system->elements) &&

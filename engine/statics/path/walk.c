@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/path/path_parts.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 /* Points and events are kept with positions and all forces. */
 
 double strut_path_distance(const strut_path_walk *walk, const double *first, const double *second) {

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigidity/rigidity.h"
 
-#include <assert.h>
 #include <gsl/gsl_linalg.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/forces/tangent.h"
 #include "engine/model/pose.h"
@@ -110,18 +106,13 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   size_t columns = (size_t)strut_equilibrium_columns(model);
   *matrix = (strut_equilibrium_matrix){.members = model->members.count,
                                        .size = model->size > 0 ? model->size : 1.0};
-  matrix->coordinate = strut_arena_allocate(arena, length, sizeof *matrix->coordinate);
-  matrix->row_of = strut_arena_allocate(arena, length, sizeof *matrix->row_of);
-  matrix->direction = strut_arena_allocate(arena, columns + 1, sizeof *matrix->direction);
-  matrix->start = strut_arena_allocate(arena, columns + 1, sizeof *matrix->start);
-  matrix->curved = strut_arena_allocate(arena, columns + 1, sizeof *matrix->curved);
-  matrix->bend = strut_arena_allocate(arena, columns + 1, sizeof *matrix->bend);
   size_t most = ENTRIES * members + 1;
   for (int32_t i = 0; i < model->elements.count; i++)
     most += 2 * (size_t)model->elements.element[i].nodes;
-  matrix->row = strut_arena_allocate(arena, most, sizeof *matrix->row);
-  if (!matrix->coordinate || !matrix->row_of || !matrix->direction || !matrix->start ||
-      !matrix->row || !matrix->curved || !matrix->bend ||
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(matrix->coordinate, length),
+                      STRUT_NEW(matrix->row_of, length), STRUT_NEW(matrix->direction, columns + 1),
+                      STRUT_NEW(matrix->start, columns + 1), STRUT_NEW(matrix->curved, columns + 1),
+                      STRUT_NEW(matrix->bend, columns + 1), STRUT_NEW(matrix->row, most)) ||
       !STRUT_NUMBERS(arena, most, &matrix->value) ||
       !STRUT_NUMBERS(arena, columns + 1, &matrix->length, &matrix->scale, &matrix->curvature))
     return STRUT_NO_MEMORY;

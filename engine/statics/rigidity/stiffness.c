@@ -3,7 +3,6 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
-#include <math.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"

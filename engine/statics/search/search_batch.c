@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/critical.h"
 
-#include <assert.h>
-#include <math.h>
-#include <string.h>
-
 #ifdef _OPENMP
 #include <omp.h>
 #endif

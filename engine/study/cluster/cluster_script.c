@@ -2,8 +2,6 @@
 #include "engine/study/cluster/cluster_script.h"
 
 #include <ctype.h>
-#include <stdbool.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"

@@ -5,9 +5,6 @@
  */
 #pragma once
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/base/status.h"
 
 /** The values of a template. Texts may hold any characters unless noted. */

@@ -2,10 +2,6 @@
 /* The points of a study that follows motions, side by side. */
 #include "engine/study/follow/follow_parts.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"

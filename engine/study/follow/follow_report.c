@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of branches. */
-#include <math.h>
 
 #include "engine/study/follow/follow_parts.h"
 

@@ -2,10 +2,7 @@
 #include "engine/study/follow/follow_parts.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "engine/output/buffer.h"
 #include "engine/run/accuracy/accuracy.h"

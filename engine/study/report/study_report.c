@@ -2,8 +2,6 @@
 /* What is told of a sweep, its points and columns, how far it is, its end; and what a search has found. */
 #include "engine/study/report/study_report.h"
 
-#include <stdio.h>
-
 #include "engine/base/text.h"
 #include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"

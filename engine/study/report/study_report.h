@@ -6,8 +6,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-
 #include "engine/base/flag.h"
 #include "engine/output/record_files.h"
 #include "engine/scene/value_rows.h"

@@ -2,7 +2,6 @@
 /* Points that searches ask for at the same time, on all threads. See search_parts.h. */
 #include <pthread.h>
 #include <semaphore.h>
-#include <stdlib.h>
 
 #include "engine/base/memory.h"
 #include "engine/study/search/search_parts.h"

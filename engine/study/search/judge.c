@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/search/search.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "engine/run/measure/quantities.h"
 #include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"

@@ -2,10 +2,6 @@
 /** What searches a study's variables: the unit box they live in, the optimisers' interface. */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "engine/base/status.h"
 #include "engine/scene/study.h"
 

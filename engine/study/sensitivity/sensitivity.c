@@ -3,9 +3,6 @@
 
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort_double.h>
-#include <math.h>
-#include <stdbool.h>
-#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/base/text.h"

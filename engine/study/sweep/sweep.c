@@ -2,10 +2,6 @@
 /* The points of a sweep, shared out to threads. */
 #include "engine/study/sweep/sweep.h"
 
-#include <assert.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #include "engine/run/simulate.h"

@@ -15,8 +15,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-
 #include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/draw/chart.h"
