@@ -2,16 +2,12 @@
 /* One function for each observable. Hot where a scene has sensors. See observe.h. */
 #include "engine/forces/observe.h"
 
-#include "engine/base/vec.h"
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/elements.h"
-#include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/forces/nearby.h"
 #include "engine/forces/rigid.h"
 #include "engine/forces/surfaces.h"
-#include "engine/model/pose.h"
 #include "engine/scene/things.h"
 
 #define OBSERVE(ID)                                                                                \

@@ -4,7 +4,6 @@
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
-#include "engine/model/model.h"
 
 _Static_assert(STRUT_STRAIN_COUNT <= 32, "a bit for each in strut_model");
 

@@ -3,7 +3,6 @@
 #include "engine/base/indices.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
-#include "engine/model/model.h"
 #include "engine/scene/signal.h"
 
 int32_t strut_foot_of_contact(const strut_scene *scene, size_t i) {

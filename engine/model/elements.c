@@ -3,7 +3,6 @@
 
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
-#include "engine/model/model.h"
 
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;

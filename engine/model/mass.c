@@ -3,9 +3,7 @@
 
 #include "engine/base/indices.h"
 #include "engine/model/algebra/hot.h"
-#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/mass_kernel.h"
-#include "engine/model/model.h"
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
 static void join_coupled(const strut_sparse *matrix, int32_t *parent) {

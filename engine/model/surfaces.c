@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 
 #include "engine/base/indices.h"
-#include "engine/base/vec.h"
-#include "engine/model/model.h"
 #include "engine/model/pose.h"
 #include "engine/scene/profile.h"
 

@@ -3,7 +3,6 @@
 #include "engine/scene/profile.h"
 
 #include "engine/base/indices.h"
-#include "engine/base/vec.h"
 
 static strut_vec2 segment_of(const strut_ground *ground, size_t k) {
   return strut_vec2_between(ground->points[k], ground->points[k + 1]);

@@ -3,7 +3,6 @@
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/potential.h"
 
 /* |x| for the multiplier mu, and d|x|/dmu; mu lies above minus the lowest value. */
 static double step_length_at(const void *quadratic, double mu, double *slope) {

@@ -6,8 +6,6 @@
 #include <cholmod.h>
 #include <pthread.h>
 
-#include "engine/base/memory.h"
-
 /* ---- one thread for the BLAS, whose sums have other bits with several ---- */
 
 /* Found among the libraries that the others need, if the BLAS is OpenBLAS; else NULL. */

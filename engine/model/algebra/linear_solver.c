@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/algebra/linear_solver.h"
 
-#include "engine/base/memory.h"
 #include "engine/model/algebra/cholmod_factor.h"
 #include "engine/model/algebra/hot.h"
 

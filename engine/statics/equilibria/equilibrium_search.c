@@ -8,7 +8,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/search/critical.h"
 
 /* Quantities of one candidate. */
 

@@ -6,7 +6,6 @@
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"
-#include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };
 

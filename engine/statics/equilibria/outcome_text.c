@@ -2,7 +2,6 @@
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 #include "engine/model/model.h"
-#include "engine/statics/minimise.h"
 
 /* Nodes that move at least this share of the one that moves most. */
 static const double MOVES = 0.1;

@@ -4,7 +4,6 @@
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/potential.h"
 
 /* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
 

@@ -4,7 +4,6 @@
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/minimise.h"
 
 enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 

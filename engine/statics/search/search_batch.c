@@ -6,7 +6,6 @@
 #endif
 
 #include "engine/model/pose.h"
-#include "engine/statics/minimise.h"
 
 /* Single nodes are folded across the line of one member of theirs and the next that leads away. */
 enum { WHOLE = 2 };

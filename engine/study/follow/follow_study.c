@@ -4,7 +4,6 @@
 #include <inttypes.h>
 #include <stdarg.h>
 
-#include "engine/output/buffer.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"

@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/search/search.h"
 
 #include "engine/run/measure/quantities.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
-#include "engine/study/sweep/sweep.h"
-#include "engine/study/sweep/sweep_parts.h"
 
 /* Numbers on the stack of a program and its columns, at most: the reader bounds the text. */
 enum { MOST = 1024 };

@@ -2,7 +2,6 @@
 #include "engine/study/search/search.h"
 
 #include "engine/base/checksum.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
 
 /* Optimisers at the same time, and known points that one may ask for in a row. */

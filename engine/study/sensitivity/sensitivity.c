@@ -4,7 +4,6 @@
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort_double.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"

@@ -4,7 +4,6 @@
 
 #include <time.h>
 
-#include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 #ifdef _OPENMP

@@ -2,7 +2,6 @@
 /* The columns of a study's table, and their cells from the summary of a run. */
 
 #include "engine/run/measure/quantities.h"
-#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,      STRUT_KEEP_MOTION,

@@ -2,7 +2,6 @@
 
 #include "engine/base/text.h"
 #include "engine/output/result_values.h"
-#include "engine/study/tradeoff/tradeoff.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* ---- words ---- */
