@@ -104,8 +104,7 @@ typedef struct strut_sparse_null_spaces {
   int64_t most_numbers;
   int32_t rank;
   double smallest, largest; /* diagonal entries of R, absolute; 0 where the rank is 0 */
-  double *
-      null; /* (columns - rank, columns): 1 at a dependent column of its own, 0 at the other dependent ones */
+  double *null; /* (columns - rank, columns): of dependent columns 1 at its own, 0 at others */
   double *left; /* (rows - rank, rows) orthonormal, of the transpose */
 } strut_sparse_null_spaces;
 

@@ -87,8 +87,7 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *search,
                       STRUT_NEW(equilibrium->member_force, search->model->members.count)) ||
       !copy_point(search, point, &equilibrium->point))
     return strut_no_memory(search->error, "");
-  bool placed = 2 * search->model->node_count - potential->n <=
-                3; /* the shape may be mirrored as a whole: orient it */
+  bool placed = 2 * search->model->node_count - potential->n <= 3; /* may be mirrored whole */
   if ((placed &&
        strut_orient_shape(search->model, held, equilibrium->point.q, equilibrium->point.softest)) ||
       !measure_reactions(search, potential, held, find))

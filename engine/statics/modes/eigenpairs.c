@@ -128,8 +128,7 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
 /* The lowest modes of a large structure: bracketed by counting, found by Lanczos's method. */
 
 enum { MOST_FACTORS = 80, MOST_ALIKE = 100 }; /* eigenvalues at one place */
-static const double LEAST =
-    1e-13; /* of the largest eigenvalue: less drowns in a factor's rounding */
+static const double LEAST = 1e-13; /* of the largest eigenvalue: less drowns in rounding */
 
 /* Eigenvalues below z, by the signs of the factor of K - z M. */
 static int32_t count_below(strut_modes_work *work, double z) {
@@ -168,8 +167,7 @@ static void apply_mass(void *context, const double *vector, double *y) {
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error) {
   strut_vibration *vibration = work->v;
   int32_t below = 0;
-  if (count > vibration->massive - 3)
-    count = vibration->massive - 3; /* Lanczos's method wants a few to spare */
+  if (count > vibration->massive - 3) count = vibration->massive - 3; /* Lanczos's */
   double bound = find_bound(work, count, &below),
          shift = -fmax(1e-3 * bound, LEAST * vibration->largest);
   if (below > 2 * count + MOST_ALIKE && bound <= LEAST * vibration->largest)

@@ -100,9 +100,7 @@ strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
   strut_vibration_force(vibration, step);
   double force = strut_largest_magnitude(step, vibration->n);
   for (int i = 0; i < MOST_STEPS && force > 0; i++) {
-    double *positions =
-        i == 0 ? vibration->q
-               : vibration->low; /* then q stays, and with it the rounding of lengths */
+    double *positions = i == 0 ? vibration->q : vibration->low; /* then q and its rounding stay */
     strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
     strut_modes_solve(&work->solver, step);
     if (!(strut_largest_magnitude(step, vibration->n) < 1e-6 * vibration->model->size)) break;

@@ -4,8 +4,7 @@
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 
-static const double EDGE =
-    8.0; /* last bits that a length and a rest length are known to, together */
+static const double EDGE = 8.0; /* last bits to which a length and a rest length are known */
 
 /* Member j with `low`; does it pull or push? */
 static bool place_member(const strut_vibration *vibration, int32_t j, strut_force *force) {

@@ -421,8 +421,7 @@ bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member) {
          beyond[2] = {-ahead[0], -ahead[1]};
   char what[200];
   strut_path_evaluate(system, walk->y);
-  if (fabs(system->force[member].pose.strain) > STRUT_PATH_EVEN * system->size)
-    return false; /* it has a direction */
+  if (fabs(system->force[member].pose.strain) > STRUT_PATH_EVEN * system->size) return false;
   memset(row, 0, ((size_t)system->n + 1) * sizeof *row);
   for (uint32_t c = 0; c < 2; c++) {
     ahead[c] = beyond[c];

@@ -6,10 +6,9 @@
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
-static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
-static const double WEAKLY = 1e-2;  /* likewise, at a bifurcation that is one but for rounding */
-static const double TOGETHER =
-    1e-9; /* [units of y] eigenvalues that vanish so near do so at once */
+static const double COUPLED = 1e-6;  /* of the load: what a null vector feels at a limit point */
+static const double WEAKLY = 1e-2;   /* likewise, at a bifurcation that is one but for rounding */
+static const double TOGETHER = 1e-9; /* [units of y] what vanishes so near does so at once */
 static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue that is zero */
 static const double ONWARD = 0.02;   /* of a branch: change of the parameter by which it goes on */
 

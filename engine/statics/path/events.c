@@ -13,8 +13,7 @@ static const double NARROW = 1e-13; /* of the piece's length */
 static const double FORK = 1e-4;
 static const double BLURRED = 100; /* and this many roundings of the stiffness */
 static const double ALIKE = 20;    /* over an eigenvalue: another one that is near zero beside it */
-static const double APART =
-    1e-4; /* [units of y] between trials about a bifurcation, where the piece has room */
+static const double APART = 1e-4;  /* [units of y] between trials about a bifurcation */
 
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *unknowns,
                                      const strut_path_piece *piece, int32_t which) {

@@ -36,8 +36,7 @@ typedef struct reduction {
   const double *centre; /* (2 n + 2) */
   int32_t null, space;  /* dimensions of the kernel; with the parameter */
   double radius;
-  gsl_matrix
-      *basis; /* (n + 1, space), orthonormal: the kernel, then the rest of the path's plane */
+  gsl_matrix *basis;  /* (n + 1, space), orthonormal: the kernel, then the rest of the plane */
   gsl_matrix *system; /* (n + space, n + space) */
   gsl_vector *right, *solution;
   gsl_permutation *order;

@@ -6,8 +6,7 @@
 
 #include "engine/model/compile_parts.h"
 
-static const double VALUE_STEP =
-    1e-5; /* of the range: values whose difference gives a derivative */
+static const double VALUE_STEP = 1e-5; /* of the range: apart, for a derivative */
 
 /* Numbers of some terms, one after the other from `stiffness` on. */
 static size_t count_terms(const strut_model *model) {
@@ -238,8 +237,7 @@ static bool difference_scenes(strut_path_parameter *parameter, double value,
   size_t length = (size_t)parameter->model->length, slots = (size_t)parameter->model->members.slots;
   double h = VALUE_STEP * fabs(parameter->range), low = value - h, high = value + h;
   strut_path_terms *terms = &parameter->low, *b = &parameter->high;
-  double refused_at =
-      parameter->refused_at; /* what is refused beside a value does not refuse the value */
+  double refused_at = parameter->refused_at; /* values beside it do not count */
   strut_error refusal = parameter->refusal;
   if (!read_scene_terms(parameter, low, terms)) {
     low = value;
@@ -350,8 +348,7 @@ strut_status strut_path_parameter_create(strut_path_parameter *parameter, const 
   return check_effect(parameter, error);
 }
 
-static const double STRAIN_STEP =
-    1e-5; /* relative: natural strains whose difference gives a derivative */
+static const double STRAIN_STEP = 1e-5; /* of the strain: apart, for a derivative */
 
 /* A kink that matters: it lies where the element can act. */
 static bool is_kink_felt(const strut_element *element, double kink) {

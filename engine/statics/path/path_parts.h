@@ -19,8 +19,7 @@ typedef struct strut_path_terms {
   double *rest, *rest_low;         /* (slots) rest length as a sum of two [m] */
   double *position, *position_low; /* (length) of held coordinates, likewise [m] */
   double *force;                   /* (length) gravity and loads [N] */
-  const strut_model
-      *laws; /* whose elements, contacts and grounds have the numbers of these terms */
+  const strut_model *laws;         /* with elements, contacts and grounds of these numbers */
   struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
 } strut_path_terms;
 
@@ -85,9 +84,8 @@ typedef struct strut_path_elements {
   strut_path_element *element;         /* (elements) */
   double noise;                        /* rounding of the stiffest [N/m] */
   strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
-  double *
-      material; /* (slots) of cables that rub at their guides, at the last point; NULL: none does */
-  int *guide_mode; /* (slots) STRUT_GUIDE_*, by the same places */
+  double *material; /* (slots) of cables that rub at guides, at the last point; or NULL */
+  int *guide_mode;  /* (slots) STRUT_GUIDE_*, by the same places */
 } strut_path_elements;
 
 /** Pieces of laws that fold, at system->latest->q, as they follow from what the model remembers. */
@@ -240,9 +238,8 @@ typedef struct strut_path_system {
   } algebra;
   /** After strut_path_spectrum. */
   struct {
-    double *value; /* (n) ascending, of algebra.values */
-    int32_t
-        negative; /* eigenvalues below zero, and elements folded back, each of which has one inside */
+    double *value;     /* (n) ascending, of algebra.values */
+    int32_t negative;  /* eigenvalues below zero, and elements folded back, which have one each */
     int32_t folded;    /* these */
     double noise;      /* rounding of the stiffness's entries [N/m] */
     double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */

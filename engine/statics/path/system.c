@@ -18,8 +18,7 @@ static const double FRESH = 1e-3;      /* of the range: rates from so near by do
 
 static bool make_matrices(strut_path_system *system) {
   strut_arena *arena = &system->arena;
-  size_t unknowns =
-      (size_t)system->n + 1; /* all may be held: then the parameter alone is unknown */
+  size_t unknowns = (size_t)system->n + 1; /* perhaps the parameter alone */
   size_t n = system->n > 0 ? (size_t)system->n : 1;
   system->algebra.eigen = gsl_eigen_symmv_alloc(n);
   system->algebra.values_only = gsl_eigen_symm_alloc(n);

@@ -90,8 +90,7 @@ enum { ROUNDS = 4, MOST_BENDS = 1000 };
 static const double LONGEST = 0.05;          /* step [units of y] */
 static const double SHORT = 1e-3;            /* from here on steps grow slowly */
 static const double SHORTEST_CHECKED = 1e-5; /* likewise, for jumps between branches */
-static const double LONGEST_HELD =
-    0.02; /* where the curve is a reaction, which bends as it likes */
+static const double LONGEST_HELD = 0.02;     /* where the curve is a reaction */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
 /* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;

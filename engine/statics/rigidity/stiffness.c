@@ -268,8 +268,7 @@ double strut_node_stiffness_along(stiff *self, int32_t node, const double direct
   gsl_matrix_view factor = gsl_matrix_view_array(self->k, self->n, self->n);
   gsl_vector_view load = gsl_vector_view_array(self->load, self->n);
   gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &factor.matrix, &load.vector);
-  double compliance =
-      strut_dot(self->load, self->load, (ptrdiff_t)self->n); /* |L^-1 d|^2 = d' K^-1 d */
+  double compliance = strut_dot(self->load, self->load, (ptrdiff_t)self->n);
   return compliance > 0.0 ? 1.0 / compliance : (double)NAN;
 }
 

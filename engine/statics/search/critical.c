@@ -342,8 +342,7 @@ static void find_saddles(search *self) {
     climb_modes(self);
     climb_pairs(self);
     if (turn == 0) climb_at_random(self);
-    while (!self->status &&
-           gone < self->all.count) { /* what lies below may be new, and a saddle's end too */
+    while (!self->status && gone < self->all.count) { /* below: new */
       size_t begin = gone;
       gone = self->all.count;
       descend_from_saddles(self, begin);

@@ -174,8 +174,7 @@ strut_status strut_search_gradient(const strut_sweep_plan *plan, strut_slots *sl
   double *numbers = strut_allocate(2 * plan->column_count, sizeof *numbers);
   bool there = strut_slots_get(slots, point->worst, &slot) && !slot.status;
   if (!numbers) return strut_no_memory(error, "");
-  size_t count =
-      strut_slot_place(plan->columns, plan->column_count - 1) + 1; /* the last one is a number */
+  size_t count = strut_slot_place(plan->columns, plan->column_count - 1) + 1;
   if (there) memcpy(numbers, slot.numbers, count * sizeof *numbers);
   for (size_t i = 0; i < search->variable_count; i++) {
     const strut_search_variable *variable = &search->variables[i];

@@ -241,8 +241,7 @@ bool strut_sweep_stops(strut_status status) {
 int64_t strut_sweep_named(const char *name, size_t i, const strut_scene *scene,
                           strut_channel_owner owner) {
   size_t count = strut_owner_count(owner, scene);
-  if (i < count && strcmp(strut_owner_name(owner, scene, i), name) == 0)
-    return (int64_t)i; /* almost always */
+  if (i < count && strcmp(strut_owner_name(owner, scene, i), name) == 0) return (int64_t)i;
   for (size_t k = 0; k < count; k++)
     if (strcmp(strut_owner_name(owner, scene, k), name) == 0) return (int64_t)k;
   return -1;

@@ -456,8 +456,7 @@ static void make(tradeoff_study *study, size_t count) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
     double left =
         strut_tradeoff_work_left(study, 1) / (STRUT_TRADEOFF_MOST_WORK * tradeoff->work_unit);
-    double share =
-        1 - left + fmax(0, left) / (double)(tradeoff->variant_count - i); /* shared evenly */
+    double share = 1 - left + fmax(0, left) / (double)(tradeoff->variant_count - i);
     study_variant(study, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }
   if (study->status) return;

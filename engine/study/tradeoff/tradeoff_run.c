@@ -250,7 +250,7 @@ static bool setting_at(const tradeoff_study *study, const step_series *self, int
     return false;
   *setting = self->first;
   if (adaptive)
-    setting->tolerance = 1.0 / pow(10.0, k + 2); /* the number that its decimal text gives */
+    setting->tolerance = 1.0 / pow(10.0, k + 2); /* as its decimal text */
   else if (k < extra)
     setting->step *= above[k];
   else
