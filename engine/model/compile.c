@@ -184,10 +184,6 @@ static bool compile_loads(strut_model *model) {
   return true;
 }
 
-static const strut_ground *ground_of(const strut_scene *scene, const strut_contact *contact) {
-  return scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
-}
-
 /* A law of damping is a choice of numbers, which the kernel of the ground distinguishes by `dissipation`. */
 static void set_damping(strut_model *model, strut_contact_entry *entry, strut_ground_damping law,
                         double dissipation) {
@@ -237,7 +233,9 @@ static bool compile_contacts(strut_model *model) {
                                      .lane = contact->node % STRUT_CONTACT_LANES,
                                      .stiffness = contact->stiffness,
                                      .damping = contact->damping};
-    set_damping(model, &entry[i], ground_of(scene, contact)->damping_law, contact->dissipation);
+    const strut_ground *ground =
+        scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
+    set_damping(model, &entry[i], ground->damping_law, contact->dissipation);
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
     grips = grips || contact->friction.driven;

@@ -111,11 +111,6 @@ static strut_status relax_to_rest(strut_equilibrium_search *search, const char *
       what, farthest_node(search, from, positions));
 }
 
-static strut_status relax_from_start(strut_equilibrium_search *search, double *positions) {
-  memcpy(positions, search->model->start, (size_t)search->model->length * sizeof *positions);
-  return relax_to_rest(search, "the scene's start", positions);
-}
-
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
 static bool fits_configuration(strut_equilibrium_search *search,
                                const strut_configuration *configuration, const double *shape,
@@ -241,8 +236,10 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
   *held = h.held_by_friction;
   if (!status && !configuration && !turned)
     status = strut_settle_experiment(model, &kept, experiment->interrupt, positions, &how, error);
-  else if (!status && !configuration)
-    status = relax_from_start(&h, positions);
+  else if (!status && !configuration) {
+    memcpy(positions, h.model->start, (size_t)h.model->length * sizeof *positions);
+    status = relax_to_rest(&h, "the scene's start", positions);
+  }
   if (!status && configuration && configuration->shaped && turned)
     status = relax_from_shape(
         &h, &h.level.scene.configurations[configuration - model->scene->configurations], positions,

@@ -191,18 +191,6 @@ static int rank_of_rigid(const strut_scene *scene, bool only_fixed) {
   return rank;
 }
 
-static bool held_along_x(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (scene->nodes[i].fixed[0]) return true;
-  return false;
-}
-
-static bool holds_nothing(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (scene->nodes[i].fixed[0] || scene->nodes[i].fixed[1]) return false;
-  return true;
-}
-
 static bool may_touch(const strut_scene *scene, int32_t node) {
   for (size_t i = 0; i < scene->contact_count; i++)
     if (scene->contacts[i].node == node) return true;
@@ -245,23 +233,18 @@ static strut_status use_all_sets(const strut_scene *scene, size_t size, strut_ar
   return STRUT_OK;
 }
 
-/* Fixed in both directions, or held by a set. */
-static bool leaves_motion(const strut_scene *scene, size_t held) {
-  size_t coordinates = 0;
-  for (size_t i = 0; i < scene->node_count; i++)
-    coordinates += (size_t)(!scene->nodes[i].fixed[0] + !scene->nodes[i].fixed[1]);
-  return coordinates > held;
-}
-
 strut_status strut_supports_choose(const strut_scene *level, const strut_search *search,
                                    const strut_node_set *wanted, strut_arena *arena,
                                    strut_supports *supports, strut_error *error) {
-  *supports = (strut_supports){.loose = holds_nothing(level)};
+  size_t held[2] = {0};
+  for (size_t i = 0; i < 2 * level->node_count; i++)
+    held[i % 2] += level->nodes[i / 2].fixed[i % 2];
+  *supports = (strut_supports){.loose = held[0] + held[1] == 0};
   if (!level->ground.present || level->contact_count == 0) {
     if (!wanted) return STRUT_OK;
     return strut_fail(error, STRUT_USAGE, "the scene has no ground that supports could replace");
   }
-  supports->pin = !held_along_x(level);
+  supports->pin = held[0] == 0;
   if (wanted) return use_requested_set(level, wanted, arena, supports, error);
   if (search->support_count) {
     supports->sets = search->supports;
@@ -270,7 +253,7 @@ strut_status strut_supports_choose(const strut_scene *level, const strut_search 
   }
   int motions = rank_of_rigid(level, false) - rank_of_rigid(level, true);
   int size = motions - (supports->pin ? 1 : 0);
-  if (size <= 0 || !leaves_motion(level, (size_t)motions)) return STRUT_OK;
+  if (size <= 0 || 2 * level->node_count - held[0] - held[1] <= (size_t)motions) return STRUT_OK;
   return use_all_sets(level, size == 1 ? 1 : 2, arena, supports, error);
 }
 

@@ -137,10 +137,6 @@ static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *
   return good ? STRUT_OK : strut_no_memory(error, "");
 }
 
-static bool is_known(double force, double noise, double largest) {
-  return fabs(force) > KNOWN * noise && fabs(force) > SOME * largest;
-}
-
 /* Borderline ones; members among them are made to act for now. Their number. */
 static int32_t hold_borderline(strut_modes_work *work, uint8_t *borderline) {
   strut_vibration *vibration = work->v;
@@ -167,9 +163,9 @@ static void release_borderline(strut_modes_work *work, const uint8_t *borderline
   for (int32_t i = 0; i < strut_force_count(vibration->model, false); i++) {
     if (!borderline[i]) continue;
     bool acts = strut_vibration_force_at(vibration, i, &force);
-    double most = force.pose.slope * force.pose.strain;
+    double least = fmax(KNOWN * noise[i], SOME * (force.pose.slope * force.pose.strain));
     int32_t member = member_of(vibration->model, &force);
-    vibration->state[i] = acts && is_known(force.pose.force, noise[i], most) ? 0 : -1;
+    vibration->state[i] = acts && fabs(force.pose.force) > least ? 0 : -1;
     if (vibration->state[i] && member >= 0) work->idleness[member] = STRUT_JUST_TAUT;
   }
 }

@@ -195,8 +195,6 @@ typedef struct switch_group {
   double here[MOST_TOGETHER]; /* their values at the kink [m] */
 } switch_group;
 
-static bool is_thrown(bool on, double value) { return on ? value < 0 : value > 0; }
-
 static switch_group collect_switches(strut_path_walk *walk, int32_t which) {
   strut_path_system *system = &walk->system;
   switch_group g = {0};
@@ -266,9 +264,10 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
 static bool choose_switches(strut_path_walk *walk, const switch_group *self, const double *beyond,
                             unsigned *thrown) {
   unsigned first = 1u << self->first;
-  for (int32_t i = 0; i < self->count; i++)
-    if (is_thrown(self->was_on[i], strut_path_switch_value(&walk->system, self->which[i], beyond)))
-      first |= 1u << i;
+  for (int32_t i = 0; i < self->count; i++) {
+    double value = strut_path_switch_value(&walk->system, self->which[i], beyond);
+    if (self->was_on[i] ? value < 0 : value > 0) first |= 1u << i;
+  }
   *thrown = first;
   if (find_tangent(walk, self, first, beyond)) return true;
   for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)

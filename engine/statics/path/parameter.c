@@ -47,12 +47,6 @@ void strut_path_parameter_free(strut_path_parameter *parameter) {
   strut_path_terms_release(&parameter->high);
 }
 
-static void copy_terms(const strut_model *model, const strut_path_terms *from,
-                       strut_path_terms *to) {
-  memcpy(to->stiffness, from->stiffness, count_terms(model) * sizeof *to->stiffness);
-  to->laws = from->laws;
-}
-
 static void read_terms(const strut_model *model, strut_path_terms *terms) {
   size_t length = (size_t)model->length * sizeof(double);
   size_t slots = (size_t)model->members.slots * sizeof(double);
@@ -199,7 +193,9 @@ bool strut_path_parameter_terms(strut_path_parameter *parameter, strut_dd value,
   strut_error error = {0};
   if (parameter->options->over == STRUT_PATH_OVER_SCENE)
     return read_scene_terms(parameter, dd_double(value), terms);
-  copy_terms(parameter->model, &parameter->base, terms);
+  memcpy(terms->stiffness, parameter->base.stiffness,
+         count_terms(parameter->model) * sizeof *terms->stiffness);
+  terms->laws = parameter->base.laws;
   if (parameter->options->over == STRUT_PATH_OVER_LOAD) {
     const double *moment = parameter->load + parameter->model->length;
     for (int32_t i = 0; i < parameter->model->length; i++)

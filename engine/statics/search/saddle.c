@@ -109,14 +109,6 @@ static void set_trial(strut_climber *climber, const double *positions) {
   strut_potential_move(climber->potential, climber->step, 1.0, positions, climber->trial);
 }
 
-/* Balances modes much stiffer than mu, except followed ones, at the step's end. */
-static bool rebalance_stiff_modes(strut_climber *climber, double mu, double scale) {
-  double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
-  strut_potential_gradient(climber->potential, climber->trial, climber->g_trial);
-  return strut_spectrum_rebalance(&climber->now, climber->value, stiff, climber->g_trial,
-                                  climber->step);
-}
-
 /*
  * Corrects the step in the stiff modes, as a descent does: turning stiff bars stretch to second
  * order, and without the correction a climb beside them stalls. Stops when the energy `there` no
@@ -127,7 +119,11 @@ static double bend_step(strut_climber *climber, const double *positions, double 
   size_t bytes = (size_t)climber->now.n * sizeof *climber->step;
   for (int i = 0; i < MOST_BENDS && !(there < wanted); i++) {
     memcpy(climber->straight, climber->step, bytes);
-    if (!rebalance_stiff_modes(climber, mu, scale)) break;
+    strut_potential_gradient(climber->potential, climber->trial, climber->g_trial);
+    /* modes much stiffer than mu, except followed ones */
+    if (!strut_spectrum_rebalance(&climber->now, climber->value, mu > 0 ? 10.0 * mu : 1e-3 * scale,
+                                  climber->g_trial, climber->step))
+      break;
     set_trial(climber, positions);
     double lower = strut_potential_value_near(climber->potential, climber->trial, positions);
     if (lower < there) {

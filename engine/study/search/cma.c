@@ -145,12 +145,6 @@ static int by_value(const void *a, const void *b) {
   return (first->index > second->index) - (first->index < second->index);
 }
 
-static void rank_points(strut_cma *cma, const double *values) {
-  for (size_t p = 0; p < cma->population; p++)
-    cma->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
-  qsort(cma->order, cma->population, sizeof *cma->order, by_value);
-}
-
 /* to = C^(-1/2) from. */
 static void whiten(const strut_cma *cma, const double *from, double *to) {
   size_t n = cma->n;
@@ -276,7 +270,9 @@ static void remember(strut_cma *cma) {
 /* Adapts to the values of a generation. False: it cannot go on, or need not. */
 static bool learn(strut_cma *cma, const double *values) {
   bool decomposed = true;
-  rank_points(cma, values);
+  for (size_t p = 0; p < cma->population; p++)
+    cma->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
+  qsort(cma->order, cma->population, sizeof *cma->order, by_value);
   remember(cma);
   if (isfinite(cma->order[0].value)) { /* else nothing is known of this generation */
     double open = move_mean(cma);

@@ -172,11 +172,6 @@ static int step_count(const tradeoff_study *study) {
   return study->options->accuracy > 0 ? STRUT_TRADEOFF_MOST_STEPS : STRUT_TRADEOFF_USUAL_STEPS;
 }
 
-static void report_progress(const tradeoff_study *study, double fraction) {
-  if (study->options->progress)
-    study->options->progress(study->options->progress_context, fraction);
-}
-
 /* ---- rows ---- */
 
 static strut_tradeoff_row *new_row(tradeoff_study *study, const step_series *from,
@@ -378,7 +373,9 @@ void strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, dou
   step_series *self = NULL;
   while (!study->status && (self = find_next(study, all, &setting, &cost))) {
     double left = strut_tradeoff_work_left(study, share);
-    report_progress(study, to - (to - from) * fmax(0, left) / most);
+    if (study->options->progress)
+      study->options->progress(study->options->progress_context,
+                               to - (to - from) * fmax(0, left) / most);
     bool useless = self->kept == 0 && all->cheapest > 0 && cost > all->cheapest;
     bool possible = useless || (cost <= left && strut_tradeoff_has_time(study, cost));
     self->over = useless || !possible;
