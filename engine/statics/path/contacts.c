@@ -16,14 +16,6 @@ static const double STILL = 1e-9; /* what does not move [units of y] */
 static const double STIFF = 1e5;  /* what holds a contact, over the stiffest member or ground */
 static const double SMALL = 1e-6; /* of the range: a jump that is none */
 
-bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
-                                strut_path_contacts *contacts) {
-  const strut_contact_table *t = &model->contacts;
-  contacts->contact = strut_arena_allocate(arena, (size_t)t->count, sizeof *contacts->contact);
-  for (int32_t k = 0; k < t->surfaces; k++) contacts->has_corners |= t->surface[k].facets > 1;
-  return contacts->contact;
-}
-
 /* Position of a contact's node against a point [m]. */
 static void span_from(const strut_path_system *system, uint32_t at, const double *point,
                       strut_dd d[2]) {
@@ -168,14 +160,6 @@ static void add_friction_block(const strut_path_system *system, int32_t i, doubl
       block[2 * a + b] += own->sticks
                               ? system->contacts.grip * own->tangent[a] * own->tangent[b]
                               : per_gap * t[a] * n[b] + force * own->pose.curvature * n[a] * t[b];
-}
-
-bool strut_path_slides(const strut_path_system *system) {
-  for (int32_t i = 0; i < system->model->contacts.count; i++) {
-    const strut_path_contact *own = &system->contacts.contact[i];
-    if (own->grips && own->touches && !own->sticks) return true;
-  }
-  return false;
 }
 
 void strut_path_friction_begin(strut_path_system *system) {

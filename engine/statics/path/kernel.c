@@ -202,6 +202,17 @@ static bool find_root(const reduction *self, double *z) {
   return false;
 }
 
+/* Has an element, a cable or a contact to change before the point? */
+static bool is_switched(strut_path_walk *walk, const double *unknowns) {
+  strut_path_system *system = &walk->system;
+  for (int32_t k = 0; k < strut_path_switch_count(system); k++) {
+    double value = strut_path_switch_value(system, k, unknowns);
+    if (!isfinite(value) || fabs(value) <= STRUT_PATH_EVEN * system->size) continue;
+    if ((value > 0) != strut_path_switch_is_on(system, k)) return true;
+  }
+  return false;
+}
+
 /* Corrects a zero of the polynomial, by the full equations, and keeps it unless it is known. */
 static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   strut_path_walk *walk = self->w;
@@ -219,7 +230,7 @@ static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   if (!(length < 1.5 * self->radius)) return false;
   for (int32_t k = 0; k < rays->count; k++)
     if (strut_path_distance(walk, self->y, rays->ray[k].y) < APART * self->radius) return true;
-  if (strut_path_is_switched(walk, self->y)) return false;
+  if (is_switched(walk, self->y)) return false;
   if (rays->count == STRUT_PATH_RAYS) return true;
   strut_path_ray *ray = &rays->ray[rays->count];
   ray->y = strut_arena_copy(&system->arena, self->y, 1, strut_path_bytes(walk));

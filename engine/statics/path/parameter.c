@@ -41,12 +41,6 @@ void strut_path_terms_release(strut_path_terms *terms) {
   terms->scene = NULL;
 }
 
-void strut_path_parameter_free(strut_path_parameter *parameter) {
-  strut_path_terms_release(&parameter->base);
-  strut_path_terms_release(&parameter->low);
-  strut_path_terms_release(&parameter->high);
-}
-
 static void read_terms(const strut_model *model, strut_path_terms *terms) {
   size_t length = (size_t)model->length * sizeof(double);
   size_t slots = (size_t)model->members.slots * sizeof(double);
@@ -386,29 +380,6 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
   return true;
 }
 
-void strut_path_find_pieces(strut_path_system *system) {
-  const double *rest = system->equations.terms.rest;
-  strut_element_pose pose;
-  for (int32_t i = 0; i < system->model->elements.count; i++) {
-    const strut_element *element = &system->model->elements.element[i];
-    if (element->law != STRUT_LAW_FOLDING) continue;
-    strut_element_evaluate(system->model, i, rest, system->latest.q,
-                           system->elements.element[i].turn, &pose);
-    system->elements.element[i].piece =
-        strut_element_piece(element, rest, pose.strain - pose.natural);
-  }
-}
-
-int32_t strut_path_count_folded(const strut_path_system *system) {
-  int32_t count = 0;
-  for (int32_t i = 0; i < system->model->elements.count; i++) {
-    const strut_element *element = &system->model->elements.element[i];
-    const strut_path_element *own = &system->elements.element[i];
-    count += own->acts && strut_law_way(element->law, &element->numbers, own->piece) < 0;
-  }
-  return count;
-}
-
 /* Natural strain where the parameter has its present value, or in other terms. */
 static double natural_in(const strut_path_terms *terms, int32_t i) {
   const strut_element *element = &terms->laws->elements.element[i];
@@ -492,43 +463,6 @@ void strut_path_add_elements(strut_path_system *system) {
   }
 }
 
-void strut_path_keep_turns(strut_path_system *system) {
-  for (int32_t i = 0; i < system->model->elements.count; i++)
-    system->elements.element[i].turn = strut_path_element_force(system, i)->pose.strain;
-}
-
-double strut_path_element_tension(const strut_path_system *system, int32_t member) {
-  const strut_element_table *elements = &system->model->elements;
-  const strut_element *element = strut_element_of_member(elements, member);
-  double sum = 0.0;
-  for (; element; element = element->sibling >= 0 ? &elements->element[element->sibling] : NULL) {
-    double force =
-        strut_path_element_force(system, (int32_t)(element - elements->element))->pose.force;
-    if (element->carries)
-      force = element->carries * fmax(element->carries * force, 0.0); /* at a kink, rounding */
-    sum += force;
-  }
-  return sum;
-}
-
-void strut_path_element_forces(const strut_path_system *system, strut_element_role role,
-                               double *force) {
-  const strut_element_table *elements = &system->model->elements;
-  for (int32_t i = 0; i < elements->count; i++)
-    if (elements->element[i].role == role)
-      force[elements->element[i].item] =
-          strut_path_element_force(system, i)->pose.force + 0.0; /* no -0 */
-}
-
-void strut_path_pressures(const strut_path_system *system, double *pressure) {
-  const strut_element_table *elements = &system->model->elements,
-                            *now = &system->equations.terms.laws->elements;
-  for (int32_t i = 0; i < elements->count; i++)
-    if (elements->element[i].role == STRUT_ELEMENT_CELL)
-      pressure[elements->element[i].item] =
-          now->element[i].numbers.outside - strut_path_element_force(system, i)->pose.force;
-}
-
 /*
  * One that carries one sign acts where both its strain beyond the natural one and its force have
  * it: the nearer of the two to zero decides. Angles are turned into lengths by the size.
@@ -560,21 +494,4 @@ double strut_path_element_switch_value(const strut_path_system *system, int32_t 
   if (beyond > 0.0 && r.force != 0.0 && slope > 0.0)
     beyond = fmin(beyond, element->carries * r.force / slope);
   return unit * beyond;
-}
-
-bool strut_path_element_switch_is_on(const strut_path_system *system, int32_t which) {
-  const strut_path_element_switch *element_switch = &system->elements.switches[which];
-  const strut_path_element *own = &system->elements.element[element_switch->element];
-  return element_switch->kink < 0 ? own->acts : own->piece > element_switch->kink;
-}
-
-void strut_path_element_switch_set(strut_path_system *system, int32_t which, bool on) {
-  const strut_path_element_switch *element_switch = &system->elements.switches[which];
-  strut_path_element *own = &system->elements.element[element_switch->element];
-  if (element_switch->kink < 0)
-    own->acts = on;
-  else if (on)
-    own->piece = own->piece > element_switch->kink ? own->piece : element_switch->kink + 1;
-  else
-    own->piece = own->piece > element_switch->kink ? element_switch->kink : own->piece;
 }

@@ -289,6 +289,24 @@ static bool allocate_branches(strut_path_walk *walk) {
   return walk->forks.fork && walk->path->branches;
 }
 
+/* Takes the materials that the model remembers, if some cable rubs, and what slipped at the end of the path before,
+    or NULL; false: out of memory. */
+static bool create_guides(strut_path_system *system, const strut_path *after) {
+  const strut_element_table *elements = &system->model->elements;
+  size_t slots = (size_t)system->model->members.slots;
+  bool some = false;
+  for (int32_t i = 0; i < elements->count; i++)
+    some = some || strut_has_capstan(&elements->element[i]);
+  if (!some) return true;
+  system->elements.material =
+      strut_arena_copy(&system->arena, system->model->members.rest, slots, sizeof(double));
+  system->elements.guide_mode =
+      strut_arena_allocate(&system->arena, slots, sizeof *system->elements.guide_mode);
+  if (system->elements.guide_mode && after && after->guide_mode)
+    memcpy(system->elements.guide_mode, after->guide_mode, slots * sizeof *after->guide_mode);
+  return system->elements.material && system->elements.guide_mode;
+}
+
 static strut_status create_walk(path_start *self, double until, strut_path_walk *walk,
                                 strut_error *error) {
   strut_path_system *system = &walk->system;
@@ -307,7 +325,7 @@ static strut_status create_walk(path_start *self, double until, strut_path_walk 
                                              .range = until - self->options->from};
   if (self->options->friction) {
     bool grips = strut_path_friction_create(system);
-    if (!strut_path_guides_create(system, self->options->after)) return strut_no_memory(error, "");
+    if (!create_guides(system, self->options->after)) return strut_no_memory(error, "");
     walk->path->grips = grips || strut_path_has_rubbing(system);
   }
   return strut_path_parameter_create(&system->parameter, self->q, &system->arena, error);
