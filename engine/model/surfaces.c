@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include "engine/base/indices.h"
 #include "engine/model/pose.h"
 #include "engine/scene/profile.h"

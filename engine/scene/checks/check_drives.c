@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules about what drives a structure, and about the experiment. See check.h. */
-
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
 #include "engine/scene/signal_program.h"

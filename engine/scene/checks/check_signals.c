@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules about signals, and what they read. See check.h. */
-
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
 #include "engine/scene/signal_program.h"

@@ -3,7 +3,6 @@
  * Warnings about valid scenes: properties that are rarely intended, once per cause with the first
  * names. See check.h.
  */
-
 #include "engine/base/text.h"
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"

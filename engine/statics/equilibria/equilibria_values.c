@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a search for equilibria found, a row for each value. */
-
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 const char *strut_outcome_name(strut_outcome outcome) {

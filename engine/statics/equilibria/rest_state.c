@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include "engine/base/text.h"
 #include "engine/forces/tangent.h"
 #include "engine/run/settle.h"

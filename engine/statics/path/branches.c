@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Branches: the paths that leave others at bifurcations, each along the null vector found there. */
-
 #include "engine/scene/things.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"

@@ -7,7 +7,6 @@
  * force is that of the kinetic coefficient, and the stiffness has no symmetry. Nothing moves at a speed: laws whose
  * force vanishes with the speed have no part in this.
  */
-
 #include "engine/model/pose.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -6,7 +6,6 @@
  * follows from the tensions (capstan.h), so that forces depend on positions alone and their derivatives are
  * found by differences.
  */
-
 #include "engine/forces/capstan.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a path has, a row for each value. */
-
 #include "engine/statics/path/path.h"
 
 static bool over_load(const strut_path *path) { return path->over == STRUT_PATH_OVER_LOAD; }

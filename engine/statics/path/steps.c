@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The next point of a path, on the branch of the present one. */
-
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include <gsl/gsl_linalg.h>
 
 #include "engine/forces/tangent.h"

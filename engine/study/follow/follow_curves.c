@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Curves of the special points of all branches over a second parameter, with what is written of them. */
-
 #include "engine/base/text.h"
 #include "engine/study/follow/follow_parts.h"
 

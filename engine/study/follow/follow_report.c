@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of branches. */
-
 #include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;

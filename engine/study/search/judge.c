@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include "engine/run/measure/quantities.h"
 #include "engine/study/search/search_parts.h"
 

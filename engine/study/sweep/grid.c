@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include "engine/base/checksum.h"
 #include "engine/study/sweep/sweep_parts.h"
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of what a point computes; points of a study that computes what is at rest, by the functions of the
  * commands. */
-
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"

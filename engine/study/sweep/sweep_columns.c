@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of a study's table, and their cells from the summary of a run. */
-
 #include "engine/run/measure/quantities.h"
 #include "engine/study/sweep/sweep_parts.h"
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derivatives of a point's numbers by parameters of its scene: its columns again at 2k + 2 points beside it. */
-
 #include "engine/scene/things.h"
 #include "engine/study/sweep/sweep_parts.h"
 

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include "engine/base/text.h"
 #include "engine/output/result_values.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
