@@ -8,7 +8,6 @@
  */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"
 

@@ -10,8 +10,6 @@
  */
 #pragma once
 
-#include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/model/algebra/pull_rows.h"
 #include "engine/model/elements.h"
 #include "engine/model/surfaces.h"

@@ -8,7 +8,6 @@
  */
 #pragma once
 
-#include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
 #include "engine/model/surfaces.h"

@@ -7,7 +7,6 @@
  */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/scene/observables.h"
 
 typedef struct strut_data_column {

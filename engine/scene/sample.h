@@ -6,7 +6,6 @@
  */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/scene/study.h"
 
 /** Ways to fill the unit cube, in the order of the language. */

@@ -9,7 +9,6 @@
 #pragma once
 
 #include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/base/text.h"
 #include "engine/scene/data.h"
 #include "engine/scene/friction.h"

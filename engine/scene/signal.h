@@ -7,7 +7,6 @@
  */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/scene/quantity.h"
 
 typedef enum strut_signal_kind {

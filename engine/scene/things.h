@@ -5,7 +5,6 @@
  */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/scene/things_table.h"
 
 typedef enum strut_thing {

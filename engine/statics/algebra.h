@@ -7,8 +7,6 @@
 
 #include "engine/base/flag.h"
 #include "engine/base/library.h"
-#include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/statics/potential.h"
 
 /* Small dense matrices: eigenvalues and factors.

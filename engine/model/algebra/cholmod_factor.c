@@ -3,8 +3,6 @@
 
 #include <cholmod.h>
 
-#include "engine/base/memory.h"
-
 struct strut_cholmod_factor {
   cholmod_common common;
   cholmod_factor *symbolic, *numeric; /* the latter NULL where there are no numbers */

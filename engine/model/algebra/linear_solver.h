@@ -6,7 +6,6 @@
 #pragma once
 
 #include "engine/base/memory.h"
-#include "engine/base/status.h"
 
 /** Lower triangle of a symmetric n x n matrix, compressed columns, rows ascending, diagonal first. */
 typedef struct strut_sparse {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/equilibria/equilibria_parts.h"
 
-#include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"

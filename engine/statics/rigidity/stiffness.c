@@ -2,7 +2,6 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"

@@ -3,7 +3,6 @@
 
 #include <ctype.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/study/results/study_table.h"
 

@@ -14,7 +14,6 @@
  */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/scene/value_rows.h"
 
 enum {

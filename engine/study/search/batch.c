@@ -3,7 +3,6 @@
 #include <pthread.h>
 #include <semaphore.h>
 
-#include "engine/base/memory.h"
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/sweep.h"
 

@@ -13,7 +13,6 @@
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort_double.h>
 
-#include "engine/base/memory.h"
 #include "engine/statics/algebra.h"
 
 /* Width next to each bound where the map into the box is a parabola. */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/search/optimisers.h"
 
-#include "engine/base/memory.h"
 #include "engine/study/sweep/sweep.h"
 
 /* Generations are multiples of this, on any machine, so that they fill processors. */

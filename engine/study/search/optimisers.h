@@ -2,7 +2,6 @@
 /** What searches a study's variables: the unit box they live in, the optimisers' interface. */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/scene/study.h"
 
 /* Between the values of a search's variables and points of the unit box. */

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/base/flag.h"
-#include "engine/base/memory.h"
 #include "engine/output/record_files.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
