@@ -5,6 +5,9 @@
  */
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/status.h"
 
 /** XXH64 of the bytes with a seed; the same on every machine. */

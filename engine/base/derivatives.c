@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/base/derivatives.h"
 
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+
 #include "engine/base/memory.h"
 
 /* Relative errors by which steps are chosen, that of outputs which do not know theirs first; and what is no kink. */

@@ -10,6 +10,8 @@
  */
 #pragma once
 
+#include <stddef.h>
+
 #include "engine/base/status.h"
 
 /** X(NAME, words): what a derivative is worth. */

@@ -11,6 +11,8 @@
  */
 #pragma once
 
+#include <stddef.h>
+
 #include "engine/base/status.h"
 
 /** Head of every table: who made it. A table with another head belongs to another strut. */

@@ -7,6 +7,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/status.h"
 
 /** count * size zeroed bytes, or NULL (also when the product overflows). Free with strut_release. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/base/name_map.h"
 
+#include <string.h>
+
 #include "engine/base/memory.h"
 
 struct strut_name_slot {

@@ -2,6 +2,9 @@
 /** A map from names to indices: a hash table that grows as names are added. */
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/status.h"
 
 /** Zero-initialise it; strut_name_map_free releases it. Names are not copied. */

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/base/status.h"
 
+#include <assert.h>
 #include <stdarg.h>
+#include <stdio.h>
 
 static const struct {
   int exit_code;

@@ -1,18 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** What every file has: the C library, the mark of an exported symbol, status codes. */
+/** The mark of an exported symbol: everything else is hidden by the build. */
 #pragma once
 
-#include <assert.h>
-#include <float.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-/** Everything else is hidden by the build. */
 #define STRUT_API __attribute__((visibility("default")))
 
 /* Status codes and the message that travels with one.

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/capstan.h"
 
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 enum { MOST = STRUT_MOST_ELEMENT_NODES };
 
 /* Tensions this close to a bound, relatively, are at it; those that stick are not beyond it by rounding. */

@@ -2,6 +2,8 @@
 /* Forces for single evaluations; integrators have the kernel in their own loops. */
 #include "engine/forces/forces.h"
 
+#include <assert.h>
+
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces_kernel.h"

@@ -7,6 +7,8 @@
  */
 #pragma once
 
+#include <math.h>
+
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/elements.h"

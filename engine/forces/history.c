@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/history.h"
 
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/forces/capstan.h"
 #include "engine/forces/drives/drives.h"
 #include "engine/model/pose.h"

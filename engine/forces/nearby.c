@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/nearby.h"
 
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
 #include "engine/base/indices.h"
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"

@@ -2,6 +2,9 @@
 /* One function for each observable. Hot where a scene has sensors. See observe.h. */
 #include "engine/forces/observe.h"
 
+#include <assert.h>
+#include <math.h>
+
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/history.h"

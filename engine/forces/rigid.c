@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/rigid.h"
 
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/model/mass.h"
 #include "engine/model/pose.h"
 

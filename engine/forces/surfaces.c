@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/surfaces.h"
 
+#include <math.h>
+
 #include "engine/forces/elements.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/nearby.h"

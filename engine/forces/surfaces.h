@@ -5,6 +5,8 @@
  */
 #pragma once
 
+#include <assert.h>
+
 #include "engine/model/pose.h"
 #include "engine/model/state.h"
 

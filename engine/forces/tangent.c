@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/tangent.h"
 
+#include <assert.h>
+#include <string.h>
+
 #include "engine/forces/capstan.h"
 #include "engine/forces/surfaces.h"
 

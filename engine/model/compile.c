@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The ordered passes from scene to model. See model.h. */
+#include <assert.h>
+#include <math.h>
+
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"

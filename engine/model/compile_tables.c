@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/indices.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"

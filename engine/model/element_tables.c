@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <gsl/gsl_interp.h>
+#include <math.h>
 
 #include "engine/model/compile_parts.h"
 #include "engine/scene/law.h"

@@ -9,6 +9,11 @@
  */
 #pragma once
 
+#include <assert.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "engine/scene/scene.h"
 #include "engine/scene/things.h"
 

@@ -8,6 +8,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"
 

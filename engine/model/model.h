@@ -10,6 +10,9 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "engine/model/algebra/pull_rows.h"
 #include "engine/model/elements.h"
 #include "engine/model/surfaces.h"

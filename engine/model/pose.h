@@ -8,6 +8,9 @@
  */
 #pragma once
 
+#include <assert.h>
+#include <float.h>
+
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
 #include "engine/model/surfaces.h"

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/state.h"
 
+#include <string.h>
+
 #include "engine/model/compile_parts.h"
 
 /* What contacts need that are not with one straight line at rest. */

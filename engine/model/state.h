@@ -7,6 +7,8 @@
  */
 #pragma once
 
+#include <math.h>
+
 #include "engine/base/flag.h"
 #include "engine/model/model.h"
 

@@ -9,6 +9,9 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "engine/scene/scene.h"
 
 /** Unit vectors along a surface and out of it. */

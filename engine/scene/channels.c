@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/scene/channels.h"
 
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/scene/things.h"
 #include "engine/scene/value_rows.h"
 

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
+#include <math.h>
+
 #include "engine/scene/law.h"
 
 #include "engine/base/memory.h"

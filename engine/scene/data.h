@@ -7,6 +7,9 @@
  */
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/scene/observables.h"
 
 typedef struct strut_data_column {

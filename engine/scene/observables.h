@@ -8,6 +8,9 @@
  */
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/status.h"
 
 /** What a number measures: exponents of kg, m, s and angle. */

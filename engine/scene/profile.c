@@ -2,6 +2,8 @@
 /* Surfaces of grounds: their pieces, crossings and outlines. See profile.h. */
 #include "engine/scene/profile.h"
 
+#include <math.h>
+
 #include "engine/base/indices.h"
 
 static strut_vec2 segment_of(const strut_ground *ground, size_t k) {

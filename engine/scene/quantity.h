@@ -9,6 +9,9 @@
  */
 #pragma once
 
+#include <math.h>
+#include <stddef.h>
+
 #include "engine/scene/observables.h"
 
 /** How a result changes with its operands; see engine/run/measure/quantities.c. */

@@ -2,10 +2,12 @@
 /* Points from distributions. See sample.h. */
 #include "engine/scene/sample.h"
 
+#include <assert.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_qrng.h>
 #include <gsl/gsl_rng.h>
+#include <math.h>
 
 #include "engine/base/memory.h"
 

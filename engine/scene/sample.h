@@ -6,6 +6,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/scene/study.h"
 
 /** Ways to fill the unit cube, in the order of the language. */

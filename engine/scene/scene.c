@@ -2,6 +2,9 @@
 /* Defaults of the plain description, and the few quantities that follow from it. See scene.h. */
 #include "engine/scene/scene.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/vec.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/things.h"

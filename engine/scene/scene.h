@@ -8,6 +8,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
 #include "engine/scene/data.h"

@@ -2,6 +2,8 @@
 /* Waveforms: values, rates, breaks, periods and second derivatives. See signal.h. */
 #include "engine/scene/signal.h"
 
+#include <math.h>
+
 #include "engine/base/vec.h"
 #include "engine/scene/signal_program.h"
 

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interval arithmetic of signals. See signal_program.h. */
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+
 #include "engine/scene/signal_program.h"
 
 #include "engine/base/vec.h"

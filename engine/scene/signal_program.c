@@ -2,6 +2,11 @@
 /* Programs of signals: value and rate of each operation, side by side. See signal_program.h. */
 #include "engine/scene/signal_program.h"
 
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/base/vec.h"
 #include "engine/scene/scene.h"
 

@@ -9,6 +9,8 @@
  */
 #pragma once
 
+#include <stdbool.h>
+
 #include "engine/scene/quantity.h"
 #include "engine/scene/signal.h"
 

@@ -9,6 +9,11 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
 #include "engine/base/text.h"
 #include "engine/scene/data.h"
 #include "engine/scene/quantity.h"

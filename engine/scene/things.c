@@ -2,6 +2,11 @@
 /* The tables of things, and what loops over them. See things.h. */
 #include "engine/scene/things.h"
 
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 enum { LONGEST = 1024 }; /* name in which `last` is a number */
 
 /* ---- kinds ---- */

@@ -37,6 +37,8 @@
  */
 #pragma once
 
+#include <math.h>
+
 #include "engine/scene/channels.h"
 
 #include "engine/base/text.h"

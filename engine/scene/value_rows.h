@@ -10,6 +10,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/scene/channels.h"
 
 typedef enum strut_value_kind {

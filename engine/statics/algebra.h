@@ -4,6 +4,9 @@
 
 #include <gsl/gsl_matrix.h>
 #include <gsl/gsl_permutation.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
 
 #include "engine/base/flag.h"
 #include "engine/base/library.h"

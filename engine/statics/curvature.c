@@ -1,4 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/minimise.h"
 
 #include "engine/base/vec.h"

@@ -1,8 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/algebra.h"
 
+#include <assert.h>
+#include <float.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stddef.h>
 
 #include "engine/base/vec.h"
 #include "engine/model/algebra/hot.h"

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/algebra.h"
 
+#include <assert.h>
 #include <glpk.h>
+#include <math.h>
 #include <setjmp.h>
 
 /* Tried in turn: GLPK's own choice has been seen to call a programme infeasible that is not. */

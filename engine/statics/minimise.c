@@ -2,6 +2,10 @@
 /* The trust-region loop: step length, acceptance, and termination. */
 #include "engine/statics/minimise.h"
 
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/vec.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/statics/algebra.h"

@@ -9,6 +9,8 @@
  */
 #pragma once
 
+#include <stdint.h>
+
 #include "engine/base/flag.h"
 #include "engine/statics/potential.h"
 

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/potential.h"
 
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/model/compile_parts.h"
 
 static void sum_forces(strut_potential *potential) {

@@ -3,8 +3,12 @@
 
 #include <SuiteSparseQR_C.h>
 #include <arpack.h>
+#include <assert.h>
 #include <cholmod.h>
+#include <math.h>
 #include <pthread.h>
+#include <stdbool.h>
+#include <string.h>
 
 /* ---- one thread for the BLAS, whose sums have other bits with several ---- */
 

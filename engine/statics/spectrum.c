@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/algebra.h"
 
 #include "engine/base/vec.h"

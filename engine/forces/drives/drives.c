@@ -2,6 +2,8 @@
 /* Hot: what changes with time alone: driven rest lengths (6) and loads on a signal. */
 #include "engine/forces/drives/drives.h"
 
+#include <math.h>
+
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/drives/signal_vector.h"
 #include "engine/forces/history.h"

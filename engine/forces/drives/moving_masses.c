@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/drives/moving_masses.h"
 
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/vec.h"
 #include "engine/forces/forces.h"
 #include "engine/model/algebra/dense_cholesky.h"

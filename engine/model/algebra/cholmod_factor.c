@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/algebra/cholmod_factor.h"
 
+#include <assert.h>
 #include <cholmod.h>
 
 struct strut_cholmod_factor {

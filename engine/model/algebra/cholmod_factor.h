@@ -7,6 +7,8 @@
  */
 #pragma once
 
+#include <stdbool.h>
+
 #include "engine/base/library.h"
 #include "engine/model/algebra/linear_solver.h"
 

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/algebra/linear_solver.h"
 
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/model/algebra/cholmod_factor.h"
 #include "engine/model/algebra/hot.h"
 

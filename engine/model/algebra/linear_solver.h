@@ -5,6 +5,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/memory.h"
 
 /** Lower triangle of a symmetric n x n matrix, compressed columns, rows ascending, diagonal first. */

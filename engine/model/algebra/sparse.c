@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
+#include <string.h>
+
 #include "engine/model/algebra/linear_solver.h"
 
 #include "engine/model/algebra/pull_rows.h"

@@ -2,7 +2,11 @@
 /* Rules about nodes and members, and the order of all rules. See check.h. */
 #include "engine/scene/checks/check.h"
 
+#include <assert.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "engine/base/name_map.h"
 #include "engine/base/text.h"

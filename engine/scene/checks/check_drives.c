@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules about what drives a structure, and about the experiment. See check.h. */
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
 #include "engine/scene/signal_program.h"

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules about the ground, and about shapes on it. See check.h. */
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
 #include "engine/scene/signal_program.h"

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules about signals, and what they read. See check.h. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"
 #include "engine/scene/signal_program.h"

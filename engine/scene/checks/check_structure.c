@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Rules about laws, hinges, cells, collisions and distances. See check.h. */
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/base/vec.h"
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/law.h"

@@ -3,6 +3,11 @@
  * Warnings about valid scenes: properties that are rarely intended, once per cause with the first
  * names. See check.h.
  */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "engine/base/text.h"
 #include "engine/scene/checks/check_rules.h"
 #include "engine/scene/profile.h"

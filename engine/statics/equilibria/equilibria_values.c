@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a search for equilibria found, a row for each value. */
+#include <assert.h>
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 const char *strut_outcome_name(strut_outcome outcome) {

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/equilibria/equilibria_parts.h"
 
 #include "engine/base/vec.h"

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/text.h"
 #include "engine/forces/tangent.h"
 #include "engine/run/settle.h"

@@ -7,6 +7,11 @@
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"
 #include "engine/statics/form/form.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/minimise.h"
 #include "engine/statics/search/critical.h"
 

@@ -8,6 +8,8 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <string.h>
 
 #include "engine/statics/algebra.h"
 #include "engine/statics/equilibria/equilibria_parts.h"

@@ -2,6 +2,9 @@
 #include "engine/statics/form/parts.h"
 
 #include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"

@@ -2,6 +2,7 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
+#include <math.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"

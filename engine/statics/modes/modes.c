@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes/parts.h"
 
+#include <assert.h>
+#include <float.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/modes/modes.h"

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/modes/parts.h"
 
 #include "engine/base/vec.h"

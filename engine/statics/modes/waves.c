@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/modes/waves.h"
 
+#include <float.h>
 #include <gsl/gsl_complex_math.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_sort_double.h>
+#include <math.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/scene/things.h"

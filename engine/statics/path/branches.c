@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Branches: the paths that leave others at bifurcations, each along the null vector found there. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/scene/things.h"
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"

@@ -7,6 +7,10 @@
  * force is that of the kinetic coefficient, and the stiffness has no symmetry. Nothing moves at a speed: laws whose
  * force vanishes with the speed have no part in this.
  */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/model/pose.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Limit points and bifurcations: where eigenvalues of the stiffness pass zero on a piece of a path. */
 #include <gsl/gsl_sort_vector.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"

@@ -1,4 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/statics/path/path_parts.h"
 
 /* Regula falsi with the Illinois correction; each trial is corrected back onto the path. */

@@ -6,6 +6,10 @@
  * follows from the tensions (capstan.h), so that forces depend on positions alone and their derivatives are
  * found by differences.
  */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/forces/capstan.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -9,6 +9,9 @@
  */
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"

@@ -2,6 +2,10 @@
 /*
  * Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared.
  */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/path/path_parts.h"
 
 #include "engine/model/compile_parts.h"

@@ -2,6 +2,10 @@
 /* Parameter, start equilibrium and walk of a path. */
 #include "engine/statics/path/path.h"
 
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/base/text.h"
 #include "engine/forces/capstan.h"
 #include "engine/model/compile_parts.h"

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a path has, a row for each value. */
+#include <math.h>
+
 #include "engine/statics/path/path.h"
 
 static bool over_load(const strut_path *path) { return path->over == STRUT_PATH_OVER_LOAD; }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The next point of a path, on the branch of the present one. */
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 

@@ -3,7 +3,10 @@
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
+#include <assert.h>
 #include <gsl/gsl_blas.h>
+#include <math.h>
+#include <string.h>
 
 enum { MOST_ITERATIONS = 14 };
 

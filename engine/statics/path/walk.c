@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/statics/path/path_parts.h"
 
 /* Points and events are kept with positions and all forces. */

@@ -2,6 +2,8 @@
 #include "engine/statics/rigidity/rigidity.h"
 
 #include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"

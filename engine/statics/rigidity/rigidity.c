@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/rigidity/rigidity.h"
 
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/vec.h"
 #include "engine/forces/tangent.h"
 #include "engine/statics/algebra.h"

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is known of a shape's rigidity: in words, and a row for each value. */
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/base/text.h"
 #include "engine/statics/rigidity/rigidity.h"
 

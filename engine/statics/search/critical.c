@@ -2,6 +2,9 @@
 /* The search in its order: known shapes, random ones, folds of what was found; then saddles. */
 #include "engine/statics/search/critical.h"
 
+#include <assert.h>
+#include <math.h>
+
 /*
  * Work limit of all searches of one command (decomposed Hessians times their cost), and the share
  * of it at which each phase must end.

@@ -2,6 +2,9 @@
 /** A stationary point of a potential, its kind, and what is known of those not found. */
 #pragma once
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "engine/base/status.h"
 
 typedef enum strut_stability {

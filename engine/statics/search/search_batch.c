@@ -2,7 +2,10 @@
 #include "engine/statics/search/critical.h"
 
 #ifdef _OPENMP
+#include <assert.h>
+#include <math.h>
 #include <omp.h>
+#include <string.h>
 #endif
 
 #include "engine/model/pose.h"

@@ -2,6 +2,8 @@
 #include "engine/study/cluster/cluster_script.h"
 
 #include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
 
 #include "engine/output/buffer.h"
 #include "engine/study/results/study_table.h"

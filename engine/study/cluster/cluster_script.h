@@ -5,6 +5,9 @@
  */
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/status.h"
 
 /** The values of a template. Texts may hold any characters unless noted. */

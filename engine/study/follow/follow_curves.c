@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Curves of the special points of all branches over a second parameter, with what is written of them. */
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/text.h"
 #include "engine/study/follow/follow_parts.h"
 

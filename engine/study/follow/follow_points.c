@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The points of a study that follows motions, side by side. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/study/follow/follow_parts.h"
 
 #include "engine/output/file.h"

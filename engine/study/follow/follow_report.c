@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The values of branches. */
+#include <math.h>
+#include <string.h>
+
 #include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;

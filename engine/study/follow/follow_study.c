@@ -2,7 +2,10 @@
 #include "engine/study/follow/follow_parts.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/scene/things.h"

@@ -2,6 +2,8 @@
 /* What is told of a sweep, its points and columns, how far it is, its end; and what a search has found. */
 #include "engine/study/report/study_report.h"
 
+#include <stdio.h>
+
 #include "engine/base/text.h"
 
 static strut_value column_of(const strut_result_object *of, size_t i) {

@@ -6,6 +6,8 @@
  */
 #pragma once
 
+#include <stdbool.h>
+
 #include "engine/base/flag.h"
 #include "engine/output/record_files.h"
 #include "engine/scene/value_rows.h"

@@ -14,6 +14,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/scene/value_rows.h"
 
 enum {

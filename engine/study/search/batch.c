@@ -2,6 +2,7 @@
 /* Points that searches ask for at the same time, on all threads. See search_parts.h. */
 #include <pthread.h>
 #include <semaphore.h>
+#include <stdlib.h>
 
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/sweep.h"

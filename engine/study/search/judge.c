@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <string.h>
+
 #include "engine/run/measure/quantities.h"
 #include "engine/study/search/search_parts.h"
 

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The optimisers of NLopt. The only file that uses it. */
+#include <math.h>
 #include <nlopt.h>
+#include <string.h>
 
 #include "engine/base/memory.h"
 #include "engine/study/search/optimisers.h"

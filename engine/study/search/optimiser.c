@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "engine/study/search/optimisers.h"
 
 #include "engine/study/sweep/sweep.h"

@@ -2,6 +2,10 @@
 /** What searches a study's variables: the unit box they live in, the optimisers' interface. */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/scene/study.h"
 
 /* Between the values of a search's variables and points of the unit box. */

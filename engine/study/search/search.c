@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/search/search.h"
 
+#include <math.h>
+#include <string.h>
+
 #include "engine/base/checksum.h"
 #include "engine/study/search/search_parts.h"
 

@@ -3,6 +3,8 @@
 
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort_double.h>
+#include <math.h>
+#include <string.h>
 
 #include "engine/base/text.h"
 #include "engine/output/file.h"

@@ -7,6 +7,10 @@
  */
 #pragma once
 
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
 #include "engine/base/derivatives.h"
 #include "engine/base/memory.h"
 #include "engine/output/draw/chart.h"

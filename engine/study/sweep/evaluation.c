@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/sweep_parts.h"
 
+#include <math.h>
 #include <pthread.h>
+#include <string.h>
 
 #include "engine/scene/things.h"
 #include "engine/statics/rigidity/rigidity_parts.h"

@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of what a point computes; points of a study that computes what is at rest, by the functions of the
  * commands. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
 #include "engine/forces/history.h"

@@ -2,6 +2,8 @@
 /* The recorded runs of a study: their motion as one table, and figures of single runs. */
 #include "engine/study/sweep/sweep.h"
 
+#include <stdint.h>
+#include <string.h>
 #include <sys/stat.h>
 
 #include "engine/base/text.h"

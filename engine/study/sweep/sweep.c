@@ -2,6 +2,10 @@
 /* The points of a sweep, shared out to threads. */
 #include "engine/study/sweep/sweep.h"
 
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "engine/study/sweep/sweep_parts.h"

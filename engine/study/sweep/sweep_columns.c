@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The columns of a study's table, and their cells from the summary of a run. */
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/run/measure/quantities.h"
 #include "engine/study/sweep/sweep_parts.h"
 

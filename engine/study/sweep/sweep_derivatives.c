@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derivatives of a point's numbers by parameters of its scene: its columns again at 2k + 2 points beside it. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/scene/things.h"
 #include "engine/study/sweep/sweep_parts.h"
 

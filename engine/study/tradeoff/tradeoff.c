@@ -3,6 +3,8 @@
 #include "engine/study/tradeoff/tradeoff.h"
 
 #include <gsl/gsl_sort_double.h>
+#include <math.h>
+#include <stdio.h>
 
 #include "engine/model/model.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"

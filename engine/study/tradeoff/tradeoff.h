@@ -15,6 +15,8 @@
  */
 #pragma once
 
+#include <stdbool.h>
+
 #include "engine/base/flag.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/draw/chart.h"

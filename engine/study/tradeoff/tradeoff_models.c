@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Models of the scene besides its own, and which methods can run them. */
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* All variants in the order in which they run: the most expensive last. */

@@ -1,5 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* References: two methods refined until they agree. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 enum { MOST_LEVELS = 14, MOST_IDLE = 2 };

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <stdio.h>
+
 #include "engine/base/text.h"
 #include "engine/output/result_values.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"

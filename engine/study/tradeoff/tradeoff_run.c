@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Runs of a setting and their costs; the settings of a method from coarse to fine. */
+#include <math.h>
+#include <string.h>
 #include <time.h>
 
 #include "engine/integrate/limit/step_limit.h"
