@@ -10,12 +10,16 @@
 #pragma once
 
 /* System headers come first, so that none is included inside the extern "C" below. */
+#include <assert.h>
+#include <float.h>
 #include <math.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #ifdef __cplusplus
 #define restrict __restrict /* C's word, which C++ compilers know by this name only */

@@ -201,11 +201,10 @@ static strut_status find(differences *self, strut_error *error) {
   const strut_derivatives_task *task = self->task;
   size_t n = task->parameter_count, m = task->output_count;
   strut_status status = STRUT_OK;
-  double *at = strut_arena_allocate(&self->arena, n, sizeof *at);
-  self->outputs = strut_arena_allocate(&self->arena, m, sizeof *self->outputs);
-  self->errors = strut_arena_allocate(&self->arena, m, sizeof *self->errors);
-  self->pairs = strut_arena_allocate(&self->arena, n + 1, sizeof *self->pairs);
-  if (!at || !self->outputs || !self->errors || !self->pairs) return strut_no_memory(error, "");
+  double *at;
+  if (!STRUT_ALLOCATE(&self->arena, STRUT_NEW(at, n), STRUT_NEW(self->outputs, m),
+                      STRUT_NEW(self->errors, m), STRUT_NEW(self->pairs, n + 1)))
+    return strut_no_memory(error, "");
   for (size_t i = 0; i < n; i++) at[i] = task->parameters[i].value;
   for (size_t j = 0; j < m && task->outputs; j++) {
     self->outputs[j] = task->outputs[j];

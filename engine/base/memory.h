@@ -40,6 +40,24 @@ typedef struct strut_arena {
 STRUT_API void *strut_arena_allocate(strut_arena *arena, size_t count, size_t size);
 /** A copy of count * size bytes, likewise. */
 STRUT_API void *strut_arena_copy(strut_arena *arena, const void *from, size_t count, size_t size);
+/** The address of a pointer, and how many items it gets: zeros, or a copy of `from`. */
+typedef struct strut_array {
+  void *pointer;
+  const void *from;
+  size_t count, size;
+} strut_array;
+#define STRUT_NEW(pointer, count)                                                                  \
+  { &(pointer), NULL, (size_t)(count), sizeof *(pointer) }
+#define STRUT_COPY(pointer, from, count)                                                           \
+  { &(pointer), (from), (size_t)(count), sizeof *(pointer) }
+/** Gives arrays to the pointers of all STRUT_NEW and STRUT_COPY listed; false: to some NULL, since memory is out. */
+#define STRUT_ALLOCATE(arena, ...)                                                                 \
+  strut_arena_arrays(arena, (const strut_array[]){__VA_ARGS__, {NULL, NULL, 0, 0}})
+STRUT_API bool strut_arena_arrays(strut_arena *arena, const strut_array *list);
+/** The same of pointers to double whose addresses are listed, with `count` zeros each. */
+#define STRUT_NUMBERS(arena, count, ...)                                                           \
+  strut_arena_numbers(arena, (size_t)(count), (double **[]){__VA_ARGS__, NULL})
+STRUT_API bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list);
 /** A copy of the first length bytes of text with a terminating NUL; aligned to 1. */
 STRUT_API char *strut_arena_text(strut_arena *arena, const char *text, size_t length);
 /** printf into the arena; NULL when memory is out. */

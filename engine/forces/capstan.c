@@ -312,8 +312,7 @@ static double damper_force(const strut_element *element, const cable *self) {
 static void add_powers(const strut_state *state, const cable *self, double damper, bool frozen) {
   double rate = -self->winding, lost = 0.0;
   for (int k = 0; k < self->n; k++) rate += self->length_rate[k];
-  double stiffer =
-      self->axial ? 0.0 : energy_of(self) / self->whole; /* E grows with the rest length */
+  double stiffer = self->axial ? 0.0 : energy_of(self) / self->whole; /* E grows with it */
   double drive = (stiffer - carried(self, 0) - damper) * self->winding;
   for (int k = 0; k + 1 < self->n && frozen; k++)
     lost += (carried(self, k) - carried(self, k + 1)) * self->flow[k];

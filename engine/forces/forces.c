@@ -3,11 +3,9 @@
 #include "engine/forces/forces.h"
 
 #include <assert.h>
-#include <math.h>
 
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/elements.h"
 #include "engine/forces/forces_kernel.h"
 #include "engine/forces/history.h"
 #include "engine/forces/members_kernel.h"
@@ -16,7 +14,6 @@
 #include "engine/forces/surfaces.h"
 #include "engine/forces/tangent.h"
 #include "engine/model/mass.h"
-#include "engine/model/pose.h"
 
 void strut_forces_add_rare(const strut_model *model, const strut_state *state, double t,
                            const double *q, const double *velocity) {

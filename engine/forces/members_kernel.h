@@ -3,8 +3,6 @@
     step. */
 #pragma once
 
-#include <math.h>
-
 #include "engine/base/vec.h"
 #include "engine/model/algebra/hot.h"
 #include "engine/model/state.h"

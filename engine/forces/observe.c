@@ -5,16 +5,12 @@
 #include <assert.h>
 #include <math.h>
 
-#include "engine/base/vec.h"
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
-#include "engine/forces/elements.h"
-#include "engine/forces/forces.h"
 #include "engine/forces/history.h"
 #include "engine/forces/nearby.h"
 #include "engine/forces/rigid.h"
 #include "engine/forces/surfaces.h"
-#include "engine/model/pose.h"
 #include "engine/scene/things.h"
 
 #define OBSERVE(ID)                                                                                \
@@ -456,10 +452,9 @@ static void find_spin(strut_instant *instant) {
 bool strut_instant_create(const strut_model *model, strut_arena *arena, strut_instant *instant) {
   size_t nodes = (size_t)model->node_count;
   *instant = (strut_instant){.model = model};
-  instant->spin = strut_arena_allocate(arena, nodes, sizeof(double));
-  instant->momentum = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
-  instant->relative_velocity = strut_arena_allocate(arena, 2 * nodes, sizeof(double));
-  return instant->spin && instant->momentum && instant->relative_velocity;
+  return STRUT_ALLOCATE(arena, STRUT_NEW(instant->spin, nodes),
+                        STRUT_NEW(instant->momentum, 2 * nodes),
+                        STRUT_NEW(instant->relative_velocity, 2 * nodes));
 }
 
 /* Must all forces be evaluated, not only those of contacts, which a method with events may hold? */

@@ -5,7 +5,6 @@
  */
 #pragma once
 
-#include "engine/base/memory.h"
 #include "engine/forces/forces.h"
 #include "engine/model/model.h"
 #include "engine/model/state.h"

@@ -166,28 +166,18 @@ static strut_rigid *create(const strut_model *model, strut_arena *arena, double 
   int32_t *index = strut_arena_allocate(arena, (size_t)model->node_count, sizeof *index);
   if (!rigid || !index) return NULL;
   rigid->most = (int32_t)most;
-  rigid->member = strut_arena_allocate(arena, bars, sizeof *rigid->member);
-  rigid->length = strut_arena_allocate(arena, bars, sizeof(double));
-  rigid->tension = strut_arena_allocate(arena, bars, sizeof(double));
-  rigid->at = strut_arena_allocate(arena, nodes, sizeof *rigid->at);
-  rigid->end = strut_arena_allocate(arena, bars, sizeof *rigid->end);
-  rigid->foot = strut_arena_allocate(arena, feet, sizeof *rigid->foot);
-  rigid->row = strut_arena_allocate(arena, most, sizeof *rigid->row);
-  rigid->direction = strut_arena_allocate(arena, most, sizeof *rigid->direction);
-  rigid->matrix = strut_arena_allocate(arena, most * most, sizeof(double));
-  rigid->right = strut_arena_allocate(arena, most, sizeof(double));
-  rigid->stuck = strut_arena_allocate(arena, feet, sizeof *rigid->stuck);
-  rigid->free = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
-  rigid->push = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
-  if (!rigid->member || !rigid->length || !rigid->tension || !rigid->at || !rigid->end ||
-      !rigid->foot || !rigid->row || !rigid->direction || !rigid->matrix || !rigid->right ||
-      !rigid->stuck || !rigid->free || !rigid->push)
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(rigid->member, bars), STRUT_NEW(rigid->length, bars),
+                      STRUT_NEW(rigid->tension, bars), STRUT_NEW(rigid->at, nodes),
+                      STRUT_NEW(rigid->end, bars), STRUT_NEW(rigid->foot, feet),
+                      STRUT_NEW(rigid->row, most), STRUT_NEW(rigid->direction, most),
+                      STRUT_NEW(rigid->matrix, most * most), STRUT_NEW(rigid->right, most),
+                      STRUT_NEW(rigid->stuck, feet), STRUT_NEW(rigid->free, model->length),
+                      STRUT_NEW(rigid->push, model->length)))
     return NULL;
   number_nodes(model, rigid, index);
   for (int c = 0; c < 2; c++) {
     size_t n = (size_t)rigid->nodes;
-    rigid->inverse[c] = strut_arena_allocate(arena, n * n, sizeof(double));
-    if (!rigid->inverse[c]) return NULL;
+    if (!STRUT_ALLOCATE(arena, STRUT_NEW(rigid->inverse[c], n * n))) return NULL;
   }
   invert_mass(model, rigid, scratch);
   return rigid;

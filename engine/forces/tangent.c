@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/forces/tangent.h"
 
-#include "engine/forces/capstan.h"
-#include "engine/forces/surfaces.h"
-
 #include <assert.h>
 #include <string.h>
+
+#include "engine/forces/capstan.h"
+#include "engine/forces/surfaces.h"
 
 #include "engine/base/indices.h"
 #include "engine/forces/nearby.h"
@@ -259,8 +259,7 @@ static void add_force(assembly *self, const strut_force *force) {
   const strut_element *element =
       force->kind == STRUT_FORCE_ELEMENT ? &self->model->elements.element[force->index] : NULL;
   strut_force_stiffness(self->model, force, self->q, matrix);
-  if (self->stiffest && element &&
-      strut_has_capstan(element)) { /* a cable that sticks at its guides */
+  if (self->stiffest && element && strut_has_capstan(element)) { /* sticks at guides */
     strut_capstan_stiffness(self->model, force->index, self->q, matrix);
     strut_force_bend(self->model, force, self->q, 1.0, matrix);
   }

@@ -6,37 +6,23 @@
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
-#include "engine/model/model.h"
 
 _Static_assert(STRUT_STRAIN_COUNT <= 32, "a bit for each in strut_model");
 
-/* Zeroed doubles in the model's arena; *failed remembers a refusal so that passes stay short. */
-static double *doubles(strut_model *model, size_t count, bool *failed) {
-  double *block = strut_arena_allocate(&model->arena, count, sizeof *block);
-  if (!block) *failed = true;
-  return block;
-}
+/* Passes return false where memory is out. */
 
-static int32_t *indices(strut_model *model, size_t count, bool *failed) {
-  int32_t *block = strut_arena_allocate(&model->arena, count, sizeof *block);
-  if (!block) *failed = true;
-  return block;
-}
-
-static void compile_nodes(strut_model *model, bool *failed) {
+static bool compile_nodes(strut_model *model) {
   const strut_scene *scene = model->scene;
   size_t count = scene->node_count;
   size_t needed = 2 * count + 2 + strut_feedback_states(scene);
   size_t length = (needed + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
   model->node_count = (int32_t)scene->node_count;
   model->length = (int32_t)length;
-  double *start = doubles(model, length, failed), *velocity = doubles(model, length, failed);
-  double *mass = doubles(model, count, failed);
-  uint8_t *fixed = strut_arena_allocate(&model->arena, length, 1);
-  if (*failed || !fixed) {
-    *failed = true;
-    return;
-  }
+  double *start, *velocity, *mass;
+  uint8_t *fixed;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(start, length), STRUT_NEW(velocity, length),
+                      STRUT_NEW(mass, count), STRUT_NEW(fixed, length)))
+    return false;
   for (size_t i = 0; i < scene->unbalance_count; i++)
     mass[scene->unbalances[i].node] += scene->unbalances[i].mass;
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -55,9 +41,10 @@ static void compile_nodes(strut_model *model, bool *failed) {
   if (!(model->size > 0)) model->size = 1.0;
   model->start = start, model->velocity = velocity;
   model->point_mass = mass, model->fixed = fixed;
+  return true;
 }
 
-static void compile_members(strut_model *model, bool *failed) {
+static bool compile_members(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_member_table *t = &model->members;
   size_t members = (scene->member_count + STRUT_LANES - 1) / STRUT_LANES * STRUT_LANES;
@@ -66,16 +53,13 @@ static void compile_members(strut_model *model, bool *failed) {
   t->count = (int32_t)scene->member_count;
   t->slots = (int32_t)slots;
   t->blocks = ((int32_t)members + STRUT_BLOCK - 1) / STRUT_BLOCK;
-  uint32_t *from = strut_arena_allocate(&model->arena, slots, sizeof *from);
-  uint32_t *to = strut_arena_allocate(&model->arena, slots, sizeof *to);
-  double *stiffness = doubles(model, slots, failed), *damping = doubles(model, slots, failed);
-  double *rest = doubles(model, slots, failed), *mass = doubles(model, slots, failed);
-  double *slack = doubles(model, slots, failed);
-  uint16_t *terms = strut_arena_allocate(&model->arena, (size_t)t->blocks, sizeof *terms);
-  if (*failed || !terms || !from || !to) {
-    *failed = true;
-    return;
-  }
+  uint32_t *from, *to;
+  double *stiffness, *damping, *rest, *mass, *slack;
+  uint16_t *terms;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(from, slots), STRUT_NEW(to, slots)) ||
+      !STRUT_NUMBERS(&model->arena, slots, &stiffness, &damping, &rest, &mass, &slack) ||
+      !STRUT_ALLOCATE(&model->arena, STRUT_NEW(terms, t->blocks)))
+    return false;
   for (size_t j = 0; j < slots; j++) {
     slack[j] = -HUGE_VAL;
     from[j] = 2 * (uint32_t)model->node_count;
@@ -101,20 +85,17 @@ static void compile_members(strut_model *model, bool *failed) {
   t->from = from, t->to = to, t->stiffness = stiffness, t->damping = damping, t->rest = rest;
   t->slack = slack, t->mass = mass, t->block_terms = terms;
   t->rows = strut_pull_rows_create(&model->arena, t->count, from, to);
-  if (!t->rows) *failed = true;
+  return t->rows;
 }
 
-static void compile_drives(strut_model *model, bool *failed) {
+static bool compile_drives(strut_model *model) {
   const strut_scene *scene = model->scene;
   size_t most = scene->actuator_count, count = 0;
-  int32_t *member = indices(model, most, failed), *signal = indices(model, most, failed);
-  uint8_t *first = strut_arena_allocate(&model->arena, most, sizeof *first);
-  uint8_t *driven = strut_allocate((size_t)model->members.slots, sizeof *driven);
-  if (!first || !driven) *failed = true;
-  if (*failed) {
-    strut_release(driven);
-    return;
-  }
+  int32_t *member = NULL, *signal = NULL;
+  uint8_t *first = NULL, *driven = strut_allocate((size_t)model->members.slots, sizeof *driven);
+  bool made = driven && STRUT_ALLOCATE(&model->arena, STRUT_NEW(member, most),
+                                       STRUT_NEW(signal, most), STRUT_NEW(first, most));
+  if (!made) most = 0;
   uint16_t *terms = (uint16_t *)model->members.block_terms;
   for (size_t i = 0; i < most; i++) {
     if (scene->actuators[i].force) continue;
@@ -126,8 +107,9 @@ static void compile_drives(strut_model *model, bool *failed) {
     if (slot < model->members.count) terms[slot / STRUT_BLOCK] |= STRUT_TERM_DRIVE;
     model->terms |= STRUT_TERM_DRIVE;
   }
-  strut_release(driven);
   model->drives = (strut_drive_table){(int32_t)count, member, signal, first};
+  strut_release(driven);
+  return made;
 }
 
 static bool compile_rubbing(strut_model *model) {
@@ -138,10 +120,10 @@ static bool compile_rubbing(strut_model *model) {
 }
 
 /* Half of each member's mass at each of its ends (7), the point masses, and the sliding ones. */
-static void compile_weights(strut_model *model, bool *failed) {
+static bool compile_weights(strut_model *model) {
   const strut_member_table *members = &model->members;
-  double *weight = doubles(model, (size_t)model->node_count, failed);
-  if (*failed) return;
+  double *weight;
+  if (!STRUT_NUMBERS(&model->arena, model->node_count, &weight)) return false;
   for (int32_t i = 0; i < model->node_count; i++) weight[i] = model->point_mass[i];
   for (int32_t j = 0; j < members->count; j++) {
     weight[members->from[j] / 2] += 0.5 * members->mass[j];
@@ -156,6 +138,7 @@ static void compile_weights(strut_model *model, bool *failed) {
     weight[item->at[1] / 2] += item->start * item->mass;
   }
   model->weight = weight;
+  return true;
 }
 
 static void compile_unbalances(strut_model *model) {
@@ -168,14 +151,15 @@ static void compile_unbalances(strut_model *model) {
   }
 }
 
-static void compile_loads(strut_model *model, bool *failed) {
+static bool compile_loads(strut_model *model) {
   const strut_scene *scene = model->scene;
   size_t most = scene->load_count;
-  double *constant = doubles(model, (size_t)model->length, failed);
-  double *x = doubles(model, most, failed), *y = doubles(model, most, failed);
-  int32_t *node = indices(model, most, failed), *signal = indices(model, most, failed);
-  int32_t *slot = indices(model, most, failed);
-  if (*failed) return;
+  double *constant, *x, *y;
+  int32_t *node, *signal, *slot;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(constant, model->length), STRUT_NEW(x, most),
+                      STRUT_NEW(y, most), STRUT_NEW(node, most), STRUT_NEW(signal, most),
+                      STRUT_NEW(slot, most)))
+    return false;
   bool any = false;
   for (size_t c = 0; c < 2; c++)
     for (size_t i = 0; i < scene->node_count && scene->gravity[c] != 0.0; i++) {
@@ -199,10 +183,7 @@ static void compile_loads(strut_model *model, bool *failed) {
   model->constant_force = any ? constant : NULL;
   model->loads = (strut_load_table){count, node, slot, signal, x, y};
   model->terms |= (any ? STRUT_TERM_CONSTANT : 0u) | (count ? STRUT_TERM_LOADS : 0u);
-}
-
-static const strut_ground *ground_of(const strut_scene *scene, const strut_contact *contact) {
-  return scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
+  return true;
 }
 
 /* A law of damping is a choice of numbers, which the kernel of the ground distinguishes by `dissipation`. */
@@ -238,15 +219,15 @@ static double largest_value(const strut_scene *scene, int32_t signal) {
   return most;
 }
 
-static void compile_contacts(strut_model *model, bool *failed) {
+static bool compile_contacts(strut_model *model) {
   const strut_scene *scene = model->scene;
   size_t count = scene->contact_count;
   strut_contact_table *contacts = &model->contacts;
-  uint32_t *at = strut_arena_allocate(&model->arena, count, sizeof *at);
-  strut_contact_entry *entry = strut_arena_allocate(&model->arena, count, sizeof *entry);
-  if (!at || !entry) *failed = true;
+  uint32_t *at;
+  strut_contact_entry *entry;
   bool grips = false;
-  if (*failed || !strut_scene_has_ground(scene) || !count) return;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(at, count), STRUT_NEW(entry, count))) return false;
+  if (!strut_scene_has_ground(scene) || !count) return true;
   for (size_t i = 0; i < count; i++) {
     const strut_contact *contact = &scene->contacts[i];
     at[i] = 2 * (uint32_t)contact->node;
@@ -254,7 +235,9 @@ static void compile_contacts(strut_model *model, bool *failed) {
                                      .lane = contact->node % STRUT_CONTACT_LANES,
                                      .stiffness = contact->stiffness,
                                      .damping = contact->damping};
-    set_damping(model, &entry[i], ground_of(scene, contact)->damping_law, contact->dissipation);
+    const strut_ground *ground =
+        scene->ground_count ? &scene->grounds[contact->ground] : &scene->ground;
+    set_damping(model, &entry[i], ground->damping_law, contact->dissipation);
     if (contact->friction.law == STRUT_FRICTION_NONE) continue;
     entry[i].friction = contact->friction;
     grips = grips || contact->friction.driven;
@@ -277,18 +260,16 @@ static void compile_contacts(strut_model *model, bool *failed) {
                                     .axes = {{1, 0}, {0, 1}},
                                     .grips = grips};
   if (grips) model->terms |= STRUT_TERM_DRIVE; /* a function of time, too */
-  if (scene->ground_count) {
-    if (!strut_surfaces_compile(model)) *failed = true;
-    return;
-  }
+  if (scene->ground_count) return strut_surfaces_compile(model);
   contacts->height = scene->ground.height, contacts->belt_speed = scene->ground.belt_speed;
   model->terms |= STRUT_TERM_CONTACT;
-  if (scene->ground.slope == 0.0) return;
+  if (scene->ground.slope == 0.0) return true;
   double c = cos(scene->ground.slope), s = sin(scene->ground.slope);
   contacts->tangent[0] = c, contacts->tangent[1] = s, contacts->normal[0] = -s,
   contacts->normal[1] = c;
   contacts->axes = (strut_contact_axes){{c, s}, {-s, c}};
   model->terms |= STRUT_TERM_SLOPE;
+  return true;
 }
 
 /* Inverse of a node's lumped mass along d, in which supported directions are infinitely heavy. */
@@ -362,18 +343,13 @@ static void compile_damping(strut_model *model) {
 }
 
 static bool compile_tables(strut_model *model) {
-  bool failed = false;
-  compile_nodes(model, &failed);
-  if (!failed) compile_members(model, &failed);
-  if (!failed) failed = !strut_elements_compile(model);
-  if (!failed) compile_drives(model, &failed);
-  if (!failed) failed = !strut_sliding_masses_compile(model);
-  if (!failed) compile_weights(model, &failed);
-  if (!failed) compile_loads(model, &failed);
-  if (!failed) compile_contacts(model, &failed);
-  if (!failed) compile_damping(model);
+  if (!compile_nodes(model) || !compile_members(model) || !strut_elements_compile(model) ||
+      !compile_drives(model) || !strut_sliding_masses_compile(model) || !compile_weights(model) ||
+      !compile_loads(model) || !compile_contacts(model))
+    return false;
+  compile_damping(model);
   compile_unbalances(model);
-  return !failed && strut_actuator_forces_compile(model) && strut_support_motion_compile(model) &&
+  return strut_actuator_forces_compile(model) && strut_support_motion_compile(model) &&
          strut_feedback_compile(model) && compile_rubbing(model);
 }
 

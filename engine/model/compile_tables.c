@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include <math.h>
 #include <string.h>
 
 #include "engine/base/indices.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/mass.h"
-#include "engine/model/model.h"
 #include "engine/scene/signal.h"
 
 int32_t strut_foot_of_contact(const strut_scene *scene, size_t i) {
@@ -332,12 +330,11 @@ bool strut_feedback_compile(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_feedback_table *feedback = &model->feedback;
   size_t signals = scene->signal_count;
-  int32_t *lagged = strut_arena_allocate(&model->arena, signals, sizeof *lagged);
-  int32_t *lag_of = strut_arena_allocate(&model->arena, signals, sizeof *lag_of);
-  int32_t *sampled = strut_arena_allocate(&model->arena, signals, sizeof *sampled);
-  int32_t *triggered = strut_arena_allocate(&model->arena, signals, sizeof *triggered);
-  int32_t *relay = strut_arena_allocate(&model->arena, signals, sizeof *relay);
-  if (!lagged || !lag_of || !sampled || !triggered || !relay || !compile_sensors(model))
+  int32_t *lagged, *lag_of, *sampled, *triggered, *relay;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(lagged, signals), STRUT_NEW(lag_of, signals),
+                      STRUT_NEW(sampled, signals), STRUT_NEW(triggered, signals),
+                      STRUT_NEW(relay, signals)) ||
+      !compile_sensors(model))
     return false;
   for (size_t i = 0; i < signals; i++) {
     const strut_signal *signal = &scene->signals[i];

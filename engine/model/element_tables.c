@@ -133,9 +133,8 @@ static strut_breakable breakable(strut_element_role role, size_t item, int32_t f
 static bool list_breakables(strut_model *model) {
   const strut_scene *scene = model->scene;
   strut_element_table *elements = &model->elements;
-  strut_breakable *list =
-      strut_arena_allocate(&model->arena, (size_t)elements->history_count, sizeof *list);
-  if (!list) return false;
+  strut_breakable *list;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(list, elements->history_count))) return false;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *member = &scene->members[j];
     if (!strut_member_ends(member)) continue;
@@ -157,9 +156,8 @@ static bool list_breakables(strut_model *model) {
 static bool list_memories(strut_model *model) {
   strut_element_table *elements = &model->elements;
   if (!elements->history_count) return true;
-  int32_t *memory =
-      strut_arena_allocate(&model->arena, (size_t)elements->history_count, sizeof *memory);
-  if (!memory) return false;
+  int32_t *memory;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(memory, elements->history_count))) return false;
   for (int32_t i = 0; i < elements->count; i++)
     if (elements->element[i].remembers) memory[elements->element[i].memory] = i;
   elements->memory = memory;

@@ -1,12 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/elements.h"
 
-#include <assert.h>
-#include <math.h>
-
 #include "engine/base/vec.h"
 #include "engine/model/compile_parts.h"
-#include "engine/model/model.h"
 
 /* A stop is this many times stiffer than its member where the scene does not say. */
 static const double USUAL_STOP = 100.0;
@@ -437,9 +433,8 @@ static bool compile(strut_model *model, const uint8_t *reeled) {
   count_elements(scene, reeled, &elements, &nodes);
   if (!elements) return true;
   compilation c = {.model = model, .reeled = reeled};
-  c.element = strut_arena_allocate(&model->arena, elements, sizeof *c.element);
-  c.at = strut_arena_allocate(&model->arena, nodes, sizeof *c.at);
-  if (!c.element || !c.at) return false;
+  if (!STRUT_ALLOCATE(&model->arena, STRUT_NEW(c.element, elements), STRUT_NEW(c.at, nodes)))
+    return false;
   for (size_t j = 0; j < scene->member_count; j++)
     if (elements_of_member(&scene->members[j], reeled && reeled[j])) add_member(&c, j);
   for (size_t i = 0; i < scene->hinge_count; i++) add_hinge(&c, i);

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/mass.h"
 
-#include <assert.h>
-
 #include "engine/base/indices.h"
 #include "engine/model/algebra/hot.h"
-#include "engine/model/algebra/linear_solver.h"
 #include "engine/model/mass_kernel.h"
-#include "engine/model/model.h"
 
 /* Disjoint sets of rows that masses couple: parent[i] leads to the smallest row of the set. */
 static void join_coupled(const strut_sparse *matrix, int32_t *parent) {
@@ -47,11 +43,9 @@ typedef struct sorting {
 
 static bool sort_rows(const strut_sparse *matrix, strut_arena *scratch, sorting *self) {
   size_t n = (size_t)matrix->n;
-  self->root = strut_arena_allocate(scratch, n, sizeof *self->root);
-  self->size = strut_arena_allocate(scratch, n, sizeof *self->size);
-  self->order = strut_arena_allocate(scratch, n, sizeof *self->order);
-  self->place = strut_arena_allocate(scratch, n + 1, sizeof *self->place);
-  if (!self->root || !self->size || !self->order || !self->place) return false;
+  if (!STRUT_ALLOCATE(scratch, STRUT_NEW(self->root, n), STRUT_NEW(self->size, n),
+                      STRUT_NEW(self->order, n), STRUT_NEW(self->place, n + 1)))
+    return false;
   join_coupled(matrix, self->root);
   for (int32_t i = 0; i < matrix->n; i++) self->size[self->root[i]]++;
   for (int32_t i = 0, at = 0; i < matrix->n; at += self->size[i++]) self->place[i] = at;
@@ -104,13 +98,12 @@ static strut_status make_blocks(strut_model *model, const sorting *self, strut_m
 /* The rows of large sets as one matrix of their own; its node list is returned in *node. */
 static strut_status take_rest(strut_arena *scratch, const sorting *self, const strut_sparse *matrix,
                               const int32_t *matrix_node, strut_sparse *rest, int32_t **node) {
-  int32_t *map = strut_arena_allocate(scratch, (size_t)matrix->n, sizeof *map);
-  *node = strut_arena_allocate(scratch, (size_t)matrix->n, sizeof **node);
-  rest->start = strut_arena_allocate(scratch, (size_t)matrix->n + 1, sizeof *rest->start);
-  rest->row = strut_arena_allocate(scratch, (size_t)matrix->start[matrix->n], sizeof *rest->row);
-  rest->value =
-      strut_arena_allocate(scratch, (size_t)matrix->start[matrix->n], sizeof *rest->value);
-  if (!map || !*node || !rest->start || !rest->row || !rest->value) return STRUT_NO_MEMORY;
+  int32_t *map;
+  if (!STRUT_ALLOCATE(scratch, STRUT_NEW(map, matrix->n), STRUT_NEW(*node, matrix->n),
+                      STRUT_NEW(rest->start, (size_t)matrix->n + 1),
+                      STRUT_NEW(rest->row, (size_t)matrix->start[matrix->n]),
+                      STRUT_NEW(rest->value, (size_t)matrix->start[matrix->n])))
+    return STRUT_NO_MEMORY;
   int32_t nonzeros = 0;
   for (int32_t i = 0; i < matrix->n; i++)
     if (self->size[self->root[i]] > STRUT_DENSE_BLOCK) {

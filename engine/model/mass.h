@@ -12,7 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/model.h"
 

@@ -13,8 +13,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/model/algebra/pull_rows.h"
 #include "engine/model/elements.h"
 #include "engine/model/surfaces.h"

@@ -11,7 +11,6 @@
 #include <assert.h>
 #include <float.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/model.h"
 #include "engine/model/surfaces.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/model/state.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "engine/model/compile_parts.h"

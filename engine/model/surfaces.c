@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-
 #include <assert.h>
 #include <math.h>
 
 #include "engine/base/indices.h"
-#include "engine/base/vec.h"
-#include "engine/model/model.h"
 #include "engine/model/pose.h"
 #include "engine/scene/profile.h"
 

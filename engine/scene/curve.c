@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/scene/law.h"
-
 #include <assert.h>
 #include <math.h>
+
+#include "engine/scene/law.h"
 
 #include "engine/base/memory.h"
 #include "engine/base/vec.h"

@@ -7,11 +7,9 @@
  */
 #pragma once
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
 #include "engine/scene/observables.h"
 
 typedef struct strut_data_column {

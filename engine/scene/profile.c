@@ -5,7 +5,6 @@
 #include <math.h>
 
 #include "engine/base/indices.h"
-#include "engine/base/vec.h"
 
 static strut_vec2 segment_of(const strut_ground *ground, size_t k) {
   return strut_vec2_between(ground->points[k], ground->points[k + 1]);
@@ -135,8 +134,7 @@ double strut_stretches_meet(const strut_stretch *first, const strut_stretch *sec
     return both ? s : (double)NAN;
   }
   double length = strut_vec2_length(first->along);
-  if (fabs(cross(between, first->along)) > ONE_LINE * length * length)
-    return (double)NAN; /* apart */
+  if (fabs(cross(between, first->along)) > ONE_LINE * length * length) return (double)NAN;
   double scale = dot(second->along, first->along) / (length * length);
   double at = dot(between, first->along) / (length * length);
   double p = at + scale * second->low, q = at + scale * second->high;

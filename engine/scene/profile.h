@@ -4,7 +4,6 @@
  */
 #pragma once
 
-#include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/scene/scene.h"
 

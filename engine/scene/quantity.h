@@ -11,7 +11,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #include "engine/scene/observables.h"
 

@@ -10,7 +10,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
 #include "engine/scene/study.h"
 
 /** Ways to fill the unit cube, in the order of the language. */

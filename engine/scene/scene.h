@@ -13,7 +13,6 @@
 #include <stdint.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/base/text.h"
 #include "engine/scene/data.h"
 #include "engine/scene/friction.h"

@@ -3,7 +3,6 @@
 #include "engine/scene/signal.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 #include "engine/base/vec.h"
 #include "engine/scene/signal_program.h"

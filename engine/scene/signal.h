@@ -11,7 +11,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
 #include "engine/scene/quantity.h"
 
 typedef enum strut_signal_kind {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Interval arithmetic of signals. See signal_program.h. */
-#include "engine/scene/signal_program.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>
+
+#include "engine/scene/signal_program.h"
 
 #include "engine/base/vec.h"
 
@@ -175,7 +175,7 @@ static strut_signal_bounds distance(strut_signal_bounds x, strut_signal_bounds y
   return result;
 }
 
-static strut_signal_bounds raise(strut_signal_bounds x, strut_signal_bounds y) {
+static strut_signal_bounds raise_bounds(strut_signal_bounds x, strut_signal_bounds y) {
   strut_signal_bounds result = {.value = power(x.value, y.value)};
   strut_range less = {y.value.low - 1.0, y.value.high - 1.0};
   strut_range slope = times(y.value, power(x.value, less));
@@ -207,7 +207,7 @@ static strut_signal_bounds combine(bounder *self, strut_operation operation, str
       result.rate = plus(x.rate, negative(chain(result.value, y.rate)));
       result.rate = chain(inverse(y.value), result.rate);
       break;
-    case STRUT_OPERATION_POWER: result = raise(x, y); break;
+    case STRUT_OPERATION_POWER: result = raise_bounds(x, y); break;
     case STRUT_OPERATION_MIN: result = least_of(self, x, y); break;
     case STRUT_OPERATION_MAX: result = opposite(least_of(self, opposite(x), opposite(y))); break;
     case STRUT_OPERATION_ATAN2: result = angle(self, x, y); break;

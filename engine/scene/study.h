@@ -14,7 +14,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "engine/base/status.h"
 #include "engine/base/text.h"
 #include "engine/scene/data.h"
 #include "engine/scene/quantity.h"

@@ -3,7 +3,6 @@
 #include "engine/scene/things.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -249,12 +248,6 @@ static void put_thing(const numbers *to, strut_thing kind, const void *object) {
       put_section(to, parts[p].section, (const char *)object + parts[p].offset, parts[p].size);
 }
 
-static void put_things(const numbers *to, const strut_scene *scene, strut_thing kind) {
-  size_t count = strut_thing_count(scene, kind);
-  put(to, (double)count);
-  for (size_t i = 0; i < count; i++) put_thing(to, kind, strut_thing_object(scene, kind, i));
-}
-
 static void put_configurations(const numbers *to, const strut_scene *scene) {
   put(to, (double)scene->configuration_count);
   for (size_t i = 0; i < scene->configuration_count; i++) {
@@ -293,8 +286,11 @@ void strut_setup_at_rest(const strut_setup *setup, strut_number_sink *sink, void
   put_section(&to, STRUT_FIELDS_GROUND, &scene->ground, sizeof scene->ground);
   put_section(&to, STRUT_FIELDS_SETTLE, &setup->experiment.settle, sizeof setup->experiment.settle);
   put_section(&to, STRUT_FIELDS_EQUILIBRIA, search, sizeof *search);
-  for (int kind = 0; kind < STRUT_THING_COUNT; kind++)
-    if (rest[kind] == AT_REST) put_things(&to, scene, (strut_thing)kind);
+  for (strut_thing kind = 0; kind < STRUT_THING_COUNT; kind++) {
+    size_t count = rest[kind] == AT_REST ? strut_thing_count(scene, kind) : 0;
+    if (rest[kind] == AT_REST) put(&to, (double)count);
+    for (size_t i = 0; i < count; i++) put_thing(&to, kind, strut_thing_object(scene, kind, i));
+  }
   put_configurations(&to, scene);
   for (size_t i = 0; i < scene->load_count; i++) /* those with a signal are off at rest */
     if (scene->loads[i].signal < 0) put_thing(&to, STRUT_THING_LOAD, &scene->loads[i]);

@@ -37,9 +37,9 @@
  */
 #pragma once
 
-#include "engine/scene/channels.h"
-
 #include <math.h>
+
+#include "engine/scene/channels.h"
 
 #include "engine/base/text.h"
 #include "engine/scene/experiment.h"

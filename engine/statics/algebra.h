@@ -10,8 +10,6 @@
 
 #include "engine/base/flag.h"
 #include "engine/base/library.h"
-#include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/statics/potential.h"
 
 /* Small dense matrices: eigenvalues and factors.
@@ -65,8 +63,6 @@ STRUT_API void strut_tridiagonal_solve(const strut_tridiagonal *tridiagonal, dou
  */
 bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vector);
 
-/** Gives each pointer of the list, which ends with NULL, `count` zeros owned by the arena; false: out of memory. */
-STRUT_API bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list);
 /** Zeros, owned by the arena; NULL: out of memory. */
 gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns);
 gsl_vector *strut_arena_vector(strut_arena *arena, size_t size);
@@ -109,8 +105,7 @@ typedef struct strut_sparse_null_spaces {
   int64_t most_numbers;
   int32_t rank;
   double smallest, largest; /* diagonal entries of R, absolute; 0 where the rank is 0 */
-  double *
-      null; /* (columns - rank, columns): 1 at a dependent column of its own, 0 at the other dependent ones */
+  double *null; /* (columns - rank, columns): of dependent columns 1 at its own, 0 at others */
   double *left; /* (rows - rank, rows) orthonormal, of the transpose */
 } strut_sparse_null_spaces;
 

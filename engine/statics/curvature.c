@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/minimise.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/minimise.h"
+
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/potential.h"
 
 /* |x| for the multiplier mu, and d|x|/dmu; mu lies above minus the lowest value. */
 static double step_length_at(const void *quadratic, double mu, double *slope) {
@@ -110,8 +109,7 @@ static void *dense_create(const strut_potential *potential) {
   size_t n = (size_t)potential->n;
   curvature->idle = strut_arena_allocate(&curvature->arena, n, sizeof *curvature->idle);
   if (curvature->spectra && curvature->idle &&
-      strut_arena_numbers(&curvature->arena, n,
-                          (double **[]){&curvature->part, &curvature->x, NULL}))
+      STRUT_NUMBERS(&curvature->arena, n, &curvature->part, &curvature->x))
     return curvature;
   dense_free(curvature);
   return NULL;
@@ -295,10 +293,9 @@ static void *sparse_create(const strut_potential *potential) {
   curvature->hessian = strut_potential_matrix(potential, &curvature->arena);
   curvature->shift = (double)NAN;
   if (curvature->hessian &&
-      strut_arena_numbers(&curvature->arena, (size_t)potential->n,
-                          (double **[]){&curvature->work, &curvature->scratch, NULL}) &&
-      strut_arena_numbers(&curvature->arena, (size_t)curvature->hessian->start[potential->n],
-                          (double **[]){&curvature->factored, NULL}) &&
+      STRUT_NUMBERS(&curvature->arena, potential->n, &curvature->work, &curvature->scratch) &&
+      STRUT_NUMBERS(&curvature->arena, (size_t)curvature->hessian->start[potential->n],
+                    &curvature->factored) &&
       strut_ldl_create(potential->pattern, &curvature->ldl, NULL) == STRUT_OK)
     return curvature;
   sparse_free(curvature);

@@ -174,10 +174,9 @@ bool strut_tridiagonal_create(strut_tridiagonal *tridiagonal, int32_t rows, stru
   size_t n = (size_t)rows;
   strut_tridiagonal *t = tridiagonal;
   *t = (strut_tridiagonal){.n = rows};
-  return strut_arena_numbers(arena, n * n, (double **[]){&t->z, NULL}) &&
-         strut_arena_numbers(arena, n,
-                             (double **[]){&t->height, &t->work, &t->diagonal, &t->beside,
-                                           &t->pivot, &t->ratio, NULL});
+  return STRUT_NUMBERS(arena, n * n, &t->z) &&
+         STRUT_NUMBERS(arena, n, &t->height, &t->work, &t->diagonal, &t->beside, &t->pivot,
+                       &t->ratio);
 }
 
 void strut_tridiagonal_reduce(strut_tridiagonal *tridiagonal) {
@@ -273,12 +272,6 @@ bool strut_symmetric_eigen(double *matrix, size_t n, double *value, double *vect
   gsl_eigen_symmv_free(work);
   for (size_t i = 0; good && i < n; i++) turn(vector + i * n, n);
   return good;
-}
-
-bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list) {
-  for (; *list; list++)
-    if (!(**list = strut_arena_allocate(arena, count, sizeof(double)))) return false;
-  return true;
 }
 
 gsl_matrix *strut_arena_matrix(strut_arena *arena, size_t rows, size_t columns) {

@@ -15,14 +15,11 @@ static const double TOLERANCE = 1e-10; /* of bounds and of reduced costs */
 bool strut_linear_program_create(strut_linear_program *program, int32_t rows, int32_t columns,
                                  size_t entries, strut_arena *arena) {
   *program = (strut_linear_program){.rows = rows, .columns = columns, .entry_room = entries};
-  program->entry_row = strut_arena_allocate(arena, entries + 1, sizeof *program->entry_row);
-  program->entry_column = strut_arena_allocate(arena, entries + 1, sizeof *program->entry_column);
-  if (!program->entry_row || !program->entry_column ||
-      !strut_arena_numbers(arena, entries + 1, (double **[]){&program->entry, NULL}) ||
-      !strut_arena_numbers(arena, (size_t)rows,
-                           (double **[]){&program->row_low, &program->row_high, NULL}) ||
-      !strut_arena_numbers(arena, (size_t)columns,
-                           (double **[]){&program->low, &program->high, &program->cost, NULL}))
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(program->entry_row, entries + 1),
+                      STRUT_NEW(program->entry_column, entries + 1)) ||
+      !STRUT_NUMBERS(arena, entries + 1, &program->entry) ||
+      !STRUT_NUMBERS(arena, rows, &program->row_low, &program->row_high) ||
+      !STRUT_NUMBERS(arena, columns, &program->low, &program->high, &program->cost))
     return false;
   for (int32_t j = 0; j < columns; j++) program->high[j] = HUGE_VAL;
   return true;

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/statics/algebra.h"
 
@@ -50,10 +49,8 @@ strut_status strut_minimiser_create(const strut_potential *potential, strut_mini
   m->first_step = 0.1 * m->size;
   m->curvature = dense ? &strut_curvature_dense : &strut_curvature_sparse;
   m->workspace = m->curvature->create(potential);
-  if (m->workspace &&
-      strut_arena_numbers(&m->arena, n,
-                          (double **[]){&m->g, &m->g_trial, &m->step, &m->unbent, NULL}) &&
-      strut_arena_numbers(&m->arena, length, (double **[]){&m->trial, &m->before, NULL}))
+  if (m->workspace && STRUT_NUMBERS(&m->arena, n, &m->g, &m->g_trial, &m->step, &m->unbent) &&
+      STRUT_NUMBERS(&m->arena, length, &m->trial, &m->before))
     return STRUT_OK;
   strut_minimiser_free(m);
   *minimiser = NULL;

@@ -10,8 +10,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
-
 /* ---- one thread for the BLAS, whose sums have other bits with several ---- */
 
 /* Found among the libraries that the others need, if the BLAS is OpenBLAS; else NULL. */
@@ -234,12 +232,10 @@ static double stirred(uint64_t i) {
 
 static bool allocate_search(search *self, strut_arena *arena) {
   size_t n = (size_t)self->n, p = (size_t)self->vectors;
-  self->select = strut_arena_allocate(arena, p, sizeof *self->select);
-  if (!self->select || !strut_arena_numbers(arena, n, (double **[]){&self->residual, NULL}) ||
-      !strut_arena_numbers(arena, n * p, (double **[]){&self->basis, NULL}) ||
-      !strut_arena_numbers(arena, 3 * n, (double **[]){&self->work, NULL}) ||
-      !strut_arena_numbers(arena, p * (p + 8), (double **[]){&self->small, NULL}) ||
-      !strut_arena_numbers(arena, p, (double **[]){&self->value, NULL}))
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(self->select, p)) ||
+      !STRUT_NUMBERS(arena, n, &self->residual) || !STRUT_NUMBERS(arena, n * p, &self->basis) ||
+      !STRUT_NUMBERS(arena, 3 * n, &self->work) ||
+      !STRUT_NUMBERS(arena, p * (p + 8), &self->small) || !STRUT_NUMBERS(arena, p, &self->value))
     return false;
   for (int32_t i = 0; i < self->n; i++) self->residual[i] = stirred((uint64_t)i);
   self->parameter[0] = 1; /* ARPACK chooses the shifts of its restarts */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/algebra.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "engine/statics/algebra.h"
 
 #include "engine/base/vec.h"
 
@@ -40,11 +40,9 @@ strut_spectrum_workspace *strut_spectrum_create(const strut_potential *potential
   room->order = strut_arena_allocate(&room->arena, n, sizeof *room->order);
   room->hessian = strut_potential_matrix(potential, &room->arena);
   if (room->order && room->hessian &&
-      strut_arena_numbers(&room->arena, n * n,
-                          (double **[]){&room->soft, &room->vector, &room->turned, NULL}) &&
-      strut_arena_numbers(&room->arena, n,
-                          (double **[]){&room->raw, &room->value, &room->noise, &room->work,
-                                        &room->along, &room->across, &room->form_noise, NULL}) &&
+      STRUT_NUMBERS(&room->arena, n * n, &room->soft, &room->vector, &room->turned) &&
+      STRUT_NUMBERS(&room->arena, n, &room->raw, &room->value, &room->noise, &room->work,
+                    &room->along, &room->across, &room->form_noise) &&
       strut_tridiagonal_create(&room->dense, potential->n, &room->arena))
     return room;
   strut_spectrum_free(room);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Hot where a scene has sensors. See drives.h. */
-#include "engine/forces/drives/drives.h"
-
 #include <assert.h>
 #include <math.h>
+
+#include "engine/forces/drives/drives.h"
 
 #include "engine/forces/observe.h"
 #include "engine/scene/signal_program.h"

@@ -4,8 +4,6 @@
 #include <assert.h>
 #include <cholmod.h>
 
-#include "engine/base/memory.h"
-
 struct strut_cholmod_factor {
   cholmod_common common;
   cholmod_factor *symbolic, *numeric; /* the latter NULL where there are no numbers */

@@ -3,10 +3,8 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
 #include "engine/model/algebra/cholmod_factor.h"
 #include "engine/model/algebra/hot.h"
 
@@ -15,17 +13,17 @@ strut_status strut_linear_solver_load(strut_error *error) {
   return strut_cholmod_load(&cholmod, error);
 }
 
+static bool give_arrays(int32_t n, size_t nonzeros, strut_arena *arena, strut_factor *factor) {
+  factor->n = n;
+  return STRUT_ALLOCATE(arena, STRUT_NEW(factor->order, n), STRUT_NEW(factor->start, n + 1),
+                        STRUT_NEW(factor->row, nonzeros), STRUT_NEW(factor->value, nonzeros),
+                        STRUT_NEW(factor->inverse_diagonal, n));
+}
+
 static strut_factor *allocate_factor(int32_t n, size_t nonzeros) {
   strut_factor *factor = strut_allocate(1, sizeof *factor);
   if (!factor) return NULL;
-  factor->n = n;
-  factor->order = strut_allocate((size_t)n, sizeof *factor->order);
-  factor->start = strut_allocate((size_t)n + 1, sizeof *factor->start);
-  factor->row = strut_allocate(nonzeros, sizeof *factor->row);
-  factor->value = strut_allocate(nonzeros, sizeof *factor->value);
-  factor->inverse_diagonal = strut_allocate((size_t)n, sizeof *factor->inverse_diagonal);
-  if (factor->order && factor->start && factor->row && factor->value && factor->inverse_diagonal)
-    return factor;
+  if (give_arrays(n, nonzeros, &factor->arena, factor)) return factor;
   strut_factor_free(factor);
   return NULL;
 }
@@ -104,11 +102,7 @@ strut_status strut_factor_create(const strut_sparse *matrix, strut_factor **fact
 
 void strut_factor_free(strut_factor *factor) {
   if (!factor) return;
-  strut_release(factor->order);
-  strut_release(factor->start);
-  strut_release(factor->row);
-  strut_release(factor->value);
-  strut_release(factor->inverse_diagonal);
+  strut_arena_free(&factor->arena);
   strut_release(factor);
 }
 
@@ -280,9 +274,8 @@ struct strut_refactor {
 /* A matrix of the pattern that is positive definite beyond doubt: -1 beside a heavier diagonal. */
 static bool fill_example(const strut_sparse *pattern, strut_sparse *example, strut_arena *arena) {
   *example = *pattern;
-  example->value =
-      strut_arena_allocate(arena, (size_t)pattern->start[pattern->n], sizeof *example->value);
-  if (!example->value) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(example->value, (size_t)pattern->start[pattern->n])))
+    return false;
   for (int32_t j = 0; j < pattern->n; j++) example->value[pattern->start[j]] = 1.0;
   for (int32_t j = 0; j < pattern->n; j++)
     for (int32_t k = pattern->start[j] + 1; k < pattern->start[j + 1]; k++) {
@@ -295,13 +288,7 @@ static bool fill_example(const strut_sparse *pattern, strut_sparse *example, str
 
 static bool copy_factor(const strut_factor *from, strut_factor *to, strut_arena *arena) {
   size_t n = (size_t)from->n, nonzeros = (size_t)from->start[from->n];
-  to->n = from->n;
-  to->order = strut_arena_allocate(arena, n, sizeof *to->order);
-  to->start = strut_arena_allocate(arena, n + 1, sizeof *to->start);
-  to->row = strut_arena_allocate(arena, nonzeros, sizeof *to->row);
-  to->value = strut_arena_allocate(arena, nonzeros, sizeof *to->value);
-  to->inverse_diagonal = strut_arena_allocate(arena, n, sizeof *to->inverse_diagonal);
-  if (!to->order || !to->start || !to->row || !to->value || !to->inverse_diagonal) return false;
+  if (!give_arrays(from->n, nonzeros, arena, to)) return false;
   memcpy(to->order, from->order, n * sizeof *to->order);
   memcpy(to->start, from->start, (n + 1) * sizeof *to->start);
   memcpy(to->row, from->row, nonzeros * sizeof *to->row);
@@ -340,14 +327,12 @@ strut_refactor *strut_refactor_create(const strut_sparse *pattern, strut_arena *
   strut_factor_free(factor);
   strut_arena_free(&scratch);
   if (!good) return NULL;
-  int32_t **indices[] = {&refactor->row,  &refactor->from, &refactor->head,
-                         &refactor->next, &refactor->at,   &refactor->start};
-  size_t counts[] = {nonzeros, nonzeros, n, n, n, n + 1};
-  for (size_t i = 0; i < sizeof indices / sizeof indices[0]; i++)
-    if (!(*indices[i] = strut_arena_allocate(arena, counts[i], sizeof **indices[i]))) return NULL;
-  refactor->diagonal = strut_arena_allocate(arena, n, sizeof *refactor->diagonal);
-  refactor->work = strut_arena_allocate(arena, n, sizeof *refactor->work);
-  if (!refactor->diagonal || !refactor->work) return NULL;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(refactor->row, nonzeros),
+                      STRUT_NEW(refactor->from, nonzeros), STRUT_NEW(refactor->head, n),
+                      STRUT_NEW(refactor->next, n), STRUT_NEW(refactor->at, n),
+                      STRUT_NEW(refactor->start, n + 1), STRUT_NEW(refactor->diagonal, n),
+                      STRUT_NEW(refactor->work, n)))
+    return NULL;
   place_entries(pattern, refactor);
   return refactor;
 }

@@ -10,7 +10,6 @@
 #include <stdint.h>
 
 #include "engine/base/memory.h"
-#include "engine/base/status.h"
 
 /** Lower triangle of a symmetric n x n matrix, compressed columns, rows ascending, diagonal first. */
 typedef struct strut_sparse {
@@ -28,6 +27,7 @@ typedef struct strut_factor {
   int32_t *row;
   double *value;
   double *inverse_diagonal; /* (n) 1 / D */
+  strut_arena arena;        /* of strut_factor_create's */
 } strut_factor;
 
 /** Loads what computes factors; fails where that cannot be loaded. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/model/algebra/linear_solver.h"
-
 #include <assert.h>
 #include <string.h>
+
+#include "engine/model/algebra/linear_solver.h"
 
 #include "engine/model/algebra/pull_rows.h"
 
@@ -87,10 +87,9 @@ strut_sparse *strut_sparse_build(int32_t n, const strut_triplets *triplets, stru
   strut_sparse *matrix = strut_arena_allocate(arena, 1, sizeof *matrix);
   if (!matrix) return NULL;
   matrix->n = n;
-  matrix->start = strut_arena_allocate(arena, (size_t)n + 2, sizeof *matrix->start);
-  matrix->row = strut_arena_allocate(arena, count, sizeof *matrix->row);
-  matrix->value = strut_arena_allocate(arena, count, sizeof *matrix->value);
-  if (!matrix->start || !matrix->row || !matrix->value) return NULL;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(matrix->start, (size_t)n + 2), STRUT_NEW(matrix->row, count),
+                      STRUT_NEW(matrix->value, count)))
+    return NULL;
   int32_t *next = matrix->start + 1; /* shifted by one while filling: becomes start at the end */
   for (size_t k = 0; k < triplets->count; k++) next[triplets->column[k] + 1]++;
   for (int32_t j = 0; j < n; j++) {

@@ -14,15 +14,13 @@ typedef struct strut_checker {
   bool resting;          /* nothing moves, so that no mass is needed */
   strut_findings *findings;
   bool out_of_memory;
-  bool *
-      loose; /* (member_count) true where an end of the member does not exist: other rules skip it */
-  bool *wild; /* (signal_count) true where a signal must not be evaluated */
+  bool *loose; /* (member_count) an end of it does not exist: other rules skip it */
+  bool *wild;  /* (signal_count) true where a signal must not be evaluated */
   /* What is being checked: the subject of findings, with its number, */
   strut_subject subject;
   size_t index;
-  char owner[200]; /* its name in messages: "member 'm1'", or "member number 3" without one */
-  const char
-      *within; /* and the key of the mapping in which its numbers are; NULL: each has its own */
+  char owner[200];    /* its name in messages: "member 'm1'", or "member number 3" without one */
+  const char *within; /* the key of the mapping with its numbers; NULL: each has its own */
 } strut_checker;
 
 /** Begins with a thing, or with another subject that has this name. */

@@ -125,11 +125,6 @@ static bool check_program(strut_checker *checker, const strut_program *program, 
   return true;
 }
 
-static bool check_own_program(strut_checker *checker) {
-  return check_program(checker, &checker->scene->signals[checker->index].program, checker->index,
-                       "expression");
-}
-
 static bool check_relay(strut_checker *checker) {
   const strut_signal *signal = &checker->scene->signals[checker->index];
   const strut_relay *relay = &signal->relay;
@@ -183,11 +178,6 @@ static bool check_trigger(strut_checker *checker) {
                        "starts with the touchdown of node '%s', which cannot touch the ground",
                        scene->nodes[trigger->item].name);
   return true;
-}
-
-static bool check_modifiers(strut_checker *checker) {
-  bool trigger = check_trigger(checker);
-  return strut_check_thing(checker) && trigger;
 }
 
 /* Do all programs that a signal may follow make sense? Others have been reported. */
@@ -294,7 +284,9 @@ static bool check_sum(strut_checker *checker, uint32_t *size, uint32_t *depth) {
   const strut_signal *signal = &checker->scene->signals[checker->index];
   uint64_t terms = 1;
   size_t index = checker->index;
-  if (strut_signal_has_program(signal) && !check_own_program(checker)) return false;
+  if (strut_signal_has_program(signal) &&
+      !check_program(checker, &signal->program, index, "expression"))
+    return false;
   if (signal->kind == STRUT_RELAY && !check_relay(checker)) return false;
   if (signal->kind == STRUT_SUM && !signal->term_count)
     return strut_fault_of(checker, "sum", "the sum of %s has no terms", checker->owner);
@@ -420,7 +412,8 @@ void strut_check_signals(strut_checker *checker) {
       checker->wild[i] = true;
       continue;
     }
-    bool modified = check_modifiers(checker);
+    bool modified = check_trigger(checker);
+    modified = strut_check_thing(checker) && modified;
     checker->wild[i] = !modified || (strut_signal_has_points(signal) ? !check_table(checker)
                                      : signal->kind == STRUT_SUM || strut_signal_has_program(signal)
                                          ? !check_sum(checker, size, depth)

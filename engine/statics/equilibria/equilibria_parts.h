@@ -71,12 +71,11 @@ int32_t strut_crossing_find(const strut_model *model, const double *first, const
  */
 
 typedef struct strut_level_frame {
-  strut_scene scene;   /* without actuators, loads on a signal, friction and belt; in coordinates
+  strut_scene scene;    /* without actuators, loads on a signal, friction and belt; in coordinates
                           along and across the ground. Shares texts with the original */
-  double shift[2];     /* by which the original is moved from the origin of the scene [m] */
-  double cosine, sine; /* of the slope that was turned away: 1, 0 on level ground */
-  int32_t
-      oblique_node; /* node held in one direction only on a slope, or -1; then nothing is turned */
+  double shift[2];      /* by which the original is moved from the origin of the scene [m] */
+  double cosine, sine;  /* of the slope that was turned away: 1, 0 on level ground */
+  int32_t oblique_node; /* held in one direction on a slope: nothing is turned; or -1 */
   strut_arena arena;
 } strut_level_frame;
 

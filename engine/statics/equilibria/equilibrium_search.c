@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria_parts.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
@@ -12,7 +12,6 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/search/critical.h"
 
 /* Quantities of one candidate. */
 
@@ -22,9 +21,8 @@ static const double DEEP = 1e-9, PULL = 1e-9;
 int32_t strut_equilibrium_search_add(strut_equilibrium_search *search) {
   if (search->count == search->room) {
     size_t room = search->room ? 2 * search->room : 32;
-    strut_candidate_equilibrium *finds =
-        strut_arena_allocate(&search->out->arena, room, sizeof *finds);
-    if (!finds) return -1;
+    strut_candidate_equilibrium *finds;
+    if (!STRUT_ALLOCATE(&search->out->arena, STRUT_NEW(finds, room))) return -1;
     if (search->count) memcpy(finds, search->candidates, search->count * sizeof *finds);
     search->candidates = finds;
     search->room = room;
@@ -40,11 +38,9 @@ static bool copy_point(strut_equilibrium_search *search, const strut_critical_po
   strut_arena *arena = &search->out->arena;
   size_t length = (size_t)search->model->length;
   *to = *from;
-  to->q = strut_arena_copy(arena, from->q, length, sizeof(double));
-  to->softest = strut_arena_copy(arena, from->softest, length, sizeof(double));
-  to->eigenvalues =
-      strut_arena_copy(arena, from->eigenvalues, (size_t)from->eigenvalue_count, sizeof(double));
-  return to->q && to->softest && to->eigenvalues;
+  return STRUT_ALLOCATE(arena, STRUT_COPY(to->q, from->q, length),
+                        STRUT_COPY(to->softest, from->softest, length),
+                        STRUT_COPY(to->eigenvalues, from->eigenvalues, from->eigenvalue_count));
 }
 
 static void measure_members(const strut_model *model, const double *positions, double *force) {
@@ -90,15 +86,12 @@ strut_status strut_equilibrium_search_fill(strut_equilibrium_search *search,
   strut_equilibrium *equilibrium = &find->e;
   size_t nodes = (size_t)search->model->node_count;
   equilibrium->supports = set;
-  equilibrium->reaction = strut_arena_allocate(arena, nodes, sizeof *equilibrium->reaction);
-  equilibrium->below = strut_arena_allocate(arena, nodes, 1);
-  equilibrium->member_force =
-      strut_arena_allocate(arena, (size_t)search->model->members.count, sizeof(double));
-  if (!equilibrium->reaction || !equilibrium->below || !equilibrium->member_force ||
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(equilibrium->reaction, nodes),
+                      STRUT_NEW(equilibrium->below, nodes),
+                      STRUT_NEW(equilibrium->member_force, search->model->members.count)) ||
       !copy_point(search, point, &equilibrium->point))
     return strut_no_memory(search->error, "");
-  bool placed = 2 * search->model->node_count - potential->n <=
-                3; /* the shape may be mirrored as a whole: orient it */
+  bool placed = 2 * search->model->node_count - potential->n <= 3; /* may be mirrored whole */
   if ((placed &&
        strut_orient_shape(search->model, held, equilibrium->point.q, equilibrium->point.softest)) ||
       !measure_reactions(search, potential, held, find))
@@ -359,8 +352,7 @@ strut_status strut_relaxer_create(const strut_potential *potential, double limit
   relaxer->limit = limit;
   relaxer->model = potential->model;
   bool good =
-      strut_arena_numbers(&relaxer->arena, length,
-                          (double **[]){&relaxer->quenched, &relaxer->last, &relaxer->start, NULL});
+      STRUT_NUMBERS(&relaxer->arena, length, &relaxer->quenched, &relaxer->last, &relaxer->start);
   strut_status status = good ? strut_minimiser_create(potential, &relaxer->minimiser, error)
                              : strut_no_memory(error, "");
   if (!status) status = prepare_motion(relaxer, error);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria_parts.h"
-
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/equilibria/equilibria_parts.h"
+
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
 #include "engine/forces/strains/strains.h"
 
 /* Two shapes are one: as a share of the model's size, and of the potential. */
@@ -383,9 +382,8 @@ static bool fill_barrier(const strut_equilibrium_search *search, const int32_t *
       .saddle = find_saddle(search, way),
       .direct = direct >= 0 ? points[direct].potential - points[a].potential : (double)NAN,
       .direct_saddle = direct >= 0 ? find_saddle(search, direct) : -1};
-  barrier->via =
-      strut_arena_allocate(&search->out->arena, (size_t)landscape->minima, sizeof *barrier->via);
-  if (!barrier->via) return false;
+  if (!STRUT_ALLOCATE(&search->out->arena, STRUT_NEW(barrier->via, landscape->minima)))
+    return false;
   barrier->via_count = landscape_between(landscape, a, b, way, barrier->via);
   for (int32_t i = 0; i < barrier->via_count; i++) barrier->via[i] = of_state[barrier->via[i]];
   return true;

@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria_parts.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
+#include "engine/statics/equilibria/equilibria_parts.h"
+
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
 #include "engine/model/compile_parts.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"
-#include "engine/statics/search/critical.h"
 
 enum { MOST_LISTED = 4 };
 

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria_parts.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/statics/equilibria/equilibria_parts.h"
+
 #include "engine/model/model.h"
-#include "engine/statics/minimise.h"
 
 /* Nodes that move at least this share of the one that moves most. */
 static const double MOVES = 0.1;
@@ -118,8 +117,7 @@ static strut_instability_cause instability_of(const strut_equilibrium_search *se
   if (!part->touches || !search->on_ground)
     return across || along ? STRUT_INSTABILITY_FALLS : STRUT_INSTABILITY_NONE;
   const strut_contact_table *contacts = &search->model->contacts;
-  if (contacts
-          ->surface) { /* only along parallel lines is it known beforehand that nothing holds it */
+  if (contacts->surface) { /* that nothing holds it is known beforehand only along parallel lines */
     double pull = part->force[0] * contacts->tangent[0] + part->force[1] * contacts->tangent[1];
     bool free = contacts->parallel && !part->held[0] && !part->held[1] && fabs(pull) > scale;
     return free ? STRUT_INSTABILITY_SLIDES : STRUT_INSTABILITY_NONE;

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -113,11 +111,6 @@ static strut_status relax_to_rest(strut_equilibrium_search *search, const char *
             "initial.settle.limit or 1e7 steps, having moved most at %s; give a "
             "larger limit, or more damping",
       what, farthest_node(search, from, positions));
-}
-
-static strut_status relax_from_start(strut_equilibrium_search *search, double *positions) {
-  memcpy(positions, search->model->start, (size_t)search->model->length * sizeof *positions);
-  return relax_to_rest(search, "the scene's start", positions);
 }
 
 /* True where q rests on one of the configuration's contact sets, in about its shape. */
@@ -245,8 +238,10 @@ static strut_status find_rest(const strut_model *model, const strut_experiment *
   *held = h.held_by_friction;
   if (!status && !configuration && !turned)
     status = strut_settle_experiment(model, &kept, experiment->interrupt, positions, &how, error);
-  else if (!status && !configuration)
-    status = relax_from_start(&h, positions);
+  else if (!status && !configuration) {
+    memcpy(positions, h.model->start, (size_t)h.model->length * sizeof *positions);
+    status = relax_to_rest(&h, "the scene's start", positions);
+  }
   if (!status && configuration && configuration->shaped && turned)
     status = relax_from_shape(
         &h, &h.level.scene.configurations[configuration - model->scene->configurations], positions,
@@ -280,8 +275,7 @@ strut_status strut_rest_state_find(const strut_model *model, const strut_experim
   const strut_configuration *configuration = NULL;
   bool start = !name || strcmp(name, "start") == 0, drawn = name && strcmp(name, "drawn") == 0;
   *rest = (strut_rest_state){.name = start ? "start" : "drawn"};
-  rest->q = strut_arena_allocate(arena, (size_t)model->length, sizeof *rest->q);
-  if (!rest->q) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(rest->q, model->length))) return strut_no_memory(error, "");
   if (name && (configuration = strut_configuration_named(scene, name)))
     start = drawn = false; /* a configuration has this name */
   if (!configuration && !start && !drawn) {

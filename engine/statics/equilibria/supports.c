@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/equilibria/equilibria_parts.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "engine/statics/equilibria/equilibria_parts.h"
 
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
@@ -58,21 +58,13 @@ static int32_t find_oblique_node(const strut_scene *scene) {
 
 static bool copy_arrays(strut_level_frame *level) {
   strut_scene *scene = &level->scene;
-  scene->nodes =
-      strut_arena_copy(&level->arena, scene->nodes, scene->node_count, sizeof *scene->nodes);
-  scene->members =
-      strut_arena_copy(&level->arena, scene->members, scene->member_count, sizeof *scene->members);
-  scene->hinges =
-      strut_arena_copy(&level->arena, scene->hinges, scene->hinge_count, sizeof *scene->hinges);
-  scene->contacts = strut_arena_copy(&level->arena, scene->contacts, scene->contact_count,
-                                     sizeof *scene->contacts);
-  scene->loads =
-      strut_arena_copy(&level->arena, scene->loads, scene->load_count, sizeof *scene->loads);
-  scene->configurations =
-      strut_arena_copy(&level->arena, scene->configurations, scene->configuration_count,
-                       sizeof *scene->configurations);
-  if (!scene->nodes || !scene->members || !scene->hinges || !scene->contacts || !scene->loads ||
-      !scene->configurations)
+  if (!STRUT_ALLOCATE(
+          &level->arena, STRUT_COPY(scene->nodes, scene->nodes, scene->node_count),
+          STRUT_COPY(scene->members, scene->members, scene->member_count),
+          STRUT_COPY(scene->hinges, scene->hinges, scene->hinge_count),
+          STRUT_COPY(scene->contacts, scene->contacts, scene->contact_count),
+          STRUT_COPY(scene->loads, scene->loads, scene->load_count),
+          STRUT_COPY(scene->configurations, scene->configurations, scene->configuration_count)))
     return false;
   for (size_t i = 0; i < scene->configuration_count; i++) {
     strut_configuration *configuration = &scene->configurations[i];
@@ -204,18 +196,6 @@ static int rank_of_rigid(const strut_scene *scene, bool only_fixed) {
   return rank;
 }
 
-static bool held_along_x(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (scene->nodes[i].fixed[0]) return true;
-  return false;
-}
-
-static bool holds_nothing(const strut_scene *scene) {
-  for (size_t i = 0; i < scene->node_count; i++)
-    if (scene->nodes[i].fixed[0] || scene->nodes[i].fixed[1]) return false;
-  return true;
-}
-
 static bool may_touch(const strut_scene *scene, int32_t node) {
   for (size_t i = 0; i < scene->contact_count; i++)
     if (scene->contacts[i].node == node) return true;
@@ -233,8 +213,7 @@ static strut_status use_requested_set(const strut_scene *scene, const strut_node
           "node '%s' is no contact node, so it cannot be a support; name contact nodes",
           scene->nodes[node].name);
   }
-  supports->sets = strut_arena_allocate(arena, 1, sizeof *supports->sets);
-  if (!supports->sets) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(supports->sets, 1))) return strut_no_memory(error, "");
   supports->sets[0] = *wanted;
   supports->count = 1;
   return STRUT_OK;
@@ -259,23 +238,18 @@ static strut_status use_all_sets(const strut_scene *scene, size_t size, strut_ar
   return STRUT_OK;
 }
 
-/* Fixed in both directions, or held by a set. */
-static bool leaves_motion(const strut_scene *scene, size_t held) {
-  size_t coordinates = 0;
-  for (size_t i = 0; i < scene->node_count; i++)
-    coordinates += (size_t)(!scene->nodes[i].fixed[0] + !scene->nodes[i].fixed[1]);
-  return coordinates > held;
-}
-
 strut_status strut_supports_choose(const strut_scene *level, const strut_search *search,
                                    const strut_node_set *wanted, strut_arena *arena,
                                    strut_supports *supports, strut_error *error) {
-  *supports = (strut_supports){.loose = holds_nothing(level)};
+  size_t held[2] = {0};
+  for (size_t i = 0; i < 2 * level->node_count; i++)
+    held[i % 2] += level->nodes[i / 2].fixed[i % 2];
+  *supports = (strut_supports){.loose = held[0] + held[1] == 0};
   if (!level->ground.present || level->contact_count == 0) {
     if (!wanted) return STRUT_OK;
     return strut_fail(error, STRUT_USAGE, "the scene has no ground that supports could replace");
   }
-  supports->pin = !held_along_x(level);
+  supports->pin = held[0] == 0;
   if (wanted) return use_requested_set(level, wanted, arena, supports, error);
   if (search->support_count) {
     supports->sets = search->supports;
@@ -284,7 +258,7 @@ strut_status strut_supports_choose(const strut_scene *level, const strut_search 
   }
   int motions = rank_of_rigid(level, false) - rank_of_rigid(level, true);
   int size = motions - (supports->pin ? 1 : 0);
-  if (size <= 0 || !leaves_motion(level, (size_t)motions)) return STRUT_OK;
+  if (size <= 0 || 2 * level->node_count - held[0] - held[1] <= (size_t)motions) return STRUT_OK;
   return use_all_sets(level, size == 1 ? 1 : 2, arena, supports, error);
 }
 

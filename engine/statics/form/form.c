@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/form/parts.h"
 
-#include <assert.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "engine/base/vec.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/model/algebra/linear_solver.h"
 #include "engine/model/pose.h"
 #include "engine/scene/things.h"
 #include "engine/statics/form/form.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
 #include "engine/statics/minimise.h"
 #include "engine/statics/search/critical.h"
 

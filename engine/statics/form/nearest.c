@@ -9,7 +9,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/statics/algebra.h"
@@ -266,8 +265,7 @@ strut_status strut_form_nearest(strut_former *former, const uint8_t *held, bool 
                       "the densities alone determine no shape, and the structure is too large to "
                       "adjust them: %zu coordinates, at most %d",
                       coordinates, MOST_COORDINATES);
-  const double *origin =
-      former->scene->nodes[0].position; /* from the scene's, digits would be lost */
+  const double *origin = former->scene->nodes[0].position; /* keeps digits */
   for (size_t i = 0; i < coordinates; i++) vector[i] -= origin[i % 2];
   memcpy(x_given, vector, coordinates * sizeof *vector);
   if (standing && !take_turns(former, x_given, vector, positions))

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/form/parts.h"
 
-#include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdio.h>
@@ -334,9 +333,8 @@ static bool minimise_squares(prestress *self) {
   int32_t count = at->members + at->contacts;
   strut_arena arena = {0};
   double *matrix, *weight, *low, *x;
-  bool good =
-      strut_arena_numbers(&arena, (size_t)count, (double **[]){&weight, &low, &x, NULL}) &&
-      strut_arena_numbers(&arena, (size_t)at->n * (size_t)count, (double **[]){&matrix, NULL});
+  bool good = STRUT_NUMBERS(&arena, count, &weight, &low, &x) &&
+              STRUT_NUMBERS(&arena, (size_t)at->n * (size_t)count, &matrix);
   for (size_t k = 1; k <= self->program.entry_count && good; k++) {
     int32_t row = self->program.entry_row[k] - 1, column = self->program.entry_column[k] - 1;
     if (row >= at->n) continue;

@@ -3,7 +3,6 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
-#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
@@ -84,11 +83,8 @@ static void store_eigenpairs(const dense *self) {
 static bool allocate_set(strut_modes_work *work) {
   strut_eigen_set *set = &work->set;
   size_t count = (size_t)set->count;
-  return strut_arena_numbers(
-             work->arena, count,
-             (double **[]){&set->value, &set->noise, &set->error, &set->residual, NULL}) &&
-         strut_arena_numbers(work->arena, count * (size_t)set->n,
-                             (double **[]){&set->vector, NULL});
+  return STRUT_NUMBERS(work->arena, count, &set->value, &set->noise, &set->error, &set->residual) &&
+         STRUT_NUMBERS(work->arena, count * (size_t)set->n, &set->vector);
 }
 
 static bool allocate_dense(dense *self) {
@@ -133,8 +129,7 @@ strut_status strut_modes_dense(strut_modes_work *work, strut_error *error) {
 /* The lowest modes of a large structure: bracketed by counting, found by Lanczos's method. */
 
 enum { MOST_FACTORS = 80, MOST_ALIKE = 100 }; /* eigenvalues at one place */
-static const double LEAST =
-    1e-13; /* of the largest eigenvalue: less drowns in a factor's rounding */
+static const double LEAST = 1e-13; /* of the largest eigenvalue: less drowns in rounding */
 
 /* Eigenvalues below z, by the signs of the factor of K - z M. */
 static int32_t count_below(strut_modes_work *work, double z) {
@@ -173,8 +168,7 @@ static void apply_mass(void *context, const double *vector, double *y) {
 strut_status strut_modes_sparse(strut_modes_work *work, int32_t count, strut_error *error) {
   strut_vibration *vibration = work->v;
   int32_t below = 0;
-  if (count > vibration->massive - 3)
-    count = vibration->massive - 3; /* Lanczos's method wants a few to spare */
+  if (count > vibration->massive - 3) count = vibration->massive - 3; /* Lanczos's */
   double bound = find_bound(work, count, &below),
          shift = -fmax(1e-3 * bound, LEAST * vibration->largest);
   if (below > 2 * count + MOST_ALIKE && bound <= LEAST * vibration->largest)

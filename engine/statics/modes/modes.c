@@ -483,12 +483,6 @@ static strut_status solve_modes(strut_modes_work *work, int32_t wanted, strut_mo
   return status ? status : fill_modes(work, wanted, modes, error);
 }
 
-/* Number of modes requested; by default all of a dense problem. */
-static int32_t requested_count(const strut_modes_options *options, bool dense) {
-  if (options->count > 0) return options->count;
-  return dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
-}
-
 /* What acts in a run, but not in modes. */
 static const char *left_out(const strut_model *model) {
   bool feedback = strut_scene_has_feedback(model->scene), maxwell = model->feedback.maxwell_count;
@@ -521,7 +515,8 @@ strut_status strut_modes_find(const strut_model *model, const strut_experiment *
         strut_vibration_create(model, rest.q, rest.closed, rest.closed_count, held, &work.v, error);
   if (status == STRUT_OK) {
     modes->dense = work.v->n <= STRUT_DENSE_MODES && !options->sparse;
-    status = solve_modes(&work, requested_count(options, modes->dense), modes, error);
+    int32_t usual = modes->dense ? STRUT_DENSE_MODES : STRUT_SPARSE_MODES;
+    status = solve_modes(&work, options->count > 0 ? options->count : usual, modes, error);
   }
   strut_modes_solver_free(&work.solver);
   strut_vibration_free(work.v);

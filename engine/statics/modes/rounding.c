@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/modes/parts.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
+
+#include "engine/statics/modes/parts.h"
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
@@ -104,9 +104,7 @@ strut_status strut_modes_settle(strut_modes_work *work, strut_error *error) {
   strut_vibration_force(vibration, step);
   double force = strut_largest_magnitude(step, vibration->n);
   for (int i = 0; i < MOST_STEPS && force > 0; i++) {
-    double *positions =
-        i == 0 ? vibration->q
-               : vibration->low; /* then q stays, and with it the rounding of lengths */
+    double *positions = i == 0 ? vibration->q : vibration->low; /* then q and its rounding stay */
     strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
     strut_modes_solve(&work->solver, step);
     if (!(strut_largest_magnitude(step, vibration->n) < 1e-6 * vibration->model->size)) break;
@@ -133,8 +131,7 @@ static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *
   size_t count = (size_t)strut_force_count(vibration->model, false);
   strut_arena scratch = {0};
   double *x, *one;
-  bool good = strut_arena_numbers(&scratch, (size_t)vibration->n, (double **[]){&x, NULL}) &&
-              strut_arena_numbers(&scratch, count, (double **[]){&one, NULL});
+  bool good = STRUT_NUMBERS(&scratch, vibration->n, &x) && STRUT_NUMBERS(&scratch, count, &one);
   if (good && at_rest) strut_modes_factorise(&work->solver, STRUT_FIRM * vibration->largest);
   for (uint64_t sample = 0; sample < SAMPLES && good; sample++) {
     sample_noise(work, at_rest, sample, one, x);
@@ -142,10 +139,6 @@ static strut_status sample_forces(strut_modes_work *work, bool at_rest, double *
   }
   strut_arena_free(&scratch);
   return good ? STRUT_OK : strut_no_memory(error, "");
-}
-
-static bool is_known(double force, double noise, double largest) {
-  return fabs(force) > KNOWN * noise && fabs(force) > SOME * largest;
 }
 
 /* Borderline ones; members among them are made to act for now. Their number. */
@@ -174,9 +167,9 @@ static void release_borderline(strut_modes_work *work, const uint8_t *borderline
   for (int32_t i = 0; i < strut_force_count(vibration->model, false); i++) {
     if (!borderline[i]) continue;
     bool acts = strut_vibration_force_at(vibration, i, &force);
-    double most = force.pose.slope * force.pose.strain;
+    double least = fmax(KNOWN * noise[i], SOME * (force.pose.slope * force.pose.strain));
     int32_t member = member_of(vibration->model, &force);
-    vibration->state[i] = acts && is_known(force.pose.force, noise[i], most) ? 0 : -1;
+    vibration->state[i] = acts && fabs(force.pose.force) > least ? 0 : -1;
     if (vibration->state[i] && member >= 0) work->idleness[member] = STRUT_JUST_TAUT;
   }
 }
@@ -346,7 +339,7 @@ strut_status strut_modes_measure(strut_modes_work *work, strut_error *error) {
   size_t n = (size_t)work->v->n;
   strut_arena scratch = {0};
   double *kx, *mx;
-  bool good = strut_arena_numbers(&scratch, n, (double **[]){&kx, &mx, NULL});
+  bool good = STRUT_NUMBERS(&scratch, n, &kx, &mx);
   strut_status status = good ? STRUT_OK : strut_no_memory(error, "");
   for (int32_t i = 0; i < work->set.count && status == STRUT_OK; i++) measure_value(work, i, mx);
   if (status == STRUT_OK) sort(&work->set);

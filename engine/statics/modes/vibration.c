@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/modes/parts.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/modes/parts.h"
+
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
 
-static const double EDGE =
-    8.0; /* last bits that a length and a rest length are known to, together */
+static const double EDGE = 8.0; /* last bits to which a length and a rest length are known */
 
 /* Member j with `low`; does it pull or push? */
 static bool place_member(const strut_vibration *vibration, int32_t j, strut_force *force) {
@@ -162,16 +161,11 @@ static bool allocate(strut_vibration *vibration) {
   const strut_model *model = vibration->model;
   size_t n = (size_t)vibration->n, entries = (size_t)vibration->shape->pattern->start[n];
   strut_arena *arena = &vibration->arena;
-  vibration->closed = strut_arena_allocate(arena, (size_t)model->contacts.count, 1);
-  vibration->state = strut_arena_allocate(arena, (size_t)strut_force_count(model, false), 1);
-  return vibration->closed && vibration->state &&
-         strut_arena_numbers(arena, (size_t)model->length,
-                             (double **[]){&vibration->q, &vibration->low, NULL}) &&
-         strut_arena_numbers(arena, entries,
-                             (double **[]){&vibration->k, &vibration->m, &vibration->d, NULL}) &&
-         strut_arena_numbers(
-             arena, n,
-             (double **[]){&vibration->mass, &vibration->own_mass, &vibration->work, NULL});
+  return STRUT_ALLOCATE(arena, STRUT_NEW(vibration->closed, model->contacts.count),
+                        STRUT_NEW(vibration->state, (size_t)strut_force_count(model, false))) &&
+         STRUT_NUMBERS(arena, model->length, &vibration->q, &vibration->low) &&
+         STRUT_NUMBERS(arena, entries, &vibration->k, &vibration->m, &vibration->d) &&
+         STRUT_NUMBERS(arena, n, &vibration->mass, &vibration->own_mass, &vibration->work);
 }
 
 strut_status strut_vibration_create(const strut_model *model, const double *q,

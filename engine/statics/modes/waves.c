@@ -296,13 +296,10 @@ static void solve(solver *self, const double phase[2], double *frequency) {
 static bool allocate(strut_waves *waves, size_t corners, size_t each) {
   size_t n = (size_t)waves->band_count;
   waves->count = (corners - 1) * each + 1;
-  waves->phase = strut_arena_allocate(&waves->arena, waves->count, sizeof *waves->phase);
-  waves->band = strut_arena_allocate(&waves->arena, n, sizeof *waves->band);
-  waves->gaps = strut_arena_allocate(&waves->arena, n, sizeof *waves->gaps);
-  return waves->phase && waves->band && waves->gaps &&
-         strut_arena_numbers(&waves->arena, waves->count, (double **[]){&waves->along, NULL}) &&
-         strut_arena_numbers(&waves->arena, waves->count * n,
-                             (double **[]){&waves->frequency, NULL});
+  return STRUT_ALLOCATE(&waves->arena, STRUT_NEW(waves->phase, waves->count),
+                        STRUT_NEW(waves->band, n), STRUT_NEW(waves->gaps, n)) &&
+         STRUT_NUMBERS(&waves->arena, waves->count, &waves->along) &&
+         STRUT_NUMBERS(&waves->arena, waves->count * n, &waves->frequency);
 }
 
 static void include(strut_waves *waves, const double phase[2], const double *frequency) {
@@ -466,8 +463,7 @@ static strut_status find(const strut_model *model, const strut_experiment *exper
   lattice_cell cell;
   size_t length = (size_t)model->length;
   double *q, *before;
-  if (!strut_arena_numbers(&waves->arena, length, (double **[]){&q, &before, NULL}))
-    return strut_no_memory(error, "");
+  if (!STRUT_NUMBERS(&waves->arena, length, &q, &before)) return strut_no_memory(error, "");
   strut_status status = create_cell(model, &waves->arena, &cell, error);
   if (status == STRUT_OK) status = choose_shape(model->scene, options->at, waves, q, error);
   if (status != STRUT_OK) return status;

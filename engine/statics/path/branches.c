@@ -66,14 +66,10 @@ void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
   walk->forks.count += !walk->failed;
 }
 
-bool strut_path_is_switched(strut_path_walk *walk, const double *unknowns) {
-  strut_path_system *system = &walk->system;
-  for (int32_t k = 0; k < strut_path_switch_count(system); k++) {
-    double value = strut_path_switch_value(system, k, unknowns);
-    if (!isfinite(value) || fabs(value) <= STRUT_PATH_EVEN * system->size) continue;
-    if ((value > 0) != strut_path_switch_is_on(system, k)) return true;
-  }
-  return false;
+/* Directions of members at the latest place count as theirs from now on, or what is found next. */
+static void forget_directions(strut_path_system *system) {
+  memset(system->latest.ahead, 0,
+         2 * (size_t)system->model->members.count * sizeof *system->latest.ahead);
 }
 
 /* The first two points of a branch, the bifurcation and one off it; false: none is found. */
@@ -86,7 +82,7 @@ static bool leave_fork(strut_path_walk *walk, const strut_path_fork *fork,
   if (contacts) memcpy(system->contacts.contact, fork->contact, contacts * sizeof *fork->contact);
   if (elements) memcpy(system->elements.element, fork->element, elements * sizeof *fork->element);
   memcpy(walk->y, fork->y, strut_path_bytes(walk));
-  strut_path_forget_directions(system);
+  forget_directions(system);
   if (!strut_path_tangent(system, ray->y, ray->direction, walk->tangent)) return false;
   walk->negative = ray->negative;
   walk->arc = 0.0;
@@ -328,9 +324,9 @@ static bool create_stages(stages *self) {
   self->held = strut_arena_copy(arena, self->model->fixed, length, sizeof *self->held);
   self->path = strut_allocate(experiment->stage_count, sizeof *self->path);
   if (!self->staged || !self->held || !self->path ||
-      !strut_arena_numbers(arena, length, (double **[]){&self->q, &self->moved, NULL}) ||
-      !strut_arena_numbers(arena, scene->load_count, (double **[]){&self->factor, NULL}) ||
-      !strut_arena_numbers(arena, scene->actuator_count, (double **[]){&self->drive, NULL}))
+      !STRUT_NUMBERS(arena, length, &self->q, &self->moved) ||
+      !STRUT_NUMBERS(arena, scene->load_count, &self->factor) ||
+      !STRUT_NUMBERS(arena, scene->actuator_count, &self->drive))
     return false;
   for (size_t i = 0; i < scene->load_count; i++) {
     self->factor[i] = 1.0;

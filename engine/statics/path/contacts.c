@@ -7,7 +7,6 @@
  * force is that of the kinetic coefficient, and the stiffness has no symmetry. Nothing moves at a speed: laws whose
  * force vanishes with the speed have no part in this.
  */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,14 +18,6 @@ static const double ALONG = 1e-9; /* a direction's part across its line */
 static const double STILL = 1e-9; /* what does not move [units of y] */
 static const double STIFF = 1e5;  /* what holds a contact, over the stiffest member or ground */
 static const double SMALL = 1e-6; /* of the range: a jump that is none */
-
-bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
-                                strut_path_contacts *contacts) {
-  const strut_contact_table *t = &model->contacts;
-  contacts->contact = strut_arena_allocate(arena, (size_t)t->count, sizeof *contacts->contact);
-  for (int32_t k = 0; k < t->surfaces; k++) contacts->has_corners |= t->surface[k].facets > 1;
-  return contacts->contact;
-}
 
 /* Position of a contact's node against a point [m]. */
 static void span_from(const strut_path_system *system, uint32_t at, const double *point,
@@ -172,14 +163,6 @@ static void add_friction_block(const strut_path_system *system, int32_t i, doubl
       block[2 * a + b] += own->sticks
                               ? system->contacts.grip * own->tangent[a] * own->tangent[b]
                               : per_gap * t[a] * n[b] + force * own->pose.curvature * n[a] * t[b];
-}
-
-bool strut_path_slides(const strut_path_system *system) {
-  for (int32_t i = 0; i < system->model->contacts.count; i++) {
-    const strut_path_contact *own = &system->contacts.contact[i];
-    if (own->grips && own->touches && !own->sticks) return true;
-  }
-  return false;
 }
 
 void strut_path_friction_begin(strut_path_system *system) {
@@ -425,8 +408,7 @@ bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member) {
          beyond[2] = {-ahead[0], -ahead[1]};
   char what[200];
   strut_path_evaluate(system, walk->y);
-  if (fabs(system->force[member].pose.strain) > STRUT_PATH_EVEN * system->size)
-    return false; /* it has a direction */
+  if (fabs(system->force[member].pose.strain) > STRUT_PATH_EVEN * system->size) return false;
   memset(row, 0, ((size_t)system->n + 1) * sizeof *row);
   for (uint32_t c = 0; c < 2; c++) {
     ahead[c] = beyond[c];

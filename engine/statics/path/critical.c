@@ -9,10 +9,9 @@
 #include "engine/statics/algebra.h"
 #include "engine/statics/path/path_parts.h"
 
-static const double COUPLED = 1e-6; /* of the load: what a null vector feels at a limit point */
-static const double WEAKLY = 1e-2;  /* likewise, at a bifurcation that is one but for rounding */
-static const double TOGETHER =
-    1e-9; /* [units of y] eigenvalues that vanish so near do so at once */
+static const double COUPLED = 1e-6;  /* of the load: what a null vector feels at a limit point */
+static const double WEAKLY = 1e-2;   /* likewise, at a bifurcation that is one but for rounding */
+static const double TOGETHER = 1e-9; /* [units of y] what vanishes so near does so at once */
 static const double VANISHED = 1e-5; /* of its value at the ends: an eigenvalue that is zero */
 static const double ONWARD = 0.02;   /* of a branch: change of the parameter by which it goes on */
 
@@ -331,13 +330,33 @@ static bool find_unsymmetric(strut_path_system *system) {
   return found;
 }
 
+/* Does some contact slide? */
+static bool slides(const strut_path_system *system) {
+  for (int32_t i = 0; i < system->model->contacts.count; i++) {
+    const strut_path_contact *own = &system->contacts.contact[i];
+    if (own->grips && own->touches && !own->sticks) return true;
+  }
+  return false;
+}
+
+/* Elements on a piece of their law that goes back: each is unstable by itself, whatever holds its ends. */
+static int32_t count_folded(const strut_path_system *system) {
+  int32_t count = 0;
+  for (int32_t i = 0; i < system->model->elements.count; i++) {
+    const strut_element *element = &system->model->elements.element[i];
+    const strut_path_element *own = &system->elements.element[i];
+    count += own->acts && strut_law_way(element->law, &element->numbers, own->piece) < 0;
+  }
+  return count;
+}
+
 bool strut_path_spectrum(strut_path_system *system, const double *unknowns,
                          strut_path_spectrum_detail wanted) {
   size_t first;
   if (!strut_path_evaluate(system, unknowns)) return false;
-  system->spectrum.negative = system->spectrum.folded = strut_path_count_folded(system);
+  system->spectrum.negative = system->spectrum.folded = count_folded(system);
   if (system->n == 0) return true;
-  if (strut_path_slides(system) || strut_path_has_rubbing(system)) return find_unsymmetric(system);
+  if (slides(system) || strut_path_has_rubbing(system)) return find_unsymmetric(system);
   if (wanted == STRUT_PATH_VECTORS) {
     find_vectors(system);
   } else {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/path/path_parts.h"
-
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "engine/statics/path/path_parts.h"
 
 /* Regula falsi with the Illinois correction; each trial is corrected back onto the path. */
 
@@ -18,8 +18,7 @@ static const double NARROW = 1e-13; /* of the piece's length */
 static const double FORK = 1e-4;
 static const double BLURRED = 100; /* and this many roundings of the stiffness */
 static const double ALIKE = 20;    /* over an eigenvalue: another one that is near zero beside it */
-static const double APART =
-    1e-4; /* [units of y] between trials about a bifurcation, where the piece has room */
+static const double APART = 1e-4;  /* [units of y] between trials about a bifurcation */
 
 double strut_path_measure_eigenvalue(strut_path_system *system, const double *unknowns,
                                      const strut_path_piece *piece, int32_t which) {
@@ -59,8 +58,8 @@ typedef struct trials {
 
 static bool make_trials(const strut_path_system *system, strut_arena *arena, trials *self) {
   for (int k = 0; k < KEPT; k++) {
-    self->kept[k].y = strut_arena_allocate(arena, 2 * ((size_t)system->n + 1), sizeof(double));
-    if (!self->kept[k].y) return false;
+    if (!STRUT_ALLOCATE(arena, STRUT_NEW(self->kept[k].y, 2 * ((size_t)system->n + 1))))
+      return false;
   }
   return true;
 }
@@ -201,8 +200,6 @@ typedef struct switch_group {
   double here[MOST_TOGETHER]; /* their values at the kink [m] */
 } switch_group;
 
-static bool is_thrown(bool on, double value) { return on ? value < 0 : value > 0; }
-
 static switch_group collect_switches(strut_path_walk *walk, int32_t which) {
   strut_path_system *system = &walk->system;
   switch_group g = {0};
@@ -272,9 +269,10 @@ static bool find_tangent(strut_path_walk *walk, const switch_group *self, unsign
 static bool choose_switches(strut_path_walk *walk, const switch_group *self, const double *beyond,
                             unsigned *thrown) {
   unsigned first = 1u << self->first;
-  for (int32_t i = 0; i < self->count; i++)
-    if (is_thrown(self->was_on[i], strut_path_switch_value(&walk->system, self->which[i], beyond)))
-      first |= 1u << i;
+  for (int32_t i = 0; i < self->count; i++) {
+    double value = strut_path_switch_value(&walk->system, self->which[i], beyond);
+    if (self->was_on[i] ? value < 0 : value > 0) first |= 1u << i;
+  }
   *thrown = first;
   if (find_tangent(walk, self, first, beyond)) return true;
   for (*thrown = 1; *thrown < 1u << self->count; ++*thrown)

@@ -6,7 +6,6 @@
  * follows from the tensions (capstan.h), so that forces depend on positions alone and their derivatives are
  * found by differences.
  */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,22 +17,6 @@ static const double STEP = 1e-7; /* of the size: differences */
 
 bool strut_path_rubs(const strut_path_system *system, int32_t i) {
   return system->elements.material && strut_has_capstan(&system->model->elements.element[i]);
-}
-
-bool strut_path_guides_create(strut_path_system *system, const strut_path *after) {
-  const strut_element_table *elements = &system->model->elements;
-  size_t slots = (size_t)system->model->members.slots;
-  bool some = false;
-  for (int32_t i = 0; i < elements->count; i++)
-    some = some || strut_has_capstan(&elements->element[i]);
-  if (!some) return true;
-  system->elements.material =
-      strut_arena_copy(&system->arena, system->model->members.rest, slots, sizeof(double));
-  system->elements.guide_mode =
-      strut_arena_allocate(&system->arena, slots, sizeof *system->elements.guide_mode);
-  if (system->elements.guide_mode && after && after->guide_mode)
-    memcpy(system->elements.guide_mode, after->guide_mode, slots * sizeof *after->guide_mode);
-  return system->elements.material && system->elements.guide_mode;
 }
 
 bool strut_path_has_rubbing(const strut_path_system *system) { return system->elements.material; }

@@ -39,8 +39,7 @@ typedef struct reduction {
   const double *centre; /* (2 n + 2) */
   int32_t null, space;  /* dimensions of the kernel; with the parameter */
   double radius;
-  gsl_matrix
-      *basis; /* (n + 1, space), orthonormal: the kernel, then the rest of the path's plane */
+  gsl_matrix *basis;  /* (n + 1, space), orthonormal: the kernel, then the rest of the plane */
   gsl_matrix *system; /* (n + space, n + space) */
   gsl_vector *right, *solution;
   gsl_permutation *order;
@@ -206,6 +205,17 @@ static bool find_root(const reduction *self, double *z) {
   return false;
 }
 
+/* Has an element, a cable or a contact to change before the point? */
+static bool is_switched(strut_path_walk *walk, const double *unknowns) {
+  strut_path_system *system = &walk->system;
+  for (int32_t k = 0; k < strut_path_switch_count(system); k++) {
+    double value = strut_path_switch_value(system, k, unknowns);
+    if (!isfinite(value) || fabs(value) <= STRUT_PATH_EVEN * system->size) continue;
+    if ((value > 0) != strut_path_switch_is_on(system, k)) return true;
+  }
+  return false;
+}
+
 /* Corrects a zero of the polynomial, by the full equations, and keeps it unless it is known. */
 static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   strut_path_walk *walk = self->w;
@@ -223,7 +233,7 @@ static bool keep_ray(reduction *self, const double *z, strut_path_rays *rays) {
   if (!(length < 1.5 * self->radius)) return false;
   for (int32_t k = 0; k < rays->count; k++)
     if (strut_path_distance(walk, self->y, rays->ray[k].y) < APART * self->radius) return true;
-  if (strut_path_is_switched(walk, self->y)) return false;
+  if (is_switched(walk, self->y)) return false;
   if (rays->count == STRUT_PATH_RAYS) return true;
   strut_path_ray *ray = &rays->ray[rays->count];
   ray->y = strut_arena_copy(&system->arena, self->y, 1, strut_path_bytes(walk));

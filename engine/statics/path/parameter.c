@@ -2,17 +2,15 @@
 /*
  * Built-in parameters are linear in one term; scenes are compiled anew, and their terms compared.
  */
-#include "engine/statics/path/path_parts.h"
-
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/path/path_parts.h"
+
 #include "engine/model/compile_parts.h"
 
-static const double VALUE_STEP =
-    1e-5; /* of the range: values whose difference gives a derivative */
+static const double VALUE_STEP = 1e-5; /* of the range: apart, for a derivative */
 
 /* Numbers of some terms, one after the other from `stiffness` on. */
 static size_t count_terms(const strut_model *model) {
@@ -22,8 +20,7 @@ static size_t count_terms(const strut_model *model) {
 bool strut_path_terms_create(const strut_model *model, strut_arena *arena,
                              strut_path_terms *terms) {
   size_t length = (size_t)model->length, slots = (size_t)model->members.slots;
-  terms->stiffness = strut_arena_allocate(arena, count_terms(model), sizeof(double));
-  if (!terms->stiffness) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(terms->stiffness, count_terms(model)))) return false;
   terms->rest = terms->stiffness + slots, terms->rest_low = terms->rest + slots;
   terms->position = terms->rest_low + slots, terms->position_low = terms->position + length;
   terms->force = terms->position_low + length;
@@ -46,18 +43,6 @@ static void free_scene(struct strut_path_scene *scene) {
 void strut_path_terms_release(strut_path_terms *terms) {
   free_scene(terms->scene);
   terms->scene = NULL;
-}
-
-void strut_path_parameter_free(strut_path_parameter *parameter) {
-  strut_path_terms_release(&parameter->base);
-  strut_path_terms_release(&parameter->low);
-  strut_path_terms_release(&parameter->high);
-}
-
-static void copy_terms(const strut_model *model, const strut_path_terms *from,
-                       strut_path_terms *to) {
-  memcpy(to->stiffness, from->stiffness, count_terms(model) * sizeof *to->stiffness);
-  to->laws = from->laws;
 }
 
 static void read_terms(const strut_model *model, strut_path_terms *terms) {
@@ -206,7 +191,9 @@ bool strut_path_parameter_terms(strut_path_parameter *parameter, strut_dd value,
   strut_error error = {0};
   if (parameter->options->over == STRUT_PATH_OVER_SCENE)
     return read_scene_terms(parameter, dd_double(value), terms);
-  copy_terms(parameter->model, &parameter->base, terms);
+  memcpy(terms->stiffness, parameter->base.stiffness,
+         count_terms(parameter->model) * sizeof *terms->stiffness);
+  terms->laws = parameter->base.laws;
   if (parameter->options->over == STRUT_PATH_OVER_LOAD) {
     const double *moment = parameter->load + parameter->model->length;
     for (int32_t i = 0; i < parameter->model->length; i++)
@@ -244,8 +231,7 @@ static bool difference_scenes(strut_path_parameter *parameter, double value,
   size_t length = (size_t)parameter->model->length, slots = (size_t)parameter->model->members.slots;
   double h = VALUE_STEP * fabs(parameter->range), low = value - h, high = value + h;
   strut_path_terms *terms = &parameter->low, *b = &parameter->high;
-  double refused_at =
-      parameter->refused_at; /* what is refused beside a value does not refuse the value */
+  double refused_at = parameter->refused_at; /* values beside it do not count */
   strut_error refusal = parameter->refusal;
   if (!read_scene_terms(parameter, low, terms)) {
     low = value;
@@ -356,8 +342,7 @@ strut_status strut_path_parameter_create(strut_path_parameter *parameter, const 
   return check_effect(parameter, error);
 }
 
-static const double STRAIN_STEP =
-    1e-5; /* relative: natural strains whose difference gives a derivative */
+static const double STRAIN_STEP = 1e-5; /* of the strain: apart, for a derivative */
 
 /* A kink that matters: it lies where the element can act. */
 static bool is_kink_felt(const strut_element *element, double kink) {
@@ -377,10 +362,9 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
   const strut_element_table *t = &model->elements;
   *elements = (strut_path_elements){0};
   if (t->count == 0) return true;
-  elements->element = strut_arena_allocate(arena, (size_t)t->count, sizeof *elements->element);
-  elements->switches =
-      strut_arena_allocate(arena, (size_t)count_switches(t) + 1, sizeof *elements->switches);
-  if (!elements->element || !elements->switches) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(elements->element, t->count),
+                      STRUT_NEW(elements->switches, (size_t)count_switches(t) + 1)))
+    return false;
   for (int32_t i = 0; i < t->count; i++) {
     const strut_element *element = &t->element[i];
     int kinks = strut_law_kinks(element->law, &element->numbers);
@@ -398,29 +382,6 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
     }
   }
   return true;
-}
-
-void strut_path_find_pieces(strut_path_system *system) {
-  const double *rest = system->equations.terms.rest;
-  strut_element_pose pose;
-  for (int32_t i = 0; i < system->model->elements.count; i++) {
-    const strut_element *element = &system->model->elements.element[i];
-    if (element->law != STRUT_LAW_FOLDING) continue;
-    strut_element_evaluate(system->model, i, rest, system->latest.q,
-                           system->elements.element[i].turn, &pose);
-    system->elements.element[i].piece =
-        strut_element_piece(element, rest, pose.strain - pose.natural);
-  }
-}
-
-int32_t strut_path_count_folded(const strut_path_system *system) {
-  int32_t count = 0;
-  for (int32_t i = 0; i < system->model->elements.count; i++) {
-    const strut_element *element = &system->model->elements.element[i];
-    const strut_path_element *own = &system->elements.element[i];
-    count += own->acts && strut_law_way(element->law, &element->numbers, own->piece) < 0;
-  }
-  return count;
 }
 
 /* Natural strain where the parameter has its present value, or in other terms. */
@@ -506,43 +467,6 @@ void strut_path_add_elements(strut_path_system *system) {
   }
 }
 
-void strut_path_keep_turns(strut_path_system *system) {
-  for (int32_t i = 0; i < system->model->elements.count; i++)
-    system->elements.element[i].turn = strut_path_element_force(system, i)->pose.strain;
-}
-
-double strut_path_element_tension(const strut_path_system *system, int32_t member) {
-  const strut_element_table *elements = &system->model->elements;
-  const strut_element *element = strut_element_of_member(elements, member);
-  double sum = 0.0;
-  for (; element; element = element->sibling >= 0 ? &elements->element[element->sibling] : NULL) {
-    double force =
-        strut_path_element_force(system, (int32_t)(element - elements->element))->pose.force;
-    if (element->carries)
-      force = element->carries * fmax(element->carries * force, 0.0); /* at a kink, rounding */
-    sum += force;
-  }
-  return sum;
-}
-
-void strut_path_element_forces(const strut_path_system *system, strut_element_role role,
-                               double *force) {
-  const strut_element_table *elements = &system->model->elements;
-  for (int32_t i = 0; i < elements->count; i++)
-    if (elements->element[i].role == role)
-      force[elements->element[i].item] =
-          strut_path_element_force(system, i)->pose.force + 0.0; /* no -0 */
-}
-
-void strut_path_pressures(const strut_path_system *system, double *pressure) {
-  const strut_element_table *elements = &system->model->elements,
-                            *now = &system->equations.terms.laws->elements;
-  for (int32_t i = 0; i < elements->count; i++)
-    if (elements->element[i].role == STRUT_ELEMENT_CELL)
-      pressure[elements->element[i].item] =
-          now->element[i].numbers.outside - strut_path_element_force(system, i)->pose.force;
-}
-
 /*
  * One that carries one sign acts where both its strain beyond the natural one and its force have
  * it: the nearer of the two to zero decides. Angles are turned into lengths by the size.
@@ -574,21 +498,4 @@ double strut_path_element_switch_value(const strut_path_system *system, int32_t 
   if (beyond > 0.0 && r.force != 0.0 && slope > 0.0)
     beyond = fmin(beyond, element->carries * r.force / slope);
   return unit * beyond;
-}
-
-bool strut_path_element_switch_is_on(const strut_path_system *system, int32_t which) {
-  const strut_path_element_switch *element_switch = &system->elements.switches[which];
-  const strut_path_element *own = &system->elements.element[element_switch->element];
-  return element_switch->kink < 0 ? own->acts : own->piece > element_switch->kink;
-}
-
-void strut_path_element_switch_set(strut_path_system *system, int32_t which, bool on) {
-  const strut_path_element_switch *element_switch = &system->elements.switches[which];
-  strut_path_element *own = &system->elements.element[element_switch->element];
-  if (element_switch->kink < 0)
-    own->acts = on;
-  else if (on)
-    own->piece = own->piece > element_switch->kink ? own->piece : element_switch->kink + 1;
-  else
-    own->piece = own->piece > element_switch->kink ? element_switch->kink : own->piece;
 }

@@ -136,11 +136,10 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
                                      strut_arena *arena, strut_scene *scene, strut_error *error) {
   const strut_actuator *a = &scene->actuators[actuator];
   double rest = drawn->members.rest[strut_actuator_slot(drawn, (size_t)actuator)] + value;
-  scene->cells = strut_arena_copy(arena, scene->cells, scene->cell_count, sizeof *scene->cells);
-  scene->hinges = strut_arena_copy(arena, scene->hinges, scene->hinge_count, sizeof *scene->hinges);
-  scene->members =
-      strut_arena_copy(arena, scene->members, scene->member_count, sizeof *scene->members);
-  if (!scene->cells || !scene->hinges || !scene->members) return strut_no_memory(error, "");
+  if (!STRUT_ALLOCATE(arena, STRUT_COPY(scene->cells, scene->cells, scene->cell_count),
+                      STRUT_COPY(scene->hinges, scene->hinges, scene->hinge_count),
+                      STRUT_COPY(scene->members, scene->members, scene->member_count)))
+    return strut_no_memory(error, "");
   if (a->member < 0 && a->hinge < 0) scene->cells[a->cell].pressure = rest;
   if (a->member < 0 && a->hinge >= 0) scene->hinges[a->hinge].rest_angle = rest;
   if (a->member < 0) return STRUT_OK;
@@ -276,15 +275,11 @@ static strut_status list_held(const path_start *self, strut_path *path, strut_er
 }
 
 static bool allocate_walk(strut_path_walk *walk) {
-  size_t count = 2 * ((size_t)walk->system.n + 1);
-  double **arrays[] = {&walk->y,      &walk->tangent, &walk->next,      &walk->next_tangent,
-                       &walk->trial,  &walk->spare,   &walk->upward,    &walk->fork,
-                       &walk->values, &walk->scale,   &walk->part.from, &walk->part.tangent,
-                       &walk->part.to};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-    *arrays[i] = strut_arena_allocate(&walk->system.arena, count, sizeof(double));
-    if (!*arrays[i]) return false;
-  }
+  if (!STRUT_NUMBERS(&walk->system.arena, 2 * (walk->system.n + 1), &walk->y, &walk->tangent,
+                     &walk->next, &walk->next_tangent, &walk->trial, &walk->spare, &walk->upward,
+                     &walk->fork, &walk->values, &walk->scale, &walk->part.from,
+                     &walk->part.tangent, &walk->part.to))
+    return false;
   walk->upward[walk->system.n] = 1.0;
   walk->step = 0.01;
   return true;
@@ -296,6 +291,24 @@ static bool allocate_branches(strut_path_walk *walk) {
       strut_arena_allocate(&walk->system.arena, STRUT_PATH_FORKS, sizeof *walk->forks.fork);
   walk->path->branches = strut_allocate(STRUT_PATH_BRANCHES, sizeof *walk->path->branches);
   return walk->forks.fork && walk->path->branches;
+}
+
+/* Takes the materials that the model remembers, if some cable rubs, and what slipped at the end of the path before,
+    or NULL; false: out of memory. */
+static bool create_guides(strut_path_system *system, const strut_path *after) {
+  const strut_element_table *elements = &system->model->elements;
+  size_t slots = (size_t)system->model->members.slots;
+  bool some = false;
+  for (int32_t i = 0; i < elements->count; i++)
+    some = some || strut_has_capstan(&elements->element[i]);
+  if (!some) return true;
+  system->elements.material =
+      strut_arena_copy(&system->arena, system->model->members.rest, slots, sizeof(double));
+  system->elements.guide_mode =
+      strut_arena_allocate(&system->arena, slots, sizeof *system->elements.guide_mode);
+  if (system->elements.guide_mode && after && after->guide_mode)
+    memcpy(system->elements.guide_mode, after->guide_mode, slots * sizeof *after->guide_mode);
+  return system->elements.material && system->elements.guide_mode;
 }
 
 static strut_status create_walk(path_start *self, double until, strut_path_walk *walk,
@@ -316,7 +329,7 @@ static strut_status create_walk(path_start *self, double until, strut_path_walk 
                                              .range = until - self->options->from};
   if (self->options->friction) {
     bool grips = strut_path_friction_create(system);
-    if (!strut_path_guides_create(system, self->options->after)) return strut_no_memory(error, "");
+    if (!create_guides(system, self->options->after)) return strut_no_memory(error, "");
     walk->path->grips = grips || strut_path_has_rubbing(system);
   }
   return strut_path_parameter_create(&system->parameter, self->q, &system->arena, error);
@@ -324,17 +337,14 @@ static strut_status create_walk(path_start *self, double until, strut_path_walk 
 
 /* Keeps on which piece of its law each element is, and materials between guides; false: out of memory. */
 static bool keep_pieces(const strut_path_system *system, strut_path *path) {
-  size_t count = (size_t)system->model->elements.count;
-  int *piece = strut_arena_allocate(&path->arena, count + 1, sizeof *piece);
-  for (size_t i = 0; i < count && piece; i++) piece[i] = system->elements.element[i].piece;
+  int32_t count = system->model->elements.count, slots = system->model->members.slots;
+  int *piece = strut_arena_allocate(&path->arena, (size_t)count + 1, sizeof *piece);
+  for (int32_t i = 0; i < count && piece; i++) piece[i] = system->elements.element[i].piece;
   path->piece = piece;
-  if (system->elements.material)
-    path->material = strut_arena_copy(&path->arena, system->elements.material,
-                                      (size_t)system->model->members.slots, sizeof(double));
-  if (system->elements.material)
-    path->guide_mode = strut_arena_copy(&path->arena, system->elements.guide_mode,
-                                        (size_t)system->model->members.slots, sizeof(int));
-  return piece && ((path->material && path->guide_mode) || !system->elements.material);
+  return piece &&
+         (!system->elements.material ||
+          STRUT_ALLOCATE(&path->arena, STRUT_COPY(path->material, system->elements.material, slots),
+                         STRUT_COPY(path->guide_mode, system->elements.guide_mode, slots)));
 }
 
 /* How much of the path, or of its steps, is done. */
@@ -433,7 +443,6 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
                       model->scene->actuators[options->index].name);
   strut_status place = check_place(model, error);
   if (place) return place;
-  size_t length = (size_t)model->length;
   bool over_load = options->over == STRUT_PATH_OVER_LOAD;
   bool unsaid = over_load && options->until == 0 && options->from == 0;
   double until = unsaid ? 1.0 : options->until;
@@ -445,10 +454,10 @@ strut_status strut_path_follow(const strut_model *model, const strut_experiment 
   if (!(fabs(until - options->from) < LONGEST_RANGE))
     return strut_fail(error, STRUT_USAGE, "the path's range from %g to %g is too large",
                       options->from, until);
-  b.load = strut_arena_allocate(&b.arena, length + (size_t)model->members.slots, sizeof *b.load);
-  b.q = strut_arena_allocate(&b.arena, length, sizeof *b.q);
+  bool made = STRUT_ALLOCATE(&b.arena, STRUT_NEW(b.load, model->length + model->members.slots),
+                             STRUT_NEW(b.q, model->length));
   strut_status status =
-      b.load && b.q ? name_parameter(model, options, path, error) : strut_no_memory(error, "");
+      made ? name_parameter(model, options, path, error) : strut_no_memory(error, "");
   if (status == STRUT_OK && over_load)
     status = choose_loads(model, options->load, b.load, path, error);
   if (status == STRUT_OK) status = make_model(&b, error);

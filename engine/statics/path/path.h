@@ -61,8 +61,7 @@ typedef struct strut_path_state {
   double *distance; /* (distances) force [N] */
   double *reaction; /* (length) force of supports on held coordinates, else 0 [N] */
   double *contact;  /* (contacts) normal force of the ground [N] */
-  double *
-      friction; /* (contacts) its force on the node along the tangent; 0 unless friction is kept [N] */
+  double *friction; /* (contacts) on the node along the tangent; 0 unless it is kept [N] */
 } strut_path_state;
 
 typedef struct strut_path_point {
@@ -123,12 +122,11 @@ typedef struct strut_path {
   strut_path_point *points;
   strut_path_event *events;
   strut_path_end end;
-  char remark[1000]; /* why it ended before `until`; else empty */
-  const double *
-      material; /* (slots) of cables that rub at their guides at the end, as capstan.h has them; or NULL */
-  const int *guide_mode; /* (slots) what slipped last at their guides; or NULL */
-  const int *piece;      /* (elements) of the law of each at the end, as elements.h counts them */
-  const uint8_t *held;   /* (length) 1 where a coordinate has a reaction, in some stage */
+  char remark[1000];      /* why it ended before `until`; else empty */
+  const double *material; /* (slots) of cables that rub at guides, at the end: capstan.h; or NULL */
+  const int *guide_mode;  /* (slots) what slipped last at their guides; or NULL */
+  const int *piece;       /* (elements) of the law of each at the end, as elements.h counts them */
+  const uint8_t *held;    /* (length) 1 where a coordinate has a reaction, in some stage */
   size_t stage_count;
   struct strut_path *stages; /* (stage_count) of a path in stages, those before this one */
   size_t branch_count;
@@ -165,18 +163,15 @@ typedef struct strut_path_options {
   const char *unit;
   strut_path_scene_at scene_at;
   void *context;
-  const char
-      *at; /* equilibrium to begin at, as strut_rest_state_find knows it; NULL: where the start
-                        comes to rest */
+  const char *at;      /* equilibrium to begin at by name; NULL: where the start comes to rest */
   const double *start; /* (length) or, before `at`, the equilibrium itself, with the parameter at
                           `from`; a coordinate that is displaced has its value there */
   bool friction;       /* static and kinetic friction act, by the history of the path */
-  const strut_path
-      *after;       /* with `start`: the path that ended there, whose elements' memory goes on */
-  double from;      /* where the path begins: in SI, or the factor */
-  double until;     /* where it ends; a load's factor from 0 to 0 ends at 1 */
-  int32_t steps;    /* maximum number of steps; 0: the usual ones; of each branch, too */
-  int32_t branches; /* bifurcations are left for other paths: 1 on this path, 2 on its branches
+  const strut_path *after; /* with `start`: the path whose end and memory it goes on from */
+  double from;             /* where the path begins: in SI, or the factor */
+  double until;            /* where it ends; a load's factor from 0 to 0 ends at 1 */
+  int32_t steps;           /* maximum number of steps; 0: the usual ones; of each branch, too */
+  int32_t branches;     /* bifurcations are left for other paths: 1 on this path, 2 on its branches
                            too, ... */
   strut_path_stop stop; /* or earlier, here */
 } strut_path_options;

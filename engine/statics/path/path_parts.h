@@ -19,8 +19,7 @@ typedef struct strut_path_terms {
   double *rest, *rest_low;         /* (slots) rest length as a sum of two [m] */
   double *position, *position_low; /* (length) of held coordinates, likewise [m] */
   double *force;                   /* (length) gravity and loads [N] */
-  const strut_model
-      *laws; /* whose elements, contacts and grounds have the numbers of these terms */
+  const strut_model *laws;         /* with elements, contacts and grounds of these numbers */
   struct strut_path_scene *scene; /* that `laws` is of if it is not the path's own model, or NULL */
 } strut_path_terms;
 
@@ -47,9 +46,6 @@ void strut_path_terms_release(strut_path_terms *terms);
  */
 strut_status strut_path_parameter_create(strut_path_parameter *parameter, const double *position,
                                          strut_arena *arena, strut_error *error);
-
-/** Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
-void strut_path_parameter_free(strut_path_parameter *parameter);
 
 /** The terms at a value; false: there are none, parameter->refusal says why. */
 bool strut_path_parameter_terms(strut_path_parameter *parameter, strut_dd value,
@@ -85,15 +81,9 @@ typedef struct strut_path_elements {
   strut_path_element *element;         /* (elements) */
   double noise;                        /* rounding of the stiffest [N/m] */
   strut_path_element_switch *switches; /* (switch_count) kinks of one element ascending */
-  double *
-      material; /* (slots) of cables that rub at their guides, at the last point; NULL: none does */
-  int *guide_mode; /* (slots) STRUT_GUIDE_*, by the same places */
+  double *material; /* (slots) of cables that rub at guides, at the last point; or NULL */
+  int *guide_mode;  /* (slots) STRUT_GUIDE_*, by the same places */
 } strut_path_elements;
-
-/** Pieces of laws that fold, at system->latest->q, as they follow from what the model remembers. */
-void strut_path_find_pieces(struct strut_path_system *system);
-/** Elements on a piece of their law that goes back: each is unstable by itself, whatever holds its ends. */
-int32_t strut_path_count_folded(const struct strut_path_system *system);
 
 /** False: out of memory. */
 bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
@@ -101,27 +91,12 @@ bool strut_path_elements_create(const strut_model *model, strut_arena *arena,
 
 /** Adds forces, stiffness and the parameter's slope of all elements at system->q. */
 void strut_path_add_elements(struct strut_path_system *system);
-/** Angles are taken near those of the last evaluation from now on. */
-void strut_path_keep_turns(struct strut_path_system *system);
-
-/** Force of all elements of member j [N]. */
-double strut_path_element_tension(const struct strut_path_system *system, int32_t member);
-/** Forces of the elements of a role, one of each thing: moments of hinges [N m], forces of distances [N]. */
-void strut_path_element_forces(const struct strut_path_system *system, strut_element_role role,
-                               double *force);
-/** Pressures in the cells [N/m] (cells). */
-void strut_path_pressures(const struct strut_path_system *system, double *pressure);
 
 /** As strut_path_switch_value, for an element's switch at the terms and positions of the system. */
 double strut_path_element_switch_value(const struct strut_path_system *system, int32_t which);
-bool strut_path_element_switch_is_on(const struct strut_path_system *system, int32_t which);
-void strut_path_element_switch_set(struct strut_path_system *system, int32_t which, bool on);
 
 /* Cables that rub at their guides, in a path that keeps friction. For parameter.c and walk.c. */
 
-/** Takes the materials that the model remembers, if some cable rubs, and what slipped at the end of the path before,
-    or NULL; false: out of memory. */
-bool strut_path_guides_create(struct strut_path_system *system, const strut_path *after);
 /** Is this element such a cable? */
 bool strut_path_rubs(const struct strut_path_system *system, int32_t element);
 /** Is there one? Then the stiffness has no symmetry. */
@@ -152,9 +127,6 @@ typedef struct strut_path_contacts {
   bool has_corners;            /* some surface has several facets: then a switch more for each */
 } strut_path_contacts;
 
-/** False: out of memory. */
-bool strut_path_contacts_create(const strut_model *model, strut_arena *arena,
-                                strut_path_contacts *contacts);
 /** Adds forces, stiffness and the parameter's slope of all contacts at system->latest->q. */
 void strut_path_add_contacts(struct strut_path_system *system);
 /** The normal forces, friction along the tangents, and what they take from the reactions (length). */
@@ -174,8 +146,6 @@ void strut_path_contact_switch_set(struct strut_path_system *system, int32_t con
 bool strut_path_friction_create(struct strut_path_system *system);
 /** All that touch stick, with the forces that equilibrium needs; after strut_path_evaluate. */
 void strut_path_friction_begin(struct strut_path_system *system);
-/** Does some contact slide? */
-bool strut_path_slides(const struct strut_path_system *system);
 /** Is the kinetic coefficient of a contact another than the static one? */
 bool strut_path_friction_drops(const struct strut_path_system *system, int32_t contact);
 /** As strut_path_switch_value, of a contact that sticks; of another one -INFINITY. */
@@ -240,9 +210,8 @@ typedef struct strut_path_system {
   } algebra;
   /** After strut_path_spectrum. */
   struct {
-    double *value; /* (n) ascending, of algebra.values */
-    int32_t
-        negative; /* eigenvalues below zero, and elements folded back, each of which has one inside */
+    double *value;     /* (n) ascending, of algebra.values */
+    int32_t negative;  /* eigenvalues below zero, and elements folded back, which have one each */
     int32_t folded;    /* these */
     double noise;      /* rounding of the stiffness's entries [N/m] */
     double soft_parts; /* the largest part that an element has in a soft eigenvalue [N/m] */
@@ -277,9 +246,6 @@ void strut_path_add_strain(strut_path_system *system, const strut_force *force, 
 
 /** Everything at y, which need be no equilibrium; false: no scene has this value. */
 bool strut_path_evaluate(strut_path_system *system, const double *unknowns);
-/** After strut_path_evaluate: reactions (length), normal forces and friction of contacts. */
-void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact,
-                          double *friction);
 
 /**
  * Newton's method to equilibrium on the plane row . y = value. Iterations used, or -1: it does not
@@ -454,8 +420,6 @@ bool strut_path_find_criticals(strut_path_walk *walk, const strut_path_piece *pi
 void strut_path_find_rays(strut_path_walk *walk, const double *unknowns, strut_path_rays *rays);
 /** Does only rounding part two branches that pass between two points? */
 bool strut_path_is_rounding(strut_path_walk *walk, const double *from, const double *to);
-/** Has an element, a cable or a contact to change before the point? */
-bool strut_path_is_switched(strut_path_walk *walk, const double *unknowns);
 
 /** Are branches to be followed from the bifurcation y? */
 bool strut_path_wants_fork(strut_path_walk *walk, const double *unknowns);
@@ -485,9 +449,6 @@ bool strut_path_pass_corner(strut_path_walk *walk, int32_t contact);
 bool strut_path_pass_zero_length(strut_path_walk *walk, int32_t member);
 /** Is this switch that of such a member? */
 bool strut_path_turns_round(const strut_path_system *system, int32_t which);
-/** Directions of members at the latest place count as theirs from now on, or what is found next. */
-void strut_path_keep_directions(strut_path_system *system);
-void strut_path_forget_directions(strut_path_system *system);
 /** The same where a contact begins to slide, with the same jump, or to stick. */
 bool strut_path_pass_grip(strut_path_walk *walk, int32_t which, const double *beyond);
 /** At a point that is kept: materials are renewed, and guides that began to slip or stick since the last one reported. */

@@ -51,17 +51,14 @@ static bool try_step(strut_path_walk *walk, double bend) {
          (bend <= 0.0 || is_arc(walk));
 }
 
-/* Cables that meet or leave a circle, or begin to rub, bend a path at once with no switch that says where. */
-static bool has_hidden_kinks(const strut_path_system *system) {
-  return strut_path_has_rubbing(system) || system->model->strains >> STRUT_STRAIN_WRAP & 1u;
-}
-
 /* Predictor and corrector, shorter until they succeed: the next point and its tangent. */
 static bool find_next(strut_path_walk *walk) {
   for (; walk->step >= SHORTEST; walk->step *= 0.5)
     if (try_step(walk, BEND)) return true;
-  for (walk->step = BLUNT; has_hidden_kinks(&walk->system) && walk->step >= SHORTEST;
-       walk->step *= 0.1)
+  /* cables that meet or leave a circle, or begin to rub, bend a path at once with no switch that says where */
+  bool hidden = strut_path_has_rubbing(&walk->system) ||
+                walk->system.model->strains >> STRUT_STRAIN_WRAP & 1u;
+  for (walk->step = BLUNT; hidden && walk->step >= SHORTEST; walk->step *= 0.1)
     if (try_step(walk, 0.0)) return true;
   walk->step = SHORTEST;
   return false;
@@ -91,10 +88,9 @@ typedef struct check {
 } check;
 
 static bool allocate_check(const strut_path_walk *walk, check *self) {
-  return strut_arena_numbers(&self->arena, 2 * ((size_t)walk->system.n + 1),
-                             (double **[]){&self->whole.y, &self->whole.tangent, &self->whole.end,
-                                           &self->inner.y, &self->inner.tangent, &self->inner.end,
-                                           &self->y, &self->tangent, &self->next_tangent, NULL});
+  return STRUT_NUMBERS(&self->arena, 2 * ((size_t)walk->system.n + 1), &self->whole.y,
+                       &self->whole.tangent, &self->whole.end, &self->inner.y, &self->inner.tangent,
+                       &self->inner.end, &self->y, &self->tangent, &self->next_tangent);
 }
 
 /*

@@ -21,8 +21,7 @@ static const double FRESH = 1e-3;      /* of the range: rates from so near by do
 
 static bool make_matrices(strut_path_system *system) {
   strut_arena *arena = &system->arena;
-  size_t unknowns =
-      (size_t)system->n + 1; /* all may be held: then the parameter alone is unknown */
+  size_t unknowns = (size_t)system->n + 1; /* perhaps the parameter alone */
   size_t n = system->n > 0 ? (size_t)system->n : 1;
   system->algebra.eigen = gsl_eigen_symmv_alloc(n);
   system->algebra.values_only = gsl_eigen_symm_alloc(n);
@@ -37,23 +36,30 @@ static bool make_matrices(strut_path_system *system) {
          system->algebra.values_only;
 }
 
+/* False: out of memory. */
+static bool create_contacts(const strut_model *model, strut_arena *arena,
+                            strut_path_contacts *contacts) {
+  const strut_contact_table *t = &model->contacts;
+  contacts->contact = strut_arena_allocate(arena, (size_t)t->count, sizeof *contacts->contact);
+  for (int32_t k = 0; k < t->surfaces; k++) contacts->has_corners |= t->surface[k].facets > 1;
+  return contacts->contact;
+}
+
 static bool make_arrays(strut_path_system *system) {
-  size_t length = (size_t)system->model->length, members = (size_t)system->model->members.count;
-  double **arrays[] = {&system->latest.q,       &system->latest.q_low,  &system->latest.g,
-                       &system->latest.slope,   &system->latest.row,    &system->held.motion[0],
-                       &system->held.motion[1], &system->held.motion[2]};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-    if (!(*arrays[i] = strut_arena_allocate(&system->arena, length + 1, sizeof(double))))
-      return false;
-  system->latest.pulling = strut_arena_allocate(&system->arena, members, 1);
-  system->latest.ahead = strut_arena_allocate(&system->arena, 2 * members, sizeof(double));
+  size_t members = (size_t)system->model->members.count;
   int32_t forces = strut_force_count(system->model, true);
-  system->force = strut_arena_allocate(&system->arena, (size_t)forces, sizeof *system->force);
-  if (!system->latest.pulling || !system->latest.ahead || !system->force) return false;
+  double **motion = system->held.motion;
+  if (!STRUT_NUMBERS(&system->arena, system->model->length + 1, &system->latest.q,
+                     &system->latest.q_low, &system->latest.g, &system->latest.slope,
+                     &system->latest.row, &motion[0], &motion[1], &motion[2]) ||
+      !STRUT_ALLOCATE(&system->arena, STRUT_NEW(system->latest.pulling, members),
+                      STRUT_NEW(system->latest.ahead, 2 * members),
+                      STRUT_NEW(system->force, forces)))
+    return false;
   for (int32_t i = 0; i < forces; i++) strut_force_begin(system->model, i, &system->force[i]);
   memset(system->latest.pulling, 1, members);
   return strut_path_elements_create(system->model, &system->arena, &system->elements) &&
-         strut_path_contacts_create(system->model, &system->arena, &system->contacts) &&
+         create_contacts(system->model, &system->arena, &system->contacts) &&
          strut_path_terms_create(system->model, &system->arena, &system->equations.terms) &&
          strut_path_terms_create(system->model, &system->arena, &system->equations.rates);
 }
@@ -72,11 +78,18 @@ strut_status strut_path_system_create(const strut_model *model, const uint8_t *h
   return STRUT_OK;
 }
 
+/* Releases what its terms hold outside of the arena; zero-initialised ones may be freed. */
+static void free_parameter(strut_path_parameter *parameter) {
+  strut_path_terms_release(&parameter->base);
+  strut_path_terms_release(&parameter->low);
+  strut_path_terms_release(&parameter->high);
+}
+
 void strut_path_system_free(strut_path_system *system) {
   gsl_eigen_symmv_free(system->algebra.eigen);
   gsl_eigen_symm_free(system->algebra.values_only);
   strut_potential_free(system->potential);
-  strut_path_parameter_free(&system->parameter);
+  free_parameter(&system->parameter);
   strut_path_terms_release(&system->equations.terms);
   strut_arena_free(&system->arena);
   *system = (strut_path_system){0};
@@ -303,25 +316,6 @@ bool strut_path_evaluate(strut_path_system *system, const double *unknowns) {
   return evaluate(system, unknowns, true);
 }
 
-void strut_path_reactions(const strut_path_system *system, double *reaction, double *contact,
-                          double *friction) {
-  for (int32_t at = 0; at < system->model->length; at++)
-    reaction[at] = -system->equations.terms.force[at];
-  for (int32_t i = 0; i < strut_force_count(system->model, false); i++) {
-    const strut_force *force = &system->force[i];
-    bool element = force->kind == STRUT_FORCE_ELEMENT;
-    bool rubs = element && force->pose.acts && strut_path_rubs(system, force->index);
-    if (rubs) strut_path_rubbing_reactions(system, force->index, reaction);
-    for (int32_t k = 0; k < 2 * force->nodes && !rubs; k++)
-      reaction[strut_force_coordinate(force, k)] += force->pose.force * force->pose.b[k];
-  }
-  strut_path_contact_reactions(system, reaction, contact, friction);
-  for (int32_t at = 0; at < system->model->length; at++)
-    reaction[at] = at < 2 * system->model->node_count && system->potential->row_of[at] < 0
-                       ? 0.0 + reaction[at]
-                       : 0.0;
-}
-
 /* Solves [K + by slope; row] x = (top, bottom); false: singular. */
 static bool solve_with(strut_path_system *system, const double *row, const double *top,
                        double bottom, double by) {
@@ -457,16 +451,6 @@ static double measure_ahead(const strut_path_system *system, int32_t j) {
   return dd_double(dd_add(dd_scale(dx, ahead[0]), dd_scale(dy, ahead[1])));
 }
 
-void strut_path_keep_directions(strut_path_system *system) {
-  for (int32_t j = 0; j < system->model->members.count; j++)
-    memcpy(&system->latest.ahead[2 * j], &system->force[j].pose.b[2], 2 * sizeof(double));
-}
-
-void strut_path_forget_directions(strut_path_system *system) {
-  memset(system->latest.ahead, 0,
-         2 * (size_t)system->model->members.count * sizeof *system->latest.ahead);
-}
-
 double strut_path_switch_value(strut_path_system *system, int32_t which, const double *unknowns) {
   const strut_path_switch own = strut_path_switch_at(system, which);
   bool member = own.of == STRUT_PATH_CABLE, turns = strut_path_turns_round(system, which);
@@ -484,6 +468,12 @@ double strut_path_switch_value(strut_path_system *system, int32_t which, const d
   return (double)NAN;
 }
 
+static bool is_element_switch_on(const strut_path_system *system, int32_t which) {
+  const strut_path_element_switch *element_switch = &system->elements.switches[which];
+  const strut_path_element *own = &system->elements.element[element_switch->element];
+  return element_switch->kink < 0 ? own->acts : own->piece > element_switch->kink;
+}
+
 bool strut_path_switch_is_on(const strut_path_system *system, int32_t which) {
   const strut_path_switch own = strut_path_switch_at(system, which);
   switch (own.of) {
@@ -492,9 +482,20 @@ bool strut_path_switch_is_on(const strut_path_system *system, int32_t which) {
     case STRUT_PATH_TOUCH: return system->contacts.contact[own.index].touches;
     case STRUT_PATH_FACET: return true; /* it changes its facet instead */
     case STRUT_PATH_GRIP: return system->contacts.contact[own.index].sticks;
-    case STRUT_PATH_ELEMENT: return strut_path_element_switch_is_on(system, own.index);
+    case STRUT_PATH_ELEMENT: return is_element_switch_on(system, own.index);
   }
   return false;
+}
+
+static void set_element_switch(strut_path_system *system, int32_t which, bool on) {
+  const strut_path_element_switch *element_switch = &system->elements.switches[which];
+  strut_path_element *own = &system->elements.element[element_switch->element];
+  if (element_switch->kink < 0)
+    own->acts = on;
+  else if (on)
+    own->piece = own->piece > element_switch->kink ? own->piece : element_switch->kink + 1;
+  else
+    own->piece = own->piece > element_switch->kink ? element_switch->kink : own->piece;
 }
 
 void strut_path_switch_set(strut_path_system *system, int32_t which, bool on) {
@@ -506,6 +507,6 @@ void strut_path_switch_set(strut_path_system *system, int32_t which, bool on) {
     case STRUT_PATH_TOUCH: strut_path_contact_switch_set(system, own.index, on); break;
     case STRUT_PATH_FACET: break;
     case STRUT_PATH_GRIP: strut_path_grip_set(system, own.index, on); break;
-    case STRUT_PATH_ELEMENT: strut_path_element_switch_set(system, own.index, on); break;
+    case STRUT_PATH_ELEMENT: set_element_switch(system, own.index, on); break;
   }
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/path/path_parts.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "engine/statics/path/path_parts.h"
 
 /* Points and events are kept with positions and all forces. */
 
@@ -18,6 +18,43 @@ static double *new_values(strut_path_walk *walk, size_t count) {
   double *values = strut_arena_allocate(&walk->path->arena, count, sizeof *values);
   if (!values) walk->failed = true;
   return values;
+}
+
+/* Adds forces of elements to those of members; moments of hinges [N m], forces of distances [N], pressures [N/m]. */
+static void find_element_forces(const strut_path_system *system, strut_path_state *state) {
+  for (int32_t i = 0; i < system->model->elements.count; i++) {
+    const strut_element *element = &system->model->elements.element[i];
+    double force = strut_path_element_force(system, i)->pose.force;
+    double outside = system->equations.terms.laws->elements.element[i].numbers.outside;
+    if (element->role == STRUT_ELEMENT_HINGE)
+      state->moment[element->item] = force + 0.0; /* no -0 */
+    if (element->role == STRUT_ELEMENT_DISTANCE) state->distance[element->item] = force + 0.0;
+    if (element->role == STRUT_ELEMENT_CELL) state->pressure[element->item] = outside - force;
+    if (!strut_element_is_of_member(element)) continue;
+    if (element->carries)
+      force = element->carries * fmax(element->carries * force, 0.0); /* rounding */
+    state->force[element->item] += force;
+  }
+}
+
+/* After strut_path_evaluate: reactions (length), normal forces and friction of contacts. */
+static void find_reactions(const strut_path_system *system, double *reaction, double *contact,
+                           double *friction) {
+  for (int32_t at = 0; at < system->model->length; at++)
+    reaction[at] = -system->equations.terms.force[at];
+  for (int32_t i = 0; i < strut_force_count(system->model, false); i++) {
+    const strut_force *force = &system->force[i];
+    bool element = force->kind == STRUT_FORCE_ELEMENT;
+    bool rubs = element && force->pose.acts && strut_path_rubs(system, force->index);
+    if (rubs) strut_path_rubbing_reactions(system, force->index, reaction);
+    for (int32_t k = 0; k < 2 * force->nodes && !rubs; k++)
+      reaction[strut_force_coordinate(force, k)] += force->pose.force * force->pose.b[k];
+  }
+  strut_path_contact_reactions(system, reaction, contact, friction);
+  for (int32_t at = 0; at < system->model->length; at++)
+    reaction[at] = at < 2 * system->model->node_count && system->potential->row_of[at] < 0
+                       ? 0.0 + reaction[at]
+                       : 0.0;
 }
 
 /* What the path is at y, `arc` from its beginning; w->failed: out of memory. */
@@ -43,14 +80,21 @@ static strut_path_state keep_state(strut_path_walk *walk, const double *unknowns
   for (size_t j = 0; j < members; j++) {
     bool cable = scene->members[j].kind == STRUT_CABLE; /* at a kink a rounding may push */
     state.force[j] = cable ? fmax(system->force[j].pose.force, 0.0) : system->force[j].pose.force;
-    if (strut_element_of_member(&model->elements, (int32_t)j))
-      state.force[j] += strut_path_element_tension(system, (int32_t)j);
   }
-  strut_path_element_forces(system, STRUT_ELEMENT_HINGE, state.moment);
-  strut_path_element_forces(system, STRUT_ELEMENT_DISTANCE, state.distance);
-  strut_path_pressures(system, state.pressure);
-  strut_path_reactions(system, state.reaction, state.contact, state.friction);
+  find_element_forces(system, &state);
+  find_reactions(system, state.reaction, state.contact, state.friction);
   return state;
+}
+
+/* Angles are taken near those of the last evaluation from now on. */
+static void keep_turns(strut_path_system *system) {
+  for (int32_t i = 0; i < system->model->elements.count; i++)
+    system->elements.element[i].turn = strut_path_element_force(system, i)->pose.strain;
+}
+
+static void keep_directions(strut_path_system *system) {
+  for (int32_t j = 0; j < system->model->members.count; j++)
+    memcpy(&system->latest.ahead[2 * j], &system->force[j].pose.b[2], 2 * sizeof(double));
 }
 
 void strut_path_add_point(strut_path_walk *walk, int32_t negative) {
@@ -60,8 +104,8 @@ void strut_path_add_point(strut_path_walk *walk, int32_t negative) {
   walk->failed = walk->failed || !strut_grow(&path->points, &walk->point_room, path->point_count,
                                              sizeof *path->points);
   if (walk->failed) return;
-  strut_path_keep_turns(&walk->system);
-  strut_path_keep_directions(&walk->system);
+  keep_turns(&walk->system);
+  keep_directions(&walk->system);
   path->points[path->point_count++] = point;
 }
 
@@ -94,8 +138,7 @@ enum { ROUNDS = 4, MOST_BENDS = 1000 };
 static const double LONGEST = 0.05;          /* step [units of y] */
 static const double SHORT = 1e-3;            /* from here on steps grow slowly */
 static const double SHORTEST_CHECKED = 1e-5; /* likewise, for jumps between branches */
-static const double LONGEST_HELD =
-    0.02; /* where the curve is a reaction, which bends as it likes */
+static const double LONGEST_HELD = 0.02;     /* where the curve is a reaction */
 static const double BOUND = 1e3, DEEP = -10; /* sizes away; ranges the other way */
 /* Relative to the size: a cable whose length equals its rest length along the path, up to rounding. */
 static const double HANGING = 1e-15;
@@ -386,10 +429,24 @@ static bool is_about_to_drop(const strut_path_system *system, int32_t which) {
   return own.of == STRUT_PATH_GRIP && strut_path_friction_drops(system, own.index);
 }
 
+/* Pieces of laws that fold, at system->latest->q, as they follow from what the model remembers. */
+static void find_pieces(strut_path_system *system) {
+  const double *rest = system->equations.terms.rest;
+  strut_element_pose pose;
+  for (int32_t i = 0; i < system->model->elements.count; i++) {
+    const strut_element *element = &system->model->elements.element[i];
+    if (element->law != STRUT_LAW_FOLDING) continue;
+    strut_element_evaluate(system->model, i, rest, system->latest.q,
+                           system->elements.element[i].turn, &pose);
+    system->elements.element[i].piece =
+        strut_element_piece(element, rest, pose.strain - pose.natural);
+  }
+}
+
 bool strut_path_walk_begin(strut_path_walk *walk) {
   strut_path_system *system = &walk->system;
   const double h = 1e-6;
-  if (strut_path_evaluate(system, walk->y)) strut_path_find_pieces(system);
+  if (strut_path_evaluate(system, walk->y)) find_pieces(system);
   system->lends = true;
   for (int32_t k = 0; k < strut_path_switch_count(system); k++) {
     double value = strut_path_switch_value(system, k, walk->y);

@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/rigidity.h"
-
 #include <assert.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -110,22 +108,15 @@ strut_status strut_equilibrium_matrix_build(const strut_model *model, const doub
   size_t columns = (size_t)strut_equilibrium_columns(model);
   *matrix = (strut_equilibrium_matrix){.members = model->members.count,
                                        .size = model->size > 0 ? model->size : 1.0};
-  matrix->coordinate = strut_arena_allocate(arena, length, sizeof *matrix->coordinate);
-  matrix->row_of = strut_arena_allocate(arena, length, sizeof *matrix->row_of);
-  matrix->direction = strut_arena_allocate(arena, columns + 1, sizeof *matrix->direction);
-  matrix->start = strut_arena_allocate(arena, columns + 1, sizeof *matrix->start);
-  matrix->curved = strut_arena_allocate(arena, columns + 1, sizeof *matrix->curved);
-  matrix->bend = strut_arena_allocate(arena, columns + 1, sizeof *matrix->bend);
   size_t most = ENTRIES * members + 1;
   for (int32_t i = 0; i < model->elements.count; i++)
     most += 2 * (size_t)model->elements.element[i].nodes;
-  matrix->row = strut_arena_allocate(arena, most, sizeof *matrix->row);
-  if (!matrix->coordinate || !matrix->row_of || !matrix->direction || !matrix->start ||
-      !matrix->row || !matrix->curved || !matrix->bend ||
-      !strut_arena_numbers(arena, most, (double **[]){&matrix->value, NULL}) ||
-      !strut_arena_numbers(
-          arena, columns + 1,
-          (double **[]){&matrix->length, &matrix->scale, &matrix->curvature, NULL}))
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(matrix->coordinate, length),
+                      STRUT_NEW(matrix->row_of, length), STRUT_NEW(matrix->direction, columns + 1),
+                      STRUT_NEW(matrix->start, columns + 1), STRUT_NEW(matrix->curved, columns + 1),
+                      STRUT_NEW(matrix->bend, columns + 1), STRUT_NEW(matrix->row, most)) ||
+      !STRUT_NUMBERS(arena, most, &matrix->value) ||
+      !STRUT_NUMBERS(arena, columns + 1, &matrix->length, &matrix->scale, &matrix->curvature))
     return STRUT_NO_MEMORY;
   matrix->rows = strut_number_free(model, NULL, matrix->row_of, matrix->coordinate);
   for (int32_t j = 0; j < model->members.count; j++)
@@ -266,9 +257,9 @@ static bool allocate_tall(const strut_equilibrium_matrix *matrix, strut_arena *a
   self->turned = matrix->columns > matrix->rows;
   self->rows = (size_t)(self->turned ? matrix->columns : matrix->rows);
   self->columns = (size_t)(self->turned ? matrix->rows : matrix->columns);
-  return strut_arena_numbers(arena, self->rows * self->columns, (double **[]){&self->u, NULL}) &&
-         strut_arena_numbers(arena, self->columns * self->columns, (double **[]){&self->v, NULL}) &&
-         strut_arena_numbers(arena, self->columns, (double **[]){&self->s, &self->work, NULL});
+  return STRUT_NUMBERS(arena, self->rows * self->columns, &self->u) &&
+         STRUT_NUMBERS(arena, self->columns * self->columns, &self->v) &&
+         STRUT_NUMBERS(arena, self->columns, &self->s, &self->work);
 }
 
 static void fill_tall(const strut_equilibrium_matrix *matrix, tall *self) {

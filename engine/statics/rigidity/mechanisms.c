@@ -40,11 +40,10 @@ static bool allocate_walk(walker *self, const double *positions, strut_arena *ar
   size_t members = (size_t)strut_equilibrium_columns(self->model);
   self->start = positions;
   self->q = strut_arena_copy(arena, positions, length, sizeof *positions);
-  return self->q && strut_arena_numbers(arena, length, (double **[]){&self->before, NULL}) &&
-         strut_arena_numbers(arena, (size_t)rows,
-                             (double **[]){&self->motion, &self->step, NULL}) &&
-         strut_arena_numbers(arena, members, (double **[]){&self->length, &self->strain, NULL}) &&
-         strut_arena_numbers(arena, members * members, (double **[]){&self->gram, NULL});
+  return self->q && STRUT_NUMBERS(arena, length, &self->before) &&
+         STRUT_NUMBERS(arena, rows, &self->motion, &self->step) &&
+         STRUT_NUMBERS(arena, members, &self->length, &self->strain) &&
+         STRUT_NUMBERS(arena, members * members, &self->gram);
 }
 
 static bool build_matrix(walker *self) {
@@ -253,8 +252,8 @@ static bool rotate(sorter *self, double *form) {
 static bool compare_states(sorter *self) {
   size_t square = self->n * self->n, count = (size_t)self->states->count;
   if (!self->states->force || count > MOST_STATES || self->n > MOST_MOTIONS) return true;
-  if (!strut_arena_numbers(&self->scratch, count * square, (double **[]){&self->forms, NULL}) ||
-      !strut_arena_numbers(&self->scratch, count, (double **[]){&self->scale, NULL}))
+  if (!STRUT_NUMBERS(&self->scratch, count * square, &self->forms) ||
+      !STRUT_NUMBERS(&self->scratch, count, &self->scale))
     return false;
   for (size_t i = 0; i < count; i++)
     self->scale[i] =
@@ -424,12 +423,11 @@ static strut_status only_count(sorter *self, strut_mechanisms *mechanisms) {
 static bool allocate_sorter(sorter *self, size_t count) {
   size_t room = (count + 3) * self->rows;
   strut_arena *scratch = &self->scratch;
-  return strut_arena_numbers(self->arena, room, (double **[]){&self->motion, NULL}) &&
-         strut_arena_numbers(scratch, room, (double **[]){&self->turned, NULL}) &&
-         strut_arena_numbers(scratch, self->members, (double **[]){&self->density, NULL}) &&
-         strut_arena_numbers(scratch, count, (double **[]){&self->value, NULL}) &&
-         strut_arena_numbers(scratch, count * count,
-                             (double **[]){&self->form, &self->vector, NULL});
+  return STRUT_NUMBERS(self->arena, room, &self->motion) &&
+         STRUT_NUMBERS(scratch, room, &self->turned) &&
+         STRUT_NUMBERS(scratch, self->members, &self->density) &&
+         STRUT_NUMBERS(scratch, count, &self->value) &&
+         STRUT_NUMBERS(scratch, count * count, &self->form, &self->vector);
 }
 
 static double largest_motion(const sorter *self, const double *motion) {

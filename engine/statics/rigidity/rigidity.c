@@ -159,8 +159,8 @@ static void measure_elements(const strut_model *model, const double *positions,
 static bool measure_forces(const strut_model *model, const double *positions,
                            strut_rigidity *rigidity) {
   const strut_member_table *members = &model->members;
-  if (!strut_arena_numbers(&rigidity->arena, (size_t)rigidity->matrix.columns,
-                           (double **[]){&rigidity->force, &rigidity->density, NULL}))
+  if (!STRUT_NUMBERS(&rigidity->arena, rigidity->matrix.columns, &rigidity->force,
+                     &rigidity->density))
     return false;
   for (int32_t j = 0; j < members->count; j++) {
     double length = rigidity->matrix.length[j];
@@ -213,8 +213,7 @@ static bool measure_balance(const strut_model *model, const double *positions,
   const strut_equilibrium_matrix *matrix = &rigidity->matrix;
   strut_arena scratch = {0};
   double *net, *held;
-  bool good =
-      strut_arena_numbers(&scratch, (size_t)model->length, (double **[]){&net, &held, NULL});
+  bool good = STRUT_NUMBERS(&scratch, model->length, &net, &held);
   if (good) {
     double members = rigidity->largest_force;
     strut_equilibrium_multiply(matrix, rigidity->force, held);

@@ -26,9 +26,8 @@ typedef struct strut_equilibrium_matrix {
   double size;         /* of the model, by which hinges' moments are divided [m] */
   int32_t *coordinate; /* (rows) index into coordinate arrays */
   int32_t *row_of;     /* (length) row of a coordinate, -1 where fixed */
-  double *
-      length; /* (columns) of the members in the shape; of hinges angle * size, of cells area / size [m] */
-  double *scale;          /* (columns) of gradients, strains and, divided by it, forces */
+  double *length;      /* (columns) of members; of hinges angle * size, of cells area / size [m] */
+  double *scale;       /* (columns) of gradients, strains and, divided by it, forces */
   double (*direction)[2]; /* (columns) unit vector from first node to second; 0, 0 without length */
   int32_t *curved; /* (columns) element of a running cable, hinge or cell; -1: a straight member */
   double *curvature; /* (columns) largest second derivative of such an element [1/m] */
@@ -173,8 +172,7 @@ typedef struct strut_mechanisms {
   int32_t rigid_body, infinitesimal, finite, undecided;
   strut_mechanism *list; /* (count) rigid-body ones first; NULL: none or too many */
   bool by_forces;        /* the forces in the shape stiffen all that are not rigid-body */
-  double
-      *stiffener; /* (members, hinges) a self-stress that does, largest force 1; NULL: none found */
+  double *stiffener;    /* (members, hinges) a self-stress that does, at most 1; NULL: none found */
   bool stiffener_pulls; /* and presses no cable */
 } strut_mechanisms;
 

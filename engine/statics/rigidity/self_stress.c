@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/rigidity.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "engine/statics/rigidity/rigidity.h"
 
 #include "engine/base/vec.h"
 #include "engine/statics/algebra.h"
@@ -193,12 +193,10 @@ static void combine_states(const strut_self_stress *states, size_t members, cons
 
 static bool allocate(search *self, strut_arena *scratch) {
   size_t motions = self->motions;
-  return strut_arena_numbers(scratch, self->states_count,
-                             (double **[]){&self->weight, &self->pull, NULL}) &&
-         strut_arena_numbers(scratch, self->members, (double **[]){&self->cable, NULL}) &&
-         strut_arena_numbers(scratch, motions, (double **[]){&self->value, NULL}) &&
-         strut_arena_numbers(scratch, motions * motions,
-                             (double **[]){&self->form, &self->vector, NULL});
+  return STRUT_NUMBERS(scratch, self->states_count, &self->weight, &self->pull) &&
+         STRUT_NUMBERS(scratch, self->members, &self->cable) &&
+         STRUT_NUMBERS(scratch, motions, &self->value) &&
+         STRUT_NUMBERS(scratch, motions * motions, &self->form, &self->vector);
 }
 
 static void measure_cables(search *self) {
@@ -313,8 +311,7 @@ static double force_of(const cables *self, int32_t state, int32_t member) {
 }
 
 static bool list_cables(const strut_model *model, cables *self, strut_arena *scratch) {
-  self->member = strut_arena_allocate(scratch, self->members + 1, sizeof *self->member);
-  if (!self->member) return false;
+  if (!STRUT_ALLOCATE(scratch, STRUT_NEW(self->member, self->members + 1))) return false;
   for (int32_t j = 0; j < model->members.count; j++) {
     bool loaded = false;
     for (int32_t i = 0; i < self->states->count; i++) loaded |= force_of(self, i, j) != 0.0;

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/rigidity/rigidity.h"
-
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
@@ -167,9 +164,9 @@ strut_status strut_stress_matrix_judge(const strut_model *model, const strut_equ
   size_t most = (size_t)model->length;
   double *sum, *matrix, *vector;
   int32_t *row = strut_arena_allocate(&scratch, most, sizeof *row);
-  if (row && strut_arena_numbers(&scratch, most, (double **[]){&sum, NULL}) &&
-      strut_arena_numbers(&scratch, most * most, (double **[]){&matrix, &vector, NULL}) &&
-      strut_arena_numbers(arena, most, (double **[]){&stress->eigenvalues, NULL})) {
+  if (row && STRUT_NUMBERS(&scratch, most, &sum) &&
+      STRUT_NUMBERS(&scratch, most * most, &matrix, &vector) &&
+      STRUT_NUMBERS(arena, most, &stress->eigenvalues)) {
     for (int32_t i = 0; i < model->node_count; i++) row[i] = -1;
     stress->supported = !balances_alone(model, a, force, sum);
     stress->count = stress->supported ? a->rows : count_nodes(model, row);
@@ -270,8 +267,7 @@ double strut_node_stiffness_along(stiff *self, int32_t node, const double direct
   gsl_matrix_view factor = gsl_matrix_view_array(self->k, self->n, self->n);
   gsl_vector_view load = gsl_vector_view_array(self->load, self->n);
   gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &factor.matrix, &load.vector);
-  double compliance =
-      strut_dot(self->load, self->load, (ptrdiff_t)self->n); /* |L^-1 d|^2 = d' K^-1 d */
+  double compliance = strut_dot(self->load, self->load, (ptrdiff_t)self->n);
   return compliance > 0.0 ? 1.0 / compliance : (double)NAN;
 }
 
@@ -279,9 +275,8 @@ double strut_node_stiffness_along(stiff *self, int32_t node, const double direct
 static strut_status fill_stiffness(stiff *self, const strut_model *model, const double *positions,
                                    const char **reason) {
   strut_linear_matrices matrices;
-  if (!strut_arena_numbers(&self->arena, self->n * self->n, (double **[]){&self->k, NULL}) ||
-      !strut_arena_numbers(&self->arena, 3 * self->n,
-                           (double **[]){&self->rigid, &self->load, NULL}))
+  if (!STRUT_NUMBERS(&self->arena, self->n * self->n, &self->k) ||
+      !STRUT_NUMBERS(&self->arena, 3 * self->n, &self->rigid, &self->load))
     return STRUT_NO_MEMORY;
   strut_status status = strut_linear_matrices_build(model, positions, &self->arena, &matrices);
   if (status) return status;

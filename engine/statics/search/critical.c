@@ -4,7 +4,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 /*
  * Work limit of all searches of one command (decomposed Hessians times their cost), and the share
@@ -346,8 +345,7 @@ static void find_saddles(search *self) {
     climb_modes(self);
     climb_pairs(self);
     if (turn == 0) climb_at_random(self);
-    while (!self->status &&
-           gone < self->all.count) { /* what lies below may be new, and a saddle's end too */
+    while (!self->status && gone < self->all.count) { /* below: new */
       size_t begin = gone;
       gone = self->all.count;
       descend_from_saddles(self, begin);
@@ -369,10 +367,9 @@ static bool comes_before(const strut_critical_point *first, const strut_critical
 static strut_status sort_into_set(search *self) {
   size_t count = self->all.count;
   strut_arena scratch = {0};
-  int32_t *order = strut_arena_allocate(&scratch, count, sizeof *order);
-  int32_t *place = strut_arena_allocate(&scratch, count, sizeof *place);
-  self->set->points = strut_arena_allocate(&self->set->arena, count, sizeof *self->set->points);
-  bool good = order && place && self->set->points;
+  int32_t *order, *place;
+  bool good = STRUT_ALLOCATE(&scratch, STRUT_NEW(order, count), STRUT_NEW(place, count)) &&
+              STRUT_ALLOCATE(&self->set->arena, STRUT_NEW(self->set->points, count));
   for (size_t i = 0; i < count && good; i++) {
     size_t k = i;
     for (; k > 0 && comes_before(&self->all.points[i], &self->all.points[order[k - 1]]); k--)

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/search/critical.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/search/critical.h"
+
 #include "engine/base/vec.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/potential.h"
 
 /* Distance of two shapes after the best rigid motion (Procrustes in the plane). */
 
@@ -263,9 +262,8 @@ static strut_status critical_judge(const strut_potential *potential, const doubl
   *point = (strut_critical_point){.found = 1, .placements = 1, .down = {-1, -1}};
   point->q = strut_arena_copy(arena, positions, length, sizeof *positions);
   j.hessian = strut_potential_matrix(potential, &scratch);
-  bool good = point->q && j.hessian &&
-              strut_arena_numbers(arena, length, (double **[]){&point->softest, NULL}) &&
-              strut_arena_numbers(&scratch, 3 * n, (double **[]){&j.motion, &j.work, NULL});
+  bool good = point->q && j.hessian && STRUT_NUMBERS(arena, length, &point->softest) &&
+              STRUT_NUMBERS(&scratch, 3 * n, &j.motion, &j.work);
   strut_status status =
       good ? judge_point(&j, positions, arena, point, error) : strut_no_memory(error, "");
   bool finite = !status || !j.hessian || is_finite(j.hessian);

@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/statics/search/critical.h"
-
 #include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
+#include "engine/statics/search/critical.h"
+
 #include "engine/base/vec.h"
-#include "engine/forces/elements.h"
 #include "engine/model/pose.h"
 #include "engine/statics/algebra.h"
-#include "engine/statics/minimise.h"
 
 enum { MOST_STEPS = 150, MOST_POLISH = 12, MOST_BENDS = 4 };
 
@@ -37,12 +35,9 @@ strut_climber *strut_climber_create(const strut_potential *potential) {
   climber->spectra = strut_spectrum_create(potential);
   climber->idle = strut_arena_allocate(&climber->arena, n, sizeof *climber->idle);
   if (climber->spectra && climber->idle &&
-      strut_arena_numbers(
-          &climber->arena, n,
-          (double **[]){&climber->g, &climber->part, &climber->value, &climber->x, &climber->step,
-                        &climber->follow, &climber->straight, &climber->g_trial, NULL}) &&
-      strut_arena_numbers(&climber->arena, (size_t)potential->model->length,
-                          (double **[]){&climber->trial, &climber->begin, NULL}))
+      STRUT_NUMBERS(&climber->arena, n, &climber->g, &climber->part, &climber->value, &climber->x,
+                    &climber->step, &climber->follow, &climber->straight, &climber->g_trial) &&
+      STRUT_NUMBERS(&climber->arena, potential->model->length, &climber->trial, &climber->begin))
     return climber;
   strut_climber_free(climber);
   return NULL;
@@ -119,14 +114,6 @@ static void set_trial(strut_climber *climber, const double *positions) {
   strut_potential_move(climber->potential, climber->step, 1.0, positions, climber->trial);
 }
 
-/* Balances modes much stiffer than mu, except followed ones, at the step's end. */
-static bool rebalance_stiff_modes(strut_climber *climber, double mu, double scale) {
-  double stiff = mu > 0 ? 10.0 * mu : 1e-3 * scale;
-  strut_potential_gradient(climber->potential, climber->trial, climber->g_trial);
-  return strut_spectrum_rebalance(&climber->now, climber->value, stiff, climber->g_trial,
-                                  climber->step);
-}
-
 /*
  * Corrects the step in the stiff modes, as a descent does: turning stiff bars stretch to second
  * order, and without the correction a climb beside them stalls. Stops when the energy `there` no
@@ -137,7 +124,11 @@ static double bend_step(strut_climber *climber, const double *positions, double 
   size_t bytes = (size_t)climber->now.n * sizeof *climber->step;
   for (int i = 0; i < MOST_BENDS && !(there < wanted); i++) {
     memcpy(climber->straight, climber->step, bytes);
-    if (!rebalance_stiff_modes(climber, mu, scale)) break;
+    strut_potential_gradient(climber->potential, climber->trial, climber->g_trial);
+    /* modes much stiffer than mu, except followed ones */
+    if (!strut_spectrum_rebalance(&climber->now, climber->value, mu > 0 ? 10.0 * mu : 1e-3 * scale,
+                                  climber->g_trial, climber->step))
+      break;
     set_trial(climber, positions);
     double lower = strut_potential_value_near(climber->potential, climber->trial, positions);
     if (lower < there) {

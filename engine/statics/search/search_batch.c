@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/critical.h"
 
+#ifdef _OPENMP
 #include <assert.h>
 #include <math.h>
-#include <string.h>
-
-#ifdef _OPENMP
 #include <omp.h>
+#include <string.h>
 #endif
 
 #include "engine/model/pose.h"
-#include "engine/statics/minimise.h"
 
 /* Single nodes are folded across the line of one member of theirs and the next that leads away. */
 enum { WHOLE = 2 };

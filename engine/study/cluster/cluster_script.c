@@ -5,7 +5,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
 #include "engine/output/buffer.h"
 #include "engine/study/results/study_table.h"
 

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Curves of the special points of all branches over a second parameter, with what is written of them. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/text.h"
-#include "engine/output/buffer.h"
-#include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
 
 /* Longest step of a parameter in its range; steps each way; drive steps that show a gap's extrema. */

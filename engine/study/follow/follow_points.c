@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The points of a study that follows motions, side by side. */
-#include "engine/study/follow/follow_parts.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/buffer.h"
+#include "engine/study/follow/follow_parts.h"
+
 #include "engine/output/file.h"
-#include "engine/output/result_values.h"
 #include "engine/run/simulate.h"
 #include "engine/study/results/slots_parts.h"
-#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Columns of a row: X(name, unit, value); unit "over": that of the followed parameter. */

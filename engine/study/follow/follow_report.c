@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/output/result_values.h"
 #include "engine/study/follow/follow_parts.h"
 
 static const double DEGREES = 57.29577951308232;

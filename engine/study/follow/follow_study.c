@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/output/buffer.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/scene/things.h"
 #include "engine/statics/equilibria/equilibria.h"
@@ -44,12 +43,6 @@ void strut_follow_note(strut_follow_result *result, const char *format, ...) {
 
 /* The values of both parameters at one of the first. */
 #define VALUES_AT(SELF, VALUE) ((const double[2]){VALUE, (SELF)->o->second.value})
-
-static void name_start(const follower *self, const strut_follow_start *start, char *text,
-                       size_t size) {
-  snprintf(text, size, "%s%s%s", start->from ? start->from : "", start->from ? " at " : "",
-           strut_quantity_of_any(start->value, 6, *self->o->unit ? self->o->unit : "1").text);
-}
 
 /* ---- starts ---- */
 
@@ -212,7 +205,8 @@ static strut_status follow_start(follower *self, const strut_follow_start *start
   strut_setup setup;
   strut_model *model = NULL;
   strut_summary summary = {0};
-  name_start(self, start, label, sizeof label);
+  snprintf(label, sizeof label, "%s%s%s", start->from ? start->from : "", start->from ? " at " : "",
+           strut_quantity_of_any(start->value, 6, *self->o->unit ? self->o->unit : "1").text);
   strut_status status = open_system(self, start->value);
   if (status) return status;
   status = self->o->scenes.setup(self->o->scenes.context, VALUES_AT(self, start->value), &setup,

@@ -5,9 +5,6 @@
 #include <stdio.h>
 
 #include "engine/base/text.h"
-#include "engine/output/result_values.h"
-#include "engine/study/sweep/sweep.h"
-#include "engine/study/sweep/sweep_parts.h"
 
 static strut_value column_of(const strut_result_object *of, size_t i) {
   return STRUT_VALUE_AS_TEXT(((const strut_sweep_plan *)of->at)->columns[i].name);

@@ -18,7 +18,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
 #include "engine/scene/value_rows.h"
 
 enum {

@@ -7,9 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/text.h"
-#include "engine/output/buffer.h"
 #include "engine/output/file.h"
 #include "engine/study/results/slots_parts.h"
 

@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Points that searches ask for at the same time, on all threads. See search_parts.h. */
-#include <math.h>
 #include <pthread.h>
 #include <semaphore.h>
 #include <stdlib.h>
 
-#include "engine/base/memory.h"
 #include "engine/study/search/search_parts.h"
 #include "engine/study/sweep/sweep.h"
 
@@ -97,22 +95,17 @@ void strut_search_batch_free(strut_search_batch *batch) {
   strut_arena_free(&batch->arena);
 }
 
-static bool add_point(strut_search_batch *batch, int64_t point, const strut_study_value *values) {
-  if (!strut_grow(&batch->wanted, &batch->capacity, batch->count, sizeof *batch->wanted))
-    return false;
-  batch->wanted[batch->count++] = (strut_batch_point_wanted){point, values};
-  return true;
-}
-
 bool strut_search_batch_add(strut_search_batch *batch, int64_t outer, int64_t row,
                             const strut_study_value *values) {
   const strut_search_layout l = strut_search_layout_of(batch->plan);
-  bool fine = true;
-  for (int64_t i = 0; i < l.scenarios && fine; i++) {
+  for (int64_t i = 0; i < l.scenarios; i++) {
     int64_t point = (outer * l.rows + row) * l.scenarios + i;
-    if (!strut_slots_done(batch->points.slots, point)) fine = add_point(batch, point, values);
+    if (strut_slots_done(batch->points.slots, point)) continue;
+    if (!strut_grow(&batch->wanted, &batch->capacity, batch->count, sizeof *batch->wanted))
+      return false;
+    batch->wanted[batch->count++] = (strut_batch_point_wanted){point, values};
   }
-  return fine;
+  return true;
 }
 
 /* Leaves only the points that are still without a row, and begins with this worker's share of them. */

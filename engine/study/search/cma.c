@@ -17,7 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
 #include "engine/statics/algebra.h"
 
 /* Width next to each bound where the map into the box is a parabola. */
@@ -110,25 +109,16 @@ static void choose_constants(strut_cma *cma) {
 
 static bool allocate(strut_cma *cma) {
   size_t n = cma->n, m = cma->population;
-  double **vectors[] = {&cma->mean,      &cma->length,  &cma->sigma_path, &cma->path,
-                        &cma->mean_step, &cma->scratch, &cma->work};
-  bool fine = true;
-  for (size_t i = 0; i < sizeof vectors / sizeof vectors[0]; i++) {
-    *vectors[i] = strut_arena_allocate(&cma->arena, n, sizeof(double));
-    fine = fine && *vectors[i];
-  }
-  cma->weight = strut_arena_allocate(&cma->arena, m, sizeof *cma->weight);
-  cma->order = strut_arena_allocate(&cma->arena, m, sizeof *cma->order);
-  cma->steps = strut_arena_allocate(&cma->arena, m, n * sizeof(double));
-  cma->points = strut_arena_allocate(&cma->arena, m, n * sizeof(double));
-  cma->covariance = strut_arena_allocate(&cma->arena, n, n * sizeof(double));
-  cma->axes = strut_arena_allocate(&cma->arena, n, n * sizeof(double));
+  strut_arena *arena = &cma->arena;
   /* As many generations as stagnation is judged by, and half as many again. */
   cma->history_capacity = 120 + 30 * n / m + 20;
-  cma->history = strut_arena_allocate(&cma->arena, cma->history_capacity, sizeof *cma->history);
   cma->rng = gsl_rng_alloc(gsl_rng_mt19937);
-  return fine && cma->weight && cma->order && cma->steps && cma->points && cma->covariance &&
-         cma->axes && cma->history && cma->rng;
+  return STRUT_NUMBERS(arena, n, &cma->mean, &cma->length, &cma->sigma_path, &cma->path,
+                       &cma->mean_step, &cma->scratch, &cma->work) &&
+         STRUT_NUMBERS(arena, m * n, &cma->steps, &cma->points) &&
+         STRUT_NUMBERS(arena, n * n, &cma->covariance, &cma->axes) &&
+         STRUT_NUMBERS(arena, cma->history_capacity, &cma->history) && cma->rng &&
+         STRUT_ALLOCATE(arena, STRUT_NEW(cma->weight, m), STRUT_NEW(cma->order, m));
 }
 
 static double deviation(const strut_cma *cma, size_t k) {
@@ -158,30 +148,18 @@ static int by_value(const void *a, const void *b) {
   return (first->index > second->index) - (first->index < second->index);
 }
 
-static void rank_points(strut_cma *cma, const double *values) {
-  for (size_t p = 0; p < cma->population; p++)
-    cma->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
-  qsort(cma->order, cma->population, sizeof *cma->order, by_value);
-}
-
 /* to = C^(-1/2) from. */
 static void whiten(const strut_cma *cma, const double *from, double *to) {
   size_t n = cma->n;
   memset(to, 0, n * sizeof *to);
   for (size_t k = 0; k < n; k++) {
     const double *axis = &cma->axes[k * n];
-    double along = 0.0;
-    for (size_t i = 0; i < n; i++) along += axis[i] * from[i];
-    along /= cma->length[k];
+    double along = strut_dot(axis, from, (ptrdiff_t)n) / cma->length[k];
     for (size_t i = 0; i < n; i++) to[i] += along * axis[i];
   }
 }
 
-static double squared_length(const double *v, size_t n) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; i++) sum += v[i] * v[i];
-  return sum;
-}
+static double squared_length(const double *v, size_t n) { return strut_dot(v, v, (ptrdiff_t)n); }
 
 /* Moves the mean, then both evolution paths. Returns 1, or 0 where the latter's update is stalled since
  * sigma grows fast. */
@@ -295,7 +273,9 @@ static void remember(strut_cma *cma) {
 /* Adapts to the values of a generation. False: it cannot go on, or need not. */
 static bool learn(strut_cma *cma, const double *values) {
   bool decomposed = true;
-  rank_points(cma, values);
+  for (size_t p = 0; p < cma->population; p++)
+    cma->order[p] = (ranked){isfinite(values[p]) ? values[p] : (double)INFINITY, p};
+  qsort(cma->order, cma->population, sizeof *cma->order, by_value);
   remember(cma);
   if (isfinite(cma->order[0].value)) { /* else nothing is known of this generation */
     double open = move_mean(cma);

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/search/search.h"
-
 #include <math.h>
 #include <string.h>
 
 #include "engine/run/measure/quantities.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
-#include "engine/study/sweep/sweep.h"
-#include "engine/study/sweep/sweep_parts.h"
 
 /* Numbers on the stack of a program and its columns, at most: the reader bounds the text. */
 enum { MOST = 1024 };
@@ -181,8 +176,7 @@ strut_status strut_search_gradient(const strut_sweep_plan *plan, strut_slots *sl
   double *numbers = strut_allocate(2 * plan->column_count, sizeof *numbers);
   bool there = strut_slots_get(slots, point->worst, &slot) && !slot.status;
   if (!numbers) return strut_no_memory(error, "");
-  size_t count =
-      strut_slot_place(plan->columns, plan->column_count - 1) + 1; /* the last one is a number */
+  size_t count = strut_slot_place(plan->columns, plan->column_count - 1) + 1;
   if (there) memcpy(numbers, slot.numbers, count * sizeof *numbers);
   for (size_t i = 0; i < search->variable_count; i++) {
     const strut_search_variable *variable = &search->variables[i];
@@ -266,9 +260,8 @@ static bool list_points(strut_search_batch *batch, strut_search_result *result,
   size_t n = search->variable_count;
   worth->agreeing = count_agreeing(result, worth->best);
   worth->checked = batch->plan->study->compute == STRUT_COMPUTE_RUN;
-  worth->bound = strut_arena_allocate(&result->arena, n, sizeof *worth->bound);
-  worth->neighbours = strut_arena_allocate(&result->arena, n, sizeof *worth->neighbours);
-  if (!worth->bound || !worth->neighbours) return false;
+  if (!STRUT_ALLOCATE(&result->arena, STRUT_NEW(worth->bound, n), STRUT_NEW(worth->neighbours, n)))
+    return false;
   worth->check.values = outcome->best.values;
   bool fine = !worth->checked || strut_search_batch_add(batch, outcome->outer, batch->first_check,
                                                         outcome->best.values);

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/search/optimisers.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
+#include "engine/study/search/optimisers.h"
+
 #include "engine/study/sweep/sweep.h"
 
 /* Generations are multiples of this, on any machine, so that they fill processors. */
@@ -101,11 +100,6 @@ int64_t strut_search_count(const strut_search_variable *variable) {
   return variable->integer ? (int64_t)(floor(variable->to) - ceil(variable->from)) + 1 : 0;
 }
 
-static double bring_in(const strut_search_variable *variable, double number) {
-  if (variable->wraps) number -= floor(number);
-  return fmin(fmax(number, 0.0), 1.0); /* NaN becomes 0 */
-}
-
 /* Which of `count` equal parts of the box. */
 static int64_t part_of(double number, int64_t count) {
   int64_t part = (int64_t)floor(number * (double)count);
@@ -121,7 +115,8 @@ static double between(const strut_search_variable *variable, double value) {
 strut_study_value strut_search_value(const strut_search_variable *variable, double number) {
   strut_study_value value = {.number = (double)NAN};
   int64_t count = strut_search_count(variable);
-  number = bring_in(variable, number);
+  if (variable->wraps) number -= floor(number);
+  number = fmin(fmax(number, 0.0), 1.0); /* NaN becomes 0 */
   if (variable->choice_count) {
     int64_t i = part_of(number, count);
     if (variable->word)

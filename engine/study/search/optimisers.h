@@ -6,7 +6,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/base/status.h"
 #include "engine/scene/study.h"
 
 /* Between the values of a search's variables and points of the unit box. */
@@ -51,9 +50,8 @@ typedef struct strut_search_task {
   size_t dimension, conditions; /* conditions: 0 where the values account for them */
   const double *start;          /* (dimension) in the box */
   const bool *wraps;            /* (dimension) numbers that may leave the box, modulo 1 */
-  const int64_t
-      *counts; /* (dimension) values of variables, whose grid is looked at instead; or NULL */
-  int64_t evaluations; /* roughly how many will be answered */
+  const int64_t *counts; /* (dimension) values of variables, whose grid is searched; or NULL */
+  int64_t evaluations;   /* roughly how many will be answered */
   uint32_t seed;
 } strut_search_task;
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "engine/base/checksum.h"
-#include "engine/study/search/optimisers.h"
 #include "engine/study/search/search_parts.h"
 
 /* Optimisers at the same time, and known points that one may ask for in a row. */

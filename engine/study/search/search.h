@@ -52,10 +52,9 @@ enum { STRUT_SEARCH_LATEST = 10 };
 
 /** One search. */
 typedef struct strut_search_outcome {
-  int64_t outer; /* point of the axes before the searches */
-  int32_t start; /* from 0 */
-  strut_search_point
-      best; /* of the feasible points the best, or the one that breaks conditions least */
+  int64_t outer;           /* point of the axes before the searches */
+  int32_t start;           /* from 0 */
+  strut_search_point best; /* of feasible points, or the one that breaks conditions least */
   strut_search_end end;
   int64_t evaluations, repeated, failed, feasible, valueless; /* valueless: the goal has no value */
   double top[STRUT_SEARCH_LATEST];                            /* the best objectives, best first */

@@ -2,7 +2,6 @@
 /** What the parts of a search share. Internal to engine/study/search. */
 #pragma once
 
-#include "engine/base/status.h"
 #include "engine/study/search/optimisers.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/sweep_parts.h"

@@ -4,10 +4,8 @@
 #include <gsl/gsl_rng.h>
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
-#include "engine/base/memory.h"
 #include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/result_values.h"
@@ -383,8 +381,7 @@ static bool take_whole(const double *result, size_t all, size_t count, strut_are
   size_t width = count + 2;
   double sum = 0.0;
   *self = (samples){.count = count};
-  self->result = strut_arena_allocate(arena, all * width + 1, sizeof *self->result);
-  if (!self->result) return false;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(self->result, all * width + 1))) return false;
   for (size_t j = 0; j < all; j++) {
     const double *row = result + j * width;
     if (!is_whole(row, width)) continue;

@@ -13,7 +13,6 @@
 
 #include "engine/base/derivatives.h"
 #include "engine/base/memory.h"
-#include "engine/base/status.h"
 #include "engine/output/draw/chart.h"
 #include "engine/scene/study.h"
 #include "engine/scene/value_rows.h"

@@ -302,8 +302,7 @@ static double extent(const double *positions, size_t nodes) {
 static strut_status nearest(structure *self, const strut_setup *setup, const double *positions,
                             int32_t *index, strut_error *error) {
   const strut_scene *scene = &setup->scene;
-  const strut_model shape = {.node_count =
-                                 (int32_t)scene->node_count}; /* all fields that are read */
+  const strut_model shape = {.node_count = (int32_t)scene->node_count};
   double least = HUGE_VAL;
   for (size_t i = 0; i < scene->configuration_count; i++) {
     const found f = find(self, setup, i);

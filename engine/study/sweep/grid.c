@@ -1,6 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "engine/study/sweep/sweep.h"
-
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>

@@ -2,9 +2,7 @@
 /* The recorded runs of a study: their motion as one table, and figures of single runs. */
 #include "engine/study/sweep/sweep.h"
 
-#include <math.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -251,8 +249,7 @@ static const char *file_of(const strut_sweep_plan *plan, const char *directory,
     size_t axis, before = SIZE_MAX, length = figure->only ? strcspn(figure->only, "=") : 0;
     strut_grid_column(plan->study, i, &axis);
     if (i > 0) strut_grid_column(plan->study, i - 1, &before);
-    bool named =
-        plan->study->axes[axis].count > 1 && axis != before; /* zipped axes by their first column */
+    bool named = plan->study->axes[axis].count > 1 && axis != before; /* zipped: by the first */
     if (figure->difference && strcmp(column, figure->difference) == 0) named = false;
     if (figure->only && strlen(column) == length && memcmp(column, figure->only, length) == 0)
       named = false;

@@ -8,7 +8,6 @@
 #include <string.h>
 #include <time.h>
 
-#include "engine/run/simulate.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 #ifdef _OPENMP
@@ -34,12 +33,10 @@ int strut_sweep_threads(void) {
 
 static bool allocate_cells(const strut_sweep_plan *plan, strut_arena *arena, strut_sweep_job *job) {
   strut_row_buffer *cells = &job->cells;
-  cells->values = strut_arena_allocate(arena, plan->axis_columns + 1, sizeof *cells->values);
-  cells->numbers = strut_arena_allocate(arena, plan->column_count + 1, sizeof *cells->numbers);
-  cells->words = strut_arena_allocate(arena, plan->column_count + 1, sizeof *cells->words);
-  job->derivatives = strut_arena_allocate(arena, plan->derived_count * plan->by_count + 1,
-                                          sizeof *job->derivatives);
-  return cells->values && cells->numbers && cells->words && job->derivatives;
+  return STRUT_ALLOCATE(arena, STRUT_NEW(cells->values, plan->axis_columns + 1),
+                        STRUT_NEW(cells->numbers, plan->column_count + 1),
+                        STRUT_NEW(cells->words, plan->column_count + 1),
+                        STRUT_NEW(job->derivatives, plan->derived_count * plan->by_count + 1));
 }
 
 static bool is_running(strut_points *points) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engine/base/flag.h"
-#include "engine/base/memory.h"
 #include "engine/output/record_files.h"
 #include "engine/run/measure/summary.h"
 #include "engine/scene/experiment.h"
@@ -71,10 +70,9 @@ typedef struct strut_sweep_plan {
   bool smooth; /* do the columns that are added follow parameters smoothly? */
   size_t by_count, derived_count, first_derivative; /* column of the first derivative, if any */
   strut_derived_by *by; /* (by_count) parameters that the derived numbers are differentiated by */
-  size_t
-      own_by_count; /* the first of them, at all points; the others where all have their medians */
-  size_t *derived;  /* (derived_count) columns that are differentiated */
-  bool *names_member; /* (quantity_count) a word beside it: the member of the largest force */
+  size_t own_by_count;  /* the first of them, at all points; the others at the medians */
+  size_t *derived;      /* (derived_count) columns that are differentiated */
+  bool *names_member;   /* (quantity_count) a word beside it: the member of the largest force */
 } strut_sweep_plan;
 
 /**

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "engine/run/measure/quantities.h"
-#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 static const strut_keep USUAL[] = {STRUT_KEEP_VELOCITY,  STRUT_KEEP_SPREAD,      STRUT_KEEP_MOTION,
@@ -175,11 +174,9 @@ static strut_status choose_columns(strut_sweep_plan *plan, const strut_setup *se
   if (study->sensitivity.wanted) by += study->axes[study->sensitivity.axis].column_count;
   if (plan->scenes.vary) most += 3 * by * most;
   plan->column_capacity = most;
-  plan->columns = strut_arena_allocate(&plan->arena, most, sizeof *plan->columns);
-  plan->derived = strut_arena_allocate(&plan->arena, most, sizeof *plan->derived);
-  plan->quantities = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->quantities);
-  plan->names_member = strut_arena_allocate(&plan->arena, quantities, sizeof *plan->names_member);
-  if (!plan->columns || !plan->derived || !plan->quantities || !plan->names_member ||
+  if (!STRUT_ALLOCATE(&plan->arena, STRUT_NEW(plan->columns, most), STRUT_NEW(plan->derived, most),
+                      STRUT_NEW(plan->quantities, quantities),
+                      STRUT_NEW(plan->names_member, quantities)) ||
       !add_kept(plan, setup))
     return strut_no_memory(error, "");
   plan->smooth = false;
@@ -248,8 +245,7 @@ bool strut_sweep_stops(strut_status status) {
 int64_t strut_sweep_named(const char *name, size_t i, const strut_scene *scene,
                           strut_channel_owner owner) {
   size_t count = strut_owner_count(owner, scene);
-  if (i < count && strcmp(strut_owner_name(owner, scene, i), name) == 0)
-    return (int64_t)i; /* almost always */
+  if (i < count && strcmp(strut_owner_name(owner, scene, i), name) == 0) return (int64_t)i;
   for (size_t k = 0; k < count; k++)
     if (strcmp(strut_owner_name(owner, scene, k), name) == 0) return (int64_t)k;
   return -1;

@@ -262,14 +262,13 @@ static strut_status find_derivatives(const strut_sweep_worker *worker, strut_swe
   bool rest = plan->study->compute != STRUT_COMPUTE_RUN, steady = experiment.steady.wanted;
   bool known = make_exact(&experiment, &job->setup.scene) || rest;
   derivation self = {worker, job, rest ? REST_NOISE : steady ? ORBIT_NOISE : (double)NAN, NULL, 0};
-  strut_derivatives_parameter *parameters = strut_arena_allocate(arena, count, sizeof *parameters);
-  double *outputs = strut_arena_allocate(arena, plan->derived_count, sizeof *outputs);
-  double *errors = strut_arena_allocate(arena, plan->derived_count, sizeof *errors);
-  size_t *place = strut_arena_allocate(arena, count, sizeof *place);
-  strut_derivative *found =
-      strut_arena_allocate(arena, count * plan->derived_count + 1, sizeof *found);
-  self.by = strut_arena_allocate(arena, count, sizeof *self.by);
-  if (!parameters || !outputs || !errors || !place || !found || !self.by)
+  strut_derivatives_parameter *parameters;
+  double *outputs, *errors;
+  size_t *place;
+  strut_derivative *found;
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(parameters, count), STRUT_NEW(outputs, plan->derived_count),
+                      STRUT_NEW(errors, plan->derived_count), STRUT_NEW(place, count),
+                      STRUT_NEW(found, count * plan->derived_count + 1), STRUT_NEW(self.by, count)))
     return strut_no_memory(&job->error, "");
   choose_parameters(&self, job, count, parameters, place);
   if (!self.by_count) return STRUT_OK;

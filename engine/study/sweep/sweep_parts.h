@@ -139,8 +139,7 @@ typedef struct strut_sweep_job {
   strut_derivative *derivatives; /* (derived numbers, parameters) */
   size_t warning_count;          /* of the first run */
   strut_warning warnings[STRUT_MOST_WARNINGS];
-  strut_status
-      status; /* at the end: STRUT_OK, and cells.row is filled; else what stops the sweep */
+  strut_status status; /* at the end: STRUT_OK with cells.row, or what stops the sweep */
   strut_error error;
   double deadline; /* by strut_run_clock [s]; 0: none; guarded by the watch */
   strut_flag stop; /* set by the watch when it has passed, or the sweep is interrupted */

@@ -9,12 +9,9 @@
 #include <unistd.h>
 
 #include "engine/output/file.h"
-#include "engine/output/record_files.h"
 #include "engine/output/results.h"
 #include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
-#include "engine/run/simulate.h"
-#include "engine/study/sweep/sweep.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */

@@ -2,7 +2,6 @@
 /* The whole study, from the base to the Pareto front. */
 #include "engine/study/tradeoff/tradeoff.h"
 
-#include <assert.h>
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <stdio.h>
@@ -217,12 +216,6 @@ static void free_models(tradeoff_study *study) {
   strut_release(study->models);
 }
 
-static strut_tradeoff_measure choose_measure(const strut_setup *setup, strut_tradeoff_measure m) {
-  if (m != STRUT_TRADEOFF_AUTOMATIC) return m;
-  bool walks = setup->scene.contact_count > 0 || setup->experiment.periods > 0;
-  return walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
-}
-
 /* The experiment of a point, cut to the periods that are wanted. */
 static strut_experiment cut_experiment(const tradeoff_study *study, size_t point) {
   strut_experiment e = study->setups[point]->experiment;
@@ -265,7 +258,10 @@ static void prepare(tradeoff_study *study, size_t count) {
   tradeoff->name = scene->name;
   tradeoff->point_count = count;
   tradeoff->accuracy = study->options->accuracy;
-  tradeoff->measure = choose_measure(study->setups[0], study->options->measure);
+  bool walks = scene->contact_count > 0 || study->setups[0]->experiment.periods > 0;
+  tradeoff->measure = study->options->measure;
+  if (tradeoff->measure == STRUT_TRADEOFF_AUTOMATIC)
+    tradeoff->measure = walks ? STRUT_TRADEOFF_VELOCITY : STRUT_TRADEOFF_POSITION;
   tradeoff->value_count = tradeoff->measure == STRUT_TRADEOFF_POSITION ? 2 * scene->node_count : 1;
   size_t most = count > 2 * scene->node_count ? count : 2 * scene->node_count;
   study->points = strut_tradeoff_allocate(study, count, sizeof *study->points);
@@ -459,8 +455,7 @@ static void make(tradeoff_study *study, size_t count) {
     double begin = ((double)i - 1) / others, end = (double)i / others;
     double left =
         strut_tradeoff_work_left(study, 1) / (STRUT_TRADEOFF_MOST_WORK * tradeoff->work_unit);
-    double share =
-        1 - left + fmax(0, left) / (double)(tradeoff->variant_count - i); /* shared evenly */
+    double share = 1 - left + fmax(0, left) / (double)(tradeoff->variant_count - i);
     study_variant(study, (int)i, share, 0.6 + 0.4 * begin, 0.6 + 0.4 * end);
   }
   if (study->status) return;

@@ -144,8 +144,7 @@ typedef struct step_series {
 typedef struct step_series_list {
   step_series at[MOST_STEP_SERIES];
   size_t count;
-  double
-      cheapest; /* force evaluations of the cheapest row that confirms half the accuracy; 0: none */
+  double cheapest; /* force evaluations of the cheapest row with half the error; 0: none */
 } step_series_list;
 
 /** Adds a series for each refinement of a method that makes a difference in this scene. */

@@ -19,7 +19,7 @@ static int merit(const tradeoff_study *study, const strut_integrator *method) {
 static tradeoff_setting setting_of(const tradeoff_study *study, const tradeoff_reference *self,
                                    int which, int level) {
   if (which == 1 && self->method[0] == self->method[1])
-    level++; /* a single method is confirmed by its own next level */
+    level++; /* confirms itself by its next level */
   tradeoff_setting setting = {self->method[which], self->limit * pow(0.5, level + 1), (double)NAN,
                               1};
   if (strut_tradeoff_is_adaptive(self->method[which])) {

@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "engine/base/text.h"
-#include "engine/output/buffer.h"
 #include "engine/output/result_values.h"
-#include "engine/study/tradeoff/tradeoff.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
 /* ---- words ---- */

@@ -174,11 +174,6 @@ static int step_count(const tradeoff_study *study) {
   return study->options->accuracy > 0 ? STRUT_TRADEOFF_MOST_STEPS : STRUT_TRADEOFF_USUAL_STEPS;
 }
 
-static void report_progress(const tradeoff_study *study, double fraction) {
-  if (study->options->progress)
-    study->options->progress(study->options->progress_context, fraction);
-}
-
 /* ---- rows ---- */
 
 static strut_tradeoff_row *new_row(tradeoff_study *study, const step_series *from,
@@ -252,7 +247,7 @@ static bool setting_at(const tradeoff_study *study, const step_series *self, int
     return false;
   *setting = self->first;
   if (adaptive)
-    setting->tolerance = 1.0 / pow(10.0, k + 2); /* the number that its decimal text gives */
+    setting->tolerance = 1.0 / pow(10.0, k + 2); /* as its decimal text */
   else if (k < extra)
     setting->step *= above[k];
   else
@@ -380,7 +375,9 @@ void strut_tradeoff_run_series(tradeoff_study *study, step_series_list *all, dou
   step_series *self = NULL;
   while (!study->status && (self = find_next(study, all, &setting, &cost))) {
     double left = strut_tradeoff_work_left(study, share);
-    report_progress(study, to - (to - from) * fmax(0, left) / most);
+    if (study->options->progress)
+      study->options->progress(study->options->progress_context,
+                               to - (to - from) * fmax(0, left) / most);
     bool useless = self->kept == 0 && all->cheapest > 0 && cost > all->cheapest;
     bool possible = useless || (cost <= left && strut_tradeoff_has_time(study, cost));
     self->over = useless || !possible;
