@@ -6,11 +6,8 @@
 # A block on a belt sticks and slips against a spring.
 yaml belt.yaml <<'YAML'
 gravity: [0, -9.81]
-nodes:
-  wall: {position: [-1, -98.1 um], fixed: both}
-  block: {position: [0, -98.1 um], mass: 1 kg}
-members:
-  spring: {kind: spring, nodes: [wall, block], stiffness: 200 N/m}
+nodes: {wall: {position: [-1, -98.1 um], fixed: both}, block: {position: [0, -98.1 um], mass: 1 kg}}
+members: {spring: {kind: spring, nodes: [wall, block], stiffness: 200 N/m}}
 ground:
   belt_speed: 10 mm/s
   stiffness: 1e5 N/m
@@ -22,12 +19,9 @@ solver: {integrator: rk4, step: 20 us}
 run:
   duration: 3 s
   measure:
-    quantities:
-      x: {of: block.x, take: final}
-      way: {of: block.x, take: max}
-      friction: {of: block.friction, take: final}
-      push: {of: push, take: final}
-      down: {of: down, take: min}
+    quantities: {x: {of: block.x, take: final}, way: {of: block.x, take: max},
+                 friction: {of: block.friction, take: final}, push: {of: push, take: final},
+                 down: {of: down, take: min}}
 YAML
 cat >apart.py <<'PY'
 m, k, V, N, mu0, mu, v0, d, tau = 1.0, 200.0, 0.01, 9.81, 0.15, 0.1, 1e-3, 15e-6, 3e-3

@@ -6,16 +6,10 @@
 yaml arch.yaml <<'END'
 name: Arch
 parameters: {side: 0}
-nodes:
-  left: {position: [-1, 0], fixed: both}
-  right: {position: [1, 0], fixed: both}
-  top: [0, 0.3]
-members:
-  a: {kind: bar, nodes: [left, top], stiffness: 1000}
-  b: {kind: bar, nodes: [right, top], stiffness: 1000}
-loads:
-  weight: {node: top, force: [0, -1]}
-  wind: {node: top, force: [side, 0]}
+nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both}, top: [0, 0.3]}
+members: {a: {kind: bar, nodes: [left, top], stiffness: 1000},
+          b: {kind: bar, nodes: [right, top], stiffness: 1000}}
+loads: {weight: {node: top, force: [0, -1]}, wind: {node: top, force: [side, 0]}}
 END
 
 # The limit load in closed form: 9.94991696 at a height of 0.17071165.

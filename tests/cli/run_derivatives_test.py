@@ -38,9 +38,8 @@ ground: {stiffness: stiffness}
 solver: {step: 0.1 ms}
 run:
   duration: 0.25 s
-  measure:
-    derivatives: [height, stiffness]
-    quantities: {y: {of: ball.y, take: final}, lands: {of: ball.y, take: arrival, target: 0 m}}
+  measure: {derivatives: [height, stiffness],
+            quantities: {y: {of: ball.y, take: final}, lands: {of: ball.y, take: arrival, target: 0 m}}}
 """
 write("ball.yaml", BALL)
 g, h, w, end = 9.81, 0.1, 100.0, 0.25

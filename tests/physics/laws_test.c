@@ -176,9 +176,7 @@ TEST(a_stop_gives_back_what_its_damper_leaves) {
 /* Two masses on a string that gets taut: they exchange speeds, and their momentum is kept. */
 static const char two_masses[] =
     "strut: 1\n"
-    "nodes:\n"
-    "  a: {position: [0, 0], mass: 2}\n"
-    "  b: {position: [1, 0.3], mass: 0.5}\n"
+    "nodes: {a: {position: [0, 0], mass: 2}, b: {position: [1, 0.3], mass: 0.5}}\n"
     "members:\n"
     "  m: {kind: spring, nodes: [a, b], stiffness: 10, damping: 0.1, longest: 1.2, shortest: 0.7,\n"
     "      stop_stiffness: 1e4, stop_damping: 3}\n"

@@ -57,12 +57,10 @@ TEST(a_mass_caught_by_a_cable) {
       "run:\n"
       "  duration: 0.5 s\n"
       "  measure:\n"
-      "    quantities:\n"
-      "      peak: {of: catch.force, take: max, accuracy: 0.5 %}\n"
-      "      factor: {of: catch.force / (stiff * drop), take: max}\n"
-      "      deep: {of: bob.y + 1 m, take: min, accuracy: 0.1 mm}\n"
-      "      stretch: {of: catch.stretch, take: max}\n"
-      "      side: com.vx\n";
+      "    quantities: {peak: {of: catch.force, take: max, accuracy: 0.5 %},\n"
+      "                 factor: {of: catch.force / (stiff * drop), take: max},\n"
+      "                 deep: {of: bob.y + 1 m, take: min, accuracy: 0.1 mm},\n"
+      "                 stretch: {of: catch.stretch, take: max}, side: com.vx}\n";
   measured_run r = run_text(text);
   const double weight = 2 * GRAVITY, k = 2000;
   double peak = weight + sqrt(weight * weight + 2 * k * weight * 0.5);
@@ -94,21 +92,15 @@ TEST(an_oscillator) {
       "run:\n"
       "  duration: 20*pi/50\n"
       "  measure:\n"
-      "    quantities:\n"
-      "      range: {of: block.x, take: range}\n"
-      "      high: {of: block.x - 1 m, take: max}\n"
-      "      low: {of: spring.force, take: min}\n"
-      "      speed: {of: abs(block.vx), take: max}\n"
-      "      effective: {of: block.x - 1, take: rms}\n"
-      "      middle: block.x - 1\n"
-      "      moving: energy.kinetic\n"
-      "      stored: energy.elastic\n"
-      "      kept: {of: energy.total, take: range}\n"
-      "      end: {of: block.x, take: final}\n"
-      "      drift: block.vx\n"
-      "      went: {of: block.x, take: change}\n"
-      "      clock: {of: time, take: change}\n"
-      "      pace: {of: 3 * time, take: rate}\n");
+      "    quantities: {range: {of: block.x, take: range},\n"
+      "                 high: {of: block.x - 1 m, take: max},\n"
+      "                 low: {of: spring.force, take: min},\n"
+      "                 speed: {of: abs(block.vx), take: max},\n"
+      "                 effective: {of: block.x - 1, take: rms}, middle: block.x - 1,\n"
+      "                 moving: energy.kinetic, stored: energy.elastic,\n"
+      "                 kept: {of: energy.total, take: range}, end: {of: block.x, take: final},\n"
+      "                 drift: block.vx, went: {of: block.x, take: change},\n"
+      "                 clock: {of: time, take: change}, pace: {of: 3 * time, take: rate}}\n");
   const double energy = 0.5 * 5000 * 0.01;
   /* sampled ends of steps alone would miss amplitudes of this by up to 5e-4 */
   assert_all_relative(1e-6, value(&r, "range"), 0.2, value(&r, "high"), 0.1, value(&r, "low"), -500,
@@ -218,15 +210,11 @@ TEST(a_falling_mass) {
       "  measure:\n"
       "    last: 1 s\n"
       "    node: ball\n"
-      "    quantities:\n"
-      "      climb: com.vy\n"
-      "      height: {of: ball.height, take: final}\n"
-      "      sink: {of: ball.height, take: change}\n"
-      "      apart: {of: ball.y - other.y, take: range}\n"
-      "      square: ball.vy^2\n"
-      "      push: {of: ball.normal, take: max}\n"
-      "      side: ball.vx\n"
-      "      centre: {of: com.x, take: final}\n");
+      "    quantities: {climb: com.vy, height: {of: ball.height, take: final},\n"
+      "                 sink: {of: ball.height, take: change},\n"
+      "                 apart: {of: ball.y - other.y, take: range}, square: ball.vy^2,\n"
+      "                 push: {of: ball.normal, take: max}, side: ball.vx,\n"
+      "                 centre: {of: com.x, take: final}}\n");
   double c = cos(PI / 6), s = sin(PI / 6), at2 = 50 - 0.5 * GRAVITY * 4;
   assert_all_relative(1e-9, value(&r, "climb"), -GRAVITY * 1.5, value(&r, "height"),
                       -s * 1 + c * (at2 - 1), value(&r, "sink"), -c * 0.5 * GRAVITY * 3);
@@ -275,13 +263,11 @@ TEST(works_and_periods) {
       "  of: drive\n"
       "  measure:\n"
       "    last: 4\n"
-      "    quantities:\n"
-      "      power: {of: work.drives, take: rate}\n"
-      "      lost: {of: losses.total, take: change}\n"
-      "      same: {of: losses.members - work.drives, take: range}\n"
-      "      pull: {of: piston.force, take: max}\n"
-      "      clock: {of: time, take: final}\n"
-      "      mean: {of: time}\n");
+      "    quantities: {power: {of: work.drives, take: rate},\n"
+      "                 lost: {of: losses.total, take: change},\n"
+      "                 same: {of: losses.members - work.drives, take: range},\n"
+      "                 pull: {of: piston.force, take: max}, clock: {of: time, take: final},\n"
+      "                 mean: {of: time}}\n");
   double w = 2 * PI * 5, power = 0.5 * 30 * pow(0.002 * w, 2);
   assert_all_relative(1e-4, value(&r, "power"), power, value(&r, "lost"), power * 4 / 5.0);
   assert_near(value(&r, "same"), 0, 1e-9);

@@ -133,9 +133,7 @@ with open("models/crawler/crawler.yaml", encoding="utf-8") as model:
 write("study.yaml", """strut: 1
 study: Starts of figure 8 on a slope
 model: slope.yaml
-variants:
-  settled: {initial: {configuration: start, settle: {friction: kept}}}
-  named: {}
+variants: {settled: {initial: {configuration: start, settle: {friction: kept}}}, named: {}}
 axes: [{friction: [0.1, 0.2, 0.5]}, {start: [I, II]}]
 run: {periods: 2, of: drive, measure: {last: 1}}
 output: {last: 1}

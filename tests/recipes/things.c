@@ -109,10 +109,9 @@ static const char MARKS[] =
     "strut: 1\n"
     "parameters: {wide: 3 mm}\n"
     "parts:\n"
-    "  arm:\n"
-    "    nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
-    "    members: {p: {kind: bar, nodes: [a, b], stiffness: 9}}\n"
-    "    marks: {tip: {node: b, radius: 2 mm}}\n"
+    "  arm: {nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}},\n"
+    "        members: {p: {kind: bar, nodes: [a, b], stiffness: 9}},\n"
+    "        marks: {tip: {node: b, radius: 2 mm}}}\n"
     "place: {v: {part: arm, repeat: {count: 2, step: [0, 1]}}}\n"
     "marks: {own: {node: v.0.a, radius: wide}}\n";
 
