@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Derivatives of runs and of statics by parameters: formulas, the crawler through its contacts, a contact that only just
 # happens, the ends of ranges; and the same bytes whatever the threads.
-#
-#   python3 run_derivatives_test.py STRUT
 import json
 import math
 

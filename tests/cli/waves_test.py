@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut modes --wave against closed forms, long finite chains, and cells of several cells.
-
-usage: waves_test.py STRUT
-"""
+"""strut modes --wave against closed forms, long finite chains, and cells of several cells."""
 import math
 
 from testing import answer, check, fail, finish, run, write

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rest by friction alone: blocks and frames on slopes settle onto the set of equilibria that sticking makes, or are told
 at once that nothing holds them; the shapes on a slope have names and the coefficient that they need, and paths begin
-there. Against closed forms: the angle of friction, and the moments about the feet.
-
-usage: sticking_rest_test.py STRUT
-"""
+there. Against closed forms: the angle of friction, and the moments about the feet."""
 import json
 import math
 import time
