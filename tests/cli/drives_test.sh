@@ -24,9 +24,7 @@ run:
 END
   expect 0 run push.yaml --json
   first_order "$method" && error=1e-3 || error=1e-12
-  near "$(value x)" 1.75 $error
-  near "$(value done)" 2.25 "3 * $error"
-  near "$(value force)" -3 0
+  near "$(value x)" 1.75 $error "$(value done)" 2.25 "3 * $error" "$(value force)" -3 0
   first_order "$method" || closes 1e-12
 done
 
@@ -68,8 +66,7 @@ run:
                  done: {of: work.drives, take: final}}
 END
 gives "$(value turned)" "-0.5" 1e-9 run turn.yaml
-near "$(value moment)" 0.5 0
-near "$(value done)" "0.25" 1e-9
+near "$(value moment)" 0.5 0 "$(value done)" "0.25" 1e-9
 closes 1e-9
 
 # A force along a running cable acts on all of its way; statics leave it out, and a path says so.

@@ -112,6 +112,5 @@ run:
 END
 for method in rk4-events verlet-events; do
   edit "s/rk4-events/$method/" crawler.yaml gives '.measured | (.rear.value + .front.value) / 2' '4 * 0.02 * (3 | log) / (30.24/9.76 | log)' 8e-4 run
-  near .measured.back.value 0 2e-5
-  near .energy.residual 0 1e-5
+  near .measured.back.value 0 2e-5 .energy.residual 0 1e-5
 done

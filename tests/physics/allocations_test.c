@@ -45,9 +45,9 @@ static strut_setup busy_chain(size_t frames, strut_mass_model mass_model) {
 static void check_kind(size_t frames, strut_mass_model mass_model, bool blocks, bool factor) {
   OWN(strut_setup) setup = busy_chain(frames, mass_model);
   strut_model *model = motion_compile(&setup.scene);
-  assert_int_equal(model->mass->coordinate[0].block_count > 0, blocks);
-  assert_int_equal(model->mass->coordinate[0].factor != NULL, factor);
-  assert_int_equal(model->mass->diagonal, !blocks && !factor);
+  assert_all_equal(model->mass->coordinate[0].block_count > 0, blocks,
+                   model->mass->coordinate[0].factor != NULL, factor, model->mass->diagonal,
+                   !blocks && !factor);
   strut_model_free(model);
   check_steps(&setup, false);
   check_steps(&setup, true);

@@ -177,9 +177,9 @@ TEST(words) {
                       "bar, spring or cable");
   assert_string_equal(strut_words_text("rk4", text, sizeof text), "rk4");
   assert_string_equal(strut_words_text("a|b", text, sizeof text), "a or b");
-  assert_int_equal(strut_word_find("bar|spring|cable", "spring"), 1);
-  assert_int_equal(strut_word_find("bar|spring|cable", "spr"), -1);
-  assert_int_equal(strut_word_find("bar|spring|cable", "bar|spring"), -1);
+  assert_all_equal(strut_word_find("bar|spring|cable", "spring"), 1,
+                   strut_word_find("bar|spring|cable", "spr"), -1,
+                   strut_word_find("bar|spring|cable", "bar|spring"), -1);
   assert_null(strut_word_at("a|b", 2, text, sizeof text));
 }
 
