@@ -25,8 +25,7 @@ static const struct {
     {{{0, 0}, {93.5388, 33.6848}, {33.9221, 28.2197}, {43.9094, 0}, {51.3170, 18.4979}},
      22.712029,
      -0.074683,
-     1.448083},
-};
+     1.448083}};
 
 static model_run crawler;
 static strut_equilibria all;

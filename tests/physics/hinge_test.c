@@ -7,7 +7,6 @@ static const double PI = 3.14159265358979323846, G = 9.81;
 
 /* An arm that a hinge turns back from three turns and a half: it oscillates as a linear oscillator. */
 static const char rotor[] =
-    "strut: 1\n"
     "parameters: {k: 1e6, start: 22 rad}\n"
     "nodes: {ground: {position: [1, 0], fixed: both}, pivot: {position: [0, 0], fixed: both},\n"
     "        tip: {position: [0.5, 0], mass: 2}}\n"
@@ -41,7 +40,6 @@ TEST(an_arm_turns_several_times_against_its_hinge) {
 
 /* A pendulum with a hinge at its pivot, swinging little: omega^2 = kappa / (m l^2) + g / l. */
 static const char pendulum[] =
-    "strut: 1\n"
     "nodes: {top: {position: [0, 1], fixed: both}, pivot: {position: [0, 0], fixed: both},\n"
     "        bob: {position: [0, -0.5], mass: 2}}\n"
     "members: {rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e7}}\n"
@@ -62,7 +60,6 @@ TEST(a_pendulum_with_a_hinge) {
 
 /* Both arms held: the drive works against the hinge alone, and in a whole period not at all. */
 static const char held[] =
-    "strut: 1\n"
     "parameters: {c: 0}\n"
     "nodes: {a: {position: [1, 0], fixed: both}, b: {position: [0, 0], fixed: both},\n"
     "        c: {position: [0, 1], fixed: both}, free: {position: [2, 0], mass: 1}}\n"
@@ -91,7 +88,6 @@ TEST(a_driven_hinge_between_held_arms) {
 
 /* A driven leg between masses: whatever it does, drive work = energy gained + dissipated. */
 static const char leg[] =
-    "strut: 1\n"
     "nodes: {hip: {position: [0, 0], mass: 1}, knee: {position: [0.3, -0.4], mass: 0.2},\n"
     "        foot: {position: [0, -0.8], mass: 0.1}, pin: {position: [-1, 0], fixed: both}}\n"
     "members: {thigh: {kind: bar, nodes: [hip, knee], stiffness: 1e4, damping: 1, mass: 0.1},\n"
@@ -117,8 +113,7 @@ TEST(the_balance_of_a_driven_leg_closes) {
                {"midpoint", 1e-9}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
     OWN(model_run) run = model_read_text("leg", leg, set_none);
-    run.setup.experiment.integrator = known[i].method;
-    model_simulate(&run);
+    model_simulate_by(&run, known[i].method);
     const strut_energy *e = &run.summary.energy;
     print_message("%s: residual %.2g of %.3g J\n", known[i].method, e->residual / e->moved,
                   e->moved);

@@ -87,8 +87,7 @@ static const comparison comparisons[] = {
     {STRUT_TERM_CONSTANT, ALL & ~(unsigned)STRUT_TERM_CONSTANT, true, true},
     {STRUT_TERM_LOADS, ALL & ~(unsigned)STRUT_TERM_LOADS, true, true},
     {STRUT_TERM_FRICTION, ALL & ~(unsigned)STRUT_TERM_FRICTION, true, true},
-    {STRUT_TERM_SLOPE, ALL & ~(unsigned)STRUT_TERM_SLOPE, true, true},
-};
+    {STRUT_TERM_SLOPE, ALL & ~(unsigned)STRUT_TERM_SLOPE, true, true}};
 enum { COMPARISONS = sizeof comparisons / sizeof comparisons[0], SINGLE = 10 };
 
 /* The same motion with and without the term, ready to step. */

@@ -19,8 +19,7 @@ static const strut_record_channel channels[] = {
     {STRUT_CHANNEL_LENGTH, "length", "m", 2, 1, 13, members, single},
     {STRUT_CHANNEL_FORCE, "force", "N", 2, 1, 15, members, single},
     {STRUT_CHANNEL_CONTACT, "contact", "N", 2, 2, 17, nodes, reactions},
-    {STRUT_CHANNEL_ENERGY, "energy", "J", 1, 3, 21, total, energies},
-};
+    {STRUT_CHANNEL_ENERGY, "energy", "J", 1, 3, 21, total, energies}};
 
 static const strut_record_layout layout = {24, 6, channels, 40};
 

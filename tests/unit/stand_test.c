@@ -49,7 +49,7 @@ static void assert_says(const char *text, const char *part) {
 /* A triangle of bars, 1 kg/m, every node a contact; n3 above at x. */
 static strut_setup triangle(double x) {
   double at[3][2] = {{0, 0}, {1, 0}, {x, 1}};
-  strut_setup setup = build_setup();
+  strut_setup setup = build_falling();
   for (int i = 0; i < 3; i++) build_node(&setup.scene, at[i][0], at[i][1]);
   for (int i = 0; i < 3; i++) {
     int k = (i + 1) % 3;
@@ -57,7 +57,6 @@ static strut_setup triangle(double x) {
     build_member(&setup.scene, STRUT_BAR, i, k, 1e6, 10, length);
   }
   for (int i = 0; i < 3; i++) build_contact(&setup.scene, i, 1e5, 100);
-  setup.scene.gravity[1] = -G;
   return setup;
 }
 
@@ -187,12 +186,11 @@ TEST(a_push_along_the_ground) {
 
 /* One node has no extent to measure distances by; it rests all the same. */
 TEST(one_node) {
-  OWN(strut_setup) setup = build_setup();
+  OWN(strut_setup) setup = build_falling();
   OWN(strut_arena) arena = {0};
   strut_rest_state stand;
   build_mass(&setup.scene, 0, 0, 1);
   build_contact(&setup.scene, 0, 1e5, 10);
-  setup.scene.gravity[1] = -G;
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   assert_ok(strut_rest_state_find(model, &setup.experiment, "start", &arena, &stand, NULL));
   assert_near(stand.q[1], -G / 1e5, 1e-15);
