@@ -137,16 +137,14 @@ TEST(written_scenes_read_back_to_the_same_bits) {
     strut_setup first, second;
     if (read_quietly_as(files[i].path, files[i].text, files[i].length, &first) != STRUT_OK)
       fail_msg("%s is refused", files[i].path);
-    char *written = strut_setup_write(&first);
+    RELEASED char *written = strut_setup_write(&first);
     assert_non_null(written);
     if (read_quietly_as(files[i].path, written, strlen(written), &second) != STRUT_OK)
       fail_msg("%s, written: refused:\n%s", files[i].path, written);
     same_scene(&first, &second);
-    char *again = strut_setup_write(&second);
+    RELEASED char *again = strut_setup_write(&second);
     assert_non_null(again);
     assert_string_equal(body(written), body(again));
-    strut_release(written);
-    strut_release(again);
     strut_setup_free(&first);
     strut_setup_free(&second);
   }
@@ -182,11 +180,10 @@ TEST(single_numbers_survive) {
     if (i < sizeof corners / sizeof corners[0]) value = corners[i];
     if (!(value - value == 0.0)) continue;
     setup.scene.gravity[0] = value;
-    char *text = strut_setup_write(&setup);
+    RELEASED char *text = strut_setup_write(&setup);
     OWN(strut_setup) back;
     assert_ok(read_quietly(text, strlen(text), &back));
     same_bits(text, &back.scene.gravity[0], &value, sizeof value);
-    strut_release(text);
   }
 }
 
@@ -205,14 +202,13 @@ TEST(a_nameless_period_gets_a_name) {
   setup.experiment.periods = 3;
   setup.experiment.period_signal = 0;
   setup.scene.name = "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \x01 bad \xff.";
-  char *text = strut_setup_write(&setup);
+  RELEASED char *text = strut_setup_write(&setup);
   assert_ok(read_quietly(text, strlen(text), &back));
   assert_string_equal(back.scene.name,
                       "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \xef\xbf\xbd bad "
                       "\xef\xbf\xbd.");
   assert_true(back.scene.signals[back.experiment.period_signal].phase == 0.25);
   strut_setup_free(&back);
-  strut_release(text);
 }
 
 TEST(every_key_stands_in_a_good_file) {

@@ -204,11 +204,10 @@ TEST(a_motion_ends_where_it_is_no_motion) {
       moved = swing();
       if (what == 1 && isfinite(bad[i])) continue; /* a force may be anything */
       *(what ? &forces[700] : &positions[4 * 700 + 3]) = bad[i];
-      char *html = page_of(&moved, 0, &frames);
+      RELEASED char *html = page_of(&moved, 0, &frames);
       assert_all_equal(frames.shown, 700, frames.recorded, FRAMES);
       has(html, "\"frames\":700,\"recorded\":1000,\"every\":1,\"status\":\"diverged\"");
       has(html, "\"position\":{\"columns\":4,\"quantum\":1e-6,"); /* not that of 1e300 */
-      strut_release(html);
     }
   }
   moved = swing();

@@ -46,9 +46,8 @@ strut_status sample_feed(strut_sink *sink, size_t count, strut_status run_status
   size_t portion = 1;
   for (size_t done = 0; done < count && status == STRUT_OK; done += portion, portion += 6) {
     if (portion > count - done) portion = count - done;
-    double *rows = sample_rows(&layout, done, portion);
+    FREED double *rows = sample_rows(&layout, done, portion);
     status = sink->rows(sink->context, rows, portion, error);
-    free(rows);
   }
   strut_status ended = sink->end(sink->context, status == STRUT_OK ? run_status : status, error);
   return status == STRUT_OK ? ended : status;
