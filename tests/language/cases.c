@@ -236,7 +236,11 @@ static void read_document(faulty_cases *cases, const char *folder, const char *n
     }
     char *message = strstr(line, " => ");
     if (message) *message = '\0';
-    change_line(d, *line, line + 1);
+    for (char *after; line; line = after) { /* several changes in one line */
+      after = strstr(line, " ;; ");
+      if (after) *after = '\0', after += 4;
+      change_line(d, *line, line + 1);
+    }
     if (message) add_message(d, message + 4);
   }
   finish_case(d);
