@@ -16,9 +16,7 @@ YAML
 gives .measured.v.value 2 1e-9 run latch.yaml
 near .energy.dissipated_members 0.032 1e-12 .broken.latch.time 0.1037 1e-15
 near '.broken.latch.released | if . then 1 else 0 end' 1 0 .energy.residual 0 1e-8
-for method in adaptive verlet-events; do
-  edit "s/rk4-events/$method/" latch.yaml gives .measured.v.value 2 2e-4 run
-done
+by "adaptive verlet-events" latch.yaml .measured.v.value 2 2e-4
 for method in rk4 verlet euler; do # at the end of the step, at rest until then
   edit "s/rk4-events/$method/" latch.yaml gives .measured.v.value 2 1e-3 run --set at='104 ms'
   near .broken.latch.time 0.104 1e-15 .energy.dissipated_members 0.032 1e-12
@@ -39,10 +37,8 @@ run: {duration: 0.7, measure: {quantities: {v: {of: m.vy, take: final}, most: {o
 YAML
 gives .measured.v.value '-(0.75 | sqrt)' 1e-9 run string.yaml
 near '[.broken.string.time, .energy.dissipated_members]' '[(0.5 | asin / 10), 0.125]' 1e-9 .energy.elastic 0 0
-for method in adaptive verlet-events euler-events rk4 verlet euler; do
-  edit "s/rk4-events/$method/" string.yaml gives .measured.v.value '-(0.75 | sqrt)' 0.02 run
-  near .broken.string.time '0.5 | asin / 10' 2.1e-3 '.energy.residual / .energy.exchanged' 0 0.03
-done
+by "adaptive verlet-events euler-events rk4 verlet euler" string.yaml .measured.v.value '-(0.75 | sqrt)' 0.02 \
+  .broken.string.time '0.5 | asin / 10' 2.1e-3 '.energy.residual / .energy.exchanged' 0 0.03
 expect 0 run string.yaml --quiet --plot string.svg -o out-string
 expect 0 view out-string -o string.html
 expect 0 export string.yaml
@@ -82,10 +78,7 @@ run: {duration: 3.25, measure: {quantities: {f: {of: e.force, take: final}, p: {
 YAML
 gives .energy.dissipated_members '3 * 4 * 5 * (0.02 - 0.005) + 5 * (0.02 - 0.005)' 1e-9 run loop.yaml
 near '[.measured.f.value, .measured.p.value, .energy.residual]' '[-5, -(0.02 - 0.005), 0]' 1e-9
-for method in adaptive verlet-events rk4 verlet euler; do
-  edit "s/rk4-events/$method/" loop.yaml gives .energy.dissipated_members 0.975 2e-3 run
-  near .measured.f.value -5 1e-6
-done
+by "adaptive verlet-events rk4 verlet euler" loop.yaml .energy.dissipated_members 0.975 2e-3 .measured.f.value -5 1e-6
 
 # A mass that is caught: force, permanent set and losses of a bilinear hysteresis. Until it turns the work
 # of the spring takes all the energy: k y^2/2 + F (x - y) + k2 (x - y)^2/2 with y = F/k.
