@@ -261,8 +261,7 @@ holds '[.events[].detail] | (.[0] | test("pin touches wall")) and (.[1] | test("
 pull='def pull($x): (($x + 1) * ($x + 1) + .[1] * .[1] | sqrt) as $l | 10 * ($l - 0.5) / $l;'
 near ".points[-1] | .contacts[\"pin.wall\"] as \$n | .nodes.pin | \$n - 1000 * (.[0] - 0.1)" 0 1e-9
 near ".points[-1] | .contacts[\"pin.wall\"] as \$n | .nodes.pin | $pull 8 - \$n - pull(.[0]) * (1 + .[0]) + pull(-.[0]) * (1 - .[0])" 0 1e-8
-expect 0 path walls.yaml --until -2 --json
-holds '[.events[].detail] | any(test("pin touches floor"))'
+finds '[.events[].detail] | any(test("pin touches floor"))' path walls.yaml --until -2
 sed -e 's/^gravity/bars: rigid\ngravity/' -e 's/, friction: [^}]*}//' right.yaml >rigid.yaml
 tells 1 "rigid bars need a ground that is one straight line at rest" run rigid.yaml --integrator rk4
 edit 's/0.01339746\], mass: 0.05}/-0.05], mass: 0.05}/' right.yaml tells 0 "nodes n4, n5 start inside the ground" check
