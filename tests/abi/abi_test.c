@@ -34,13 +34,25 @@ static strutlib_scene *open_crawler(void) {
 static const char triangle[] =
     TRIANGLE("0.2 s", ", channels: [position, velocity, length, force, contact, energy]");
 
-static strutlib_scene *open_triangle(void) {
+static strutlib_scene *open_text(const char *text) {
   strutlib_error *error;
-  strutlib_scene *scene =
-      strutlib_open_text("triangle", triangle, sizeof triangle - 1, 0, NULL, NULL, &error);
+  strutlib_scene *scene = strutlib_open_text("text", text, strlen(text), 0, NULL, NULL, &error);
   if (!scene) print_message("%s", strutlib_error_report(error));
   assert_non_null(scene);
   return scene;
+}
+
+static strutlib_scene *open_triangle(void) { return open_text(triangle); }
+
+static strutlib_result *good(strutlib_result *result) {
+  assert_non_null(result);
+  return result;
+}
+
+static void assert_number(const strutlib_scene *scene, const char *path, double expected) {
+  double value;
+  assert_int_equal(strutlib_scene_number(scene, path, &value), 1);
+  if (value != expected) fail_msg("%s is %.17g, expected %.17g", path, value, expected);
 }
 
 typedef struct array {
@@ -71,10 +83,10 @@ static void assert_refused(strutlib_error *error, int status, const char *words)
 TEST(versions_and_codes_are_reported) {
   assert_int_equal(strutlib_abi_version(), STRUTLIB_ABI_VERSION);
   assert_non_null(strchr(strutlib_version(), '.'));
-  assert_string_equal(strutlib_status_name(STRUTLIB_OK), "ok");
-  assert_string_equal(strutlib_status_name(STRUTLIB_INTERRUPTED), "interrupted");
-  assert_string_equal(strutlib_status_name(99), "unknown");
-  assert_string_equal(strutlib_status_text(STRUTLIB_BAD_SCENE), "the scene is not valid");
+  assert_all_texts(strutlib_status_name(STRUTLIB_OK), "ok",
+                   strutlib_status_name(STRUTLIB_INTERRUPTED), "interrupted",
+                   strutlib_status_name(99), "unknown", strutlib_status_text(STRUTLIB_BAD_SCENE),
+                   "the scene is not valid");
   assert_non_null(strutlib_status_text(-1));
   assert_int_equal(strutlib_exit_code(STRUTLIB_BAD_SCENE), 2);
   assert_int_equal(strutlib_exit_code(STRUTLIB_INTERRUPTED), 130);
@@ -98,20 +110,16 @@ TEST(a_scene_shows_names_and_values) {
   assert_int_equal(strutlib_name_count(scene, "nodes"), 5);
   assert_string_equal(strutlib_name(scene, "members", 7), "m8");
   assert_null(strutlib_name(scene, "members", 9));
-  assert_int_equal(strutlib_index(scene, "members", "m8"), 7);
-  assert_int_equal(strutlib_index(scene, "members", "m"), -1);
-  assert_int_equal(strutlib_name_count(scene, "planets"), 0);
+  assert_all_equal(strutlib_index(scene, "members", "m8"), 7, strutlib_index(scene, "members", "m"),
+                   -1, strutlib_name_count(scene, "planets"), 0);
   assert_string_equal(strutlib_name(scene, "configurations", 1), "II");
   for (size_t i = 0; strutlib_name(scene, "kinds", i); i++) {
     const char *kind = strutlib_name(scene, "kinds", i);
     assert_null(strutlib_name(scene, kind, strutlib_name_count(scene, kind)));
   }
-  assert_int_equal(strutlib_scene_number(scene, "members.m8.stiffness", &value), 1);
-  assert_true(value == 10000.0);
-  assert_int_equal(strutlib_scene_number(scene, "parameters.amplitude", &value), 1);
-  assert_true(value == 0.1e-3);
-  assert_int_equal(strutlib_scene_number(scene, "nodes.n2.1", &value), 1);
-  assert_true(value == 0.0238714);
+  assert_number(scene, "members.m8.stiffness", 10000.0);
+  assert_number(scene, "parameters.amplitude", 0.1e-3);
+  assert_number(scene, "nodes.n2.1", 0.0238714);
   assert_int_equal(strutlib_scene_number(scene, "members.m8.stifness", &value), 0);
   assert_string_equal(strutlib_scene_text(scene, "parameters.start"), "I");
   assert_string_equal(strutlib_scene_text(scene, "solver.integrator"), "rk4");
@@ -119,9 +127,7 @@ TEST(a_scene_shows_names_and_values) {
   assert_int_equal(strutlib_scene_flag(scene, "solver.step", &flag), 0);
   assert_int_equal(strutlib_scene_array(scene, "members.nodes", &data, &dimensions, shape, stride),
                    1);
-  assert_int_equal(dimensions, 2);
-  assert_int_equal(shape[0], 9);
-  assert_int_equal(shape[1], 2);
+  assert_all_equal(dimensions, 2, shape[0], 9, shape[1], 2);
   assert_true(data[7 * stride[0]] == 0.0 && data[7 * stride[0] + 1] == 4.0);
   assert_int_equal(
       strutlib_scene_array(scene, "members.rest_length", &data, &dimensions, shape, stride), 1);
@@ -137,15 +143,12 @@ TEST(a_setting_changes_a_scene) {
   double value;
   strutlib_scene *scene = strutlib_open(crawler, 2, names, values, &error), *other;
   assert_non_null(scene);
-  assert_int_equal(strutlib_scene_number(scene, "parameters.frequency", &value), 1);
-  assert_true(value == 12.0);
+  assert_number(scene, "parameters.frequency", 12.0);
   other = strutlib_scene_with(scene, 1, more_names, more_values, &error);
   assert_non_null(other);
   strutlib_close(scene); /* the text is shared */
-  assert_int_equal(strutlib_scene_number(other, "parameters.frequency", &value), 1);
-  assert_true(value == 12.0);
-  assert_int_equal(strutlib_scene_number(other, "ground.friction.mu_static", &value), 1);
-  assert_true(value == 0.5);
+  assert_number(other, "parameters.frequency", 12.0);
+  assert_number(other, "ground.friction.mu_static", 0.5);
   more_names[0] = "fricton";
   assert_null(strutlib_scene_with(other, 1, more_names, more_values, &error));
   assert_refused(error, STRUTLIB_BAD_SCENE, "fricton");
@@ -159,19 +162,11 @@ TEST(json_is_a_scene_too) {
       " \"members\": {\"m\": {\"nodes\": [\"a\", \"b\"], \"kind\": \"spring\",\n"
       "  \"stiffness\": \"4 N/cm\", \"mass\": 2}}}";
   strutlib_error *error;
-  double value;
-  OWN_POINTER(strutlib_scene) scene =
-      strutlib_open_text("dictionary", json, sizeof json - 1, 0, NULL, NULL, &error);
-  if (!scene) print_message("%s", strutlib_error_report(error));
-  assert_non_null(scene);
-  assert_int_equal(strutlib_scene_number(scene, "members.m.stiffness", &value), 1);
-  assert_true(value == 400.0);
+  OWN_POINTER(strutlib_scene) scene = open_text(json);
+  assert_number(scene, "members.m.stiffness", 400.0);
   char *again = strutlib_scene_json(scene, &error);
   assert_non_null(again);
-  OWN_POINTER(strutlib_scene) second =
-      strutlib_open_text("again", again, strlen(again), 0, NULL, NULL, &error);
-  if (!second) print_message("%s", strutlib_error_report(error));
-  assert_non_null(second);
+  OWN_POINTER(strutlib_scene) second = open_text(again);
   char *yaml = strutlib_scene_yaml(scene, 0, &error),
        *copy = strutlib_scene_yaml(second, 0, &error);
   assert_string_equal(yaml, copy);
@@ -186,8 +181,7 @@ TEST(a_scene_is_written_short_too) {
   char *flat = strutlib_scene_yaml(scene, 0, &error), *text = strutlib_scene_yaml(scene, 1, &error);
   assert_non_null(flat);
   assert_non_null(text);
-  assert_non_null(strstr(text, "drop + 80 mm"));
-  assert_null(strstr(flat, "drop + 80 mm"));
+  assert_all(strstr(text, "drop + 80 mm"), !strstr(flat, "drop + 80 mm"));
   strutlib_release(flat);
   strutlib_release(text);
 }
@@ -209,9 +203,8 @@ TEST(an_error_knows_all_its_places) {
   assert_non_null(strstr(strutlib_error_message(error), "bad.yaml:4:31: "));
   assert_non_null(strstr(strutlib_error_report(error), "^~~~"));
   assert_string_equal(strutlib_error_file(error, 0), "bad.yaml");
-  assert_int_equal(strutlib_error_line(error, 0), 4);
-  assert_int_equal(strutlib_error_column(error, 0), 31);
-  assert_int_equal(strutlib_error_length(error, 0), 3);
+  assert_all_equal(strutlib_error_line(error, 0), 4, strutlib_error_column(error, 0), 31,
+                   strutlib_error_length(error, 0), 3);
   assert_string_equal(strutlib_error_source(error, 0), "  b: {position: [1, 0], mass: 3 s}");
   assert_string_equal(strutlib_error_key(error, 0), "nodes.b.mass");
   assert_null(strutlib_error_hint(error, 0));
@@ -259,8 +252,7 @@ TEST(options_are_checked_as_on_the_command_line) {
   assert_refused(error, STRUTLIB_USAGE, "must not be negative");
   assert_string_equal(strutlib_option_name("run", 0), "force");
   assert_non_null(strutlib_option_help("path", 0));
-  assert_null(strutlib_option_name("run", 100));
-  assert_null(strutlib_option_name("ride", 0));
+  assert_all(!strutlib_option_name("run", 100), !strutlib_option_name("ride", 0));
 }
 
 /* ---- runs ---- */
@@ -268,8 +260,7 @@ TEST(options_are_checked_as_on_the_command_line) {
 TEST(a_run_has_its_channels) {
   strutlib_error *error;
   strutlib_scene *scene = open_triangle();
-  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
-  assert_non_null(result);
+  OWN_POINTER(strutlib_result) result = good(strutlib_run(scene, 0, NULL, NULL, NULL, &error));
   assert_null(error);
   strutlib_close(scene); /* a result stays */
   assert_int_equal(strutlib_result_status(result), STRUTLIB_OK);
@@ -288,9 +279,9 @@ TEST(a_run_has_its_channels) {
     assert_true(y.data[i * y.stride[0]] == whole);
     assert_true(one.data[i * one.stride[0] + one.stride[1]] == whole);
   }
-  assert_int_equal(array_of(result, "force.bc").shape[0], 201);
-  assert_int_equal(array_of(result, "contact.a.normal").shape[0], 201);
-  assert_int_equal(array_of(result, "energy.kinetic").shape[0], 201);
+  assert_all_equal(array_of(result, "force.bc").shape[0], 201,
+                   array_of(result, "contact.a.normal").shape[0], 201,
+                   array_of(result, "energy.kinetic").shape[0], 201);
   assert_string_equal(strutlib_result_array_name(result, 0), "time");
   assert_string_equal(strutlib_result_array_unit(result, "velocity"), "m/s");
   assert_string_equal(strutlib_result_array_unit(result, "velocity.a.x"), "m/s");
@@ -309,10 +300,9 @@ TEST(a_run_has_its_channels) {
   assert_string_equal(strutlib_result_key(result, "", 0), "name");
   assert_null(strutlib_result_key(result, "nodes", 3));
   array ends = array_of(result, "nodes");
-  assert_true(ends.dimensions == 3 && ends.shape[0] == 3);
-  assert_non_null(strstr(strutlib_result_table(result), "completed"));
-  assert_null(strutlib_result_cell(result, "outcome", 0));
-  assert_null(strutlib_result_column(result, 0));
+  assert_all(ends.dimensions == 3 && ends.shape[0] == 3,
+             strstr(strutlib_result_table(result), "completed"),
+             !strutlib_result_cell(result, "outcome", 0), !strutlib_result_column(result, 0));
 }
 
 /* A page's data: one JSON object with that text in it, which is released. */
@@ -330,16 +320,14 @@ TEST(a_run_records_what_is_asked_for) {
   const double *data;
   int dimensions;
   size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-  strutlib_result *result = strutlib_run(scene, 1, names, values, NULL, &error);
-  assert_non_null(result);
+  strutlib_result *result = good(strutlib_run(scene, 1, names, values, NULL, &error));
   array_of(result, "force");
   assert_int_equal(strutlib_result_array(result, "position", &data, &dimensions, shape, stride), 0);
   assert_null(strutlib_result_svg(result, 0, NULL, NULL, &error));
   assert_refused(error, STRUTLIB_USAGE, "recorded");
   strutlib_result_free(result);
   names[0] = "record", values[0] = "no";
-  result = strutlib_run(scene, 1, names, values, NULL, &error);
-  assert_non_null(result);
+  result = good(strutlib_run(scene, 1, names, values, NULL, &error));
   assert_null(strutlib_result_array_name(result, 0));
   assert_null(strutlib_result_html(result, &error));
   assert_refused(error, STRUTLIB_USAGE, "without a recorded motion");
@@ -353,8 +341,7 @@ TEST(a_run_that_diverges_is_there_up_to_then) {
   const char *names[] = {"force", "step", "integrator"}, *values[] = {"yes", "5 ms", "rk4"};
   assert_null(strutlib_run(scene, 2, names + 1, values + 1, NULL, &error));
   assert_refused(error, STRUTLIB_STEP_TOO_LARGE, "largest stable step");
-  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 3, names, values, NULL, &error);
-  assert_non_null(result);
+  OWN_POINTER(strutlib_result) result = good(strutlib_run(scene, 3, names, values, NULL, &error));
   assert_int_equal(strutlib_result_status(result), STRUTLIB_DIVERGED);
   assert_string_equal(strutlib_result_text(result, "status"), "diverged");
   assert_refused(error, STRUTLIB_DIVERGED, "");
@@ -386,10 +373,7 @@ TEST(pictures_of_paths_outlive_the_options) {
     char name[] = "push    ";
     const char *values[] = {name, "9", "2 kN/m"};
     strcpy(name, i == 0 ? "push" : "softness");
-    OWN_POINTER(strutlib_scene) scene =
-        strutlib_open_text("s", text, strlen(text), 0, NULL, NULL, &error);
-    if (!scene) print_message("%s\n", strutlib_error_message(error));
-    assert_non_null(scene);
+    OWN_POINTER(strutlib_scene) scene = open_text(text);
     OWN_POINTER(strutlib_result) result =
         strutlib_path(scene, 2 + i, names[i], values, NULL, &error);
     if (!result) print_message("%s\n", strutlib_error_message(error));
@@ -407,8 +391,7 @@ TEST(statics_have_arrays_and_pictures) {
   strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_crawler();
   const char *names[] = {"title", "width"}, *values[] = {"A title", "column"};
-  strutlib_result *result = strutlib_equilibria(scene, 0, NULL, NULL, NULL, &error);
-  assert_non_null(result);
+  strutlib_result *result = good(strutlib_equilibria(scene, 0, NULL, NULL, NULL, &error));
   array energy = array_of(result, "equilibria.energy"),
         nodes = array_of(result, "equilibria.nodes");
   assert_int_equal(energy.shape[0], strutlib_result_count(result, "equilibria"));
@@ -424,24 +407,21 @@ TEST(statics_have_arrays_and_pictures) {
   check_page_data(strutlib_result_page_data(result, &error), "\"fate\":\"stands\"");
   strutlib_result_free(result);
 
-  result = strutlib_modes(scene, 0, NULL, NULL, NULL, &error);
-  assert_non_null(result);
+  result = good(strutlib_modes(scene, 0, NULL, NULL, NULL, &error));
   assert_int_equal(array_of(result, "modes.frequency").shape[0], 10);
   check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   assert_int_equal(array_of(result, "modes.shape").dimensions, 3);
   check_picture(result, NULL, NULL, 0);
   strutlib_result_free(result);
 
-  result = strutlib_rigidity(scene, 0, NULL, NULL, NULL, &error);
-  assert_non_null(result);
+  result = good(strutlib_rigidity(scene, 0, NULL, NULL, NULL, &error));
   assert_int_equal(array_of(result, "self_stress.states.forces").shape[1], 9);
   int flag;
   assert_int_equal(strutlib_result_flag(result, "self_stress.states.0.feasible", &flag), 1);
   check_picture(result, NULL, NULL, 0);
   strutlib_result_free(result);
 
-  result = strutlib_form(scene, 0, NULL, NULL, NULL, &error);
-  assert_non_null(result);
+  result = good(strutlib_form(scene, 0, NULL, NULL, NULL, &error));
   assert_int_equal(array_of(result, "forces").shape[0], 9);
   check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   char *yaml = strutlib_result_yaml(result, &error);
@@ -453,15 +433,13 @@ TEST(statics_have_arrays_and_pictures) {
   strutlib_result_free(result);
 
   const char *path_names[] = {"over", "until", "steps"}, *path_values[] = {"drive", "1 mm", "9"};
-  result = strutlib_path(scene, 3, path_names, path_values, NULL, &error);
-  assert_non_null(result);
+  result = good(strutlib_path(scene, 3, path_names, path_values, NULL, &error));
   assert_int_equal(array_of(result, "points.value").dimensions, 1);
   check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   check_picture(result, NULL, NULL, 0);
   strutlib_result_free(result);
 
-  result = strutlib_matrices(scene, 0, NULL, NULL, NULL, &error);
-  assert_non_null(result);
+  result = good(strutlib_matrices(scene, 0, NULL, NULL, NULL, &error));
   array value_of = array_of(result, "mass.value"), size = array_of(result, "mass.size");
   double sum = 0.0; /* of a consistent mass matrix over x and y: twice the mass */
   for (size_t i = 0; i < value_of.shape[0]; i++) sum += value_of.data[i];
@@ -474,9 +452,8 @@ TEST(statics_have_arrays_and_pictures) {
 TEST(the_language_is_a_schema) {
   strutlib_error *error;
   char *scene = strutlib_schema(0, &error), *study = strutlib_schema(1, NULL);
-  assert_null(error);
-  assert_non_null(strstr(scene, "\"title\":\t\"scene\""));
-  assert_non_null(strstr(study, "\"title\":\t\"study\""));
+  assert_all(!error, strstr(scene, "\"title\":\t\"scene\""),
+             strstr(study, "\"title\":\t\"study\""));
   strutlib_release(scene);
   strutlib_release(study);
 }

@@ -197,9 +197,7 @@ static void check_held_input(const char *member) {
   static const char scene[] =
       "strut: 1\n"
       "parameters: {rest: 0.9 m, pull: 0 N}\n"
-      "nodes:\n"
-      "  a: {position: [0, 0], fixed: both}\n"
-      "  b: {position: [1, 0], mass: 1 kg, fixed: y}\n"
+      "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1 kg, fixed: y}}\n"
       "members:\n"
       "  m: {nodes: [a, b], kind: spring, %s, "
       "damping: 3 N s/m, rest_length: rest}\n"

@@ -39,8 +39,7 @@ static const precision_scene scenes[] = {
     SCENE("smooth-friction", "smooth friction", "smooth-friction", .periods = 0),
     SCENE("feedback", "arm with feedback", "feedback", .periods = 0),
     SCENE("folds", "law that folds back", "folds", .periods = 0),
-    SCENE("drift", "10,000 periods", "drift", .periods = 0),
-};
+    SCENE("drift", "10,000 periods", "drift", .periods = 0)};
 
 const precision_scene *precision_scene_at(size_t i) {
   return i < sizeof scenes / sizeof scenes[0] ? &scenes[i] : NULL;

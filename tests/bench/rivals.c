@@ -70,7 +70,6 @@ static const rival rivals[] = {
     {"strut", 20000, engine_create, engine_run, engine_position, engine_free},
     {"strut, with the energy balance", 20000, engine_create_balance, engine_run, engine_position,
      engine_free},
-    {BENCH_SCALAR, 20000, hand_create, hand_run_scalar, hand_position, free},
-};
+    {BENCH_SCALAR, 20000, hand_create, hand_run_scalar, hand_position, free}};
 
 const rival *rival_at(size_t i) { return i < sizeof rivals / sizeof rivals[0] ? &rivals[i] : NULL; }

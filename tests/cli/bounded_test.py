@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What a scene asks for is done soon, or refused by name at once: long profiles, runs that would not end, samples beyond
 # the run, and structures at rest; and what killed processes leave goes, and hidden characters do not act on the terminal.
-#
-#   python3 bounded_test.py STRUT
 import json
 import math
 import os

@@ -2,10 +2,7 @@
 """strut equilibria finds every state of a chain of bistable cells, those about to vanish too.
 
 The chain is enumerated apart: where the first apex stands tells where all others must, by the balance
-of one cell after the other, so that its equilibria are the roots of one function of one number.
-
-usage: chain_test.py STRUT
-"""
+of one cell after the other, so that its equilibria are the roots of one function of one number."""
 import math
 
 from testing import answer, check, fail, finish, write

@@ -30,15 +30,12 @@ for damping in 0 10 40 100; do
     | (-\$b * . | exp)"
   ball $damping rk4-events "0.2 ms" >ball.yaml
   run ball.yaml
-  near .measured.speed.value "$exit" 1e-4
-  near .measured.pull.value 0 0
-  near '.energy.residual / .energy.exchanged' 0 1e-4
+  near .measured.speed.value "$exit" 1e-4 .measured.pull.value 0 0 '.energy.residual / .energy.exchanged' 0 1e-4
   [ $damping -ne 0 ] || near .measured.force.value 100 0.05
   for method in rk4 verlet euler verlet-events euler-events adaptive midpoint; do
     ball $damping $method "20 us" >ball.yaml
     run ball.yaml
-    near .measured.speed.value "$exit" 0.02
-    near .measured.pull.value 0 0
+    near .measured.speed.value "$exit" 0.02 .measured.pull.value 0 0
   done
 done
 
@@ -72,8 +69,7 @@ run:
       hit: {of: hit.force, take: max}
 END
 run rods.yaml
-near '.measured | [.px, .py | .value]' '[0, 0]' 1e-10
-near .measured.spin.value 0 1e-9
+near '.measured | [.px, .py | .value]' '[0, 0]' 1e-10 .measured.spin.value 0 1e-9
 holds '.measured.hit.value > 10'
 near '.energy.residual / .energy.exchanged' 0 1e-5
 

@@ -15,13 +15,10 @@ run:
     across: {of: (b.y - a.y) * cos(30 deg) - (b.x - a.x) * sin(30 deg), take: final}}}
 YAML
 drawn='(3 | sqrt) - 0.5'
-for method in rk4 adaptive midpoint verlet rk4-events; do
-  gives .measured.at.value 1 1e-4 run along.yaml --integrator $method
-  near .measured.rate.value "-2 * 3.141592653589793 * ($drawn - 1)" 1e-4
-  near .measured.f.value "4 * 3.141592653589793 * 3.141592653589793 * ($drawn - 1)" 1e-9
-  near .measured.across.value '-1 - 0.5 * (3 | sqrt) + 0.25' 1e-9
-  near '.energy.residual / .energy.exchanged' 0 1e-5
-done
+by "rk4 adaptive midpoint verlet rk4-events" along.yaml .measured.at.value 1 1e-4 \
+  .measured.rate.value "-2 * 3.141592653589793 * ($drawn - 1)" 1e-4 \
+  .measured.f.value "4 * 3.141592653589793 * 3.141592653589793 * ($drawn - 1)" 1e-9 \
+  .measured.across.value '-1 - 0.5 * (3 | sqrt) + 0.25' 1e-9 '.energy.residual / .energy.exchanged' 0 1e-5
 gives '.modes[1].frequency' 1 1e-9 modes along.yaml
 near '.modes[0].frequency' 0 1e-9
 expect 0 run along.yaml --quiet --plot along.svg -o out-along
@@ -36,8 +33,7 @@ parts:
 place: {one: {part: leg}, two: {part: leg, flip: y, turn: 90 deg, at: [5, 0], scale: 2}}
 YAML
 gives '.distances["one.d"].drawn' 1 0 check parts.yaml
-near '[.distances["two.d"].drawn, .distances["two.d"].rest]' '[2, 1.6]' 1e-15
-near '.distances["one.o"].drawn' 0.5 0
+near '[.distances["two.d"].drawn, .distances["two.d"].rest]' '[2, 1.6]' 1e-15 '.distances["one.o"].drawn' 0.5 0
 near '.distances["two.o"].drawn' 1 1e-15
 shows 0 'one.d: {nodes: [one.a, one.b], along: x, stiffness: 5, rest_distance: 0.8}' export parts.yaml
 out_has 'two.d: {nodes: [two.a, two.b], along: y, stiffness: 5, rest_distance: 1.6}'
@@ -64,9 +60,7 @@ echo 'ground: {slope: "atan(0.2)", stiffness: 1e4, contacts: {ball: {}}}' >>grou
 expect 0 run ground.yaml --json
 for what in x y f; do eval "$what=\$(jq .measured.$what.value out)"; done
 gives .measured.x.value "$x" 1e-9 run ball.yaml
-near .measured.y.value "$y" 1e-9
-near .measured.f.value "-$f" 1e-6
-near '.energy.residual / .energy.exchanged' 0 1e-5
+near .measured.y.value "$y" 1e-9 .measured.f.value "-$f" 1e-6 '.energy.residual / .energy.exchanged' 0 1e-5
 
 # Three free nodes: a line gives neither momentum nor, about any point, a moment; work and losses are balanced.
 yaml free.yaml <<'YAML'
@@ -80,9 +74,7 @@ run:
     turn: {of: 1 kg * (a.x * a.vy - a.y * a.vx) + 2 kg * (b.x * b.vy - b.y * b.vx) + 3 kg * (c.x * c.vy - c.y * c.vx), take: rms}}}
 YAML
 gives .measured.vx.value 0 1e-13 run free.yaml
-near .measured.vy.value 0 1e-13
-near .measured.turn.value 0 1e-11
-near .energy.residual 0 1e-9
+near .measured.vy.value 0 1e-13 .measured.turn.value 0 1e-11 .energy.residual 0 1e-9
 
 # Two springs pull against each other: both have their own force, and it balances.
 yaml pulled.yaml <<'YAML'
@@ -101,8 +93,7 @@ distances: {x: {nodes: [a, b], along: x, stiffness: 50}, y: {nodes: [a, b], alon
 loads: {f: {node: b, force: [3 N, 0]}}
 YAML
 gives .rank 2 0 rigidity held.yaml
-near '[.distances, .self_stress.count, .mechanisms.count]' '[2, 1, 0]' 0
-near .distances_at.y.force 2 1e-12
+near '[.distances, .self_stress.count, .mechanisms.count]' '[2, 1, 0]' 0 .distances_at.y.force 2 1e-12
 sed '/^members/d' held.yaml >crossed.yaml
 gives '.points[-1].nodes.b[0]' '1 + 6 / 50' 1e-9 path crossed.yaml --load f --until 2
 near '[.points[-1].nodes.b[1], .points[-1].distance_forces.x]' '[0.9, 6]' 1e-9

@@ -3,32 +3,20 @@
 # Hinges, running cables, other laws and stops in paths, rigidity, modes, equilibria and form finding.
 . "$(dirname "$0")/lib.sh"
 
-# value EXPRESSION: of the JSON just printed.
-value() { jq -r "$1" "$work/out"; }
-
 # ---- two links with a hinge, pressed: P = 2 kappa / l, after it 2 kappa theta / (l sin theta) ----
 yaml links.yaml <<'END'
 parameters: {kappa: 3 N m/rad, rest: 180 deg, press: 1 N}
-nodes:
-  a: {position: [0, 0], fixed: both}
-  b: [1, 0]
-  c: {position: [2, 0], fixed: y}
-members:
-  m1: {kind: bar, nodes: [a, b], stiffness: 1e11}
-  m2: {kind: bar, nodes: [b, c], stiffness: 1e11}
-hinges:
-  h: {nodes: [a, b, c], stiffness: kappa, rest_angle: rest}
-actuators:
-  motor: {hinge: h, signal: {sine: {amplitude: 0.1, frequency: 1 Hz}}}
-loads:
-  p: {node: c, force: [-press, 0]}
+nodes: {a: {position: [0, 0], fixed: both}, b: [1, 0], c: {position: [2, 0], fixed: y}}
+members: {m1: {kind: bar, nodes: [a, b], stiffness: 1e11}, m2: {kind: bar, nodes: [b, c], stiffness: 1e11}}
+hinges: {h: {nodes: [a, b, c], stiffness: kappa, rest_angle: rest}}
+actuators: {motor: {hinge: h, signal: {sine: {amplitude: 0.1, frequency: 1 Hz}}}}
+loads: {p: {node: c, force: [-press, 0]}}
 END
 expect 0 path links.yaml --until 8 --json
 holds '(.events | length) == 1 and .events[0].kind == "bifurcation" and
   .events[0].negative_before == 0 and .events[0].negative_after == 1'
-near_number "$(value '.events[0].factor')" 6 1e-8 "critical load of two links"
-expect 0 path links.yaml --over kappa --from 10 --until 0.1 --json
-near_number "$(value '.events[0].value')" 0.5 1e-9 "critical stiffness of the hinge"
+near '.events[0].factor' 6 1e-8
+gives '.events[0].value' 0.5 1e-9 path links.yaml --over kappa --from 10 --until 0.1
 # The branch: b is displaced, and the load that it needs without a sideways force lies on the curve.
 expect 0 path links.yaml --over b.y --until 0.8 --json
 jq -r '.points[] | [.nodes.b[1], .reactions.b[1], .moments.h] | @tsv' "$work/out" | awk '
@@ -42,7 +30,7 @@ jq -r '.points[] | select(.factor > 6.1) | [.factor, .nodes.b[1]] | @tsv' "$work
     if (d > 1e-4) exit 1; n++ } END { exit !n }' || fail "load on the buckled branch"
 # A driven rest angle goes round as far as wanted; without a load the hinge follows it.
 finds '.unit == "rad" and .end == "until"' path links.yaml --over motor --until '100 deg' --set 'press=0 N'
-near_number "$(value '.points[-1].nodes.b[1]')" -0.766044443118978 1e-9 "a hinge turned by 100 degrees"
+near '.points[-1].nodes.b[1]' -0.766044443118978 1e-9
 expect 0 path links.yaml --over b.y --until 0.5 -o turned
 head -n 1 turned/path.csv | grep -qF 'm2.force [N],h.moment [N m],' || fail "moments in the table"
 shows 0 "h moment" path links.yaml --until 8
@@ -50,31 +38,24 @@ shows 0 "h moment" path links.yaml --until 8
 # ---- von Mises' truss with a cubic law ----
 yaml cubic.yaml <<'END'
 parameters: {hard: 20000}
-nodes:
-  left: {position: [-1, 0], fixed: both}
-  right: {position: [1, 0], fixed: both}
-  top: [0, 0.3]
-members:
-  a: {kind: bar, nodes: [left, top], law: {kind: polynomial, coefficients: [1000, 0, hard]}}
-  b: {kind: bar, nodes: [right, top], law: {kind: polynomial, coefficients: [1000, 0, hard]}}
-loads:
-  weight: {node: top, force: [0, -1]}
+nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both}, top: [0, 0.3]}
+groups: {g: {kind: bar, law: {kind: polynomial, coefficients: [1000, 0, hard]}}}
+members: {a: {group: g, nodes: [left, top]}, b: {group: g, nodes: [right, top]}}
+loads: {weight: {node: top, force: [0, -1]}}
 END
 limit=$(awk 'function p(h, l, x) { l = sqrt(1 + h * h); x = l - sqrt(1.09); return -2 * (1000 * x + 20000 * x ^ 3) * h / l }
   BEGIN { a = 0.01; b = 0.29; for (i = 0; i < 200; i++) { c = a + (b - a) / 3; d = b - (b - a) / 3
     if (p(c) > p(d)) b = d; else a = c } printf "%.12g\n", p(a) }')
 finds '(.events | length) == 2 and .events[0].kind == "limit point"' path cubic.yaml --until 15
-near_number "$(value '.events[0].factor')" "$limit" 1e-9 "limit load of the cubic truss"
-near_number "$(value '.events[1].factor')" "-$limit" 1e-9 "its mirror image"
+near '.events[0].factor' "$limit" 1e-9 '.events[1].factor' "-$limit" 1e-9
 finds '.end == "until" and .unit == ""' path cubic.yaml --over hard --until 40000
 
 # ---- a stop ends a truss's softening: at a length of 1.012 its height is fixed ----
-edit 's/law: {.*}}/stiffness: 1000, shortest: 1.012}/; /^parameters/d' cubic.yaml expect 0 path --until 30 --json
+edit 's/law: {.*}}}/stiffness: 1000, shortest: 1.012}}/; /^parameters/d' cubic.yaml expect 0 path --until 30 --json
 holds '[.events[].kind] == ["limit point", "engages", "engages", "limit point at a kink"] and
   (.events[1].detail | test("^a reaches its shortest length")) and
   .events[2].negative_after == 0 and .points[-1].stable and .end == "until"'
-near_number "$(value '.events[1].nodes.top[1]')" 0.155383396796441 1e-12 "height at the stop"
-near_number "$(value '.events[1].factor')" 9.83603031038155 1e-11 "load at the stop"
+near '.events[1].nodes.top[1]' 0.155383396796441 1e-12 '.events[1].factor' 9.83603031038155 1e-11
 holds 'all(.events[]; has("factor"))'
 
 # ---- a law with a kink: the force beyond it ----
@@ -87,9 +68,7 @@ loads: {pull: {node: end, force: [1, 0]}}
 END
 expect 0 path kinked.yaml --until 12 --json
 holds '[.events[].kind] == ["releases", "kink of a law"] and .events[0].detail == "s ceases to push"'
-near_number "$(value '.events[0].factor')" 5 1e-12 "load where the spring ceases to push"
-near_number "$(value '.events[1].factor')" 10 1e-12 "load at the knee"
-near_number "$(value '.points[-1].nodes.end[0]')" 1.3 1e-12 "displacement beyond the knee"
+near '.events[0].factor' 5 1e-12 '.events[1].factor' 10 1e-12 '.points[-1].nodes.end[0]' 1.3 1e-12
 
 # ---- a running cable: a weight hangs on it, its rest length is driven until it is slack ----
 yaml ring.yaml <<'END'
@@ -113,7 +92,6 @@ balance() {
     fail "balance of a running cable: $*"
 }
 for over in "motor --until 1m" "rest --until 2.7" "s.x --until -0.4m"; do
-  # shellcheck disable=SC2086
   expect 0 path ring.yaml --over $over --json
   balance "$over"
 done
@@ -137,7 +115,7 @@ holds '.rank == 4 and .self_stress.count == 1 and .mechanisms.count == 4 and
 expect 0 rigidity links.yaml --json
 holds '.rank == 3 and .hinges == 1 and .self_stress.count == 0 and .mechanisms.count == 0 and
   (.hinges_at.h.angle - 3.141592653589793 | fabs) < 1e-15 and .hinges_at.h.moment == 0'
-edit '/^hinges/,/^actuators/d; /motor/d' links.yaml expect 0 rigidity --json
+edit '/^hinges/d; /^actuators/d' links.yaml expect 0 rigidity --json
 holds '.rank == 2 and .mechanisms.count == 1'
 # A triangle holds its angles: each hinge in it is one more state of self-stress.
 yaml triangle.yaml <<'END'
@@ -163,7 +141,7 @@ members: {m: {kind: cable, nodes: [a, r, b], stiffness: 1e4, rest_length: 2.8277
 loads: {w: {node: r, force: [0, -10]}}
 END
 finds '.rank == 1 and .mechanisms.count == 1 and .mechanisms.infinitesimal == 1' rigidity hanging.yaml --at start
-near_number "$(value '.mechanisms.modes[0].stiffness')" 5 1e-6 "stiffness by the tension of a running cable"
+near '.mechanisms.modes[0].stiffness' 5 1e-6
 shows 0 "stiffened by the member forces: 5 N/m" rigidity hanging.yaml --at start
 
 # ---- modes: a pendulum with a hinge, (kappa + m g l) / (m l^2); what is named ----
@@ -173,9 +151,8 @@ nodes: {w: {position: [0, 1], fixed: both}, o: {position: [0, 0], fixed: both}, 
 members: {rod: {kind: bar, nodes: [o, m], stiffness: 1e12 N/m}}
 hinges: {h: {nodes: [w, o, m], stiffness: 5 N m/rad, damping: 0.1 N m s/rad, rest_angle: 180 deg}}
 END
-expect 0 modes pendulum.yaml --json
-near_number "$(value '.modes[0].eigenvalue')" 5.32166666666667 1e-9 "pendulum with a hinge"
-near_number "$(value '.modes[0].damping_ratio')" 0.00180614 1e-7 "its damping"
+gives '.modes[0].eigenvalue' 5.32166666666667 1e-9 modes pendulum.yaml
+near '.modes[0].damping_ratio' 0.00180614 1e-7
 holds '(.modes[0].description | test("h 100 % of the energy")) and .modes[0].error < 1e-10'
 finds '[.equilibria[] | select(.label == "stable")] | length == 1' equilibria pendulum.yaml
 
@@ -194,8 +171,7 @@ holds '[.equilibria[] | select(.label == "stable")] | length == 2 and .[0].energ
 tells 2 "knows straight members with a linear law only: string_1_2_3 runs over guides" form square.yaml
 tells 2 "ha is a hinge" form triangle.yaml
 tells 2 "m has another law" form kinked.yaml --given prestress
-expect 0 form ring.yaml --json
-near_number "$(value .residual)" 0 1e-9 "residual of a form with a running cable"
+gives .residual 0 1e-9 form ring.yaml
 
 # A ring that is pulled to the end of its cable: the path ends there, and says which segment is gone.
 yaml shrink.yaml <<'END'
@@ -205,8 +181,7 @@ members: {string: {kind: cable, nodes: [left, ring, right], stiffness: 1 kN/m, r
           hold: {kind: spring, nodes: [left, ring], stiffness: 10 N/m}}
 loads: {pull: {node: ring, force: [1 N, 0]}}
 END
-expect 0 path shrink.yaml --load pull --until 20 --json
-near_number "$(value '.points[-1].factor')" 4 1e-6 "load that pulls the ring to the end"
+gives '.points[-1].factor' 4 1e-6 path shrink.yaml --load pull --until 20
 holds '.end == "lost" and (.remark | endswith("no equilibrium was found nearby beyond it; a segment of cable '"'string'"' has shrunk to nothing there, between nodes '"'ring' and 'right'"'"))'
 
 # What is rounding is 0 in reports: forces of a cable that went slack, and of a structure without any, whose

@@ -12,9 +12,8 @@ members: {string: {kind: cable, nodes: [a, ring, b], stiffness: 1e8, rest_length
 loads: {weight: {node: ring, force: [0, -10 N]}}
 END
 gives '.equilibria | length' 1 0 equilibria ring.yaml
-near '[.equilibria[0].nodes.ring[0], .equilibria[0].nodes.ring[1]]' '[0.5, (-(0.49 - 0.25 | sqrt))]' 1e-6
-near '.equilibria[0].forces.string' '10 / (2 * (1 - 1 / (1.4 * 1.4) | sqrt))' 1e-6
-near '.equilibria[0].reactions.a[1]' 5 1e-6
+near '.equilibria[0] | .nodes.ring[:2] + [.forces.string, .reactions.a[1]]' \
+  '[0.5, -(0.49 - 0.25 | sqrt), 10 / (2 * (1 - 1 / (1.4 * 1.4) | sqrt)), 5]' 1e-6
 
 # Two links with a hinge, pressed by 1.25 times the critical 2 kappa / l: the straight shape is a
 # saddle, and in the others P = 2 kappa theta / (l sin theta).
@@ -28,10 +27,8 @@ loads: {press: {node: c, force: [-10, 0]}}
 END
 gives '[.equilibria[] | select(.label == "saddle")] | length' 1 0 equilibria links.yaml --all
 near '[.equilibria[] | select(.label == "saddle")][0].nodes.b[0]' 0.5 1e-6
-near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .nodes.b |
-  atan2(.[1] | fabs; .[0]) as $angle | 2 * 2 * $angle / (0.5 * ($angle | sin))' \
-  10 1e-5
-near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .congruent_copies' 2 0
+near '.equilibria[] | select(.label == "stable" and .nodes.c[0] > 0) | .nodes.b as $b | atan2($b[1] | fabs; $b[0]) as $angle |
+  [2 * 2 * $angle / (0.5 * ($angle | sin)), .congruent_copies]' '[10, 2]' '1e-5'
 
 # By path the straight shape bifurcates there.
 gives '[.events[] | select(.kind == "bifurcation")][0].factor' 0.8 1e-5 path links.yaml --load press --until 1.5
@@ -50,8 +47,7 @@ chain() {
 }
 for n in 2 3 8; do
   chain $n 0.5 >chain.yaml
-  expect 0 modes chain.yaml --json
-  half=$(jq '.modes[0].eigenvalue' out)
+  half=$("$strut" modes chain.yaml --json | jq '.modes[0].eigenvalue')
   chain $n 0.99 >chain.yaml
   gives "(.modes[0].eigenvalue) as \$most | (0.99 * $half - 0.5 * \$most) / ($half - \$most)" 1 1e-6 modes chain.yaml
 done
@@ -100,10 +96,8 @@ members: {log: {kind: spring, nodes: [a, b], stiffness: 10, rest_length: 1, law:
           exp: {kind: cable, nodes: [c, d], stiffness: 10, rest_length: 1, law: {kind: exponential, scale: 0.2}}}
 loads: {one: {node: b, force: [0, -5]}, two: {node: d, force: [0, -5]}}
 END
-gives '.equilibria[] | select(.label == "stable") | .nodes.b[1]' '-(0.5 | exp)' 1e-9 equilibria weights.yaml
-near '.equilibria[] | select(.label == "stable") | .nodes.d[1]' '-1 - 0.2 * (3.5 | log)' 1e-9
-near '.equilibria[] | select(.label == "stable") | .forces.log' 5 1e-9
-near '.equilibria[] | select(.label == "stable") | .forces.exp' 5 1e-9
+gives '.equilibria[] | select(.label == "stable") | [.nodes.b[1], .nodes.d[1], .forces.log, .forces.exp]' \
+  '[-(0.5 | exp), -1 - 0.2 * (3.5 | log), 5, 5]' 1e-9 equilibria weights.yaml
 
 # A shape with a hinge is shown as it was found: its mirror image, nearer to the drawn one, is none.
 yaml bent.yaml <<'END'
@@ -144,10 +138,7 @@ solver: {integrator: rk4-events, step: 1 ms}
 run: {duration: 0.1}
 END
     case $law in *tension*) idle=0.5 busy=1.5 ;; *) idle=1.5 busy=0.5 ;; esac
-    expect 0 run one.yaml --set at=$idle --json
-    jq -e ".nodes.m.position[0] == $idle" out >value || fail "$kind, $law: moves from $idle"
-    expect 0 run one.yaml --set at=$busy --json
-    jq -e "(.nodes.m.position[0] - (1 + ($busy - 1) * (1 | cos)) | fabs) < 1e-6" out >value ||
-      fail "$kind, $law: moves otherwise from $busy"
+    gives '.nodes.m.position[0]' $idle 0 run one.yaml --set at=$idle
+    gives '.nodes.m.position[0]' "1 + ($busy - 1) * (1 | cos)" 1e-6 run one.yaml --set at=$busy
   done
 done

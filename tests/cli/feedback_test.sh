@@ -23,13 +23,9 @@ solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: x - 1 m, take: final}, v: {of: v, take: final}}}}
 END
 poles='(0.2) as $a | (20 - 0.04 | sqrt) as $w | '
-for row in "rk4 1e-11" "rk4-events 1e-11" "adaptive 1e-8" "verlet 1e-5" "verlet-events 1e-5" "midpoint 2e-5" \
-  "euler 2e-2" "euler-events 2e-2"; do
-  method=${row% *} tolerance=${row#* }
-  gives '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance" run pd.yaml --integrator $method
-  near '.measured.v.value' "$poles"'(-2*$a | exp) * ((2*$w | cos) - $a/$w * (2*$w | sin))' "$tolerance"
-  near '.energy.residual' 0 "$tolerance"
-done
+by "rk4:1e-11 rk4-events:1e-11 adaptive:1e-8 verlet:1e-5 verlet-events:1e-5 midpoint:2e-5 euler:2e-2 euler-events:2e-2" pd.yaml \
+  .measured.x.value "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' own \
+  .measured.v.value "$poles"'(-2*$a | exp) * ((2*$w | cos) - $a/$w * (2*$w | sin))' own .energy.residual 0 own
 
 # A rest length that follows its own member's length: k (1 + g) and c (1 + g), since the damper feels
 # the rate that is derived from the expression. The energy balance closes with the drive's work.
@@ -43,13 +39,9 @@ solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}, e: {of: error, take: final}}}}
 END
 poles='(0.35) as $a | (35 - 0.1225 | sqrt) as $w | '
-for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-8" "verlet 4e-5" "verlet-events 4e-5" "midpoint 4e-5" \
-  "euler 2e-2" "euler-events 2e-2"; do
-  method=${row% *} tolerance=${row#* }
-  gives '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance" run length.yaml --integrator $method
-  near '.measured.e.value' "$poles"'-(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance"
-  near '.energy.residual' 0 "$tolerance"
-done
+by "rk4:1e-10 rk4-events:1e-10 adaptive:1e-8 verlet:4e-5 verlet-events:4e-5 midpoint:4e-5 euler:2e-2 euler-events:2e-2" length.yaml \
+  .measured.x.value "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' own \
+  .measured.e.value "$poles"'-(-2*$a | exp) * (2*$w | sin) / $w' own .energy.residual 0 own
 
 # The same poles from an actuator that gives a force, by the length and its rate.
 beside force.yaml 'stiffness: 1e-12' <<'END'
@@ -59,11 +51,8 @@ initial: {velocities: {b: [1, 0]}}
 solver: {integrator: rk4, step: 1 ms}
 run: {duration: 2 s, measure: {quantities: {x: {of: l - 1 m, take: final}}}}
 END
-for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-8" "verlet 4e-5" "midpoint 4e-5" "euler 2e-2"; do
-  method=${row% *} tolerance=${row#* }
-  gives '.measured.x.value' "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' "$tolerance" run force.yaml --integrator $method
-  near '.energy.residual' 0 "$tolerance"
-done
+by "rk4:1e-10 rk4-events:1e-10 adaptive:1e-8 verlet:4e-5 midpoint:4e-5 euler:2e-2" force.yaml \
+  .measured.x.value "$poles"'(-2*$a | exp) * (2*$w | sin) / $w' own .energy.residual 0 own
 
 # Every function in an expression has its derivative: a driven length whose value is that of a sine
 # moves its mass as the sine does, through the damper alone.
@@ -117,9 +106,7 @@ END
 expect 0 run all.yaml --json
 want=$(jq .measured.y.value out)
 near '.energy.residual' 0 1e-6
-for method in adaptive verlet-events rk4; do
-  gives '.measured.y.value' "$want" 2e-4 run all.yaml --integrator $method
-done
+by "adaptive verlet-events rk4" all.yaml .measured.y.value "$want" 2e-4
 
 # A lag of a constant that begins at 0: 1 - e^{-t/tau}, by every method at its order.
 yaml lag.yaml <<'END'
@@ -130,14 +117,9 @@ actuators: {d: {member: m, signal: slow}}
 solver: {integrator: rk4, step: 10 ms}
 run: {duration: 1 s, measure: {quantities: {z: {of: slow, take: final}, f: {of: m.force, take: final}}}}
 END
-for row in "rk4 1e-10" "rk4-events 1e-10" "adaptive 1e-10" "verlet 1e-6" "verlet-events 1e-6" "midpoint 1e-6" \
-  "euler 1e-4" "euler-events 1e-4"; do
-  method=${row% *} tolerance=${row#* }
-  gives '.measured.z.value' '0.01 * (1 - (-2 | exp))' "$tolerance" run lag.yaml --integrator $method
-  near '.measured.f.value' '-40 * 0.01 * (1 - (-2 | exp)) - 0.3 * 0.02 * (-2 | exp)' \
-    "(40 * $tolerance)"
-  near '.energy.residual' 0 "$tolerance"
-done
+by "rk4:1e-10 rk4-events:1e-10 adaptive:1e-10 verlet:1e-6 verlet-events:1e-6 midpoint:1e-6 euler:1e-4 euler-events:1e-4" lag.yaml \
+  .measured.z.value '0.01 * (1 - (-2 | exp))' own \
+  .measured.f.value '-40 * 0.01 * (1 - (-2 | exp)) - 0.3 * 0.02 * (-2 | exp)' '40 * own' .energy.residual 0 own
 
 # Two oscillators lock where their frequencies differ by less than twice the coupling, with the phase
 # difference arcsin(dw / 2K); else they drift apart at sqrt(dw^2 - 4 K^2) on average.
@@ -154,9 +136,8 @@ run:
   measure:
     quantities: {lag: {of: o2 - o1, take: final}, drift: {of: o2 - o1, take: rate}, x: {of: b.x - 1 m, take: final}}
 END
-for method in rk4 verlet euler midpoint rk4-events adaptive; do
-  gives '.measured.lag.value' '0.4 * 6.283185307179586 / 4 | asin' 1e-8 run oscillators.yaml --integrator $method
-done
+by "rk4 verlet euler midpoint rk4-events adaptive" oscillators.yaml \
+  .measured.lag.value '0.4 * 6.283185307179586 / 4 | asin' 1e-8
 gives '.measured.drift.value' '6.283185307179586 * 6.283185307179586 - 16 | sqrt' 0.05 run oscillators.yaml --set 'df=1 Hz'
 sed 's/coupling: {o2: 2 rad\/s}/coupling: {o2: 2 rad\/s}, bias: 90 deg/; s/coupling: {o1: 2 rad\/s}/coupling: {o1: 2 rad\/s}, bias: -90 deg/' \
   oscillators.yaml >run.yaml
@@ -204,12 +185,8 @@ run: {duration: 2.05 s, measure: {quantities: {x: {of: x, take: final}}}}
 END
 expect 0 run held.yaml --json
 want=$(jq .measured.x.value out)
-for row in "rk4 1e-9" "rk4-events 1e-9" "adaptive 1e-9" "verlet 2e-5" "verlet-events 2e-5" "midpoint 2e-5" \
-  "euler 1e-2" "euler-events 1e-2"; do
-  method=${row% *} tolerance=${row#* }
-  gives '.energy.residual' 0 "$tolerance" run held.yaml --integrator $method
-  near '.measured.x.value' "$want" "$tolerance"
-done
+by "rk4:1e-9 rk4-events:1e-9 adaptive:1e-9 verlet:2e-5 verlet-events:2e-5 midpoint:2e-5 euler:1e-2 euler-events:1e-2" held.yaml \
+  .energy.residual 0 own .measured.x.value "$want" own
 
 # A PI controller of a length against the poles of the loop: m x'' + c x' + k x = k u with
 # u = g e + i I, I' = e: in rest e = 0. And with limits it does not wind up.
@@ -221,14 +198,10 @@ solver: {integrator: rk4, step: 5 ms}
 run: {duration: 40 s,
       measure: {quantities: {x: {of: l, take: final}, i: {of: c_integral, take: final}, s: {of: c, take: max}}}}
 END
-for method in rk4 midpoint rk4-events; do
-  gives '.measured.x.value' 1.1 1e-9 run pi.yaml --integrator $method
-  near '.measured.i.value' 0.1 1e-9
-done
+by "rk4 midpoint rk4-events" pi.yaml .measured.x.value 1.1 1e-9 .measured.i.value 0.1 1e-9
 gives '.energy.residual' 0 1e-7 run pi.yaml
 edit 's/target: 1.1 m/target: 1.6 m/' pi.yaml expect 0 run --json
-near '.measured.s.value' 0.3 1e-12
-near '.measured.x.value' 1.3 1e-6
+near '.measured.s.value' 0.3 1e-12 '.measured.x.value' 1.3 1e-6
 edit 's/most: 0.3 m, least: -0.3 m/every: 50 ms, derivative: 0.01 s/' pi.yaml gives '.measured.x.value' 1.1 1e-6 run
 
 # A state of one's own: van der Pol's oscillator, by all methods of high order alike.
@@ -258,12 +231,9 @@ members:
 solver: {integrator: rk4, step: 10 ms}
 run: {duration: 1 s, measure: {quantities: {f: {of: m.force, take: final}, e: {of: energy.elastic, take: final}, l: {of: losses.members, take: final}}}}
 END
-for row in "rk4 1e-8" "rk4-events 1e-8" "adaptive 1e-8" "verlet 1e-4" "verlet-events 1e-4" "midpoint 1e-4" \
-  "euler 1e-2" "euler-events 1e-2"; do
-  method=${row% *} tolerance=${row#* }
-  gives '.measured.f.value' '2 * (-2 | exp)' "$tolerance" run maxwell.yaml --integrator $method
-  near '.measured | [.e, .l | .value]' '[(4 * (-4 | exp) / 100), (0.04 * (1 - (-4 | exp)))]' "$tolerance"
-done
+by "rk4:1e-8 rk4-events:1e-8 adaptive:1e-8 verlet:1e-4 verlet-events:1e-4 midpoint:1e-4 euler:1e-2 euler-events:1e-2" maxwell.yaml \
+  .measured.f.value '2 * (-2 | exp)' own \
+  '.measured | [.e, .l | .value]' '[(4 * (-4 | exp) / 100), (0.04 * (1 - (-4 | exp)))]' own
 # Shaken by its rest length with amplitude A at w it loses pi A^2 k w T / (1 + w^2 T^2) in a cycle, which
 # the drive does; and a free mass on it keeps the balance.
 sed 's/, force: 2 N//; s/damping: 25 N s\/m/time: 0.5 s/; s/duration: 1 s/duration: 10 s/
@@ -388,9 +358,7 @@ expect 0 run sensed.yaml --json
 for what in area p d c n; do near ".measured.$what.value" 0 1e-12; done
 holds '.measured.pushed.value > 1 and .measured.hit.value > 1'
 y=$(jq .measured.y.value out)
-for method in rk4-events adaptive verlet; do
-  gives .measured.y.value "$y" 1e-4 run sensed.yaml --integrator $method
-done
+by "rk4-events adaptive verlet" sensed.yaml .measured.y.value "$y" 1e-4
 # a load that lifts a weight from the ground as the ground pushes: it carries half of it
 yaml half.yaml <<'END'
 gravity: [0, -10]
@@ -431,9 +399,7 @@ END
 gives .measured.push.value 0 1e-12 run brain.yaml
 near .measured.pull.value 0 1e-12
 x=$(jq .measured.x.value out)
-for method in rk4-events adaptive verlet; do
-  gives .measured.x.value "$x" 1e-4 run brain.yaml --integrator $method
-done
+by "rk4-events adaptive verlet" brain.yaml .measured.x.value "$x" 1e-4
 broken() { # CSV of the first layer, message
   printf '%s\n' "$1" >brain.csv
   tells 2 "$2" check brain.yaml

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Folds of a Duffing oscillator, and their curve over the force, by strut path --periodic and by AUTO-07p (Debian's auto-07p), which discretises the
 # same periodic motion by collocation. Skipped where AUTO or gfortran is not installed.
-#
-#   python3 follow_auto_test.py STRUT
 import json
 import math
 import re

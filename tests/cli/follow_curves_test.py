@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Curves over two parameters: Duffing's folds and their cusp by the harmonic balance, the bilinear oscillator's
 # grazing by its transfer function, doublings against single branches; files, refusals.
-#
-#   python3 follow_curves_test.py STRUT
 import json
 import math
 import os

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Studies that follow motions: Duffing's folds over the force, threads, a kill, Ctrl-C, refusals.
-#
-#   python3 follow_study_test.py STRUT
 import filecmp
 import json
 import math

@@ -2,8 +2,6 @@
 # Branches of periodic motions against closed forms: multipliers and amplitude of a linear oscillator,
 # Duffing's folds, the cascade of doublings in two wells, the bilinear oscillator's grazing, Den Hartog's
 # boundary of motions without stops, the two-mass crawler; refusals, threads, files.
-#
-#   python3 follow_test.py STRUT
 import json
 import math
 import os

@@ -48,21 +48,16 @@ yaml frame.yaml <<'END'
 name: Frame
 parameters: {push: -2}
 gravity: [0, -9.81]
-nodes:
-  n1: {position: [0, 0], mass: 0.1}
-  n2: {position: [1, 0], mass: 0.1}
-  n3: {position: [1.2, 1], mass: 0.1}
-  n4: {position: [0, 0.8], mass: 0.1}
-members:
-  c12: {kind: cable, nodes: [n1, n2], stiffness: 1000}
-  c23: {kind: cable, nodes: [n2, n3], stiffness: 1000}
-  c34: {kind: cable, nodes: [n3, n4], stiffness: 1000}
-  c41: {kind: cable, nodes: [n4, n1], stiffness: 1000}
-  b24: {kind: bar, nodes: [n2, n4], stiffness: 1e5, mass: 0.2}
-  b13: {kind: bar, nodes: [n1, n3], axial_stiffness: 1e5, mass: 0.2}
+nodes: {n1: {position: [0, 0], mass: 0.1}, n2: {position: [1, 0], mass: 0.1},
+        n3: {position: [1.2, 1], mass: 0.1}, n4: {position: [0, 0.8], mass: 0.1}}
+members: {c12: {kind: cable, nodes: [n1, n2], stiffness: 1000},
+          c23: {kind: cable, nodes: [n2, n3], stiffness: 1000},
+          c34: {kind: cable, nodes: [n3, n4], stiffness: 1000},
+          c41: {kind: cable, nodes: [n4, n1], stiffness: 1000},
+          b24: {kind: bar, nodes: [n2, n4], stiffness: 1e5, mass: 0.2},
+          b13: {kind: bar, nodes: [n1, n3], axial_stiffness: 1e5, mass: 0.2}}
 ground: {stiffness: 1e5, damping: 10, friction: {mu: 0.3, stick_velocity: 0.1 mm/s}}
-loads:
-  down: {node: n3, force: [0, push]}
+loads: {down: {node: n3, force: [0, push]}}
 END
 
 stays frame.yaml 1.2 --least-tension "3 N"

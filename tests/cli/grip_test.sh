@@ -19,9 +19,7 @@ for method in rk4-events adaptive; do
   near .energy.residual 0 1e-9
 done
 sed 's/law: coulomb/law: karnopp, stick_velocity: 1e-6/' slide.yaml >band.yaml
-for method in rk4 rk4-events verlet verlet-events euler; do
-  gives .measured.v.value "2 - $loss * 3" 2e-3 run band.yaml --integrator $method
-done
+by "rk4 rk4-events verlet verlet-events euler" band.yaml .measured.v.value "2 - $loss * 3" 2e-3
 edit 's/law: coulomb/law: smooth, width: 1e-2/' slide.yaml gives .measured.v.value "2 - $loss * 3" 5e-5 run
 expect 0 run slide.yaml --accuracy 0.01%
 
@@ -43,9 +41,7 @@ edit 's/duration: 0.9/duration: 0.1/' slope.yaml expect 0 run --json
 rest=$(jq '.measured.x.value' "$work/out")
 jq -n -e --argjson x "$begin" --argjson x0 "$rest" "($way) as \$way | (\$x0 - \$x - \$way | fabs) < 1e-10" >jq.out ||
   fail "a block that begins to slide: from $rest to $begin"
-for method in rk4-events verlet-events; do
-  gives .measured.x.value "$begin" 1e-6 run slope.yaml --integrator $method
-done
+by "rk4-events verlet-events" slope.yaml .measured.x.value "$begin" 1e-6
 
 # Feet that hold in turn: a link that swells by a sine advances by its stroke in each period.
 yaml walk.yaml <<'YAML'

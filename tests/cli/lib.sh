@@ -53,11 +53,24 @@ formats() {
   [ "$code" -eq "$expected_code" ] || fail "formats $*: exit code $code, expected $expected_code"
 }
 
-# near FILTER EXPECTED TOLERANCE: the JSON in out through jq, and a number, or an array of them, that jq computes.
+# near [FILTER EXPECTED TOLERANCE]...: the JSON in out through jq, and a number, or an array of them, that jq computes.
 near() {
-  jq -e "($1) as \$got | ($2) as \$want | ($3) as \$near | [\$got, \$want] | map([.] | flatten) | transpose |
-    all((.[0] - .[1] | fabs) <= \$near)" out >jq.out 2>&1 ||
-    fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $3"
+  while [ $# -gt 0 ]; do
+    jq -e "def own: $own; ($1) as \$got | ($2) as \$want | ($3) as \$near | [\$got, \$want] | map([.] | flatten) |
+      transpose | all((.[0] - .[1] | fabs) <= \$near)" out >jq.out 2>&1 ||
+      fail "$1 is $(jq -c "$1" out 2>&1), expected $(jq -n "$2") within $(jq -n "def own: $own; $3")"
+    shift 3
+  done
+}
+own=0 # what the word stands for in a TOLERANCE: the method's own one in `by`
+# by "METHOD[:OWN]..." FILE [FILTER EXPECTED TOLERANCE]...: runs the scene by each of these methods, and the same of each.
+by() {
+  _rows=$1 _file=$2 && shift 2
+  for _row in $_rows; do
+    case $_row in *:*) own=${_row#*:} ;; *) own=0 ;; esac
+    expect 0 run "$_file" --integrator "${_row%:*}" --json
+    near "$@"
+  done
 }
 # gives FILTER EXPECTED TOLERANCE WORD...: runs strut WORD... --json, and the same.
 gives() { _got=$1 _want=$2 _near=$3 && shift 3 && expect 0 "$@" --json; near "$_got" "$_want" "$_near"; }

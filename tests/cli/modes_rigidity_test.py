@@ -2,10 +2,7 @@
 """strut modes and strut rigidity count the same: motions without stiffness of random structures at rest.
 
 Drawn without prestress, bars resist both ways. Cables are just taut and resist nothing to first order, so that
-the motions left are those that rigidity finds without them.
-
-usage: modes_rigidity_test.py STRUT
-"""
+the motions left are those that rigidity finds without them."""
 import random
 
 from testing import answer, check, finish, write

@@ -2,8 +2,6 @@
 # Numbers that a search may ask for, against closed forms: cost of transport, positive work, the time
 # at which something is reached, the largest force and its member, the lowest barrier,
 # stiffness at a node, distances from a shape and from a curve of force over displacement.
-#
-#   python3 objectives_test.py STRUT
 import math
 
 from testing import answer, check, copy_models, finish, models, near, run, sweep, write

@@ -16,9 +16,8 @@ export OCTAVE_PATH STRUT
 yaml fit.yaml <<'YAML'
 study: A stiffness from a frequency
 model: models/basics/oscillator.yaml
-fit:
-  over: {stiffness: {from: 50 N/m, to: 500 N/m}}
-  match: {hammer: {compute: modes, frequency_1: 1.62 Hz, noise: 0.01 Hz}}
+fit: {over: {stiffness: {from: 50 N/m, to: 500 N/m}},
+      match: {hammer: {compute: modes, frequency_1: 1.62 Hz, noise: 0.01 Hz}}}
 YAML
 yaml study.yaml <<'YAML'
 study: Points that fail, and a message with a comma

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One run has one answer: no output option changes a number, a summary speaks of one span, all outputs list the same
-equilibria, and an accuracy that was not reached is reported everywhere.
-
-usage: one_answer_test.py STRUT
-"""
+equilibria, and an accuracy that was not reached is reported everywhere."""
 import csv
 import json
 import os

@@ -3,90 +3,9 @@
 # Copies of parts: the same structure however it is flipped, turned, repeated or written out.
 . "$(dirname "$0")/lib.sh"
 
-# A part with every kind of thing. Gravity and ground turn with it.
-yaml kitchen.yaml <<'END'
-parameters: {turn: 0 deg, fx: 1, fy: 1, co: cos(turn), si: sin(turn)}
-gravity: [fy*si*9.81 m/s^2, -fy*co*9.81 m/s^2]
-groups: {joint: {mass: 50 g}}
-parts:
-  kitchen:
-    nodes:
-      a: {position: [0, 0], group: joint}
-      b: {position: [300 mm, 0], group: joint}
-      c: {position: [300 mm, 200 mm], group: joint}
-      d: {position: [0, 200 mm], group: joint}
-      e: {position: [450 mm, 100 mm], group: joint}
-      f: {position: [150 mm, 230 mm], group: joint}
-    members:
-      bottom: {kind: spring, nodes: [a, b], stiffness: 2 kN/m, damping: 3 N s/m}
-      top: {kind: bar, nodes: [d, c], stiffness: 2 kN/m, damping: 3 N s/m}
-      right: {kind: cable, nodes: [b, c], stiffness: 1 kN/m, rest_length_ratio: 0.95, damping: 1 N s/m}
-      left: {kind: cable, nodes: [a, d], stiffness: 1 kN/m, rest_length_ratio: 0.95}
-      rising: {kind: bar, nodes: [a, c], stiffness: 5 kN/m, mass: 30 g}
-      falling: {kind: bar, nodes: [d, b], law: {kind: polynomial, coefficients: [5 kN/m, 0, 100 kN/m^3]}}
-      nose: {kind: spring, nodes: [c, e], stiffness: 500 N/m, maxwell: {stiffness: 200 N/m, damping: 1 N s/m}}
-      chin: {kind: spring, nodes: [b, e], stiffness: 500 N/m, shortest: 170 mm, stop_stiffness: 10 kN/m}
-      over: {kind: cable, nodes: [d, f, c], stiffness: 300 N/m, pretension: 2 N}
-    hinges:
-      bend: {nodes: [a, b, e], stiffness: 0.5 N m/rad, damping: 1 mN m s/rad}
-    cells:
-      bag: {nodes: [a, b, c, d], gas: {kind: isothermal, pressure: 100 N/m, outside: 90 N/m}}
-      puff: {nodes: [b, e, c], pressure: 5 N/m}
-    collisions:
-      hit: {node: f, member: top, thickness: 35 mm, stiffness: 1 kN/m}
-    beams:
-      lash: {nodes: [d, f], bending_stiffness: 0.01 N m^2, axial_stiffness: 300 N, parts: 2, mass: 10 g}
-    signals:
-      wave: {sine: {amplitude: 5 mm, frequency: 3 Hz, phase: 30 deg}}
-    actuators:
-      swell: {member: bottom, signal: wave}
-      curl: {hinge: bend, signal: {sine: {amplitude: 10 deg, frequency: 2 Hz}}}
-      push: {member: top, force: {constant: 0.5 N}}
-      turn: {hinge: bend, moment: {constant: 10 mN m}}
-      held: {member: nose, signal: hold}
-      beat: {member: chin, signal: {expression: 2 mm*sin(clock)}}
-    loads:
-      wind: {node: e, force: [0.3 N, -0.2 N], signal: {sine: {amplitude: 1, frequency: 1 Hz}}}
-      still: {node: f, force: [0.1 N, 0.2 N]}
-    unbalances:
-      motor: {node: d, mass: 5 g, radius: 5 mm, speed: 4 Hz, phase: 20 deg}
-    sensors:
-      l: {length: rising}
-      angle: {angle: bend}
-      touch: {contact: a}
-    states:
-      z: {rate: (l - z)/(0.2 s), start: 0.36 m}
-    oscillators:
-      clock: {frequency: 2 Hz, phase: 10 deg, feedback: "touch*1 rad/s + (angle - 150 deg)/(1 s)"}
-    controllers:
-      hold: {sensor: l, target: 360 mm, gain: 0.3, integral: 0.2 Hz, every: 2 ms}
-    configurations:
-      other: {e: [440 mm, 120 mm], f: [150 mm, 240 mm]}
-    contacts:
-      a: {friction: {mu_forward: 0.1, mu_backward: 0.6}}
-      b: {stiffness: 3 kN/m, friction: {mu: 0.2}}
-place:
-  k: {part: kitchen, flip: no, turn: turn, at: [1 m, 2 m]}
-nodes: {k.e: {mass: 70 g}}
-sensors: {kin: {energy: kinetic}}
-configurations: {drawn: {}}
-ground: {through: [1 m + si*fy*1 mm, 2 m - co*fy*1 mm], normal: [-fy*si, fy*co], stiffness: 5 kN/m, damping: 5 N s/m, friction: {law: smooth, mu: 0.3, width: 10 mm/s}, nodes: [k.a]}
-solver: {integrator: rk4, step: 0.02 ms}
-run:
-  duration: 0.05 s
-  measure:
-    quantities:
-      l1: {of: k.rising.length, take: final}
-      l2: {of: k.nose.length, take: final}
-      l3: {of: k.chin.length, take: final}
-      f1: {of: k.left.force, take: final}
-      f2: {of: k.falling.force, take: final}
-      f3: {of: k.over.force, take: final}
-      ang: {of: k.angle, take: final}
-      z: {of: k.z, take: final}
-      o: {of: k.clock, take: final}
-      ke: {of: kin, take: final}
-END
+# A part with every kind of thing, from a good file. Gravity and ground turn with it.
+sed '/^limit_things/d; /^  rod:/,/^    merge: touching/d; /^  row:/,/^  onto:/d; s/row.1.m: {[^}]*}, //; s/, "row.*/}/' \
+  "$here/../language/good/parts.yaml" >kitchen.yaml
 
 # place FLIP TURN FX FY: that scene with the part placed so.
 place() {
@@ -95,8 +14,8 @@ place() {
 
 # still FILE: without what moves by itself, and without ground.
 still() {
-  sed '/^ground/d; /^gravity/d; /^    contacts/,/^      b:/d; /touch: /d; s/touch.1 rad.s + //
-       s/, maxwell: {[^}]*}//; /^      still:/d; /moment: /d; /force: {constant/d' "$1"
+  sed '/^ground/d; /^gravity/d; /^    contacts/d; s/, touch: {contact: a}//; s/touch.1 rad.s + //
+       s/, maxwell: {[^}]*}//; s/^ *still: .*/}/; /^ *push: /d' "$1"
 }
 
 run='[.measured[].value, (.energy | .elastic, .kinetic, .dissipated_members, .dissipated_friction, .contact)]'

@@ -18,12 +18,8 @@ END
 cycle='(3 * ((42/38 | log) + (22/18 | log))) as $p | (3 * (42/38 | log)) as $up
   | (10 - (10 / $p | floor) * $p) as $t
   | if $t < $up then 60 - 42 * (-$t/3 | exp) else 22 * (($up - $t)/3 | exp) end'
-for row in "rk4-events 1e-9" "adaptive 1e-10" "verlet-events 3e-3" "euler-events 0.3" "rk4 0.5" "verlet 0.5" \
-  "midpoint 0.5" "euler 0.5"; do
-  set -- $row; method=$1 tolerance=$2
-  edit "s/rk4-events/$method/" thermostat.yaml gives .measured.T.value "$cycle" "$tolerance" run
-  near .measured.top.value 22 0.2
-done
+by "rk4-events:1e-9 adaptive:1e-10 verlet-events:3e-3 euler-events:0.3 rk4:0.5 verlet:0.5 midpoint:0.5 euler:0.5" \
+  thermostat.yaml .measured.T.value "$cycle" own .measured.top.value 22 0.2
 # Off at the start it cools to the lower threshold first, which is where it starts.
 sed 's/, on_at_start: yes//; s/start: low/start: 20/; s/duration: 10 s/duration: 3*log(20\/18)*1 s/' \
   thermostat.yaml >run.yaml
@@ -34,9 +30,7 @@ sed 's/on_at_start: yes/on_at_start: yes, every: 200 ms/' thermostat.yaml >run.y
 map='(-0.2/3 | exp) as $e | reduce range(50) as $n ([18, 60];
   (if .[0] < 18 then 60 elif .[0] > 22 then 0 else .[1] end) as $u
   | [$u + (.[0] - $u) * $e, $u]) | .[0]'
-for method in rk4 rk4-events adaptive midpoint; do
-  edit "s/rk4-events/$method/" run.yaml gives .measured.T.value "$map" 1e-3 run
-done
+by "rk4 rk4-events adaptive midpoint" run.yaml .measured.T.value "$map" 1e-3
 
 # A mass on a spring whose rest length a relay moves by d to either side, when the mass has passed h beyond
 # the middle. About the present rest length it swings with an amplitude A, which each of the 8 switches
@@ -52,12 +46,8 @@ initial: {velocities: {b: [0.8, 0]}}
 solver: {integrator: rk4-events, step: 1 ms}
 run: {duration: 5 s, measure: {quantities: {e: {of: energy.total, take: final}, w: {of: work.drives, take: final}}}}
 END
-for row in "rk4-events 1e-10" "adaptive 1e-9" "verlet-events 1e-5" "euler-events 1e-2" "rk4 1e-2" "verlet 1e-2" \
-  "midpoint 1e-2" "euler 1e-2"; do
-  set -- $row; method=$1 tolerance=$2
-  edit "s/rk4-events/$method/" swing.yaml gives .measured.e.value '0.648 + 8 * 0.16' "$tolerance" run
-  near '[.measured.w.value, .energy.residual]' '[8 * 0.16, 0]' "$tolerance"
-done
+by "rk4-events:1e-10 adaptive:1e-9 verlet-events:1e-5 euler-events:1e-2 rk4:1e-2 verlet:1e-2 midpoint:1e-2 euler:1e-2" \
+  swing.yaml '[.measured.e.value, .measured.w.value, .energy.residual]' '[0.648 + 8 * 0.16, 8 * 0.16, 0]' own
 # The same by a force, which does its work along the path: 2 k d between the two values.
 edit 's/on_value: -d, off_value: d/on_value: k*d, off_value: -k*d/; s/signal: kick/force: kick/' swing.yaml gives .energy.residual 0 1e-10 run
 # As written it is the same scene.
@@ -86,7 +76,7 @@ solver: {integrator: rk4-events, step: 1 ms}
 run: {duration: 1 s}
 END
 for method in rk4-events rk4 adaptive; do
-  edit "s/rk4-events/$method/" chatter.yaml tells 3 "relay 'hold' switches at t = 0.09" run
+  tells 3 "relay 'hold' switches at t = 0.09" run chatter.yaml --integrator $method
   err_has "what it drives takes its own input past the other threshold at once"
 done
 edit 's/0.1 m}/0.1 m, every: 10 ms}/' chatter.yaml expect 0 run
@@ -101,17 +91,12 @@ gravity: [0, -9.81]
 nodes: {rear: {position: [0, 0], mass: 0.1 kg}, front: {position: [100 mm, 0], mass: 0.1 kg}}
 members: {body: {kind: spring, nodes: [rear, front], stiffness: 500 N/m, damping: 2 N s/m}}
 sensors: {l: {length: body}}
-controllers:
-  pump: {kind: relay, of: l, on_below: 90 mm, off_above: 110 mm, on_value: 20 mm, off_value: -20 mm, on_at_start: yes}
+controllers: {pump: {kind: relay, of: l, on_below: 90 mm, off_above: 110 mm, on_value: 20 mm, off_value: -20 mm, on_at_start: yes}}
 actuators: {muscle: {member: body, signal: {expression: pump, lag: 1 s}}}
 ground: {stiffness: 1e5 N/m, damping: 100 N s/m, friction: {mu_forward: 0.1, mu_backward: 1, stick_velocity: 0.01 mm/s}}
 solver: {integrator: rk4-events, step: 0.5 ms}
-run:
-  duration: 5*2*log(3)*1 s
-  measure: {last: 4*2*log(3)*1 s, quantities: {rear: {of: rear.x, take: change}, front: {of: front.x, take: change}, back: {of: rear.vx, take: min}}}
+run: {duration: 5*2*log(3)*1 s, measure: {last: 4*2*log(3)*1 s, quantities: {rear: {of: rear.x, take: change},
+        front: {of: front.x, take: change}, back: {of: rear.vx, take: min}}}}
 END
-for method in rk4-events verlet-events; do
-  edit "s/rk4-events/$method/" crawler.yaml gives '.measured | (.rear.value + .front.value) / 2' '4 * 0.02 * (3 | log) / (30.24/9.76 | log)' 8e-4 run
-  near .measured.back.value 0 2e-5
-  near .energy.residual 0 1e-5
-done
+by "rk4-events verlet-events" crawler.yaml .measured.back.value 0 2e-5 .energy.residual 0 1e-5 \
+  '.measured | (.rear.value + .front.value) / 2' '4 * 0.02 * (3 | log) / (30.24/9.76 | log)' 8e-4

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Derivatives of runs and of statics by parameters: formulas, the crawler through its contacts, a contact that only just
 # happens, the ends of ranges; and the same bytes whatever the threads.
-#
-#   python3 run_derivatives_test.py STRUT
 import json
 import math
 
@@ -38,9 +36,8 @@ ground: {stiffness: stiffness}
 solver: {step: 0.1 ms}
 run:
   duration: 0.25 s
-  measure:
-    derivatives: [height, stiffness]
-    quantities: {y: {of: ball.y, take: final}, lands: {of: ball.y, take: arrival, target: 0 m}}
+  measure: {derivatives: [height, stiffness],
+            quantities: {y: {of: ball.y, take: final}, lands: {of: ball.y, take: arrival, target: 0 m}}}
 """
 write("ball.yaml", BALL)
 g, h, w, end = 9.81, 0.1, 100.0, 0.25

@@ -2,8 +2,6 @@
 # Sensitivity analyses against closed forms: derivatives with their errors, first-order and total indices
 # of a product of lognormal numbers, shares of texts and signs; the same bytes whatever the threads and
 # interruptions; failed points; what is refused.
-#
-#   python3 sensitivity_test.py STRUT
 import math
 import os
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What a point may cost, and the rows of a sweep that is interrupted: those that are done, with the
 # bytes that they have in the end.
-#
-#   python3 study_limits_test.py STRUT
 import os
 import shutil
 import signal

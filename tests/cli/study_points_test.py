@@ -2,8 +2,6 @@
 # Points of files and of samples: strut's own tables read back to the same bits, distributions against
 # their closed forms, the same bytes whatever the threads, shards and interruptions, files that lead
 # elsewhere.
-#
-#   python3 study_points_test.py STRUT
 import math
 import os
 import shutil

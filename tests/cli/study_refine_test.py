@@ -2,8 +2,6 @@
 # Refined maps: the same answer as all points of the finest grid where the edge has a formula, with a
 # part of the points; the same bytes whatever the threads, shards, kills; the map drawn is that of the
 # finest grid.
-#
-#   python3 study_refine_test.py STRUT
 import math
 import os
 import random

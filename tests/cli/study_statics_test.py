@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Studies of what is at rest: columns against closed forms and against the commands, structures whose
 # size differs from point to point, the same bytes whatever the threads and shards.
-#
-#   python3 study_statics_test.py STRUT
 import math
 import os
 import shutil

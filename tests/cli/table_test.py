@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The table of a sweep in other programs: the lines of docs/output.md for pandas, Octave and LibreOffice
 # are run as they stand there, and what these programs then hold is the table.
-#
-#   python3 table_test.py STRUT
 # A program that is missing is said; exit code 77 where all are.
 import csv
 import importlib.util

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""models/topologies/clipper.yaml is faster and cheaper than the paper's crawler on three grounds.
-
-usage: topologies_beat_test.py STRUT
-"""
+"""models/topologies/clipper.yaml is faster and cheaper than the paper's crawler on three grounds."""
 from testing import check, copy_models, finish, sweep
 
 STUDY = """model: copied/topologies/{model}

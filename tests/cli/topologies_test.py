@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""models/topologies: comparable, as fast as their heads say, and by another method too.
-
-usage: topologies_test.py STRUT
-"""
+"""models/topologies: comparable, as fast as their heads say, and by another method too."""
 import glob
 import os
 import re

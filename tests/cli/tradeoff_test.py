@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut tradeoff: errors against closed forms, fronts and percentiles once more, its files.
-
-usage: tradeoff_test.py STRUT
-"""
+"""strut tradeoff: errors against closed forms, fronts and percentiles once more, its files."""
 import csv
 import json
 import math

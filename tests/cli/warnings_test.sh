@@ -123,7 +123,8 @@ EOF
 expect 0 run slide.yaml --json
 out_has '"worth":	"not known: fixed steps of rk4 pass over changes between sticking and slipping; --accuracy 1% estimates the error"'
 out_has '"caveat":	"fixed steps of rk4 pass over changes between sticking and slipping"'
-shows 0 '  not known: fixed steps of rk4 pass over changes between sticking and slipping; --accuracy 1%' run slide.yaml
+shows 0 ' not known: fixed steps of rk4 pass over changes between sticking and slipping; --accuracy 1%' run slide.yaml
+grep -q '^  accuracy  *not known: fixed steps' out || fail "the remark has no label 'accuracy'"
 for method in "--integrator rk4-events" "--accuracy 1%"; do
   # shellcheck disable=SC2086
   shows 0 '"caveat":	null' run slide.yaml --json $method

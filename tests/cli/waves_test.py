@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut modes --wave against closed forms, long finite chains, and cells of several cells.
-
-usage: waves_test.py STRUT
-"""
+"""strut modes --wave against closed forms, long finite chains, and cells of several cells."""
 import math
 
 from testing import answer, check, fail, finish, run, write
@@ -101,11 +98,8 @@ members: {s: {kind: spring, nodes: [a, next], stiffness: 30, pretension: 3}}
 
 CELL = """
   cell:
-    nodes:
-      a: {position: [0, 0], mass: 0.2}
-      b: {position: [0.4, 0.3], mass: 0.1}
-      c: {position: [0.2, -0.5], mass: 0.15}
-      e: [1, 0.1]
+    nodes: {a: {position: [0, 0], mass: 0.2}, b: {position: [0.4, 0.3], mass: 0.1},
+            c: {position: [0.2, -0.5], mass: 0.15}, e: [1, 0.1]}
     members:
       ab: {kind: spring, nodes: [a, b], stiffness: 40, mass: 0.05, rest_length: 0.47}
       bc: {kind: bar, nodes: [b, c], stiffness: 90, mass: 0.1, rest_length: 0.85}

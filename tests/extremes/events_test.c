@@ -168,8 +168,7 @@ TEST(coulomb_oscillator) {
 
 /* A block of 1 kg on ground, at height y above it, under a load along the ground. */
 static strut_setup loaded_block(double ground, double y, double mu, double load, double frequency) {
-  strut_setup setup = build_setup();
-  setup.scene.gravity[1] = -GRAVITY;
+  strut_setup setup = build_falling();
   int32_t block = build_mass(&setup.scene, 0, y, 1);
   int32_t signal = frequency > 0 ? build_sine(&setup.scene, 1, frequency) : -1;
   build_load(&setup.scene, block, load, 0, signal);

@@ -8,9 +8,8 @@ static double times = 1; /* how much longer the runs are in the long version */
 
 /* The frame above ground on which all its nodes may land. */
 static strut_setup frame_on_ground(double above, double mu, strut_friction_law law) {
-  strut_setup setup = build_setup();
+  strut_setup setup = build_falling();
   structure_x_frame(&setup.scene, &FRAME);
-  setup.scene.gravity[1] = -G;
   setup.scene.ground.height = -0.5 * FRAME.side - above;
   for (int32_t i = 0; i < 4; i++) {
     if (law == STRUT_FRICTION_NONE)
@@ -92,8 +91,7 @@ TEST(karnopps_band_creeps_at_most_at_its_edge) {
 /* One block that the slope already carries; the weight stays upright. */
 static strut_setup block(double slope, double mu) {
   const double stiffness = 1e5, depth = G * cos(slope) / stiffness;
-  strut_setup setup = build_setup();
-  setup.scene.gravity[1] = -G;
+  strut_setup setup = build_falling();
   build_mass(&setup.scene, depth * sin(slope), -depth * cos(slope), 1);
   build_rough_contact(&setup.scene, 0, stiffness, 100, mu, mu, 1e-4);
   setup.scene.contacts[0].friction.law = STRUT_FRICTION_COULOMB;

@@ -126,8 +126,7 @@ TEST(frames_turned_inside_out_keep_their_balance) {
       "%d of 12 inside out, to %.1f of the area: residual %.1e %.1e %.1e %.1e of what "
       "moved, order %.2f\n",
       inverted, deepest, sum[0], sum[1], sum[2], sum[3], order);
-  assert_true(inverted >= 8 && deepest < -2);
-  assert_true(order >= 3.9);
+  assert_all(inverted >= 8 && deepest < -2, order >= 3.9);
 }
 
 /* Up to a million times its size and down again: the centre of mass on its parabola. */

@@ -26,16 +26,13 @@ def table(name):
 # Names and a title that XML and DXF must each write in their own way; a cable over a guide; a driven spring.
 write("frame.yaml", """strut: 1
 name: A < B & C
-nodes:
-  a.1: {position: [0, 0], fixed: both, mass: 1 kg}
-  b: {position: [300 mm, 0], fixed: y, mass: 1 kg}
-  "ç": {position: [0, 400 mm], mass: 1 kg}
-members:
-  bar: {kind: bar, nodes: [a.1, b], stiffness: 1000 N/m, rest_length: 310 mm}
-  post: {kind: bar, nodes: [a.1, "ç"], stiffness: 1000 N/m}
-  x-y: {kind: cable, nodes: [b, "ç"], stiffness: 500 N/m, pretension: 10 N}
-  run: {kind: cable, nodes: [a.1, b, "ç"], stiffness: 400 N/m, rest_length: 780 mm}
-  pull: {kind: spring, nodes: [b, "ç"], stiffness: 50 N/m, rest_length: 0.4 m}
+nodes: {a.1: {position: [0, 0], fixed: both, mass: 1 kg}, b: {position: [300 mm, 0], fixed: y, mass: 1 kg},
+        "ç": {position: [0, 400 mm], mass: 1 kg}}
+members: {bar: {kind: bar, nodes: [a.1, b], stiffness: 1000 N/m, rest_length: 310 mm},
+          post: {kind: bar, nodes: [a.1, "ç"], stiffness: 1000 N/m},
+          x-y: {kind: cable, nodes: [b, "ç"], stiffness: 500 N/m, pretension: 10 N},
+          run: {kind: cable, nodes: [a.1, b, "ç"], stiffness: 400 N/m, rest_length: 780 mm},
+          pull: {kind: spring, nodes: [b, "ç"], stiffness: 50 N/m, rest_length: 0.4 m}}
 actuators: {drive: {member: pull, signal: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}}
 """)
 
@@ -231,29 +228,22 @@ START = {"hanging.yaml": {"m": (0.1, -1)}, "frame-cables.yaml": {"n2": (1, 0), "
 HANGING = """strut: 1
 gravity: [0, -9.81 m/s^2]
 mass_model: lumped
-nodes:
-  top: {position: [0, 0], fixed: both}
-  wall: {position: [1, 0], fixed: both}
-  m: {position: [0.1, -1], mass: 2 kg}
-members:
-  rope: {kind: spring, nodes: [top, m], stiffness: 300 N/m, damping: 3 N s/m, rest_length: 1 m}
-  side: {kind: spring, nodes: [wall, m], stiffness: 40 N/m, rest_length: 1.2 m}
+nodes: {top: {position: [0, 0], fixed: both}, wall: {position: [1, 0], fixed: both},
+        m: {position: [0.1, -1], mass: 2 kg}}
+members: {rope: {kind: spring, nodes: [top, m], stiffness: 300 N/m, damping: 3 N s/m, rest_length: 1 m},
+          side: {kind: spring, nodes: [wall, m], stiffness: 40 N/m, rest_length: 1.2 m}}
 loads: {push: {node: m, force: [4 N, -1 N]}}
 solver: {step: 0.1 ms}
 run: {duration: 1 s}
 """
 CABLES = """strut: 1
-nodes:
-  n1: {position: [0, 0], fixed: both}
-  n2: {position: [1, 0], mass: 1 kg, fixed: y}
-  n3: {position: [1, 1], mass: 1 kg}
-  n4: {position: [0, 1], mass: 1 kg}
-members:
-  right: {kind: cable, nodes: [n2, n3], stiffness: 100 N/m, rest_length: 0.95 m}
-  top: {kind: cable, nodes: [n3, n4], stiffness: 100 N/m, rest_length: 0.95 m}
-  left: {kind: cable, nodes: [n4, n1, n2], stiffness: 100 N/m, rest_length: 1.9 m}
-  falling: {kind: bar, nodes: [n2, n4], stiffness: 1000 N/m}
-  rising: {kind: bar, nodes: [n1, n3], stiffness: 1000 N/m}
+nodes: {n1: {position: [0, 0], fixed: both}, n2: {position: [1, 0], mass: 1 kg, fixed: y},
+        n3: {position: [1, 1], mass: 1 kg}, n4: {position: [0, 1], mass: 1 kg}}
+members: {right: {kind: cable, nodes: [n2, n3], stiffness: 100 N/m, rest_length: 0.95 m},
+          top: {kind: cable, nodes: [n3, n4], stiffness: 100 N/m, rest_length: 0.95 m},
+          left: {kind: cable, nodes: [n4, n1, n2], stiffness: 100 N/m, rest_length: 1.9 m},
+          falling: {kind: bar, nodes: [n2, n4], stiffness: 1000 N/m},
+          rising: {kind: bar, nodes: [n1, n3], stiffness: 1000 N/m}}
 initial: {velocities: {n3: [2 m/s, -1 m/s]}}
 solver: {step: 0.1 ms}
 run: {duration: 1 s}

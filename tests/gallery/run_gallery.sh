@@ -24,7 +24,7 @@
 # The second line makes a variant of the scene by sed, for what a parameter cannot change:
 #   %free = s/fixed: [a-z]*/mass: 1/
 # A line that ends with a backslash goes on in the next. A command that several lines ask is run once; a line
-# without one asks that of the line before.
+# without one asks that of the line before, and so does what follows a ` ;; `: FILTER | EXPECTED | TOLERANCE.
 set -eu
 root=$(cd "$1" && pwd)
 strut=$2
@@ -88,7 +88,9 @@ answers() {
        !asked { next }
        { if (!start) start = NR }
        /\\$/ { sub(/\\$/, ""); held = held $0; next }
-       { print start ": " held $0; held = ""; start = 0 }' "$1" >"$scratch/lines"
+       { n = split(held $0, part, / +;; +/)
+         for (k = 1; k <= n; k++) print start ": " (k > 1 ? "| " : "") part[k]
+         held = ""; start = 0 }' "$1" >"$scratch/lines"
   while IFS= read -r line; do
     number=${line%%: *}
     line=${line#*: }
@@ -134,7 +136,7 @@ cat >"$scratch/good.answers" <<'TEXT'
 # right, all of them
 %wide = s/4 m/40 m/
 check | .name | itself | =
-check | .members.m.drawn_length | 5 | 1e-12
+check | .members.m.drawn_length | 5 | 1e-12 ;; .members.m.stiffness | 1 | 0
 | .members[] | [.drawn_length, .stiffness] | [root(9 + 16), 1] | 1e-12
 check --set long=30 %wide | .members.m.drawn_length | 50 | \
   1e-12
@@ -151,11 +153,12 @@ check --set long=30 | .members.m.drawn_length | 5 | 1e-2
 check %none | .members.m.drawn_length | 5 | 1e-2
 check | .members.m.drawn_length | 5
 check | .members.( | 5 | 1
+check | .name | itself | = ;; .members.m.stiffness | 2 | 0
 TEXT
 answers "$scratch/good.answers" "$scratch/self.yaml" >"$scratch/wrong"
 [ ! -s "$scratch/wrong" ] || { cat "$scratch/wrong"; echo "self-test fails"; exit 1; }
 answers "$scratch/bad.answers" "$scratch/self.yaml" >"$scratch/wrong"
-for number in 1 2 3 4 5 6 7 8 9 10; do
+for number in 1 2 3 4 5 6 7 8 9 10 11; do
   grep -q "^bad.answers:$number: " "$scratch/wrong" ||
     { echo "self-test: bad.answers:$number passes"; exit 1; }
 done

@@ -230,10 +230,18 @@ static void read_document(faulty_cases *cases, const char *folder, const char *n
     if (!*line || *line == '#') continue;
     if (!d->now && strncmp(line, "base", 4) != 0 && strncmp(line, "case ", 5) != 0)
       begin_case(d, NULL, false);
-    if (strchr("|=-+@", *line))
-      change_line(d, *line, line + 1);
-    else
+    if (!strchr("|=-+@", *line)) {
       read_statement(d, line);
+      continue;
+    }
+    char *message = strstr(line, " => ");
+    if (message) *message = '\0';
+    for (char *after; line; line = after) { /* several changes in one line */
+      after = strstr(line, " ;; ");
+      if (after) *after = '\0', after += 4;
+      change_line(d, *line, line + 1);
+    }
+    if (message) add_message(d, message + 4);
   }
   finish_case(d);
   free(d->base_text);

@@ -18,11 +18,7 @@ static void same_nodes(const strut_setup *first, const strut_setup *second) {
   for (size_t i = 0; i < first->scene.node_count; i++) {
     const strut_node *a = &first->scene.nodes[i], *b = &second->scene.nodes[i];
     assert_string_equal(a->name, b->name);
-    SAME(position);
-    SAME(mass);
-    SAME(fixed);
-    SAME(start);
-    SAME(velocity);
+    SAME(position), SAME(mass), SAME(fixed), SAME(start), SAME(velocity);
   }
 }
 
@@ -31,33 +27,20 @@ static void same_members(const strut_setup *first, const strut_setup *second) {
   for (size_t i = 0; i < first->scene.member_count; i++) {
     const strut_member *a = &first->scene.members[i], *b = &second->scene.members[i];
     assert_string_equal(a->name, b->name);
-    SAME(node);
-    SAME(kind);
-    SAME(stiffness);
-    SAME(axial_stiffness);
-    SAME(damping);
-    SAME(mass);
-    SAME(rest_kind);
-    SAME(rest_value);
+    SAME(node), SAME(kind), SAME(stiffness), SAME(axial_stiffness), SAME(damping), SAME(mass);
+    SAME(rest_kind), SAME(rest_value);
   }
 }
 
 static void same_ground(const strut_setup *a, const strut_setup *b) {
-  SAME(scene.ground.present);
-  SAME(scene.ground.height);
-  SAME(scene.ground.slope);
-  SAME(scene.ground.belt_speed);
-  SAME(scene.ground.damping_law);
+  SAME(scene.ground.present), SAME(scene.ground.height), SAME(scene.ground.slope);
+  SAME(scene.ground.belt_speed), SAME(scene.ground.damping_law);
   assert_int_equal(a->scene.contact_count, b->scene.contact_count);
   for (size_t i = 0; i < a->scene.contact_count; i++) {
-    SAME(scene.contacts[i].node);
-    SAME(scene.contacts[i].stiffness);
-    SAME(scene.contacts[i].damping);
-    SAME(scene.contacts[i].dissipation);
-    SAME(scene.contacts[i].friction.law);
-    SAME(scene.contacts[i].friction.mu_static);
-    SAME(scene.contacts[i].friction.mu_kinetic);
-    SAME(scene.contacts[i].friction.stick_velocity);
+    SAME(scene.contacts[i].node), SAME(scene.contacts[i].stiffness);
+    SAME(scene.contacts[i].damping), SAME(scene.contacts[i].dissipation);
+    SAME(scene.contacts[i].friction.law), SAME(scene.contacts[i].friction.mu_static);
+    SAME(scene.contacts[i].friction.mu_kinetic), SAME(scene.contacts[i].friction.stick_velocity);
     SAME(scene.contacts[i].friction.width);
   }
 }
@@ -68,14 +51,8 @@ static void same_signals(const strut_setup *first, const strut_setup *second) {
     const strut_signal *a = &first->scene.signals[i], *b = &second->scene.signals[i];
     assert_int_equal(a->name == NULL, b->name == NULL);
     if (a->name) assert_string_equal(a->name, b->name);
-    SAME(kind);
-    SAME(amplitude);
-    SAME(frequency);
-    SAME(phase);
-    SAME(start);
-    SAME(stop);
-    SAME(point_count);
-    SAME(term_count);
+    SAME(kind), SAME(amplitude), SAME(frequency), SAME(phase), SAME(start), SAME(stop);
+    SAME(point_count), SAME(term_count);
     if (a->point_count) {
       same_bits("times", a->time, b->time, a->point_count * sizeof *a->time);
       same_bits("values", a->value, b->value, a->point_count * sizeof *a->value);
@@ -89,14 +66,11 @@ static void same_drives(const strut_setup *a, const strut_setup *b) {
   assert_int_equal(a->scene.load_count, b->scene.load_count);
   for (size_t i = 0; i < a->scene.actuator_count; i++) {
     assert_string_equal(a->scene.actuators[i].name, b->scene.actuators[i].name);
-    SAME(scene.actuators[i].member);
-    SAME(scene.actuators[i].signal);
+    SAME(scene.actuators[i].member), SAME(scene.actuators[i].signal);
   }
   for (size_t i = 0; i < a->scene.load_count; i++) {
     assert_string_equal(a->scene.loads[i].name, b->scene.loads[i].name);
-    SAME(scene.loads[i].node);
-    SAME(scene.loads[i].force);
-    SAME(scene.loads[i].moment);
+    SAME(scene.loads[i].node), SAME(scene.loads[i].force), SAME(scene.loads[i].moment);
     assert_true(!a->scene.loads[i].couple ||
                 (b->scene.loads[i].couple && a->scene.loads[i].hinge == b->scene.loads[i].hinge &&
                  a->scene.loads[i].member == b->scene.loads[i].member));
@@ -116,14 +90,11 @@ static void same_shapes(const strut_setup *a, const strut_setup *b) {
   for (size_t i = 0; i < a->scene.configuration_count; i++) {
     const strut_configuration *c = &a->scene.configurations[i], *d = &b->scene.configurations[i];
     assert_string_equal(c->name, d->name);
-    SAME(scene.configurations[i].shaped);
-    SAME(scene.configurations[i].set_count);
+    SAME(scene.configurations[i].shaped), SAME(scene.configurations[i].set_count);
     same_bits("positions", c->position, d->position, a->scene.node_count * sizeof *c->position);
     same_sets(c->sets, d->sets, c->set_count);
   }
-  SAME(scene.start_equilibrium);
-  SAME(experiment.search.starts);
-  SAME(experiment.search.seed);
+  SAME(scene.start_equilibrium), SAME(experiment.search.starts), SAME(experiment.search.seed);
   SAME(experiment.search.support_count);
   same_sets(a->experiment.search.supports, b->experiment.search.supports,
             a->experiment.search.support_count);
@@ -132,9 +103,7 @@ static void same_shapes(const strut_setup *a, const strut_setup *b) {
 static void same_scene(const strut_setup *a, const strut_setup *b) {
   assert_all_texts(a->scene.name, b->scene.name, a->scene.description, b->scene.description);
   assert_string_equal(a->scene.source, b->scene.source);
-  SAME(scene.mass_model);
-  SAME(scene.bar_model);
-  SAME(scene.gravity);
+  SAME(scene.mass_model), SAME(scene.bar_model), SAME(scene.gravity);
   same_nodes(a, b);
   same_members(a, b);
   same_ground(a, b);
@@ -143,29 +112,16 @@ static void same_scene(const strut_setup *a, const strut_setup *b) {
   same_shapes(a, b);
   SAME(experiment.settle.wanted);
   if (a->experiment.settle.wanted) {
-    SAME(experiment.settle.speed);
-    SAME(experiment.settle.acceleration);
-    SAME(experiment.settle.limit);
-    SAME(experiment.settle.friction);
+    SAME(experiment.settle.speed), SAME(experiment.settle.acceleration);
+    SAME(experiment.settle.limit), SAME(experiment.settle.friction);
   }
   assert_string_equal(a->experiment.integrator, b->experiment.integrator);
-  SAME(experiment.step);
-  SAME(experiment.duration);
-  SAME(experiment.periods);
-  SAME(experiment.period_signal);
-  SAME(experiment.measure_last);
-  SAME(experiment.tolerance);
-  SAME(experiment.refine);
-  SAME(experiment.refine_time);
-  SAME(experiment.accuracy);
-  SAME(experiment.steady.wanted);
-  SAME(experiment.steady.tolerance);
-  SAME(experiment.steady.floor);
-  SAME(experiment.steady.successive);
-  SAME(experiment.measure_node);
-  SAME(experiment.output_every);
-  SAME(experiment.output_last);
-  SAME(experiment.channels);
+  SAME(experiment.step), SAME(experiment.duration), SAME(experiment.periods);
+  SAME(experiment.period_signal), SAME(experiment.measure_last), SAME(experiment.tolerance);
+  SAME(experiment.refine), SAME(experiment.refine_time), SAME(experiment.accuracy);
+  SAME(experiment.steady.wanted), SAME(experiment.steady.tolerance), SAME(experiment.steady.floor);
+  SAME(experiment.steady.successive), SAME(experiment.measure_node), SAME(experiment.output_every);
+  SAME(experiment.output_last), SAME(experiment.channels);
 }
 
 /* The text behind the comments at its head. */
@@ -181,16 +137,14 @@ TEST(written_scenes_read_back_to_the_same_bits) {
     strut_setup first, second;
     if (read_quietly_as(files[i].path, files[i].text, files[i].length, &first) != STRUT_OK)
       fail_msg("%s is refused", files[i].path);
-    char *written = strut_setup_write(&first);
+    RELEASED char *written = strut_setup_write(&first);
     assert_non_null(written);
     if (read_quietly_as(files[i].path, written, strlen(written), &second) != STRUT_OK)
       fail_msg("%s, written: refused:\n%s", files[i].path, written);
     same_scene(&first, &second);
-    char *again = strut_setup_write(&second);
+    RELEASED char *again = strut_setup_write(&second);
     assert_non_null(again);
     assert_string_equal(body(written), body(again));
-    strut_release(written);
-    strut_release(again);
     strut_setup_free(&first);
     strut_setup_free(&second);
   }
@@ -226,11 +180,10 @@ TEST(single_numbers_survive) {
     if (i < sizeof corners / sizeof corners[0]) value = corners[i];
     if (!(value - value == 0.0)) continue;
     setup.scene.gravity[0] = value;
-    char *text = strut_setup_write(&setup);
+    RELEASED char *text = strut_setup_write(&setup);
     OWN(strut_setup) back;
     assert_ok(read_quietly(text, strlen(text), &back));
     same_bits(text, &back.scene.gravity[0], &value, sizeof value);
-    strut_release(text);
   }
 }
 
@@ -238,9 +191,7 @@ TEST(single_numbers_survive) {
 TEST(a_nameless_period_gets_a_name) {
   strut_node nodes[1] = {{.name = "a", .mass = 1}};
   strut_signal signal = strut_signal_default(STRUT_SINE);
-  signal.amplitude = 1;
-  signal.frequency = 4;
-  signal.phase = 0.25;
+  signal.amplitude = 1, signal.frequency = 4, signal.phase = 0.25;
   strut_setup setup, back;
   strut_setup_init(&setup);
   setup.scene.nodes = nodes;
@@ -251,14 +202,13 @@ TEST(a_nameless_period_gets_a_name) {
   setup.experiment.periods = 3;
   setup.experiment.period_signal = 0;
   setup.scene.name = "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \x01 bad \xff.";
-  char *text = strut_setup_write(&setup);
+  RELEASED char *text = strut_setup_write(&setup);
   assert_ok(read_quietly(text, strlen(text), &back));
   assert_string_equal(back.scene.name,
                       "quote \" slash \\ line\nbreak \xe2\x80\xa8 tab \t control \xef\xbf\xbd bad "
                       "\xef\xbf\xbd.");
   assert_true(back.scene.signals[back.experiment.period_signal].phase == 0.25);
   strut_setup_free(&back);
-  strut_release(text);
 }
 
 TEST(every_key_stands_in_a_good_file) {

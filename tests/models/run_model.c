@@ -45,7 +45,11 @@ model_run model_read_text(const char *name, const char *text, const char *const 
   }
   model_run run = {.model = NULL};
   OWN(strut_diagnostics) diagnostics = {0};
-  strut_status status = strut_setup_read(&run.setup, name, text, strlen(text), overrides, count,
+  size_t size = strlen(text) + 20;
+  FREED char *whole = malloc(size);
+  assert_non_null(whole);
+  snprintf(whole, size, "%s%s", strstr(text, "strut: 1") ? "" : "strut: 1\n", text);
+  strut_status status = strut_setup_read(&run.setup, name, whole, strlen(whole), overrides, count,
                                          STRUT_FOR_RUN, &diagnostics);
   for (size_t i = 0; i < diagnostics.count; i++)
     print_error("%s:%u: %s\n", name, diagnostics.items[i].place.line, diagnostics.items[i].message);
@@ -73,6 +77,11 @@ void model_simulate(model_run *run) {
     status = strut_simulate(run->model, &run->setup.experiment, &options, &run->summary, &error);
   if (status) fail_msg("%s: %s", run->setup.scene.name, error.message);
   run->layout.channels = run->channels;
+}
+
+void model_simulate_by(model_run *run, const char *method) {
+  run->setup.experiment.integrator = method;
+  model_simulate(run);
 }
 
 void model_run_free(model_run *run) {

@@ -26,10 +26,12 @@ typedef struct model_run {
 
 /** Reads models/NAME.yaml; fails the test if it is not valid. */
 model_run model_read(const char *name, const char *const *settings);
-/** Reads a scene from its text; `name` is for messages. */
+/** Reads a scene from its text, whose first line, that of all scenes, may be left out; `name` is for messages. */
 model_run model_read_text(const char *name, const char *text, const char *const *settings);
 /** Compiles and runs what was read (and perhaps changed); fails the test unless it completes. */
 void model_simulate(model_run *run);
+/** The same by that method. */
+void model_simulate_by(model_run *run, const char *method);
 void model_run_free(model_run *run);
 
 /** Position of a node at the end, [m]; fails the test if there is none of that name. */

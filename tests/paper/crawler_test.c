@@ -16,10 +16,9 @@ static const double STEP = 1e-4, STROKE = 1e-4;
 
 static const struct {
   double frequency, mu, deviation;
-} cases[] = {
-    {10, 0.1, 0.021}, {10, 0.2, 0.021}, {10, 0.5, 0.043}, {11, 0.1, 0}, {11, 0.2, 0}, {11, 0.5, 0},
-    {12.3, 0.1, 0},   {12.3, 0.2, 0},   {12.3, 0.5, 0},   {14, 0.1, 0}, {14, 0.2, 0}, {14, 0.5, 0},
-};
+} cases[] = {{10, 0.1, 0.021}, {10, 0.2, 0.021}, {10, 0.5, 0.043}, {11, 0.1, 0},
+             {11, 0.2, 0},     {11, 0.5, 0},     {12.3, 0.1, 0},   {12.3, 0.2, 0},
+             {12.3, 0.5, 0},   {14, 0.1, 0},     {14, 0.2, 0},     {14, 0.5, 0}};
 enum { CASES = sizeof cases / sizeof cases[0] };
 
 static strut_setup make(double frequency, double mu, bool state_two, double periods,

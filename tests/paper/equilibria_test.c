@@ -25,8 +25,7 @@ static const struct {
     {{{0, 0}, {93.5388, 33.6848}, {33.9221, 28.2197}, {43.9094, 0}, {51.3170, 18.4979}},
      22.712029,
      -0.074683,
-     1.448083},
-};
+     1.448083}};
 
 static model_run crawler;
 static strut_equilibria all;
@@ -166,8 +165,7 @@ TEST(every_figure) {
 TEST(it_tips_onto_nodes_2_and_4) {
   const strut_equilibrium *second = on_1_and_4(published[1].energy);
   const strut_equilibrium *one = called("I"), *two = called("II");
-  assert_int_equal(second->outcome, STRUT_OUTCOME_TIPS);
-  assert_int_equal(second->tips_over, 3);
+  assert_all_equal(second->outcome, STRUT_OUTCOME_TIPS, second->tips_over, 3);
   assert_true(rests_on(second, 2, 4));
   assert_string_equal(second->verdict, "tips over n4 onto n2 and n4: II");
   assert_ptr_equal(&all.list[second->ends_as], two);

@@ -101,8 +101,7 @@ TEST(a_swing_that_ends_as_it_began) {
   OWN(strut_summary) s = motion_simulate(&setup);
   assert_within(fabs(s.energy.residual), 1e-5 * 0.5, 1e-3 * 0.5);
   assert_within(s.energy.moved, 0.45, 0.51); /* half of 100 N/m times 0.1 m squared */
-  assert_int_equal(s.balance, STRUT_BALANCE_CLOSED);
-  assert_int_equal(s.warning_count, 0);
+  assert_all_equal(s.balance, STRUT_BALANCE_CLOSED, s.warning_count, 0);
 }
 
 /* What stands still loses or gains what rounding does, which is all that moves. */
@@ -127,8 +126,7 @@ TEST(without_a_balance_nothing_is_said) {
   const strut_run_options options = {.without_balance = true};
   OWN(strut_summary) s;
   assert_ok(strut_simulate(model, &setup.experiment, &options, &s, NULL));
-  assert_int_equal(s.balance, STRUT_BALANCE_NOT_KEPT);
-  assert_int_equal(s.warning_count, 0);
+  assert_all_equal(s.balance, STRUT_BALANCE_NOT_KEPT, s.warning_count, 0);
 }
 
 /* ---- losses ---- */

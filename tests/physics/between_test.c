@@ -12,7 +12,6 @@
 enum { STEPS = 10000, SAMPLES = 600, NODES = 6, LENGTH = 2 * NODES };
 
 static const char CLOUD[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1},\n"
     "  c: {position: [0, 1], mass: 1}, d: {position: [1, 1], mass: 1},\n"
     "  e: {position: [0, 2], mass: 1}, f: {position: [1, 2], mass: 1}}\n"
@@ -24,10 +23,9 @@ static const char CLOUD[] =
     "  prop: {kind: spring, nodes: [b, e], stiffness: 1, rest_length: 0.4, law: compression_only}\n"
     "  knee: {kind: spring, nodes: [a, e], stiffness: 1, rest_length: 1,\n"
     "    law: {kind: bilinear, knee: 0.5, second_stiffness: 3}}\n"
-    "collisions:\n"
-    "  balls: {nodes: [a, b], thickness: 0.1, stiffness: 1}\n"
-    "  lands: {node: a, member: r1, thickness: 0.1, stiffness: 1}\n"
-    "  cross: {members: [r1, r2], thickness: 0.1, stiffness: 1}\n"
+    "collisions: {balls: {nodes: [a, b], thickness: 0.1, stiffness: 1},\n"
+    "             lands: {node: a, member: r1, thickness: 0.1, stiffness: 1},\n"
+    "             cross: {members: [r1, r2], thickness: 0.1, stiffness: 1}}\n"
     "distances:\n"
     "  wall: {nodes: [a, f], along: x, rest_distance: -0.5, stiffness: 1, law: compression_only}\n"
     "  line: {node: b, line: [e, f], rest_distance: -0.5, stiffness: 1, law: compression_only}\n"
@@ -36,7 +34,6 @@ static const char CLOUD[] =
 
 /* A hinge that is not turned right round. */
 static const char HINGE[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 1], mass: 1}, b: {position: [1, 0], mass: 1},\n"
     "  c: {position: [0, 0], mass: 1}, d: {position: [1, 1], mass: 1},\n"
     "  e: {position: [-1, 0], mass: 1}, f: {position: [1, 2], mass: 1}}\n"
@@ -48,7 +45,6 @@ static const char HINGE[] =
 
 /* A slender cell, one end of whose short side moves. */
 static const char CELL[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 0], mass: 1}, b: {position: [0.1, 0], fixed: both},\n"
     "  c: {position: [0, 5], fixed: both}, d: {position: [9, 1], mass: 1},\n"
     "  e: {position: [9, 3], mass: 1}, f: {position: [9, 5], mass: 1}}\n"
@@ -141,24 +137,12 @@ static void misses_nothing(const char *text, double far, double most) {
   assert_true(looked > STEPS / 20 && found > STEPS / 200);
 }
 
-static void nothing_of_a_cloud_is_missed(void **unused) {
-  (void)unused;
-  misses_nothing(CLOUD, 1.5, 3.0);
-}
-
-static void no_kink_of_a_hinge_is_missed(void **unused) {
-  (void)unused;
-  misses_nothing(HINGE, 0.3, 0.3);
-}
-
-static void no_area_is_missed(void **unused) {
-  (void)unused;
-  misses_nothing(CELL, 0.1, 0.3);
-}
+TEST(nothing_of_a_cloud_is_missed) { misses_nothing(CLOUD, 1.5, 3.0); }
+TEST(no_kink_of_a_hinge_is_missed) { misses_nothing(HINGE, 0.3, 0.3); }
+TEST(no_area_is_missed) { misses_nothing(CELL, 0.1, 0.3); }
 
 /* Masses that pass an anchor, one another, and the anchor of a spring with a table of forces. */
 static const char PASSING[] =
-    "strut: 1\n"
     "nodes: {o: {position: [0, 0], fixed: both}, m: {position: [1.5, 0], mass: 1, fixed: y},\n"
     "  a: {position: [-1, 0.3], mass: 1}, b: {position: [1, 0.3], mass: 3},\n"
     "  p: {position: [0, 1], mass: 2, fixed: x}}\n"
@@ -177,29 +161,19 @@ static double passing(double x, double v, double w, double rest, double t) {
   return (fmod(half, 2) != 0 ? -1 : 1) * (rest + size * cos(phase - 2 * half * reach));
 }
 
-static void forces_turn_round_at_zero_length(void **unused) {
+TEST(forces_turn_round_at_zero_length) {
   static const struct {
     const char *method;
     double off;
   } methods[] = {
       {"adaptive8", 1e-9}, {"adaptive", 1e-7}, {"rk4-events", 1e-8}, {"verlet-events", 1e-4}};
   double apart = passing(2, -3, sqrt(50 * 4 / 3.0), 0.4, 6), middle = 0.5 - 0.25 * 6;
-  (void)unused;
   for (int k = 0; k < 4; k++) {
     OWN(model_run) run = model_read_text("passing.yaml", PASSING, set_none);
-    run.setup.experiment.integrator = methods[k].method;
-    model_simulate(&run);
+    model_simulate_by(&run, methods[k].method);
     assert_near(model_position(&run, "m")[0], passing(1.5, 0, 10, 0.5, 6), methods[k].off);
     assert_near(model_position(&run, "a")[0], middle - 0.75 * apart, methods[k].off);
     assert_near(model_position(&run, "p")[1], 0.87404697173, methods[k].off); /* scipy */
     assert_near(run.summary.energy.residual, 0, 500 * methods[k].off);
   }
-}
-
-int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_of_a_cloud_is_missed),
-                                     cmocka_unit_test(no_kink_of_a_hinge_is_missed),
-                                     cmocka_unit_test(no_area_is_missed),
-                                     cmocka_unit_test(forces_turn_round_at_zero_length)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,8 +101,7 @@ TEST(scenes_with_jumps_close_as_the_step_falls) {
 
 /* The parts by hand where they are known. */
 TEST(the_parts_of_a_sliding_block) {
-  OWN(strut_setup) setup = build_setup();
-  setup.scene.gravity[1] = -9.81;
+  OWN(strut_setup) setup = build_falling();
   build_mass(&setup.scene, 0, -9.81e-5 * 2, 2);
   build_rough_contact(&setup.scene, 0, 1e5, 100, 0.3, 0.3, 1e-4);
   setup.scene.nodes[0].velocity[0] = 3;

@@ -53,8 +53,7 @@ static void give_density(strut_setup *setup, int32_t member, double density) {
 
 /* A cable net between supports with weights: sum of q (x_j - x_i) + f = 0 at every free node. */
 TEST(net) {
-  OWN(strut_setup) setup = build_setup();
-  setup.scene.gravity[1] = -9.81;
+  OWN(strut_setup) setup = build_falling();
   int32_t a = build_support(&setup.scene, 0, 0), b = build_mass(&setup.scene, 1, 0, 0.1);
   int32_t c = build_mass(&setup.scene, 2, 0, 0.2), d = build_support(&setup.scene, 3, 0.5);
   int32_t e = build_support(&setup.scene, 1.5, -1);

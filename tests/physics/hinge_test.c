@@ -7,16 +7,11 @@ static const double PI = 3.14159265358979323846, G = 9.81;
 
 /* An arm that a hinge turns back from three turns and a half: it oscillates as a linear oscillator. */
 static const char rotor[] =
-    "strut: 1\n"
     "parameters: {k: 1e6, start: 22 rad}\n"
-    "nodes:\n"
-    "  ground: {position: [1, 0], fixed: both}\n"
-    "  pivot: {position: [0, 0], fixed: both}\n"
-    "  tip: {position: [0.5, 0], mass: 2}\n"
-    "members:\n"
-    "  arm: {kind: bar, nodes: [pivot, tip], stiffness: k}\n"
-    "hinges:\n"
-    "  h: {nodes: [ground, pivot, tip], stiffness: 0.3, rest_angle: 0}\n"
+    "nodes: {ground: {position: [1, 0], fixed: both}, pivot: {position: [0, 0], fixed: both},\n"
+    "        tip: {position: [0.5, 0], mass: 2}}\n"
+    "members: {arm: {kind: bar, nodes: [pivot, tip], stiffness: k}}\n"
+    "hinges: {h: {nodes: [ground, pivot, tip], stiffness: 0.3, rest_angle: 0}}\n"
     "initial: {velocities: {tip: [0, 4]}}\n"
     "solver: {step: 0.05 ms}\n"
     "run: {duration: 1 s}\n"
@@ -45,15 +40,10 @@ TEST(an_arm_turns_several_times_against_its_hinge) {
 
 /* A pendulum with a hinge at its pivot, swinging little: omega^2 = kappa / (m l^2) + g / l. */
 static const char pendulum[] =
-    "strut: 1\n"
-    "nodes:\n"
-    "  top: {position: [0, 1], fixed: both}\n"
-    "  pivot: {position: [0, 0], fixed: both}\n"
-    "  bob: {position: [0, -0.5], mass: 2}\n"
-    "members:\n"
-    "  rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e7}\n"
-    "hinges:\n"
-    "  h: {nodes: [top, pivot, bob], stiffness: 3, rest_angle: 180 deg}\n"
+    "nodes: {top: {position: [0, 1], fixed: both}, pivot: {position: [0, 0], fixed: both},\n"
+    "        bob: {position: [0, -0.5], mass: 2}}\n"
+    "members: {rod: {kind: bar, nodes: [pivot, bob], stiffness: 1e7}}\n"
+    "hinges: {h: {nodes: [top, pivot, bob], stiffness: 3, rest_angle: 180 deg}}\n"
     "gravity: [0, -9.81]\n"
     "initial: {positions: {bob: [0.5 * sin(1e-4), -0.5 * cos(1e-4)]}}\n"
     "solver: {step: 0.1 ms}\n"
@@ -70,18 +60,12 @@ TEST(a_pendulum_with_a_hinge) {
 
 /* Both arms held: the drive works against the hinge alone, and in a whole period not at all. */
 static const char held[] =
-    "strut: 1\n"
     "parameters: {c: 0}\n"
-    "nodes:\n"
-    "  a: {position: [1, 0], fixed: both}\n"
-    "  b: {position: [0, 0], fixed: both}\n"
-    "  c: {position: [0, 1], fixed: both}\n"
-    "  free: {position: [2, 0], mass: 1}\n"
+    "nodes: {a: {position: [1, 0], fixed: both}, b: {position: [0, 0], fixed: both},\n"
+    "        c: {position: [0, 1], fixed: both}, free: {position: [2, 0], mass: 1}}\n"
     "members: {m: {kind: spring, nodes: [a, free], stiffness: 1}}\n"
-    "hinges:\n"
-    "  h: {nodes: [a, b, c], stiffness: 3, damping: c, rest_angle: 70 deg}\n"
-    "actuators:\n"
-    "  motor: {hinge: h, signal: {sine: {amplitude: 0.4 rad, frequency: 2 Hz}}}\n"
+    "hinges: {h: {nodes: [a, b, c], stiffness: 3, damping: c, rest_angle: 70 deg}}\n"
+    "actuators: {motor: {hinge: h, signal: {sine: {amplitude: 0.4 rad, frequency: 2 Hz}}}}\n"
     "solver: {step: 0.1 ms}\n"
     "run: {duration: 0.5 s}\n";
 
@@ -104,16 +88,11 @@ TEST(a_driven_hinge_between_held_arms) {
 
 /* A driven leg between masses: whatever it does, drive work = energy gained + dissipated. */
 static const char leg[] =
-    "strut: 1\n"
-    "nodes:\n"
-    "  hip: {position: [0, 0], mass: 1}\n"
-    "  knee: {position: [0.3, -0.4], mass: 0.2}\n"
-    "  foot: {position: [0, -0.8], mass: 0.1}\n"
-    "  pin: {position: [-1, 0], fixed: both}\n"
-    "members:\n"
-    "  thigh: {kind: bar, nodes: [hip, knee], stiffness: 1e4, damping: 1, mass: 0.1}\n"
-    "  shank: {kind: bar, nodes: [knee, foot], stiffness: 1e4, damping: 1}\n"
-    "  tie: {kind: spring, nodes: [pin, hip], stiffness: 100, damping: 2}\n"
+    "nodes: {hip: {position: [0, 0], mass: 1}, knee: {position: [0.3, -0.4], mass: 0.2},\n"
+    "        foot: {position: [0, -0.8], mass: 0.1}, pin: {position: [-1, 0], fixed: both}}\n"
+    "members: {thigh: {kind: bar, nodes: [hip, knee], stiffness: 1e4, damping: 1, mass: 0.1},\n"
+    "          shank: {kind: bar, nodes: [knee, foot], stiffness: 1e4, damping: 1},\n"
+    "          tie: {kind: spring, nodes: [pin, hip], stiffness: 100, damping: 2}}\n"
     "hinges:\n"
     "  knee: {nodes: [hip, knee, foot], stiffness: 2, damping: 0.01}\n"
     "  hip: {nodes: [pin, hip, knee], stiffness: 3, damping: 0.02, law: {kind: play, gap: 5 deg}}\n"
@@ -134,8 +113,7 @@ TEST(the_balance_of_a_driven_leg_closes) {
                {"midpoint", 1e-9}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
     OWN(model_run) run = model_read_text("leg", leg, set_none);
-    run.setup.experiment.integrator = known[i].method;
-    model_simulate(&run);
+    model_simulate_by(&run, known[i].method);
     const strut_energy *e = &run.summary.energy;
     print_message("%s: residual %.2g of %.3g J\n", known[i].method, e->residual / e->moved,
                   e->moved);

@@ -22,8 +22,7 @@ typedef struct budget {
 static const budget budgets[] = {
     {"rk4", true, 39092},        {"rk4", false, 33772},          {"euler", true, 10011},
     {"verlet", true, 11085},     {"verlet-events", true, 14448}, {"verlet-events", false, 12678},
-    {"rk4-events", true, 58170}, {"euler-events", true, 18897},  {"adaptive", true, 106469},
-};
+    {"rk4-events", true, 58170}, {"euler-events", true, 18897},  {"adaptive", true, 106469}};
 enum { BUDGETS = sizeof budgets / sizeof budgets[0] };
 
 static bool numbers_hold_here(void) {

@@ -122,7 +122,6 @@ static strut_summary run_two(const two_oscillators *o, const char *accuracy, dou
                              const char *quantities, strut_setup *setup) {
   char text[1600];
   snprintf(text, sizeof text,
-           "strut: 1\n"
            "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y},"
            " c: {position: [0, 1], fixed: both}, e: {position: [1, 1], mass: 1, fixed: y}}\n"
            "members: {p: {kind: spring, nodes: [a, b], stiffness: %.17g, rest_length: %.17g},"
@@ -224,7 +223,6 @@ static strut_summary run_linkage(const char *more, strut_setup *setup) {
   char text[1200];
   snprintf(
       text, sizeof text,
-      "strut: 1\n"
       "gravity: [0, -9.81]\n"
       "bars: rigid\n"
       "groups: {r: {kind: bar, stiffness: 1e8}}\n"

@@ -19,7 +19,6 @@ static double complete_elliptic(double m) {
 
 /* A mass on a spring of a law, drawn at rest, let go at x = 1 + out. */
 static const char oscillator[] =
-    "strut: 1\n"
     "parameters: {out: 0.2}\n"
     "nodes:\n"
     "  wall: {position: [0, 0], fixed: both}\n"
@@ -34,8 +33,7 @@ static const char oscillator[] =
 static model_run read_oscillator(const char *member, const char *out) {
   char text[1200];
   assert_true(snprintf(text, sizeof text, oscillator, member) < (int)sizeof text);
-  model_run run = model_read_text("oscillator", text, set_to(out));
-  return run;
+  return model_read_text("oscillator", text, set_to(out));
 }
 
 /* k x + k3 x^3: T = 4 K(m) / omega_r with omega_r^2 = (k + k3 A^2) / M, m = k3 A^2 / 2 / (k + k3 A^2). */
@@ -100,8 +98,7 @@ TEST(a_table_is_the_spring_that_it_lists) {
                 : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
                   "second_stiffness: 300 N/m}",
           "out=0.2");
-      run.setup.experiment.integrator = events[i];
-      model_simulate(&run);
+      model_simulate_by(&run, events[i]);
       at[table] = model_position(&run, "block")[0];
     }
     assert_near(at[1], at[0], 1e-9);
@@ -131,7 +128,6 @@ TEST(a_tables_energy_is_its_integral) {
 
 /* A block flies at 3 m/s against the longest length of a spring without stiffness. */
 static const char against_stop[] =
-    "strut: 1\n"
     "parameters: {c: 0}\n"
     "nodes:\n"
     "  wall: {position: [0, 0], fixed: both}\n"
@@ -160,8 +156,7 @@ TEST(a_stop_gives_back_what_its_damper_leaves) {
         snprintf(text, sizeof text, against_stop, side ? "0.9" : "1.1", side ? "-3" : "3");
         snprintf(c, sizeof c, "c=%.17g", 2 * zeta * sqrt(800 * 0.5));
         OWN(model_run) run = model_read_text("against_stop", text, set_to(c));
-        run.setup.experiment.integrator = methods[i];
-        model_simulate(&run);
+        model_simulate_by(&run, methods[i]);
         double kept = exp(-2 * zeta * acos(zeta) / sqrt(1 - zeta * zeta));
         double held = 2 * acos(zeta) / sqrt(1 - zeta * zeta) / 40;
         size_t after = (size_t)((0.1 / 3 + held + 0.02) / 0.3 * (double)(run.row_count - 1));
@@ -175,10 +170,7 @@ TEST(a_stop_gives_back_what_its_damper_leaves) {
 
 /* Two masses on a string that gets taut: they exchange speeds, and their momentum is kept. */
 static const char two_masses[] =
-    "strut: 1\n"
-    "nodes:\n"
-    "  a: {position: [0, 0], mass: 2}\n"
-    "  b: {position: [1, 0.3], mass: 0.5}\n"
+    "nodes: {a: {position: [0, 0], mass: 2}, b: {position: [1, 0.3], mass: 0.5}}\n"
     "members:\n"
     "  m: {kind: spring, nodes: [a, b], stiffness: 10, damping: 0.1, longest: 1.2, shortest: 0.7,\n"
     "      stop_stiffness: 1e4, stop_damping: 3}\n"
@@ -193,8 +185,7 @@ TEST(stops_keep_the_momentum_of_two_masses) {
   static const double tolerance[] = {1e-5, 1e-5, 1e-4, 0.05};
   for (int i = 0; i < 4; i++) {
     OWN(model_run) run = model_read_text("two_masses", two_masses, set_none);
-    run.setup.experiment.integrator = events[i];
-    model_simulate(&run);
+    model_simulate_by(&run, events[i]);
     assert_true(run.summary.spent.events >= 4);
     size_t last = run.row_count - 1;
     double x[4], v[4];
@@ -215,7 +206,6 @@ TEST(stops_keep_the_momentum_of_two_masses) {
  * speed whatever the law, also where the force begins without a slope, or with a jump.
  */
 static const char thrown[] =
-    "strut: 1\n"
     "nodes:\n"
     "  wall: {position: [0, 0], fixed: both}\n"
     "  block: {position: [1, 0], fixed: y, mass: 0.5}\n"
@@ -243,8 +233,7 @@ TEST(a_cable_of_any_law_throws_its_block_back) {
       char text[1200];
       snprintf(text, sizeof text, thrown, laws[law]);
       OWN(model_run) run = model_read_text(laws[law], text, set_none);
-      run.setup.experiment.integrator = events[i];
-      model_simulate(&run);
+      model_simulate_by(&run, events[i]);
       const strut_energy *e = &run.summary.energy;
       if (!(fabs(e->kinetic - 1) <= tolerance[i])) print_error("%s, %s\n", events[i], laws[law]);
       assert_near(e->kinetic, 1, tolerance[i]);
@@ -256,7 +245,6 @@ TEST(a_cable_of_any_law_throws_its_block_back) {
 
 /* A spring of a law whose rest length is driven: what the drive does is stored or lost. */
 static const char driven[] =
-    "strut: 1\n"
     "nodes:\n"
     "  wall: {position: [0, 0], fixed: both}\n"
     "  block: {position: [1, 0.2], mass: 0.5}\n"
@@ -290,8 +278,7 @@ TEST(the_balance_of_driven_laws_closes) {
         char text[1200];
         snprintf(text, sizeof text, driven, kinds[kind], laws[law]);
         OWN(model_run) run = model_read_text(laws[law], text, set_none);
-        run.setup.experiment.integrator = methods[i];
-        model_simulate(&run);
+        model_simulate_by(&run, methods[i]);
         const strut_energy *e = &run.summary.energy;
         if (!(fabs(e->residual) <= tolerance[i] * e->moved))
           print_error("%s, %s, %s\n", methods[i], kinds[kind], laws[law]);

@@ -30,8 +30,7 @@ static double farthest(const strut_summary *a, const strut_summary *b) {
 
 /* A uniform rod let go horizontally, T = 4 sqrt(2 L / 3 g) K(sin 45 deg) where it is rigid. */
 static strut_setup pendulum(double stiffness) {
-  strut_setup setup = build_setup();
-  setup.scene.gravity[1] = -9.81;
+  strut_setup setup = build_falling();
   int32_t pin = build_support(&setup.scene, 0, 0), tip = build_node(&setup.scene, 1, 0);
   build_member(&setup.scene, STRUT_BAR, pin, tip, stiffness, 0, 1);
   return setup;
@@ -83,8 +82,7 @@ TEST(energy_of_a_stiff_frame) {
 
 /* Masses in a row on soft springs and, every other one, on bars a million times as stiff. */
 static strut_setup chain(double ratio) {
-  strut_setup setup = build_setup();
-  setup.scene.gravity[1] = -9.81;
+  strut_setup setup = build_falling();
   int32_t last = build_support(&setup.scene, 0, 0);
   for (int i = 1; i <= 20; i++) {
     int32_t next = build_mass(&setup.scene, 0.1 * i, 0.02 * (i % 2), 0.1);
@@ -195,8 +193,7 @@ TEST(order_on_random_scenes) {
 
 /* A mass on a cable with a damper, thrown through its slack length again and again: 1000 steps. */
 TEST(cable_in_large_steps) {
-  OWN(strut_setup) setup = build_setup();
-  setup.scene.gravity[1] = -9.81;
+  OWN(strut_setup) setup = build_falling();
   int32_t hook = build_support(&setup.scene, 0, 0), mass = build_mass(&setup.scene, 0.4, -0.2, 1);
   build_sized(&setup.scene, STRUT_CABLE, hook, mass, 1e8, 100, 0, 1.0);
   OWN(strut_summary) s = run_by(&setup, "midpoint", 100 * sqrt(8.0 / 1e8), 30.0);

@@ -153,14 +153,12 @@ TEST(nearly_equal_trusses) {
 TEST(equal_trusses) {
   OWN(strut_setup) setup = trusses(100, 100, 0.2);
   OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 2, .branches = 1});
-  assert_int_equal(w.path.event_count, 2);
-  assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
-  assert_all_equal(w.path.events[0].after, 2, w.path.branch_count, 2);
+  assert_all_equal(w.path.event_count, 2, w.path.events[0].kind, STRUT_PATH_LIMIT,
+                   w.path.events[0].after, 2, w.path.branch_count, 2);
   for (size_t b = 0; b < 2; b++) {
     const strut_path *branch = &w.path.branches[b];
     assert_relative(branch->from.factor, 100 * limit_load(), 1e-11);
-    assert_int_equal(branch->end, STRUT_PATH_JOINED);
-    assert_int_equal(branch->from.twin, 2 - (int)b);
+    assert_all_equal(branch->end, STRUT_PATH_JOINED, branch->from.twin, 2 - (int)b);
     const strut_path_point *p = &branch->points[3];
     assert_int_equal(p->negative, 1);
     assert_true((p->at.q[5] - 0.2 - (p->at.q[11] - 0.2)) * (b ? 1 : -1) != 0);
@@ -182,8 +180,7 @@ static void press_to_nothing(strut_law_kind law) {
   OWN(walk) w = walk_by(&setup, (strut_path_options){.until = 1});
   assert_int_equal(walk_count(&w.path, STRUT_PATH_ZERO_LENGTH), 1);
   const strut_path_event *e = &w.path.events[2], *turn = &w.path.events[1];
-  assert_int_equal(turn->kind, STRUT_PATH_LIMIT);
-  assert_int_equal(e->kind, STRUT_PATH_ZERO_LENGTH);
+  assert_all_equal(turn->kind, STRUT_PATH_LIMIT, e->kind, STRUT_PATH_ZERO_LENGTH);
   assert_all_near(1e-9, e->at.q[2 * b + 1], -1, e->at.factor, -k * rest / load);
   assert_true(w.path.end == STRUT_PATH_UNTIL && last_of(&w.path)->at.q[2 * b + 1] < -1);
   bool before = false;

@@ -121,9 +121,8 @@ TEST(touchdown_restores_stability) {
   build_load(&setup.scene, apex, 0, -1, -1);
   OWN(walk) w = walk_until(&setup, 15);
   double there = 2 * k * floor * (hypot(a, h) / hypot(a, floor) - 1);
-  assert_int_equal(w.path.event_count, 3);
-  assert_int_equal(w.path.events[0].kind, STRUT_PATH_LIMIT);
-  assert_int_equal(w.path.events[0].after, 1);
+  assert_all_equal(w.path.event_count, 3, w.path.events[0].kind, STRUT_PATH_LIMIT,
+                   w.path.events[0].after, 1);
   check_event(&w.path.events[1], STRUT_PATH_TOUCHDOWN, there, 1, 0);
   check_event(&w.path.events[2], STRUT_PATH_KINK_LIMIT, there, 1, 0);
   const strut_path_point *end = &w.path.points[w.path.point_count - 1];

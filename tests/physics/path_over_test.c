@@ -108,8 +108,7 @@ TEST(displacement_of_a_support) {
   OWN(strut_path) path = follow(
       model,
       &(strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
-  assert_int_equal(path.event_count, 1);
-  assert_int_equal(path.events[0].kind, STRUT_PATH_TAUT);
+  assert_all_equal(path.event_count, 1, path.events[0].kind, STRUT_PATH_TAUT);
   assert_near(path.events[0].at.factor, slack, 1e-14);
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double pull = spring * cable / (spring + cable) * fmax(0, p->at.factor - slack);
@@ -260,8 +259,7 @@ TEST(rising_ground) {
                                                              .scene_at = scene_of_ground,
                                                              .from = -0.2,
                                                              .until = 0.1});
-  assert_int_equal(path.event_count, 1);
-  assert_int_equal(path.events[0].kind, STRUT_PATH_TOUCHDOWN);
+  assert_all_equal(path.event_count, 1, path.events[0].kind, STRUT_PATH_TOUCHDOWN);
   assert_near(path.events[0].at.factor, 0, 1e-13);
   for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
     double y = 1000 * fmax(0, p->at.factor) / 1100;

@@ -87,8 +87,7 @@ static const comparison comparisons[] = {
     {STRUT_TERM_CONSTANT, ALL & ~(unsigned)STRUT_TERM_CONSTANT, true, true},
     {STRUT_TERM_LOADS, ALL & ~(unsigned)STRUT_TERM_LOADS, true, true},
     {STRUT_TERM_FRICTION, ALL & ~(unsigned)STRUT_TERM_FRICTION, true, true},
-    {STRUT_TERM_SLOPE, ALL & ~(unsigned)STRUT_TERM_SLOPE, true, true},
-};
+    {STRUT_TERM_SLOPE, ALL & ~(unsigned)STRUT_TERM_SLOPE, true, true}};
 enum { COMPARISONS = sizeof comparisons / sizeof comparisons[0], SINGLE = 10 };
 
 /* The same motion with and without the term, ready to step. */
@@ -170,8 +169,7 @@ TEST(what_others_need_changes_no_bit) {
       m[with] = motion_begin(&scene[with], 1e-3);
       motion_steps(&m[with], 500);
     }
-    assert_false(m[0].model->terms & term);
-    assert_true(m[1].model->terms & term);
+    assert_all(!(m[0].model->terms & term), m[1].model->terms & term);
     for (int k = 0; k < 8; k++) {
       assert_same_bits(m[1].state->q[k], m[0].state->q[k]);
       assert_same_bits(m[1].state->v[k], m[0].state->v[k]);

@@ -5,11 +5,15 @@
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
 
-static void read_scene(const char *text, const strut_override *set, size_t count,
+/* A scene without its first line, which is that of all. */
+static void read_scene(const char *rest, const strut_override *set, size_t count,
                        strut_setup *setup) {
+  char text[2000];
   OWN(strut_diagnostics) diagnostics = {0};
-  strut_status status =
-      strut_setup_read(setup, "test", text, strlen(text), set, count, STRUT_FOR_RUN, &diagnostics);
+  int length = snprintf(text, sizeof text, "strut: 1\n%s", rest);
+  assert_true(length > 0 && (size_t)length < sizeof text);
+  strut_status status = strut_setup_read(setup, "test", text, (size_t)length, set, count,
+                                         STRUT_FOR_RUN, &diagnostics);
   if (status) print_message("%s", strut_diagnostics_render(&diagnostics, 10));
   assert_ok(status);
 }
@@ -47,7 +51,6 @@ static double value(const measured_run *r, const char *name) { return get(r, nam
 /* m g + sqrt((m g)^2 + 2 k m g h) where a mass falls by h before the cable pulls. */
 TEST(a_mass_caught_by_a_cable) {
   static const char text[] =
-      "strut: 1\n"
       "parameters: {drop: 0.5 m, stiff: 2 kN/m}\n"
       "nodes: {top: {position: [0, 0], fixed: both}, bob: {position: [0, -1], mass: 2 kg}}\n"
       "members: {catch: {nodes: [top, bob], kind: cable, stiffness: stiff}}\n"
@@ -57,12 +60,10 @@ TEST(a_mass_caught_by_a_cable) {
       "run:\n"
       "  duration: 0.5 s\n"
       "  measure:\n"
-      "    quantities:\n"
-      "      peak: {of: catch.force, take: max, accuracy: 0.5 %}\n"
-      "      factor: {of: catch.force / (stiff * drop), take: max}\n"
-      "      deep: {of: bob.y + 1 m, take: min, accuracy: 0.1 mm}\n"
-      "      stretch: {of: catch.stretch, take: max}\n"
-      "      side: com.vx\n";
+      "    quantities: {peak: {of: catch.force, take: max, accuracy: 0.5 %},\n"
+      "                 factor: {of: catch.force / (stiff * drop), take: max},\n"
+      "                 deep: {of: bob.y + 1 m, take: min, accuracy: 0.1 mm},\n"
+      "                 stretch: {of: catch.stretch, take: max}, side: com.vx}\n";
   measured_run r = run_text(text);
   const double weight = 2 * GRAVITY, k = 2000;
   double peak = weight + sqrt(weight * weight + 2 * k * weight * 0.5);
@@ -85,7 +86,6 @@ TEST(a_mass_caught_by_a_cable) {
 /* An undamped oscillator of 50 rad/s about x = 1 m, amplitude 0.1 m, over ten whole periods. */
 TEST(an_oscillator) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
       "y}}\n"
       "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m}}\n"
@@ -94,21 +94,15 @@ TEST(an_oscillator) {
       "run:\n"
       "  duration: 20*pi/50\n"
       "  measure:\n"
-      "    quantities:\n"
-      "      range: {of: block.x, take: range}\n"
-      "      high: {of: block.x - 1 m, take: max}\n"
-      "      low: {of: spring.force, take: min}\n"
-      "      speed: {of: abs(block.vx), take: max}\n"
-      "      effective: {of: block.x - 1, take: rms}\n"
-      "      middle: block.x - 1\n"
-      "      moving: energy.kinetic\n"
-      "      stored: energy.elastic\n"
-      "      kept: {of: energy.total, take: range}\n"
-      "      end: {of: block.x, take: final}\n"
-      "      drift: block.vx\n"
-      "      went: {of: block.x, take: change}\n"
-      "      clock: {of: time, take: change}\n"
-      "      pace: {of: 3 * time, take: rate}\n");
+      "    quantities: {range: {of: block.x, take: range},\n"
+      "                 high: {of: block.x - 1 m, take: max},\n"
+      "                 low: {of: spring.force, take: min},\n"
+      "                 speed: {of: abs(block.vx), take: max},\n"
+      "                 effective: {of: block.x - 1, take: rms}, middle: block.x - 1,\n"
+      "                 moving: energy.kinetic, stored: energy.elastic,\n"
+      "                 kept: {of: energy.total, take: range}, end: {of: block.x, take: final},\n"
+      "                 drift: block.vx, went: {of: block.x, take: change},\n"
+      "                 clock: {of: time, take: change}, pace: {of: 3 * time, take: rate}}\n");
   const double energy = 0.5 * 5000 * 0.01;
   /* sampled ends of steps alone would miss amplitudes of this by up to 5e-4 */
   assert_all_relative(1e-6, value(&r, "range"), 0.2, value(&r, "high"), 0.1, value(&r, "low"), -500,
@@ -127,7 +121,6 @@ TEST(an_oscillator) {
 /* Extremes between steps where the window has a peak at a fraction of a step. */
 TEST(peaks_between_steps) {
   static const char text[] =
-      "strut: 1\n"
       "parameters: {late: 0}\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg}}\n"
       "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 1 N/m}}\n"
@@ -148,7 +141,6 @@ TEST(peaks_between_steps) {
 /* A force that jumps has no vertex between its steps: nothing is larger than what was there. */
 TEST(a_jump_is_no_peak) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {ball: {position: [0, 0.3], mass: 1 kg}}\n"
       "gravity: [0, -9.81]\n"
       "ground: {stiffness: 100 kN/m, damping: 400 N s/m}\n"
@@ -162,7 +154,6 @@ TEST(a_jump_is_no_peak) {
 /* A rigid pendulum released at 60 degrees: tension m g (3 - 2 cos) at the bottom. */
 TEST(a_pendulum) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "bars: rigid\n"
       "gravity: [0, -9.81]\n"
       "nodes: {top: {position: [0, 0], fixed: both},"
@@ -193,7 +184,6 @@ TEST(a_pendulum) {
 /* Angles go on beyond a turn: a spoke that spins at 7 rad/s for 10 s. */
 TEST(an_angle_beyond_a_turn) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "bars: rigid\n"
       "nodes: {hub: {position: [0, 0], fixed: both}, rim: {position: [1, 0], mass: 1 kg}}\n"
       "members: {spoke: {nodes: [hub, rim], kind: bar, stiffness: 1}}\n"
@@ -208,7 +198,6 @@ TEST(an_angle_beyond_a_turn) {
 /* Free fall above a slope of 30 degrees, over the last second of two. */
 TEST(a_falling_mass) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {ball: {position: [1, 50], mass: 2 kg}, other: {position: [5, 60], mass: 1 kg}}\n"
       "gravity: [0, -9.81]\n"
       "ground: {stiffness: 1e5, slope: 30 deg, height: 1 m, nodes: [ball]}\n"
@@ -218,15 +207,11 @@ TEST(a_falling_mass) {
       "  measure:\n"
       "    last: 1 s\n"
       "    node: ball\n"
-      "    quantities:\n"
-      "      climb: com.vy\n"
-      "      height: {of: ball.height, take: final}\n"
-      "      sink: {of: ball.height, take: change}\n"
-      "      apart: {of: ball.y - other.y, take: range}\n"
-      "      square: ball.vy^2\n"
-      "      push: {of: ball.normal, take: max}\n"
-      "      side: ball.vx\n"
-      "      centre: {of: com.x, take: final}\n");
+      "    quantities: {climb: com.vy, height: {of: ball.height, take: final},\n"
+      "                 sink: {of: ball.height, take: change},\n"
+      "                 apart: {of: ball.y - other.y, take: range}, square: ball.vy^2,\n"
+      "                 push: {of: ball.normal, take: max}, side: ball.vx,\n"
+      "                 centre: {of: com.x, take: final}}\n");
   double c = cos(PI / 6), s = sin(PI / 6), at2 = 50 - 0.5 * GRAVITY * 4;
   assert_all_relative(1e-9, value(&r, "climb"), -GRAVITY * 1.5, value(&r, "height"),
                       -s * 1 + c * (at2 - 1), value(&r, "sink"), -c * 0.5 * GRAVITY * 3);
@@ -240,7 +225,6 @@ TEST(a_falling_mass) {
 static void rest_on_slope(const char *method) {
   char text[900];
   snprintf(text, sizeof text,
-           "strut: 1\n"
            "nodes: {foot: {position: [0, 1 mm], mass: 4 kg}}\n"
            "gravity: [0, -9.81]\n"
            "ground: {stiffness: 1e5, damping: 1e3, slope: 10 deg,"
@@ -264,7 +248,6 @@ TEST(contact_forces_at_rest_carry_the_weight) {
 /* x = A sin in the drive's own frame: works and losses of a damper that an actuator pulls. */
 TEST(works_and_periods) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1e9 kg}}\n"
       "members: {piston: {nodes: [wall, block], kind: spring, damping: 30 N s/m}}\n"
       "actuators: {drive: {member: piston,"
@@ -275,13 +258,11 @@ TEST(works_and_periods) {
       "  of: drive\n"
       "  measure:\n"
       "    last: 4\n"
-      "    quantities:\n"
-      "      power: {of: work.drives, take: rate}\n"
-      "      lost: {of: losses.total, take: change}\n"
-      "      same: {of: losses.members - work.drives, take: range}\n"
-      "      pull: {of: piston.force, take: max}\n"
-      "      clock: {of: time, take: final}\n"
-      "      mean: {of: time}\n");
+      "    quantities: {power: {of: work.drives, take: rate},\n"
+      "                 lost: {of: losses.total, take: change},\n"
+      "                 same: {of: losses.members - work.drives, take: range},\n"
+      "                 pull: {of: piston.force, take: max}, clock: {of: time, take: final},\n"
+      "                 mean: {of: time}}\n");
   double w = 2 * PI * 5, power = 0.5 * 30 * pow(0.002 * w, 2);
   assert_all_relative(1e-4, value(&r, "power"), power, value(&r, "lost"), power * 4 / 5.0);
   assert_near(value(&r, "same"), 0, 1e-9);
@@ -301,7 +282,6 @@ TEST(a_short_way_is_not_rounding) {
   for (int k = 0; k < 2; k++) {
     char text[600];
     snprintf(text, sizeof text,
-             "strut: 1\n"
              "nodes: {n: {position: [0, -9.81e-5], mass: 1}}\n"
              "gravity: [0, -9.81]\n"
              "ground: {stiffness: 1e5, damping: 100, friction: {law: coulomb, mu: %g}}\n"
@@ -318,7 +298,6 @@ TEST(a_short_way_is_not_rounding) {
 /* Two masses that swing against each other: the centre stays, to rounding. */
 TEST(zero_by_symmetry) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {a: {position: [-1/3, 0.2], mass: 0.7}, b: {position: [1/3, 0.2], mass: 0.7}}\n"
       "members: {spring: {nodes: [a, b], kind: spring, stiffness: 777, damping: 0.1}}\n"
       "initial: {velocities: {a: [-0.3, 0], b: [0.3, 0]}}\n"
@@ -333,7 +312,6 @@ TEST(zero_by_symmetry) {
 }
 
 static const char HOPPER[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 0.02], mass: 1}, b: {position: [0.3, 0.05], mass: 1}}\n"
     "members: {leg: {nodes: [a, b], kind: spring, stiffness: 3000, damping: 2}}\n"
     "gravity: [0, -9.81]\n"
@@ -412,8 +390,8 @@ TEST(steps_allocate_nothing) {
 
 /* Every allocation of reading and running fails once: an error, no crash and no leak. */
 TEST(memory_that_runs_out) {
-  char text[1400];
-  snprintf(text, sizeof text, HOPPER, "rk4", ALL);
+  char text[1400] = "strut: 1\n";
+  snprintf(text + strlen(text), sizeof text - 100, HOPPER, "rk4", ALL);
   REFUSE_EACH(n, status, 20) {
     OWN(strut_setup) setup;
     OWN(strut_diagnostics) diagnostics = {0};
@@ -421,7 +399,7 @@ TEST(memory_that_runs_out) {
                                          &diagnostics));
   }
   OWN(strut_setup) setup;
-  read_scene(text, NULL, 0, &setup);
+  read_scene(strchr(text, '\n') + 1, NULL, 0, &setup);
   setup.experiment.step = 1e-4;
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   REFUSE_EACH(n, status, 5) {
@@ -434,7 +412,6 @@ TEST(memory_that_runs_out) {
 /* Driven at 1 Hz and 0.5 Hz, of which the first counts: a motion of two periods. */
 TEST(a_steady_run_measures_its_whole_orbit) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg, fixed: "
       "y}}\n"
       "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 100, damping: 4}}\n"
@@ -456,7 +433,6 @@ TEST(a_steady_run_measures_its_whole_orbit) {
 /* A mass on an arm with a hinge: sqrt(kappa/(m l^2)) = 2 rad/s, 0.3 rad about the rest angle. */
 TEST(a_hinge_swings) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {a: {position: [-1, 0], fixed: both}, o: {position: [0, 0], fixed: both},"
       " c: {position: [1, 0], mass: 0.5 kg}}\n"
       "members: {arm: {nodes: [o, c], kind: bar, stiffness: 1e6}}\n"
@@ -476,7 +452,6 @@ TEST(a_hinge_swings) {
 /* A running cable's length is its path's; its stretch is the tension over the stiffness. */
 TEST(a_running_cable) {
   OWN(measured_run) r = run_text(
-      "strut: 1\n"
       "nodes: {low: {position: [0, -1], mass: 3 kg}, left: {position: [0, 0], fixed: both},"
       " right: {position: [1, 0], fixed: both}, high: {position: [1, -2], mass: 1 kg}}\n"
       "gravity: [0, -10]\n"
@@ -499,7 +474,6 @@ TEST(a_running_cable) {
  */
 TEST(a_blow_between_steps) {
   static const char text[] =
-      "strut: 1\n"
       "gravity: [0, 0]\n"
       "nodes: {ball: {position: [0, 0.5], mass: 0.1}}\n"
       "ground: {stiffness: 2e4}\n"
@@ -543,7 +517,6 @@ TEST(a_blow_between_steps) {
 /* Fixed steps that are too coarse for a greatest force say so. */
 TEST(a_step_too_coarse_for_a_peak) {
   static const char text[] =
-      "strut: 1\n"
       "parameters: {dt: 1 ms}\n"
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
       "y}}\n"

@@ -51,15 +51,17 @@ static strut_status end(void *context, strut_status status, strut_error *error) 
 static memory first, second;
 static unsigned first_wants, second_wants; /* channels of their own */
 
-static strut_status run(const strut_setup *setup, strut_error *error) {
+static strut_error error; /* of the latest run */
+
+static strut_status run(const strut_setup *setup) {
   strut_sink sinks[] = {{&first, begin, rows, end, first_wants},
                         {&second, begin, rows, end, second_wants}};
   strut_sink *all[] = {&sinks[0], &sinks[1]};
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   OWN(strut_summary) summary;
-  if (error) *error = (strut_error){0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
+  error = (strut_error){0};
+  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
   assert_int_equal(summary.status, status);
   return status;
 }
@@ -82,11 +84,20 @@ static strut_setup gliding(double step, double duration, double every) {
   return setup;
 }
 
+/* With all its channels. */
+static strut_setup crawler(double step, double duration, double every) {
+  strut_setup setup = build_setup();
+  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
+  motion_experiment(&setup, step, duration);
+  setup.experiment.output_every = every, setup.experiment.channels = 63;
+  return setup;
+}
+
 static void check_rows(double step, double duration, double last, double every, size_t count) {
   clean();
   OWN(strut_setup) setup = gliding(step, duration, every);
   setup.experiment.output_last = last;
-  assert_ok(run(&setup, NULL));
+  assert_ok(run(&setup));
   assert_all_equal(first.count, count, first.width, 1 + 4 + 1 + 1, first.channels,
                    STRUT_CHANNEL_POSITION | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_FORCE);
   assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_OK);
@@ -112,7 +123,7 @@ TEST(rows_come_at_their_times) {
 
 TEST(rows_are_a_thousandth_apart_if_nothing_is_said) {
   OWN(strut_setup) setup = gliding(1e-4, 2, 0);
-  assert_ok(run(&setup, NULL));
+  assert_ok(run(&setup));
   assert_int_equal(first.count, 1001);
   assert_near(first.row[1][0], 0.002, 1e-15);
 }
@@ -120,19 +131,15 @@ TEST(rows_are_a_thousandth_apart_if_nothing_is_said) {
 /* A thousandth of the time is less than a step: each step once. */
 TEST(no_step_is_recorded_twice) {
   OWN(strut_setup) setup = gliding(0.01, 1, 0);
-  assert_ok(run(&setup, NULL));
+  assert_ok(run(&setup));
   assert_int_equal(first.count, 101);
   for (size_t i = 0; i < 101; i++) assert_near(first.row[i][0], 0.01 * (double)i, 1e-14);
 }
 
 /* Every channel of the crawler against the state that a motion by hand has at the same step. */
 TEST(every_channel_holds_what_it_says) {
-  OWN(strut_setup) setup = build_setup();
-  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&setup, 1e-4, 0.1);
-  setup.experiment.output_every = 0.01;
-  setup.experiment.channels = 63;
-  assert_ok(run(&setup, NULL));
+  OWN(strut_setup) setup = crawler(1e-4, 0.1, 0.01);
+  assert_ok(run(&setup));
   assert_all_equal(first.channel_count, 6, first.count, 11);
   assert_int_equal(first.width, 1 + 10 + 10 + 9 + 9 + 10 + 11);
   OWN(motion) m = motion_begin(&setup.scene, 1e-4);
@@ -185,28 +192,23 @@ TEST(each_sink_gets_the_channels_it_wants) {
       {STRUT_CHANNEL_ENERGY, STRUT_CHANNEL_FORCE | STRUT_CHANNEL_LENGTH | STRUT_CHANNEL_CONTACT},
       {63, STRUT_CHANNEL_POSITION}};
   static memory whole;
-  OWN(strut_setup) setup = build_setup();
-  structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
-  motion_experiment(&setup, 1e-4, 0.1);
-  setup.experiment.output_every = 5e-4;
-  setup.experiment.channels = 63;
-  assert_ok(run(&setup, NULL));
+  OWN(strut_setup) setup = crawler(1e-4, 0.1, 5e-4);
+  assert_ok(run(&setup));
   whole = first;
   assert_int_equal(whole.count, 201);
   setup.experiment.channels = STRUT_CHANNEL_FORCE | STRUT_CHANNEL_ENERGY;
   for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++) {
     clean();
     first_wants = pairs[p][0], second_wants = pairs[p][1];
-    assert_ok(run(&setup, NULL));
+    assert_ok(run(&setup));
     check_part(&first, &whole, pairs[p][0] ? pairs[p][0] : setup.experiment.channels);
     check_part(&second, &whole, pairs[p][1] ? pairs[p][1] : setup.experiment.channels);
   }
 }
 
 TEST(so_many_samples_in_a_step_are_a_mistake) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(0.01, 1, 1e-9);
-  assert_fails(run(&setup, &error), STRUT_USAGE, error, "100000");
+  assert_fails(run(&setup), STRUT_USAGE, error, "100000");
 }
 
 /* Recording looks on: a run with sinks ends with the bits of one without, by any method, measured or not. */
@@ -214,15 +216,14 @@ TEST(recording_changes_no_bit) {
   const double every[] = {0.03, 0.00031, 0.0000165};
   for (size_t i = 0; strut_integrator_at(i); i++) {
     if (strut_integrator_at(i)->no_ground) continue;
-    OWN(strut_setup) setup = build_setup();
-    structure_crawler(&setup.scene, 10, 1e-4, 0.1, false);
-    motion_experiment(&setup, 2e-5, 0.03);
+    OWN(strut_setup) setup = crawler(2e-5, 0.03, 0);
+    setup.experiment.channels = 0;
     setup.experiment.integrator = strut_integrator_at(i)->name;
     OWN(strut_summary) alone = motion_simulate(&setup);
     for (size_t k = 0; k < sizeof every / sizeof *every; k++) {
       clean();
       setup.experiment.output_every = every[k], setup.experiment.channels = 63;
-      assert_ok(run(&setup, NULL));
+      assert_ok(run(&setup));
       assert_memory_equal(first.row[first.count - 1] + 1, alone.end.positions, 10 * sizeof(double));
     }
   }
@@ -244,7 +245,7 @@ TEST(samples_between_steps_do_not_reach_across_a_touchdown) {
     setup.experiment.output_every = 1.7e-4;
     setup.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY |
                                 STRUT_CHANNEL_CONTACT | STRUT_CHANNEL_ENERGY;
-    assert_ok(run(&setup, NULL));
+    assert_ok(run(&setup));
     for (size_t r = 0; r < first.count; r++) {
       double t = first.row[r][0], s = fmax(0, t - touch), c = cos(w * s), n = sin(w * s);
       double y = s > 0 ? -sag + sag * c - speed / w * n : height - 0.5 * g * t * t;
@@ -257,42 +258,35 @@ TEST(samples_between_steps_do_not_reach_across_a_touchdown) {
 }
 
 TEST(a_sink_that_fails_stops_the_run) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(1e-3, 1e4, 1e-3); /* ten million rows if nobody stops it */
   second.fail_rows = STRUT_FILE_TROUBLE;
-  assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
-  assert_string_equal(error.message, "rows fail");
+  assert_fails(run(&setup), STRUT_FILE_TROUBLE, error, "rows fail");
   assert_int_equal(second.calls, 1);
   assert_true(first.ended == 1 && second.ended == 1);
   assert_int_equal(first.ended_with, STRUT_FILE_TROUBLE);
 }
 
 TEST(a_sink_that_cannot_begin) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(1e-3, 1, 0.1);
   second.fail_begin = STRUT_FILE_TROUBLE;
-  assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
-  assert_string_equal(error.message, "begin fails");
+  assert_fails(run(&setup), STRUT_FILE_TROUBLE, error, "begin fails");
   assert_true(first.begun == 1 && first.ended == 1 && first.ended_with == STRUT_FILE_TROUBLE);
   assert_true(second.ended == 0 && first.count == 0);
 }
 
 TEST(a_sink_that_cannot_end) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(1e-3, 1, 0.1);
   first.fail_end = STRUT_FILE_TROUBLE;
-  assert_int_equal(run(&setup, &error), STRUT_FILE_TROUBLE);
-  assert_string_equal(error.message, "end fails");
+  assert_fails(run(&setup), STRUT_FILE_TROUBLE, error, "end fails");
   assert_true(first.ended == 1 && second.ended == 1 && second.count == 11);
 }
 
 /* What was recorded before a divergence is handed over, and marked. */
 TEST(rows_of_a_run_that_diverges_are_kept) {
-  strut_error error;
   OWN(strut_setup) setup = gliding(0.01, 1000, 0.01);
   setup.scene.members[0].kind = STRUT_BAR, setup.scene.members[0].rest_value = 1;
   setup.scene.members[0].stiffness = 2e5; /* w dt = 4.5 */
-  assert_fails(run(&setup, &error), STRUT_DIVERGED, error, "n2");
+  assert_fails(run(&setup), STRUT_DIVERGED, error, "n2");
   assert_int_equal(first.ended_with, STRUT_DIVERGED);
   assert_true(first.count > 2 && first.count < 200);
   assert_near(first.row[1][0], 0.01, 1e-15);
@@ -318,13 +312,13 @@ static strut_setup demanding(void) {
   return setup;
 }
 
-static strut_status compile_and_run(const strut_setup *setup, strut_error *error) {
+static strut_status compile_and_run(const strut_setup *setup) {
   strut_sink sink = {&first, begin, rows, end, 0}, *all[] = {&sink};
   strut_run_options options = {.sinks = all, .sink_count = 1};
   OWN_POINTER(strut_model) model = NULL;
   OWN(strut_summary) summary = {0};
-  strut_status status = strut_model_compile(&setup->scene, &model, error);
-  if (!status) status = strut_simulate(model, &setup->experiment, &options, &summary, error);
+  strut_status status = strut_model_compile(&setup->scene, &model, &error);
+  if (!status) status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
   if (!status) assert_int_equal(summary.spent.steps, 100);
   return status;
 }
@@ -332,9 +326,9 @@ static strut_status compile_and_run(const strut_setup *setup, strut_error *error
 TEST(every_allocation_may_fail) {
   OWN(strut_setup) setup = demanding();
   REFUSE_EACH(n, status, 31) {
-    strut_error error = {0};
+    error = (strut_error){0};
     clean();
-    status = refused(n, compile_and_run(&setup, &error));
+    status = refused(n, compile_and_run(&setup));
     assert_int_equal(first.begun, first.ended);
     if (status) assert_true(error.message[0]);
   }
@@ -356,7 +350,7 @@ TEST(contact_forces_of_methods_with_events) {
     setup.experiment.integrator = methods[i];
     setup.experiment.output_every = 0.01;
     setup.experiment.channels = STRUT_CHANNEL_CONTACT;
-    assert_ok(run(&setup, NULL));
+    assert_ok(run(&setup));
     assert_true(first.count == 11 && first.width == 3);
     for (size_t r = 0; r < first.count; r++)
       assert_all_near(1e-9, first.row[r][1], mass * g, first.row[r][2], -push);

@@ -9,7 +9,6 @@ enum { METHODS = sizeof methods / sizeof *methods };
 
 /* A rope of 1 m between supports, straight or over a guide, is wound in to 0.5 m. */
 static const char reel[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 0], fixed: both}, g: {position: [0.6, 0], fixed: both},\n"
     "        b: {position: [1, 0], fixed: both}, c: {position: [0, 1], mass: 1}}\n"
     "members:\n"
@@ -24,8 +23,7 @@ static model_run read_reel(const char *kind, const char *nodes, const char *more
                            const char *amplitude) {
   char text[1200];
   assert_true(snprintf(text, sizeof text, reel, kind, nodes, more, amplitude) < (int)sizeof text);
-  model_run run = model_read_text("reel", text, set_none);
-  return run;
+  return model_read_text("reel", text, set_none);
 }
 
 static double last_force(const model_run *run) {
@@ -39,8 +37,7 @@ static void check_reel(const char *kind, const char *nodes, const char *more, do
   for (int i = 0; i < METHODS; i++) {
     if (remembers && !strcmp(methods[i], "midpoint")) continue; /* which refuses that */
     OWN(model_run) run = read_reel(kind, nodes, more, "-0.5");
-    run.setup.experiment.integrator = methods[i];
-    model_simulate(&run);
+    model_simulate_by(&run, methods[i]);
     assert_all_relative(1e-12, last_force(&run), force, run.summary.energy.elastic, work);
     /* others than these pass over the end of the ramp, or are of lower order */
     bool exact = !strcmp(methods[i], "rk4-events") || !strcmp(methods[i], "adaptive");
@@ -71,23 +68,19 @@ TEST(laws_follow_the_length_too) {
 
 /* What is let out pulls less than k (l - L0) would, and a slack rope nothing. */
 TEST(letting_out) {
-  model_run run = read_reel("cable", "[a, b]", ", rest_length: 0.5", "0.3");
-  model_simulate(&run);
-  assert_relative(last_force(&run), 100 * 0.2 / 0.8, 1e-12);
-  assert_relative(run.summary.energy.drive_work, 50 * 0.04 / 0.8 - 50 * 0.25 / 0.5, 1e-8);
-  model_run_free(&run);
-  run = read_reel("cable", "[a, b]", ", rest_length: 0.5", "0.6");
-  model_simulate(&run);
-  assert_near(last_force(&run), 0, 0);
-  assert_relative(run.summary.energy.drive_work, -25, 1e-8);
-  model_run_free(&run);
+  OWN(model_run) taut = read_reel("cable", "[a, b]", ", rest_length: 0.5", "0.3");
+  OWN(model_run) slack = read_reel("cable", "[a, b]", ", rest_length: 0.5", "0.6");
+  model_simulate(&taut), model_simulate(&slack);
+  assert_relative(last_force(&taut), 100 * 0.2 / 0.8, 1e-12);
+  assert_relative(taut.summary.energy.drive_work, 50 * 0.04 / 0.8 - 50 * 0.25 / 0.5, 1e-8);
+  assert_near(last_force(&slack), 0, 0);
+  assert_relative(slack.summary.energy.drive_work, -25, 1e-8);
 }
 
 /* A mass that swings on a rope that a sine winds in and out, with a damper: energy is accounted for. */
 TEST(energy_in_motion) {
   static const double open[METHODS] = {1e-5, 2e-2, 1e-3, 1e-9, 1e-5, 1e-4, 1e-3, 2e-2};
   static const char swing[] =
-      "strut: 1\n"
       "nodes: {a: {position: [0, 0], fixed: both}, g: {position: [0.3, 0.1], fixed: both},\n"
       "        c: {position: [1, 0], mass: 1}}\n"
       "gravity: [0, -9.81]\n"
@@ -104,8 +97,7 @@ TEST(energy_in_motion) {
   double x = NAN;
   for (int i = 0; i < METHODS; i++) {
     OWN(model_run) run = model_read_text("swing", swing, set_none);
-    run.setup.experiment.integrator = methods[i];
-    model_simulate(&run);
+    model_simulate_by(&run, methods[i]);
     const strut_energy *e = &run.summary.energy;
     assert_within(e->moved, 1, 1e4);
     assert_near(e->residual / e->moved, 0, open[i]);
@@ -117,7 +109,6 @@ TEST(energy_in_motion) {
 /* EA over the length that is left: the step limit falls as it does. */
 TEST(a_step_that_becomes_too_large_is_noticed) {
   static const char text[] =
-      "strut: 1\n"
       "nodes: {a: {position: [0, 0], fixed: both}, c: {position: [1, 0], mass: 1, fixed: y}}\n"
       "members: {rope: {kind: spring, nodes: [a, c], axial_stiffness: 100 N, damping: 0.1}}\n"
       "actuators: {reel: {member: rope, signal: {ramp: {amplitude: %s, stop: 10 s}}}}\n"
@@ -149,7 +140,6 @@ TEST(others_pay_nothing) {
   for (int i = 0; i < 3; i++) {
     char text[600];
     snprintf(text, sizeof text,
-             "strut: 1\n"
              "nodes: {a: {position: [0, 0], fixed: both}, c: {position: [1, 0], mass: 1}}\n"
              "members:\n"
              "  rope: {kind: cable, nodes: [a, c], %s}\n"
@@ -157,11 +147,8 @@ TEST(others_pay_nothing) {
              "actuators: {reel: {member: %s, signal: {ramp: {amplitude: -0.1, stop: 1 s}}}}\n"
              "solver: {step: 1 ms}\nrun: {duration: 1 s}\n",
              members[i == 1], driven[i]);
-    model_run run = model_read_text("plain", text, set_none);
-    strut_model *model = motion_compile(&run.setup.scene);
-    assert_int_equal(model->elements.count, i == 2);
-    strut_model_free(model);
-    run.model = NULL;
-    strut_setup_free(&run.setup);
+    OWN(model_run) run = model_read_text("plain", text, set_none);
+    run.model = motion_compile(&run.setup.scene);
+    assert_int_equal(run.model->elements.count, i == 2);
   }
 }

@@ -6,9 +6,8 @@
 static const double G = 9.81, L = 0.7;
 
 static strut_setup begin(void) {
-  strut_setup setup = build_setup();
+  strut_setup setup = build_falling();
   setup.scene.bar_model = STRUT_BARS_RIGID;
-  setup.scene.gravity[1] = -G;
   return setup;
 }
 

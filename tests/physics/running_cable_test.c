@@ -8,12 +8,9 @@ static const double G = 9.81;
 
 /* Two weights over a guide; the string's stretch is at rest, or starts with half of that. */
 static const char atwood[] =
-    "strut: 1\n"
     "parameters: {k: 1e6, m1: 3, m2: 2, stretch: 0}\n"
-    "nodes:\n"
-    "  left: {position: [0, -1], mass: m1}\n"
-    "  guide: {position: [0, 0], fixed: both}\n"
-    "  right: {position: [0, -2], mass: m2}\n"
+    "nodes: {left: {position: [0, -1], mass: m1}, guide: {position: [0, 0], fixed: both},\n"
+    "        right: {position: [0, -2], mass: m2}}\n"
     "members:\n"
     "  string: {kind: cable, nodes: [left, guide, right], stiffness: k, rest_length: 3 - stretch}\n"
     "gravity: [0, -9.81]\n"
@@ -31,8 +28,7 @@ TEST(two_weights_over_a_guide) {
       OWN(model_run) run = model_read_text(
           "atwood", atwood,
           set_to("k=1e4", start ? "stretch=9.81*2*6/5/1e4" : "stretch=9.81*6/5/1e4"));
-      run.setup.experiment.integrator = methods[i];
-      model_simulate(&run);
+      model_simulate_by(&run, methods[i]);
       double stretch = rest - (start ? 0 : rest / 2 * cos(w * t)),
              natural = 3 - (start ? rest : rest / 2);
       double free = m1 * 1 - m2 * 2 + (m1 - m2) * G * t * t / 2, sum = natural + stretch;
@@ -72,13 +68,9 @@ TEST(stiffer_strings_fall_as_atwoods) {
 
 /* A weight swings on a string over two guides, tied to a second one; all stays taut. */
 static const char swing[] =
-    "strut: 1\n"
-    "nodes:\n"
-    "  a: {position: [-1, -1], mass: 2}\n"
-    "  p: {position: [-0.5, 0], fixed: both}\n"
-    "  ring: {position: [0.1, -0.6], mass: 3}\n"
-    "  q: {position: [0.7, 0], fixed: both}\n"
-    "  b: {position: [1, -1.2], mass: 2}\n"
+    "nodes: {a: {position: [-1, -1], mass: 2}, p: {position: [-0.5, 0], fixed: both},\n"
+    "        ring: {position: [0.1, -0.6], mass: 3}, q: {position: [0.7, 0], fixed: both},\n"
+    "        b: {position: [1, -1.2], mass: 2}}\n"
     "members:\n"
     "  string: {kind: cable, nodes: [a, p, ring, q, b], stiffness: 2000, pretension: 20, mass: "
     "0.3}\n"
@@ -118,11 +110,8 @@ TEST(energy_is_kept_at_the_methods_order) {
 
 /* A ring on a string between level ends swings to rest at the bottom of an ellipse. */
 static const char ring[] =
-    "strut: 1\n"
-    "nodes:\n"
-    "  a: {position: [0, 0], fixed: both}\n"
-    "  ring: {position: [0.3, -0.4], mass: 1}\n"
-    "  b: {position: [1, 0], fixed: both}\n"
+    "nodes: {a: {position: [0, 0], fixed: both}, ring: {position: [0.3, -0.4], mass: 1},\n"
+    "        b: {position: [1, 0], fixed: both}}\n"
     "members:\n"
     "  string: {kind: cable, nodes: [a, ring, b], stiffness: 1e4, damping: 50, rest_length: 1.4}\n"
     "  drag: {kind: spring, nodes: [a, ring], damping: 5}\n"

@@ -104,41 +104,41 @@ static strut_setup stiff(double step, double duration) {
   return setup;
 }
 
-static strut_status simulate(const strut_setup *setup, const strut_run_options *options,
-                             strut_summary *summary, strut_error *error) {
+static strut_error error; /* of the latest simulate() */
+
+static strut_status simulate(const strut_setup *setup, strut_run_options options,
+                             strut_summary *summary) {
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  *error = (strut_error){0};
-  strut_status status = strut_simulate(model, &setup->experiment, options, summary, error);
+  error = (strut_error){0};
+  strut_status status = strut_simulate(model, &setup->experiment, &options, summary, &error);
   assert_int_equal(summary->status, status);
-  assert_string_equal(summary->reason, status ? error->message : "");
+  assert_string_equal(summary->reason, status ? error.message : "");
   return status;
 }
 
+static const strut_run_options plainly = {0};
+
 TEST(a_step_above_the_limit_is_refused) {
   strut_summary s;
-  strut_error error;
-  strut_run_options options = {0};
   OWN(strut_setup) setup = stiff(0.142, 1);
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_STEP_TOO_LARGE, error, "0.142 s",
-               "0.1414 s");
+  assert_fails(simulate(&setup, plainly, &s), STRUT_STEP_TOO_LARGE, error, "0.142 s", "0.1414 s");
   assert_relative(s.step_limit, sqrt(8) / 20, 1e-6);
   assert_int_equal(s.spent.steps, 0);
   strut_summary_free(&s);
   setup.experiment.step = 0.141;
-  assert_ok(simulate(&setup, &options, &s, &error));
+  assert_ok(simulate(&setup, plainly, &s));
   strut_summary_free(&s);
 }
 
 TEST(force_runs_above_the_limit_until_it_diverges) {
   strut_summary s;
-  strut_error error;
   strut_run_options options = {.force = true};
   OWN(strut_setup) setup = stiff(0.142, 0.142 * 20);
-  assert_ok(simulate(&setup, &options, &s, &error)); /* a short run survives */
+  assert_ok(simulate(&setup, options, &s)); /* a short run survives */
   assert_int_equal(s.spent.steps, 20);
   strut_summary_free(&s);
   setup.experiment.step = 0.2, setup.experiment.duration = 1000;
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_DIVERGED, error, "node 'n2'",
+  assert_fails(simulate(&setup, options, &s), STRUT_DIVERGED, error, "node 'n2'",
                "t = ", "dt = 0.2 s", "0.1414 s", "smaller step");
   assert_true(s.spent.steps > 0 && s.spent.steps < 5000);
   assert_near(s.duration, 0.2 * (double)s.spent.steps, 1e-9);
@@ -150,12 +150,10 @@ TEST(force_runs_above_the_limit_until_it_diverges) {
 /* A mass that is blown away without any instability: beyond 1e10 sizes it is lost. */
 TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
   OWN(strut_summary) s;
-  strut_error error;
-  strut_run_options options = {0};
   OWN(strut_setup) setup = stiff(0.01, 100);
   build_mass(&setup.scene, 0, 1, 1);
   setup.scene.nodes[2].velocity[1] = 1e9;
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_DIVERGED, error, "node 'n3'");
+  assert_fails(simulate(&setup, plainly, &s), STRUT_DIVERGED, error, "node 'n3'");
   assert_null(strstr(error.message, "use a smaller step"));
   assert_within(s.duration, 10, 10 + 64 * 0.01 + 1e-9);
   assert_true(isfinite(s.end.positions[2]));
@@ -172,14 +170,13 @@ static void stop_at_once(void *context, double fraction) {
 }
 
 TEST(an_interrupt_stops_within_a_second) {
-  strut_error error;
   OWN(strut_summary) s;
   strut_run_options options = {
       .interrupt = &stop, .progress = stop_at_once, .progress_context = &reported};
   stop = 0;
   reported = 0;
   OWN(strut_setup) setup = stiff(1e-3, 1e9);
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
+  assert_int_equal(simulate(&setup, options, &s), STRUT_INTERRUPTED);
   assert_int_equal(reported, 1);
   assert_within(s.spent.wall_time, 0, 1);
   assert_true(s.spent.steps > 0);
@@ -220,30 +217,22 @@ TEST(settling_finds_the_static_equilibrium) {
 
 TEST(settling_gives_up_at_its_limit) {
   OWN(strut_summary) s;
-  strut_error error;
-  strut_run_options options = {0};
   OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 0.05;
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_NOT_SETTLED, error, "0.05 s");
+  assert_fails(simulate(&setup, plainly, &s), STRUT_NOT_SETTLED, error, "0.05 s");
 }
 
 /* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
 TEST(settling_on_a_slope_needs_friction) {
   for (int kept = 0; kept < 2; kept++) {
-    OWN(strut_setup) setup = build_setup();
+    OWN(strut_setup) setup = build_falling();
     build_rough_contact(&setup.scene, build_mass(&setup.scene, 0, 0, 1), 1e4, 10, 0.5, 0.5, 1e-3);
-    setup.scene.gravity[1] = -9.81;
     setup.scene.ground.slope = 0.2;
     setup.experiment.step = 1e-4, setup.experiment.duration = 0.01;
     setup.experiment.settle = (strut_settle){
         .wanted = true, .friction = kept, .speed = 1e-8, .acceleration = 1e-6, .limit = 3};
     OWN(strut_summary) s;
-    strut_error error = {0};
-    strut_run_options options = {0};
-    OWN_POINTER(strut_model) model = NULL;
-    assert_ok(strut_model_compile(&setup.scene, &model, &error));
-    strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
-    assert_int_equal(status, kept ? STRUT_OK : STRUT_NOT_SETTLED);
+    assert_int_equal(simulate(&setup, plainly, &s), kept ? STRUT_OK : STRUT_NOT_SETTLED);
     if (kept) /* the weight's share across the slope, over the ground's stiffness */
       assert_near(s.end.positions[0] * sin(0.2) - s.end.positions[1] * cos(0.2),
                   9.81 * cos(0.2) / 1e4, 1e-9);
@@ -253,32 +242,29 @@ TEST(settling_on_a_slope_needs_friction) {
 }
 
 TEST(settling_can_be_interrupted) {
-  strut_error error;
   strut_summary s;
   strut_run_options options = {.interrupt = &stop};
   OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 1e9,
   setup.experiment.settle.speed = setup.experiment.settle.acceleration = 1e-30;
   stop = 1;
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
+  assert_int_equal(simulate(&setup, options, &s), STRUT_INTERRUPTED);
   strut_summary_free(&s);
   setup.scene.contact_count = 0, setup.scene.ground.present = false;
   setup.scene.members[0].kind = STRUT_CABLE;
   setup.scene.members[0].rest_value = 1e30; /* a free fall, in which nothing ever slows down */
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_INTERRUPTED);
+  assert_int_equal(simulate(&setup, options, &s), STRUT_INTERRUPTED);
   strut_summary_free(&s);
 }
 
 TEST(a_scene_without_mass_or_method_does_not_run) {
   strut_summary s;
-  strut_error error;
-  strut_run_options options = {0};
   OWN(strut_setup) setup = stiff(1e-3, 1);
   setup.experiment.integrator = "leapfrog";
-  assert_fails(simulate(&setup, &options, &s, &error), STRUT_USAGE, error, "leapfrog");
+  assert_fails(simulate(&setup, plainly, &s), STRUT_USAGE, error, "leapfrog");
   strut_summary_free(&s);
   setup.experiment.integrator = "rk4";
   setup.scene.nodes[1].mass = 0;
-  assert_int_equal(simulate(&setup, &options, &s, &error), STRUT_SINGULAR);
+  assert_int_equal(simulate(&setup, plainly, &s), STRUT_SINGULAR);
   strut_summary_free(&s);
 }

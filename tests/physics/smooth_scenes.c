@@ -52,5 +52,4 @@ const smooth_scene smooth_scenes[SMOOTH_SCENES] = {
     {"driven X-frame, lumped", lumped_frame, 1e-3, 0.8},
     {"rod pendulum", pendulum, 8e-4, 0.8},
     {"double rod", double_pendulum, 5e-4, 1.6},
-    {"chain of X-frames", held_chain, 1e-4, 0.02},
-};
+    {"chain of X-frames", held_chain, 1e-4, 0.02}};

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rest by friction alone: blocks and frames on slopes settle onto the set of equilibria that sticking makes, or are told
 at once that nothing holds them; the shapes on a slope have names and the coefficient that they need, and paths begin
-there. Against closed forms: the angle of friction, and the moments about the feet.
-
-usage: sticking_rest_test.py STRUT
-"""
+there. Against closed forms: the angle of friction, and the moments about the feet."""
 import json
 import math
 import time
@@ -133,9 +130,7 @@ with open("models/crawler/crawler.yaml", encoding="utf-8") as model:
 write("study.yaml", """strut: 1
 study: Starts of figure 8 on a slope
 model: slope.yaml
-variants:
-  settled: {initial: {configuration: start, settle: {friction: kept}}}
-  named: {}
+variants: {settled: {initial: {configuration: start, settle: {friction: kept}}}, named: {}}
 axes: [{friction: [0.1, 0.2, 0.5]}, {start: [I, II]}]
 run: {periods: 2, of: drive, measure: {last: 1}}
 output: {last: 1}

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """docs/gallery.md: every model is there, and every picture is the one that strut draws today. The models
-of its tables have a command but no picture: it is drawn here, and thrown away. Studies are no models.
-
-usage: gallery_test.py STRUT
-"""
+of its tables have a command but no picture: it is drawn here, and thrown away. Studies are no models."""
 import glob
 import os
 import re

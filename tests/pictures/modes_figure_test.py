@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut modes --plot: what is drawn is where `strut modes --json` says that the nodes go.
-
-usage: modes_figure_test.py STRUT
-"""
+"""strut modes --plot: what is drawn is where `strut modes --json` says that the nodes go."""
 import json
 import math
 import os

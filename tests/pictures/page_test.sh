@@ -56,9 +56,8 @@ nodes:
   a: {position: [0, 0], fixed: both}
   b: {position: [1, 0.2], mass: 1}
   c: {position: [0, 1], fixed: both} # <img src=x onerror=alert(4)>
-members:
-  one: {kind: cable, nodes: [a, b], stiffness: 100, pretension: 10}
-  two: {kind: spring, nodes: [b, c], stiffness: 100}
+members: {one: {kind: cable, nodes: [a, b], stiffness: 100, pretension: 10},
+          two: {kind: spring, nodes: [b, c], stiffness: 100}}
 solver: {integrator: rk4, step: 1 ms}
 run: {duration: 1}
 output: {every: 10 ms, channels: [position, force]}

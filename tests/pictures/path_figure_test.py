@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut path --plot: the curve is that of path.csv, the shapes are those of path.json.
-
-usage: path_figure_test.py STRUT
-"""
+"""strut path --plot: the curve is that of path.csv, the shapes are those of path.json."""
 import csv
 import json
 import math

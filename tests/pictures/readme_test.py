@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The pictures of README, of the comparison of designs and of the tutorial are what strut draws today, and the
-table of figure 8 is what strut computes today.
-
-usage: readme_test.py STRUT
-"""
+table of figure 8 is what strut computes today."""
 import csv
 import os
 import re

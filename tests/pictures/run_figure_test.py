@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut run --plot: what is drawn is where nodes.csv of the same run says that the nodes are.
-
-usage: run_figure_test.py STRUT
-"""
+"""strut run --plot: what is drawn is where nodes.csv of the same run says that the nodes are."""
 import csv
 import json
 import math

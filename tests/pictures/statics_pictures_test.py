@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of strut equilibria, rigidity and form against what the same commands print as JSON.
-
-usage: statics_pictures_test.py STRUT
-"""
+"""Pictures of strut equilibria, rigidity and form against what the same commands print as JSON."""
 import json
 import math
 import os

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `strut view` writes: its data, taken apart again, are those of the run; no name breaks out.
-
-usage: view_test.py STRUT
-"""
+"""What `strut view` writes: its data, taken apart again, are those of the run; no name breaks out."""
 import base64
 import csv
 import html.parser

@@ -17,10 +17,9 @@ from strut import _strut
 
 SCENE = """strut: 1
 nodes: {a: {position: [-0.5, 0], mass: 0.1}, b: {position: [0.5, 0], mass: 0.2}, c: {position: [0, 0.6], mass: 0.3}}
-members:
-  ab: {kind: spring, nodes: [a, b], stiffness: 2000, mass: 0.5}
-  bc: {kind: spring, nodes: [b, c], stiffness: 1000, mass: 0.2}
-  ca: {kind: cable, nodes: [c, a], stiffness: 1500, mass: 0.1}
+members: {ab: {kind: spring, nodes: [a, b], stiffness: 2000, mass: 0.5},
+          bc: {kind: spring, nodes: [b, c], stiffness: 1000, mass: 0.2},
+          ca: {kind: cable, nodes: [c, a], stiffness: 1500, mass: 0.1}}
 initial: {velocities: {a: [0.1, -1], b: [0, 2], c: [-1, 0.3]}}
 solver: {step: 0.1 ms}
 run: {duration: 0.5 s}

@@ -30,8 +30,7 @@ strut: 1
 parameters: {width: 50 cm, count: 3}
 parts:
   cell: {nodes: {a: {position: [0, 0], mass: 1 g}, b: {position: [width, 2 * 10 cm], mass: 20 g}}, members: {m: {kind: bar, nodes: [a, b], stiffness: 4 N/cm}}}
-place:
-  cell: {part: cell, repeat: {count: count, step: [width, 0]}}
+place: {cell: {part: cell, repeat: {count: count, step: [width, 0]}}}
 solver: {step: 0.1 ms}
 run: {duration: 1 ms}
 """

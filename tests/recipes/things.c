@@ -61,7 +61,7 @@ static void add(void *context, double number) {
 
 /* A scene that was made without a file: its number is checked, and counts for what is at rest. */
 static void change_the_scene(strut_setup *setup) {
-  strut_findings findings = {0};
+  OWN(strut_findings) findings = {0};
   numbers before = {0}, after = {0};
   strut_setup_at_rest(setup, add, &before);
   setup->scene.hinges[0].set += 0.01;
@@ -72,7 +72,6 @@ static void change_the_scene(strut_setup *setup) {
              strcmp(findings.items[0].key, "set") == 0 &&
              strstr(findings.items[0].message, "must not be negative"),
          "its range is not checked");
-  strut_findings_free(&findings);
 }
 
 int test_a_number_of_hinges(void) {
@@ -109,10 +108,9 @@ static const char MARKS[] =
     "strut: 1\n"
     "parameters: {wide: 3 mm}\n"
     "parts:\n"
-    "  arm:\n"
-    "    nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}\n"
-    "    members: {p: {kind: bar, nodes: [a, b], stiffness: 9}}\n"
-    "    marks: {tip: {node: b, radius: 2 mm}}\n"
+    "  arm: {nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}},\n"
+    "        members: {p: {kind: bar, nodes: [a, b], stiffness: 9}},\n"
+    "        marks: {tip: {node: b, radius: 2 mm}}}\n"
     "place: {v: {part: arm, repeat: {count: 2, step: [0, 1]}}}\n"
     "marks: {own: {node: v.0.a, radius: wide}}\n";
 

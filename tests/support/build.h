@@ -11,6 +11,8 @@
 
 strut_scene build_scene(void);
 strut_setup build_setup(void);
+/** The same under gravity, 9.81 m/s^2 downwards. */
+strut_setup build_falling(void);
 /** The same with node 0 fixed at the origin and node 1, a mass [kg], at (x, y) [m]. */
 strut_setup build_tethered(double x, double y, double mass);
 /** A free node, drawn and starting at x, y [m], without mass and at rest. */

@@ -4,8 +4,6 @@
  */
 #pragma once
 
-#include <stdbool.h>
-
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "tests/support/test.h"
@@ -32,15 +30,6 @@ static inline void own_release(void *pointer) { strut_release(*(void **)pointer)
   check_pairs(check_near, PAIRS(double, __VA_ARGS__), (tolerance), __FILE__, __LINE__)
 #define assert_all_relative(tolerance, ...)                                                        \
   check_pairs(check_relative, PAIRS(double, __VA_ARGS__), (tolerance), __FILE__, __LINE__)
-/** Of whole numbers, all of which a long double holds exactly. */
-#define assert_all_equal(...) check_equal_pairs(PAIRS(long double, __VA_ARGS__), __FILE__, __LINE__)
-/** Of texts. */
-#define assert_all_texts(...) check_text_pairs(PAIRS(char const *, __VA_ARGS__), __FILE__, __LINE__)
-/** Each of these is true. */
-#define assert_all(...) check_all(PAIRS(bool, __VA_ARGS__), __FILE__, __LINE__)
-#define PAIRS(type, ...)                                                                           \
-  (type const[]){__VA_ARGS__}, sizeof((type const[]){__VA_ARGS__}) / sizeof(type), #__VA_ARGS__
-
 /** The call returns that status, and the strut_error that it fills has these words. */
 #define assert_fails(call, expected, error, ...)                                                   \
   (assert_int_equal((call), (expected)),                                                           \
@@ -58,12 +47,6 @@ typedef void check_of_numbers(double actual, double expected, double tolerance, 
                               const char *file, int line);
 void check_pairs(check_of_numbers *check, const double *pairs, size_t count, const char *what,
                  double tolerance, const char *file, int line);
-void check_equal_pairs(const long double *pairs, size_t count, const char *what, const char *file,
-                       int line);
-
-void check_text_pairs(const char *const *pairs, size_t count, const char *what, const char *file,
-                      int line);
-void check_all(const bool *conditions, size_t count, const char *what, const char *file, int line);
 
 void check_words(const char *text, const char *const *words, const char *file, int line);
 

@@ -69,12 +69,10 @@ int main(int count, char **arguments) {
   word_count = count;
   qsort(tests, test_count, sizeof tests[0], by_line);
   for (size_t i = 0; i < test_count; i++)
-    list[i] = (struct CMUnitTest){
-        .name = tests[i].name,
-        .test_func = run_registered,
-        .setup_func = before_each,
-        .initial_state = &tests[i],
-    };
+    list[i] = (struct CMUnitTest){.name = tests[i].name,
+                                  .test_func = run_registered,
+                                  .setup_func = before_each,
+                                  .initial_state = &tests[i]};
   int failed = _cmocka_run_group_tests("tests", list, test_count, before_all, after_all);
   return failed || !finished || test_count == 0;
 }

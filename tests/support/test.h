@@ -13,6 +13,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -45,6 +46,21 @@ void register_test(test_moment moment, const char *name, void (*function)(void),
 
 /** The call returns STRUT_OK. */
 #define assert_ok(call) assert_int_equal((call), STRUT_OK)
+
+/** Pairs of whole numbers, all of which a long double holds exactly: actual, expected, actual, expected, ... */
+#define assert_all_equal(...) check_equal_pairs(PAIRS(long double, __VA_ARGS__), __FILE__, __LINE__)
+/** Pairs of texts. */
+#define assert_all_texts(...) check_text_pairs(PAIRS(char const *, __VA_ARGS__), __FILE__, __LINE__)
+/** Each of these is true. */
+#define assert_all(...) check_all(PAIRS(bool, __VA_ARGS__), __FILE__, __LINE__)
+#define PAIRS(type, ...)                                                                           \
+  (type const[]){__VA_ARGS__}, sizeof((type const[]){__VA_ARGS__}) / sizeof(type), #__VA_ARGS__
+
+void check_equal_pairs(const long double *pairs, size_t count, const char *what, const char *file,
+                       int line);
+void check_text_pairs(const char *const *pairs, size_t count, const char *what, const char *file,
+                      int line);
+void check_all(const bool *conditions, size_t count, const char *what, const char *file, int line);
 
 /** The n-th word of the command line, from 1; NULL where there are fewer. */
 const char *test_word(int n);

@@ -87,8 +87,7 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
   const strut_finding *f = &findings.items[0];
   assert_int_equal(status, STRUT_BAD_SCENE);
   if (!strstr(f->message, word)) fail_msg("'%s' lacks '%s'", f->message, word);
-  assert_int_equal(f->subject, subject);
-  assert_int_equal(f->index, index);
+  assert_all_equal(f->subject, subject, f->index, index);
   if (key && (!f->key || strcmp(f->key, key) != 0)) fail_msg("key %s, not %s", f->key, key);
   if (!key) assert_null(f->key);
   fill(s);

@@ -50,17 +50,9 @@ static double ramp(const double *x, size_t n) {
   return sum;
 }
 
-static double flat(const double *x, size_t n) {
-  (void)x;
-  (void)n;
-  return 7.0;
-}
+static double flat(const double *x, size_t n) { return (void)x, (void)n, 7.0; }
 
-static double nowhere(const double *x, size_t n) {
-  (void)x;
-  (void)n;
-  return (double)NAN;
-}
+static double nowhere(const double *x, size_t n) { return (void)x, (void)n, (double)NAN; }
 
 /* Half of the box fails. */
 static double half(const double *x, size_t n) { return x[0] < 0.0 ? (double)NAN : sphere(x, n); }
@@ -105,17 +97,19 @@ typedef struct settings {
   double target;
 } settings;
 
+static strut_search_task task_of(size_t n, const double *start, strut_search_method method,
+                                 uint32_t seed) {
+  static const bool wraps[MOST];
+  return (strut_search_task){
+      .method = method, .dimension = n, .start = start, .wraps = wraps, .seed = seed};
+}
+
 /* A search of [-5, 5]^n; n of 0, a population of 0 and a spread of 0: the usual ones. */
 static asked search(settings with, function *f) {
   double start[MOST];
-  static const bool wraps[MOST];
   asked a = {f, with.n, -5.0, 10.0, with.target, with.most, 0, (double)NAN, {0}, false};
   for (size_t i = 0; i < with.n; i++) start[i] = with.start;
-  const strut_search_task task = {.method = STRUT_SEARCH_CMA,
-                                  .dimension = with.n,
-                                  .start = start,
-                                  .wraps = wraps,
-                                  .seed = with.seed};
+  const strut_search_task task = task_of(with.n, start, STRUT_SEARCH_CMA, with.seed);
   const strut_search_asker asker = {&a, answer};
   size_t usual = 4 + (size_t)floor(3.0 * log((double)with.n));
   assert_true(strut_search_optimise_by_cma(&task, &asker, with.population ? with.population : usual,
@@ -161,17 +155,12 @@ TEST(others_do_not_find_a_narrow_valley) {
   static const strut_search_method methods[] = {STRUT_SEARCH_CMA,    STRUT_SEARCH_CRS2,
                                                 STRUT_SEARCH_DIRECT, STRUT_SEARCH_ISRES,
                                                 STRUT_SEARCH_SBPLX,  STRUT_SEARCH_MULTISTART};
-  static const bool wraps[MOST];
   double start[MOST];
   for (size_t i = 0; i < MOST; i++) start[i] = 0.3;
   for (size_t k = 0; k < sizeof methods / sizeof methods[0]; k++) {
     asked a = {ellipsoid, MOST, -4.0, 9.3, 1e-6, 6000, 0, (double)NAN, {0}, false};
-    const strut_search_task task = {.method = methods[k],
-                                    .dimension = MOST,
-                                    .start = start,
-                                    .wraps = wraps,
-                                    .evaluations = a.most,
-                                    .seed = 1};
+    strut_search_task task = task_of(MOST, start, methods[k], 1);
+    task.evaluations = a.most;
     const strut_search_asker asker = {&a, answer};
     assert_true(strut_search_optimise(&task, &asker));
     printf("method %d: %g after %lld evaluations\n", (int)methods[k], a.best,
@@ -198,8 +187,7 @@ TEST(nothing_to_find_ends) {
 }
 
 TEST(one_number_is_searched) {
-  asked a = search((settings){1, 0, 0.5, 0, 1, 600, 1e-12}, sphere);
-  assert_true(a.reached);
+  assert_true(search((settings){1, 0, 0.5, 0, 1, 600, 1e-12}, sphere).reached);
 }
 
 TEST(seeds_decide_the_bits) {
@@ -220,11 +208,9 @@ static bool count_generation(void *context, size_t count, const double *points, 
 TEST(populations_fill_processors) {
   static const size_t numbers[] = {1, 5, 10}, wanted[] = {8, 8, 16};
   double start[MOST] = {0};
-  static const bool wraps[MOST];
   for (size_t k = 0; k < 3; k++) {
     size_t count = 0;
-    const strut_search_task task = {
-        .method = STRUT_SEARCH_CMA, .dimension = numbers[k], .start = start, .wraps = wraps};
+    const strut_search_task task = task_of(numbers[k], start, STRUT_SEARCH_CMA, 0);
     assert_true(strut_search_optimise(&task, &(strut_search_asker){&count, count_generation}));
     assert_int_equal(count, wanted[k]);
   }

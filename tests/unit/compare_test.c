@@ -123,10 +123,9 @@ TEST(what_is_reported) {
   const strut_compare_input input = {.label = "one", .setup = &setup};
   const strut_compare_options options = {.accuracy = 0.01};
   assert_ok(strut_compare_make(&input, 1, &options, &result, NULL));
-  char *csv = strut_values_csv(&strut_compare_values, "models", NULL, &result, NULL);
+  RELEASED char *csv = strut_values_csv(&strut_compare_values, "models", NULL, &result, NULL);
   assert_non_null(csv);
   assert_non_null(strstr(csv, "\none,\"hopper, of \"\"one\"\" leg\",2,1,0,1,0,2,1,2,4,"));
-  strut_release(csv);
   for (int i = 0; i < STRUT_COMPARE_QUANTITIES; i++) {
     const strut_compare_cell *cell = &result.columns[0].cell[i];
     assert_int_equal(isfinite(cell->value), !cell->reason);

@@ -26,13 +26,17 @@ typedef struct member_row {
   double stiffness, rest;
 } member_row;
 
+static void compile(fixture *f, const uint8_t *held, bool ground) {
+  assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
+  assert_ok(strut_potential_create(f->model, held, ground, &f->potential, NULL));
+}
+
 /* Compiles and searches with seed 1; checks what every point must be. */
 static void critical_find(fixture *f, const uint8_t *held, bool ground, bool saddles) {
   strut_critical_effort effort = {.seed = 1, .saddles = saddles};
-  assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
-  assert_ok(strut_potential_create(f->model, held, ground, &f->potential, NULL));
+  compile(f, held, ground);
   assert_ok(strut_critical_search(f->potential, &effort, &f->set, NULL));
-  for (size_t i = 0; i < f->set.count; i++) { /* what every point must be */
+  for (size_t i = 0; i < f->set.count; i++) {
     const strut_critical_point *p = &f->set.points[i];
     assert_true(p->residual <= 16 * strut_potential_rounding(f->potential, p->q));
     assert_true(p->found > 0 || p->label == STRUT_STABLE || p->label == STRUT_FLOPPY);
@@ -84,6 +88,12 @@ static strut_scene critical_build(const node_row *node, int nodes, const member_
   critical_build(node, (int)(sizeof(node) / sizeof(node)[0]), member,                              \
                  (int)(sizeof(member) / sizeof(member)[0]))
 
+static void find_crawler(fixture *f) {
+  static const uint8_t held[64] = {1, 1, [7] = 1};
+  structure_crawler(&f->scene, 10, 1e-4, 0.1, false);
+  critical_find(f, held, false, true);
+}
+
 TEST(the_crawler_on_nodes_1_and_4) {
   /* found again by every one of several seeds */
   static const double saddles[] = {22.672821403,  22.6786953479, 22.6833957641, 22.6844442893,
@@ -91,11 +101,8 @@ TEST(the_crawler_on_nodes_1_and_4) {
                                    22.7184950429, 22.7235766608, 37.4984114922};
   static const double minima[] = {22.2125952092, 22.2460123011, 22.6641332092,
                                   22.6690358567, 22.706131,     22.712029};
-  uint8_t held[64] = {0};
-  held[0] = held[1] = held[7] = 1;
   OWN(fixture) f = {.scene = build_scene()};
-  structure_crawler(&f.scene, 10, 1e-4, 0.1, false);
-  critical_find(&f, held, false, true);
+  find_crawler(&f);
   assert_all_equal(count_of(&f, STRUT_STABLE), 6, count_of(&f, STRUT_FLOPPY), 0);
   for (size_t i = 0; i < 6; i++) assert_near(f.set.points[i].potential, minima[i], 1e-6);
   const strut_critical_point *two = nearest(&f, STRUT_STABLE, 22.712029);
@@ -173,9 +180,7 @@ TEST(a_slack_arc_is_one_point) {
   static const member_row member[] = {{STRUT_BAR, 1, 3, 1000, 2}, {STRUT_CABLE, 2, 3, 1, 1}};
   OWN(fixture) f = {.scene = BUILD(node, member)};
   critical_find(&f, NULL, false, false);
-  assert_int_equal(f.set.count, 1);
-  assert_int_equal(f.set.points[0].label, STRUT_FLOPPY);
-  assert_int_equal(f.set.points[0].zero, 1);
+  assert_all_equal(f.set.count, 1, f.set.points[0].label, STRUT_FLOPPY, f.set.points[0].zero, 1);
 }
 
 /*
@@ -217,8 +222,7 @@ TEST(the_distance_of_shapes) {
     assert_near(strut_shape_distance(f.model, f.model->start, q, true, &mirrored), 0, 1e-14);
     assert_int_equal(mirrored, side < 0);
     double plain = strut_shape_distance(f.model, f.model->start, q, false, &mirrored);
-    assert_false(mirrored);
-    assert_true(side > 0 ? plain < 1e-14 : plain > 0.1);
+    assert_all(!mirrored, side > 0 ? plain < 1e-14 : plain > 0.1);
     q[5] += 0.1;
     assert_within(strut_shape_distance(f.model, f.model->start, q, true, NULL), 0.03, 0.1);
   }
@@ -232,8 +236,7 @@ TEST(what_rounding_alone_closes) {
   build_node(&f.scene, 0, -1e-9);
   build_sized(&f.scene, STRUT_CABLE, 0, 1, 100, 0, 0, 1);
   build_contact(&f.scene, 1, 1000, 0);
-  assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
-  assert_ok(strut_potential_create(f.model, NULL, true, &f.potential, NULL));
+  compile(&f, NULL, true);
   strut_sparse *k = strut_potential_matrix(f.potential, &arena);
   const double least[] = {0, 5e-7, 5e-6}, stiffness[] = {1100, 1000, 0};
   for (int i = 0; i < 3; i++) { /* the cable pulls with 1e-7 N, the ground pushes with 1e-6 N */
@@ -252,18 +255,14 @@ TEST(what_falls_has_no_point) {
 
 TEST(the_threads_change_no_bit) {
   OWN(fixture) one = {.scene = build_scene()}, three = {.scene = build_scene()};
-  uint8_t held[64] = {0};
-  held[0] = held[1] = held[7] = 1;
 #ifdef _OPENMP
   omp_set_num_threads(1);
 #endif
-  structure_crawler(&one.scene, 10, 1e-4, 0.1, false);
-  critical_find(&one, held, false, true);
+  find_crawler(&one);
 #ifdef _OPENMP
   omp_set_num_threads(3);
 #endif
-  structure_crawler(&three.scene, 10, 1e-4, 0.1, false);
-  critical_find(&three, held, false, true);
+  find_crawler(&three);
   assert_all_equal(one.set.count, three.set.count, one.set.starts, three.set.starts);
   assert_int_equal(one.set.saddle_starts, three.set.saddle_starts);
   for (size_t i = 0; i < one.set.count; i++) {
@@ -281,18 +280,15 @@ TEST(refused_memory) {
   static const node_row node[] = {{-1, 0, 3}, {1, 0, 3}, {0, 0.5, 0}};
   static const member_row member[] = {{STRUT_BAR, 1, 3, 1, 1.1}, {STRUT_BAR, 2, 3, 1, 1.1}};
   strut_critical_effort effort = {.seed = 1, .saddles = true, .starts = 4};
-  fixture f = {0};
+  OWN(fixture) f = {.scene = BUILD(node, member)};
 #ifdef _OPENMP
   omp_set_num_threads(1); /* else which allocation is refused is up to chance */
 #endif
-  f.scene = BUILD(node, member);
-  assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
-  assert_ok(strut_potential_create(f.model, NULL, false, &f.potential, NULL));
+  compile(&f, NULL, false);
   REFUSE_EACH(n, status, 1) {
     status = refused(n, strut_critical_search(f.potential, &effort, &f.set, NULL));
     if (status) assert_int_equal(f.set.count, 0);
   }
-  fixture_free(&f);
 }
 
 /* By eigenvectors and by factors the same judgement: a chain just below the limit and above. */
@@ -302,8 +298,7 @@ TEST(large_structures_are_judged_alike) {
     strut_critical_effort effort = {.seed = 1};
     OWN(fixture) f = {.scene = build_scene()};
     structure_chain(&f.scene, frames, STRUT_MASS_LUMPED);
-    assert_ok(strut_model_compile(&f.scene, &f.model, NULL));
-    assert_ok(strut_potential_create(f.model, NULL, false, &f.potential, NULL));
+    compile(&f, NULL, false);
     assert_int_equal(f.potential->n <= STRUT_DENSE_STATICS, frames == 28);
     effort.starts = frames == 28;
     assert_ok(strut_critical_search(f.potential, &effort, &f.set, NULL));

@@ -125,8 +125,7 @@ TEST(a_full_disk) {
       assert_int_equal(left, 4);
     } else {
       failures++;
-      assert_int_equal(status, STRUT_FILE_TROUBLE);
-      assert_int_equal(left, 0);
+      assert_all_equal(status, STRUT_FILE_TROUBLE, left, 0);
       assert_non_null(strstr(error.message, "No space left on device"));
     }
   }

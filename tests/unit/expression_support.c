@@ -55,6 +55,19 @@ void expect_quantity(const char *text, double value, strut_dimension dimension) 
              strut_dimension_name(q.dimension, name, sizeof name));
 }
 
+void expect_values(bool bare, strut_dimension dimension, const char *const *equations) {
+  for (; *equations; equations++) {
+    char text[80];
+    const char *equals = strstr(*equations, " = ");
+    assert_non_null(equals);
+    snprintf(text, sizeof text, "%.*s", (int)(equals - *equations), *equations);
+    if (bare)
+      expect_bare(text, strtod(equals + 3, NULL));
+    else
+      expect_quantity(text, strtod(equals + 3, NULL), dimension);
+  }
+}
+
 void expect_error(const char *text, size_t offset, size_t length, const char *message) {
   strut_quantity q = {7, STRUT_DIM_MASS, false, false};
   strut_expression_error error;

@@ -15,5 +15,10 @@ int test_lookup(void *context, const char *name, size_t length, strut_quantity *
 void expect_bare(const char *text, double value);
 /** A value with this dimension, to the last bit. */
 void expect_quantity(const char *text, double value, strut_dimension dimension);
+/** The same of texts "expression = value". */
+#define EXPECT_BARE(...) expect_values(true, STRUT_DIM_NONE, (const char *[]){__VA_ARGS__, NULL})
+#define EXPECT_QUANTITIES(dimension, ...)                                                          \
+  expect_values(false, dimension, (const char *[]){__VA_ARGS__, NULL})
+void expect_values(bool bare, strut_dimension dimension, const char *const *equations);
 /** A refusal at these characters of the text, in these words; the result is left alone. */
 void expect_error(const char *text, size_t offset, size_t length, const char *message);

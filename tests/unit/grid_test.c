@@ -81,11 +81,11 @@ TEST(ends_are_as_written) {
   for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++)
     for (int64_t count = 2; count < 20; count++) {
       double to = ends[k], from = to / 7.0;
-      assert_true(value_of(STRUT_RANGE_EVEN, from, to, count - 1, count) == to);
-      assert_true(value_of(STRUT_RANGE_RATIO, from, to, count - 1, count) == to);
-      assert_true(value_of(STRUT_RANGE_EVEN, to, from, count - 1, count) == from);
-      assert_true(value_of(STRUT_RANGE_RATIO, to, from, count - 1, count) == from);
-      assert_true(value_of(STRUT_RANGE_STEP, to, from, 0, count) == to);
+      assert_all(value_of(STRUT_RANGE_EVEN, from, to, count - 1, count) == to,
+                 value_of(STRUT_RANGE_RATIO, from, to, count - 1, count) == to,
+                 value_of(STRUT_RANGE_EVEN, to, from, count - 1, count) == from,
+                 value_of(STRUT_RANGE_RATIO, to, from, count - 1, count) == from,
+                 value_of(STRUT_RANGE_STEP, to, from, 0, count) == to);
     }
 }
 
@@ -95,10 +95,10 @@ TEST(extremes) {
     double third = value_of(STRUT_RANGE_EVEN, 0.0, 1.0, i, 1000);
     assert_true(fabs(third - i / 999.0) <= 5.1e-15 * third);
   }
-  assert_true(value_of(STRUT_RANGE_EVEN, 0.0, 4e-310, 1, 3) == 2e-310);
-  assert_true(value_of(STRUT_RANGE_RATIO, 1e-310, 1e-300, 1, 3) > 0.0);
-  assert_true(value_of(STRUT_RANGE_EVEN, 1e307, 3e307, 1, 3) == 2e307);
-  assert_true(isfinite(value_of(STRUT_RANGE_RATIO, 1e-300, 1e300, 599, 601)));
+  assert_all(value_of(STRUT_RANGE_EVEN, 0.0, 4e-310, 1, 3) == 2e-310,
+             value_of(STRUT_RANGE_RATIO, 1e-310, 1e-300, 1, 3) > 0.0,
+             value_of(STRUT_RANGE_EVEN, 1e307, 3e307, 1, 3) == 2e307,
+             isfinite(value_of(STRUT_RANGE_RATIO, 1e-300, 1e300, 599, 601)));
 }
 
 /* The last axis runs fastest: by hand for 2 x 3 x 2 points. */

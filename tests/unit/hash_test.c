@@ -9,12 +9,10 @@ TEST(checksum) {
   static const struct {
     size_t length;
     uint64_t plain, seeded;
-  } cases[] = {
-      {0, 0xEF46DB3751D8E999, 0xAC75FDA2929B17EF},
-      {1, 0xE934A84ADB052768, 0x5014607643A9B4C3},
-      {14, 0x8282DCC4994E35C8, 0xC3BD6BF63DEB6DF0},
-      {222, 0xB641AE8CB691C174, 0x20CB8AB7AE10C14A},
-  };
+  } cases[] = {{0, 0xEF46DB3751D8E999, 0xAC75FDA2929B17EF},
+               {1, 0xE934A84ADB052768, 0x5014607643A9B4C3},
+               {14, 0x8282DCC4994E35C8, 0xC3BD6BF63DEB6DF0},
+               {222, 0xB641AE8CB691C174, 0x20CB8AB7AE10C14A}};
   uint8_t bytes[2222];
   uint64_t generator = 2654435761U;
   for (size_t i = 0; i < sizeof bytes; i++) {

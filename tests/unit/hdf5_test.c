@@ -69,14 +69,12 @@ static void assert_scale(hid_t file, const char *dataset, unsigned dimension, co
 }
 
 static void assert_scales(hid_t file) {
-  static const char *const names[][3] = {
-      {"position", "node", "axis"},
-      {"velocity", "node", "axis"},
-      {"length", "member", NULL},
-      {"force", "member", NULL},
-      {"contact", "contact_node", "contact_component"},
-      {"energy", "system", "energy_component"},
-  };
+  static const char *const names[][3] = {{"position", "node", "axis"},
+                                         {"velocity", "node", "axis"},
+                                         {"length", "member", NULL},
+                                         {"force", "member", NULL},
+                                         {"contact", "contact_node", "contact_component"},
+                                         {"energy", "system", "energy_component"}};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     assert_scale(file, names[i][0], 0, "time");
     assert_scale(file, names[i][0], 1, names[i][1]);
@@ -107,13 +105,12 @@ static void assert_file(size_t rows, const char *status, const char *scene) {
   assert_text_attribute(file, "scene", scene);
   for (size_t i = 0; i < layout->channel_count; i++)
     assert_unit_and_values(file, &layout->channels[i], rows);
-  double *time = calloc(rows + 1, sizeof *time);
+  FREED double *time = calloc(rows + 1, sizeof *time);
   assert_true(H5LTread_dataset_double(file, "time", time) >= 0);
   for (size_t row = 0; row < rows; row++) {
     double expected = sample_value(row, 0);
     assert_memory_equal(&time[row], &expected, sizeof expected);
   }
-  free(time);
   assert_scales(file);
   assert_names(file, "node", layout->channels[0].item_names, 3);
   assert_names(file, "contact_component", layout->channels[4].component_names, 2);
@@ -168,7 +165,7 @@ TEST(rows_longer_than_a_chunk) {
   enum { NODES = 50000, ROWS = 3 };
   static const char *const axes[] = {"x", "y"};
   const char *directory = scratch_make();
-  const char **names = calloc(NODES, sizeof *names);
+  FREED const char **names = calloc(NODES, sizeof *names);
   for (size_t i = 0; i < NODES; i++) names[i] = "n";
   strut_record_channel channel = {
       STRUT_CHANNEL_POSITION, "position", "m", NODES, 2, 1, names, axes};
@@ -182,7 +179,6 @@ TEST(rows_longer_than_a_chunk) {
   hid_t file = H5Fopen(scratch_path("trajectory.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
   assert_unit_and_values(file, &channel, ROWS);
   H5Fclose(file);
-  free(names);
 }
 
 TEST(trouble_elsewhere_removes_the_file) {
@@ -243,9 +239,8 @@ TEST(a_full_disk_is_an_error_and_silent) {
     waitpid(child, &result, 0);
     int left = scratch_count(disk);
     scratch_unmount(disk);
-    char *printed = scratch_read(errors, &length);
+    FREED char *printed = scratch_read(errors, &length);
     assert_string_equal(printed, "");
-    free(printed);
     assert_true(WIFEXITED(result));
     if (WEXITSTATUS(result) == 0) {
       successes++;

@@ -3,7 +3,7 @@
 #include "parser/language/keys/keys.h"
 #include "engine/base/memory.h"
 #include "parser/language/write/writer.h"
-#include "tests/support/test.h"
+#include "tests/support/check.h"
 
 TEST(sections_divide_the_table) {
   int key = 0;
@@ -43,14 +43,12 @@ TEST(shared_keys_of_groups_agree) {
 static const struct exception {
   strut_section section;
   const char *name, *reason;
-} exceptions[] = {
-    {STRUT_SECTION_FRICTION, "mu", "sets two fields"},
-    {STRUT_SECTION_INITIAL, "velocity", "of every free node"},
-    {STRUT_SECTION_FRICTION, "mu_forward", "sets both coefficients of a direction"},
-    {STRUT_SECTION_FRICTION, "mu_forward_static", "another name for mu_static"},
-    {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},
-    {STRUT_SECTION_SCENE, "limit_things", "of the reader; the scene knows no parts"},
-};
+} exceptions[] = {{STRUT_SECTION_FRICTION, "mu", "sets two fields"},
+                  {STRUT_SECTION_INITIAL, "velocity", "of every free node"},
+                  {STRUT_SECTION_FRICTION, "mu_forward", "sets both coefficients of a direction"},
+                  {STRUT_SECTION_FRICTION, "mu_forward_static", "another name for mu_static"},
+                  {STRUT_SECTION_SETTLE, "step", "depends on the step of the run"},
+                  {STRUT_SECTION_SCENE, "limit_things", "of the reader; the scene knows no parts"}};
 
 static const char *reason_of(const strut_key *key) {
   for (size_t i = 0; i < sizeof exceptions / sizeof exceptions[0]; i++)
@@ -177,22 +175,21 @@ TEST(words) {
                       "bar, spring or cable");
   assert_string_equal(strut_words_text("rk4", text, sizeof text), "rk4");
   assert_string_equal(strut_words_text("a|b", text, sizeof text), "a or b");
-  assert_int_equal(strut_word_find("bar|spring|cable", "spring"), 1);
-  assert_int_equal(strut_word_find("bar|spring|cable", "spr"), -1);
-  assert_int_equal(strut_word_find("bar|spring|cable", "bar|spring"), -1);
+  assert_all_equal(strut_word_find("bar|spring|cable", "spring"), 1,
+                   strut_word_find("bar|spring|cable", "spr"), -1,
+                   strut_word_find("bar|spring|cable", "bar|spring"), -1);
   assert_null(strut_word_at("a|b", 2, text, sizeof text));
 }
 
 TEST(the_page_in_docs_is_this_one) {
-  char *page = strut_keys_page(), *committed = calloc(1, 1 << 20);
+  RELEASED char *page = strut_keys_page();
+  FREED char *committed = calloc(1, 1 << 20);
   assert_non_null(page);
   FILE *file = fopen(STRUT_SOURCE_DIR "/docs/language-keys.md", "rb");
   assert_non_null(file);
   assert_true(fread(committed, 1, (1 << 20) - 1, file) > 0);
   fclose(file);
   assert_string_equal(committed, page);
-  free(committed);
-  strut_release(page);
 }
 
 TEST(no_memory) {

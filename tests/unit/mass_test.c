@@ -52,8 +52,7 @@ TEST(lumped_masses_are_diagonal) {
   scene.mass_model = STRUT_MASS_LUMPED;
   build_row(&scene, 20, 2, 1);
   OWN_POINTER(strut_model) model = motion_compile(&scene);
-  assert_true(model->mass->diagonal);
-  assert_false(model->terms & STRUT_TERM_SOLVE);
+  assert_all(model->mass->diagonal, !(model->terms & STRUT_TERM_SOLVE));
   for (int i = 0; i < 20; i++)
     assert_true(model->mass->inverse[2 * i] == (i == 0 || i == 19 ? 1 : 0.5));
 }

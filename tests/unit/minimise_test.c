@@ -30,8 +30,7 @@ static void fixture_free(fixture *f) {
 
 /* The crawler on node 1 pinned and node 4 held in y. */
 static void crawler(fixture *f) {
-  uint8_t held[64] = {0};
-  held[0] = held[1] = held[7] = 1;
+  const uint8_t held[64] = {1, 1, [7] = 1};
   strut_scene_init(&f->scene);
   structure_crawler(&f->scene, 10, 1e-4, 0.1, false);
   compile(f, held, false);
@@ -99,8 +98,8 @@ static double tip_error(int32_t springs, double ratio, bool sparse, strut_descen
   }
   compile(&f, NULL, false);
   *d = strut_minimise(f.minimiser, f.q);
-  double error = fabs(f.q[2 * springs] - springs - sum) / sum;
-  return error;
+  double tip = f.q[2 * springs]; /* before f goes */
+  return fabs(tip - springs - sum) / sum;
 }
 
 TEST(stiffness_ratios) {
@@ -206,21 +205,14 @@ TEST(a_large_net) {
 }
 
 TEST(refused_memory) {
-  strut_scene scene;
-  strut_model *model;
-  strut_potential *p;
   for (int large = 0; large < 2; large++) {
-    strut_scene_init(&scene);
-    structure_chain(&scene, large ? 40 : 2, STRUT_MASS_LUMPED);
-    assert_ok(strut_model_compile(&scene, &model, NULL));
-    assert_ok(strut_potential_create(model, NULL, false, &p, NULL));
+    OWN(fixture) f = {.scene = build_scene()};
+    structure_chain(&f.scene, large ? 40 : 2, STRUT_MASS_LUMPED);
+    compile(&f, NULL, false);
     REFUSE_EACH(n, status, 1) {
       strut_minimiser *m;
-      status = refused(n, strut_minimiser_create(p, &m, NULL));
+      status = refused(n, strut_minimiser_create(f.potential, &m, NULL));
       strut_minimiser_free(m);
     }
-    strut_potential_free(p);
-    strut_model_free(model);
-    strut_scene_free(&scene);
   }
 }

@@ -21,10 +21,8 @@ TEST(many_names) {
     assert_int_equal(strut_name_map_find(&map, copy), i);
     assert_int_equal(strut_name_map_add(&map, copy, i + 1), i);
   }
-  assert_int_equal(strut_name_map_find(&map, "n"), -1);
-  assert_int_equal(strut_name_map_find(&map, ""), -1);
-  assert_int_equal(strut_name_map_find(&map, "n20000"), -1);
-  assert_int_equal(map.count, MANY);
+  assert_all_equal(strut_name_map_find(&map, "n"), -1, strut_name_map_find(&map, ""), -1,
+                   strut_name_map_find(&map, "n20000"), -1, map.count, MANY);
   strut_name_map_free(&map);
   assert_int_equal(map.count, 0);
 }

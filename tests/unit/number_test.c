@@ -218,7 +218,5 @@ TEST(locale_does_not_matter) {
     print_message("no German locale here\n");
     skip();
   }
-  assert_all(brief, lengthy);
-  assert_false(comma);
-  assert_all(quantity, shown);
+  assert_all(brief, lengthy, !comma, quantity, shown);
 }

@@ -135,9 +135,8 @@ TEST(whole_steps_are_exact) {
   for (size_t i = 0; i < FRAMES; i++) time[i] = (double)(1000000 + 7 * i) * 1e-4;
   strut_rows rows = {time, FRAMES, 1, 3};
   OWN(strut_block) block;
-  assert_true(strut_rows_multiples(&rows, 1e-4));
-  assert_false(strut_rows_multiples(&rows, 2e-4));
-  assert_false(strut_rows_multiples(&rows, 0));
+  assert_all(strut_rows_multiples(&rows, 1e-4), !strut_rows_multiples(&rows, 2e-4),
+             !strut_rows_multiples(&rows, 0));
   assert_true(strut_block_encode(&rows, 1e-4, &block));
   FREED double *back = decode(&block, strut_rows_taken(&rows));
   for (size_t i = 0; i + 1 < strut_rows_taken(&rows); i++) assert_true(back[i] == time[3 * i]);
@@ -205,11 +204,10 @@ TEST(a_motion_ends_where_it_is_no_motion) {
       moved = swing();
       if (what == 1 && isfinite(bad[i])) continue; /* a force may be anything */
       *(what ? &forces[700] : &positions[4 * 700 + 3]) = bad[i];
-      char *html = page_of(&moved, 0, &frames);
+      RELEASED char *html = page_of(&moved, 0, &frames);
       assert_all_equal(frames.shown, 700, frames.recorded, FRAMES);
       has(html, "\"frames\":700,\"recorded\":1000,\"every\":1,\"status\":\"diverged\"");
       has(html, "\"position\":{\"columns\":4,\"quantum\":1e-6,"); /* not that of 1e300 */
-      strut_release(html);
     }
   }
   moved = swing();

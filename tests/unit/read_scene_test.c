@@ -153,13 +153,13 @@ TEST(groups_give_defaults) {
   const strut_member *m = s.scene.members;
   assert_all(s.scene.nodes[0].fixed[0] && s.scene.nodes[0].fixed[1] && s.scene.nodes[0].mass == 8,
              !s.scene.nodes[1].fixed[0] && s.scene.nodes[1].fixed[1] && s.scene.nodes[1].mass == 8);
-  assert_true(m[0].kind == STRUT_CABLE && m[0].stiffness == 0 && m[0].axial_stiffness == 5);
-  assert_true(m[0].rest_kind == STRUT_REST_PRETENSION && m[0].rest_value == 6);
-  assert_true(m[0].damping == 7 && m[0].mass == 3);
-  assert_true(m[1].kind == STRUT_BAR && m[1].stiffness == 1 && m[1].axial_stiffness == 0);
-  assert_true(m[1].rest_kind == STRUT_REST_LENGTH && m[1].rest_value == 2 && m[1].damping == 7);
-  assert_true(m[2].stiffness == 0 && m[2].axial_stiffness == 9 && m[2].mass == 0);
-  assert_true(m[2].rest_kind == STRUT_REST_RATIO && m[2].rest_value == 0.5);
+  assert_all(m[0].kind == STRUT_CABLE && m[0].stiffness == 0 && m[0].axial_stiffness == 5,
+             m[0].rest_kind == STRUT_REST_PRETENSION && m[0].rest_value == 6,
+             m[0].damping == 7 && m[0].mass == 3,
+             m[1].kind == STRUT_BAR && m[1].stiffness == 1 && m[1].axial_stiffness == 0,
+             m[1].rest_kind == STRUT_REST_LENGTH && m[1].rest_value == 2 && m[1].damping == 7,
+             m[2].stiffness == 0 && m[2].axial_stiffness == 9 && m[2].mass == 0,
+             m[2].rest_kind == STRUT_REST_RATIO && m[2].rest_value == 0.5);
 }
 
 TEST(friction_comes_in_layers) {
@@ -179,11 +179,11 @@ TEST(friction_comes_in_layers) {
   read_good(&s, text, NULL, 0);
   assert_int_equal(s.scene.contact_count, 3);
   const strut_contact *c = s.scene.contacts;
-  assert_true(c[0].node == 1 && c[1].node == 2 && c[2].node == 3);
-  assert_true(c[0].friction.mu_static == 0.5 && c[0].friction.mu_kinetic == 0.4);
-  assert_true(c[1].friction.mu_static == 0.2 && c[1].friction.mu_kinetic == 0.01);
-  assert_true(c[1].friction.stick_velocity == 0.002 && c[1].damping == 9 && c[1].stiffness == 1e4);
-  assert_true(c[2].friction.law == STRUT_FRICTION_NONE && c[2].stiffness == 2e4);
+  assert_all(c[0].node == 1 && c[1].node == 2 && c[2].node == 3,
+             c[0].friction.mu_static == 0.5 && c[0].friction.mu_kinetic == 0.4,
+             c[1].friction.mu_static == 0.2 && c[1].friction.mu_kinetic == 0.01,
+             c[1].friction.stick_velocity == 0.002 && c[1].damping == 9 && c[1].stiffness == 1e4,
+             c[2].friction.law == STRUT_FRICTION_NONE && c[2].stiffness == 2e4);
 }
 
 TEST(signals_and_their_names) {
@@ -322,9 +322,8 @@ TEST(other_spellings) {
   OWN(strut_diagnostics) diagnostics = {0};
   assert_ok(
       strut_setup_read(&s, "test.yaml", text, strlen(text), NULL, 0, STRUT_FOR_RUN, &diagnostics));
-  assert_int_equal(s.scene.members[0].kind, STRUT_CABLE);
-  assert_int_equal(s.scene.members[1].kind, STRUT_BAR);
-  assert_int_equal(s.scene.ground.damping_law, STRUT_DAMPING_APPROACH);
+  assert_all_equal(s.scene.members[0].kind, STRUT_CABLE, s.scene.members[1].kind, STRUT_BAR,
+                   s.scene.ground.damping_law, STRUT_DAMPING_APPROACH);
   assert_true(s.experiment.steady.floor == 1e-3 && s.experiment.steady.successive == 3);
   const char *notes = strut_diagnostics_render_notes(&diagnostics);
   assert_non_null(strstr(notes, "test.yaml:6:50: note: 'printed' is now called 'approach_only'\n"));

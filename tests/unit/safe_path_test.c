@@ -107,8 +107,7 @@ TEST(all_else_is_refused) {
       {"top", "top/a.yaml", ".", STRUT_BAD_SCENE, "is not a regular file"},
       {"top", "top/a.yaml", "none.csv", STRUT_FILE_TROUBLE, "No such file"},
       {"top", "top/a.yaml", "circle", STRUT_FILE_TROUBLE, "cannot read"},
-      {"none", "none/a.yaml", "none.csv", STRUT_FILE_TROUBLE, "cannot read"},
-  };
+      {"none", "none/a.yaml", "none.csv", STRUT_FILE_TROUBLE, "cannot read"}};
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     strut_safe_text file;
     strut_error error = {0};

@@ -19,8 +19,7 @@ static const strut_record_channel channels[] = {
     {STRUT_CHANNEL_LENGTH, "length", "m", 2, 1, 13, members, single},
     {STRUT_CHANNEL_FORCE, "force", "N", 2, 1, 15, members, single},
     {STRUT_CHANNEL_CONTACT, "contact", "N", 2, 2, 17, nodes, reactions},
-    {STRUT_CHANNEL_ENERGY, "energy", "J", 1, 3, 21, total, energies},
-};
+    {STRUT_CHANNEL_ENERGY, "energy", "J", 1, 3, 21, total, energies}};
 
 static const strut_record_layout layout = {24, 6, channels, 40};
 
@@ -47,9 +46,8 @@ strut_status sample_feed(strut_sink *sink, size_t count, strut_status run_status
   size_t portion = 1;
   for (size_t done = 0; done < count && status == STRUT_OK; done += portion, portion += 6) {
     if (portion > count - done) portion = count - done;
-    double *rows = sample_rows(&layout, done, portion);
+    FREED double *rows = sample_rows(&layout, done, portion);
     status = sink->rows(sink->context, rows, portion, error);
-    free(rows);
   }
   strut_status ended = sink->end(sink->context, status == STRUT_OK ? run_status : status, error);
   return status == STRUT_OK ? ended : status;

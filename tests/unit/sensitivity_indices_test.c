@@ -27,10 +27,10 @@ TEST(linear) {
   assert_int_equal(used, SAMPLES);
   for (int k = 0; k < 2; k++) {
     double exact = k ? 0.2 : 0.8;
-    assert_true(fabs(first[k].value - exact) < 4 * first[k].error);
-    assert_true(fabs(total[k].value - exact) < 4 * total[k].error);
-    assert_true(first[k].error < 0.03 && total[k].error < 0.03);
-    assert_true(first[k].low < first[k].value && first[k].value < first[k].high);
+    assert_all(fabs(first[k].value - exact) < 4 * first[k].error,
+               fabs(total[k].value - exact) < 4 * total[k].error,
+               first[k].error < 0.03 && total[k].error < 0.03,
+               first[k].low < first[k].value && first[k].value < first[k].high);
   }
 }
 

@@ -30,6 +30,12 @@ static strut_signal sine(double amplitude, double frequency, double phase, doubl
   return s;
 }
 
+static strut_signal sum(const int32_t *terms, size_t count) {
+  strut_signal s = strut_signal_default(STRUT_SUM);
+  s.terms = terms, s.term_count = count;
+  return s;
+}
+
 TEST(defaults) {
   strut_signal s = strut_signal_default(STRUT_RAMP);
   assert_int_equal(s.kind, STRUT_RAMP);
@@ -104,22 +110,20 @@ TEST(tables) {
   assert_true(strut_signal_value_jumps(&s, 0, 9, &(double){0}));
   s.point_count = 4;
   for (int i = 0; i < 4; i++) assert_true(value_of(&s, 0, time[i]) == value[i]);
-  assert_true(value_of(&s, 0, -5) == 10.0 && rate_of(&s, 0, -5) == 0.0);
-  assert_true(value_of(&s, 0, 1.5) == 15.0 && rate_of(&s, 0, 1) == 10.0);
-  assert_true(value_of(&s, 0, 3) == 0.0 && rate_of(&s, 0, 2) == -20.0);
-  assert_true(value_of(&s, 0, 4.25) == -10.0 && rate_of(&s, 0, 4.25) == 40.0);
-  assert_true(value_of(&s, 0, 9) == 0.0 && rate_of(&s, 0, 4.5) == 0.0);
+  assert_all(value_of(&s, 0, -5) == 10.0 && rate_of(&s, 0, -5) == 0.0,
+             value_of(&s, 0, 1.5) == 15.0 && rate_of(&s, 0, 1) == 10.0,
+             value_of(&s, 0, 3) == 0.0 && rate_of(&s, 0, 2) == -20.0,
+             value_of(&s, 0, 4.25) == -10.0 && rate_of(&s, 0, 4.25) == 40.0,
+             value_of(&s, 0, 9) == 0.0 && rate_of(&s, 0, 4.5) == 0.0);
   s.point_count = 1;
   assert_true(value_of(&s, 0, 0) == 10.0 && value_of(&s, 0, 3) == 10.0);
 }
 
 TEST(sums_add_values_and_rates) {
   static const int32_t first[] = {0, 1, 1}, second[] = {2, 0};
-  strut_signal s[4] = {sine(1, 3, 0, 0), strut_signal_default(STRUT_RAMP),
-                       strut_signal_default(STRUT_SUM), strut_signal_default(STRUT_SUM)};
+  strut_signal s[4] = {sine(1, 3, 0, 0), strut_signal_default(STRUT_RAMP), sum(first, 3),
+                       sum(second, 2)};
   s[1].amplitude = 2, s[1].stop = 4;
-  s[2].terms = first, s[2].term_count = 3;
-  s[3].terms = second, s[3].term_count = 2;
   for (double t = 0; t < 5; t += 0.37) {
     near(value_of(s, 2, t), value_of(s, 0, t) + 2 * value_of(s, 1, t), 1e-14);
     near(rate_of(s, 3, t), 2 * rate_of(s, 0, t) + 2 * rate_of(s, 1, t), 1e-12);
@@ -132,9 +136,7 @@ TEST(many_times_have_the_bits_of_each) {
   const int32_t of_sines[] = {0, 1, 2}, of_both[] = {0, 3}, of_sums[] = {0, 4};
   strut_signal s[7] = {sine(2, 10, 0.1, 0), sine(-1, 20, 0, 0.25), sine(0.3, 0.7, -4, -1)};
   s[3] = strut_signal_default(STRUT_SQUARE), s[3].amplitude = 0.5, s[3].frequency = 3;
-  for (int i = 4; i < 7; i++) s[i] = strut_signal_default(STRUT_SUM);
-  s[4].terms = of_sines, s[4].term_count = 3, s[4].stop = 1.5;
-  s[5].terms = of_both, s[5].term_count = 2, s[6].terms = of_sums, s[6].term_count = 2;
+  s[4] = sum(of_sines, 3), s[5] = sum(of_both, 2), s[6] = sum(of_sums, 2), s[4].stop = 1.5;
   for (int32_t index = 0; index < 7; index++)
     for (int begin = 0; begin < 200; begin++) {
       double time[ROOM] = {0}, value[ROOM], rate[ROOM];
@@ -149,11 +151,10 @@ TEST(rates_are_derivatives) {
   static const double time[] = {0.2, 0.9, 1.7}, value[] = {1, -3, 5};
   static const int32_t terms[] = {0, 1, 2, 3};
   strut_signal s[5] = {sine(1, 3, 0.1, 0), sine(2, 0.5, 0, 0), strut_signal_default(STRUT_TABLE),
-                       strut_signal_default(STRUT_RAMP), strut_signal_default(STRUT_SUM)};
+                       strut_signal_default(STRUT_RAMP), sum(terms, 4)};
   s[1].kind = STRUT_HALF_SINE;
   s[2].time = time, s[2].value = value, s[2].point_count = 3;
   s[3].amplitude = 1, s[3].start = 0.1, s[3].stop = 1.95;
-  s[4].terms = terms, s[4].term_count = 4;
   for (int i = 0; i < 5; i++)
     for (double t = 0.0313; t < 1.9; t += 0.0177) {
       double h = 1e-6, slope = (value_of(s, i, t + h) - value_of(s, i, t - h)) / (2 * h);
@@ -165,24 +166,11 @@ TEST(rates_are_derivatives) {
 TEST(periods) {
   static const int32_t fitting[] = {0, 1, 3}, clashing[] = {0, 2}, none[] = {3}, nested[] = {4, 1},
                        pulsed[] = {0, 8}, pulse[] = {3, 8};
-  strut_signal s[11] = {sine(1, 10, 0, 0),
-                        sine(1, 30, 0, 0),
-                        sine(1, 15, 0, 0),
-                        strut_signal_default(STRUT_CONSTANT),
-                        strut_signal_default(STRUT_SUM),
-                        strut_signal_default(STRUT_SUM),
-                        strut_signal_default(STRUT_SUM),
-                        strut_signal_default(STRUT_SUM),
-                        sine(1, 3, 0, 0),
-                        strut_signal_default(STRUT_SUM),
-                        strut_signal_default(STRUT_SUM)};
+  strut_signal s[11] = {
+      sine(1, 10, 0, 0), sine(1, 30, 0, 0), sine(1, 15, 0, 0), strut_signal_default(STRUT_CONSTANT),
+      sum(fitting, 3),   sum(clashing, 2),  sum(none, 1),      sum(nested, 2),
+      sine(1, 3, 0, 0),  sum(pulsed, 2),    sum(pulse, 2)};
   s[8].kind = STRUT_HALF_SINE; /* a pulse spoils no sum, and counts where nothing repeats */
-  s[9].terms = pulsed, s[9].term_count = 2;
-  s[10].terms = pulse, s[10].term_count = 2;
-  s[4].terms = fitting, s[4].term_count = 3;
-  s[5].terms = clashing, s[5].term_count = 2;
-  s[6].terms = none, s[6].term_count = 1;
-  s[7].terms = nested, s[7].term_count = 2;
   assert_all(strut_signal_period(s, 0) == 1.0 / 10, strut_signal_period(s, 3) == 0.0,
              strut_signal_period(s, 4) == 1.0 / 10, strut_signal_period(s, 5) == 0.0);
   assert_all(strut_signal_period(s, 6) == 0.0, strut_signal_period(s, 7) == 1.0 / 10,
@@ -194,21 +182,14 @@ TEST(breaks) {
   static const double times[] = {0.5, 1.0, 2.0}, values[] = {0, 1, 1};
   static const int32_t terms[] = {1, 4};
   strut_signal s[7];
-  for (int i = 0; i < 7; i++) s[i] = strut_signal_default((strut_signal_kind)i);
-  s[0] = strut_signal_default(STRUT_SINE);
-  s[0].frequency = 3, s[0].amplitude = 1;
-  s[1] = strut_signal_default(STRUT_SQUARE);
-  s[1].frequency = 4, s[1].amplitude = 1, s[1].phase = 0.25, s[1].start = 0.1;
-  s[2] = strut_signal_default(STRUT_HALF_SINE);
-  s[2].frequency = 2, s[2].amplitude = 1, s[2].start = 1;
-  s[3] = strut_signal_default(STRUT_RAMP);
-  s[3].start = 1, s[3].stop = 3;
-  s[4] = strut_signal_default(STRUT_TABLE);
+  static const strut_signal_kind kinds[] = {STRUT_SINE,  STRUT_SQUARE, STRUT_HALF_SINE, STRUT_RAMP,
+                                            STRUT_TABLE, STRUT_SUM,    STRUT_CONSTANT};
+  for (int i = 0; i < 7; i++) s[i] = strut_signal_default(kinds[i]);
+  for (int i = 0; i < 3; i++) s[i].frequency = 3, s[i].amplitude = 1;
+  s[1].frequency = 4, s[1].phase = 0.25, s[1].start = 0.1;
+  s[2].frequency = 2, s[2].start = s[3].start = s[6].start = 1, s[3].stop = 3, s[6].stop = 2;
   s[4].time = times, s[4].value = values, s[4].point_count = 3;
-  s[5] = strut_signal_default(STRUT_SUM);
-  s[5].terms = terms, s[5].term_count = 2;
-  s[6] = strut_signal_default(STRUT_CONSTANT);
-  s[6].start = 1, s[6].stop = 2;
+  s[5] = sum(terms, 2);
   assert_true(isinf(strut_signal_next_break(s, 0, 5)));
   assert_true(fabs(strut_signal_next_break(s, 1, 0) - (0.1)) <= 1e-15);
   /* half periods of 1/8 s, the first a quarter of a period after the start */
@@ -220,15 +201,15 @@ TEST(breaks) {
     assert_true(fabs(next - (0.1625 + 0.125 * k)) <= 1e-9);
     t = next;
   }
-  assert_all(strut_signal_next_break(s, 2, 0) == 1.0, strut_signal_next_break(s, 2, 1) == 1.25);
-  assert_true(isinf(strut_signal_next_break(s, 2, 1.25)));
-  assert_true(strut_signal_next_break(s, 3, 0) == 1.0 && strut_signal_next_break(s, 3, 1) == 3.0);
-  assert_true(isinf(strut_signal_next_break(s, 3, 3)));
-  assert_true(strut_signal_next_break(s, 4, 0) == 0.5 && strut_signal_next_break(s, 4, 0.5) == 1.0);
-  assert_true(strut_signal_next_break(s, 4, 1.5) == 2.0 && isinf(strut_signal_next_break(s, 4, 2)));
-  assert_true(fabs(strut_signal_next_break(s, 5, 0.45) - (0.5)) <= 1e-12);
-  assert_true(strut_signal_next_break(s, 6, 0) == 1.0 && strut_signal_next_break(s, 6, 1) == 2.0);
-  assert_true(isinf(strut_signal_next_break(s, 6, 2)));
+  assert_all(strut_signal_next_break(s, 2, 0) == 1.0, strut_signal_next_break(s, 2, 1) == 1.25,
+             isinf(strut_signal_next_break(s, 2, 1.25)),
+             strut_signal_next_break(s, 3, 0) == 1.0 && strut_signal_next_break(s, 3, 1) == 3.0,
+             isinf(strut_signal_next_break(s, 3, 3)),
+             strut_signal_next_break(s, 4, 0) == 0.5 && strut_signal_next_break(s, 4, 0.5) == 1.0,
+             strut_signal_next_break(s, 4, 1.5) == 2.0 && isinf(strut_signal_next_break(s, 4, 2)),
+             fabs(strut_signal_next_break(s, 5, 0.45) - (0.5)) <= 1e-12,
+             strut_signal_next_break(s, 6, 0) == 1.0 && strut_signal_next_break(s, 6, 1) == 2.0,
+             isinf(strut_signal_next_break(s, 6, 2)));
 }
 
 /* ---- measured signals ---- */

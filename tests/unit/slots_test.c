@@ -15,13 +15,9 @@ static const strut_slot_column columns[] = {
     {"frequency", "Hz", false}, {"start", "", true}, {"velocity", "m/s", false}};
 
 static strut_slots_description a_plan(int64_t points) {
-  return (strut_slots_description){.hash = {1, 2, 3},
-                                   .version = "1.2.3",
-                                   .name = "study",
-                                   .points = points,
-                                   .count = points,
-                                   .columns = columns,
-                                   .column_count = 3};
+  strut_slots_description plan = {.hash = {1, 2, 3}, .version = "1.2.3", .name = "study"};
+  plan.points = plan.count = points, plan.columns = columns, plan.column_count = 3;
+  return plan;
 }
 
 /* The row of a point: every fifth one failed. */
@@ -46,22 +42,19 @@ static void check_row(strut_slots *slots, int64_t point) {
   assert_int_equal(row.status, point % 5 == 4 ? STRUT_DIVERGED : STRUT_OK);
   assert_same_bits(row.numbers[0], 0.1 * (double)point);
   assert_same_bits(row.numbers[1], point % 3 ? -1.0 / (double)point : (double)NAN);
-  assert_string_equal(row.words[0], word);
-  assert_string_equal(row.message, message);
+  assert_all_texts(row.words[0], word, row.message, message);
 }
 
 static strut_slots *open_slots(const char *path, const strut_slots_description *plan) {
-  strut_error error = {0};
   strut_slots *slots = NULL;
-  if (strut_slots_open(path, plan, &slots, &error) != STRUT_OK) fail_msg("%s", error.message);
+  assert_ok(strut_slots_open(path, plan, &slots, NULL));
   return slots;
 }
 
 static strut_slots *read_slots(const char *path) {
-  strut_error error = {0};
   strut_slots *slots = NULL;
   strut_slots_description plan;
-  if (strut_slots_read(path, &slots, &plan, &error) != STRUT_OK) fail_msg("%s", error.message);
+  assert_ok(strut_slots_read(path, &slots, &plan, NULL));
   return slots;
 }
 
@@ -92,8 +85,7 @@ TEST(rows_come_back) {
   uint64_t before = strut_allocation_count();
   for (int64_t i = 999; i >= 500; i--) assert_int_equal(put(slots, i, NULL), STRUT_OK);
   assert_int_equal(strut_allocation_count(), before);
-  assert_int_equal(strut_slots_missing(slots), 500);
-  assert_int_equal(strut_slots_failed(slots), 100);
+  assert_all_equal(strut_slots_missing(slots), 500, strut_slots_failed(slots), 100);
   check_row(slots, 999);
   strut_result_slot row;
   assert_false(strut_slots_get(slots, 499, &row));
@@ -106,13 +98,10 @@ TEST(rows_come_back) {
   assert_int_equal(strut_slots_sync(slots, NULL), STRUT_OK);
   strut_slots_close(slots);
   assert_int_equal(strut_slots_read(path, &slots, &there, NULL), STRUT_OK);
-  assert_int_equal(strut_slots_missing(slots), 0);
-  assert_int_equal(strut_slots_failed(slots), 200);
+  assert_all_equal(strut_slots_missing(slots), 0, strut_slots_failed(slots), 200);
   for (int64_t i = 0; i < 1000; i++) check_row(slots, i);
-  assert_string_equal(there.version, "1.2.3");
-  assert_string_equal(there.columns[2].unit, "m/s");
-  assert_true(there.columns[1].word);
-  assert_int_equal(there.points, 1000);
+  assert_all_texts(there.version, "1.2.3", there.columns[2].unit, "m/s");
+  assert_all(there.columns[1].word, there.points == 1000);
   strut_slots_close(slots);
 }
 
@@ -168,15 +157,10 @@ TEST(a_file_that_is_cut) {
     strut_slots *slots = open_slots(scratch_path("b"), &plan);
     int64_t whole = (int64_t)cut < header ? 0 : ((int64_t)cut - header) / slot;
     assert_int_equal(strut_slots_missing(slots), 5 - whole);
-    for (int64_t i = 0; i < 5; i++) {
-      if (i < whole) {
-        check_row(slots, i);
-      } else {
-        strut_result_slot row;
-        assert_false(strut_slots_done(slots, i));
-        assert_false(strut_slots_get(slots, i, &row));
-        assert_int_equal(put(slots, i, NULL), STRUT_OK);
-      }
+    for (int64_t i = 0; i < whole; i++) check_row(slots, i);
+    for (int64_t i = whole; i < 5; i++) {
+      assert_all(!strut_slots_done(slots, i), !strut_slots_get(slots, i, &(strut_result_slot){0}));
+      assert_ok(put(slots, i, NULL));
     }
     strut_slots_close(slots);
     size_t again = 0;
@@ -190,7 +174,7 @@ TEST(a_file_that_is_cut) {
 TEST(a_bit_flipped_anywhere) {
   size_t length = 0;
   make_file(scratch_path("a"), 3);
-  char *bytes = scratch_read(scratch_path("a"), &length);
+  FREED char *bytes = scratch_read(scratch_path("a"), &length);
   size_t slot = 24 + 2 * 8 + 24 + STRUT_SLOT_MESSAGE, header = length - 3 * slot;
   for (size_t at = 0; at < length; at++)
     for (int bit = 0; bit < 8; bit += at < header + 64 ? 1 : 7) {
@@ -212,7 +196,6 @@ TEST(a_bit_flipped_anywhere) {
       for (int64_t i = 0; i < 3; i++) assert_int_equal(strut_slots_done(slots, i), i != hit);
       strut_slots_close(slots);
     }
-  free(bytes);
 }
 
 /* A slot of the right bytes in the wrong place, or of another study, is none. */
@@ -227,8 +210,7 @@ TEST(slots_of_elsewhere) {
   memcpy(copy + header, bytes + header + slot, slot);
   write_bytes(scratch_path("b"), copy, length);
   strut_slots *slots = open_slots(scratch_path("b"), &plan);
-  assert_false(strut_slots_done(slots, 0));
-  assert_true(strut_slots_done(slots, 1));
+  assert_all(!strut_slots_done(slots, 0), strut_slots_done(slots, 1));
   strut_slots_close(slots);
   plan.hash[7] ^= 1;
   slots = open_slots(scratch_path("c"), &plan);
@@ -250,8 +232,7 @@ static void expect_refused(const char *path, const strut_slots_description *plan
   strut_error error = {0};
   assert_int_equal(strut_slots_open(path, plan, &slots, &error), expected);
   assert_null(slots);
-  if (!strstr(error.message, words) || !strstr(error.message, path))
-    fail_msg("\"%s\" lacks \"%s\"", error.message, words);
+  check_words(error.message, (const char *[]){words, path, NULL}, __FILE__, __LINE__);
 }
 
 TEST(other_studies_are_refused) {
@@ -285,24 +266,18 @@ TEST(foreign_files_are_refused) {
   size_t length = 0;
   write_bytes(path, "frequency,velocity\n1,2\n", 23);
   expect_refused(path, &plan, STRUT_FILE_TROUBLE, "not a file of study results");
-  char *text = scratch_read(path, &length);
+  FREED char *text = scratch_read(path, &length);
   assert_string_equal(text, "frequency,velocity\n1,2\n");
-  free(text);
   make_file(scratch_path("b"), 9);
-  char *bytes = scratch_read(scratch_path("b"), &length);
-  for (int i = 0; i < 2; i++) { /* the mark of the order of bytes */
-    char swap = bytes[8 + i];
-    bytes[8 + i] = bytes[11 - i];
-    bytes[11 - i] = swap;
-  }
+  FREED char *bytes = scratch_read(scratch_path("b"), &length);
+  const char mark[4] = {bytes[8], bytes[9], bytes[10], bytes[11]}; /* of the order of bytes */
+  for (int i = 0; i < 4; i++) bytes[8 + i] = mark[3 - i];
   write_bytes(path, bytes, length);
   expect_refused(path, &plan, STRUT_FILE_TROUBLE, "another byte order");
-  free(bytes);
-  bytes = scratch_read(scratch_path("b"), &length);
+  memcpy(bytes + 8, mark, sizeof mark);
   bytes[12] = 2;
   write_bytes(path, bytes, length);
   expect_refused(path, &plan, STRUT_FILE_TROUBLE, "format 2");
-  free(bytes);
   expect_refused(scratch_path("no/such"), &plan, STRUT_FILE_TROUBLE, "No such file");
   expect_refused(scratch_path("."), &plan, STRUT_FILE_TROUBLE, "Is a directory");
 }
@@ -409,8 +384,7 @@ TEST(threads) {
     pthread_join(threads[i], NULL);
     assert_true(workers[i].good);
   }
-  assert_int_equal(strut_slots_missing(slots), 0);
-  assert_int_equal(strut_slots_failed(slots), 1600);
+  assert_all_equal(strut_slots_missing(slots), 0, strut_slots_failed(slots), 1600);
   strut_slots_close(slots);
   slots = read_slots(scratch_path("a"));
   for (int64_t i = 0; i < 8000; i++) check_row(slots, i);
@@ -472,8 +446,7 @@ TEST(a_full_small_disk) {
   strut_error error = {0};
   int64_t put_well = 0;
   while (put_well < 1000 && put(slots, put_well, &error) == STRUT_OK) put_well++;
-  assert_true(put_well < 1000);
-  assert_non_null(strstr(error.message, "No space left on device"));
+  assert_all(put_well < 1000, strstr(error.message, "No space left on device"));
   strut_slots_close(slots);
   slots = open_slots(scratch_path("a"), &plan);
   assert_int_equal(strut_slots_missing(slots), 1000 - put_well);
@@ -485,15 +458,13 @@ TEST(no_memory) {
   strut_slots_description plan = a_plan(100), there;
   make_file(scratch_path("a"), 100);
   for (int mode = 0; mode < 3; mode++) {
-    strut_status status = STRUT_NO_MEMORY;
-    for (int64_t n = 0; status != STRUT_OK; n++) {
+    REFUSE_EACH(n, status, 0) {
       strut_slots *slots = NULL;
       status = refused(n, mode == 0   ? strut_slots_open(scratch_path("a"), &plan, &slots, NULL)
                           : mode == 1 ? strut_slots_read(scratch_path("a"), &slots, &there, NULL)
                                       : strut_slots_open(scratch_path("new"), &plan, &slots, NULL));
       if (status == STRUT_OK) assert_int_equal(strut_slots_missing(slots), mode < 2 ? 0 : 100);
       strut_slots_close(slots);
-      assert_true(n < 100);
     }
   }
 }
@@ -510,19 +481,15 @@ TEST(failed_rows_once_more) {
   strut_slots *slots = open_slots(path, &plan);
   assert_int_equal(strut_slots_failed(slots), 200);
   assert_int_equal(strut_slots_retry(slots, NULL), STRUT_OK);
-  assert_int_equal(strut_slots_failed(slots), 0);
-  assert_int_equal(strut_slots_missing(slots), 200);
-  assert_false(strut_slots_done(slots, 4));
-  assert_true(strut_slots_done(slots, 5));
+  assert_all_equal(strut_slots_failed(slots), 0, strut_slots_missing(slots), 200);
+  assert_all(!strut_slots_done(slots, 4), strut_slots_done(slots, 5));
   assert_int_equal(strut_slots_put(slots, 4, &good, NULL), STRUT_OK);
   assert_int_equal(strut_slots_put(slots, 5, &good, NULL), STRUT_USAGE);
   assert_int_equal(put(slots, 9, NULL), STRUT_OK); /* fails again */
-  assert_int_equal(strut_slots_missing(slots), 198);
-  assert_int_equal(strut_slots_failed(slots), 1);
+  assert_all_equal(strut_slots_missing(slots), 198, strut_slots_failed(slots), 1);
   strut_slots_close(slots);
   slots = read_slots(path);
-  assert_int_equal(strut_slots_missing(slots), 0);
-  assert_int_equal(strut_slots_failed(slots), 199);
+  assert_all_equal(strut_slots_missing(slots), 0, strut_slots_failed(slots), 199);
   assert_true(strut_slots_get(slots, 4, &row));
   assert_int_equal(row.status, STRUT_OK);
   assert_string_equal(row.words[0], "well");

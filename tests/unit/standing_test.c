@@ -9,7 +9,7 @@ enum { NODES = 3 };
 
 /* A weight on two springs that also presses a soft ground; its configuration is its only shape. */
 static strut_setup hanging(void) {
-  strut_setup setup = build_setup();
+  strut_setup setup = build_falling();
   build_support(&setup.scene, -1, 0);
   build_support(&setup.scene, 1, 0.1);
   build_mass(&setup.scene, 0.1, -0.6, 2);
@@ -17,7 +17,6 @@ static strut_setup hanging(void) {
   build_contact(&setup.scene, 2, 40, 3);
   build_load(&setup.scene, 2, 1.5, -0.5, -1);
   setup.scene.ground.height = -0.45;
-  setup.scene.gravity[1] = -9.81;
   setup.experiment.search.starts = 20;
   setup.scene.configurations =
       strut_arena_allocate(&setup.scene.arena, 1, sizeof *setup.scene.configurations);

@@ -17,9 +17,8 @@ TEST(exit_codes_are_as_documented) {
 }
 
 TEST(texts_are_there_and_differ) {
-  assert_string_equal(strut_status_text(STRUT_OK), "completed");
-  assert_string_equal(strut_status_text(STRUT_DIVERGED), "diverged");
-  assert_string_equal(strut_status_text(STRUT_INTERRUPTED), "interrupted");
+  assert_all_texts(strut_status_text(STRUT_OK), "completed", strut_status_text(STRUT_DIVERGED),
+                   "diverged", strut_status_text(STRUT_INTERRUPTED), "interrupted");
   for (int i = 0; i < STRUT_STATUS_COUNT; i++)
     for (int k = 0; k < i; k++)
       assert_string_not_equal(strut_status_text((strut_status)i),

@@ -165,8 +165,7 @@ TEST(the_limit_is_where_motions_begin_to_grow) {
     double below = growth(&setup, method->name, 0.99 * limit, 2000);
     double above = growth(&setup, method->name, 1.01 * limit, 2000);
     print_message("%s: %.3g below the limit, %.3g above\n", method->name, below, above);
-    assert_true(below < 100);
-    assert_true(above > 1e4);
+    assert_all(below<100, above> 1e4);
   }
 }
 

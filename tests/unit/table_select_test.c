@@ -45,7 +45,7 @@ static size_t count_shown(const strut_table_rows *rows) {
 
 static void check(bool between, const double *wanted, const char *marks) {
   strut_table_rows less;
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   assert_ok(choose(STRUT_NO_COLUMN, NULL, SIDE, between, &arena, &less, NULL));
   assert_all_equal(count_shown(&less), 5, strut_table_compares(&less, Y), true);
   assert_false(strut_table_compares(&less, X));
@@ -57,7 +57,6 @@ static void check(bool between, const double *wanted, const char *marks) {
     assert_int_equal(strut_table_differs(&less, WORD, i), marks[k++] == '1');
     assert_string_equal(side[i], "b");
   }
-  strut_arena_free(&arena);
 }
 
 /* b has x = 0, 2, 1, 4 in panel p and 2 in panel q, in that order. */
@@ -71,7 +70,7 @@ TEST(differences) {
 TEST(only) {
   strut_table_rows some;
   strut_table_groups groups;
-  strut_arena arena = {0};
+  OWN(strut_arena) arena = {0};
   assert_ok(choose(COLUMNS, "q", STRUT_NO_COLUMN, false, &arena, &some, NULL));
   assert_int_equal(count_shown(&some), 2);
   assert_true(strut_table_number(&some, Y, 7) == 50 && strut_table_number(&some, Y, 8) == 7);
@@ -80,7 +79,6 @@ TEST(only) {
   assert_int_equal(groups.count, 2);
   assert_all_texts(groups.name[0], "b", groups.name[1], "a"); /* not the order of all rows */
   assert_int_equal(choose(COLUMNS, "r", STRUT_NO_COLUMN, false, &arena, &some, NULL), STRUT_USAGE);
-  strut_arena_free(&arena);
 }
 
 /* Both at once, and every allocation fails once. */
@@ -88,7 +86,7 @@ TEST(no_memory) {
   REFUSE_EACH(n, status, 1) {
     strut_table_rows chosen;
     strut_error error = {0};
-    strut_arena arena = {0};
+    OWN(strut_arena) arena = {0};
     status = refused(n, choose(COLUMNS, "p", SIDE, true, &arena, &chosen, &error));
     if (status == STRUT_OK) {
       assert_int_equal(count_shown(&chosen), 4);
@@ -96,6 +94,5 @@ TEST(no_memory) {
     } else {
       assert_true(error.message[0]);
     }
-    strut_arena_free(&arena);
   }
 }

@@ -8,11 +8,8 @@
 
 static const char text[] =
     "strut: 1\n"
-    "nodes:\n"
-    "  a: {position: [0, 0], fixed: both}\n"
-    "  b: {position: [1, 0], mass: 1}\n"
-    "  c: {position: [1, 1], mass: 1}\n"
-    "  d: {position: [0, 1], mass: 1}\n"
+    "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1},\n"
+    "        c: {position: [1, 1], mass: 1}, d: {position: [0, 1], mass: 1}}\n"
     "members:\n"
     "  p: {kind: cable, nodes: [a, b, c], stiffness: 10, mass: 0.5}\n"
     "  q: {kind: bar, nodes: [a, d], law: {kind: table, points: [[-1, -2], [0, 0], [1, 3]]}}\n"

@@ -21,12 +21,10 @@ static strut_status record(const strut_setup *setup, unsigned channels, size_t r
                            strut_trajectory *t) {
   strut_sink *sinks[2] = {strut_trajectory_sink(t, &setup->scene, channels, room)};
   if (file) sinks[1] = strut_hdf5_create(scratch_path(""), "strut: 1\n");
-  strut_model *model = motion_compile(&setup->scene);
+  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   strut_run_options options = {.sinks = sinks, .sink_count = file ? 2 : 1, .force = true};
-  strut_summary summary = {0};
+  OWN(strut_summary) summary = {0};
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, NULL);
-  strut_summary_free(&summary);
-  strut_model_free(model);
   strut_trajectory_sink_free(sinks[0]);
   if (file) strut_hdf5_free(sinks[1]);
   return status;
@@ -145,20 +143,16 @@ TEST(refusals) {
   OWN(strut_setup) setup = crawler(1e-3);
   not_read(&setup, scratch_path("nowhere"), "No such file");
   assert_ok(record(&setup, ALL, STRUT_TRAJECTORY_ROOM, true, &taken));
-  const char *name = setup.scene.nodes[2].name;
-  setup.scene.nodes[2].name = "another";
-  not_read(&setup, scratch_path(""), "another structure");
-  setup.scene.nodes[2].name = name;
-  name = setup.scene.members[8].name;
-  setup.scene.members[8].name = "another";
-  not_read(&setup, scratch_path(""), "another structure");
-  setup.scene.members[8].name = name;
-  setup.scene.contact_count--;
-  not_read(&setup, scratch_path(""), "another structure");
-  setup.scene.contact_count++;
-  setup.scene.node_count--;
-  not_read(&setup, scratch_path(""), "another structure");
-  setup.scene.node_count++;
+  const char **names[] = {&setup.scene.nodes[2].name, &setup.scene.members[8].name};
+  size_t *counts[] = {&setup.scene.contact_count, &setup.scene.node_count};
+  for (int i = 0; i < 2; i++) {
+    const char *name = *names[i];
+    *names[i] = "another";
+    not_read(&setup, scratch_path(""), "another structure");
+    *names[i] = name, --*counts[i];
+    not_read(&setup, scratch_path(""), "another structure");
+    ++*counts[i];
+  }
   FILE *file = fopen(scratch_path("trajectory.h5"), "r+b"); /* its first bytes */
   assert_true(file && fputs("this is no HDF5 file", file) > 0 && fclose(file) == 0);
   not_read(&setup, scratch_path(""), "not an HDF5 file");

@@ -10,13 +10,10 @@ enum { FRAMES = 3 };
 
 static const char text[] =
     "strut: 1\n"
-    "nodes:\n"
-    "  a: {position: [0, 0], mass: 1}\n"
-    "  b: {position: [1, 0], mass: 1}\n"
-    "  c: {position: [0.5, 0.5], mass: 1}\n"
-    "members:\n"
-    "  ab: {nodes: [a, b], kind: bar, stiffness: 10}\n"
-    "  bc: {nodes: [b, c], kind: cable, stiffness: 10}\n"
+    "nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1},\n"
+    "        c: {position: [0.5, 0.5], mass: 1}}\n"
+    "members: {ab: {nodes: [a, b], kind: bar, stiffness: 10},\n"
+    "          bc: {nodes: [b, c], kind: cable, stiffness: 10}}\n"
     "ground: {stiffness: 1000}\n";
 
 typedef struct things {
