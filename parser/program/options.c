@@ -7,6 +7,7 @@
 #include "engine/base/memory.h"
 #include "engine/output/draw/figure.h"
 #include "parser/language/yaml/diagnostics.h"
+#include "parser/program/commands.h"
 #include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 
@@ -66,6 +67,12 @@ static strut_status unknown_option(const strut_arguments *to, const char *word) 
       return strut_usage_error(to, "--%s cannot be used here: %s", name, option->reason);
   for (size_t i = 0; length && !meant && (row = strut_option_at(to->command, i)); i++)
     if (strncmp(row->name, name, length) == 0) meant = row->name;
+  if (strut_word_find("film|movie|video|animate", name) >= 0) {
+    if (to->command != &strut_command_run)
+      return strut_usage_error(to, "unknown option '--%s'; 'strut run --animate FILE' makes films",
+                               name);
+    meant = "animate";
+  }
   if (!meant) meant = strut_did_you_mean(name, option_name_at, to->command);
   return with_help(to, strut_usage_error(to, "unknown option '--%s'%s%s%s", name,
                                          meant ? "; did you mean '--" : "", meant ? meant : "",
