@@ -38,20 +38,15 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static const char *column_name_at(const void *context, size_t i) {
-  const strut_table *table = context;
-  return i < table->column_count ? table->columns[i].name : NULL;
-}
-
 /* STRUT_USAGE with a message if the table has no column of that name, of `length` bytes. */
 static strut_status check_column(const strut_arguments *arguments, const strut_table *table,
                                  const char *option, const char *name, size_t length) {
   char word[200];
   if (strut_table_column_of(table, name, length) != STRUT_NO_COLUMN) return STRUT_OK;
   snprintf(word, sizeof word, "%.*s", (int)length, name);
-  const char *near = strut_did_you_mean(word, column_name_at, table);
-  return strut_usage_error(arguments, "--%s: the table has no column '%s'%s%s%s", option, word,
-                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  const strut_named_rows *columns = STRUT_NAMED(table->columns, table->column_count);
+  return strut_usage_error(arguments, "--%s: the table has no column '%s'%s", option, word,
+                           strut_near_to(word, strut_row_name, columns).text);
 }
 
 /* The same of all that options name. */

@@ -63,12 +63,9 @@ const strut_command *strut_command_find(const char *name) {
   if (found) return found;
   const bool study =
       strut_word_find("fit|search|follow|sensitivity|sample|optimise|optimize", name) >= 0;
-  const char *near = study ? NULL : strut_did_you_mean(name, command_name_at, NULL);
-  fprintf(stderr, "strut: unknown command '%s'", name);
-  if (near) fprintf(stderr, "; did you mean '%s'?", near);
-  if (study)
-    fprintf(stderr, "; 'strut sweep STUDY' computes studies: fits, searches, samples and others");
-  fprintf(stderr, "\n'strut help' lists the commands\n");
+  fprintf(stderr, "strut: unknown command '%s'%s\n'strut help' lists the commands\n", name,
+          study ? "; 'strut sweep STUDY' computes studies: fits, searches, samples and others"
+                : strut_near_to(name, command_name_at, NULL).text);
   return NULL;
 }
 

@@ -15,13 +15,11 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
-#include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "engine/run/simulate.h"
 #include "parser/language/yaml/document.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
-#include "parser/program/open_model.h"
 #include "parser/program/streams.h"
 
 /* --threads, for all that computes on several. */

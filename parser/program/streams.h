@@ -4,7 +4,6 @@
 
 #include <signal.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "engine/base/flag.h"
 #include "engine/base/status.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the files of the expression reader share: the text under the reader's eye, and its errors.
- */
+/** What the files of the expression reader share: the text under the reader's eye, and its errors. */
 #pragma once
 
 #include "parser/language/expression/expression.h"

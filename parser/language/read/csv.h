@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Tables as text: cells separated by commas, semicolons or tabs (RFC 4180) below a header such as
- * "velocity [m/s]".
- */
+/** Tables as text: cells separated by commas, semicolons or tabs (RFC 4180) below a header such as "velocity [m/s]". */
 #pragma once
 
 #include "engine/base/memory.h"

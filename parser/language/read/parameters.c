@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Parameters: evaluated on demand, in any order; values from --set; cycles. See reader.h. */
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

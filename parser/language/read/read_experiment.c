@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Named shapes, the start of a run, and the experiment. See reader.h. */
-#include <math.h>
 #include <string.h>
 
 #include "parser/language/read/reader.h"

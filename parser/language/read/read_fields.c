@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "parser/language/read/reader.h"
-#include "parser/language/read/reuse/overlay.h"
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
   assert(strut_key_at(key)->section == fields->section);

@@ -24,10 +24,9 @@ typedef struct strut_setting {
 } strut_setting;
 
 /**
- * Reads and checks a scene and its experiment in text[0..length). On STRUT_OK both are complete and
- * valid for
- * its purpose. On STRUT_BAD_SCENE diagnostics holds every finding and both are empty. `file` is
- * the name that messages show. Neither file nor text is copied: diagnostics refers to both.
+ * Reads and checks a scene and its experiment in text[0..length). On STRUT_OK both are complete and valid for its
+ * purpose. On STRUT_BAD_SCENE diagnostics holds every finding and both are empty. `file` is the name that messages
+ * show. Neither file nor text is copied: diagnostics refers to both.
  */
 STRUT_API strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text,
                                         size_t length, const strut_override *overrides,

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Stages of a path. See reader.h. */
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/scene/things.h"

@@ -108,9 +108,13 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
                        const void *context, size_t count) {
   if (strlen(word) > LONGEST_NAME || !strut_hints_left(reader)) return "";
   reader->suggestions += count;
-  const char *near = strut_did_you_mean(word, names, context);
-  if (!near) return "";
-  return kept(reader, strut_arena_format(&reader->scratch, "; did you mean '%s'?", near));
+  const strut_near near = strut_near_to(word, names, context);
+  return kept(reader, strut_arena_text(&reader->scratch, near.text, strlen(near.text)));
+}
+
+const char *strut_hint_of_rows(strut_reader *reader, const char *word,
+                               const strut_named_rows *rows) {
+  return strut_hint(reader, word, strut_row_name, rows, rows->count);
 }
 
 strut_place strut_root_place(const strut_reader *reader) {

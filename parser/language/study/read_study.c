@@ -10,9 +10,7 @@
 #include "engine/scene/things.h"
 #include "parser/language/study/study_reader.h"
 
-static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL},
-                         form_owner = {"the form", NULL}, limit_owner = {"the limit", NULL},
-                         check_owner = {"the check", NULL};
+static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL};
 
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size) {
   return strut_reader_allocate(reader->reader, &reader->file->arena, count, size);
@@ -266,30 +264,11 @@ static void read_path(strut_study_reader *reader, const strut_slot *slot) {
                        "'from' and 'until' of the path are equal");
 }
 
-/* Wall time ends only what can be interrupted. */
-static void read_limit(strut_study_reader *reader, strut_fields *top, const strut_slot *slot) {
-  strut_study *study = &reader->file->study;
-  strut_fields fields;
-  if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(reader->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
-  fields.outer = top;
-  strut_store(reader->reader, &fields, limit_owner, study);
-}
-
 static void read_rest(strut_study_reader *reader, strut_fields *top) {
   strut_study *study = &reader->file->study;
-  const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
-  const strut_slot *form = strut_slot_of(top, STRUT_KEY_STUDY_FORM);
-  strut_fields fields;
   study->name = study->description = "";
   strut_store(reader->reader, top, study_owner, study);
-  if (check->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields,
-                      study);
   read_path(reader, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
-  if (form->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_FORM, form->value, form_owner, &fields, study);
-  read_limit(reader, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
   read_figures(reader, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * From a study's YAML text, and the model it names, to points and their scenes.
- * 
- * The model's text becomes a tree once; each point's scene is read from that tree with the point's
- * parameters.
+ *
+ * The model's text becomes a tree once; each point's scene is read from that tree with the point's parameters.
  */
 #pragma once
 

@@ -433,14 +433,9 @@ static void require_pairs(strut_study_reader *reader, strut_fields *top) {
 }
 
 void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
-  const strut_slot *stiffness = strut_slot_of(top, STRUT_KEY_STUDY_STIFFNESS_AT);
   const strut_slot *shape = strut_slot_of(top, STRUT_KEY_STUDY_SHAPE);
   const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
-  strut_fields fields;
-  if (stiffness->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value,
-                      ((strut_owner){"the stiffness", NULL}), &fields, &reader->file->study);
   if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
     strut_report_error(reader->reader, like->key->place,
                        "'shape' and 'like' of the study exclude each other");

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models of a study, one for each variant, and its own text. See study_reader.h. */
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/checksum.h"

@@ -9,7 +9,6 @@
 #include "engine/base/text.h"
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/writer.h"
-#include "parser/language/yaml/text.h"
 
 /* ---- trees as they are ---- */
 

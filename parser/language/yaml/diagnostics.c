@@ -368,3 +368,17 @@ const char *strut_did_you_mean(const char *text, const char *(*next)(const void 
   }
   return best ? best : within;
 }
+
+strut_near strut_near_to(const char *text, const char *(*next)(const void *context, size_t i),
+                         const void *context) {
+  strut_near near = {""};
+  const char *name = strut_did_you_mean(text, next, context);
+  if (name) snprintf(near.text, sizeof near.text, "; did you mean '%.260s'?", name);
+  return near;
+}
+
+const char *strut_row_name(const void *named_rows, size_t i) {
+  const strut_named_rows *named = named_rows;
+  return i < named->count ? *(const char *const *)((const char *)named->rows + i * named->size)
+                          : NULL;
+}

@@ -77,9 +77,7 @@ static inline bool strut_diagnostics_full(const strut_diagnostics *diagnostics) 
 /** Sets the file's name and its bytes; neither is copied. */
 STRUT_API void strut_diagnostics_source(strut_diagnostics *diagnostics, const char *file,
                                         const char *text, size_t length);
-/**
- * Adds one message at a place. Control characters in it become spaces; beyond 900 bytes it is cut.
- */
+/** Adds one message at a place. Control characters in it become spaces; beyond 900 bytes it is cut. */
 STRUT_API void strut_diagnose(strut_diagnostics *diagnostics, strut_place place, const char *format,
                               ...) __attribute__((format(printf, 3, 4)));
 /**
@@ -99,9 +97,8 @@ STRUT_API void strut_note(strut_diagnostics *diagnostics, strut_place place, con
 /** All notes, in order, as strut_diagnostics_render shows messages. NULL: memory is out. */
 STRUT_API const char *strut_diagnostics_render_notes(strut_diagnostics *diagnostics);
 /**
- * All messages, sorted by place, as printed text (file:line:column: error: ..., the line, a caret);
- * the text belongs to the diagnostics' arena. At most `most` are shown, then "... and N more".
- * NULL: memory is out.
+ * All messages, sorted by place, as printed text (file:line:column: error: ..., the line, a caret); the text belongs to
+ * the diagnostics' arena. At most `most` are shown, then "... and N more". NULL: memory is out.
  */
 STRUT_API const char *strut_diagnostics_render(strut_diagnostics *diagnostics, size_t most);
 /** Sorts the messages by place. */
@@ -119,3 +116,18 @@ STRUT_API void strut_diagnostics_free(strut_diagnostics *diagnostics);
 STRUT_API const char *strut_did_you_mean(const char *word,
                                          const char *(*next)(const void *context, size_t i),
                                          const void *context);
+
+/** "; did you mean 'x'?" of such a candidate, or "". */
+typedef struct strut_near {
+  char text[300];
+} strut_near;
+STRUT_API strut_near strut_near_to(const char *word,
+                                   const char *(*next)(const void *context, size_t i),
+                                   const void *context);
+/** Rows of an array that begin with their names: candidates by strut_row_name. */
+typedef struct strut_named_rows {
+  const void *rows;
+  size_t count, size;
+} strut_named_rows;
+#define STRUT_NAMED(rows, count) (&(const strut_named_rows){rows, count, sizeof *(rows)})
+STRUT_API const char *strut_row_name(const void *named_rows, size_t i);

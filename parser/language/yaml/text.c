@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/language/yaml/text.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 

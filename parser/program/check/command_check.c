@@ -2,7 +2,6 @@
 #include "parser/program/commands.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Options of figures: width, title, axes, what a figure of a run shows; and tables that are drawn.
- */
+/** Options of figures: width, title, axes, what a figure of a run shows; and tables that are drawn. */
 #pragma once
 
 #include "engine/output/draw/chart.h"

@@ -23,9 +23,7 @@ strut_purpose strut_run_options_purpose(const strut_arguments *arguments);
 /** Applies them to the scene and its experiment. STRUT_USAGE; the listener hears why. */
 strut_status strut_run_options_apply(const strut_arguments *arguments, strut_setup *setup);
 
-/*
- * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
- */
+/* Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them. */
 
 /** Zero-initialise but for what stands before `own`. */
 typedef struct strut_varied_scenes {

@@ -5,7 +5,6 @@
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/report/study_report.h"
-#include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/language/yaml/diagnostics.h"
 #include "parser/program/command/plot_options.h"
@@ -42,11 +41,9 @@ static strut_status check_column(const source *self, const strut_study_figure *f
                       figure->name, name);
   }
   if (!name) return STRUT_OK;
-  const char *near = strut_did_you_mean(name, column_name, self);
-  return strut_fail(error, STRUT_BAD_SCENE,
-                    "figure '%.60s' of the study: %s no column '%.60s'%s%s%s", figure->name,
-                    self->runs ? "the motion has" : "the table has", name,
-                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  return strut_fail(error, STRUT_BAD_SCENE, "figure '%.60s' of the study: %s no column '%.60s'%s",
+                    figure->name, self->runs ? "the motion has" : "the table has", name,
+                    strut_near_to(name, column_name, self).text);
 }
 
 /* COLUMN=TEXT, where the column has to be there. */

@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <errno.h>
-#include <limits.h>
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/base/checksum.h"
 #include "engine/base/memory.h"
-#include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/study/cluster/cluster_script.h"
 #include "engine/study/fit/fit.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"

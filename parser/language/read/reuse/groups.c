@@ -8,11 +8,6 @@
 
 enum { SECTIONS = STRUT_GROUP_SECTIONS, HINGE = 3 };
 
-static const char *group_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->group_count ? reader->groups[i].name : NULL;
-}
-
 /* An earlier key of the group that belongs to the same set as `key`, or NULL. */
 static const strut_tree *rival(const strut_group *group, int key) {
   int set = strut_key_at(key)->set;
@@ -132,7 +127,8 @@ static bool check_names(strut_reader *reader, const strut_tree *value, const cha
     return strut_report_error(reader, value->place, "%s names %u groups, expected at most %d",
                               strut_owner_text(reader, owner), (unsigned)value->count,
                               STRUT_MOST_GROUPS);
-  const strut_namespace names = {"group", &reader->group_names, group_name, reader,
+  const strut_namespace names = {"group", &reader->group_names, strut_row_name,
+                                 STRUT_NAMED(reader->groups, reader->group_count),
                                  reader->group_count};
   for (; item && known; item = value == item ? NULL : item->next)
     if (strut_read_name_of(reader, item, key, owner, &names) < 0) fine = false;
