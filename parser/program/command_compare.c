@@ -11,8 +11,6 @@
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 
 /* ---- reading the models ---- */
 

@@ -16,10 +16,9 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/language/write/writer.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
-#include "parser/program/streams.h"
 
 enum { LINE = 79 };
 

@@ -10,7 +10,6 @@
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/options.h"
 
 #define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
 

@@ -3,7 +3,7 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
-#include "parser/program/streams.h"
+#include "parser/program/commands.h"
 
 #include <errno.h>
 #include <fcntl.h>

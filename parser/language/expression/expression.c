@@ -9,7 +9,7 @@
 
 #include "engine/base/vec.h"
 #include "parser/language/expression/expression_parts.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/language/yaml/text.h"
 
 enum { DEPTH_MOST = 64, LENGTH_MOST = 1000, PROGRAM_MOST = 10000 };

@@ -5,7 +5,7 @@
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "parser/language/expression/expression.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 /** A name and the unit in brackets behind it, or on the line below; "" without. */
 typedef struct strut_csv_title {

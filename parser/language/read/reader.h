@@ -15,7 +15,6 @@
 #include "parser/language/keys/keys.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/language/read/reuse/used_files.h"
-#include "parser/language/yaml/diagnostics.h"
 #include "parser/language/yaml/document.h"
 
 /** The subject of a message: "member 'm1'", or "the solver" where name is NULL. */
@@ -394,7 +393,7 @@ bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields 
 typedef bool strut_section_reader(strut_reader *reader, strut_fields *fields, strut_owner owner,
                                   void *object);
 
-/* groups.c */
+/* parameters.c: groups */
 
 enum { STRUT_MOST_GROUPS = 64 }; /* that one thing may name */
 void strut_read_groups(strut_reader *reader);

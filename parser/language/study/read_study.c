@@ -23,6 +23,7 @@ const strut_declared *strut_study_declared(const strut_study_reader *reader, con
 const strut_declared *strut_study_parameter(strut_study_reader *study_reader, const strut_tree *key,
                                             const char *advice) {
   strut_reader *reader = study_reader->reader;
+  const strut_scene_source *source = study_reader->file->sources[0];
   const strut_declared *found = strut_study_declared(study_reader, key->text);
   bool twice = found && strut_name_map_find(&study_reader->given, found->name) >= 0;
   if (twice)
@@ -30,8 +31,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *study_reader, co
   else if (!found)
     strut_report_error(reader, key->place, "the model has no parameter '%s'%s%s",
                        strut_sanitised_text(reader, key->text),
-                       strut_hint(reader, key->text, strut_scene_source_parameter_name,
-                                  study_reader->file->sources[0], study_reader->declared_count),
+                       strut_hint_of_rows(reader, key->text,
+                                          STRUT_NAMED(source->parameters, source->parameter_count)),
                        advice ? advice : "");
   else
     strut_add_name(reader, &study_reader->given, found->name, 0);
@@ -39,12 +40,6 @@ const strut_declared *strut_study_parameter(strut_study_reader *study_reader, co
 }
 
 /* --set wins over the study's own `set`. */
-static bool overridden(const strut_study_file *file, size_t overrides, const char *name) {
-  for (size_t i = 0; i < overrides; i++)
-    if (strcmp(file->settings[i].name, name) == 0) return true;
-  return false;
-}
-
 static void read_settings(strut_study_reader *reader, const strut_slot *slot, size_t overrides,
                           bool may_yield) {
   strut_study_file *file = reader->file;
@@ -54,7 +49,8 @@ static void read_settings(strut_study_reader *reader, const strut_slot *slot, si
     if (!strut_read_scalar(reader->reader, value, key->text, study_owner,
                            "an expression or a text"))
       continue;
-    bool yields = may_yield && overridden(file, overrides, key->text);
+    bool yields =
+        may_yield && strut_row_find(STRUT_NAMED(file->settings, overrides), key->text) < overrides;
     const strut_declared *parameter = strut_study_parameter(reader, key, NULL);
     if (!parameter || yields) continue;
     file->settings[file->setting_count++] =
@@ -89,7 +85,7 @@ static void check_overrides(strut_study_reader *reader, size_t overrides) {
 /* The quantities that the model of a variant measures, or NULL. */
 static const strut_tree *quantities_of(strut_scene_source *source) {
   static const char *const path[] = {"run", "measure", "quantities"};
-  const strut_tree *tree = strut_scene_source_document(source)->root;
+  const strut_tree *tree = source->document.root;
   for (size_t i = 0; i < sizeof path / sizeof path[0] && tree; i++)
     tree = tree->kind == STRUT_TREE_MAP ? strut_tree_find(tree, path[i], NULL) : NULL;
   return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
@@ -461,9 +457,10 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
   return status;
 }
 
-strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
+strut_status strut_study_vary(void *study_file, const strut_study_value *values,
                               const strut_derived_by *by, size_t count, const double *numbers,
                               strut_setup *setup, strut_error *error) {
+  const strut_study_file *file = study_file;
   strut_diagnostics diagnostics = {0};
   strut_status status = read_point(file, values, by, count, numbers, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
@@ -480,15 +477,15 @@ strut_status strut_study_vary(const strut_study_file *file, const strut_study_va
   return status;
 }
 
-strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
+strut_status strut_study_setup(void *study_file, const strut_study_value *values,
                                strut_setup *setup, strut_error *error) {
-  return strut_study_vary(file, values, NULL, 0, NULL, setup, error);
+  return strut_study_vary(study_file, values, NULL, 0, NULL, setup, error);
 }
 
-strut_status strut_study_setup_at(const strut_study_file *file, const strut_study_value *values,
-                                  double value, strut_setup *setup, strut_error *error) {
-  const strut_derived_by followed = {.name = file->followed.name};
-  return strut_study_vary(file, values, &followed, 1, &value, setup, error);
+strut_status strut_study_setup_at(void *study_file, const strut_study_value *values, double value,
+                                  strut_setup *setup, strut_error *error) {
+  const strut_derived_by followed = {.name = ((strut_study_file *)study_file)->followed.name};
+  return strut_study_vary(study_file, values, &followed, 1, &value, setup, error);
 }
 
 /* Appends "frequency = 10 Hz" or "start = I" to a text. */
@@ -536,8 +533,8 @@ static void note_values(strut_study_file *file, const strut_study_value *values,
                       "the model cannot be run at %s", text);
 }
 
-static strut_status try_point(strut_study_file *file, const strut_study_value *values,
-                              const double *followed) {
+strut_status strut_study_try(strut_study_file *file, const strut_study_value *values,
+                             const double *followed) {
   strut_setup setup;
   const strut_derived_by by = {.name = file->followed.name};
   strut_status status =
@@ -549,15 +546,6 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
     note_values(file, values, followed);
   }
   return status;
-}
-
-strut_status strut_study_try(strut_study_file *file, const strut_study_value *values) {
-  return try_point(file, values, NULL);
-}
-
-strut_status strut_study_try_at(strut_study_file *file, const strut_study_value *values,
-                                double value) {
-  return try_point(file, values, &value);
 }
 
 void strut_study_close(strut_study_file *file) {

@@ -280,9 +280,8 @@ static bool is_range(const strut_study_axis *axis) {
 }
 
 static bool has_parameter(const strut_study_axis *axis, const char *name) {
-  for (size_t i = 0; i < axis->column_count; i++)
-    if (strcmp(axis->columns[i].name, name) == 0) return true;
-  return false;
+  const size_t count = axis->column_count;
+  return strut_row_find(STRUT_NAMED(axis->columns, count), name) < count;
 }
 
 /* The axis of a named parameter, which must be a range; axis_count where that was reported. */

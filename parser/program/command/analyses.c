@@ -13,7 +13,7 @@
 #include "engine/output/record_files.h"
 #include "engine/output/result_values.h"
 #include "engine/scene/things.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 strut_status strut_analysis_compute(strut_analysis *analysis, strut_error *error) {
   strut_experiment *experiment = analysis->setup ? &analysis->setup->experiment : NULL;
@@ -55,14 +55,14 @@ static strut_status read_supports(const strut_arguments *arguments, strut_scene 
     return STRUT_NO_MEMORY;
   }
   for (const char *at = text;; at++) {
-    size_t length = strcspn(at, ","), found = 0;
+    size_t length = strcspn(at, ",");
     memcpy(word, at, length);
     word[length] = '\0';
-    while (found < scene->node_count && strcmp(scene->nodes[found].name, word) != 0) found++;
+    const strut_named_rows *nodes = STRUT_NAMED(scene->nodes, scene->node_count);
+    size_t found = strut_row_find(nodes, word);
     if (found == scene->node_count)
-      return strut_usage_error(
-          arguments, "--supports: there is no node '%s'%s", word,
-          strut_near_to(word, strut_row_name, STRUT_NAMED(scene->nodes, scene->node_count)).text);
+      return strut_usage_error(arguments, "--supports: there is no node '%s'%s", word,
+                               strut_near_to(word, strut_row_name, nodes).text);
     for (size_t i = 0; i < to->count; i++)
       if (to->node[i] == (int32_t)found)
         return strut_usage_error(arguments, "--supports: named twice: '%s'", word);

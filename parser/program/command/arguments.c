@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "parser/language/expression/expression.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 void strut_tell(const strut_listener *listener, strut_message_kind kind, const char *command,
                 const char *format, ...) {

@@ -9,7 +9,7 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sensitivity/sensitivity.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/study/sweep.h"
 
 static const char table_name[] = "table.csv";

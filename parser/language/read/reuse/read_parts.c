@@ -112,8 +112,7 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
           key->text);
   }
   for (; given; given = given->next->next) {
-    size_t i = 0;
-    while (i < copy->parameter_count && strcmp(copy->parameters[i].name, given->text) != 0) i++;
+    size_t i = strut_row_find(STRUT_NAMED(copy->parameters, copy->parameter_count), given->text);
     if (i < copy->parameter_count) {
       copy->parameters[i].of_part->given = given->next;
       copy->parameters[i].of_part->given_scope = place;
