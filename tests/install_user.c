@@ -28,11 +28,6 @@ static strut_status draw(const strut_model *model, strut_error *error) {
 #endif
 
 #ifdef SWEEP
-static strut_status scene_at(void *context, const strut_study_value *values, strut_setup *setup,
-                             strut_error *error) {
-  return strut_study_setup(context, values, setup, error);
-}
-
 /* The points of study.yaml, into points.slots and table.csv. */
 static strut_status sweep(strut_error *error) {
   strut_study_file file = {0};
@@ -41,7 +36,7 @@ static strut_status sweep(strut_error *error) {
   strut_sweep_state state;
   const strut_sweep_options options = {.threads = 2, .directory = "."};
   strut_status status = strut_study_open("study.yaml", NULL, 0, &file, error);
-  const strut_sweep_scenes scenes = {scene_at, strut_setup_write, &file};
+  const strut_sweep_scenes scenes = {strut_study_setup, strut_setup_write, &file};
   if (status == STRUT_OK) status = strut_sweep_plan_make(&file.study, &scenes, &plan, error);
   const strut_slots_description rows = {.version = "mine",
                                         .name = "mine",

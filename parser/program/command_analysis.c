@@ -7,9 +7,6 @@
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/analyses.h"
 #include "parser/program/commands.h"
-#include "parser/program/open_model.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 
 /* What commands with an analysis do: open, compute with progress, write the files of -o, print, draw. */
 
@@ -154,80 +151,54 @@ static const strut_refused_option refused[] = {
     {"step", "nothing is integrated over time"},
     {NULL, NULL}};
 
-/* Options of a command by its analysis; LAST: a further row, or the end. */
-#define STATICS_OPTIONS(NAME, FILES, LAST)                                                         \
+/* A command by its analysis: its -o, a further table of options or none, and its forms. */
+#define STATICS(NAME, FILES, TABLE, FORMS, SUMMARY, DETAILS)                                       \
   static const strut_option NAME##_options[] = {{.table = strut_##NAME##_analysis_options},        \
                                                 STRUT_SET_OPTION,                                  \
                                                 STRUT_THREADS_OPTION,                              \
                                                 STRUT_OUTPUT_OPTION("DIR", FILES),                 \
                                                 STRUT_PRINT_OPTIONS,                               \
                                                 {.table = strut_plot_options},                     \
-                                                LAST,                                              \
-                                                {.name = NULL}};
+                                                {.table = TABLE},                                  \
+                                                {.name = NULL}};                                   \
+  const strut_command strut_command_##NAME = {.name = #NAME,                                       \
+                                              .model = "MODEL",                                    \
+                                              .summary = SUMMARY,                                  \
+                                              .details = DETAILS,                                  \
+                                              .options = NAME##_options,                           \
+                                              .analysis = &strut_##NAME##_analysis,                \
+                                              .refused = refused + 1,                              \
+                                              .timed = true,                                       \
+                                              .forms = FORMS};
 
-STATICS_OPTIONS(equilibria, "write equilibria.json into DIR", {.name = NULL})
-
-const strut_command strut_command_equilibria = {
-    .name = "equilibria",
-    .model = "MODEL",
-    .summary = "searches for all equilibria and the energy barriers between stable ones",
-    .details =
+STATICS(equilibria, "write equilibria.json into DIR", NULL, NULL,
+        "searches for all equilibria and the energy barriers between stable ones",
         "\nThe search holds pairs of contact nodes in turn in place of the ground and starts from\n"
         "the drawn shape, mirrored copies and random shapes. Stable equilibria are then released\n"
         "on the real ground, without drive and friction. The table lists what stands there and\n"
         "the energy barriers between; 'stiffness' is the lowest eigenvalue, 'found' the number of\n"
         "starts that ended there. --all adds those that sink, tip over or are unstable.\n"
         "Names such as n1-n4-2 give the touching nodes and the rank by energy.\n"
-        "Exit code 3 if nothing ever comes to rest.\n",
-    .options = equilibria_options,
-    .analysis = &strut_equilibria_analysis,
-    .refused = refused + 1,
-    .timed = true,
-};
+        "Exit code 3 if nothing ever comes to rest.\n")
 
-STATICS_OPTIONS(modes, "write modes.json and modes.csv into DIR", {.name = NULL})
-
-const strut_command strut_command_modes = {
-    .name = "modes",
-    .model = "MODEL",
-    .summary = "computes natural frequencies and mode shapes about an equilibrium",
-    .details =
+STATICS(modes, "write modes.json and modes.csv into DIR", NULL, NULL,
+        "computes natural frequencies and mode shapes about an equilibrium",
         "\nClosed contacts stay closed and slide without friction, unless --stuck holds them.\n"
         "Without --at, the equilibrium is the one in which the start comes to rest. All modes are\n"
-        "computed up to 400 coordinates, beyond that the ten lowest.\n",
-    .options = modes_options,
-    .analysis = &strut_modes_analysis,
-    .refused = refused + 1,
-    .timed = true,
-};
+        "computed up to 400 coordinates, beyond that the ten lowest.\n")
 
-STATICS_OPTIONS(rigidity, "write rigidity.json into DIR", {.name = NULL})
-
-const strut_command strut_command_rigidity = {
-    .name = "rigidity",
-    .model = "MODEL",
-    .summary = "computes self-stress states and mechanisms, and classifies them",
-    .details =
+STATICS(rigidity, "write rigidity.json into DIR", NULL, NULL,
+        "computes self-stress states and mechanisms, and classifies them",
         "\nPrints the rank of the equilibrium matrix with its spectral gap, self-stress states,\n"
         "mechanisms (rigid-body, infinitesimal, finite), super stability, and the\n"
         "member forces in the shape. Supports are those of the scene; the ground does not\n"
-        "count as one.\n",
-    .options = rigidity_options,
-    .analysis = &strut_rigidity_analysis,
-    .refused = refused + 1,
-    .timed = true,
-};
-
-STATICS_OPTIONS(path, "write path.json and path.csv into DIR", {.table = strut_axis_options})
+        "count as one.\n")
 
 static const strut_command_variant path_forms[] = {{"periodic", &strut_command_periodic},
                                                    {NULL, NULL}};
 
-const strut_command strut_command_path = {
-    .name = "path",
-    .model = "MODEL",
-    .summary = "follows an equilibrium as a load, an actuator or a parameter changes",
-    .details =
+STATICS(path, "write path.json and path.csv into DIR", strut_axis_options, path_forms,
+        "follows an equilibrium as a load, an actuator or a parameter changes",
         "\nStarts without the load at the equilibrium in which the start comes to rest, and "
         "follows\n"
         "the equilibria as the load factor grows, past limit points, to the factor VALUE. Detects\n"
@@ -237,13 +208,7 @@ const strut_command strut_command_path = {
         "--over varies something else at constant loads: a number under 'parameters' (from its\n"
         "value in the file), an actuator (the change of its member's rest length, its hinge's "
         "rest\n"
-        "angle or its cell's pressure), or the prescribed displacement of a node along x or y.\n",
-    .options = path_options,
-    .forms = path_forms,
-    .analysis = &strut_path_analysis,
-    .refused = refused + 1,
-    .timed = true,
-};
+        "angle or its cell's pressure), or the prescribed displacement of a node along x or y.\n")
 
 static const strut_option form_options[] = {
     {.table = strut_form_analysis_options},

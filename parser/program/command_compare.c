@@ -11,8 +11,6 @@
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 
 /* ---- reading the models ---- */
 
@@ -172,11 +170,10 @@ static strut_status check_settings(const strut_arguments *arguments,
       known = known || ((owner == 0 || owner == k + 1) &&
                         strut_parameter_named(&compared->setups[k].scene, name));
     if (known) continue;
-    const char *near = strut_did_you_mean(name, parameter_at, compared);
-    return strut_usage_error(arguments, "--set %s: %s%s%s has %s parameter%s%s%s", name,
+    return strut_usage_error(arguments, "--set %s: %s%s%s has %s parameter%s", name,
                              owner ? "'" : "", owner ? arguments->models[owner - 1] : "no model",
                              owner ? "'" : "", owner ? "no such" : "such a",
-                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+                             strut_near_to(name, parameter_at, compared).text);
   }
   return STRUT_OK;
 }

@@ -16,10 +16,9 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/language/write/writer.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
-#include "parser/program/streams.h"
 
 enum { LINE = 79 };
 
@@ -34,11 +33,9 @@ static const char *key_at(const void *context, size_t i) {
 }
 
 static strut_status refuse_name(const char *name) {
-  const char *near = strut_did_you_mean(name, section_at, NULL);
-  if (!near) near = strut_did_you_mean(name, key_at, NULL);
-  fprintf(stderr, "strut keys: there is no section or key '%s'", name);
-  if (near) fprintf(stderr, "; did you mean '%s'?", near);
-  fprintf(stderr, "\nSections:");
+  strut_near near = strut_near_to(name, section_at, NULL);
+  if (!*near.text) near = strut_near_to(name, key_at, NULL);
+  fprintf(stderr, "strut keys: there is no section or key '%s'%s\nSections:", name, near.text);
   for (int i = 0, column = LINE; i < STRUT_SECTION_COUNT; i++) {
     const char *section = section_at(NULL, (size_t)i);
     int length = (int)strlen(section) + 2;

@@ -11,10 +11,6 @@
 #include "engine/output/file.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/commands.h"
-#include "parser/program/installed.h"
-#include "parser/program/open_model.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 
 enum { WIDTH = 36, LONGEST = 2 * STRUT_LONGEST_PATH };
 

@@ -2,7 +2,6 @@
 #include "parser/program/commands.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
@@ -11,7 +10,6 @@
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/options.h"
 
 #define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
 
@@ -57,11 +55,6 @@ typedef struct follow_source {
   strut_follow_start starts[MOST_STARTS];
 } follow_source;
 
-static const char *parameter_at(const void *context, size_t i) {
-  const strut_scene *scene = context;
-  return i < scene->parameter_count ? scene->parameters[i].name : NULL;
-}
-
 /* A range whose ends may be those of --from and --until. */
 typedef struct followed {
   const char *option; /* "--over" */
@@ -79,11 +72,11 @@ static strut_status check_range(const strut_arguments *arguments, const strut_sc
         arguments, "missing %s NAME=LOW..HIGH, such as %s frequency=8Hz..12Hz%s", self->option,
         self->option, apart ? ", or --over NAME, --from and --until" : "");
   const strut_parameter *parameter = strut_parameter_named(scene, name);
-  const char *near = parameter ? NULL : strut_did_you_mean(name, parameter_at, scene);
   if (!parameter)
-    return strut_usage_error(arguments, "%s: the model has no parameter '%s'%s%s%s", self->option,
-                             name, near ? "; did you mean '" : "", near ? near : "",
-                             near ? "'?" : "");
+    return strut_usage_error(
+        arguments, "%s: the model has no parameter '%s'%s", self->option, name,
+        strut_near_to(name, strut_row_name, STRUT_NAMED(scene->parameters, scene->parameter_count))
+            .text);
   if (!isfinite(parameter->value))
     return strut_usage_error(arguments, "%s: parameter '%s' is a text, expected a number",
                              self->option, name);

@@ -15,9 +15,6 @@
 #include "engine/run/simulate.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/scene_options.h"
-#include "parser/program/open_model.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 
 /* What is drawn and filmed of a run. Zero-initialise. */
 typedef struct run_pictures {

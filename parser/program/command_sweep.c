@@ -14,12 +14,8 @@
 #include "engine/study/fit/fit.h"
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
-#include "parser/program/command/plot_options.h"
 #include "parser/program/command/scene_options.h"
 #include "parser/program/commands.h"
-#include "parser/program/open_model.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
 static const strut_option options[] = {

@@ -9,9 +9,6 @@
 #include "engine/base/text.h"
 #include "engine/study/tradeoff/tradeoff.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/open_model.h"
-#include "parser/program/options.h"
-#include "parser/program/streams.h"
 
 /* ---- operating points: parameters drawn at random, the same from the same seed ---- */
 

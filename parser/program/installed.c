@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* realpath belongs to the X/Open part of POSIX. */
 #define _XOPEN_SOURCE 700
-#include "parser/program/installed.h"
+#include "parser/program/commands.h"
 
 #include <dlfcn.h>
 #include <pthread.h>

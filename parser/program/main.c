@@ -15,14 +15,11 @@
 
 #include "engine/base/memory.h"
 #include "engine/output/buffer.h"
-#include "engine/output/file.h"
 #include "engine/output/record_files.h"
 #include "engine/run/simulate.h"
 #include "parser/language/yaml/document.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/commands.h"
-#include "parser/program/open_model.h"
-#include "parser/program/streams.h"
 
 /* --threads, for all that computes on several. */
 static void limit_threads(const strut_given_whole *threads) {
@@ -75,7 +72,7 @@ static const strut_command *natural_command(const char *path) {
   if (strut_file_read(path, &text, &length, &error) != STRUT_OK) return command;
   if (strut_scene_source_open(path, text, length, &diagnostics, &source) == STRUT_OK) {
     /* with what its base holds */
-    const strut_tree *root = strut_scene_source_document(source)->root;
+    const strut_tree *root = source->document.root;
     if (root && root->kind == STRUT_TREE_MAP && !strut_tree_find(root, "run", NULL))
       command = &strut_command_equilibria;
   }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "parser/program/open_model.h"
+#include "parser/program/commands.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -12,8 +12,6 @@
 #include "parser/language/read/read_scene.h"
 #include "parser/language/write/write_scene.h"
 #include "parser/program/command/scene_options.h"
-#include "parser/program/commands.h"
-#include "parser/program/streams.h"
 
 enum { MOST_MESSAGES = 50 };
 
@@ -99,7 +97,7 @@ strut_status strut_write_short(const strut_arguments *arguments, const char *tex
   *result = NULL;
   strut_status status = strut_scene_source_open(name, text, length, &unused, &tree);
   strut_diagnostics_free(&unused);
-  if (status == STRUT_OK) wanted = all || is_abbreviated(strut_scene_source_document(tree)->root);
+  if (status == STRUT_OK) wanted = all || is_abbreviated(tree->document.root);
   if (status == STRUT_OK && wanted)
     status = strut_short_write(tree, arguments->overrides, arguments->override_count, before, setup,
                                arguments->output ? arguments->output : name, result);

@@ -9,6 +9,8 @@ out_empty
 err_has "missing COMMAND"
 tells 1 "unknown command 'rum'; did you mean 'run'?" rum
 tells 1 "did you mean 'check'?" help chek
+tells 1 "unknown command 'fit'; 'strut sweep STUDY' computes studies" fit "$hopper"
+tells 1 "unknown command 'optimise'; 'strut sweep STUDY' computes studies" optimise "$hopper"
 expect 0 --version
 grep -qE '^strut [0-9]+\.[0-9]+\.[0-9]+$' out || fail "no version"
 err_empty
@@ -47,6 +49,8 @@ grep -q -- --force out && fail "check has no --force"
 tells 1 "unknown option '--jsno'; did you mean '--json'?" run "$hopper" --jsno
 tells 1 "unknown option '--js'; did you mean '--json'?" run "$hopper" --js
 tells 1 "unknown option '--out'; did you mean '--output'?" run "$hopper" --out x
+tells 1 "unknown option '--film'; did you mean '--animate'?" run "$hopper" --film x.mp4
+tells 1 "unknown option '--movie'; 'strut run --animate FILE' makes films" sweep "$hopper" --movie=x.mp4
 tells 1 "unknown option '--out'; did you mean '--output'?" run "$hopper" --out=x
 tells 1 "did you mean '--set'?" run "$hopper" --se step=1
 absent x

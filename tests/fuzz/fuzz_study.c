@@ -57,7 +57,7 @@ static void check_point(strut_study_file *file, int64_t point) {
   strut_status status = strut_study_setup(file, values, &setup, &error);
   require(status == STRUT_OK || (status == STRUT_BAD_SCENE && error.message[0]));
   if (status == STRUT_OK) strut_setup_free(&setup);
-  require(strut_study_try(file, values) == status);
+  require(strut_study_try(file, values, NULL) == status);
   require(strut_study_messages(file, 50) != NULL);
   strut_release(values);
 }

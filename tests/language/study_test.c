@@ -25,11 +25,11 @@ static strut_status try_ends(strut_study_file *file) {
   strut_study_value values[16];
   assert_true(file->column_count <= 16);
   strut_grid_values(&file->study, 0, values);
-  strut_status status = strut_study_try(file, values);
+  strut_status status = strut_study_try(file, values, NULL);
   int64_t stride = 1;
   for (size_t a = file->study.axis_count; a-- > 0 && !status;) {
     strut_grid_values(&file->study, stride * (file->study.axes[a].count - 1), values);
-    status = strut_study_try(file, values);
+    status = strut_study_try(file, values, NULL);
     stride *= file->study.axes[a].count;
   }
   return status;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Located messages: their text, order and limits, the caret, and suggestions. */
-#include "parser/language/yaml/diagnostics.h"
 #include "engine/base/memory.h"
+#include "parser/language/yaml/document.h"
 #include "tests/support/test.h"
 
 static strut_place at(uint32_t line, uint32_t column, uint32_t length) {

@@ -5,7 +5,7 @@
 
 #include "engine/base/memory.h"
 #include "parser/language/expression/expression.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "tests/support/check.h"
 
 static uint64_t random_state = 42;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* CSV tables read for pictures: cells, numbers, what is no table, and nothing left behind. */
-#include "parser/program/command/plot_options.h"
+#include "parser/program/command/scene_options.h"
 
 #include <math.h>
 #include <stdio.h>

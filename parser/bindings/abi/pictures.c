@@ -6,7 +6,7 @@
 #include "engine/output/draw/figure.h"
 #include "engine/output/page/page.h"
 #include "parser/language/write/write_scene.h"
-#include "parser/program/command/plot_options.h"
+#include "parser/program/command/scene_options.h"
 
 static const strut_option svg_options[] = {{.table = strut_plot_setting_options},
                                            {.table = strut_run_figure_options},

@@ -15,7 +15,6 @@
 #include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
-#include "parser/program/command/plot_options.h"
 #include "parser/program/command/scene_options.h"
 
 /* No frame is left out: the caller decides how much is recorded. */

@@ -60,9 +60,9 @@ static strut_status add_axis(sweep *self, size_t k, const char *name, const doub
   const strut_scene_source *source = self->scene->source->tree;
   const strut_declared *declared = strut_scene_source_parameter(source, name);
   if (!declared) {
-    const char *near = strut_did_you_mean(name, strut_scene_source_parameter_name, source);
-    return strut_fail(what, STRUT_USAGE, "the scene has no parameter '%s'%s%s%s", name,
-                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    const strut_named_rows *names = STRUT_NAMED(source->parameters, source->parameter_count);
+    return strut_fail(what, STRUT_USAGE, "the scene has no parameter '%s'%s", name,
+                      strut_near_to(name, strut_row_name, names).text);
   }
   strut_study_column *column = &self->axis.columns[k];
   *column = (strut_study_column){

@@ -9,7 +9,7 @@
 
 #include "engine/base/vec.h"
 #include "parser/language/expression/expression_parts.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/language/yaml/text.h"
 
 enum { DEPTH_MOST = 64, LENGTH_MOST = 1000, PROGRAM_MOST = 10000 };
@@ -278,10 +278,9 @@ static bool fail_with_hint(strut_expression_reader *reader, size_t begin, size_t
   bool named = parameters && reader->scope && reader->scope->names;
   candidates all = {reader->scope, named, functions, units, 0, 0};
   bool silent = cut || (reader->scope && reader->scope->no_hints);
-  const char *near = silent ? NULL : strut_did_you_mean(word, next_candidate, &all);
-  return strut_expression_fail(reader, begin, begin + length, "unknown %s '%s%s'%s%s%s", what, word,
-                               cut ? "..." : "", near ? "; did you mean '" : "", near ? near : "",
-                               near ? "'?" : "");
+  return strut_expression_fail(reader, begin, begin + length, "unknown %s '%s%s'%s", what, word,
+                               cut ? "..." : "",
+                               silent ? "" : strut_near_to(word, next_candidate, &all).text);
 }
 
 /* Bytes of the first of two units that the word joins, as in Ns for N s; 0: it is no such word. */

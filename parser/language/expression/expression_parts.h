@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the files of the expression reader share: the text under the reader's eye, and its errors.
- */
+/** What the files of the expression reader share: the text under the reader's eye, and its errors. */
 #pragma once
 
 #include "parser/language/expression/expression.h"
@@ -33,7 +31,7 @@ bool strut_expression_unknown_function(strut_expression_reader *reader, size_t b
                                        size_t length);
 bool strut_expression_unexpected(strut_expression_reader *reader, const char *expected);
 
-/* expression_columns.c: columns, and the program that is made of them. Without a compiler the
+/* terms.c: columns, and the program that is made of them. Without a compiler the
    functions that emit do nothing. */
 
 /** Reads a column where one stands here: 1; 0: none does; -1: it was refused. */

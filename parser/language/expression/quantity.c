@@ -212,26 +212,18 @@ bool strut_function_apply(const strut_function *function, const strut_quantity *
   return true;
 }
 
-#define ENERGY                                                                                     \
-  { 1, 2, -2, 0 }
-#define FORCE                                                                                      \
-  { 1, 1, -2, 0 }
-#define FREQUENCY                                                                                  \
-  { 0, 0, -1, 0 }
-#define LENGTH                                                                                     \
-  { 0, 1, 0, 0 }
-#define MASS                                                                                       \
-  { 1, 0, 0, 0 }
-#define PRESSURE                                                                                   \
-  { 1, -1, -2, 0 }
-#define POWER                                                                                      \
-  { 1, 2, -3, 0 }
-#define TIME                                                                                       \
-  { 0, 0, 1, 0 }
-#define ANGLE                                                                                      \
-  { 0, 0, 0, 1 }
-#define NONE                                                                                       \
-  { 0, 0, 0, 0 }
+/* clang-format off */
+#define ENERGY {1, 2, -2, 0}
+#define FORCE {1, 1, -2, 0}
+#define FREQUENCY {0, 0, -1, 0}
+#define LENGTH {0, 1, 0, 0}
+#define MASS {1, 0, 0, 0}
+#define PRESSURE {1, -1, -2, 0}
+#define POWER {1, 2, -3, 0}
+#define TIME {0, 0, 1, 0}
+#define ANGLE {0, 0, 0, 1}
+#define NONE {0, 0, 0, 0}
+/* clang-format on */
 
 /* In the order of strcmp, for the binary search. */
 static const strut_unit units[] = {

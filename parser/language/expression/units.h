@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Units and dimensions. One table of unit names; a dimension is the exponents of kg, m, s and angle.
- */
+/** Units and dimensions. One table of unit names; a dimension is the exponents of kg, m, s and angle. */
 #pragma once
 
 #include <stdbool.h>

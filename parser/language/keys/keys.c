@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/base/text.h"
 #include "engine/scene/sample.h"
 #include "engine/scene/study.h"
 #include "parser/language/yaml/document.h"

@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * The table of the language, one row per key; keys.h lists what is generated from it. Keys of a scene's
- * things are rows of engine/scene/things_table.h, which also explains the column `field`; those of parts
- * and studies are here.
+ * The table of the language, one row per key; keys.h lists what is generated from it. Keys of a scene's things are rows
+ * of engine/scene/things_table.h, which also explains the column `field`; those of parts and studies are here.
  *
  * X(section, id, name, type, measure, range, default, need, set, words, field, description)
  *
- * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must
- * be given; `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ
- * from the default. set: a mapping may give only one of the keys of a set (not 0). Words are separated
- * by '|'; those of a nested mapping are what messages call it, if not by its key, and of NAMES what they are.
+ * range: ANY, NOT_NEGATIVE, ABOVE_ZERO, or WHOLE(least, most) for whole numbers. need: REQUIRED keys must be given;
+ * `strut export` always writes REQUIRED and WRITTEN keys, OPTIONAL ones only where they differ from the default. set: a
+ * mapping may give only one of the keys of a set (not 0). Words are separated by '|'; those of a nested mapping are
+ * what messages call it, if not by its key, and of NAMES what they are.
  */
 #pragma once
 
@@ -156,7 +155,7 @@
   X(STUDY, KEEP, "keep", KEEP, NONE, ANY, "[velocity, velocity_spread, motion, periods, force_evaluations, outcome, quantities]", OPTIONAL, 0, STRUT_KEEP_WORD_LIST, BY_HAND, "Columns of the table. `distance` is per drive period; `work`, `losses`, `residual` belong to the energy balance; `cost_of_transport` is net drive work / (weight * distance); `contacts` gives duty factors and heights; `equilibrium_count` includes saddles; `critical_factor` is the first loss of stability, `limit_factor` the first limit point; `quantities` are all measured ones, each also available by name; `NODE.y`, `MEMBER.force`, `energy.total` and other columns of the motion are those at the end of the run.") \
   X(STUDY, DERIVATIVES, "derivatives", NAMES, NONE, ANY, "as the model says", OPTIONAL, 0, "a parameter", NONE, "Parameters of the model, numbers: columns `COLUMN.d.PARAMETER` with the derivatives of what is kept by each of them, and `COLUMN.d.PARAMETER.error`. Both are empty where there is none. See [derivatives](numerics.md#derivatives).") \
   X(STUDY, TRAJECTORIES, "trajectories", WORD, NONE, ANY, "no", OPTIONAL, 0, "no|yes", FIELD(strut_study, trajectories), "Write the results of each run to a folder `runs/POINT`, as `strut run -o` does.") \
-  X(STUDY, CHECK, "check", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(CHECK), "Repeats each point more accurately and marks the points whose outcome changes.") \
+  X(STUDY, CHECK, "check", MAP, NONE, ANY, "", OPTIONAL, 0, "", SELF(strut_study, CHECK), "Repeats each point more accurately and marks the points whose outcome changes.") \
   X(STUDY, FIGURES, "figures", THINGS, NONE, ANY, "", OPTIONAL, 0, "the keys of a [figure](#figure)", THINGS(FIGURE), "Figures of the table or of the recorded motions, each written to NAME.svg.") \
   X(STUDY, COMPUTE, "compute", WORD, NONE, ANY, "run", OPTIONAL, 0, "run|equilibria|modes|rigidity|path|form", FIELD(strut_study, compute), "What is computed at each point: a run, or the results of the command of that name. By default the table keeps all columns of an analysis except `node_count`, `member_count`, `degrees_of_freedom`, `total_mass`, `lowest_barrier`, `lengths`, `positions`, `stiffness`, `shape_distance` and `curve_distance`.") \
   X(STUDY, LOWEST, "lowest", NUMBER, NONE, WHOLE(1, 20), "3", OPTIONAL, 0, "", FIELD(strut_study, lowest), "Number of lowest `states`, `energies`, `barriers` (the lowest escape barrier of each state), `frequencies` and `damping_ratios` that a row lists. `lowest_barrier` is the lowest out of any stable state.") \
@@ -164,12 +163,12 @@
   X(STUDY, PATH, "path", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(PATH), "What `compute: path` follows.") \
   X(STUDY, REFINE, "refine", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(REFINE), "Divides the cells of a map where a column changes, instead of computing a fine grid.") \
   X(STUDY, SENSITIVITY, "sensitivity", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SENSITIVITY), "Computes how much each parameter contributes to each column: derivatives, and first-order and total indices from samples.") \
-  X(STUDY, STIFFNESS_AT, "stiffness_at", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(STIFFNESS_AT), "With `compute: modes`: node and direction of the column `stiffness`.") \
+  X(STUDY, STIFFNESS_AT, "stiffness_at", MAP, NONE, ANY, "", OPTIONAL, 0, "", SELF(strut_study, STIFFNESS_AT), "With `compute: modes`: node and direction of the column `stiffness`.") \
   X(STUDY, SHAPE, "shape", THINGS, NONE, ANY, "", OPTIONAL, 0, "positions `[x, y]` of nodes", BY_HAND, "Positions of some or all nodes for the column `shape_distance`: the root mean square over nodes, after the best rigid motion, of the end of a run, the nearest stable state or the equilibrium of modes.") \
   X(STUDY, LIKE, "like", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study, goal.like), "A configuration of the model with positions, instead of `shape`.") \
   X(STUDY, CURVE, "curve", POINTS, CONTEXT, ANY, "", OPTIONAL, 0, "", LIST(strut_study, goal.curve, goal.curve_count), "With `compute: path` and `over: NODE.x` or `NODE.y`: displacements and forces `[[-1 mm, 2 N], ...]` for the column `curve_distance`, the root mean square of the force differences.") \
-  X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(LIMIT), "Largest cost of a point. A point that needs more fails, and its row says so.") \
-  X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FORM), "Settings of `compute: form`.") \
+  X(STUDY, LIMIT, "limit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SELF(strut_study, LIMIT), "Largest cost of a point. A point that needs more fails, and its row says so.") \
+  X(STUDY, FORM, "form", MAP, NONE, ANY, "", OPTIONAL, 0, "", SELF(strut_study, FORM), "Settings of `compute: form`.") \
   X(STUDY, SEARCH, "search", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(SEARCH), "Searches for the parameters with the best value of a column, instead of computing a grid.") \
   X(STUDY, FOLLOW, "follow", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FOLLOW), "Follows periodic motions, stable or not, over a parameter, as `strut path --periodic` does, instead of running the points.") \
   X(STUDY, FIT, "fit", MAP, NONE, ANY, "", OPTIONAL, 0, "", SECTION(FIT), "Finds the parameters with which the model matches measured numbers, and what these say of them.")

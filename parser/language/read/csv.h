@@ -1,14 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * Tables as text: cells separated by commas, semicolons or tabs (RFC 4180) below a header such as
- * "velocity [m/s]".
- */
+/** Tables as text: cells separated by commas, semicolons or tabs (RFC 4180) below a header such as "velocity [m/s]". */
 #pragma once
 
 #include "engine/base/memory.h"
 #include "engine/base/status.h"
 #include "parser/language/expression/expression.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 /** A name and the unit in brackets behind it, or on the line below; "" without. */
 typedef struct strut_csv_title {

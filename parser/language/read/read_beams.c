@@ -2,12 +2,10 @@
 /*
  * Beams: each becomes nodes, bars and hinges of the scene, as if the file had listed them. See reader.h.
  *
- * With parts of the length h, a hinge between two parts has the stiffness EI / h, and one between a part
- * and a clamp 2 EI / h: half a part bends. The deflection of a cantilever then converges with the square
- * of the number of parts.
+ * With parts of the length h, a hinge between two parts has the stiffness EI / h, and one between a part and a clamp 2
+ * EI / h: half a part bends. The deflection of a cantilever then converges with the square of the number of parts.
  */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/vec.h"

@@ -5,7 +5,6 @@
 
 #include "engine/base/vec.h"
 #include "parser/language/read/reader.h"
-#include "parser/language/read/reuse/copies.h"
 
 enum { MOST_PAIRS = 100000 };
 

@@ -453,22 +453,13 @@ void strut_read_scene_data(strut_reader *reader) {
 
 /* ---- columns where they are used ---- */
 
-static const char *table_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->table_count ? reader->tables[i].name : NULL;
-}
-
-static const char *column_name(const void *context, size_t i) {
-  const strut_data_table *table = context;
-  return i < table->column_count ? table->columns[i].name : NULL;
-}
-
 /* Reports a name that is none. */
 static void refuse_name(strut_reader *reader, const strut_tree *value, strut_owner owner,
                         const strut_data_table *table) {
   const char *dot = strchr(value->text, '.');
   const char *name = strut_arena_text(&reader->scratch, value->text, strcspn(value->text, "."));
-  const char *hint = name ? strut_hint(reader, name, table_name, reader, reader->table_count) : "";
+  const strut_named_rows *tables = STRUT_NAMED(reader->tables, reader->table_count);
+  const char *hint = name ? strut_hint_of_rows(reader, name, tables) : "";
   if (!*hint && value->place.file)
     hint = "; a part takes none of its file: write them under 'data' of the scene that uses it";
   if (!name || (reader->tables_unknown && !table))
@@ -477,9 +468,10 @@ static void refuse_name(strut_reader *reader, const strut_tree *value, strut_own
     strut_report_error(reader, value->place, "expected a column such as film.x for %s, found '%s'",
                        strut_owner_text(reader, owner), strut_sanitised_text(reader, value->text));
   else if (table)
-    strut_report_error(reader, value->place, "data '%s' have no column '%s'%s", table->name,
-                       strut_sanitised_text(reader, dot + 1),
-                       strut_hint(reader, dot + 1, column_name, table, table->column_count));
+    strut_report_error(
+        reader, value->place, "data '%s' have no column '%s'%s", table->name,
+        strut_sanitised_text(reader, dot + 1),
+        strut_hint_of_rows(reader, dot + 1, STRUT_NAMED(table->columns, table->column_count)));
   else
     strut_report_error(reader, value->place, "unknown data '%s' for %s%s",
                        strut_sanitised_text(reader, name), strut_owner_text(reader, owner), hint);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "parser/language/read/reader.h"
-#include "parser/language/read/reuse/overlay.h"
 
 strut_slot *strut_slot_of(strut_fields *fields, int key) {
   assert(strut_key_at(key)->section == fields->section);
@@ -84,6 +83,7 @@ static const char *other_home(const char *text) {
                {STRUT_SECTION_RUN, "; it belongs under 'run'"},
                {STRUT_SECTION_INITIAL, "; it belongs under 'initial'"},
                {STRUT_SECTION_OUTPUT, "; it belongs under 'output'"},
+               {STRUT_SECTION_MEASURE, "; it belongs under 'measure' of 'run'"},
                {STRUT_SECTION_SIGNAL, "; it belongs under 'signal'"}};
   for (size_t i = 0; i < sizeof homes / sizeof homes[0]; i++)
     if (strut_key_find(homes[i].section, text) >= 0) return homes[i].advice;
@@ -308,10 +308,13 @@ void strut_read_fields(strut_reader *reader, strut_section section, const strut_
                        strut_owner owner, strut_fields *fields) {
   *fields = (strut_fields){.section = section, .map = map};
   if (map->kind != STRUT_TREE_MAP) {
+    const bool file = section == STRUT_SECTION_DATA && map->kind == STRUT_TREE_SCALAR;
     strut_report_error(reader, map->place,
                        "expected a mapping {key: value, ...} for %s, found %s%s",
                        strut_owner_text(reader, owner), strut_found(reader, map),
-                       strut_lacks_space(map) ? "; write a space after the colon" : "");
+                       strut_lacks_space(map) ? "; write a space after the colon"
+                       : file                 ? "; write {file: NAME.csv}"
+                                              : "");
     fields->broken = true;
     strut_suppress_missing(fields);
     return;

@@ -469,13 +469,9 @@ static bool check_derivative(strut_reader *reader, const strut_tree *list, const
                                 strut_owner_text(reader, owner));
   bool found = find_declared(reader, source, item->text, declared);
   if (found && !declared->text) return true;
-  size_t count = reader->parameter_count;
-  if (source) strut_scene_source_parameters(source, &count);
-  const char *hint =
-      found ? "; it is a text"
-            : strut_hint(reader, item->text,
-                         source ? strut_scene_source_parameter_name : strut_parameter_name,
-                         source ? (const void *)source : reader, count);
+  const strut_named_rows *names = source ? STRUT_NAMED(source->parameters, source->parameter_count)
+                                         : STRUT_NAMED(reader->parameters, reader->parameter_count);
+  const char *hint = found ? "; it is a text" : strut_hint_of_rows(reader, item->text, names);
   return strut_report_error(
       reader, item->place,
       "expected a number of the %s's 'parameters' for '%s' of %s, found '%s'%s",

@@ -205,18 +205,6 @@ static strut_status read_document(strut_document *document, strut_diagnostics *d
   return files ? files : status;
 }
 
-struct strut_scene_source {
-  strut_document document;
-  strut_arena arena;
-  const char *file, *text;
-  size_t length, count;
-  strut_declared *declared; /* (count) */
-  size_t used_count;
-  strut_used_file *used; /* (used_count) files that the text names; owned */
-  size_t table_count;
-  const strut_data_table *tables; /* (table_count) which all its scenes share */
-};
-
 /* Reads the scene from a source, or from the text if that is NULL. */
 static strut_status read_from(const strut_scene_source *source, const strut_setting *settings,
                               size_t count, strut_purpose purpose, strut_diagnostics *diagnostics,
@@ -293,11 +281,11 @@ strut_declared strut_declaration_of(const strut_parameter_state *parameter) {
 }
 
 static strut_status keep_declared(strut_reader *reader, strut_scene_source *source) {
-  source->count = reader->parameter_count;
-  source->declared = strut_arena_allocate(&source->arena, source->count, sizeof *source->declared);
-  if (!source->declared) return STRUT_NO_MEMORY;
-  for (size_t i = 0; i < source->count; i++)
-    source->declared[i] = strut_declaration_of(&reader->parameters[i]);
+  size_t count = source->parameter_count = reader->parameter_count;
+  source->parameters = strut_arena_allocate(&source->arena, count, sizeof *source->parameters);
+  if (!source->parameters) return STRUT_NO_MEMORY;
+  for (size_t i = 0; i < count; i++)
+    source->parameters[i] = strut_declaration_of(&reader->parameters[i]);
   return STRUT_OK;
 }
 
@@ -355,25 +343,18 @@ void strut_scene_source_free(strut_scene_source *source) {
   strut_release(source);
 }
 
-const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
-                                                    size_t *count) {
-  *count = source->count;
-  return source->declared;
-}
-
 const strut_declared *strut_scene_source_parameter(const strut_scene_source *source,
                                                    const char *name) {
-  for (size_t i = 0; i < source->count; i++)
-    if (strcmp(source->declared[i].name, name) == 0) return &source->declared[i];
-  return NULL;
+  size_t count = source->parameter_count;
+  size_t i = strut_row_find(STRUT_NAMED(source->parameters, count), name);
+  return i < count ? &source->parameters[i] : NULL;
 }
 
 bool strut_setting_put(const strut_scene_source *source, const char *name, double value,
                        char text[STRUT_NUMBER_TEXT], strut_setting *settings, size_t *count) {
   const strut_declared *declared = strut_scene_source_parameter(source, name);
-  size_t at = 0;
   if (!declared || declared->text) return false;
-  while (at < *count && strcmp(settings[at].name, name) != 0) at++;
+  size_t at = strut_row_find(STRUT_NAMED(settings, *count), name);
   if (at == *count) settings[(*count)++] = (strut_setting){.name = name};
   strut_number_text(value, text);
   settings[at] = (strut_setting){.name = name,
@@ -386,29 +367,11 @@ bool strut_setting_put(const strut_scene_source *source, const char *name, doubl
   return true;
 }
 
-const char *strut_scene_source_parameter_name(const void *context, size_t i) {
-  const strut_scene_source *source = context;
-  return i < source->count ? source->declared[i].name : NULL;
-}
-
-bool strut_scene_source_uses_files(const strut_scene_source *source) {
-  return source->used_count > 0 && source->used[0].owned;
-}
-
 unsigned strut_scene_source_use(strut_scene_source *source, const char *file, const char *text,
                                 size_t length) {
   if (source->used_count == STRUT_USED_FILES_MOST) return 0;
   source->used[source->used_count] = (strut_used_file){file, text, length, NULL};
   return (unsigned)++source->used_count;
-}
-
-const strut_data_table *strut_scene_source_tables(const strut_scene_source *source, size_t *count) {
-  *count = source->table_count;
-  return source->tables;
-}
-
-strut_document *strut_scene_source_document(strut_scene_source *source) {
-  return &source->document;
 }
 
 strut_status strut_scene_source_read(const strut_scene_source *source,

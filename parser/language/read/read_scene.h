@@ -6,7 +6,6 @@
 #include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"
 #include "parser/language/expression/units.h"
-#include "parser/language/yaml/diagnostics.h"
 #include "parser/language/yaml/document.h"
 
 /** One --set name=value. */
@@ -24,18 +23,14 @@ typedef struct strut_setting {
 } strut_setting;
 
 /**
- * Reads and checks a scene and its experiment in text[0..length). On STRUT_OK both are complete and
- * valid for
- * its purpose. On STRUT_BAD_SCENE diagnostics holds every finding and both are empty. `file` is
- * the name that messages show. Neither file nor text is copied: diagnostics refers to both.
+ * Reads and checks a scene and its experiment in text[0..length). On STRUT_OK both are complete and valid for its
+ * purpose. On STRUT_BAD_SCENE diagnostics holds every finding and both are empty. `file` is the name that messages
+ * show. Neither file nor text is copied: diagnostics refers to both.
  */
 STRUT_API strut_status strut_setup_read(strut_setup *setup, const char *file, const char *text,
                                         size_t length, const strut_override *overrides,
                                         size_t override_count, strut_purpose purpose,
                                         strut_diagnostics *diagnostics);
-
-/** A text as a tree, read once, of which scenes are made again and again. Constant: threads share it. */
-typedef struct strut_scene_source strut_scene_source;
 
 /** The declaration of a parameter in a scene's text. */
 typedef struct strut_declared {
@@ -45,6 +40,19 @@ typedef struct strut_declared {
   strut_file_unit shown;
 } strut_declared;
 
+/** A text as a tree, read once, of which scenes are made again and again. Constant: threads share it. */
+typedef struct strut_scene_source {
+  strut_document document; /* may be changed until the first scene is made */
+  strut_arena arena;
+  const char *file, *text;
+  size_t length, parameter_count;
+  strut_declared *parameters; /* (parameter_count) in the text's order */
+  size_t used_count;
+  strut_used_file *used; /* (used_count) files that the text names; owned */
+  size_t table_count;
+  const strut_data_table *tables; /* (table_count) which all its scenes share */
+} strut_scene_source;
+
 /**
  * Reads the text as a tree and its parameters. STRUT_BAD_SCENE with every finding about the whole
  * scene where the tree or a parameter cannot be read. file, text and diagnostics as strut_setup_read.
@@ -53,24 +61,12 @@ STRUT_API strut_status strut_scene_source_open(const char *file, const char *tex
                                                strut_diagnostics *diagnostics,
                                                strut_scene_source **source);
 STRUT_API void strut_scene_source_free(strut_scene_source *source); /* NULL is allowed */
-/** The *count parameters, in the text's order. */
-STRUT_API const strut_declared *strut_scene_source_parameters(const strut_scene_source *source,
-                                                              size_t *count);
 /** The parameter of that name, or NULL. */
 STRUT_API const strut_declared *strut_scene_source_parameter(const strut_scene_source *source,
                                                              const char *name);
-/** Name of the i-th parameter of a source, NULL after the last; for strut_did_you_mean. */
-STRUT_API const char *strut_scene_source_parameter_name(const void *source, size_t i);
-/** Does the text name files, which the tree has taken in? */
-STRUT_API bool strut_scene_source_uses_files(const strut_scene_source *source);
 /** Enters one more file, which outlives the source; its number for places, 0: there are too many. */
 STRUT_API unsigned strut_scene_source_use(strut_scene_source *source, const char *file,
                                           const char *text, size_t length);
-/** The *count tables of measured data, which all its scenes share. */
-STRUT_API const strut_data_table *strut_scene_source_tables(const strut_scene_source *source,
-                                                            size_t *count);
-/** The tree, which may be changed until the first scene is made. */
-STRUT_API strut_document *strut_scene_source_document(strut_scene_source *source);
 /** As strut_setup_read, from the tree, with settings in place of overrides. */
 STRUT_API strut_status strut_scene_source_read(const strut_scene_source *source,
                                                const strut_setting *settings, size_t setting_count,

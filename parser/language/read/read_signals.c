@@ -16,11 +16,6 @@ typedef struct meaning {
   bool bare;
 } meaning;
 
-static const char *signal_name(const void *context, size_t i) {
-  const strut_reader *reader = context;
-  return i < reader->named_count ? reader->named[i].name : NULL;
-}
-
 /* Appends a signal; returns its index, or -1 where memory is out. */
 static int32_t add_signal(strut_reader *reader, const strut_signal *signal, const meaning *self,
                           const strut_tree *value) {
@@ -295,7 +290,8 @@ static int32_t read_signal(strut_reader *reader, const strut_tree *value, const 
   if (value->kind == STRUT_TREE_MAP) return read_literal(reader, value, owner, expected);
   if (!strut_read_scalar(reader, value, key, owner, "a signal or the name of one")) return -1;
   if (strut_slot_of(&reader->top, STRUT_KEY_SCENE_SIGNALS)->state == STRUT_BROKEN) return -1;
-  const strut_namespace names = {"signal", &reader->signal_names, signal_name, reader,
+  const strut_namespace names = {"signal", &reader->signal_names, strut_row_name,
+                                 STRUT_NAMED(reader->named, reader->named_count),
                                  reader->named_count};
   int32_t i = strut_read_name_of(reader, value, key, owner, &names);
   if (i < 0) return -1;
@@ -370,10 +366,7 @@ void strut_keep_signals(strut_reader *reader) {
   scene->signal_count = reader->signal_count;
 }
 
-/*
- * What drives a structure, beyond the rows: moving supports, actuators, loads, unbalances, sliders. See
- * reader.h.
- */
+/* What drives a structure, beyond the rows: moving supports, actuators, loads, unbalances, sliders. See reader.h. */
 
 /* ---- actuators and loads ---- */
 

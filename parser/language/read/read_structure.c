@@ -380,7 +380,7 @@ bool strut_read_cell(strut_reader *reader, strut_fields *fields, strut_owner own
                strut_owner_text(reader, owner), elastic->text, other);
   }
   if (gas->state == STRUT_GIVEN)
-    return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), gas, owner, object,
+    return strut_read_nested(reader, strut_key_at(STRUT_KEY_CELL_GAS), fields, owner, object,
                              sizeof(strut_cell));
   return other || fields->broken ||
          strut_report_error(

@@ -325,34 +325,35 @@ static bool store_list(strut_reader *reader, const strut_key *key, const strut_s
 
 /* ---- mappings ---- */
 
-bool strut_read_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields *outer,
                        strut_owner owner, void *object, size_t object_size) {
   char text[200];
   strut_fields fields;
+  const strut_slot *slot = &outer->slot[key - strut_key_at(strut_section_first(key->section))];
   snprintf(text, sizeof text, "the %s of %.150s", *key->words ? key->words : key->name,
            strut_owner_text(reader, owner));
   strut_owner within = {text, NULL};
   strut_read_fields(reader, strut_section_below(key), slot->value, within, &fields);
-  fields.key = slot->key;
+  fields.key = slot->key, fields.outer = outer;
   strut_require(reader, &fields, within, slot->key->place);
   return strut_store_fields(reader, &fields, within, reader->keep, object, object_size) &&
          !fields.broken;
 }
 
 /* A law's strain and force follow from what its force measures: a moment acts on an angle, a pressure on an area. */
-static bool store_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
-                         strut_owner owner, char *object) {
+static bool store_nested(strut_reader *reader, const strut_key *key, strut_fields *fields,
+                         const strut_slot *slot, strut_owner owner, char *object) {
   void *within = object + key->field.offset;
   if (key->type != STRUT_TYPE_LAW)
-    return strut_read_nested(reader, key, slot, owner, within, key->field.size);
+    return strut_read_nested(reader, key, fields, owner, within, key->field.size);
   strut_dimension strain = key->measure == STRUT_MEASURE_MOMENT     ? STRUT_DIM_ANGLE
                            : key->measure == STRUT_MEASURE_PRESSURE ? STRUT_DIM_AREA
                                                                     : STRUT_DIM_LENGTH;
   return strut_read_law(reader, slot, owner, strain, strut_measure_dimension(key->measure), within);
 }
 
-static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *slot,
-                      strut_owner owner, strut_arena *arena, char *object) {
+static bool store_key(strut_reader *reader, const strut_key *key, strut_fields *fields,
+                      strut_slot *slot, strut_owner owner, strut_arena *arena, char *object) {
   const strut_dimension dimension = strut_measure_dimension(key->measure);
   void *field = object + key->field.offset;
   bool fine = true;
@@ -376,7 +377,7 @@ static bool store_key(strut_reader *reader, const strut_key *key, strut_slot *sl
       break;
     case STRUT_FIELD_PATH: fine = store_path(reader, key, slot->value, owner, object); break;
     case STRUT_FIELD_LIST: fine = store_list(reader, key, slot, owner, arena, object); break;
-    case STRUT_FIELD_NESTED: fine = store_nested(reader, key, slot, owner, object); break;
+    case STRUT_FIELD_NESTED: fine = store_nested(reader, key, fields, slot, owner, object); break;
     case STRUT_FIELD_PLACES:
     case STRUT_FIELD_BY_HAND:
     case STRUT_FIELD_NONE:
@@ -402,7 +403,7 @@ bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner 
     bool given = slot->state == STRUT_GIVEN;
     if (!given && keys[i].need != STRUT_REQUIRED) continue;
     assert(!keys[i].field.object_size || keys[i].field.object_size == object_size);
-    bool read = given && store_key(reader, &keys[i], slot, owner, arena, object);
+    bool read = given && store_key(reader, &keys[i], fields, slot, owner, arena, object);
     if (!read && is_reference(&keys[i].field)) fields->unresolved = true;
     if (given && !read) fine = false;
   }

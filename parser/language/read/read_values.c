@@ -108,9 +108,13 @@ const char *strut_hint(strut_reader *reader, const char *word, strut_names *name
                        const void *context, size_t count) {
   if (strlen(word) > LONGEST_NAME || !strut_hints_left(reader)) return "";
   reader->suggestions += count;
-  const char *near = strut_did_you_mean(word, names, context);
-  if (!near) return "";
-  return kept(reader, strut_arena_format(&reader->scratch, "; did you mean '%s'?", near));
+  const strut_near near = strut_near_to(word, names, context);
+  return kept(reader, strut_arena_text(&reader->scratch, near.text, strlen(near.text)));
+}
+
+const char *strut_hint_of_rows(strut_reader *reader, const char *word,
+                               const strut_named_rows *rows) {
+  return strut_hint(reader, word, strut_row_name, rows, rows->count);
 }
 
 strut_place strut_root_place(const strut_reader *reader) {
@@ -231,9 +235,13 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
     reader->failed = true;
     return false;
   }
+  const bool text = strcmp(owner.kind, "the parameters") == 0 && !strchr(error.message, ';') &&
+                    strstr(error.message, "unknown parameter") &&
+                    error.length == strlen(value->text);
   if (!fine && error.message[0])
-    strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s", key,
-                       strut_owner_text(reader, owner), error.message);
+    strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s%s", key,
+                       strut_owner_text(reader, owner), error.message,
+                       text ? "; a text stands in quotes" : "");
   return fine;
 }
 
@@ -352,6 +360,15 @@ static const char *hint_of_names(strut_reader *reader, const strut_tree *value,
   return strut_name_map_find(namespace->map, word) < 0 ? "" : "; a part knows its own only";
 }
 
+/* "; there is 'a', 'b'" where there are few. */
+static const char *list_of_names(strut_reader *reader, const strut_namespace *names) {
+  const char *text = names->count <= 14 ? "" : NULL;
+  for (size_t i = 0; text && i < names->count; i++)
+    text = strut_formatted(reader, &reader->scratch, "%s%s'%s'", text,
+                           i ? ", " : "; the names here are ", names->name(names->context, i));
+  return text ? text : "";
+}
+
 /* The thing whose name is the text of the parameter that the value names, or -1, which was reported. */
 static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *value,
                                        const strut_tree *text, const strut_namespace *names) {
@@ -362,11 +379,14 @@ static int32_t find_named_by_parameter(strut_reader *reader, const strut_tree *v
     return -1;
   }
   int32_t index = strut_find_literally(reader, names->map, value, text->text);
-  if (index < 0)
-    strut_report_error(reader, text->place, "unknown %s '%s' in parameter '%s'%s", names->kind,
-                       strut_sanitised_text(reader, text->text), value->text,
-                       hint_of_names(reader, text, names));
-  return index;
+  if (index >= 0) return index;
+  size_t item = reader->diagnostics->count;
+  const char *hint = hint_of_names(reader, text, names);
+  strut_report_error(reader, text->place, "unknown %s '%s' in parameter '%s'%s", names->kind,
+                     strut_sanitised_text(reader, text->text), value->text,
+                     *hint ? hint : list_of_names(reader, names));
+  strut_diagnose_note(reader->diagnostics, item, value->place, "the parameter is used here");
+  return -1;
 }
 
 int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const char *key,
@@ -383,6 +403,10 @@ int32_t strut_read_name_of(strut_reader *reader, const strut_tree *value, const 
       strut_text_parameter(reader, strut_scope_of(reader, value), value->text, &text))
     return find_named_by_parameter(reader, value, &text, names);
   int32_t index = strut_find_named(reader, names->map, value, value->text);
+  const strut_parameter_state *meant =
+      index < 0 ? strut_parameter_in_scope(reader, strut_scope_of(reader, value), value->text)
+                : NULL;
+  if (meant && meant->state == STRUT_FAILED) return -1;
   const char *hiding = index < 0 && names->map == nodes ? strut_hiding_part(reader, value) : NULL;
   if (hiding)
     strut_report_error(reader, value->place,

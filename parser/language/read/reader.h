@@ -2,10 +2,9 @@
 /**
  * What the parts of the scene reader share. Internal to parser/.
  *
- * Every mapping is read in two passes: strut_read_fields turns its keys into *fields*, by the table
- * of keys alone; then the part that knows the thing takes its values from there. A value that cannot
- * be read is reported and marked BROKEN; nothing that depends on it is reported, so that one mistake
- * gives one message.
+ * Every mapping is read in two passes: strut_read_fields turns its keys into *fields*, by the table of keys alone; then
+ * the part that knows the thing takes its values from there. A value that cannot be read is reported and marked BROKEN;
+ * nothing that depends on it is reported, so that one mistake gives one message.
  */
 #pragma once
 
@@ -16,7 +15,6 @@
 #include "parser/language/keys/keys.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/language/read/reuse/used_files.h"
-#include "parser/language/yaml/diagnostics.h"
 #include "parser/language/yaml/document.h"
 
 /** The subject of a message: "member 'm1'", or "the solver" where name is NULL. */
@@ -205,6 +203,8 @@ const char *strut_limit_hint(strut_reader *reader);
 /** "; did you mean 'x'?" or "": the nearest of `count` names; lives in scratch. */
 const char *strut_hint(strut_reader *reader, const char *word, strut_names *names,
                        const void *context, size_t count);
+const char *strut_hint_of_rows(strut_reader *reader, const char *word,
+                               const strut_named_rows *rows);
 /** True while suggestions may still be looked for: they are bounded for the file as a whole. */
 bool strut_hints_left(const strut_reader *reader);
 /** "a list of 3", "a mapping", "nothing", "'text'": the value in a message; lives in scratch. */
@@ -366,10 +366,9 @@ const char *strut_study_key_computes(int key);
 /* read_things.c: values into objects */
 
 /**
- * Stores what could be read in the section's object by the rows of its keys, texts in the arena: values,
- * indices of things, signals, lists and nested mappings; then what the section's own code adds
- * (strut_section_reader). Numbers whose unit depends on the context are left to the caller. False: some of
- * it could not be read.
+ * Stores what could be read in the section's object by the rows of its keys, texts in the arena: values, indices of
+ * things, signals, lists and nested mappings; then what the section's own code adds (strut_section_reader). Numbers
+ * whose unit depends on the context are left to the caller. False: some of it could not be read.
  */
 bool strut_store_fields(strut_reader *reader, strut_fields *fields, strut_owner owner,
                         strut_arena *arena, void *object, size_t object_size);
@@ -386,15 +385,15 @@ bool strut_store_number(strut_reader *reader, strut_fields *fields, int key, str
                         strut_dimension dimension, void *object);
 /** Sets the tag that the choice of a key sets. */
 void strut_store_choice(const strut_key *key, void *object);
-/** Reads the mapping that is the value of a key, "the KEY of OWNER", and stores its values in `object`. */
-bool strut_read_nested(strut_reader *reader, const strut_key *key, const strut_slot *slot,
+/** Reads the mapping that is the value of a key of `outer`, "the KEY of OWNER", and stores its values in `object`. */
+bool strut_read_nested(strut_reader *reader, const strut_key *key, strut_fields *outer,
                        strut_owner owner, void *object, size_t object_size);
 
 /** What rows do not say about a section: reads the keys that are BY_HAND. False: it could not be read. */
 typedef bool strut_section_reader(strut_reader *reader, strut_fields *fields, strut_owner owner,
                                   void *object);
 
-/* groups.c */
+/* parameters.c: groups */
 
 enum { STRUT_MOST_GROUPS = 64 }; /* that one thing may name */
 void strut_read_groups(strut_reader *reader);
@@ -548,10 +547,7 @@ strut_dimension strut_column_dimension(strut_column_kind kind);
 /** Finds a sensor or a state as a column and its dimension. */
 bool strut_find_sensed(strut_reader *reader, const char *name, strut_column *column,
                        strut_dimension *dimension);
-/**
- * Is it the name of a sensor, a state or a signal? Then the column is filled, with item -1 where it is
- * broken.
- */
+/** Is it the name of a sensor, a state or a signal? Then the column is filled, with item -1 where it is broken. */
 bool strut_find_variable(strut_reader *reader, strut_piece name, strut_column *column,
                          strut_dimension *dimension);
 /** OWNER.FIELD as written in the text: a name with dots. */

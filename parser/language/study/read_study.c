@@ -10,9 +10,7 @@
 #include "engine/scene/things.h"
 #include "parser/language/study/study_reader.h"
 
-static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL},
-                         form_owner = {"the form", NULL}, limit_owner = {"the limit", NULL},
-                         check_owner = {"the check", NULL};
+static const strut_owner study_owner = {"the study", NULL}, path_owner = {"the path", NULL};
 
 void *strut_study_allocate(strut_study_reader *reader, size_t count, size_t size) {
   return strut_reader_allocate(reader->reader, &reader->file->arena, count, size);
@@ -25,6 +23,7 @@ const strut_declared *strut_study_declared(const strut_study_reader *reader, con
 const strut_declared *strut_study_parameter(strut_study_reader *study_reader, const strut_tree *key,
                                             const char *advice) {
   strut_reader *reader = study_reader->reader;
+  const strut_scene_source *source = study_reader->file->sources[0];
   const strut_declared *found = strut_study_declared(study_reader, key->text);
   bool twice = found && strut_name_map_find(&study_reader->given, found->name) >= 0;
   if (twice)
@@ -32,8 +31,8 @@ const strut_declared *strut_study_parameter(strut_study_reader *study_reader, co
   else if (!found)
     strut_report_error(reader, key->place, "the model has no parameter '%s'%s%s",
                        strut_sanitised_text(reader, key->text),
-                       strut_hint(reader, key->text, strut_scene_source_parameter_name,
-                                  study_reader->file->sources[0], study_reader->declared_count),
+                       strut_hint_of_rows(reader, key->text,
+                                          STRUT_NAMED(source->parameters, source->parameter_count)),
                        advice ? advice : "");
   else
     strut_add_name(reader, &study_reader->given, found->name, 0);
@@ -41,12 +40,6 @@ const strut_declared *strut_study_parameter(strut_study_reader *study_reader, co
 }
 
 /* --set wins over the study's own `set`. */
-static bool overridden(const strut_study_file *file, size_t overrides, const char *name) {
-  for (size_t i = 0; i < overrides; i++)
-    if (strcmp(file->settings[i].name, name) == 0) return true;
-  return false;
-}
-
 static void read_settings(strut_study_reader *reader, const strut_slot *slot, size_t overrides,
                           bool may_yield) {
   strut_study_file *file = reader->file;
@@ -56,7 +49,8 @@ static void read_settings(strut_study_reader *reader, const strut_slot *slot, si
     if (!strut_read_scalar(reader->reader, value, key->text, study_owner,
                            "an expression or a text"))
       continue;
-    bool yields = may_yield && overridden(file, overrides, key->text);
+    bool yields =
+        may_yield && strut_row_find(STRUT_NAMED(file->settings, overrides), key->text) < overrides;
     const strut_declared *parameter = strut_study_parameter(reader, key, NULL);
     if (!parameter || yields) continue;
     file->settings[file->setting_count++] =
@@ -91,7 +85,7 @@ static void check_overrides(strut_study_reader *reader, size_t overrides) {
 /* The quantities that the model of a variant measures, or NULL. */
 static const strut_tree *quantities_of(strut_scene_source *source) {
   static const char *const path[] = {"run", "measure", "quantities"};
-  const strut_tree *tree = strut_scene_source_document(source)->root;
+  const strut_tree *tree = source->document.root;
   for (size_t i = 0; i < sizeof path / sizeof path[0] && tree; i++)
     tree = tree->kind == STRUT_TREE_MAP ? strut_tree_find(tree, path[i], NULL) : NULL;
   return tree && tree->kind == STRUT_TREE_MAP ? tree : NULL;
@@ -266,30 +260,11 @@ static void read_path(strut_study_reader *reader, const strut_slot *slot) {
                        "'from' and 'until' of the path are equal");
 }
 
-/* Wall time ends only what can be interrupted. */
-static void read_limit(strut_study_reader *reader, strut_fields *top, const strut_slot *slot) {
-  strut_study *study = &reader->file->study;
-  strut_fields fields;
-  if (slot->state != STRUT_GIVEN) return;
-  strut_read_fields(reader->reader, STRUT_SECTION_LIMIT, slot->value, limit_owner, &fields);
-  fields.outer = top;
-  strut_store(reader->reader, &fields, limit_owner, study);
-}
-
 static void read_rest(strut_study_reader *reader, strut_fields *top) {
   strut_study *study = &reader->file->study;
-  const strut_slot *check = strut_slot_of(top, STRUT_KEY_STUDY_CHECK);
-  const strut_slot *form = strut_slot_of(top, STRUT_KEY_STUDY_FORM);
-  strut_fields fields;
   study->name = study->description = "";
   strut_store(reader->reader, top, study_owner, study);
-  if (check->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_CHECK, check->value, check_owner, &fields,
-                      study);
   read_path(reader, strut_slot_of(top, STRUT_KEY_STUDY_PATH));
-  if (form->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_FORM, form->value, form_owner, &fields, study);
-  read_limit(reader, top, strut_slot_of(top, STRUT_KEY_STUDY_LIMIT));
   read_figures(reader, strut_slot_of(top, STRUT_KEY_STUDY_FIGURES));
 }
 
@@ -482,9 +457,10 @@ static strut_status read_point(const strut_study_file *file, const strut_study_v
   return status;
 }
 
-strut_status strut_study_vary(const strut_study_file *file, const strut_study_value *values,
+strut_status strut_study_vary(void *study_file, const strut_study_value *values,
                               const strut_derived_by *by, size_t count, const double *numbers,
                               strut_setup *setup, strut_error *error) {
+  const strut_study_file *file = study_file;
   strut_diagnostics diagnostics = {0};
   strut_status status = read_point(file, values, by, count, numbers, &diagnostics, setup);
   if (status == STRUT_BAD_SCENE) {
@@ -501,15 +477,15 @@ strut_status strut_study_vary(const strut_study_file *file, const strut_study_va
   return status;
 }
 
-strut_status strut_study_setup(const strut_study_file *file, const strut_study_value *values,
+strut_status strut_study_setup(void *study_file, const strut_study_value *values,
                                strut_setup *setup, strut_error *error) {
-  return strut_study_vary(file, values, NULL, 0, NULL, setup, error);
+  return strut_study_vary(study_file, values, NULL, 0, NULL, setup, error);
 }
 
-strut_status strut_study_setup_at(const strut_study_file *file, const strut_study_value *values,
-                                  double value, strut_setup *setup, strut_error *error) {
-  const strut_derived_by followed = {.name = file->followed.name};
-  return strut_study_vary(file, values, &followed, 1, &value, setup, error);
+strut_status strut_study_setup_at(void *study_file, const strut_study_value *values, double value,
+                                  strut_setup *setup, strut_error *error) {
+  const strut_derived_by followed = {.name = ((strut_study_file *)study_file)->followed.name};
+  return strut_study_vary(study_file, values, &followed, 1, &value, setup, error);
 }
 
 /* Appends "frequency = 10 Hz" or "start = I" to a text. */
@@ -557,8 +533,8 @@ static void note_values(strut_study_file *file, const strut_study_value *values,
                       "the model cannot be run at %s", text);
 }
 
-static strut_status try_point(strut_study_file *file, const strut_study_value *values,
-                              const double *followed) {
+strut_status strut_study_try(strut_study_file *file, const strut_study_value *values,
+                             const double *followed) {
   strut_setup setup;
   const strut_derived_by by = {.name = file->followed.name};
   strut_status status =
@@ -570,15 +546,6 @@ static strut_status try_point(strut_study_file *file, const strut_study_value *v
     note_values(file, values, followed);
   }
   return status;
-}
-
-strut_status strut_study_try(strut_study_file *file, const strut_study_value *values) {
-  return try_point(file, values, NULL);
-}
-
-strut_status strut_study_try_at(strut_study_file *file, const strut_study_value *values,
-                                double value) {
-  return try_point(file, values, &value);
 }
 
 void strut_study_close(strut_study_file *file) {

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
  * From a study's YAML text, and the model it names, to points and their scenes.
- * 
- * The model's text becomes a tree once; each point's scene is read from that tree with the point's
- * parameters.
+ *
+ * The model's text becomes a tree once; each point's scene is read from that tree with the point's parameters.
  */
 #pragma once
 
@@ -62,26 +61,25 @@ STRUT_API const char *strut_study_messages(strut_study_file *file, size_t most);
 /** All notes of the points tried, such as on former names of keys; NULL: memory is out. */
 STRUT_API const char *strut_study_notes(strut_study_file *file);
 /**
- * The scene and experiment where the axes have these values (column_count). On STRUT_BAD_SCENE `error` has
- * the first finding with its place. Safe from several threads.
+ * The scene and experiment of a strut_study_file where the axes have these values (column_count). On STRUT_BAD_SCENE
+ * `error` has the first finding with its place. Safe from several threads.
  */
-STRUT_API strut_status strut_study_setup(const strut_study_file *file,
-                                         const strut_study_value *values, strut_setup *setup,
-                                         strut_error *error);
+STRUT_API strut_status strut_study_setup(void *study_file, const strut_study_value *values,
+                                         strut_setup *setup, strut_error *error);
 /** The same where the parameter that is followed has the value [SI]. */
-STRUT_API strut_status strut_study_setup_at(const strut_study_file *file,
-                                            const strut_study_value *values, double value,
-                                            strut_setup *setup, strut_error *error);
+STRUT_API strut_status strut_study_setup_at(void *study_file, const strut_study_value *values,
+                                            double value, strut_setup *setup, strut_error *error);
 /** strut_study_setup where the parameters `by` have the values numbers (count) [SI]. */
-STRUT_API strut_status strut_study_vary(const strut_study_file *file,
-                                        const strut_study_value *values, const strut_derived_by *by,
-                                        size_t count, const double *numbers, strut_setup *setup,
+STRUT_API strut_status strut_study_vary(void *study_file, const strut_study_value *values,
+                                        const strut_derived_by *by, size_t count,
+                                        const double *numbers, strut_setup *setup,
                                         strut_error *error);
-/** Like strut_study_setup, for one thread: all findings go to the messages, with the values of the axes. */
-STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values);
-/** The same for strut_study_setup_at. */
-STRUT_API strut_status strut_study_try_at(strut_study_file *file, const strut_study_value *values,
-                                          double value);
+/**
+ * Like strut_study_setup, or with a value as strut_study_setup_at, for one thread: all findings go to the messages,
+ * with the values of the axes.
+ */
+STRUT_API strut_status strut_study_try(strut_study_file *file, const strut_study_value *values,
+                                       const double *followed);
 /**
  * All that decides the results, as a text that does not change with comments, blanks and the order
  * of texts; a block of strut_allocate, or NULL.

@@ -280,9 +280,8 @@ static bool is_range(const strut_study_axis *axis) {
 }
 
 static bool has_parameter(const strut_study_axis *axis, const char *name) {
-  for (size_t i = 0; i < axis->column_count; i++)
-    if (strcmp(axis->columns[i].name, name) == 0) return true;
-  return false;
+  const size_t count = axis->column_count;
+  return strut_row_find(STRUT_NAMED(axis->columns, count), name) < count;
 }
 
 /* The axis of a named parameter, which must be a range; axis_count where that was reported. */
@@ -433,14 +432,9 @@ static void require_pairs(strut_study_reader *reader, strut_fields *top) {
 }
 
 void strut_study_read_goals(strut_study_reader *reader, strut_fields *top) {
-  const strut_slot *stiffness = strut_slot_of(top, STRUT_KEY_STUDY_STIFFNESS_AT);
   const strut_slot *shape = strut_slot_of(top, STRUT_KEY_STUDY_SHAPE);
   const strut_slot *like = strut_slot_of(top, STRUT_KEY_STUDY_LIKE);
   const strut_slot *curve = strut_slot_of(top, STRUT_KEY_STUDY_CURVE);
-  strut_fields fields;
-  if (stiffness->state == STRUT_GIVEN)
-    strut_read_object(reader->reader, STRUT_SECTION_STIFFNESS_AT, stiffness->value,
-                      ((strut_owner){"the stiffness", NULL}), &fields, &reader->file->study);
   if (shape->state == STRUT_GIVEN && like->state == STRUT_GIVEN)
     strut_report_error(reader->reader, like->key->place,
                        "'shape' and 'like' of the study exclude each other");

@@ -329,10 +329,9 @@ static void read_sets(strut_study_reader *reader, const strut_tree *const *sets,
   for (size_t m = 0; m < fit->match_count; m++) fit->matches[m].values = values + m * (most + 1);
   for (size_t m = 0; m < fit->match_count; m++)
     for (const strut_tree *key = sets[m] ? sets[m]->first : NULL; key; key = key->next->next) {
-      bool known = false;
-      for (size_t k = 0; k < axis->column_count; k++)
-        known = known || strcmp(axis->columns[k].name, key->text) == 0;
-      if (!known) add_set(reader, sets, key, axis, fit);
+      const strut_named_rows *known = STRUT_NAMED(axis->columns, axis->column_count);
+      if (strut_row_find(known, key->text) == axis->column_count)
+        add_set(reader, sets, key, axis, fit);
     }
   if (axis->column_count) study->axis_count++;
 }

@@ -58,10 +58,8 @@ static bool is_wanted(const table *self, const char *name) {
 static void check_columns(table *self) {
   for (const strut_tree *item = self->columns ? self->columns->first : NULL; item;
        item = item->next) {
-    bool found = false;
-    for (size_t i = 0; i < self->csv.column_count; i++)
-      found = found || strcmp(self->csv.titles[i].name, item->text) == 0;
-    if (!found)
+    const size_t count = self->csv.column_count;
+    if (strut_row_find(STRUT_NAMED(self->csv.titles, count), item->text) == count)
       strut_report_error(self->r->reader, item->place, "'%s' has no column '%s'",
                          strut_sanitised_text(self->r->reader, self->name->text),
                          strut_sanitised_text(self->r->reader, item->text));

@@ -8,7 +8,7 @@
 #include "parser/language/expression/expression.h"
 #include "parser/language/study/read_study.h"
 #include "parser/language/study/study_reader.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 static const strut_owner search_owner = {"the search", NULL};
 /* Scenarios of one evaluation, at most. */

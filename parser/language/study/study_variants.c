@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models of a study, one for each variant, and its own text. See study_reader.h. */
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/checksum.h"
@@ -50,7 +49,7 @@ static strut_tree *wrap(strut_arena *arena, const strut_tree *like, const char *
 bool strut_study_measure(strut_study_file *file, const strut_tree *column) {
   bool fine = true;
   for (size_t i = 0; i < file->source_count && fine; i++) {
-    strut_document *document = strut_scene_source_document(file->sources[i]);
+    strut_document *document = &file->sources[i]->document;
     strut_arena *arena = &document->arena;
     strut_tree_builder quantity = strut_tree_begin(arena, column);
     fine = strut_tree_append(&quantity, strut_tree_scalar(arena, column, "of"),
@@ -96,9 +95,9 @@ static bool is_study(const strut_study_file *file) {
 
 /* A model whose files are elsewhere could not stand beside the results. False: memory is out. */
 static bool keep_copy(strut_study_file *file, strut_scene_source *source) {
-  if (file->model_copy || !strut_scene_source_uses_files(source)) return true;
-  file->model_copy = strut_tree_write(strut_scene_source_document(source)->root,
-                                      "The model and the files that it uses.");
+  if (file->model_copy || !source->used_count || !source->used[0].owned) return true;
+  file->model_copy =
+      strut_tree_write(source->document.root, "The model and the files that it uses.");
   return file->model_copy != NULL;
 }
 
@@ -118,7 +117,7 @@ static strut_status open_source(strut_study_reader *reader, strut_fields *top,
   }
   if (status != STRUT_OK) return status;
   file->source_count++;
-  strut_document *document = strut_scene_source_document(*source);
+  strut_document *document = &(*source)->document;
   if (!keep_copy(file, *source)) return STRUT_NO_MEMORY;
   file->number = strut_scene_source_use(*source, file->path, file->text, file->length);
   if (!file->number)
@@ -171,7 +170,7 @@ strut_status strut_study_open_sources(strut_study_reader *reader, strut_fields *
   reader->variant_names = strut_study_allocate(reader, count + 1, sizeof *reader->variant_names);
   if (!file->sources || !reader->variant_names) return STRUT_NO_MEMORY;
   status = count ? open_variants(reader, top, variants->value) : open_source(reader, top, NULL);
-  if (status == STRUT_OK) strut_scene_source_parameters(file->sources[0], &reader->declared_count);
+  if (status == STRUT_OK) reader->declared_count = file->sources[0]->parameter_count;
   return status;
 }
 
@@ -318,10 +317,8 @@ char *strut_study_identity(const strut_study_file *file) {
   strut_writer w = {.scene = NULL};
   const strut_study *study = &file->study;
   for (size_t i = 0; i < file->source_count; i++) {
-    size_t count;
-    const strut_data_table *tables = strut_scene_source_tables(file->sources[i], &count);
-    put_tree(&w, strut_scene_source_document(file->sources[i])->root);
-    put_tables(&w, tables, count);
+    put_tree(&w, file->sources[i]->document.root);
+    put_tables(&w, file->sources[i]->tables, file->sources[i]->table_count);
   }
   put_tables(&w, study->tables, study->table_count);
   for (size_t i = 0; i < file->setting_count; i++) {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Shapes, the start, and the experiment, as YAML. See writer.h. */
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 

@@ -9,7 +9,6 @@
 #include "engine/base/text.h"
 #include "parser/language/read/reuse/overlay.h"
 #include "parser/language/write/writer.h"
-#include "parser/language/yaml/text.h"
 
 /* ---- trees as they are ---- */
 
@@ -287,7 +286,7 @@ static strut_tree *lay_over(short_writer *self, const strut_tree *root, const st
 
 static strut_tree *whole_tree(short_writer *self, const strut_override *overrides, size_t count,
                               const char *before, const char *after) {
-  const strut_tree *root = strut_scene_source_document((strut_scene_source *)self->source)->root;
+  const strut_tree *root = self->source->document.root;
   const strut_tree *old = read_flat(self, before), *now = old ? read_flat(self, after) : NULL;
   const strut_tree *over = now ? difference(self, scene_kind, old, now, false) : NULL;
   const strut_tree *cut = now ? difference(self, scene_kind, old, now, true) : NULL;

@@ -104,7 +104,5 @@ const char *strut_section_introduction(strut_section section);
 void strut_put_key_type(strut_writer *writer, const strut_key *key);
 /** Is a default a sentence about a value, rather than a value? */
 bool strut_default_is_described(const strut_key *key);
-/**
- * Appends Markdown as plain text: `[text](link)` becomes its text; backticks are kept where `ticks`.
- */
+/** Appends Markdown as plain text: `[text](link)` becomes its text; backticks are kept where `ticks`. */
 void strut_put_without_links(strut_writer *writer, const char *markdown, bool ticks);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Messages: collected, sorted, rendered with their line and a caret; and suggestions. */
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -367,4 +367,24 @@ const char *strut_did_you_mean(const char *text, const char *(*next)(const void 
     allowed = steps - 1; /* only a nearer one replaces it */
   }
   return best ? best : within;
+}
+
+strut_near strut_near_to(const char *text, const char *(*next)(const void *context, size_t i),
+                         const void *context) {
+  strut_near near = {""};
+  const char *name = strut_did_you_mean(text, next, context);
+  if (name) snprintf(near.text, sizeof near.text, "; did you mean '%.260s'?", name);
+  return near;
+}
+
+const char *strut_row_name(const void *named_rows, size_t i) {
+  const strut_named_rows *named = named_rows;
+  return i < named->count ? *(const char *const *)((const char *)named->rows + i * named->size)
+                          : NULL;
+}
+
+size_t strut_row_find(const strut_named_rows *named, const char *name) {
+  size_t i = 0;
+  while (i < named->count && strcmp(strut_row_name(named, i), name) != 0) i++;
+  return i;
 }

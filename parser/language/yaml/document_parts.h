@@ -3,11 +3,8 @@
 #pragma once
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <yaml.h>
 
-#include "engine/base/status.h"
 #include "parser/language/yaml/document.h"
 
 /** Reports what must not reach libyaml: bad UTF-8, control characters, directives. False if any. */

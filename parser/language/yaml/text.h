@@ -10,8 +10,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "parser/language/yaml/document.h"
-
 /** What strut_text_decode gives for a byte that is not part of valid UTF-8. */
 #define STRUT_BAD_CODE UINT32_MAX
 

@@ -8,11 +8,9 @@
 
 #include "engine/base/memory.h"
 #include "engine/integrate/integrator.h"
-#include "engine/output/file.h"
 #include "engine/run/measure/monitors.h"
 #include "parser/language/read/reader.h"
 #include "parser/language/yaml/document.h"
-#include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
 #define LOCATED(X)                                                                                 \

@@ -5,8 +5,8 @@
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/scene/checks/check.h"
 #include "engine/scene/value_rows.h"
-#include "parser/language/yaml/diagnostics.h"
-#include "parser/program/options.h"
+#include "parser/language/yaml/document.h"
+#include "parser/program/commands.h"
 
 /* Messages with their places, for editors: `strut check --json`. */
 

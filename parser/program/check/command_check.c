@@ -2,7 +2,6 @@
 #include "parser/program/commands.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "engine/base/memory.h"
@@ -13,8 +12,6 @@
 #include "parser/language/expression/units.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/command/scene_options.h"
-#include "parser/program/open_model.h"
-#include "parser/program/streams.h"
 #include "parser/program/study/sweep.h"
 
 /* What `strut check` finds, a row for each value: JSON, and the tables of its things. */

@@ -13,7 +13,7 @@
 #include "engine/output/record_files.h"
 #include "engine/output/result_values.h"
 #include "engine/scene/things.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 strut_status strut_analysis_compute(strut_analysis *analysis, strut_error *error) {
   strut_experiment *experiment = analysis->setup ? &analysis->setup->experiment : NULL;
@@ -41,19 +41,6 @@ void strut_analysis_free(strut_analysis *analysis) {
 
 /* ---- options ---- */
 
-static const char *node_name_at(const void *context, size_t i) {
-  const strut_scene *scene = context;
-  return i < scene->node_count ? scene->nodes[i].name : NULL;
-}
-
-static strut_status refuse_node(const strut_arguments *arguments, const strut_scene *scene,
-                                const char *name, const char *why) {
-  const char *near = strut_did_you_mean(name, node_name_at, scene);
-  if (near && strcmp(near, name) == 0) near = NULL;
-  return strut_usage_error(arguments, "--supports: %s '%s'%s%s%s", why, name,
-                           near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-}
-
 /* "n1,n4" as nodes, in the scene's arena; *set stays NULL without --supports. */
 static strut_status read_supports(const strut_arguments *arguments, strut_scene *scene,
                                   strut_node_set **set) {
@@ -68,13 +55,17 @@ static strut_status read_supports(const strut_arguments *arguments, strut_scene 
     return STRUT_NO_MEMORY;
   }
   for (const char *at = text;; at++) {
-    size_t length = strcspn(at, ","), found = 0;
+    size_t length = strcspn(at, ",");
     memcpy(word, at, length);
     word[length] = '\0';
-    while (found < scene->node_count && strcmp(scene->nodes[found].name, word) != 0) found++;
-    if (found == scene->node_count) return refuse_node(arguments, scene, word, "there is no node");
+    const strut_named_rows *nodes = STRUT_NAMED(scene->nodes, scene->node_count);
+    size_t found = strut_row_find(nodes, word);
+    if (found == scene->node_count)
+      return strut_usage_error(arguments, "--supports: there is no node '%s'%s", word,
+                               strut_near_to(word, strut_row_name, nodes).text);
     for (size_t i = 0; i < to->count; i++)
-      if (to->node[i] == (int32_t)found) return refuse_node(arguments, scene, word, "named twice:");
+      if (to->node[i] == (int32_t)found)
+        return strut_usage_error(arguments, "--supports: named twice: '%s'", word);
     to->node[to->count++] = (int32_t)found;
     at += length;
     if (!*at) break;
@@ -106,12 +97,11 @@ static strut_status reject_name(const strut_arguments *arguments, const strut_sc
   const candidates all = {.scene = scene, .arena = &arena};
   if (strut_thing_find(scene, STRUT_THING_LOAD, name) >= 0)
     return strut_usage_error(arguments, "--over: '%s' is a load; use --load %s", name, name);
-  const char *near = strut_did_you_mean(name, candidate_at, &all);
   strut_usage_error(arguments,
                     "--over: no parameter, actuator, or coordinate of a node (such as '%s.x') is "
-                    "called '%s'%s%s%s",
+                    "called '%s'%s",
                     scene->node_count ? scene->nodes[0].name : "node", name,
-                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+                    strut_near_to(name, candidate_at, &all).text);
   strut_arena_free(&arena);
   return STRUT_USAGE;
 }

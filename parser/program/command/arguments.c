@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/program/command/arguments.h"
 
-#include <assert.h>
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "parser/language/expression/expression.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 void strut_tell(const strut_listener *listener, strut_message_kind kind, const char *command,
                 const char *format, ...) {
@@ -127,10 +126,6 @@ static strut_status read_whole(const strut_option *option, const strut_arguments
 
 enum { WORD = 40, MOST_WORDS = 64 };
 
-static const char *word_at(const void *words, size_t i) {
-  return i < MOST_WORDS ? ((const char *const *)words)[i] : NULL;
-}
-
 /* A word of the language may have other spellings. */
 static strut_status read_word(const strut_option *option, const strut_arguments *arguments,
                               strut_given_word *to) {
@@ -138,7 +133,7 @@ static strut_status read_word(const strut_option *option, const strut_arguments 
   const strut_spelling *other =
       option->key ? strut_spelling_find(key->section, key->name, to->text) : NULL;
   char text[STRUT_MESSAGE_MOST / 2], copies[MOST_WORDS][WORD];
-  const char *words[MOST_WORDS], *near;
+  const char *words[MOST_WORDS];
   bool accepted = other && other->kind != STRUT_SPELLING_MISTAKE;
   if (accepted && other->kind == STRUT_SPELLING_FORMER)
     strut_tell(arguments->listener, STRUT_MESSAGE_NOTE, arguments->command->name,
@@ -146,11 +141,10 @@ static strut_status read_word(const strut_option *option, const strut_arguments 
   to->index = strut_word_find(strut_option_words(option), accepted ? other->current : to->text);
   if (to->index >= 0) return STRUT_OK;
   for (int i = 0; i < MOST_WORDS; i++) words[i] = strut_option_word(option, i, copies[i], WORD);
-  near = strut_did_you_mean(to->text, word_at, words);
-  return strut_usage_error(arguments, "--%s expects %s, not '%s'%s%s%s", option->name,
-                           strut_words_text(strut_option_words(option), text, sizeof text),
-                           to->text, near ? "; did you mean '" : "", near ? near : "",
-                           near ? "'?" : "");
+  return strut_usage_error(
+      arguments, "--%s expects %s, not '%s'%s", option->name,
+      strut_words_text(strut_option_words(option), text, sizeof text), to->text,
+      strut_near_to(to->text, strut_row_name, STRUT_NAMED(words, MOST_WORDS)).text);
 }
 
 static strut_status read_words(const strut_option *option, const strut_arguments *arguments,
@@ -198,11 +192,9 @@ strut_status strut_argument_set(const char *name, const char *value, strut_argum
   const strut_option *option, *table = arguments->command->options;
   size_t i = 0;
   while ((option = strut_option_row(table, i)) && strcmp(option->name, name) != 0) i++;
-  if (!option) {
-    const char *near = strut_did_you_mean(name, name_at, table);
-    return strut_usage_error(arguments, "unknown option '%s'%s%s%s", name,
-                             near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-  }
+  if (!option)
+    return strut_usage_error(arguments, "unknown option '%s'%s", name,
+                             strut_near_to(name, name_at, table).text);
   if (option->argument) return strut_argument_read(option, value, arguments);
   int yes = strut_switch_find(value);
   if (yes < 0) return strut_usage_error(arguments, "--%s expects yes or no, not '%s'", name, value);

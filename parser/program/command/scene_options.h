@@ -1,7 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Scenes as options change them: method, step and span, accuracy; and over values of parameters. */
+/**
+ * Scenes as options change them: method, step and span, accuracy; and over values of parameters. Options of figures:
+ * width, title, axes, what a figure of a run shows; and tables that are drawn.
+ */
 #pragma once
 
+#include "engine/output/draw/chart.h"
+#include "engine/output/figures/run_figure.h"
+#include "engine/output/record_files.h"
 #include "engine/scene/experiment.h"
 #include "engine/scene/study.h"
 #include "engine/study/sweep/sweep.h"
@@ -23,9 +29,7 @@ strut_purpose strut_run_options_purpose(const strut_arguments *arguments);
 /** Applies them to the scene and its experiment. STRUT_USAGE; the listener hears why. */
 strut_status strut_run_options_apply(const strut_arguments *arguments, strut_setup *setup);
 
-/*
- * Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them.
- */
+/* Scenes of one model over values of some of its parameters, as paths, branches and sweeps need them. */
 
 /** Zero-initialise but for what stands before `own`. */
 typedef struct strut_varied_scenes {
@@ -72,3 +76,33 @@ void strut_varied_scenes_free(strut_varied_scenes *scenes);
 
 /** The unit to print behind values of a dimension, "" where there is none. */
 const char *strut_unit_of(strut_dimension dimension);
+
+/* ---- figures ---- */
+
+/** Tables of options: width; this and the title; what a figure of a run shows; labels and limits of one pair of axes. */
+extern const strut_option strut_width_options[], strut_plot_setting_options[],
+    strut_run_figure_options[], strut_axis_options[];
+
+/**
+ * Reads all but the file into a plot. `usual` is the default width [pt]; 0: a page's. STRUT_USAGE; the
+ * listener hears why.
+ */
+strut_status strut_plot_settings_read(const strut_arguments *arguments, double usual,
+                                      strut_plot *plot);
+/** Reads labels and limits; limits of a logarithmic axis must be above 0. STRUT_USAGE as above. */
+strut_status strut_axes_read(const strut_arguments *arguments, bool log_x, bool log_y,
+                             strut_axis_choice *choice, strut_axis_choice *other_choice);
+
+enum { STRUT_MOST_TIMES = 100 };
+
+/** Reads what a figure of a run shows; `times` has room for STRUT_MOST_TIMES and stays in place. As above. */
+strut_status strut_run_figure_read(const strut_arguments *arguments, strut_run_figure *figure,
+                                   double *times);
+
+/* A table of numbers and texts, from a file or the standard input. */
+
+/**
+ * Reads the file, "-" being the standard input. The listener hears messages, with line and column;
+ * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).
+ */
+strut_status strut_table_read(const strut_listener *listener, const char *path, strut_table *table);

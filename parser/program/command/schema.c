@@ -56,13 +56,18 @@ static void refer_to(schema *self, const char *definition) {
   put_text_member(self, "$ref", text);
 }
 
+/* A list of words that is left open. */
+static void open_words(schema *self, const char *words) {
+  char word[40];
+  open_list(self, "enum");
+  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++)
+    put_text_member(self, NULL, word);
+}
+
 /* The words of a key with its synonyms and former words. */
 static void put_words(schema *self, const strut_key *key) {
-  char word[40];
   const strut_spelling *spelling;
-  open_list(self, "enum");
-  for (int i = 0; strut_word_at(key->words, i, word, sizeof word); i++)
-    put_text_member(self, NULL, word);
+  open_words(self, key->words);
   for (size_t i = 0; (spelling = strut_spelling_at(i)); i++)
     if (spelling->section == key->section && spelling->key &&
         strcmp(spelling->key, key->name) == 0 && spelling->kind != STRUT_SPELLING_MISTAKE)
@@ -83,19 +88,13 @@ static void open_unless_removed(schema *self) {
 /* ---- what a value may be, as a text ---- */
 
 /*
- *   n  a number, or an expression in a text; the schema does not say which texts are expressions
- *   s  a scalar: YAML makes numbers and switches of names and texts such as 1 and true, strut takes them as written
- *   w  a word of the key
- *   k  a word of the key, or another text
- *   l  a word of a law;  x  an axis of a study;  t  a thing of the key
- *   =[...]=     one of these values
- *   <section>   an object with the keys of a section, or of a group
- *   [LMx]       a list of L to M items x; M 0: any number
- *   {x}         an object whose members are x
- *   {!x}        likewise named things, which a scene with a base may remove
- *   {1}         an object of one member
- *   A(x|y)      x for a list, y for all others;  O(x|y): x for an object;  K(x|y): for one with the key `network`;
- *   R(x|y)      for one of the kind `relay`
+ * n a number, or an expression in a text; the schema does not say which texts are expressions s a scalar: YAML makes
+ * numbers and switches of names and texts such as 1 and true, strut takes them as written w a word of the key k a word
+ * of the key, or another text l a word of a law; x an axis of a study; t a thing of the key =[...]= one of these values
+ * <section> an object with the keys of a section, or of a group [LMx] a list of L to M items x; M 0: any number {x} an
+ * object whose members are x {!x} likewise named things, which a scene with a base may remove {1} an object of one
+ * member A(x|y) x for a list, y for all others; O(x|y): x for an object; K(x|y): for one with the key `network`; R(x|y)
+ * for one of the kind `relay`
  */
 #define SIGNAL "O(<signal>|s)"
 #define ALONG "A([00s]|<range>)"
@@ -104,12 +103,17 @@ static void open_unless_removed(schema *self) {
 static const char *put_shape(schema *self, const strut_key *key, const char *shape);
 static void put_thing(schema *self, const strut_key *key);
 
+/* What the shape says in an object of its own; returns what follows the shape. */
+static const char *put_within(schema *self, const char *name, const strut_key *key,
+                              const char *shape) {
+  open_object(self, name);
+  shape = put_shape(self, key, shape);
+  close_object(self);
+  return shape;
+}
+
 static void put_law_word(schema *self) {
-  char word[40];
-  const char *words = strut_key_at(STRUT_KEY_LAW_KIND)->words;
-  open_list(self, "enum");
-  for (int i = 0; strut_word_at(words, i, word, sizeof word); i++)
-    put_text_member(self, NULL, word);
+  open_words(self, strut_key_at(STRUT_KEY_LAW_KIND)->words);
   put_text_member(self, NULL, "tension_only");
   put_text_member(self, NULL, "compression_only");
   close_object(self);
@@ -123,9 +127,7 @@ static void put_axis(schema *self) {
   open_object(self, "zip");
   put_text_member(self, "description", "Parameters that vary together.");
   put_member(self, "type", "[\"object\", \"array\"]");
-  open_object(self, "additionalProperties");
-  put_shape(self, NULL, ALONG);
-  close_object(self);
+  put_within(self, "additionalProperties", NULL, ALONG);
   close_object(self);
   open_object(self, "points");
   put_text_member(self, "description",
@@ -137,18 +139,14 @@ static void put_axis(schema *self) {
   put_shape(self, NULL, "<sample>");
   close_object(self);
   close_object(self);
-  open_object(self, "additionalProperties");
-  put_shape(self, NULL, ALONG);
-  close_object(self);
+  put_within(self, "additionalProperties", NULL, ALONG);
 }
 
 /* [LMx] */
 static const char *put_list(schema *self, const strut_key *key, const char *shape) {
   const char least[] = {shape[0], '\0'}, most[] = {shape[1], '\0'};
   put_member(self, "type", "\"array\"");
-  open_object(self, "items");
-  shape = put_shape(self, key, shape + 2);
-  close_object(self);
+  shape = put_within(self, "items", key, shape + 2);
   if (*least > '0') put_member(self, "minItems", least);
   if (*most > '0') put_member(self, "maxItems", most);
   return shape + 1;
@@ -163,11 +161,7 @@ static const char *put_members(schema *self, const strut_key *key, const char *s
   if (things)
     put_member(self, "propertyNames",
                "{\"pattern\": \"^[-A-Za-z0-9_.*\\\\u0080-\\\\uffff]{1,255}$\"}");
-  if (!one) {
-    open_object(self, "additionalProperties");
-    shape = put_shape(self, key, shape + things) - 1;
-    close_object(self);
-  }
+  if (!one) shape = put_within(self, "additionalProperties", key, shape + things) - 1;
   if (removable) close_object(self);
   return shape + 2;
 }
@@ -180,13 +174,8 @@ static const char *put_either(schema *self, const strut_key *key, char kind, con
   if (kind == 'R') put_member(self, "required", "[\"kind\"]");
   if (kind == 'R') put_member(self, "properties", "{\"kind\": {\"const\": \"relay\"}}");
   close_object(self);
-  open_object(self, "then");
-  shape = put_shape(self, key, shape + 1);
-  close_object(self);
-  open_object(self, "else");
-  shape = put_shape(self, key, shape + 1);
-  close_object(self);
-  return shape + 1;
+  shape = put_within(self, "then", key, shape + 1);
+  return put_within(self, "else", key, shape + 1) + 1;
 }
 
 static const char *put_section(schema *self, const char *shape) {
@@ -215,9 +204,7 @@ static const char *put_shape(schema *self, const strut_key *key, const char *sha
       open_object(self, NULL);
       put_words(self, key);
       close_object(self);
-      open_object(self, NULL);
-      put_shape(self, key, "s");
-      close_object(self);
+      put_within(self, NULL, key, "s");
       close_object(self);
       return shape;
     case '=':
@@ -438,9 +425,7 @@ static void put_keys(schema *self, strut_section section) {
     close_object(self);
     close_object(self);
   } else if (section == STRUT_SECTION_MATCH) { /* else what is compared, and with what */
-    open_object(self, "additionalProperties");
-    put_shape(self, NULL, "n");
-    close_object(self);
+    put_within(self, "additionalProperties", NULL, "n");
   } else {
     put_member(self, "additionalProperties", "false");
   }

@@ -5,10 +5,9 @@
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_parts.h"
 #include "engine/study/report/study_report.h"
-#include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
-#include "parser/language/yaml/diagnostics.h"
-#include "parser/program/command/plot_options.h"
+#include "parser/language/yaml/document.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
 
 /* The source of a figure: the table, or the recorded runs. */
@@ -42,11 +41,9 @@ static strut_status check_column(const source *self, const strut_study_figure *f
                       figure->name, name);
   }
   if (!name) return STRUT_OK;
-  const char *near = strut_did_you_mean(name, column_name, self);
-  return strut_fail(error, STRUT_BAD_SCENE,
-                    "figure '%.60s' of the study: %s no column '%.60s'%s%s%s", figure->name,
-                    self->runs ? "the motion has" : "the table has", name,
-                    near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+  return strut_fail(error, STRUT_BAD_SCENE, "figure '%.60s' of the study: %s no column '%.60s'%s",
+                    figure->name, self->runs ? "the motion has" : "the table has", name,
+                    strut_near_to(name, column_name, self).text);
 }
 
 /* COLUMN=TEXT, where the column has to be there. */
@@ -162,13 +159,8 @@ static const char branches_name[] = "branches.csv";
 static const char partial_branches_name[] = "branches-partial.csv";
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static strut_status setup_at(void *context, const strut_study_value *values, double value,
-                             strut_setup *setup, strut_error *error) {
-  return strut_study_setup_at(context, values, value, setup, error);
-}
-
 strut_status strut_sweep_follow_check(strut_sweep_study *study, strut_error *error) {
-  const strut_follow_points how = {setup_at, &study->file};
+  const strut_follow_points how = {strut_study_setup_at, &study->file};
   strut_status status = strut_follow_points_columns(&study->plan, error);
   return status ? status : strut_follow_points_check(&study->plan, &how, error);
 }
@@ -188,7 +180,7 @@ static void write_partial(const strut_study_job *job) {
 
 static strut_status run_points(strut_study_job *job, const strut_sweep_options *options,
                                void *context, strut_error *error) {
-  const strut_follow_points how = {setup_at, &job->study->file};
+  const strut_follow_points how = {strut_study_setup_at, &job->study->file};
   (void)context;
   strut_status status =
       strut_follow_points_run(&job->study->plan, job->slots, &how, options, &job->state, error);

@@ -9,7 +9,7 @@
 #include "engine/study/report/study_report.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/sensitivity/sensitivity.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/study/sweep.h"
 
 static const char table_name[] = "table.csv";
@@ -31,10 +31,7 @@ static strut_status run_search(strut_study_job *job, const strut_sweep_options *
                           &((searched *)context)->found, error);
 }
 
-/*
- * A row for each search that has found something, of the worst scenario; of two goals, for each point of the
- * front.
- */
+/* A row for each search that has found something, of the worst scenario; of two goals, for each point of the front. */
 static strut_status write_best_rows(const strut_arguments *arguments, strut_slots *slots,
                                     const strut_search_result *result, strut_error *error) {
   size_t count = 0, room = result->outcome_count;
@@ -239,11 +236,6 @@ strut_status strut_sweep_refine_status(const strut_sweep_plan *plan, const char 
 
 /* What a sensitivity analysis adds to a sweep: its table, its figure and its report. */
 
-static const char *column_name(const void *context, size_t i) {
-  const strut_sweep_plan *plan = context;
-  return i < plan->column_count ? plan->columns[i].name : NULL;
-}
-
 strut_status strut_sweep_sensitivity_check(strut_sweep_study *study) {
   const strut_sweep_plan *plan = &study->plan;
   strut_study_file *file = &study->file;
@@ -251,13 +243,13 @@ strut_status strut_sweep_sensitivity_check(strut_sweep_study *study) {
   const strut_tree *analysis = strut_tree_find(file->document.root, "sensitivity", NULL);
   const strut_tree *of = strut_tree_find(analysis, "of", NULL);
   for (const strut_tree *name = of->first; name; name = name->next) {
-    const char *near = strut_did_you_mean(name->text, column_name, plan);
+    const strut_near near =
+        strut_near_to(name->text, strut_row_name, STRUT_NAMED(plan->columns, plan->column_count));
     if (strut_slot_named(plan->columns, plan->column_count, name->text) < plan->column_count)
       continue;
     strut_diagnose(&file->diagnostics, name->place,
-                   "the sensitivity analysis: the table has no column '%.60s'; %s%s%s", name->text,
-                   near ? "did you mean '" : "'keep' lists what it has", near ? near : "",
-                   near ? "'?" : "");
+                   "the sensitivity analysis: the table has no column '%.60s'%s", name->text,
+                   *near.text ? near.text : "; 'keep' lists what it has");
   }
   return file->diagnostics.count ? STRUT_BAD_SCENE : STRUT_OK;
 }

@@ -1,25 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include <errno.h>
-#include <limits.h>
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/base/checksum.h"
 #include "engine/base/memory.h"
-#include "engine/base/text.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
-#include "engine/study/cluster/cluster_script.h"
 #include "engine/study/fit/fit.h"
 #include "engine/study/results/study_table.h"
 #include "engine/study/search/search.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/language/study/read_study.h"
 #include "parser/language/write/write_scene.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 #include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
 
@@ -36,9 +30,8 @@ strut_status strut_sweep_study_report(const strut_listener *listener, strut_swee
 /* Tries a point; of motions that are followed, at both ends of the parameter. */
 static strut_status try_point(strut_study_file *file, const strut_study_value *values) {
   const strut_study_follow *follow = file->study.follow;
-  if (!follow) return strut_study_try(file, values);
-  strut_status status = strut_study_try_at(file, values, follow->from);
-  return status ? status : strut_study_try_at(file, values, follow->to);
+  strut_status status = strut_study_try(file, values, follow ? &follow->from : NULL);
+  return status || !follow ? status : strut_study_try(file, values, &follow->to);
 }
 
 /* Tries each of the texts that a search chooses among, and what matches set, other values being the first ones. */
@@ -83,17 +76,6 @@ static strut_status try_ends(strut_study_file *file) {
   }
   strut_release(values);
   return status;
-}
-
-static strut_status setup_of(void *context, const strut_study_value *values, strut_setup *setup,
-                             strut_error *error) {
-  return strut_study_setup(context, values, setup, error);
-}
-
-static strut_status vary(void *context, const strut_study_value *values, const strut_derived_by *by,
-                         size_t count, const double *numbers, strut_setup *setup,
-                         strut_error *error) {
-  return strut_study_vary(context, values, by, count, numbers, setup, error);
 }
 
 static strut_status apply_options(const void *context, strut_setup *setup) {
@@ -187,7 +169,7 @@ static strut_status bind_fit(strut_sweep_study *study, strut_error *error) {
 strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep_study *study,
                                    strut_error *error) {
   strut_study_file *file = &study->file;
-  const strut_sweep_scenes scenes = {setup_of, strut_setup_write, file, vary};
+  const strut_sweep_scenes scenes = {strut_study_setup, strut_setup_write, file, strut_study_vary};
   strut_status status = strut_study_open(arguments->model, arguments->overrides,
                                          arguments->override_count, file, error);
   if (!status) status = adjust_scenes(arguments, file);
@@ -318,11 +300,9 @@ strut_status strut_sweep_texts_write(const strut_arguments *arguments,
   strut_status status = for_each(arguments, study, write_copy, error);
   if (!status)
     status = strut_data_copy(file->study.tables, file->study.table_count, arguments->output, error);
-  for (size_t i = 0; i < file->source_count && !status; i++) {
-    size_t count;
-    const strut_data_table *tables = strut_scene_source_tables(file->sources[i], &count);
-    status = strut_data_copy(tables, count, arguments->output, error);
-  }
+  for (size_t i = 0; i < file->source_count && !status; i++)
+    status = strut_data_copy(file->sources[i]->tables, file->sources[i]->table_count,
+                             arguments->output, error);
   return status;
 }
 

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "parser/language/read/reuse/overlay.h"
 
-#include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -159,11 +157,11 @@ static bool removes_nothing(const strut_overlay *overlay, const strut_tree *base
                             const strut_tree *key) {
   if (!overlay->diagnostics || !strut_is_removal(key->next) || strpbrk(key->text, ".*"))
     return false;
-  const char *meant = base->count <= 1000 ? strut_did_you_mean(key->text, name_at, base) : NULL;
+  const strut_near near =
+      base->count <= 1000 ? strut_near_to(key->text, name_at, base) : (strut_near){""};
   int shown = (int)strcspn(key->text, "\n");
-  strut_diagnose(overlay->diagnostics, key->place, "there is no '%.*s' to remove%s%.64s%s",
-                 shown > 64 ? 64 : shown, key->text, meant ? "; did you mean '" : "",
-                 meant ? meant : "", meant ? "'?" : "");
+  strut_diagnose(overlay->diagnostics, key->place, "there is no '%.*s' to remove%s",
+                 shown > 64 ? 64 : shown, key->text, near.text);
   return true;
 }
 

@@ -6,7 +6,6 @@
  * costs little. Sizes are known before anything is copied: the copies of the first copy are counted all
  * the way down, and counts that are too large are refused at their number.
  */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,11 +13,6 @@
 #include "parser/language/read/reuse/copies.h"
 
 /* ---- parts ---- */
-
-static const char *part_name(const void *context, size_t i) {
-  const strut_part_list *list = context;
-  return i < list->count ? list->part[i].name : NULL;
-}
 
 static void read_part_list(strut_reader *reader, const strut_slot *slot, strut_copy *home,
                            strut_part_list *list) {
@@ -56,9 +50,10 @@ static strut_part *read_part_name(strut_reader *reader, const strut_copy *scope,
   strut_part *part = find_part(reader, scope, name->text, &nearest);
   if (part || strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARTS)->state == STRUT_BROKEN)
     return part;
-  strut_report_error(reader, name->place, "unknown part '%s' in 'part' of %s%s",
-                     strut_sanitised_text(reader, name->text), strut_owner_text(reader, owner),
-                     strut_hint(reader, name->text, part_name, nearest, nearest->count));
+  strut_report_error(
+      reader, name->place, "unknown part '%s' in 'part' of %s%s",
+      strut_sanitised_text(reader, name->text), strut_owner_text(reader, owner),
+      strut_hint_of_rows(reader, name->text, STRUT_NAMED(nearest->part, nearest->count)));
   return NULL;
 }
 
@@ -93,11 +88,6 @@ static const char *make_prefix(strut_expansion *expansion, const strut_placement
                                    : strut_formatted(reader, arena, "%s.", placement->name);
 }
 
-static const char *copy_parameter_name(const void *context, size_t i) {
-  const strut_copy *copy = context;
-  return i < copy->parameter_count ? copy->parameters[i].name : NULL;
-}
-
 /* The parameters of a copy: those of the part, with the values of `set`. */
 static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_copy *place,
                                  const strut_tree *set) {
@@ -122,8 +112,7 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
           key->text);
   }
   for (; given; given = given->next->next) {
-    size_t i = 0;
-    while (i < copy->parameter_count && strcmp(copy->parameters[i].name, given->text) != 0) i++;
+    size_t i = strut_row_find(STRUT_NAMED(copy->parameters, copy->parameter_count), given->text);
     if (i < copy->parameter_count) {
       copy->parameters[i].of_part->given = given->next;
       copy->parameters[i].of_part->given_scope = place;
@@ -132,7 +121,8 @@ static bool read_copy_parameters(strut_reader *reader, strut_copy *copy, strut_c
     fine = strut_report_error(
         reader, given->place, "part '%s' has no parameter '%s'%s", copy->placement->part->name,
         strut_sanitised_text(reader, given->text),
-        strut_hint(reader, given->text, copy_parameter_name, copy, copy->parameter_count));
+        strut_hint_of_rows(reader, given->text,
+                           STRUT_NAMED(copy->parameters, copy->parameter_count)));
   }
   for (size_t i = 0; i < copy->parameter_count; i++) {
     strut_parameter_state *p = &copy->parameters[i];
