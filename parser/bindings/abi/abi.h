@@ -90,7 +90,7 @@ typedef struct strutlib_control strutlib_control;
  * Counts additions to this interface: a program that needs a function may ask whether it is
  * there.
  */
-#define STRUTLIB_ABI_VERSION 3
+#define STRUTLIB_ABI_VERSION 4
 /** STRUTLIB_ABI_VERSION of the library that is loaded. */
 STRUTLIB_API int strutlib_abi_version(void);
 /** Version of the program that the library belongs to, such as "0.1.0". */
@@ -235,6 +235,8 @@ STRUTLIB_API const char *strutlib_channel_kind(const char *channel);
 STRUTLIB_API const char *strutlib_channel_component(const char *channel, size_t i);
 /** The i-th name in a table with a column for each number of a thing: "x", "vx", "length", ... */
 STRUTLIB_API const char *strutlib_channel_column(const char *channel, size_t i);
+/** The unit of its numbers: "m", "m/s", ... */
+STRUTLIB_API const char *strutlib_channel_unit(const char *channel);
 
 /**
  * Values of the scene by dotted name, as strutlib_scene_yaml shows it: "run.duration",

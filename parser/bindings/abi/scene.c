@@ -82,21 +82,18 @@ const char *strutlib_channel(size_t i) {
   return row ? row->name : NULL;
 }
 
-const char *strutlib_channel_kind(const char *channel) {
-  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  return row ? strut_owner_row_of(row->owner)->things : NULL;
-}
-
-const char *strutlib_channel_component(const char *channel, size_t i) {
-  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  bool several = row && !strut_channel_is_whole(row) && row->components > 1;
-  return several && i < row->components ? row->component_names[i] : NULL;
-}
-
-const char *strutlib_channel_column(const char *channel, size_t i) {
-  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  return row && i < row->components ? row->column_names[i] : NULL;
-}
+/* Of the channel's row, NULL where there is none. */
+#define CHANNEL(PART, INDEX, KNOWN, VALUE)                                                         \
+  const char *strutlib_channel_##PART(const char *channel INDEX) {                                 \
+    const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;                  \
+    return row && (KNOWN) ? VALUE : NULL;                                                          \
+  }
+#define AT , size_t i
+CHANNEL(kind, , true, strut_owner_row_of(row->owner)->things)
+CHANNEL(unit, , true, row->unit)
+CHANNEL(component, AT, i<row->components && row->components> 1 && !strut_channel_is_whole(row),
+        row->component_names[i])
+CHANNEL(column, AT, i < row->components, row->column_names[i])
 
 /* ---- arrays ---- */
 

@@ -506,5 +506,8 @@ def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
     ]
 
 
+unit: Callable[[str], str] = _api.channel_unit  #: of a channel
+
+
 for _call in (*_api.calls, "study"):
     _errors.switches.update(name for (name, _), (kind, _) in zip(options(_call), option_types(_call)) if kind == "flag")

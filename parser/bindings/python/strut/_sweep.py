@@ -178,7 +178,7 @@ class Table(Frozen):
         return _plots.things(self, len(self))
 
     def __getstate__(self) -> dict[str, Any]:
-        raw = self._raw if isinstance(self._raw, _Stored) else _Stored(self._raw)
+        raw = self._raw if isinstance(self._raw, _Stored) else _Stored.of(self._raw)
         return {**self.__dict__, "_raw": raw}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import json
 import operator
 import os
@@ -148,16 +150,49 @@ def words(text: str) -> Words:
     return found
 
 
+#: names that people write for others
+_MEANT = {
+    **dict.fromkeys(("dt", "time_step", "timestep"), "step"),
+    **dict.fromkeys(("method", "solver"), "integrator"),
+    **dict.fromkeys(("t", "t_end", "tend", "time", "until"), "duration"),
+    **dict.fromkeys(("n_jobs", "workers"), "threads"),
+    **dict.fromkeys(("rtol", "tol"), "tolerance"),
+}
+
+
 def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
     """A sentence for a name that is not there, with those that may have been meant."""
     import difflib
 
     names = [one for one in known if not one.startswith("_")]
-    close = difflib.get_close_matches(name, names, 3)
+    close = [_MEANT[name]] if _MEANT.get(name) in names else difflib.get_close_matches(name, names, 3)
     if close:
         return f"no {what} '{name}'; did you mean {' or '.join(map(repr, close))}?"
     listed = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
     return f"no {what} '{name}'" + (f"; there are {listed}" if names else "")
+
+
+def hinted(function: Any) -> Any:
+    """The function, whose error for an unknown keyword has those that may have been meant."""
+    code = function.__code__
+    known = [name for name in code.co_varnames[: code.co_argcount + code.co_kwonlyargcount] if name != "self"]
+    if code.co_flags & inspect.CO_VARKEYWORDS:  # it looks at them itself
+        return function
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        for name in named:
+            if name not in known:
+                _, near, names = unknown(name, known).partition("; ")
+                raise TypeError(f"{function.__name__}() got an unexpected keyword argument '{name}'{near}{names}")
+        return function(*given, **named)
+
+    return call
+
+
+def parts_of(name: str, channels: Iterable[str]) -> dict[str, str]:
+    """The channels that begin with a name and a dot, by what follows: "com.x" of "com" by "x"."""
+    return {channel.removeprefix(f"{name}."): channel for channel in channels if channel.startswith(f"{name}.")}
 
 
 class Named(Frozen):
