@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Scenes: a text that is read once, with settings; and what a scene holds, as names, values, arrays and a
- * text.
- */
+/* Scenes: a text that is read once, with settings; and what a scene holds, as names, values, arrays and a text. */
 #include <math.h>
 #include <string.h>
 
 #include "engine/run/measure/summary.h"
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"
 
@@ -239,17 +235,7 @@ static const abi_tree *tree_of(const strutlib_scene *constant) {
   return scene->tree;
 }
 
-int strutlib_scene_number(const strutlib_scene *scene, const char *name, double *value) {
-  return abi_tree_number(tree_of(scene), name, value);
-}
-
-int strutlib_scene_flag(const strutlib_scene *scene, const char *name, int *value) {
-  return abi_tree_flag(tree_of(scene), name, value);
-}
-
-const char *strutlib_scene_text(const strutlib_scene *scene, const char *name) {
-  return abi_tree_text(tree_of(scene), name);
-}
+ABI_TREE_VALUES(scene)
 
 char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
   if (abi_lacks(error, scene, "scene")) return NULL;

@@ -10,27 +10,8 @@ Names are those of the scene's file and of the program's JSON, numbers are in SI
 Results and scenes do not change. `models` is the folder of the models that come with strut.
 """
 
-from ._errors import (
-    Error,
-    FileError,
-    MemoryError,
-    Message,
-    MissingFileError,
-    RunError,
-    SceneError,
-    UsageError,
-)
-from ._results import (
-    Equilibria,
-    Equilibrium,
-    Form,
-    Matrices,
-    Modes,
-    Path,
-    Result,
-    Rigidity,
-    Run,
-)
+from ._errors import Error, FileError, MemoryError, Message, MissingFileError, RunError, SceneError, UsageError
+from ._results import Equilibria, Equilibrium, Form, Matrices, Modes, Path, Result, Rigidity, Run
 from ._scene import Scene, load, loads, run
 from ._simulation import Motion, Simulation
 from ._strut import models, version as __version__
@@ -38,40 +19,11 @@ from ._studies import Fit, Study, compare, fit, sweep, tradeoff
 from ._sweep import Table
 from ._values import Frozen as _Frozen, Named, Words, hinted as _hinted, unknown as _unknown
 
-__all__ = [
-    "Equilibria",
-    "Equilibrium",
-    "Error",
-    "FileError",
-    "Fit",
-    "Form",
-    "Matrices",
-    "MemoryError",
-    "Message",
-    "MissingFileError",
-    "Modes",
-    "Motion",
-    "Named",
-    "Path",
-    "Result",
-    "Rigidity",
-    "Run",
-    "RunError",
-    "Scene",
-    "SceneError",
-    "Simulation",
-    "Study",
-    "Table",
-    "UsageError",
-    "Words",
-    "compare",
-    "fit",
-    "load",
-    "loads",
-    "models",
-    "run",
-    "sweep",
-    "tradeoff",
+__all__ = [  # fmt: skip
+    "Equilibria", "Equilibrium", "Error", "FileError", "Fit", "Form", "Matrices", "MemoryError", "Message",
+    "MissingFileError", "Modes", "Motion", "Named", "Path", "Result", "Rigidity", "Run", "RunError", "Scene",
+    "SceneError", "Simulation", "Study", "Table", "UsageError", "Words", "compare", "fit", "load", "loads", "models",
+    "run", "sweep", "tradeoff",
 ]
 
 #: commands of the program that are no functions here, and what does it

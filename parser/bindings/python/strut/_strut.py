@@ -425,12 +425,7 @@ class Scene(_Handle):
         return Simulation(control.call(_api.simulation_open, (self, *_pairs(names, values))), control)
 
     def call(
-        self,
-        result: Result,
-        command: str,
-        names: tuple[str, ...],
-        values: tuple[str, ...],
-        progress: Progress | None,
+        self, result: Result, command: str, names: tuple[str, ...], values: tuple[str, ...], progress: Progress | None
     ) -> None:
         if command not in _api.calls:
             raise ValueError(f"no such command: {command}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import itertools
 import json
 import operator
 import os
@@ -310,27 +311,17 @@ def from_words(value: Any, path: Sequence[str]) -> Any:
             return [walk(item, rest) for item in at.values()]
         return None if isinstance(at, (str, bool)) else at
 
-    def shape(at: Any) -> tuple[int, ...]:
-        if not isinstance(at, list):
-            return ()
-        inner: list[int] = []
-        for item in at:
-            for i, n in enumerate(shape(item)):
-                if i == len(inner):
-                    inner.append(n)
-                inner[i] = max(inner[i], n)
-        return (len(at), *inner)
-
-    def fill(array: Any, at: Any) -> None:
-        for i, item in enumerate(at):
-            if isinstance(item, list):
-                fill(array[i], item)
-            elif item is not None:
-                array[i] = item
-
     nested = walk(value, path)
-    if not isinstance(nested, list):
-        return None
-    array = numpy().full(shape(nested), float("nan"))
-    fill(array, nested)
-    return fixed(array)
+    return fixed(_padded(nested)) if isinstance(nested, list) else None
+
+
+def _padded(at: Any) -> Any:
+    """The array of nested lists, short ones filled up with NAN; None is NAN."""
+    if not isinstance(at, list):
+        return numpy().array(at, float)
+    parts = [_padded(item) for item in at]
+    sizes = itertools.zip_longest(*(part.shape for part in parts), fillvalue=0)
+    whole = numpy().full((len(parts), *map(max, sizes)), float("nan"))
+    for i, part in enumerate(parts):
+        whole[(i, *map(slice, part.shape))] = part
+    return whole
