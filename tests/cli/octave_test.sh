@@ -175,6 +175,8 @@ assert(numel(table.limit_factor), 2);
 fails('strut:scene', 'bad.yaml:2:13: error: unknown key ''positon''', @() strut.run('bad.yaml'));
 fails('strut:usage', 'strut.run needs a file, as in strut.run(''model.yaml'')', @() strut.run());
 fails('strut:usage', 'strut.fit needs a file', @() strut.fit());
+fails('strut:usage', 'what strut.load returned, not of class double', @() strut.run(3));
+fails('strut:usage', 'one cell, {''a.yaml'', ''b.yaml''}', @() strut.command('compare', crawler, crawler));
 fails('strut:scene', 'bad.yaml:2:13: error: unknown key ''positon''', @() strut.load('bad.yaml'));
 fails('strut:scene', 'did you mean ''frequency''?', @() strut.run(crawler, 'frequncy', 3));
 fails('strut:scene', 'options of the command: accuracy,', @() strut.run(crawler, 'acuracy', '1 %'));

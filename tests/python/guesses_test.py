@@ -82,13 +82,107 @@ class Guesses(unittest.TestCase):
         sim.advance_to(0.005)
         self.assertAlmostEqual(sim.time, 0.01)
         self.assertRaisesRegex(ValueError, "duration", robot.run, controller=hold, step="0.1 ms")
+        self.assertAlmostEqual(float(sim.com.x), robot.run(duration=0.01, step="0.1 ms", channels="com.x").com.x[-1])
 
-    def test_every_command_has_its_place(self):
+    def test_a_controlled_run_is_as_good_as_a_run(self):
+        robot, how = strut.load(ROBOT), {"duration": 0.1, "step": "0.1 ms", "every": "10 ms", "channels": "position,energy,com.x"}
+        run, motion = robot.run(**how), robot.run(controller=lambda sim: None, **how)
+        self.assertEqual((motion.channels, len(motion.com.x)), (run.channels, 10))
+        for name in motion.channels:
+            self.assertEqual(motion[name].tolist(), run[name].tolist()[1:], name)  # a run begins with the start
+            self.assertEqual(motion.unit(name), run.unit(name))
+        for name in ("step", "velocity", "duration", "status", "steps", "parameters", "nodes"):
+            self.assertEqual(motion.summary[name], run.summary[name], name)
+        for name, value in motion.energy.items():
+            self.assertAlmostEqual(value, run.energy.get(name, 0.0), delta=1e-15, msg=name)
+        self.assertEqual(motion.to_csv().split("\n")[1], run.to_csv().split("\n")[2])
+        self.assertIn("completed", repr(pickle.loads(pickle.dumps(motion))))
+        self.assertRaisesRegex(ValueError, "of a controller has no html", motion.view)
+
+        def push(sim):
+            sim.load["top"] = (0, 0.1)
+
+        pushed = robot.run(controller=push, **how)
+        self.assertGreater(abs(pushed.energy.load_work + pushed.energy.input_work), 1e-5)
+        self.assertLess(abs(pushed.energy.residual), 1e-8)
+
+        def stop(sim):
+            if sim.time > 0.05:
+                raise KeyboardInterrupt
+
+        with self.assertRaises(KeyboardInterrupt) as caught:
+            robot.run(controller=stop, **how)
+        self.assertEqual((caught.exception.result.status, len(caught.exception.result.time)), ("interrupted", 5))
+
+    def test_keywords(self):
+        robot = strut.load(ROBOT)
+        cases = [
+            (robot.run, "controlller", "'controller'"),
+            (robot.run, "method", "'integrator'"),
+            (robot.run, "dt", "'step'"),
+            (robot.sweep, "thread", "'threads'"),
+            (robot.modes, "cout", "'count'"),
+            (robot.simulation, "stp", "'step'"),
+            (robot.equilibria, "strats", "'starts'"),
+            (robot.rigidity, "att", "'at'"),
+            (robot.form, "gven", "'given'"),
+            (robot.path, "upto", "until"),
+            (robot.matrices, "att", "'at'"),
+            (robot.modes().svg, "widht", "'width'"),
+            (strut.fit, "outptu", "'output'"),
+            (strut.sweep, "sett", "'set'"),
+        ]
+        for function, name, meant in cases:
+            given = ["a.yaml"] * (function in (strut.fit, strut.sweep))
+            self.assertRaisesRegex(TypeError, f"{name}.*{meant}", function, *given, **{name: 1})
+        run = robot.run(every="2 ms", duration=0.01)
+        self.assertAlmostEqual(run.time[1], 0.002)
+        wrong = {"controller": print, "duration": 1, "accuracy": "1 %"}
+        self.assertRaisesRegex(TypeError, "step='0.1 ms': it takes no accuracy", robot.run, **wrong)
+
+    def test_every_command_is_the_program_s(self):
+        """Those of `strut help`: what Python computes has the program's bytes, or the error says what does it."""
+        truss, spring, frame = (MODELS / f"{name}.yaml" for name in ("basics/von-mises-truss", "basics/oscillator", "gallery/x-frame"))
+        scene, study = strut.load(ROBOT), pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()), "study.yaml")
+        there = study.parent
+        study.with_name("robot.yaml").write_text(ROBOT.read_text())
+        study.write_text("strut: 1\nstudy: Speeds\nmodel: robot.yaml\naxes: [{friction: [0.1, 0.2]}]\nkeep: [velocity]\n")
+        computed = {
+            "run": lambda: (scene.run().json, ROBOT),
+            "sweep": lambda: (strut.sweep(study, output=there / "one").json, study, "-o", there / "two"),
+            "compare": lambda: (strut.compare(ROBOT, spring, set={"friction": 0.2}).json, "--set=friction=0.2", ROBOT, spring),
+            "tradeoff": lambda: (strut.tradeoff(spring, step_sizes=3).json, spring, "--step-sizes=3"),
+            "equilibria": lambda: (scene.equilibria().json, ROBOT),
+            "path": lambda: (strut.load(truss).path(until=1).json, truss, "--until=1"),
+            "modes": lambda: (scene.modes(count=2).json, ROBOT, "--count=2"),
+            "rigidity": lambda: (scene.rigidity().json, ROBOT),
+            "form": lambda: (strut.load(frame).form(given="prestress").json, frame, "--given=prestress"),
+        }
+        elsewhere = {
+            "check": lambda: "warnings" in program("check", ROBOT, "--json") and scene.warnings == (),
+            "view": lambda: scene.view().html.startswith("<!DOCTYPE html>"),
+            "export": lambda: scene.to_yaml() == program("export", ROBOT),
+            "examples": lambda: all((strut.models / line.split()[0]).exists() for line in program("examples").splitlines()),
+            **dict.fromkeys(("plot", "keys", "help")),
+        }
         commands = re.findall(r"^  ([a-z]+)  ", program("help"), re.M)
-        self.assertGreater(len(commands), 14)
-        for command in commands:
-            if not hasattr(strut, command):
+        self.assertEqual(sorted(commands), sorted([*computed, *elsewhere]))
+        measured = re.compile(r'\n\t*"(wall_time|table|cpu|cpu_per_second|(\w+_)?seconds)":[^\n]*')
+        for command, compute in computed.items():
+            mine, *words = compute()
+            with self.subTest(command):
+                printed = program(command, *words, "--json", "--quiet")
+                self.assertEqual(measured.sub("", mine), measured.sub("", printed))
+        for command, holds in elsewhere.items():
+            with self.subTest(command):
                 self.assertRaisesRegex(AttributeError, f"no 'strut.{command}': .", getattr, strut, command)
+                self.assertTrue(holds is None or holds())
+        crawlers = strut.compare(scene, scene(friction=0.2), no_motion=True)
+        self.assertEqual([model["values"].friction for model in crawlers.models], [0.1, 0.05])
+        self.assertIn("<svg", crawlers.svg())
+        self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", strut.compare, scene, acuracy=1)
+        self.assertRaisesRegex(ValueError, "accuracy.*'1 m'", strut.compare, scene, accuracy="1 m")
+        self.assertRaises(strut.MissingFileError, strut.tradeoff, "none.yaml")
         self.assertRaisesRegex(AttributeError, "did you mean 'load'", lambda: strut.laod)
         self.assertRaisesRegex(AttributeError, "strut.load", lambda: strut.Model)
 

@@ -31,7 +31,8 @@ export const SLOW = new Set([
  * which saddles a search meets. The cause is sine, cosine, arc tangent, exponential and power of emscripten's C library,
  * whose last bits are other than those of the GNU one: the program that takes these functions from emscripten's sources
  * (by LD_PRELOAD) gives all of these answers byte for byte as the module does. None may join them unnoticed, and one that
- * agrees again has to leave.
+ * agrees again has to leave. The runs of gull and jib differ in `check_evaluations` alone, by 24 of 267942 and by 12 of
+ * 187587: `pow`, by itself, gives error control other steps in their last bits.
  */
 export const DIFFERENT = new Set([
   "equilibria gallery/arch-with-flexure.yaml",
@@ -59,5 +60,6 @@ export const DIFFERENT = new Set([
   "rigidity gallery/t-bar-with-tendon.yaml",
   "run gallery/t-bar-with-tendon.yaml",
   "run gallery/voxel-with-network.yaml",
+  "run topologies/gull.yaml",
   "run topologies/jib.yaml"
 ]);

@@ -1,40 +1,35 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /**
- * strut as a shared library with a stable binary interface: libstrut.so.0, installed as
- * strut/abi.h.
+ * strut as a shared library with a stable binary interface: libstrut.so.0, installed as strut/abi.h.
  *
- * Every call does what the program's command of that name does, with the same names, checks,
- * messages and bits. Handles are opaque; what they show are texts, numbers by dotted name, and
- * arrays of doubles with shape and stride. Programs that were built against this header run with
- * every later libstrut.so.0.
+ * Every call does what the program's command of that name does, with the same names, checks, messages and bits. Handles
+ * are opaque; what they show are texts, numbers by dotted name, and arrays of doubles with shape and stride. Programs
+ * that were built against this header run with every later libstrut.so.0.
  *
- * Names: of things as in the scene's file, of results as in the program's JSON, of recorded
- * channels as in the scene's `output`. Numbers are in SI units and radians. Settings and options
- * are pairs of texts: "frequency", "10 Hz", as in `--set frequency="10 Hz"`; a number without
- * unit is in SI units.
+ * Names: of things as in the scene's file, of results as in the program's JSON, of recorded channels as in the scene's
+ * `output`. Numbers are in SI units and radians. Settings and options are pairs of texts: "frequency", "10 Hz", as in
+ * `--set frequency="10 Hz"`; a number without unit is in SI units.
  *
- * NULL: an argument must not be NULL unless its function says that it may. A call that can fail then does,
- * with STRUTLIB_USAGE; any other answers as if there were nothing: NULL, 0, -1 or NAN.
+ * NULL: an argument must not be NULL unless its function says that it may. A call that can fail then does, with
+ * STRUTLIB_USAGE; any other answers as if there were nothing: NULL, 0, -1 or NAN.
  *
- * Errors: the last argument of a call that can fail is `strutlib_error **error`. NULL: the caller does
- * not want to know. Otherwise *error becomes NULL on success, and on failure an error to be
- * released by strutlib_error_free. Lack of memory is such an error; no call aborts, exits,
- * prints, or sets a locale, a signal handler or an error handler.
+ * Errors: the last argument of a call that can fail is `strutlib_error **error`. NULL: the caller does not want to
+ * know. Otherwise *error becomes NULL on success, and on failure an error to be released by strutlib_error_free. Lack
+ * of memory is such an error; no call aborts, exits, prints, or sets a locale, a signal handler or an error handler.
  *
- * Texts: a `const char *` belongs to its handle and lives as long. A `char *` belongs to the caller,
- * who releases it by strutlib_release. All are UTF-8, and NULL-terminated.
+ * Texts: a `const char *` belongs to its handle and lives as long. A `char *` belongs to the caller, who releases it by
+ * strutlib_release. All are UTF-8, and NULL-terminated.
  *
  * Arrays: `data` points at doubles owned by the handle; element (i, j, k) of an array is
- * data[i * stride[0] + j * stride[1] + k * stride[2]], strides counted in doubles. `shape` and
- * `stride` have room for STRUTLIB_DIMENSIONS. A pointer is good until the handle is released. Values
- * that do not exist are NAN. Arrays of scenes and results never change; those of a simulation are live.
+ * data[i * stride[0] + j * stride[1] + k * stride[2]], strides counted in doubles. `shape` and `stride` have room for
+ * STRUTLIB_DIMENSIONS. A pointer is good until the handle is released. Values that do not exist are NAN. Arrays of
+ * scenes and results never change; those of a simulation are live.
  *
- * Threads: scenes and results are constant, and any number of threads may use one at the same
- * time. A simulation belongs to one thread at a time. Sweeps and searches for equilibria use
- * OpenMP inside; after fork() without exec the child must not start them. While a call
- * computes, GSL's error handler is off; the host's is put back. Figures and sweeps use a
- * temporary folder below TMPDIR or /tmp, which is gone when the call returns; figures are drawn
- * by Pango and GLib, which abort where memory is out.
+ * Threads: scenes and results are constant, and any number of threads may use one at the same time. A simulation
+ * belongs to one thread at a time. Sweeps and searches for equilibria use OpenMP inside; after fork() without exec the
+ * child must not start them. While a call computes, GSL's error handler is off; the host's is put back. Figures and
+ * sweeps use a temporary folder below TMPDIR or /tmp, which is gone when the call returns; figures are drawn by Pango
+ * and GLib, which abort where memory is out.
  */
 #ifndef STRUT_PARSER_BINDINGS_ABI_ABI_H
 #define STRUT_PARSER_BINDINGS_ABI_ABI_H
@@ -55,8 +50,7 @@ extern "C" {
 #define STRUTLIB_DIMENSIONS 4
 
 /**
- * Status of a call or a result. The numbers are part of the interface; the program's exit code is
- * strutlib_exit_code.
+ * Status of a call or a result. The numbers are part of the interface; the program's exit code is strutlib_exit_code.
  */
 #define STRUTLIB_OK 0
 #define STRUTLIB_USAGE 1          /* wrong use of a function: an unknown option, a bad value */
@@ -86,18 +80,13 @@ typedef struct strutlib_control strutlib_control;
 
 /* ---- versions, texts, codes ---- */
 
-/**
- * Counts additions to this interface: a program that needs a function may ask whether it is
- * there.
- */
-#define STRUTLIB_ABI_VERSION 3
+/** Counts additions to this interface: a program that needs a function may ask whether it is there. */
+#define STRUTLIB_ABI_VERSION 4
 /** STRUTLIB_ABI_VERSION of the library that is loaded. */
 STRUTLIB_API int strutlib_abi_version(void);
 /** Version of the program that the library belongs to, such as "0.1.0". */
 STRUTLIB_API const char *strutlib_version(void);
-/**
- * The language as a JSON Schema, as `strut keys --schema` prints it; with `study` other than 0 that of studies.
- */
+/** The language as a JSON Schema, as `strut keys --schema` prints it; with `study` other than 0 that of studies. */
 STRUTLIB_API char *strutlib_schema(int study, strutlib_error **error);
 /**
  * Any YAML text as JSON with places: [line, column, value, ...] of a scalar with its text, of a list or a mapping with
@@ -123,14 +112,9 @@ STRUTLIB_API int strutlib_error_status(const strutlib_error *error);
  * first, with its place: "arm.yaml:12:9: ...".
  */
 STRUTLIB_API const char *strutlib_error_message(const strutlib_error *error);
-/**
- * Everything there is to say, as the program shows it: lines with carets, all messages. Ends with
- * a newline.
- */
+/** Everything there is to say, as the program shows it: lines with carets, all messages. Ends with a newline. */
 STRUTLIB_API const char *strutlib_error_report(const strutlib_error *error);
-/**
- * Number of located messages; they are sorted by place. 0 for an error without a place in a text.
- */
+/** Number of located messages; they are sorted by place. 0 for an error without a place in a text. */
 STRUTLIB_API size_t strutlib_error_count(const strutlib_error *error);
 /** Text of located message i, without its place; NULL beyond the last. */
 STRUTLIB_API const char *strutlib_error_text(const strutlib_error *error, size_t i);
@@ -162,27 +146,21 @@ STRUTLIB_API void strutlib_error_free(strutlib_error *error);
  */
 typedef int (*strutlib_progress)(void *context, double fraction);
 
-/**
- * A control that is not interrupted. NULL: memory is out. It may serve any number of calls and
- * threads.
- */
+/** A control that is not interrupted. NULL: memory is out. It may serve any number of calls and threads. */
 STRUTLIB_API strutlib_control *strutlib_control_create(void);
 /** No call may be using it. NULL is allowed. */
 STRUTLIB_API void strutlib_control_free(strutlib_control *control);
 /**
- * Ends runs, sweeps, searches for equilibria and simulations with this control within 0.2 s, and
- * calls that are made later at once, until strutlib_control_reset: they return what they have,
- * with STRUTLIB_INTERRUPTED. Other calls end by themselves soon, or when a structure of thousands
- * of nodes is done. From any thread and from signal handlers.
+ * Ends runs, sweeps, searches for equilibria and simulations with this control within 0.2 s, and calls that are made
+ * later at once, until strutlib_control_reset: they return what they have, with STRUTLIB_INTERRUPTED. Other calls end
+ * by themselves soon, or when a structure of thousands of nodes is done. From any thread and from signal handlers.
  */
 STRUTLIB_API void strutlib_interrupt(strutlib_control *control);
 /** Takes an interrupt back. */
 STRUTLIB_API void strutlib_control_reset(strutlib_control *control);
 /** Was it interrupted? */
 STRUTLIB_API int strutlib_control_interrupted(const strutlib_control *control);
-/**
- * Sets a function for calls that tell their progress: strutlib_run, strutlib_sweep, strutlib_study. NULL: none.
- */
+/** Sets a function for calls that tell their progress: strutlib_run, strutlib_sweep, strutlib_study. NULL: none. */
 STRUTLIB_API void strutlib_control_on_progress(strutlib_control *control,
                                                strutlib_progress progress, void *context);
 
@@ -201,10 +179,7 @@ STRUTLIB_API strutlib_scene *strutlib_open(const char *path, size_t count, const
 STRUTLIB_API strutlib_scene *strutlib_open_text(const char *name, const char *text, size_t length,
                                                 size_t count, const char *const *names,
                                                 const char *const *values, strutlib_error **error);
-/**
- * The same scene with further settings, without reading its text again: cheap. Those made before
- * stay.
- */
+/** The same scene with further settings, without reading its text again: cheap. Those made before stay. */
 STRUTLIB_API strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, size_t count,
                                                  const char *const *names,
                                                  const char *const *values, strutlib_error **error);
@@ -212,17 +187,14 @@ STRUTLIB_API strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, si
 STRUTLIB_API void strutlib_close(strutlib_scene *scene);
 
 /**
- * Names of the things of a kind, which is a key of the scene: "parameters", "nodes", "members",
- * "hinges", "cells", "contacts", "collisions", "actuators", "loads", "sensors", "states",
- * "configurations", "quantities", "grounds", "unbalances" or "sliders"; or "channels": those that
- * the scene records; "energies": the components of the channel "energy"; "kinds": all these words;
- * or a channel: what its array counts behind the samples, such as the nodes and "total" of
- * "angular_momentum". How many there are; 0 for any other word.
+ * Names of the things of a kind, which is a key of the scene: "parameters", "nodes", "members", "hinges", "cells",
+ * "contacts", "collisions", "actuators", "loads", "sensors", "states", "configurations", "quantities", "grounds",
+ * "unbalances" or "sliders"; or "channels": those that the scene records; "energies": the components of the channel
+ * "energy"; "kinds": all these words; or a channel: what its array counts behind the samples, such as the nodes and
+ * "total" of "angular_momentum". How many there are; 0 for any other word.
  */
 STRUTLIB_API size_t strutlib_name_count(const strutlib_scene *scene, const char *kind);
-/**
- * The i-th of these names, NULL beyond the last. The order is that of every array over the kind.
- */
+/** The i-th of these names, NULL beyond the last. The order is that of every array over the kind. */
 STRUTLIB_API const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t i);
 /** Its index, or -1. */
 STRUTLIB_API long strutlib_index(const strutlib_scene *scene, const char *kind, const char *name);
@@ -235,12 +207,13 @@ STRUTLIB_API const char *strutlib_channel_kind(const char *channel);
 STRUTLIB_API const char *strutlib_channel_component(const char *channel, size_t i);
 /** The i-th name in a table with a column for each number of a thing: "x", "vx", "length", ... */
 STRUTLIB_API const char *strutlib_channel_column(const char *channel, size_t i);
+/** The unit of its numbers: "m", "m/s", ... */
+STRUTLIB_API const char *strutlib_channel_unit(const char *channel);
 
 /**
- * Values of the scene by dotted name, as strutlib_scene_yaml shows it: "run.duration",
- * "members.m8.stiffness", "nodes.n1.0" (an item of a list, counted from 0), "parameters.friction"
- * (its value in SI units). 1 where there is such a value, and *value is it; 0 where there is
- * none, as for keys that keep their default.
+ * Values of the scene by dotted name, as strutlib_scene_yaml shows it: "run.duration", "members.m8.stiffness",
+ * "nodes.n1.0" (an item of a list, counted from 0), "parameters.friction" (its value in SI units). 1 where there is
+ * such a value, and *value is it; 0 where there is none, as for keys that keep their default.
  */
 STRUTLIB_API int strutlib_scene_number(const strutlib_scene *scene, const char *name,
                                        double *value);
@@ -249,20 +222,16 @@ STRUTLIB_API int strutlib_scene_flag(const strutlib_scene *scene, const char *na
 /** The same for texts; NULL where there is none. "name", "source", "solver.integrator". */
 STRUTLIB_API const char *strutlib_scene_text(const strutlib_scene *scene, const char *name);
 /**
- * Arrays of the drawn structure: "nodes.position" (nodes, 2) [m], "nodes.mass" (nodes) [kg],
- * "members.nodes" (members, 2) indices of nodes, "members.length" as drawn [m],
- * "members.rest_length" [m], "members.stiffness" [N/m], "members.damping" [N s/m], "members.mass"
- * [kg], "members.pretension" as drawn [N]; each (members). 1 where there is such an array, else
- * 0.
+ * Arrays of the drawn structure: "nodes.position" (nodes, 2) [m], "nodes.mass" (nodes) [kg], "members.nodes" (members,
+ * 2) indices of nodes, "members.length" as drawn [m], "members.rest_length" [m], "members.stiffness" [N/m],
+ * "members.damping" [N s/m], "members.mass" [kg], "members.pretension" as drawn [N]; each (members). 1 where there is
+ * such an array, else 0.
  */
 STRUTLIB_API int strutlib_scene_array(const strutlib_scene *scene, const char *name,
                                       const double **data, int *dimensions, size_t *shape,
                                       size_t *stride);
 
-/**
- * Warnings about a scene that is valid but implausible, and notes about outdated words. NULL
- * beyond the last.
- */
+/** Warnings about a scene that is valid but implausible, and notes about outdated words. NULL beyond the last. */
 STRUTLIB_API const char *strutlib_scene_warning(const strutlib_scene *scene, size_t i);
 
 /**
@@ -285,10 +254,9 @@ STRUTLIB_API char *strutlib_scene_page_data(const strutlib_scene *scene, int equ
 /* ---- computing ---- */
 
 /**
- * Options of a call: `count` pairs names[i], values[i], with names as the program has them
- * without the two dashes: "accuracy", "0.5 %". Options of the program without value, such as
- * force, have "yes" or "no". The i-th option that the command (the part of the function's name
- * after strutlib_) has, and what it means; NULL beyond the last.
+ * Options of a call: `count` pairs names[i], values[i], with names as the program has them without the two dashes:
+ * "accuracy", "0.5 %". Options of the program without value, such as force, have "yes" or "no". The i-th option that
+ * the command (the part of the function's name after strutlib_) has, and what it means; NULL beyond the last.
  */
 STRUTLIB_API const char *strutlib_option_name(const char *command, size_t i);
 STRUTLIB_API const char *strutlib_option_help(const char *command, size_t i);
@@ -304,15 +272,13 @@ STRUTLIB_API const char *strutlib_option_words(const char *command, size_t i);
  */
 
 /**
- * `strut run`. Arrays: "time" (samples) [s], and each channel that is recorded: "position",
- * "velocity" (samples, nodes, 2), "length", "force" (samples, members), "contact" (samples,
- * contacts, 2: normal, friction), "energy" (samples, energies), and whatever else strutlib_channel
- * lists, as (samples, things) or (samples, things, components). Behind a dot one thing of it, and
- * behind another one component: "position.n1" (samples, 2), "position.n1.x" (samples), "force.m8",
- * "contact.n1.normal", "energy.kinetic", "angular_momentum.total". Recorded are the scene's channels
- * and what figures and pages show, at the times that the scene's `output` gives.
- * Two options are the library's own: "channels", a list with commas of channels to record
- * instead; and "record": yes (default) or no.
+ * `strut run`. Arrays: "time" (samples) [s], and each channel that is recorded: "position", "velocity" (samples, nodes,
+ * 2), "length", "force" (samples, members), "contact" (samples, contacts, 2: normal, friction), "energy" (samples,
+ * energies), and whatever else strutlib_channel lists, as (samples, things) or (samples, things, components). Behind a
+ * dot one thing of it, and behind another one component: "position.n1" (samples, 2), "position.n1.x" (samples),
+ * "force.m8", "contact.n1.normal", "energy.kinetic", "angular_momentum.total". Recorded are the scene's channels and
+ * what figures and pages show, at the times that the scene's `output` gives. Two options are the library's own:
+ * "channels", a list with commas of channels to record instead; and "record": yes (default) or no.
  */
 STRUTLIB_API strutlib_result *strutlib_run(const strutlib_scene *scene, size_t count,
                                            const char *const *names, const char *const *values,
@@ -326,9 +292,7 @@ STRUTLIB_API strutlib_result *strutlib_equilibria(const strutlib_scene *scene, s
                                                   const char *const *values,
                                                   strutlib_control *control,
                                                   strutlib_error **error);
-/**
- * `strut modes`. Arrays such as "modes.frequency" (modes) [Hz], "modes.shape" (modes, nodes, 2).
- */
+/** `strut modes`. Arrays such as "modes.frequency" (modes) [Hz], "modes.shape" (modes, nodes, 2). */
 STRUTLIB_API strutlib_result *strutlib_modes(const strutlib_scene *scene, size_t count,
                                              const char *const *names, const char *const *values,
                                              strutlib_control *control, strutlib_error **error);
@@ -336,28 +300,23 @@ STRUTLIB_API strutlib_result *strutlib_modes(const strutlib_scene *scene, size_t
 STRUTLIB_API strutlib_result *strutlib_rigidity(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,
                                                 strutlib_control *control, strutlib_error **error);
-/**
- * `strut form`. Arrays such as "nodes" (nodes, 2), "forces" (members); strutlib_result_yaml is
- * the new model.
- */
+/** `strut form`. Arrays such as "nodes" (nodes, 2), "forces" (members); strutlib_result_yaml is the new model. */
 STRUTLIB_API strutlib_result *strutlib_form(const strutlib_scene *scene, size_t count,
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
 /**
- * `strut path`. Arrays such as "points.factor" (points; "points.value" with "over"),
- * "points.nodes" (points, nodes, 2).
+ * `strut path`. Arrays such as "points.factor" (points; "points.value" with "over"), "points.nodes" (points, nodes, 2).
  */
 STRUTLIB_API strutlib_result *strutlib_path(const strutlib_scene *scene, size_t count,
                                             const char *const *names, const char *const *values,
                                             strutlib_control *control, strutlib_error **error);
 /**
- * Matrices of the shape that the option "at" names (default drawn). Arrays of each: "mass.row", "mass.column", "mass.value" (entries; indices from 0; symmetric ones in
- * full), "mass.size" (2: rows, columns); likewise "connectivity", "equilibrium",
- * "stiffness_elastic", "stiffness_geometric", "damping" and "stiffness_contact"; and
- * "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y. Of the shape:
- * "position" (nodes, 2) and "weight" (nodes), the mass with half of each member's; (members):
- * "length", "rest_length" without drives, of a rigid bar its length at the start, "tension" of the spring
- * alone, "damping_coefficient".
+ * Matrices of the shape that the option "at" names (default drawn). Arrays of each: "mass.row", "mass.column",
+ * "mass.value" (entries; indices from 0; symmetric ones in full), "mass.size" (2: rows, columns); likewise
+ * "connectivity", "equilibrium", "stiffness_elastic", "stiffness_geometric", "damping" and "stiffness_contact"; and
+ * "coordinates" (rows): of each row of all but connectivity 2 times its node, + 1 for y. Of the shape: "position"
+ * (nodes, 2) and "weight" (nodes), the mass with half of each member's; (members): "length", "rest_length" without
+ * drives, of a rigid bar its length at the start, "tension" of the spring alone, "damping_coefficient".
  */
 STRUTLIB_API strutlib_result *strutlib_matrices(const strutlib_scene *scene, size_t count,
                                                 const char *const *names, const char *const *values,
@@ -372,20 +331,16 @@ STRUTLIB_API strutlib_result *strutlib_matrices(const strutlib_scene *scene, siz
 typedef int (*strutlib_row)(void *context, size_t point, int status);
 
 /**
- * `strut sweep` over any points: axes[0..axis_count) are parameters, `points` their values [SI], row by
- * row (point_count, axis_count). Values of parameters that are texts are in `words`, of the same shape,
- * which may be NULL where there is none, as may each of its texts. With axis_count 0 there is one
- * point, the scene as it is.
- * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured
- * quantities; none: the usual ones.
- * Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads"
- * (default automatic), "limit_evaluations", "limit_time", "at", "lowest" as in a study, and those
- * of method and model as of strutlib_run: "accuracy", "step", "integrator", "bars", ...
- * Arrays: each column of numbers by its name, of the axes first, (points) [SI]; "status"
- * (points): STRUTLIB_OK or why the point failed. Columns of words: strutlib_result_cell. A failed
- * point is a row of NAN with its status and message, no error. The bits of a row depend on its
- * point alone, not on threads. Points that an interrupt left out have the status
- * STRUTLIB_INTERRUPTED.
+ * `strut sweep` over any points: axes[0..axis_count) are parameters, `points` their values [SI], row by row
+ * (point_count, axis_count). Values of parameters that are texts are in `words`, of the same shape, which may be NULL
+ * where there is none, as may each of its texts. With axis_count 0 there is one point, the scene as it is.
+ * keep[0..keep_count): columns to keep, words as in a study's `keep`, or names of measured quantities; none: the usual
+ * ones. Options: "compute" (run, equilibria, modes, rigidity, path or form), "threads" (default automatic),
+ * "limit_evaluations", "limit_time", "at", "lowest" as in a study, and those of method and model as of strutlib_run:
+ * "accuracy", "step", "integrator", "bars", ... Arrays: each column of numbers by its name, of the axes first, (points)
+ * [SI]; "status" (points): STRUTLIB_OK or why the point failed. Columns of words: strutlib_result_cell. A failed point
+ * is a row of NAN with its status and message, no error. The bits of a row depend on its point alone, not on threads.
+ * Points that an interrupt left out have the status STRUTLIB_INTERRUPTED.
  */
 STRUTLIB_API strutlib_result *strutlib_sweep(
     const strutlib_scene *scene, size_t axis_count, const char *const *axes, size_t point_count,
@@ -424,9 +379,8 @@ STRUTLIB_API const char *strutlib_result_table(const strutlib_result *result);
 /** Warnings that the program would print, without "strut: warning: "; NULL beyond the last. */
 STRUTLIB_API const char *strutlib_result_warning(const strutlib_result *result, size_t i);
 /**
- * Values by dotted name, as in the JSON: "velocity", "energy.residual", "steady.kind",
- * "nodes.n1.position.0", "equilibria.3.name". 1 where there is such a value, 0 where there is
- * none or it is null.
+ * Values by dotted name, as in the JSON: "velocity", "energy.residual", "steady.kind", "nodes.n1.position.0",
+ * "equilibria.3.name". 1 where there is such a value, 0 where there is none or it is null.
  */
 STRUTLIB_API int strutlib_result_number(const strutlib_result *result, const char *name,
                                         double *value);
@@ -434,41 +388,29 @@ STRUTLIB_API int strutlib_result_flag(const strutlib_result *result, const char 
 STRUTLIB_API const char *strutlib_result_text(const strutlib_result *result, const char *name);
 /** Number of items of a list or a mapping of the JSON; 0 where there is none. */
 STRUTLIB_API size_t strutlib_result_count(const strutlib_result *result, const char *name);
-/**
- * The i-th name of a mapping of the JSON, such as "energy"; NULL beyond the last. `name` "": the
- * whole.
- */
+/** The i-th name of a mapping of the JSON, such as "energy"; NULL beyond the last. `name` "": the whole. */
 STRUTLIB_API const char *strutlib_result_key(const strutlib_result *result, const char *name,
                                              size_t i);
 /**
- * An array of the result. Besides those that the functions above name, all numbers of the JSON
- * are arrays by dotted name: every list on the way is a dimension, and so is what lies behind the
- * name, lists as well as mappings from names to numbers: "modes.shape" is (modes, nodes, 2).
- * Shorter ones are filled up with NAN, null is NAN. 1 where there is such an array, else 0 (also
- * where memory is out).
+ * An array of the result. Besides those that the functions above name, all numbers of the JSON are arrays by dotted
+ * name: every list on the way is a dimension, and so is what lies behind the name, lists as well as mappings from names
+ * to numbers: "modes.shape" is (modes, nodes, 2). Shorter ones are filled up with NAN, null is NAN. 1 where there is
+ * such an array, else 0 (also where memory is out).
  */
 STRUTLIB_API int strutlib_result_array(const strutlib_result *result, const char *name,
                                        const double **data, int *dimensions, size_t *shape,
                                        size_t *stride);
 /**
- * The i-th name of the arrays that are not in the JSON: recorded channels, columns of a sweep;
- * NULL beyond the last.
+ * The i-th name of the arrays that are not in the JSON: recorded channels, columns of a sweep; NULL beyond the last.
  */
 STRUTLIB_API const char *strutlib_result_array_name(const strutlib_result *result, size_t i);
-/**
- * The unit of such an array, such as "m/s"; "1" or "" without; NULL where there is no such array.
- */
+/** The unit of such an array, such as "m/s"; "1" or "" without; NULL where there is no such array. */
 STRUTLIB_API const char *strutlib_result_array_unit(const strutlib_result *result,
                                                     const char *name);
-/**
- * A word of a sweep: column "outcome", "method", "message", ... at a point; NULL where there is
- * none.
- */
+/** A word of a sweep: column "outcome", "method", "message", ... at a point; NULL where there is none. */
 STRUTLIB_API const char *strutlib_result_cell(const strutlib_result *result, const char *column,
                                               size_t point);
-/**
- * The i-th column of a sweep's table, of numbers or of words, in its order; NULL beyond the last.
- */
+/** The i-th column of a sweep's table, of numbers or of words, in its order; NULL beyond the last. */
 STRUTLIB_API const char *strutlib_result_column(const strutlib_result *result, size_t i);
 /** The scene as it was run, or the model that a form is; others: NULL with the error. */
 STRUTLIB_API char *strutlib_result_yaml(const strutlib_result *result, strutlib_error **error);
@@ -505,9 +447,8 @@ STRUTLIB_API strutlib_simulation *strutlib_simulation_open(const strutlib_scene 
 /** NULL is allowed. Snapshots of it stay, but can only be released. */
 STRUTLIB_API void strutlib_simulation_close(strutlib_simulation *simulation);
 /**
- * Makes `steps` steps and updates the arrays. STRUTLIB_OK, or STRUTLIB_DIVERGED,
- * STRUTLIB_INTERRUPTED, ...: the simulation then stands where it came to. The steps have the bits
- * of a run's, however they are divided into calls.
+ * Makes `steps` steps and updates the arrays. STRUTLIB_OK, or STRUTLIB_DIVERGED, STRUTLIB_INTERRUPTED, ...: the
+ * simulation then stands where it came to. The steps have the bits of a run's, however they are divided into calls.
  */
 STRUTLIB_API int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
                                              strutlib_error **error);
@@ -524,23 +465,19 @@ STRUTLIB_API int strutlib_simulation_array(strutlib_simulation *simulation, cons
                                            const double **data, int *dimensions, size_t *shape,
                                            size_t *stride);
 /**
- * Inputs: arrays that the caller writes, at any time between two calls. They hold from the next
- * advance on, until they are written again. A change is an event: methods with events begin anew
- * there, and the energy balance counts its work.
+ * Inputs: arrays that the caller writes, at any time between two calls. They hold from the next advance on, until they
+ * are written again. A change is an event: methods with events begin anew there, and the energy balance counts its
+ * work.
  *   "rest" (members): rest lengths [m], to which a driven member's signal is added;
  *   "actuators" (actuators): what the signal is, in its unit; NAN (as at the beginning): as the
  *     scene says;
  *   "load" (nodes, 2): forces on nodes besides those of the scene [N], 0 at the beginning.
- * Values that are not finite, or rest lengths below 0, make the next advance fail with
- * STRUTLIB_USAGE, without a step.
+ * Values that are not finite, or rest lengths below 0, make the next advance fail with STRUTLIB_USAGE, without a step.
  */
 STRUTLIB_API int strutlib_simulation_input(strutlib_simulation *simulation, const char *name,
                                            double **data, int *dimensions, size_t *shape,
                                            size_t *stride);
-/**
- * Sets one number of an input by name: "rest", "m8"; "load", "n1.x". STRUTLIB_OK or
- * STRUTLIB_USAGE.
- */
+/** Sets one number of an input by name: "rest", "m8"; "load", "n1.x". STRUTLIB_OK or STRUTLIB_USAGE. */
 STRUTLIB_API int strutlib_simulation_set(strutlib_simulation *simulation, const char *input,
                                          const char *name, double value, strutlib_error **error);
 /** Work that changes of inputs have done so far [J]; part of the energy's balance. */

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/**
- * What the handles of abi.h are, and what all calls share: errors, messages, entering and leaving.
- */
+/** What the handles of abi.h are, and what all calls share: errors, messages, entering and leaving. */
 #pragma once
 
 #include <pthread.h>
@@ -39,9 +37,19 @@ void abi_tree_free(abi_tree *tree); /* NULL is allowed */
 bool abi_tree_number(const abi_tree *tree, const char *name, double *value);
 bool abi_tree_flag(const abi_tree *tree, const char *name, int *value);
 const char *abi_tree_text(const abi_tree *tree, const char *name);
+/** The functions of the header that find a value by name in tree_of(handle). */
+#define ABI_TREE_VALUES(OF)                                                                        \
+  int strutlib_##OF##_number(const strutlib_##OF *OF, const char *name, double *value) {           \
+    return abi_tree_number(tree_of(OF), name, value);                                              \
+  }                                                                                                \
+  int strutlib_##OF##_flag(const strutlib_##OF *OF, const char *name, int *value) {                \
+    return abi_tree_flag(tree_of(OF), name, value);                                                \
+  }                                                                                                \
+  const char *strutlib_##OF##_text(const strutlib_##OF *OF, const char *name) {                    \
+    return abi_tree_text(tree_of(OF), name);                                                       \
+  }
 /**
- * Replaces a value of the mapping called `name` by a number or, where text is not NULL, by a text. False: no
- * memory.
+ * Replaces a value of the mapping called `name` by a number or, where text is not NULL, by a text. False: no memory.
  */
 bool abi_tree_set(abi_tree *tree, const char *name, const char *key, double number,
                   const char *text);
@@ -74,9 +82,11 @@ strut_status abi_settle(strutlib_error **error, strut_status status, strut_diagn
 int abi_no_memory(strutlib_error **error);
 /** Is an argument that a call needs NULL? Then *error says which. */
 bool abi_lacks(strutlib_error **error, const void *argument, const char *name);
-/** The same of `count` pairs of texts. */
-bool abi_lacks_pairs(strutlib_error **error, size_t count, const char *const *names,
-                     const char *const *values);
+/** The same of a list of texts and of each of them; of pairs of texts. */
+bool abi_lacks_texts(strutlib_error **error, size_t count, const char *const *texts,
+                     const char *name);
+#define abi_lacks_pairs(ERROR, COUNT, NAMES, VALUES)                                               \
+  (abi_lacks_texts(ERROR, COUNT, NAMES, "names") || abi_lacks_texts(ERROR, COUNT, VALUES, "values"))
 
 /* ---- messages ---- */
 
@@ -122,7 +132,7 @@ typedef struct abi_arrays {
   size_t count, capacity;
 } abi_arrays;
 
-enum { ABI_SCENE_ARRAYS = 9, ABI_KINDS = 18 };
+enum { ABI_SCENE_ARRAYS = 9 };
 
 struct strutlib_scene {
   abi_source *source;
@@ -186,11 +196,6 @@ extern const strut_command abi_run_command, abi_equilibria_command, abi_modes_co
 
 /* ---- results ---- */
 
-/** What only one kind of result has, released by its own function. */
-typedef struct abi_detail {
-  void (*release)(void *detail);
-} abi_detail;
-
 struct strutlib_result {
   const strut_command *command;
   int status;
@@ -204,7 +209,8 @@ struct strutlib_result {
   /** Draws a figure into the file; NULL: there is none. */
   strut_status (*draw)(const strutlib_result *result, const strut_arguments *arguments,
                        const char *path, strut_error *error);
-  void *detail;         /* of the kind, begins with an abi_detail; or NULL */
+  void *detail; /* what only one kind of result has, or NULL */
+  void (*release)(void *detail);
   pthread_mutex_t lock; /* of what follows, made when it is first asked for */
   abi_tree *tree;
   abi_arrays made; /* of the JSON */
@@ -218,6 +224,9 @@ strutlib_result *abi_result_leave(strutlib_result *result, bool kept);
 /** Adds an array that is not in the JSON; its name is copied. False: memory is out. */
 bool abi_result_add_array(strutlib_result *result, const char *name, const char *unit,
                           const double *data, int dimensions, const size_t *shape);
+/** An array (count) or (count, components) to be filled in, zeros at first; NULL: memory is out. */
+double *abi_result_new_array(strutlib_result *result, const char *name, const char *unit,
+                             size_t count, size_t components);
 /** The motion that a result recorded, or NULL; and its summary. */
 const strut_trajectory *abi_result_motion(const strutlib_result *result);
 

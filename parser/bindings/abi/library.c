@@ -14,7 +14,6 @@
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/read/read_scene.h"
 #include "parser/program/command/analyses.h"
-#include "parser/program/command/arguments.h"
 #include "parser/program/command/scene_options.h"
 
 /* No call of the library reads or writes trajectory.h5. With this definition neither HDF5 nor the libraries for
@@ -106,14 +105,11 @@ bool abi_lacks(strutlib_error **error, const void *argument, const char *name) {
   return !argument;
 }
 
-bool abi_lacks_pairs(strutlib_error **error, size_t count, const char *const *names,
-                     const char *const *values) {
-  if (count && (abi_lacks(error, names, "names") || abi_lacks(error, values, "values")))
-    return true;
-  for (size_t i = 0; i < count; i++)
-    if (abi_lacks(error, names[i], "names[]") || abi_lacks(error, values[i], "values[]"))
-      return true;
-  return false;
+bool abi_lacks_texts(strutlib_error **error, size_t count, const char *const *texts,
+                     const char *name) {
+  bool lacks = count && abi_lacks(error, texts, name);
+  for (size_t i = 0; i < count && !lacks; i++) lacks = abi_lacks(error, texts[i], name);
+  return lacks;
 }
 
 /* ---- located ones ---- */
@@ -252,19 +248,12 @@ int abi_fail_located(strutlib_error **error, strut_status status, strut_diagnost
 
 /* ---- what the header shows ---- */
 
-int strutlib_error_status(const strutlib_error *error) {
-  return error ? error->status : STRUTLIB_OK;
-}
-
-const char *strutlib_error_message(const strutlib_error *error) {
-  return error ? error->message : NULL;
-}
-
-const char *strutlib_error_report(const strutlib_error *error) {
-  return error ? error->report : NULL;
-}
-
-size_t strutlib_error_count(const strutlib_error *error) { return error ? error->count : 0; }
+#define OF_ERROR(TYPE, PART, NONE)                                                                 \
+  TYPE strutlib_error_##PART(const strutlib_error *error) { return error ? error->PART : NONE; }
+OF_ERROR(int, status, STRUTLIB_OK)
+OF_ERROR(const char *, message, NULL)
+OF_ERROR(const char *, report, NULL)
+OF_ERROR(size_t, count, 0)
 
 /* What a located message has; `none` beyond the last. */
 #define LOCATED(TYPE, PART, NONE)                                                                  \
@@ -372,23 +361,16 @@ char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **
 
 /* ---- codes ---- */
 
-_Static_assert(STRUTLIB_OK == (int)STRUT_OK && STRUTLIB_USAGE == (int)STRUT_USAGE &&
-                   STRUTLIB_BAD_SCENE == (int)STRUT_BAD_SCENE &&
-                   STRUTLIB_DIVERGED == (int)STRUT_DIVERGED &&
-                   STRUTLIB_STEP_TOO_LARGE == (int)STRUT_STEP_TOO_LARGE &&
-                   STRUTLIB_NOT_SETTLED == (int)STRUT_NOT_SETTLED &&
-                   STRUTLIB_SINGULAR == (int)STRUT_SINGULAR &&
-                   STRUTLIB_WORK_LIMIT == (int)STRUT_WORK_LIMIT &&
-                   STRUTLIB_FILE_TROUBLE == (int)STRUT_FILE_TROUBLE &&
-                   STRUTLIB_NO_MEMORY == (int)STRUT_NO_MEMORY &&
-                   STRUTLIB_INTERRUPTED == (int)STRUT_INTERRUPTED &&
-                   STRUTLIB_INACCURATE == (int)STRUT_INACCURATE &&
-                   STRUTLIB_INACCURATE + 1 == (int)STRUT_STATUS_COUNT,
-               "the header's numbers are those of strut_status");
-
-static const char *const status_names[] = {
-    "ok",       "usage",      "bad_scene",    "diverged",  "step_too_large", "not_settled",
-    "singular", "work_limit", "file_trouble", "no_memory", "interrupted",    "inaccurate"};
+#define STATUSES(X)                                                                                \
+  X(OK, "ok"), X(USAGE, "usage"), X(BAD_SCENE, "bad_scene"), X(DIVERGED, "diverged"),              \
+      X(STEP_TOO_LARGE, "step_too_large"), X(NOT_SETTLED, "not_settled"), X(SINGULAR, "singular"), \
+      X(WORK_LIMIT, "work_limit"), X(FILE_TROUBLE, "file_trouble"), X(NO_MEMORY, "no_memory"),     \
+      X(INTERRUPTED, "interrupted"), X(INACCURATE, "inaccurate")
+#define NAME(CODE, WORD) [STRUTLIB_##CODE] = WORD
+/* Not a constant where the header has another number than strut_status. */
+#define SAME(CODE, WORD) SAME_##CODE = 1 / (STRUTLIB_##CODE == (int)STRUT_##CODE)
+enum { STATUSES(SAME), SAME_COUNT = 1 / (STRUTLIB_INACCURATE + 1 == (int)STRUT_STATUS_COUNT) };
+static const char *const status_names[STRUT_STATUS_COUNT] = {STATUSES(NAME)};
 
 static bool is_status(int status) { return status >= 0 && status < (int)STRUT_STATUS_COUNT; }
 

@@ -38,10 +38,7 @@ static char *draw_result(const strutlib_result *result, const strut_arguments *a
   strut_error what = {0};
   abi_scratch s;
   strut_status status = abi_scratch_begin(&s, figure_name, &what);
-  if (status != STRUT_OK) {
-    abi_fail_with(error, status, &what);
-    return NULL;
-  }
+  if (status != STRUT_OK) return abi_fail_with(error, status, &what), NULL;
   status = result->draw(result, arguments, s.path, &what);
   if (status != STRUT_OK && !what.message[0]) what = messages->error;
   if (status != STRUT_OK) what.status = status;

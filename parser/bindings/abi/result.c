@@ -226,7 +226,7 @@ strutlib_result *abi_result_create(const strut_command *command, strutlib_error 
 
 void strutlib_result_free(strutlib_result *result) {
   if (!result) return;
-  if (result->detail) ((abi_detail *)result->detail)->release(result->detail);
+  if (result->detail) result->release(result->detail);
   strut_model_free(result->model);
   if (result->opened) strut_setup_free(&result->setup);
   abi_tree_free(result->tree);
@@ -306,17 +306,7 @@ static const abi_tree *tree_of(const strutlib_result *constant) {
   return tree;
 }
 
-int strutlib_result_number(const strutlib_result *result, const char *name, double *value) {
-  return abi_tree_number(tree_of(result), name, value);
-}
-
-int strutlib_result_flag(const strutlib_result *result, const char *name, int *value) {
-  return abi_tree_flag(tree_of(result), name, value);
-}
-
-const char *strutlib_result_text(const strutlib_result *result, const char *name) {
-  return abi_tree_text(tree_of(result), name);
-}
+ABI_TREE_VALUES(result)
 
 size_t strutlib_result_count(const strutlib_result *result, const char *name) {
   const cJSON *at = find(tree_of(result), name);
@@ -360,6 +350,15 @@ bool abi_result_add_array(strutlib_result *result, const char *name, const char 
                           const double *data, int dimensions, const size_t *shape) {
   const abi_array array = abi_array_of(name, unit, data, dimensions, shape);
   return add_array(&result->arrays, &result->arena, &array) != NULL;
+}
+
+double *abi_result_new_array(strutlib_result *result, const char *name, const char *unit,
+                             size_t count, size_t components) {
+  double *data = strut_arena_allocate(&result->arena, count * components, sizeof *data);
+  const size_t shape[] = {count, components};
+  return data && abi_result_add_array(result, name, unit, data, components > 1 ? 2 : 1, shape)
+             ? data
+             : NULL;
 }
 
 static const abi_array *find_array(const abi_arrays *list, const char *name) {

@@ -1,27 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Runs: strutlib_run does what `strut run` does, with the motion in memory; a simulation is advanced from
- * outside.
- */
+/* Runs: strutlib_run does what `strut run` does, with the motion in memory; a simulation is advanced from outside. */
 #include <math.h>
 #include <string.h>
 
-#include "engine/output/figures/run_figure.h"
 #include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/run/simulate.h"
 #include "engine/run/stepping.h"
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
+#include "parser/program/command/plot_options.h"
 #include "parser/program/command/scene_options.h"
 
 /* No frame is left out: the caller decides how much is recorded. */
 static const size_t ROOM = SIZE_MAX / 64;
 
 typedef struct run_detail {
-  abi_detail base;
   strut_summary summary;
   strut_trajectory motion;
 } run_detail;
@@ -140,7 +135,7 @@ static strut_status run_model(abi_call *call, const strutlib_scene *scene,
   strut_error what = {0};
   strut_sink *sink = NULL;
   if (!run) return (strut_status)abi_no_memory(call->error);
-  run->base.release = release;
+  result->release = release;
   result->detail = run;
   result->draw = draw;
   const strut_channels channels = choose_channels(&call->arguments, &result->setup);
@@ -280,17 +275,13 @@ int strutlib_simulation_input(strutlib_simulation *simulation, const char *name,
 
 /* Index of "m8", "drive" or "n1.x" in an input, or -1. */
 static long index_of(const strut_scene *scene, int input, const char *name) {
-  if (input == STRUT_INPUT_REST) {
-    return strut_thing_find(scene, STRUT_THING_MEMBER, name);
-  } else if (input == STRUT_INPUT_ACTUATORS) {
-    return strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
-  } else {
-    for (size_t i = 0; i < scene->node_count; i++) {
-      size_t length = strlen(scene->nodes[i].name);
-      if (strncmp(name, scene->nodes[i].name, length) != 0) continue;
-      if (strcmp(name + length, ".x") == 0) return (long)(2 * i);
-      if (strcmp(name + length, ".y") == 0) return (long)(2 * i + 1);
-    }
+  if (input == STRUT_INPUT_REST) return strut_thing_find(scene, STRUT_THING_MEMBER, name);
+  if (input == STRUT_INPUT_ACTUATORS) return strut_thing_find(scene, STRUT_THING_ACTUATOR, name);
+  for (size_t i = 0; i < scene->node_count; i++) {
+    size_t length = strlen(scene->nodes[i].name);
+    if (strncmp(name, scene->nodes[i].name, length) != 0) continue;
+    if (strcmp(name + length, ".x") == 0) return (long)(2 * i);
+    if (strcmp(name + length, ".y") == 0) return (long)(2 * i + 1);
   }
   return -1;
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Scenes: a text that is read once, with settings; and what a scene holds, as names, values, arrays and a
- * text.
- */
+/* Scenes: a text that is read once, with settings; and what a scene holds, as names, values, arrays and a text. */
 #include <math.h>
 #include <string.h>
 
 #include "engine/run/measure/summary.h"
 #include "engine/scene/things.h"
-#include "engine/statics/equilibria/equilibria.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"
 
@@ -82,21 +78,18 @@ const char *strutlib_channel(size_t i) {
   return row ? row->name : NULL;
 }
 
-const char *strutlib_channel_kind(const char *channel) {
-  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  return row ? strut_owner_row_of(row->owner)->things : NULL;
-}
-
-const char *strutlib_channel_component(const char *channel, size_t i) {
-  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  bool several = row && !strut_channel_is_whole(row) && row->components > 1;
-  return several && i < row->components ? row->component_names[i] : NULL;
-}
-
-const char *strutlib_channel_column(const char *channel, size_t i) {
-  const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;
-  return row && i < row->components ? row->column_names[i] : NULL;
-}
+/* Of the channel's row, NULL where there is none. */
+#define CHANNEL(PART, INDEX, KNOWN, VALUE)                                                         \
+  const char *strutlib_channel_##PART(const char *channel INDEX) {                                 \
+    const strut_channel_row *row = channel ? strut_channel_named(channel) : NULL;                  \
+    return row && (KNOWN) ? VALUE : NULL;                                                          \
+  }
+#define AT , size_t i
+CHANNEL(kind, , true, strut_owner_row_of(row->owner)->things)
+CHANNEL(unit, , true, row->unit)
+CHANNEL(component, AT, i<row->components && row->components> 1 && !strut_channel_is_whole(row),
+        row->component_names[i])
+CHANNEL(column, AT, i < row->components, row->column_names[i])
 
 /* ---- arrays ---- */
 
@@ -242,17 +235,7 @@ static const abi_tree *tree_of(const strutlib_scene *constant) {
   return scene->tree;
 }
 
-int strutlib_scene_number(const strutlib_scene *scene, const char *name, double *value) {
-  return abi_tree_number(tree_of(scene), name, value);
-}
-
-int strutlib_scene_flag(const strutlib_scene *scene, const char *name, int *value) {
-  return abi_tree_flag(tree_of(scene), name, value);
-}
-
-const char *strutlib_scene_text(const strutlib_scene *scene, const char *name) {
-  return abi_tree_text(tree_of(scene), name);
-}
+ABI_TREE_VALUES(scene)
 
 char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
   if (abi_lacks(error, scene, "scene")) return NULL;

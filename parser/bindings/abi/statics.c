@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * Equilibria, modes, rigidity, form, path, matrices: what the program's commands of these names do, without
- * files.
- */
+/* Equilibria, modes, rigidity, form, path, matrices: what the program's commands of these names do, without files. */
 #include <stdio.h>
+#include <string.h>
 
 #include "engine/base/vec.h"
 #include "engine/forces/elements.h"
@@ -15,7 +13,6 @@
 #include "parser/program/command/analyses.h"
 
 typedef struct analysis_detail {
-  abi_detail base;
   strut_analysis analysis; /* of the result's setup and model */
 } analysis_detail;
 
@@ -45,7 +42,7 @@ static strut_status compute_and_report(abi_call *call, const strutlib_scene *sce
   analysis_detail *self = strut_allocate(1, sizeof *self);
   if (!self) return strut_no_memory(what, "");
   strut_analysis *analysis = &self->analysis;
-  self->base.release = release;
+  result->release = release;
   result->detail = self;
   result->draw = draw;
   *analysis = (strut_analysis){.kind = kind,
@@ -92,24 +89,18 @@ static void put(entries *to, int32_t row, int32_t column, double value) {
 }
 
 static bool show(strutlib_result *result, const char *name, const char *unit, const entries *self) {
-  const size_t two[] = {2};
+  static const char *const parts[] = {"row", "column", "value"};
+  const double *const data[] = {self->row, self->column, self->value};
   char text[60];
-  double *size = strut_arena_allocate(&result->arena, 2, sizeof *size);
-  if (!size) return false;
-  size[0] = (double)self->rows;
-  size[1] = (double)self->columns;
-  const struct {
-    const char *part, *unit;
-    const double *data;
-  } parts[] = {
-      {"row", "1", self->row}, {"column", "1", self->column}, {"value", unit, self->value}};
-  for (size_t i = 0; i < 3; i++) {
-    snprintf(text, sizeof text, "%s.%s", name, parts[i].part);
-    if (!abi_result_add_array(result, text, parts[i].unit, parts[i].data, 1, &self->count))
+  for (int i = 0; i < 3; i++) {
+    snprintf(text, sizeof text, "%s.%s", name, parts[i]);
+    if (!abi_result_add_array(result, text, i < 2 ? "1" : unit, data[i], 1, &self->count))
       return false;
   }
   snprintf(text, sizeof text, "%s.size", name);
-  return abi_result_add_array(result, text, "1", size, 1, two);
+  double *size = abi_result_new_array(result, text, "1", 2, 1);
+  if (size) size[0] = (double)self->rows, size[1] = (double)self->columns;
+  return size;
 }
 
 static bool add_symmetric(strutlib_result *result, const char *name, const char *unit,
@@ -141,16 +132,15 @@ static bool add_connectivity(strutlib_result *result, const strut_scene *scene) 
 static bool add_equilibrium(strutlib_result *result, const strut_equilibrium_matrix *matrix) {
   entries m;
   size_t rows = (size_t)matrix->rows;
-  double *coordinate = strut_arena_allocate(&result->arena, rows, sizeof *coordinate);
-  if (!coordinate ||
-      !reserve(result, (size_t)matrix->start[matrix->columns], rows, (size_t)matrix->columns, &m))
+  if (!reserve(result, (size_t)matrix->start[matrix->columns], rows, (size_t)matrix->columns, &m))
     return false;
   for (int32_t j = 0; j < matrix->columns; j++)
     for (int32_t k = matrix->start[j]; k < matrix->start[j + 1]; k++)
       put(&m, matrix->row[k], j, matrix->value[k]);
-  for (size_t i = 0; i < rows; i++) coordinate[i] = matrix->coordinate[i];
-  return show(result, "equilibrium", "1", &m) &&
-         abi_result_add_array(result, "coordinates", "1", coordinate, 1, &rows);
+  bool good = show(result, "equilibrium", "1", &m);
+  double *coordinate = good ? abi_result_new_array(result, "coordinates", "1", rows, 1) : NULL;
+  for (size_t i = 0; coordinate && i < rows; i++) coordinate[i] = matrix->coordinate[i];
+  return coordinate;
 }
 
 /* Of a rigid bar that of the start, otherwise the rest length without drives. */
@@ -165,15 +155,16 @@ static double made_length(const strut_model *model, size_t i) {
 /* What programs need to write the structure in other formats. */
 static bool add_shape(strutlib_result *result, const strut_model *model, const double *positions) {
   const strut_scene *scene = model->scene;
-  const size_t n = scene->node_count, m = scene->member_count, by_node[] = {n, 2};
-  strut_arena *arena = &result->arena;
-  double *position = strut_arena_copy(arena, positions, 2 * n, sizeof *position);
-  double *weight = strut_arena_copy(arena, model->weight, n, sizeof *weight);
-  double *length = strut_arena_allocate(arena, m, sizeof *length);
-  double *rest = strut_arena_allocate(arena, m, sizeof *rest);
-  double *tension = strut_arena_allocate(arena, m, sizeof *tension);
-  double *damping = strut_arena_allocate(arena, m, sizeof *damping);
+  const size_t n = scene->node_count, m = scene->member_count;
+  double *position = abi_result_new_array(result, "position", "m", n, 2);
+  double *weight = abi_result_new_array(result, "weight", "kg", n, 1);
+  double *length = abi_result_new_array(result, "length", "m", m, 1);
+  double *rest = abi_result_new_array(result, "rest_length", "m", m, 1);
+  double *tension = abi_result_new_array(result, "tension", "N", m, 1);
+  double *damping = abi_result_new_array(result, "damping_coefficient", "N s/m", m, 1);
   if (!position || !weight || !length || !rest || !tension || !damping) return false;
+  memcpy(position, positions, 2 * n * sizeof *position);
+  memcpy(weight, model->weight, n * sizeof *weight);
   for (size_t i = 0; i < m; i++) {
     bool running = scene->members[i].guide_count > 0;
     length[i] = strut_member_path_length(model, (int32_t)i, positions);
@@ -181,12 +172,7 @@ static bool add_shape(strutlib_result *result, const strut_model *model, const d
     tension[i] = strut_member_elastic_tension(model, model->members.rest, (int32_t)i, positions);
     damping[i] = running ? scene->members[i].damping : model->members.damping[i];
   }
-  return abi_result_add_array(result, "position", "m", position, 2, by_node) &&
-         abi_result_add_array(result, "weight", "kg", weight, 1, &n) &&
-         abi_result_add_array(result, "length", "m", length, 1, &m) &&
-         abi_result_add_array(result, "rest_length", "m", rest, 1, &m) &&
-         abi_result_add_array(result, "tension", "N", tension, 1, &m) &&
-         abi_result_add_array(result, "damping_coefficient", "N s/m", damping, 1, &m);
+  return true;
 }
 
 static strut_status build_matrices(abi_call *call, strutlib_result *result, strut_error *what) {

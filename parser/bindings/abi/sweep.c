@@ -14,7 +14,6 @@
 #include "engine/study/sweep/sweep.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/language/write/write_scene.h"
-#include "parser/program/command/arguments.h"
 #include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
 
@@ -42,14 +41,11 @@ typedef struct sweep {
 
 /* What a result keeps. */
 typedef struct sweep_detail {
-  abi_detail base;
   size_t points, column_count;
   const strut_slot_column *columns; /* (column_count) in the result's arena, as all below */
   const char ***words;              /* (column_count) (points) of columns of words; or NULL */
   const char **messages;            /* (points) */
 } sweep_detail;
-
-static void release(void *detail) { strut_release(detail); }
 
 /* ---- the study ---- */
 
@@ -253,10 +249,9 @@ static bool add_columns(const strut_sweep_plan *plan, strutlib_result *result, s
       if (!d->words[c]) return false;
       continue;
     }
-    data[c] = strut_arena_allocate(&result->arena, n, sizeof **data);
+    data[c] = abi_result_new_array(result, columns[c].name, columns[c].unit, n, 1);
     for (size_t i = 0; data[c] && i < n; i++) data[c][i] = (double)NAN;
-    if (!data[c] || !abi_result_add_array(result, columns[c].name, columns[c].unit, data[c], 1, &n))
-      return false;
+    if (!data[c]) return false;
   }
   return true;
 }
@@ -282,15 +277,16 @@ static bool fill_table(const strut_sweep_plan *plan, strut_slots *slots, const i
                        strutlib_result *result, sweep_detail *d) {
   size_t n = d->points;
   double **data = strut_arena_allocate(&result->arena, plan->column_count, sizeof *data);
-  double *status = strut_arena_allocate(&result->arena, n, sizeof *status);
-  bool good = data && status && add_columns(plan, result, d, data);
+  bool good = data && add_columns(plan, result, d, data);
+  double *status = good ? abi_result_new_array(result, "status", "1", n, 1) : NULL;
+  good = status;
   for (size_t i = 0; good && i < n; i++) {
     strut_result_slot row;
     bool there = strut_slots_get(slots, points[i], &row);
     status[i] = there ? (double)row.status : (double)STRUT_INTERRUPTED;
     if (there) good = copy_row(result, d, &row, i, data);
   }
-  return good && abi_result_add_array(result, "status", "1", status, 1, &n);
+  return good;
 }
 
 /* Adds the rows of all points, or of those that are done. */
@@ -298,7 +294,7 @@ static strut_status add_table(const strut_sweep_plan *plan, strut_slots *slots, 
                               strutlib_result *result, strut_error *what) {
   sweep_detail *d = strut_allocate(1, sizeof *d);
   int64_t *points = strut_allocate((size_t)plan->points, sizeof *points);
-  if (d) d->base.release = release;
+  result->release = strut_release;
   result->detail = d;
   for (int64_t i = 0; d && points && i < plan->points; i++)
     if (all || strut_slots_done(slots, i)) points[d->points++] = i;
@@ -352,14 +348,6 @@ static strut_status run_sweep(sweep *self, strutlib_result *result, strut_error 
   return status;
 }
 
-/* Is a list of texts, or one of them, NULL? */
-static bool lacks_text(strutlib_error **error, size_t count, const char *const *texts,
-                       const char *name) {
-  bool lacks = count && abi_lacks(error, texts, name);
-  for (size_t i = 0; i < count && !lacks; i++) lacks = abi_lacks(error, texts[i], name);
-  return lacks;
-}
-
 strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
                                 const char *const *axes, size_t point_count, const double *points,
                                 const char *const *words, size_t keep_count,
@@ -376,8 +364,8 @@ strutlib_result *strutlib_sweep(const strutlib_scene *scene, size_t axis_count,
   if (result)
     status = abi_call_begin(&call, scene, &abi_sweep_command, &(abi_pairs){count, names, values},
                             control, error, &result->messages);
-  if (status == STRUT_OK &&
-      (lacks_text(error, axis_count, axes, "axes") || lacks_text(error, keep_count, keep, "keep")))
+  if (status == STRUT_OK && (abi_lacks_texts(error, axis_count, axes, "axes") ||
+                             abi_lacks_texts(error, keep_count, keep, "keep")))
     status = STRUT_USAGE;
   else if (status == STRUT_OK) {
     s.study.name = "sweep";

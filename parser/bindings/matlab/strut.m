@@ -215,6 +215,8 @@ function model = model_of(given, name)
   assert(~isempty(given), 'strut:usage', 'strut.%s needs a file, as in strut.%s(''model.yaml'')', name, name);
   model = given{1};
   if ~isstruct(model)
+    assert(ischar(model) || iscellstr(model) || isa(model, 'string'), 'strut:usage', ...
+           'strut.%s: a model is a file or what strut.load returned, not of class %s', name, class(model));
     model = struct('file', {model}, 'set', {cell(1, 0)});
   end
   if ~isfield(model, 'text')
@@ -224,11 +226,10 @@ end
 
 % Names and values as options of the program, settings, and the name of a folder.
 function [words, settings, output] = words_of(name, known, given)
-  words = cell(1, 0);
-  settings = cell(1, 0);
-  output = '';
+  [words, settings, output] = deal(cell(1, 0), cell(1, 0), '');
   if mod(numel(given), 2)
-    error('strut:usage', 'strut.%s: arguments are names and values, but the last has no value', name);
+    error('strut:usage', ['strut.%s: arguments are names and values, but the last has no value; several models are ' ...
+                          'one cell, {''a.yaml'', ''b.yaml''}'], name);
   end
   for i = 1:2:numel(given)
     value = given{i + 1};
@@ -310,9 +311,7 @@ function [study, options, folder] = study_of(model, given)
 end
 
 function path = absolute(path)
-  if isempty(path) || path(1) ~= '/'
-    path = fullfile(pwd(), path);
-  end
+  if isempty(path) || path(1) ~= '/', path = fullfile(pwd(), path); end
 end
 
 function text = list_of(values)

@@ -14,44 +14,23 @@
 
 /* ---- figures, for which Cairo and Pango are too large ---- */
 
-static strut_status no_figures(strut_error *error) {
-  return strut_fail(error, STRUT_USAGE,
-                    "strut in a browser draws no figures; use the program strut");
-}
-
-strut_status strut_equilibria_figure(const strut_plot *plot, const strut_model *model,
-                                     const strut_equilibria *equilibria, strut_error *error) {
-  return no_figures(error);
-}
-strut_status strut_form_figure(const strut_plot *plot, const strut_model *model,
-                               const double (*drawn)[2], strut_error *error) {
-  return no_figures(error);
-}
-strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model,
-                                const strut_modes *modes, size_t panels, strut_error *error) {
-  return no_figures(error);
-}
-strut_status strut_waves_figure(const strut_plot *plot, const strut_model *model,
-                                const strut_waves *waves, strut_error *error) {
-  return no_figures(error);
-}
-strut_status strut_path_figure(const strut_plot *plot, const strut_model *model,
-                               const strut_path *path, strut_error *error) {
-  return no_figures(error);
-}
-strut_status strut_rigidity_figure(const strut_plot *plot, const strut_model *model,
-                                   const double *positions, const char *at,
-                                   const strut_rigidity *rigidity, strut_error *error) {
-  return no_figures(error);
-}
+#define NO_FIGURE(NAME, ...)                                                                       \
+  strut_status NAME(const strut_plot *plot, __VA_ARGS__, strut_error *error) {                     \
+    return strut_fail(error, STRUT_USAGE,                                                          \
+                      "strut in a browser draws no figures; use the program strut");               \
+  }
+NO_FIGURE(strut_equilibria_figure, const strut_model *model, const strut_equilibria *equilibria)
+NO_FIGURE(strut_form_figure, const strut_model *model, const double (*drawn)[2])
+NO_FIGURE(strut_modes_figure, const strut_model *model, const strut_modes *modes, size_t panels)
+NO_FIGURE(strut_waves_figure, const strut_model *model, const strut_waves *waves)
+NO_FIGURE(strut_path_figure, const strut_model *model, const strut_path *path)
+NO_FIGURE(strut_rigidity_figure, const strut_model *model, const double *positions, const char *at,
+          const strut_rigidity *rigidity)
+NO_FIGURE(strut_figure_draw, strut_figure *figure)
 strut_status strut_run_figure_draw(const strut_run_figure *figure, const strut_model *model,
                                    const strut_trajectory *motion, const strut_summary *summary,
                                    strut_error *error) {
-  return no_figures(error);
-}
-
-strut_status strut_figure_draw(const strut_plot *plot, strut_figure *figure, strut_error *error) {
-  return no_figures(error);
+  return strut_figure_draw(NULL, NULL, error);
 }
 
 /* ---- pages, sparse algebra, optimisers ---- */

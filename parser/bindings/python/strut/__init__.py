@@ -10,66 +10,20 @@ Names are those of the scene's file and of the program's JSON, numbers are in SI
 Results and scenes do not change. `models` is the folder of the models that come with strut.
 """
 
-from ._errors import (
-    Error,
-    FileError,
-    MemoryError,
-    Message,
-    MissingFileError,
-    RunError,
-    SceneError,
-    UsageError,
-)
-from ._results import (
-    Equilibria,
-    Equilibrium,
-    Form,
-    Matrices,
-    Modes,
-    Path,
-    Result,
-    Rigidity,
-    Run,
-)
+from ._errors import Error, FileError, MemoryError, Message, MissingFileError, RunError, SceneError, UsageError
+from ._results import Equilibria, Equilibrium, Form, Matrices, Modes, Path, Result, Rigidity, Run
 from ._scene import Scene, load, loads, run
 from ._simulation import Motion, Simulation
 from ._strut import models, version as __version__
-from ._studies import Fit, Study, fit, sweep
+from ._studies import Fit, Study, compare, fit, sweep, tradeoff
 from ._sweep import Table
-from ._values import Named, Words, unknown as _unknown
+from ._values import Frozen as _Frozen, Named, Words, hinted as _hinted, unknown as _unknown
 
-__all__ = [
-    "Equilibria",
-    "Equilibrium",
-    "Error",
-    "FileError",
-    "Fit",
-    "Form",
-    "Matrices",
-    "MemoryError",
-    "Message",
-    "MissingFileError",
-    "Modes",
-    "Motion",
-    "Named",
-    "Path",
-    "Result",
-    "Rigidity",
-    "Run",
-    "RunError",
-    "Scene",
-    "SceneError",
-    "Simulation",
-    "Study",
-    "Table",
-    "UsageError",
-    "Words",
-    "fit",
-    "load",
-    "loads",
-    "models",
-    "run",
-    "sweep",
+__all__ = [  # fmt: skip
+    "Equilibria", "Equilibrium", "Error", "FileError", "Fit", "Form", "Matrices", "MemoryError", "Message",
+    "MissingFileError", "Modes", "Motion", "Named", "Path", "Result", "Rigidity", "Run", "RunError", "Scene",
+    "SceneError", "Simulation", "Study", "Table", "UsageError", "Words", "compare", "fit", "load", "loads", "models",
+    "run", "sweep", "tradeoff",
 ]
 
 #: commands of the program that are no functions here, and what does it
@@ -77,13 +31,11 @@ _ELSEWHERE = {
     **dict.fromkeys(("Model", "open", "read"), "strut.load(FILE)"),
     "simulate": "strut.run(FILE), or strut.load(FILE).run()",
     "check": "strut.load(FILE) checks it; its `warnings` are those of the command",
-    "compare": "the program does that: strut compare FILE FILE --json",
     "examples": "strut.models is the folder of them",
     "export": "strut.load(FILE).to_yaml()",
     "help": "help(strut), or strut help in a terminal",
     "keys": "strut keys NAME in a terminal",
     "plot": "results and tables have plot()",
-    "tradeoff": "the program does that: strut tradeoff FILE --json",
 }
 
 
@@ -93,6 +45,12 @@ def __getattr__(name: str) -> object:
     raise AttributeError(f"no 'strut.{name}': {there}" if there else _unknown(name, __all__, "name in strut"))
 
 
-for _name in set(__all__) - {"models"}:  # messages say strut.SceneError, whichever file it is in
-    globals()[_name].__module__ = "strut"
-del _name
+for _name in set(__all__) - {"models"}:
+    _thing = globals()[_name]
+    _thing.__module__ = "strut"  # messages say strut.SceneError, whichever file it is in
+    if not isinstance(_thing, type):
+        globals()[_name] = _hinted(_thing)
+    elif issubclass(_thing, _Frozen):
+        for _method, _function in [*vars(_thing).items()]:
+            if not _method.startswith("_") and hasattr(_function, "__code__"):
+                setattr(_thing, _method, _hinted(_function))

@@ -9,17 +9,6 @@ import re
 from errno import ENOENT
 from typing import Any, NamedTuple
 
-__all__ = [
-    "Error",
-    "FileError",
-    "MemoryError",
-    "Message",
-    "MissingFileError",
-    "RunError",
-    "SceneError",
-    "UsageError",
-]
-
 _OPTION = re.compile(r"""--([a-z][a-z-]*)(?:[ =](\d[\d.]*[ ]?%|[A-Z]+\b|'[^']*'|"[^"]*"))?""")
 switches: set[str] = set()  #: options without value, of the library
 

@@ -3,59 +3,81 @@
 
 from __future__ import annotations
 
+import json
 import math
-from typing import TYPE_CHECKING, Any, Callable, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 
 from . import _strut
-from ._values import COMPONENTS, Frozen, Named, UnknownName, fixed, numpy, unknown
+from ._results import Run, _Stored
+from ._values import COMPONENTS, Frozen, Named, Words, fixed, numpy, parts_of, unknown
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
-class Motion(Frozen):
-    """What a run under a controller has recorded: `time` (samples) [s], and arrays of channels by name.
 
-    motion["position"]["n1"] is (samples, 2); `velocity` is the mean one along x, of the centre of mass [m/s].
+class Motion(Run):
+    """A run under a controller: what it recorded, and a summary with `velocity`, the mean one along x [m/s].
+
+    Energies are those at the end; `input_work` is the work of the controller. There is no figure and no page.
     """
 
-    time: Any
-    velocity: float
-    _arrays: dict[str, Named]
-
-    def __init__(self, time: Any, arrays: dict[str, Named], velocity: float) -> None:
-        self.__dict__.update(time=time, velocity=velocity, _arrays=arrays)
-
-    def __getitem__(self, channel: str) -> Named:
-        arrays = self.__dict__.get("_arrays", {})  # none while it comes out of a pickle
-        if channel not in arrays:
-            raise UnknownName(unknown(channel, arrays, "channel"))
-        return arrays[channel]  # type: ignore[no-any-return]
-
-    def __getattr__(self, name: str) -> Named:
-        try:
-            return self[name]
-        except KeyError as error:
-            raise AttributeError(str(error)) from None
-
-    def __repr__(self) -> str:
-        return f"<strut.Motion: {len(self.time)} samples of {', '.join(self._arrays)}>"
+    _guesses = {
+        **Run._guesses,
+        **dict.fromkeys(("accuracy", "steady"), "a run under a controller measures from start to end"),
+    }
 
 
 def controlled(
-    sim: Simulation, controller: Callable[[Simulation], object], until: float, channels: Sequence[str]
+    sim: Simulation, scene: Scene, controller: Callable[[Simulation], object], channels: Sequence[str]
 ) -> Motion:
-    """Advances by single steps, before each of which the controller sets inputs, and records after each."""
-    time, rows = [], {name: [] for name in channels}  # type: ignore[var-annotated]
-    begin, place = sim.time, getattr(sim, "com.x").copy()
-    while sim.time < until - 0.5 * sim.step:
-        controller(sim)
-        sim.advance(1)
-        time.append(sim.time)
-        for name in channels:
-            rows[name].append(getattr(sim, name).copy())
-    arrays = {n: Named(fixed(each), getattr(sim, n).names, 1) for n, each in rows.items()}
-    way = float((getattr(sim, "com.x") - place).sum())
-    return Motion(fixed(time), arrays, way / (sim.time - begin))
+    """Advances by single steps, before each of which the controller sets inputs, and records as the scene says."""
+    steps, until = 0, scene["run.duration"] - 0.5 * sim.step
+    stride = max(1, round(scene.get("output.every", 0.0) / sim.step))
+    watched = [getattr(sim, name) for name in channels]
+    time: list[float] = []
+    rows: list[list[Any]] = [[] for _ in channels]
+    start, before = sim.com.x.copy(), _energies(sim)
+
+    def motion() -> Motion:
+        arrays = {"time": fixed(time), **{name: fixed(each) for name, each in zip(channels, rows)}}
+        words: dict[str, Any] = {name: scene[name] for name in ("name", "parameters") if scene.get(name) is not None}
+        words |= {"status": "completed" if sim.time >= until else "interrupted", "duration": sim.time, "steps": steps}
+        words |= {"step": sim.step, "velocity": float(sim.com.x - start) / sim.time if steps else None}
+        words["nodes"] = {name: {"position": place.tolist()} for name, place in sim.position.items()}
+        words["energy"] = _energies(sim) | {"initial": _stored(before)}
+        words["energy"]["residual"] = _balance(words["energy"]) - _balance(before)
+        units = {name: "s" if name == "time" else _strut.unit(name) for name in arrays}
+        return Motion(_Stored("of a controller", arrays, units, json=json.dumps(words)), scene)
+
+    try:
+        while sim.time < until:
+            controller(sim)
+            sim.advance(1)
+            steps += 1
+            if steps % stride == 0:
+                time.append(sim.time)
+                for row, values in zip(rows, watched):
+                    row.append(values.array.copy())
+    except BaseException as error:
+        error.result = motion()  # type: ignore[attr-defined]
+        raise
+    return motion()
+
+
+def _energies(sim: Simulation) -> dict[str, float]:
+    return {**{name: float(value) for name, value in sim.energy.items()}, "input_work": sim.input_work}
+
+
+def _stored(energy: Mapping[str, float]) -> float:
+    return sum(energy[name] for name in ("kinetic", "elastic", "gravity", "contact"))
+
+
+def _balance(energy: Mapping[str, float]) -> float:
+    """What is stored and dissipated, less the work that was done."""
+    return _stored(energy) + sum(
+        -value if name.endswith("_work") else value if name.startswith("dissipated") else 0.0
+        for name, value in energy.items()
+    )
 
 
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
@@ -67,7 +89,7 @@ class Simulation(Frozen):
     `advance(steps)` makes steps; the bits do not depend on how steps are divided into calls. `snapshot()`
     returns all of the state, inputs too, and `restore(snapshot)` goes back to it.
     Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
-    can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), energy, ...
+    can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), com.x, energy, ...
     Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in
     their unit; NAN: as the scene says), load (nodes, 2) [N]:
 
@@ -113,17 +135,20 @@ class Simulation(Frozen):
         """Work that changes of inputs have done [J]."""
         return self._raw.input_work()
 
-    def __getattr__(self, name: str) -> Named:
+    def __getattr__(self, name: str) -> Any:
         # Only for arrays that were not read yet: they become attributes.
         if name in COMPONENTS:
             array, kind = self._raw.array(name), name
         elif name in _INPUTS:
             array, kind = self._raw.input(name), _INPUTS[name]
+        elif parts := parts_of(name, COMPONENTS):  # com.x, a single number
+            self.__dict__[name] = Words({n: getattr(self, channel).array.reshape(()) for n, channel in parts.items()})
+            return self.__dict__[name]
         elif name == "rest0":
             kind = "members"
             array = None if self._rest0 is None else fixed(self._rest0)
         else:
-            raise AttributeError(unknown(name, [*COMPONENTS, *_INPUTS, "rest0", "advance"]))
+            raise AttributeError(unknown(name, [*COMPONENTS, "com", *_INPUTS, "rest0", "advance"], "array or input"))
         if array is None:
             raise AttributeError(f"this simulation has no {name}")
         array = numpy().asarray(array)

@@ -425,12 +425,7 @@ class Scene(_Handle):
         return Simulation(control.call(_api.simulation_open, (self, *_pairs(names, values))), control)
 
     def call(
-        self,
-        result: Result,
-        command: str,
-        names: tuple[str, ...],
-        values: tuple[str, ...],
-        progress: Progress | None,
+        self, result: Result, command: str, names: tuple[str, ...], values: tuple[str, ...], progress: Progress | None
     ) -> None:
         if command not in _api.calls:
             raise ValueError(f"no such command: {command}")
@@ -504,6 +499,9 @@ def channels() -> list[tuple[str, str, tuple[str, ...], tuple[str, ...]]]:
         (name, _api.channel_kind(name), parts(_api.channel_component, name), parts(_api.channel_column, name))
         for name in _until_none(_api.channel)
     ]
+
+
+unit: Callable[[str], str] = _api.channel_unit  #: of a channel
 
 
 for _call in (*_api.calls, "study"):

@@ -31,12 +31,7 @@ class Plan(NamedTuple):
     words: tuple[str | None, ...] | None  #: values of parameters that are texts
 
 
-def plan(
-    scene: Scene,
-    axes: Mapping[str, Iterable[object] | object],
-    points: Any,
-    names: Sequence[str] | None,
-) -> Plan:
+def plan(scene: Scene, axes: Mapping[str, Iterable[object] | object], points: Any, names: Sequence[str] | None) -> Plan:
     """Points of axes, every combination, or of whole rows."""
     if points is not None:
         if axes or names is None:
@@ -146,9 +141,7 @@ class Table(Frozen):
 
     def array(self, *columns: str) -> Array:
         """Columns of numbers side by side, (points, columns); without names all of them."""
-        names = columns or [
-            name for name in self.columns if name != "status" and self._raw.array(name) is not None
-        ]
+        names = columns or [name for name in self.columns if name != "status" and self._raw.array(name) is not None]
         return numpy().column_stack([self[name] for name in names])  # type: ignore[no-any-return]
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
@@ -178,7 +171,7 @@ class Table(Frozen):
         return _plots.things(self, len(self))
 
     def __getstate__(self) -> dict[str, Any]:
-        raw = self._raw if isinstance(self._raw, _Stored) else _Stored(self._raw)
+        raw = self._raw if isinstance(self._raw, _Stored) else _Stored.of(self._raw)
         return {**self.__dict__, "_raw": raw}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

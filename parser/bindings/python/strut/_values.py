@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
+import itertools
 import json
 import operator
 import os
@@ -148,16 +151,49 @@ def words(text: str) -> Words:
     return found
 
 
+#: names that people write for others
+_MEANT = {
+    **dict.fromkeys(("dt", "time_step", "timestep"), "step"),
+    **dict.fromkeys(("method", "solver"), "integrator"),
+    **dict.fromkeys(("t", "t_end", "tend", "time", "until"), "duration"),
+    **dict.fromkeys(("n_jobs", "workers"), "threads"),
+    **dict.fromkeys(("rtol", "tol"), "tolerance"),
+}
+
+
 def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
     """A sentence for a name that is not there, with those that may have been meant."""
     import difflib
 
     names = [one for one in known if not one.startswith("_")]
-    close = difflib.get_close_matches(name, names, 3)
+    close = [_MEANT[name]] if _MEANT.get(name) in names else difflib.get_close_matches(name, names, 3)
     if close:
         return f"no {what} '{name}'; did you mean {' or '.join(map(repr, close))}?"
     listed = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
     return f"no {what} '{name}'" + (f"; there are {listed}" if names else "")
+
+
+def hinted(function: Any) -> Any:
+    """The function, whose error for an unknown keyword has those that may have been meant."""
+    code = function.__code__
+    known = [name for name in code.co_varnames[: code.co_argcount + code.co_kwonlyargcount] if name != "self"]
+    if code.co_flags & inspect.CO_VARKEYWORDS:  # it looks at them itself
+        return function
+
+    @functools.wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        for name in named:
+            if name not in known:
+                _, near, names = unknown(name, known).partition("; ")
+                raise TypeError(f"{function.__name__}() got an unexpected keyword argument '{name}'{near}{names}")
+        return function(*given, **named)
+
+    return call
+
+
+def parts_of(name: str, channels: Iterable[str]) -> dict[str, str]:
+    """The channels that begin with a name and a dot, by what follows: "com.x" of "com" by "x"."""
+    return {channel.removeprefix(f"{name}."): channel for channel in channels if channel.startswith(f"{name}.")}
 
 
 class Named(Frozen):
@@ -275,27 +311,17 @@ def from_words(value: Any, path: Sequence[str]) -> Any:
             return [walk(item, rest) for item in at.values()]
         return None if isinstance(at, (str, bool)) else at
 
-    def shape(at: Any) -> tuple[int, ...]:
-        if not isinstance(at, list):
-            return ()
-        inner: list[int] = []
-        for item in at:
-            for i, n in enumerate(shape(item)):
-                if i == len(inner):
-                    inner.append(n)
-                inner[i] = max(inner[i], n)
-        return (len(at), *inner)
-
-    def fill(array: Any, at: Any) -> None:
-        for i, item in enumerate(at):
-            if isinstance(item, list):
-                fill(array[i], item)
-            elif item is not None:
-                array[i] = item
-
     nested = walk(value, path)
-    if not isinstance(nested, list):
-        return None
-    array = numpy().full(shape(nested), float("nan"))
-    fill(array, nested)
-    return fixed(array)
+    return fixed(_padded(nested)) if isinstance(nested, list) else None
+
+
+def _padded(at: Any) -> Any:
+    """The array of nested lists, short ones filled up with NAN; None is NAN."""
+    if not isinstance(at, list):
+        return numpy().array(at, float)
+    parts = [_padded(item) for item in at]
+    sizes = itertools.zip_longest(*(part.shape for part in parts), fillvalue=0)
+    whole = numpy().full((len(parts), *map(max, sizes)), float("nan"))
+    for i, part in enumerate(parts):
+        whole[(i, *map(slice, part.shape))] = part
+    return whole

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/*
- * The page's side: an engine in a Worker that answers one request at a time, and can be stopped in any.
- */
+/* The page's side: an engine in a Worker that answers one request at a time, and can be stopped in any. */
 
 /** A request that was stopped, or that a newer one replaced. */
 export class Stopped extends Error {

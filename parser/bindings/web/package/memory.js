@@ -164,21 +164,13 @@ export function must(call) {
   return value;
 }
 
-/** The number that call(place, pointer to a double) finds, or null. */
-export function numberOf(call) {
-  return withMemory((place) => {
-    const at = place.room(8);
-    return call(place, at) ? engine.HEAPF64[at >>> 3] : null;
-  });
-}
-
-/** The yes or no that call(place, pointer to an int) finds, or null. */
-export function flagOf(call) {
-  return withMemory((place) => {
-    const at = place.room(4);
-    return call(place, at) ? engine.HEAPU32[at >>> 2] !== 0 : null;
-  });
-}
+/** What read(pointer) makes of what call(place, pointer to a double or an int) finds, or null. */
+const found = (call, read) => withMemory((place) => {
+  const at = place.room(8);
+  return call(place, at) ? read(at) : null;
+});
+export const numberOf = (call) => found(call, (at) => engine.HEAPF64[at >>> 3]);
+export const flagOf = (call) => found(call, (at) => engine.HEAPU32[at >>> 2] !== 0);
 
 const DIMENSIONS = 4;
 

@@ -13,6 +13,7 @@ import {
   Decoration, EditorView, WidgetType, drawSelection, highlightActiveLine, hoverTooltip, keymap, lineNumbers
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
+import { make } from "./files.js";
 import { descriptionAt, keysAt, pathOfNode, placeAt, schemasAt, wordsAt } from "./language.js";
 
 const colours = HighlightStyle.define([
@@ -33,14 +34,8 @@ const firstLine = (text) => (text || "").split("\n")[0];
 const lastPart = (text) => (text || "").split("\n\n").slice(1).join(" ");
 
 function describe(text) {
-  const box = document.createElement("div");
-  box.className = "code-help";
-  for (const part of text.split("\n\n")) {
-    const paragraph = document.createElement("p");
-    paragraph.textContent = part;
-    box.append(paragraph);
-  }
-  return box;
+  const parts = text.split("\n\n").map((part) => make("p", { textContent: part }));
+  return make("div", { className: "code-help" }, ...parts);
 }
 
 function keyOptions(path) {
@@ -79,11 +74,7 @@ class Note extends WidgetType {
   }
   eq(other) { return other.text === this.text; }
   toDOM() {
-    const note = document.createElement("div");
-    note.className = "code-note";
-    note.setAttribute("role", "note");
-    note.textContent = this.text;
-    return note;
+    return make("div", { className: "code-note", role: "note", textContent: this.text });
   }
 }
 

@@ -1,5 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Files that are dropped, chosen, saved; links and commands to copy. */
+/* Files that are dropped, chosen, saved; links and commands to copy; elements of the page. */
+
+/** An element with children and with properties, or attributes where their names have a dash. */
+export function make(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties))
+    if (name.includes("-") || name === "role") element.setAttribute(name, value);
+    else element[name] = value;
+  element.append(...children);
+  return element;
+}
 
 const MOST_BYTES = 2e7;
 const isScene = (name) => /\.(ya?ml|json)$/i.test(name);
@@ -72,8 +82,7 @@ export async function copyText(text, button) {
 
 /* Where pages from files may not use the clipboard. */
 function copyBySelection(text) {
-  const area = document.createElement("textarea");
-  area.value = text;
+  const area = make("textarea", { value: text });
   area.style.position = "fixed";
   area.style.opacity = "0";
   document.body.append(area);

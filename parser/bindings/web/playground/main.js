@@ -3,7 +3,7 @@
 import { Engine, Stopped } from "../client/engine.js";
 import { decodeLink, encodeLink } from "../client/link.js";
 import { createEditor, useSchema } from "./editor.js";
-import { commandFor, copyText, sceneAmong, wireOpening } from "./files.js";
+import { commandFor, copyText, make, sceneAmong, wireOpening } from "./files.js";
 import { valueAt } from "./language.js";
 import { createModelList } from "./models.js";
 import { createFound } from "./results.js";
@@ -39,7 +39,7 @@ function say(text, bad = false) {
   element("status").classList.toggle("bad", bad);
 }
 
-const oldMark = Object.assign(document.createElement("div"), { id: "old-mark", hidden: true });
+const oldMark = make("div", { id: "old-mark", hidden: true });
 
 /* Whether what is shown belongs to another text or other settings than the present ones. */
 function markOld(why) {
@@ -249,8 +249,7 @@ function startFrom(equilibrium) {
 }
 
 function wireStart() {
-  const button = document.createElement("button");
-  Object.assign(button, { type: "button", id: "start-here", textContent: "Start here" });
+  const button = make("button", { type: "button", id: "start-here", textContent: "Start here" });
   element("shown").append(button);
   button.addEventListener("click", () => startFrom(window.strut.data.equilibria[window.strut.picked]));
 }
@@ -324,7 +323,7 @@ async function copyLink() {
 function saveScene() {
   const url = URL.createObjectURL(new Blob([editor.text], { type: "application/yaml" }));
   const download = page.fileName(state.name.replace(/\.\w+$/, ""), ".yaml");
-  Object.assign(document.createElement("a"), { href: url, download }).click();
+  make("a", { href: url, download }).click();
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 }
 
@@ -374,13 +373,10 @@ function writeIntoFile() {
 /* ---- start ---- */
 
 function addLicences(text) {
-  const details = document.createElement("details"), summary = document.createElement("summary");
-  const pre = document.createElement("pre");
-  summary.textContent = "Licences";
-  pre.textContent = "strut is free software under the GNU General Public License, version 3 or later; so are " +
+  const licences = "strut is free software under the GNU General Public License, version 3 or later; so are " +
     "the parts of GSL and GLPK in it. Besides these and libyaml, cJSON, zlib and SuiteSparse the page has:\n\n" + text;
-  details.append(summary, pre);
-  element("sampling").parentElement.append(details);
+  element("sampling").parentElement.append(
+    make("details", {}, make("summary", { textContent: "Licences" }), make("pre", { textContent: licences })));
 }
 
 function createEngine(assets) {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The list of models: each with its picture, drawn as on the stage when it comes into view. */
+import { make } from "./files.js";
 
 const page = window.strutPage;
 
@@ -11,15 +12,11 @@ function drawPicture(canvas, data) {
 }
 
 function createEntry(model) {
-  const button = document.createElement("button"), canvas = document.createElement("canvas");
-  const name = document.createElement("span");
-  button.type = "button";
-  button.className = "model";
-  button.setAttribute("aria-pressed", "false");
-  button.title = [model.group + "/" + model.name, model.data.description].filter(Boolean).join(": ");
-  name.textContent = model.data.name || model.name;
-  button.dataset.model = model.group + "/" + model.name;
-  button.append(canvas, name);
+  const place = model.group + "/" + model.name, canvas = make("canvas");
+  const title = [place, model.data.description].filter(Boolean).join(": ");
+  const button = make("button", { type: "button", className: "model", title, "aria-pressed": "false" }, canvas,
+    make("span", { textContent: model.data.name || model.name }));
+  button.dataset.model = place;
   return { button, canvas, model };
 }
 

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the page itself does not show: modes, paths and tables, in a section of their own; motions made of them. */
+import { make } from "./files.js";
 
 const page = window.strutPage;
 const PERIODS = 6, FRAMES = 40, LASTS = 12; /* of a mode: periods, frames of each, playing time [s] */
 const SWING = 0.08; /* largest displacement of a mode, of the structure's size */
-
-function make(tag, properties = {}, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
 
 const valueText = (value, unit, digits) =>
   (unit ? page.quantity(value, unit, digits) : String(Number(value.toPrecision(digits))).replace("-", "\u2212"));
@@ -51,10 +46,9 @@ export function modeData(data, json, index) {
 function modeButton(mode, index, onPick) {
   const damping = mode.damping_ratio === null || mode.damping_ratio === undefined ? ""
     : ", damping ratio " + Number(mode.damping_ratio.toPrecision(3));
-  const button = make("button", { type: "button" }, make("span", { textContent: String(index + 1) }),
+  const button = make("button", { type: "button", "aria-pressed": "false" }, make("span", { textContent: String(index + 1) }),
     make("span", { textContent: page.quantity(mode.frequency, "Hz", 5) }),
     make("span", { textContent: mode.kind + damping + ": " + (mode.description || "") }));
-  button.setAttribute("aria-pressed", "false");
   button.addEventListener("click", () => onPick(index));
   return button;
 }
@@ -145,8 +139,8 @@ function nearest(count, at, x, y) {
 }
 
 function createPathChart(data, json) {
-  const coordinates = coordinatesOf(data, json), select = make("select");
-  select.setAttribute("aria-label", "Displacement that the chart shows");
+  const coordinates = coordinatesOf(data, json), 
+    select = make("select", { "aria-label": "Displacement that the chart shows" });
   select.append(...coordinates.map((c, i) => make("option", { value: i, textContent: c.name })));
   const svg = draw("svg", { class: "path-chart", role: "img", "aria-label": "The path; drag to move along it" });
   let chart = null;
@@ -175,8 +169,7 @@ function createPathChart(data, json) {
  * onBack() what was there before; onOver(what) follows another path: "" all loads, else a parameter or an actuator.
  */
 export function createFound({ onShow, onBack, onOver }) {
-  const host = make("section", { id: "found", hidden: true });
-  host.setAttribute("aria-label", "Result");
+  const host = make("section", { id: "found", hidden: true, "aria-label": "Result" });
   document.getElementById("live").before(host, document.getElementById("cards-section"));
   let onFrame = null, chosen = -1; /* mode */
   page.onFrame = (frame) => { if (onFrame) onFrame(frame); };

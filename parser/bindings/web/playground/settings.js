@@ -3,6 +3,7 @@
  * Controls of a scene's parameters above the charts: sliders for numbers, a choice for the name of a configuration,
  * a field for anything else. They change settings, as --set does, and not the text until it is asked for.
  */
+import { make } from "./files.js";
 import { keysIn, unquoted, valueAt } from "./language.js";
 
 /* ---- what a slider means: the number and the unit of its text, and the values around it ---- */
@@ -52,10 +53,6 @@ export function parametersOf(state, names, resolved) {
   });
 }
 
-function make(tag, properties) {
-  return Object.assign(document.createElement(tag), properties);
-}
-
 /** Controls in #live. onChange(settings) when a person has changed one; onWrite() to put them into the text. */
 export function createSettings({ onChange, onWrite }) {
   const host = document.getElementById("live");
@@ -86,8 +83,7 @@ export function createSettings({ onChange, onWrite }) {
 
   function addSlider(row, quantity, box) {
     const scale = scaleOf(quantity), unit = quantity.unit ? " " + quantity.unit : "";
-    const slider = make("input", { type: "range", min: 0, max: STEPS, step: 1 });
-    slider.setAttribute("aria-label", row.name);
+    const slider = make("input", { type: "range", min: 0, max: STEPS, step: 1, "aria-label": row.name });
     slider.addEventListener("input", () => {
       row.field.value = scale.number(Number(slider.value)) + unit;
       change(row, row.field.value);
@@ -112,8 +108,8 @@ export function createSettings({ onChange, onWrite }) {
       row.follow(row.field.value);
       change(row, row.field.value.trim());
     });
-    row.reset = make("button", { type: "button", textContent: "\u21ba", title: "As in the file" });
-    row.reset.setAttribute("aria-label", name + " as in the file");
+    row.reset = make("button", { type: "button", textContent: "\u21ba", title: "As in the file",
+      "aria-label": name + " as in the file" });
     row.reset.addEventListener("click", () => {
       show(row, text);
       change(row, text);
