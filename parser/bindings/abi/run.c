@@ -10,7 +10,6 @@
 #include "engine/scene/things.h"
 #include "parser/bindings/abi/handles.h"
 #include "parser/program/command/arguments.h"
-#include "parser/program/command/plot_options.h"
 #include "parser/program/command/scene_options.h"
 
 /* No frame is left out: the caller decides how much is recorded. */
