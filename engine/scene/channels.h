@@ -7,6 +7,8 @@
  */
 #pragma once
 
+#include <stdbool.h>
+
 #include "engine/scene/observables.h"
 
 struct strut_scene;
