@@ -233,8 +233,11 @@ static void draw_tick(strut_canvas *canvas, const strut_axes *axes, int d, doubl
   if (text && d) strut_draw_segment(canvas, box->x, at[1], box->x + box->width, at[1], grid);
   if (text && !d) strut_draw_segment(canvas, at[0], box->y, at[0], bottom, grid);
   strut_draw_segment(canvas, at[0], at[1], at[0] - d * length, at[1] + (1 - d) * length, tick);
+  strut_font font = {.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0};
+  if (!d && axes->x.name_count) /* names side by side */
+    font.lines = 1, font.width = box->width / (double)axes->x.name_count - 2;
   strut_draw_text(canvas, d ? box->x - TICK - GAP : at[0], d ? at[1] : bottom + TICK + 1, text,
-                  (strut_font){.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0});
+                  font);
 }
 
 static void draw_ticks(strut_canvas *canvas, const strut_axes *axes, int d,
@@ -291,7 +294,7 @@ static size_t gather(const strut_panel *panels, size_t count, bool scale, double
       for (size_t k = 0; k < panel->series[s].count; k++, known++)
         if (values)
           values[known] = scale ? panel->series[s].points[k].value : panel->series[s].points[k].y;
-    for (size_t k = 0; scale && map && map->value && k < map->columns * map->rows; k++, known++)
+    for (size_t k = 0; scale && map && k < map->columns * map->rows; k++, known++)
       if (values) values[known] = map->value[k];
   }
   return known;

@@ -73,15 +73,12 @@ void strut_map_limits(const double *at, size_t count, double limits[2]) {
   limits[0] = edge(at, count, 0), limits[1] = edge(at, count, count);
 }
 
-static bool has_result(const strut_map *map, size_t k) {
-  return map->category ? map->category[k] >= 0 : isfinite(map->value[k]);
-}
+static bool has_result(const strut_map *map, size_t k) { return isfinite(map->value[k]); }
 
 /* ---- the legend ---- */
 
 size_t strut_panel_legend_room(const strut_panel *panel) {
-  return panel->series_count + panel->band_count + (panel->map ? panel->map->category_count : 0) +
-         2;
+  return panel->series_count + panel->band_count + (panel->map ? panel->map->name_count : 0) + 2;
 }
 
 static size_t add_item(strut_key_item *items, size_t count, strut_key_item item) {
@@ -104,7 +101,7 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
     doubt = doubt || (map->doubtful && map->doubtful[k]);
     missing = missing || !has_result(map, k);
   }
-  for (size_t i = 0; map->category && i < map->category_count; i++)
+  for (size_t i = 0; map->names && i < map->name_count; i++)
     count = add_area(items, count, category_fill(i), map->names[i]);
   if (missing) count = add_area(items, count, fill, "no result");
   fill.hatch = STRUT_HATCH_RISING;
@@ -365,7 +362,7 @@ static strut_fill cell_fill(const strut_panel *panel, size_t k) {
   const strut_map *map = panel->map;
   const strut_colour_scale *scale = &panel->scale;
   if (!has_result(map, k)) return (strut_fill){.colour = strut_grey(1)};
-  if (map->category) return category_fill((size_t)map->category[k]);
+  if (map->names) return category_fill((size_t)map->value[k]);
   return (strut_fill){.colour =
                           strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
 }
@@ -382,9 +379,7 @@ static strut_box cell_box(const chart *self, size_t k, size_t count) {
 }
 
 static bool look_alike(const strut_map *map, size_t a, size_t b) {
-  bool has = has_result(map, a);
-  if (!has || has != has_result(map, b)) return has == has_result(map, b);
-  return map->category ? map->category[a] == map->category[b] : map->value[a] == map->value[b];
+  return map->value[a] == map->value[b] || (!has_result(map, a) && !has_result(map, b));
 }
 
 /* Hatching on a doubtful cell, a dot on one without a result. */

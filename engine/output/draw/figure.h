@@ -77,10 +77,9 @@ typedef struct strut_band {
 typedef struct strut_map {
   size_t columns, rows;
   const double *xs, *ys; /* (columns), (rows) ascending; cell edges are midpoints */
-  const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
-  size_t category_count;
-  const char *const *names; /* (category_count) */
-  const double *value;      /* (rows, columns) where category is NULL; NAN: no result */
+  size_t name_count;
+  const char *const *names; /* (name_count) of categories; NULL: numbers */
+  const double *value;      /* (rows, columns) a number, or index into names; NAN: no result */
   const bool *doubtful;     /* (rows, columns) drawn hatched; or NULL */
   const char *doubt;        /* meaning of the hatching, for the legend */
 } strut_map;
