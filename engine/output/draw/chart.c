@@ -496,9 +496,9 @@ static void draw_data(const chart *self) {
 static double draw_title(const chart *self, strut_box box, bool draw) {
   const strut_box *f = &self->axes.frame;
   const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
-  if (!self->panel->title || !*self->panel->title) return 0;
+  double height = strut_text_box(self->canvas, self->panel->title, font).height;
   if (draw) strut_draw_text(self->canvas, f->x + 0.5 * f->width, box.y, self->panel->title, font);
-  return strut_text_height(self->canvas, self->panel->title, font) + TITLE_GAP;
+  return height > 0 ? height + TITLE_GAP : 0;
 }
 
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,

@@ -87,9 +87,8 @@ static double put_row(page *self, strut_canvas *canvas, strut_box box, size_t fi
 static double put_heading(strut_canvas *canvas, strut_box box, const char *text, strut_font font,
                           bool draw) {
   font.width = box.width;
-  if (!text || !*text) return 0;
   if (draw) strut_draw_text(canvas, box.x, box.y, text, font);
-  return strut_text_height(canvas, text, font) + LINE_GAP;
+  return text && *text ? strut_text_box(canvas, text, font).height + LINE_GAP : 0;
 }
 
 /* Lays all out and draws it if `fine`. Returns the height of the page. */

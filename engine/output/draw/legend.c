@@ -75,7 +75,7 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
   strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
   strut_tick_set set;
-  double line = strut_text_height(canvas, "0", font);
+  double line = strut_text_box(canvas, "0", font).height;
   strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
   strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
                             : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
@@ -105,7 +105,7 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
                  .text);
   }
   /* A long name ends where the box does, rather than beyond the page. */
-  bool wide = strut_text_width(canvas, set.label, font) > box.width;
+  bool wide = strut_text_box(canvas, set.label, font).width > box.width;
   font = (strut_font){.size = BAR_TEXT, .halo = strut_grey(1)};
   font.across = upright ? wide : 0.5;
   strut_draw_text(canvas, box.x + font.across * box.width, box.y, set.label, font);
@@ -119,7 +119,7 @@ static const double DOT = 2.6, MARKER = 2.0, BAND = 5.0, AREA = 7.0;
 static const strut_font letters = {.size = 7.5, .down = 0.5};
 
 static double text_width(strut_canvas *canvas, const char *text) {
-  return text && *text ? strut_text_width(canvas, text, letters) : 0;
+  return strut_text_box(canvas, text, letters).width;
 }
 
 /* How far right of the sign the text begins. */
@@ -163,25 +163,25 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
 
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                          size_t count, bool draw) {
-  double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters);
+  double x = 0.0, y = 0.0, row = LINE, line = strut_text_box(canvas, "0", letters).height;
   strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
-    double sign = width_of_sign(canvas, &items[i]), width, height;
+    double sign = width_of_sign(canvas, &items[i]);
     strut_font font = letters;
     font.down = 0.0;
     if (box.width > 0 && sign + text_width(canvas, items[i].text) > box.width)
       font.width = box.width - sign;
-    strut_text_size(canvas, items[i].text, font, &width, &height);
-    if (x > 0 && x + sign + width > box.width) x = 0.0, y += row, row = LINE;
+    const strut_box text = strut_text_box(canvas, items[i].text, font);
+    if (x > 0 && x + sign + text.width > box.width) x = 0.0, y += row, row = LINE;
     if (draw) {
       draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
       strut_draw_text(canvas, box.x + x + sign, box.y + y + 0.5 * (LINE - line), items[i].text,
                       font);
     }
-    row = fmax(row, height + LINE - line);
-    whole.width = fmax(whole.width, x + sign + width);
-    x += sign + width + BETWEEN;
+    row = fmax(row, text.height + LINE - line);
+    whole.width = fmax(whole.width, x + sign + text.width);
+    x += sign + text.width + BETWEEN;
   }
   whole.height = x > 0.0 ? y + row : 0.0;
   return whole;

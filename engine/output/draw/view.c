@@ -18,13 +18,13 @@ enum { COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
 /* True if names cover little of what is seen. */
 static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                       const strut_model *model) {
-  double covered = 0.0, seen = COVERED, width, height;
+  double covered = 0.0, seen = COVERED;
   for (int d = 0; d < 2; d++)
     seen *= (view->bounds.high[d] - view->bounds.low[d]) * window->scale + 2 * view->margin;
   for (int32_t i = 0; i < model->node_count; i++) {
-    strut_text_size(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
-                    &height);
-    covered += width * height;
+    const strut_box name =
+        strut_text_box(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5});
+    covered += name.width * name.height;
   }
   return covered <= seen;
 }
@@ -147,20 +147,14 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
 /* What is written above a view; draws it if `draw`. */
 static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
                             bool draw) {
-  const struct {
-    const char *text;
-    strut_font font;
-  } lines[] = {
-      {panel->title, {.size = 8.5, .bold = true, .width = box.width, .lines = 2}},
-      {panel->note && *panel->note ? panel->note : NULL,
-       {.size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4}}};
-  double y = 0.0;
-  for (int i = 0; i < 2; i++) {
-    if (!lines[i].text) continue;
-    if (draw) strut_draw_text(canvas, box.x, box.y + y, lines[i].text, lines[i].font);
-    y += strut_text_height(canvas, lines[i].text, lines[i].font) + 1;
-  }
-  return y;
+  const strut_font bold = {.size = 8.5, .bold = true, .width = box.width, .lines = 2};
+  const strut_font grey = {
+      .size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4};
+  double title = strut_text_box(canvas, panel->title, bold).height + (panel->title ? 1 : 0);
+  double note = strut_text_box(canvas, panel->note, grey).height;
+  if (draw) strut_draw_text(canvas, box.x, box.y, panel->title, bold);
+  if (draw) strut_draw_text(canvas, box.x, box.y + title, panel->note, grey);
+  return title + (note > 0 ? note + 1 : 0);
 }
 
 /* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
