@@ -227,6 +227,8 @@ STRUT_API strut_colour_scale strut_force_scale(double limit, const strut_beyond 
 STRUT_API int strut_text_bytes(const char *text, int most);
 /** The pen of the i-th series: its colour and dashes. */
 STRUT_API strut_pen strut_series_pen(size_t look);
+/** The largest of 1, 2 or 5 times a power of ten up to a value. */
+STRUT_API double strut_round_below(double value);
 /** The largest magnitude of those that are finite; 0 of none. */
 STRUT_API double strut_largest(const double *values, size_t count);
 

@@ -30,65 +30,52 @@ static bool names_fit(strut_canvas *canvas, const strut_window *window, const st
 }
 
 /* From a trail's first point to its last, shortened by its gap where there is room: at the tip of an arrow, else at both ends. */
-static void draw_straight(strut_canvas *canvas, const strut_window *window,
-                          const strut_trail *trail) {
+static void draw_straight(strut_canvas *canvas, const strut_trail *trail) {
   bool arrow = trail->kind == STRUT_TRAIL_ARROW;
-  double from[2], to[2];
-  strut_window_point(window, trail->at[0], from);
-  strut_window_point(window, trail->at[trail->count - 1], to);
+  const double *from = trail->at[0], *to = trail->at[trail->count - 1];
   double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
-  double part = trail->gap > 0.0 && length > 3.0 * trail->gap ? trail->gap / length : 0.0;
-  if (arrow && length < fmax(2 * trail->gap, 2)) return;
-  to[0] -= part * x, to[1] -= part * y;
-  if (arrow) {
-    strut_draw_arrow(canvas, from[0], from[1], to[0], to[1], 5, trail->pen);
-  } else {
-    from[0] += part * x, from[1] += part * y;
-    strut_draw_segment(canvas, from[0], from[1], to[0], to[1], trail->pen);
-  }
-}
-
-/* Through points [first, last], in pieces of the array's size. */
-static void draw_part(strut_canvas *canvas, const strut_window *window, const strut_trail *trail,
-                      size_t first, size_t last, strut_pen pen) {
-  enum { PIECE = 200 };
-  double points[PIECE][2];
-  size_t used = 0;
-  for (size_t i = first; i <= last; i++) {
-    strut_window_point(window, trail->at[i], points[used++]);
-    if (used < PIECE && i < last) continue;
-    strut_draw_line(canvas, (const double(*)[2])points, used, pen);
-    memcpy(points[0], points[used - 1], sizeof points[0]);
-    used = 1;
-  }
+  double end = trail->gap > 0.0 && length > 3.0 * trail->gap ? trail->gap / length : 0.0;
+  double start = arrow ? 0.0 : end;
+  if (arrow && length >= fmax(2 * trail->gap, 2))
+    strut_draw_arrow(canvas, from[0], from[1], to[0] - end * x, to[1] - end * y, 5, trail->pen);
+  else if (!arrow)
+    strut_draw_segment(canvas, from[0] + start * x, from[1] + start * y, to[0] - end * x,
+                       to[1] - end * y, trail->pen);
 }
 
 /* A path that is no longer than a dot is not drawn. */
-static bool is_visible(const strut_window *window, const strut_trail *trail) {
+static bool is_visible(const strut_trail *trail) {
   const double *at = trail->at[0];
   for (size_t i = 1; i < trail->count; i++)
-    if (hypot(trail->at[i][0] - at[0], trail->at[i][1] - at[1]) * window->scale > DOT) return true;
+    if (hypot(trail->at[i][0] - at[0], trail->at[i][1] - at[1]) > DOT) return true;
   return false;
 }
 
-static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *trail) {
+/* Its points are on the page. */
+static void draw_trail(strut_canvas *canvas, const strut_trail *trail) {
   size_t shades = trail->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1, all = trail->count - 1;
   if (trail->kind == STRUT_TRAIL_ARROW || trail->count == 2) {
-    draw_straight(canvas, window, trail);
+    draw_straight(canvas, trail);
     return;
   }
-  for (size_t shade = 0; trail->count && is_visible(window, trail) && shade < shades; shade++) {
+  for (size_t shade = 0; trail->count && is_visible(trail) && shade < shades; shade++) {
     size_t first = shade * all / shades, last = (shade + 1) * all / shades;
     strut_pen pen = trail->pen;
     if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
-    if (last > first) draw_part(canvas, window, trail, first, last, pen);
+    if (last > first)
+      strut_draw_line(canvas, (const double(*)[2])trail->at + first, last - first + 1, pen);
   }
 }
 
+/* Draws trails, whose points go to the page. */
 static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                         bool below) {
-  for (size_t i = 0; i < view->trail_count; i++)
-    if (view->trails[i].below == below) draw_trail(canvas, window, &view->trails[i]);
+  for (strut_trail *trail = view->trails; trail < view->trails + view->trail_count; trail++) {
+    if (trail->below != below) continue;
+    for (size_t k = 0; k < trail->count; k++)
+      strut_window_point(window, trail->at[k], trail->at[k]);
+    draw_trail(canvas, trail);
+  }
 }
 
 /* More than the margin takes below a view, for the forces of the ground [pt]. */
@@ -101,9 +88,7 @@ static double room_for_arrows(const strut_panel *view) {
 
 /* A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 static void draw_yardstick(strut_canvas *canvas, const strut_window *window) {
-  double room = 0.3 * window->box.width / window->scale, power = pow(10.0, floor(log10(room)));
-  /* The largest of 1, 2 or 5 times a power of ten that fits. */
-  double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
+  double length = strut_round_below(0.3 * window->box.width / window->scale);
   double x = window->box.x + 3, y = window->box.y + window->box.height - 4,
          end = x + length * window->scale;
   const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
