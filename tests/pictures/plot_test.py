@@ -269,6 +269,19 @@ for name in ("map.svg", "panels.svg"):
     plot(name.replace("svg", "csv"), *words, "--plot", name)
     check(open(name, "rb").read() == first, f"{name}: other bytes the second time")
 
+# Oscillations too fast to be seen are an area, from least to largest; slower ones are a curve.
+for per_point, area in ((0.02, False), (0.45, True)):
+    write("fast.csv", "t [s],x [m]\n" + "".join(
+        f"{i},{(1 + i / 2000) * math.sin(2 * math.pi * per_point * i)}\n" for i in range(1000)))
+    plot("fast.csv", "--width", "column", "--plot", "fast.svg")
+    areas = [path.lines[0] for path in read("fast.svg")[2] if path.fill and near(path.fill, FIRST)]
+    check(len(areas) == area and ("areas: ranges of oscillations" in texts("fast.svg")) == area, f"fast.svg: {areas}")
+    if area:
+        left, right = ([p[1] for p in areas[0] if side(p[0])] for side in (
+            lambda x: x < areas[0][0][0] + 8, lambda x: x > max(p[0] for p in areas[0]) - 8))
+        grown = (max(right) - min(right)) / (max(left) - min(left))
+        check(abs(grown - 1.5) < 0.06, f"fast.svg: the area is {grown} times as high at its end")
+
 # Numbers over texts are bars side by side, as high as the numbers.
 write("bars.csv", "gait,speed [mm/s],side\n" + "".join(f"{g},{v},{s}\n" for g, v, s in (
     ("walk", 2, "a"), ("hop", -4, "a"), ("crawl", 6, "a"), ("walk", 3, "b"), ("hop", 1, "b"))))

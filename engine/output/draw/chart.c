@@ -12,6 +12,8 @@ static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; 
 static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
                     SCALE = 52;
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
+/* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
+static const double TURN = 2, VISIBLE = 3, COLUMN = 4;
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
 /* A series on the page. */
@@ -20,6 +22,8 @@ typedef struct line {
   size_t look, count;
   strut_pen pen;
   double (*at)[2]; /* (count) thinned, broken lines with NAN between; NULL before they are placed */
+  size_t area_count;
+  double (*area)[2]; /* (area_count) its outline where it turns too often to be seen; else NULL */
 } line;
 
 /** A chart being drawn. */
@@ -198,6 +202,43 @@ static void place(const chart *self, const line *l, size_t k, double at[2]) {
   if (lost) at[1] = self->strip.y + self->strip.height * (0.2 + 0.6 * fmin(part, 1));
 }
 
+/* The outline of the least and largest values of (count) points of ascending x, column by column. */
+static void find_outline(const chart *self, line *l, size_t count) {
+  double left = l->at[0][0], column = -1;
+  size_t most = 2 * (size_t)((l->at[count - 1][0] - left) / COLUMN) + 2, used = 0;
+  double(*high)[2] = strut_arena_allocate(self->arena, 3 * most, sizeof *high);
+  double(*low)[2] = high + 2 * most;
+  for (size_t k = 0; high && k < count; k++) {
+    const double *at = l->at[k];
+    bool begins = floor((at[0] - left) / COLUMN) > column;
+    if (begins) column = floor((at[0] - left) / COLUMN), used += 2;
+    for (size_t i = used - 2; i < used; i++) { /* from the first to the last point of a column */
+      if (begins || i % 2) high[i][0] = low[i][0] = at[0];
+      high[i][1] = begins ? at[1] : fmin(high[i][1], at[1]); /* the page's y points down */
+      low[i][1] = begins ? at[1] : fmax(low[i][1], at[1]);
+    }
+  }
+  for (size_t i = 0; i < used; i++) memcpy(high[used + i], low[used - 1 - i], sizeof *high);
+  l->area = high, l->area_count = 2 * used;
+}
+
+/* An unbroken line that turns more often than can be seen gets an outline. */
+static void find_area(const chart *self, line *l) {
+  size_t turns = 0, count = l->count;
+  double way = 0, before = 0; /* up and down in all; the latest step */
+  l->area = NULL;
+  if (count && isnan(l->at[count - 1][0])) count--;
+  for (size_t k = 1; k < count; k++) {
+    double step = l->at[k][1] - l->at[k - 1][1];
+    if (!(l->at[k][0] >= l->at[k - 1][0])) return;
+    turns += step * before < 0;
+    if (step != 0) before = step;
+    way += fabs(step);
+  }
+  if (turns < FEW_POINTS || way < VISIBLE * (double)turns) return;
+  if ((double)turns * TURN > l->at[count - 1][0] - l->at[0][0]) find_outline(self, l, count);
+}
+
 /* Fills the points of a line. Lines that change along them keep all points. */
 static void place_line(const chart *self, line *l) {
   const strut_series *series = l->series;
@@ -242,6 +283,7 @@ static bool place_lines(chart *self) {
     if (!l->at) l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
     if (!l->at) return false;
     place_line(self, l);
+    if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(self, l);
   }
   return self->lines != NULL;
 }
@@ -298,6 +340,12 @@ static void stroke(const chart *self, const line *l, size_t from, size_t to) {
 /* Stretches without a gap and of one stability, which share their ends. */
 static void draw_line(const chart *self, const line *l) {
   const strut_point *points = l->series->points;
+  const strut_fill fill = {.colour = strut_faded(l->pen.colour, 0.35)};
+  const strut_pen rim = {.colour = l->pen.colour, .width = 0.5};
+  if (l->area) {
+    strut_draw_polygon(self->canvas, (const double(*)[2])l->area, l->area_count, &fill, &rim);
+    return;
+  }
   for (size_t k = 0, from = 0; k < l->count; k++) {
     if (isnan(l->at[k][0])) {
       from = k + 1;
@@ -490,6 +538,9 @@ static void draw_data(const chart *self) {
   if (panel->outliers) mark_beyond(self);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
   if (panel->remark) draw_note(self, &self->axes.frame, panel->remark, NOTE_WIDTH);
+  bool areas = false;
+  for (const line *l = self->lines; l < end; l++) areas = areas || l->area;
+  if (areas) draw_note(self, &self->axes.frame, "areas: ranges of oscillations", NOTE_WIDTH);
 }
 
 /* A title, centred above the frame; returns its height. */

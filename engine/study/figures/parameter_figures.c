@@ -48,7 +48,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
   panel->y = strut_axis_in(match->series[s].of, match->series[s].unit, (strut_file_unit){0});
-  panel->title = match->name;
+  if (result->fit->match_count > 1) panel->title = match->name;
   add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
   strut_series *line = strut_add_series(figure, panel, "model");
   line->look = 0;
@@ -65,7 +65,7 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result, 
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
   panel->y = strut_axis_of(known ? "residual over noise" : "residual over its deviation", "");
-  panel->title = match->name;
+  if (result->fit->match_count > 1) panel->title = match->name;
   for (size_t s = 0; s < match->series_count; s++) {
     const double *residual = result->residual + strut_fit_first(result->fit, m, s);
     if (!is_measured(match, s)) continue;
@@ -112,6 +112,7 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
   const char *title = result->plan->study->name;
   const strut_figure empty = {.title = title, .columns = 2, .least_width = 200.0};
   strut_figure data = empty, residuals = empty, profiles = empty;
+  data.one_legend = profiles.one_legend = true;
   if (!result->found) return STRUT_OK;
   for (size_t m = 0; m < result->fit->match_count; m++) {
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++)
