@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The chart of a panel: bands, axes, cells, lines, points, marks, and a legend clear of them. */
+/* The chart of a panel: title, legend, bands, axes, cells, lines, points, marks. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -9,8 +9,7 @@
 #include "engine/output/draw/painter.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
-                    SCALE = 52;
+static const double PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6, SCALE = 52;
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
 static const double TURN = 2, VISIBLE = 3, COLUMN = 4;
@@ -21,7 +20,7 @@ typedef struct line {
   const strut_series *series;
   size_t look, count;
   strut_pen pen;
-  double (*at)[2]; /* (count) thinned, broken lines with NAN between; NULL before they are placed */
+  double (*at)[2]; /* (count) thinned, broken lines with NAN between */
   size_t area_count;
   double (*area)[2]; /* (area_count) its outline where it turns too often to be seen; else NULL */
 } line;
@@ -130,38 +129,6 @@ size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_
   for (size_t i = 0; i < panel->band_count; i++)
     count = add_area(items, count, band_fill, panel->bands[i].label);
   return panel->map ? name_cells(panel->map, items, count) : count;
-}
-
-/* Whether samples of the lines lie in a box. */
-static bool covers(const chart *self, strut_box box) {
-  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++)
-    for (size_t k = 0; k + 1 < l->count; k++) {
-      const double *a = l->at[k], *b = l->at[k + 1];
-      if (isnan(a[0])) continue;
-      int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
-      for (int m = 0; m <= pieces; m++) {
-        double t = pieces ? (double)m / pieces : 0;
-        double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0];
-        double y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
-        if (x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height) return true;
-      }
-    }
-  return false;
-}
-
-/* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
-static bool find_corner(const chart *self, strut_box *key) {
-  const strut_box *box = &self->axes.frame;
-  if (self->panel->map || key->width > 0.6 * box->width || key->height > 0.6 * box->height)
-    return false;
-  for (int k = 0; k < 6; k++) {
-    double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
-    key->x = box->x + INSET + across * (box->width - key->width - 2 * INSET);
-    key->y = box->y + INSET + down * (box->height - key->height - 2 * INSET);
-    if (!covers(self, (strut_box){key->x - 2, key->y - 2, key->width + 4, key->height + 4}))
-      return true;
-  }
-  return false;
 }
 
 /* ---- points on the page ---- */
@@ -275,12 +242,11 @@ static void place_frame(chart *self, strut_box box) {
 /* Places all lines. False: out of memory. */
 static bool place_lines(chart *self) {
   const strut_panel *panel = self->panel;
-  if (!self->lines)
-    self->lines = strut_arena_allocate(self->arena, panel->series_count + 1, sizeof *self->lines);
+  self->lines = strut_arena_allocate(self->arena, panel->series_count + 1, sizeof *self->lines);
   for (size_t i = 0; self->lines && i < panel->series_count; i++) {
     line *l = &self->lines[i];
     l->series = &panel->series[i], l->look = look_of(panel, i), l->pen = pen_of(panel, i);
-    if (!l->at) l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
+    l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
     if (!l->at) return false;
     place_line(self, l);
     if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(self, l);
@@ -554,37 +520,24 @@ static double draw_title(const chart *self, strut_box box, bool draw) {
 
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
-  const strut_pen rim = {.colour = strut_grey(0.8), .width = 0.4};
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
   if (!items) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
-  strut_box rest = box, key = strut_draw_key(canvas, (strut_box){0, 0, 0, 0}, items, count, false);
+  strut_box rest = box;
   if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
   place_frame(&c, rest);
   double title = draw_title(&c, box, false);
-  rest.y += title, rest.height -= title;
+  const strut_box key = {c.axes.frame.x + PADDING, rest.y + title + PADDING,
+                         fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
+  double above = strut_draw_key(canvas, key, items, count, true).height;
+  above = title + (count ? above + 2 * PADDING : 0);
+  rest.y += above, rest.height -= above;
   place_frame(&c, rest);
   if (!place_lines(&c)) return false;
-  key.width += 2 * PADDING, key.height += 2 * PADDING;
-  bool inside = count && find_corner(&c, &key);
-  if (count && !inside) {
-    key = (strut_box){c.axes.frame.x + PADDING, rest.y + PADDING,
-                      fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
-    double height = strut_draw_key(canvas, key, items, count, false).height + 2 * PADDING;
-    rest.y += height, rest.height -= height;
-    place_frame(&c, rest);
-    place_lines(&c);
-  }
   draw_title(&c, box, true);
   draw_data(&c);
-  if (inside) { /* on a white ground */
-    strut_draw_box(canvas, key, &white, &rim);
-    key = (strut_box){key.x + PADDING, key.y + PADDING, 0, 0};
-  }
-  strut_draw_key(canvas, key, items, count, true);
   if (panel->scale.name)
     strut_draw_colour_scale(canvas,
                             (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,
