@@ -9,10 +9,10 @@
 #include "engine/output/draw/painter.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6, SCALE = 52;
+static const double PADDING = 3, TITLE = 8.5, TITLE_GAP = 2.5, WIDEST = 150;
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
-static const double TURN = 2, VISIBLE = 3, COLUMN = 4;
+static const double TURN = 2, VISIBLE = 8, COLUMN = 4;
 enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
 
 /* A series on the page. */
@@ -30,8 +30,7 @@ typedef struct chart {
   strut_canvas *canvas;
   const strut_panel *panel; /* axes and scale settled */
   strut_axes axes;
-  strut_box strip; /* above the frame, for lost points; height 0: none */
-  line *lines;     /* (series) */
+  line *lines; /* (series) */
   strut_arena *arena;
 } chart;
 
@@ -116,7 +115,7 @@ static const strut_fill band_fill = {.colour = {0.86, 0.86, 0.86, 1}};
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
-    strut_key_sign sign = pen.width > 4 ? STRUT_KEY_AREA : STRUT_KEY_LINE; /* bars */
+    strut_key_sign sign = pen.width > STRUT_LEAST_BAR ? STRUT_KEY_AREA : STRUT_KEY_LINE;
     if (panel->series[i].cloud) sign = STRUT_KEY_CLOUD;
     count = add_item(items, count,
                      (strut_key_item){.sign = sign,
@@ -154,7 +153,7 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
   return kept;
 }
 
-/* Where point k of a line is: lost ones in the strip, each series at its own height. */
+/* Where point k of a line is. */
 static void place(const chart *self, const line *l, size_t k, double at[2]) {
   const strut_point *p = &l->series->points[k];
   const strut_box *frame = &self->axes.frame;
@@ -165,8 +164,6 @@ static void place(const chart *self, const line *l, size_t k, double at[2]) {
   if (self->axes.x.logarithmic && !(p->x > 0)) return;
   strut_axes_point(&self->axes, p->x, lost || zero ? self->axes.y.high : p->y, at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
-  double part = ((double)l->look + 0.5) / (double)self->panel->series_count;
-  if (lost) at[1] = self->strip.y + self->strip.height * (0.2 + 0.6 * fmin(part, 1));
 }
 
 /* The outline of the least and largest values of (count) points of ascending x, column by column. */
@@ -225,20 +222,6 @@ static void place_line(const chart *self, line *l) {
   l->count = used;
 }
 
-/* Places the frame in a box, with the strip above. */
-static void place_frame(chart *self, strut_box box) {
-  const strut_panel *panel = self->panel;
-  bool lost = false;
-  for (size_t i = 0; i < panel->series_count && panel->lost; i++)
-    for (size_t k = 0; k < panel->series[i].count; k++)
-      lost = lost || !isfinite(panel->series[i].points[k].y);
-  double strip = lost ? STRIP : 0;
-  const strut_box rest = {box.x, box.y + strip, box.width, box.height - strip};
-  self->axes = strut_axes_place(self->canvas, rest, panel->x, panel->y);
-  self->strip = self->axes.frame;
-  self->strip.height = strip, self->strip.y -= strip;
-}
-
 /* Places all lines. False: out of memory. */
 static bool place_lines(chart *self) {
   const strut_panel *panel = self->panel;
@@ -276,13 +259,14 @@ static void draw_bands(const chart *self) {
   }
 }
 
-/* A note inside a box, where it is emptiest, near its upper right corner. */
-static void draw_note(const chart *self, const strut_box *box, const char *text, double wide) {
+/* A note inside the frame, where it is emptiest, near its upper right corner. */
+static void draw_note(const chart *self, const char *text) {
+  const strut_box *box = &self->axes.frame;
   const strut_label note = {.text = text,
                             .font = {.size = 7,
                                      .colour = strut_grey(0.3),
                                      .halo = strut_grey(1),
-                                     .width = wide * box->width},
+                                     .width = NOTE_WIDTH * box->width},
                             .at = {box->x + box->width, box->y},
                             .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
                                        box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
@@ -324,24 +308,30 @@ static void draw_line(const chart *self, const line *l) {
   }
 }
 
-/* True on the frame's edge, too, and in the strip above it. */
+/* True on the frame's edge, too. */
 static bool is_inside(const chart *self, const double at[2]) {
   const double hair = 0.01; /* [pt] */
   const strut_box *box = &self->axes.frame;
-  return at[0] >= box->x - hair && at[0] <= box->x + box->width + hair &&
-         at[1] >= self->strip.y - hair && at[1] <= box->y + box->height + hair;
+  return at[0] >= box->x - hair && at[0] <= box->x + box->width + hair && at[1] >= box->y - hair &&
+         at[1] <= box->y + box->height + hair;
 }
 
-static void draw_whisker(const chart *self, const strut_point *p, strut_colour colour) {
-  const strut_pen bar = {.colour = colour, .width = 0.7, .butt = true};
-  double ends[2][2];
-  if (!isfinite(p->low) || !isfinite(p->high)) return;
-  if (self->axes.y.logarithmic && !(p->low > 0)) return;
-  strut_axes_point(&self->axes, p->x, p->low, ends[0]);
-  strut_axes_point(&self->axes, p->x, p->high, ends[1]);
-  strut_draw_line(self->canvas, (const double(*)[2])ends, 2, bar);
-  for (int e = 0; e < 2; e++)
-    strut_draw_segment(self->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+static void draw_whiskers(const chart *self, const line *l) {
+  const strut_series *series = l->series;
+  const strut_pen bar = {
+      .colour = l->pen.width > STRUT_LEAST_BAR ? strut_grey(0.15) : l->pen.colour,
+      .width = 0.7,
+      .butt = true};
+  for (const strut_point *p = series->points; p < series->points + series->count; p++) {
+    double ends[2][2];
+    if (!isfinite(p->low) || !isfinite(p->high)) continue;
+    if (self->axes.y.logarithmic && !(p->low > 0)) continue;
+    strut_axes_point(&self->axes, p->x, p->low, ends[0]);
+    strut_axes_point(&self->axes, p->x, p->high, ends[1]);
+    strut_draw_line(self->canvas, (const double(*)[2])ends, 2, bar);
+    for (int e = 0; e < 2; e++)
+      strut_draw_segment(self->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+  }
 }
 
 static void draw_point(const chart *self, const line *l, size_t k) {
@@ -350,7 +340,6 @@ static void draw_point(const chart *self, const line *l, size_t k) {
   double at[2];
   place(self, l, k, at);
   if (!isfinite(at[0]) || !is_inside(self, at)) return;
-  draw_whisker(self, p, l->pen.colour);
   if (!l->series->cloud) {
     strut_draw_marker(self->canvas, l->look, at[0], at[1], MARKER);
     return;
@@ -472,23 +461,18 @@ static void mark_beyond(const chart *self) {
       }
     }
   }
-  draw_note(self, &self->axes.frame,
-            strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text), NOTE_WIDTH);
+  draw_note(self, strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));
 }
 
 static void draw_data(const chart *self) {
   const strut_panel *panel = self->panel;
-  const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
   const line *end = self->lines + panel->series_count;
+  bool lost = false, areas = false;
   strut_canvas_clip(self->canvas, self->axes.frame);
   draw_bands(self);
   strut_canvas_unclip(self->canvas);
   strut_draw_axes(self->canvas, &self->axes);
-  if (self->strip.height > 0) {
-    strut_draw_box(self->canvas, self->strip, &grey, &frame);
-    draw_note(self, &self->strip, panel->lost, 1);
-  }
   strut_canvas_clip(self->canvas, self->axes.frame);
   if (panel->map) draw_map(self);
   strut_canvas_unclip(self->canvas);
@@ -496,17 +480,20 @@ static void draw_data(const chart *self) {
     if (l->series->cloud) draw_points(self, l);
   strut_canvas_clip(self->canvas, self->axes.frame);
   for (const line *l = self->lines; l < end; l++)
-    if (!l->series->cloud) draw_line(self, l);
+    if (!l->series->cloud) draw_line(self, l), draw_whiskers(self, l);
   strut_canvas_unclip(self->canvas);
   if (panel->map) strut_draw_box(self->canvas, self->axes.frame, NULL, &frame);
   for (const line *l = self->lines; l < end; l++)
     if (!l->series->cloud) draw_points(self, l);
   if (panel->outliers) mark_beyond(self);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
-  if (panel->remark) draw_note(self, &self->axes.frame, panel->remark, NOTE_WIDTH);
-  bool areas = false;
+  for (size_t i = 0; i < panel->series_count && panel->lost && !lost; i++)
+    for (size_t k = 0; k < panel->series[i].count; k++)
+      lost = lost || !isfinite(panel->series[i].points[k].y);
+  if (lost) draw_note(self, panel->lost);
+  if (panel->remark) draw_note(self, panel->remark);
   for (const line *l = self->lines; l < end; l++) areas = areas || l->area;
-  if (areas) draw_note(self, &self->axes.frame, "areas: ranges of oscillations", NOTE_WIDTH);
+  if (areas) draw_note(self, "areas: ranges of oscillations");
 }
 
 /* A title, centred above the frame; returns its height. */
@@ -526,22 +513,20 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   if (!items) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
   strut_box rest = box;
-  if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
-  place_frame(&c, rest);
+  c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
   double title = draw_title(&c, box, false);
   const strut_box key = {c.axes.frame.x + PADDING, rest.y + title + PADDING,
                          fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
   double above = strut_draw_key(canvas, key, items, count, true).height;
   above = title + (count ? above + 2 * PADDING : 0);
+  const strut_box scale = {c.axes.frame.x, rest.y + above, fmin(c.axes.frame.width, WIDEST),
+                           STRUT_SCALE_HEIGHT};
+  if (panel->scale.name) above += scale.height;
   rest.y += above, rest.height -= above;
-  place_frame(&c, rest);
+  c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
   if (!place_lines(&c)) return false;
   draw_title(&c, box, true);
   draw_data(&c);
-  if (panel->scale.name)
-    strut_draw_colour_scale(canvas,
-                            (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,
-                                        fmax(c.axes.frame.height, 60)},
-                            &panel->scale);
+  if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;
 }

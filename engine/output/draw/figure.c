@@ -61,9 +61,9 @@ static size_t find_row(const page *self, size_t first, double inner, double *wid
 
 static double chart_height(const page *self, const strut_panel *panel, double width) {
   double aspect = self->figure->aspect > 0 ? self->figure->aspect : ASPECT;
-  if (panel->height > 0) return panel->height;
-  if (!(self->figure->least_width > 0)) return aspect * width;
-  return fmax(LOWEST, fmin(aspect * width, HIGHEST));
+  double height = aspect * width, scale = panel->scale.name ? STRUT_SCALE_HEIGHT : 0;
+  if (self->figure->least_width > 0) height = fmax(LOWEST, fmin(height, HIGHEST));
+  return panel->height > 0 ? panel->height : height + scale;
 }
 
 /* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */

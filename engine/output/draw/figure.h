@@ -136,7 +136,7 @@ typedef struct strut_panel {
   strut_series *series;
   strut_band *bands;
   const strut_map *map;
-  const char *lost; /* name of points whose y is not finite, which lie in a strip above; or NULL */
+  const char *lost; /* says what points whose y is not finite are, at the upper edge; or NULL */
   double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
   double least;     /* such a range of y is at least so large, */
   bool zero;        /* and holds zero */
@@ -181,6 +181,9 @@ STRUT_API strut_series *strut_add_series(strut_figure *figure, strut_panel *pane
                                          const char *label);
 STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x,
                                        double y);
+/** A bar from 0 to y, of a series whose pen is as wide; returns its end, for a whisker. */
+STRUT_API strut_point *strut_add_bar(strut_figure *figure, strut_series *series, double x,
+                                     double y);
 /** The line ends, and the next point begins another. */
 STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
 STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,

@@ -49,6 +49,12 @@ strut_point *strut_add_point(strut_figure *figure, strut_series *series, double 
   return point;
 }
 
+strut_point *strut_add_bar(strut_figure *figure, strut_series *series, double x, double y) {
+  strut_add_gap(figure, series);
+  strut_add_point(figure, series, x, 0);
+  return strut_add_point(figure, series, x, y);
+}
+
 void strut_add_gap(strut_figure *figure, strut_series *series) {
   strut_add_point(figure, series, (double)NAN, (double)NAN);
 }

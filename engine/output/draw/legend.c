@@ -50,52 +50,39 @@ static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2; /* [pt] */
 /* The colours alone. */
 static void draw_shades(strut_canvas *canvas, strut_box strip, const strut_colour_scale *scale) {
   enum { SHADES = 40 };
-  bool upright = strip.height > strip.width;
+  const double right = strip.x + strip.width, width = strip.width;
   for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
-    double rest = (double)(SHADES - i) / SHADES, part = (i + 0.5) / SHADES;
-    double value = scale->low + part * (scale->high - scale->low);
+    double value = scale->low + (i + 0.5) / SHADES * (scale->high - scale->low);
     const strut_fill fill = {.colour =
                                  strut_palette_at(scale->colours, value, scale->low, scale->high)};
-    strut_box cell = strip;
-    if (upright)
-      cell.height *= rest;
-    else
-      cell.x += (1 - rest) * strip.width, cell.width *= rest;
-    strut_draw_box(canvas, cell, &fill, NULL);
+    strip.width = width * (SHADES - i) / SHADES, strip.x = right - strip.width;
+    strut_draw_box(canvas, strip, &fill, NULL);
   }
 }
 
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
-  bool upright = box.height > box.width;
   const strut_axis axis = {.name = scale->name,
                            .unit = scale->unit,
                            .low = scale->low,
                            .high = scale->high,
                            .shown = scale->shown};
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
-  strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
+  strut_font font = {.size = BAR_TEXT, .across = 0.5};
   strut_tick_set set;
   double line = strut_text_box(canvas, "0", font).height;
-  strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
-  strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
-                            : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
-  double right = strip.x + strip.width, bottom = strip.y + strip.height;
+  const strut_box strip = {box.x + 8, box.y + line + 2, box.width - 16, BAR};
+  const double bottom = strip.y + BAR, middle = strip.y + 0.5 * BAR;
+  strut_axis_ticks(&axis, (int)fmax(3, box.width / 40), &set);
   draw_shades(canvas, strip, scale);
-  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
-  for (int end = -1; end < 2; end += 2) { /* values beyond the ends */
-    const double out[2] = {upright ? 0 : end, upright ? -end : 0};
-    double x = upright ? strip.x + 0.5 * BAR : end > 0 ? right : strip.x;
-    double y = !upright ? strip.y + 0.5 * BAR : end > 0 ? strip.y : bottom;
+  strut_draw_box(canvas, strip, NULL, &pen);
+  for (int end = -1; end < 2; end += 2) /* values beyond the ends */
     if (end > 0 ? scale->beyond.above : scale->beyond.below)
-      strut_draw_beyond(canvas, x, y, out, STRUT_BEYOND_SIZE);
-  }
+      strut_draw_beyond(canvas, end > 0 ? strip.x + strip.width : strip.x, middle,
+                        (const double[2]){end, 0}, STRUT_BEYOND_SIZE);
   for (size_t i = 0; i < set.count; i++) {
-    double part = (set.at[i] - scale->low) / (scale->high - scale->low);
-    double x = upright ? right : strip.x + strip.width * part;
-    double y = upright ? strip.y + strip.height * (1 - part) : bottom;
-    double end[2] = {upright ? x + BAR_TICK : x, upright ? y : y + BAR_TICK};
-    strut_draw_segment(canvas, x, y, end[0], end[1], pen);
-    strut_draw_text(canvas, end[0] + 2 * upright, end[1] + !upright, set.text[i], font);
+    double x = strip.x + strip.width * (set.at[i] - scale->low) / (scale->high - scale->low);
+    strut_draw_segment(canvas, x, bottom, x, bottom + BAR_TICK, pen);
+    strut_draw_text(canvas, x, bottom + BAR_TICK + 1, set.text[i], font);
   }
   if (scale->beyond.below + scale->beyond.above) {
     size_t used = strlen(set.label);
@@ -104,11 +91,8 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
                                   scale->shown)
                  .text);
   }
-  /* A long name ends where the box does, rather than beyond the page. */
-  bool wide = strut_text_box(canvas, set.label, font).width > box.width;
-  font = (strut_font){.size = BAR_TEXT, .halo = strut_grey(1)};
-  font.across = upright ? wide : 0.5;
-  strut_draw_text(canvas, box.x + font.across * box.width, box.y, set.label, font);
+  font.halo = strut_grey(1);
+  strut_draw_text(canvas, box.x + 0.5 * box.width, box.y, set.label, font);
 }
 
 /* ---- keys ---- */

@@ -199,35 +199,27 @@ static rows arrange(strut_canvas *canvas, double width, const strut_figure *figu
 
 /* ---- below ---- */
 
-static const double STICK = 17, BAR = 34, BAR_WIDTH = 150, WORDS = 150, SIDE = 14,
-                    NARROW = 170; /* [pt] */
+static const double STICK = 17, BAR_WIDTH = 150; /* [pt] */
 
 double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
                        const strut_window *window, bool draw) {
   bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
-  bool narrow = bar && box.width < NARROW; /* the scale of colours lies below the scale bar */
-  double right = narrow ? box.width : bar ? fmin(BAR_WIDTH, 0.45 * box.width) : 0.0;
-  double left = window && figure->yardstick ? 0.3 * window->box.width + SIDE : 0.0;
-  double row = (bar ? BAR : 0) + (left > 0 && (narrow || !bar) ? STICK : 0);
-  strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
-  bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
-  if (above) key.x = box.x, key.width = box.width;
-  double high = strut_draw_key(canvas, key, figure->keys, figure->key_count, false).height;
-  double height = above ? high + row : fmax(high, row);
-  if (!draw) return height;
-  if (!above) key.y += 0.5 * (height - high);
-  strut_draw_key(canvas, key, figure->keys, figure->key_count, true);
-  if (bar)
+  bool stick = window && figure->yardstick;
+  double row = bar     ? STRUT_SCALE_HEIGHT
+               : stick ? STICK
+                       : 0,
+         right = fmin(BAR_WIDTH, 0.5 * box.width);
+  double key = strut_draw_key(canvas, box, figure->keys, figure->key_count, draw).height;
+  if (draw && bar)
     strut_draw_colour_scale(
-        canvas, (strut_box){box.x + box.width - right, box.y + height - BAR, right, BAR},
+        canvas, (strut_box){box.x + box.width - right, box.y + key, right, STRUT_SCALE_HEIGHT},
         &figure->scale);
-  if (left > 0) {
-    strut_window stick = *window;
-    stick.box.x = box.x;
-    stick.box.y = box.y + height - stick.box.height - (narrow ? BAR : 0);
-    draw_yardstick(canvas, &stick);
+  if (draw && stick) {
+    strut_window at = *window;
+    at.box.x = box.x, at.box.y = box.y + key + row - at.box.height;
+    draw_yardstick(canvas, &at);
   }
-  return height;
+  return key + row;
 }
 
 double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,

@@ -283,9 +283,7 @@ static void add_bars(maker *self, strut_series *series, int y, const size_t *row
   series->pen = (strut_pen){.width = self->bar, .butt = true};
   for (size_t i = 0; i < count; i++) {
     double x = index_of(&self->places, text[rows[i]]) + BARS * (part - 0.5);
-    strut_add_point(&self->page, series, x, 0);
-    strut_add_point(&self->page, series, x, value_of(self, y, rows[i]));
-    strut_add_gap(&self->page, series);
+    strut_add_bar(&self->page, series, x, value_of(self, y, rows[i]));
   }
 }
 

@@ -63,7 +63,7 @@ strut_panel *strut_add_work_precision(strut_figure *figure, strut_axis cost, str
   panel->y = error;
   panel->x.logarithmic = panel->y.logarithmic = true;
   panel->room = 0.06;
-  panel->lost = "diverged";
+  panel->lost = "at the upper edge: diverged";
   figure->failed = figure->failed || !front;
   if (!front) return panel;
   strut_pareto_front(savings, count, front);
