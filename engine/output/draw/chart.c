@@ -13,7 +13,7 @@ static const double PADDING = 3, TITLE = 8.5, TITLE_GAP = 2.5, WIDEST = 150;
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
 static const double TURN = 2, VISIBLE = 8, COLUMN = 4;
-enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
+enum { FEW_POINTS = 30, MARKERS = 8 };
 
 /* A series on the page. */
 typedef struct line {
@@ -116,10 +116,10 @@ size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
     strut_key_sign sign = pen.width > STRUT_LEAST_BAR ? STRUT_KEY_AREA : STRUT_KEY_LINE;
-    if (panel->series[i].cloud) sign = STRUT_KEY_CLOUD;
+    if (panel->series[i].cloud) sign = STRUT_KEY_DOT;
     count = add_item(items, count,
                      (strut_key_item){.sign = sign,
-                                      .pen = pen,
+                                      .pen = panel->series[i].cloud ? (strut_pen){.width = 0} : pen,
                                       .fill = {.colour = pen.colour},
                                       .marked = has_markers(panel, &panel->series[i]),
                                       .look = look_of(panel, i),
@@ -438,7 +438,6 @@ static void mark_beyond(const chart *self) {
   strut_beyond beyond = {0};
   const strut_axis *axis = &self->axes.y;
   char text[STRUT_BEYOND_TEXT];
-  size_t labelled = 0;
   for (size_t i = 0; i < self->panel->series_count; i++) {
     const strut_series *series = &self->panel->series[i];
     const strut_point *farthest = NULL; /* of the excursion that k is in */
@@ -450,12 +449,7 @@ static void mark_beyond(const chart *self) {
         beyond.above++;
         if (fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
       } else if (farthest) {
-        const char *unit = axis->unit && *axis->unit ? axis->unit : "1";
-        const strut_rounded_quantity value =
-            strut_quantity_shown(farthest->y, 3, unit, axis->shown);
-        strut_label mark =
-            strut_mark_of(farthest->x, farthest->y, labelled++ < MOST_LABELLED ? value.text : NULL);
-        mark.steady = 0.2;
+        strut_label mark = strut_mark_of(farthest->x, farthest->y, NULL);
         draw_mark(self, &mark);
         farthest = NULL;
       }

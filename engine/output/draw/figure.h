@@ -18,13 +18,11 @@
 /* ---- what things mean: legends beside data, the key below a figure ---- */
 
 typedef enum strut_key_sign {
-  STRUT_KEY_LINE,   /* a short line by `pen`, with the marker of a look if `marked` */
-  STRUT_KEY_ARROW,  /* an arrow by `pen` */
-  STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
-  STRUT_KEY_CLOUD,  /* a dot by `fill`, in the middle of where lines are */
-  STRUT_KEY_AREA,   /* a box by `fill` */
-  STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
-  STRUT_KEY_WORDS   /* no sign */
+  STRUT_KEY_LINE,  /* a short line by `pen`, with the marker of a look if `marked` */
+  STRUT_KEY_ARROW, /* an arrow by `pen` */
+  STRUT_KEY_DOT,   /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_AREA,  /* a box by `fill` */
+  STRUT_KEY_WORDS  /* no sign */
 } strut_key_sign;
 
 typedef struct strut_key_item {
@@ -33,7 +31,6 @@ typedef struct strut_key_item {
   strut_fill fill;
   bool marked;
   size_t look;
-  const char *before; /* for STRUT_KEY_SIGNED */
   const char *letter; /* for STRUT_KEY_DOT; or NULL */
   const char *text;   /* NULL: the item is left out */
 } strut_key_item;

@@ -47,19 +47,6 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2; /* [pt] */
 
-/* The colours alone. */
-static void draw_shades(strut_canvas *canvas, strut_box strip, const strut_colour_scale *scale) {
-  enum { SHADES = 40 };
-  const double right = strip.x + strip.width, width = strip.width;
-  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
-    double value = scale->low + (i + 0.5) / SHADES * (scale->high - scale->low);
-    const strut_fill fill = {.colour =
-                                 strut_palette_at(scale->colours, value, scale->low, scale->high)};
-    strip.width = width * (SHADES - i) / SHADES, strip.x = right - strip.width;
-    strut_draw_box(canvas, strip, &fill, NULL);
-  }
-}
-
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
   const strut_axis axis = {.name = scale->name,
                            .unit = scale->unit,
@@ -68,16 +55,23 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
                            .shown = scale->shown};
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
   strut_font font = {.size = BAR_TEXT, .across = 0.5};
+  enum { SHADES = 40 };
   strut_tick_set set;
   double line = strut_text_box(canvas, "0", font).height;
   const strut_box strip = {box.x + 8, box.y + line + 2, box.width - 16, BAR};
-  const double bottom = strip.y + BAR, middle = strip.y + 0.5 * BAR;
+  const double bottom = strip.y + BAR, right = strip.x + strip.width;
   strut_axis_ticks(&axis, (int)fmax(3, box.width / 40), &set);
-  draw_shades(canvas, strip, scale);
+  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
+    double x = strip.x + strip.width * i / SHADES;
+    double value = scale->low + (i + 0.5) / SHADES * (scale->high - scale->low);
+    const strut_fill fill = {.colour =
+                                 strut_palette_at(scale->colours, value, scale->low, scale->high)};
+    strut_draw_box(canvas, (strut_box){x, strip.y, right - x, BAR}, &fill, NULL);
+  }
   strut_draw_box(canvas, strip, NULL, &pen);
   for (int end = -1; end < 2; end += 2) /* values beyond the ends */
     if (end > 0 ? scale->beyond.above : scale->beyond.below)
-      strut_draw_beyond(canvas, end > 0 ? strip.x + strip.width : strip.x, middle,
+      strut_draw_beyond(canvas, end > 0 ? right : strip.x, strip.y + 0.5 * BAR,
                         (const double[2]){end, 0}, STRUT_BEYOND_SIZE);
   for (size_t i = 0; i < set.count; i++) {
     double x = strip.x + strip.width * (set.at[i] - scale->low) / (scale->high - scale->low);
@@ -97,9 +91,8 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
 
 /* ---- keys ---- */
 
-static const double LINE = 11.0, SIGN = 20.0, SCALE = 34.0, SIGN_GAP = 4.0,
-                    BETWEEN = 13.0; /* [pt] */
-static const double DOT = 2.6, MARKER = 2.0, BAND = 5.0, AREA = 7.0;
+static const double LINE = 11.0, SIGN = 20.0, SIGN_GAP = 4.0, BETWEEN = 13.0; /* [pt] */
+static const double DOT = 2.6, MARKER = 2.0, AREA = 7.0;
 static const strut_font letters = {.size = 7.5, .down = 0.5};
 
 static double text_width(strut_canvas *canvas, const char *text) {
@@ -111,9 +104,7 @@ static double width_of_sign(strut_canvas *canvas, const strut_key_item *item) {
   double letter = item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0;
   return item->sign == STRUT_KEY_WORDS ? 0
          : item->sign == STRUT_KEY_DOT ? 2 * DOT + SIGN_GAP + letter
-         : item->sign == STRUT_KEY_SIGNED
-             ? text_width(canvas, item->before) + SIGN_GAP + SCALE + SIGN_GAP
-             : SIGN + SIGN_GAP;
+                                       : SIGN + SIGN_GAP;
 }
 
 static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
@@ -126,18 +117,9 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
       strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
       strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, bold);
       break;
-    case STRUT_KEY_SIGNED:
-      strut_draw_text(canvas, x, y, item->before, letters);
-      x += text_width(canvas, item->before) + SIGN_GAP;
-      draw_shades(canvas, (strut_box){x, y - BAND / 2, SCALE, BAND},
-                  &(strut_colour_scale){.low = -1, .high = 1, .colours = STRUT_COLOURS_SIGNED});
-      break;
     case STRUT_KEY_LINE:
       strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
       if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
-      break;
-    case STRUT_KEY_CLOUD:
-      strut_draw_circle(canvas, x + 0.5 * SIGN, y, DOT, &item->fill, NULL);
       break;
     case STRUT_KEY_ARROW: strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen); break;
     case STRUT_KEY_AREA:
