@@ -12,7 +12,7 @@ static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; 
 static const double PADDING = 3, TITLE = 8.5, TITLE_GAP = 2.5, WIDEST = 150;
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
 /* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
-static const double TURN = 2, VISIBLE = 8, COLUMN = 4;
+static const double TURN = 1.25, VISIBLE = 8, COLUMN = 4;
 enum { FEW_POINTS = 30, MARKERS = 8 };
 
 /* A series on the page. */

@@ -209,17 +209,19 @@ double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *
                : stick ? STICK
                        : 0,
          right = fmin(BAR_WIDTH, 0.5 * box.width);
-  double key = strut_draw_key(canvas, box, figure->keys, figure->key_count, draw).height;
+  strut_box key = strut_draw_key(canvas, box, figure->keys, figure->key_count, draw);
+  bool beside = !stick && key.width + right < box.width;
+  double height = beside ? fmax(key.height, row) : key.height + row;
   if (draw && bar)
     strut_draw_colour_scale(
-        canvas, (strut_box){box.x + box.width - right, box.y + key, right, STRUT_SCALE_HEIGHT},
+        canvas, (strut_box){box.x + box.width - right, box.y + height - row, right, row},
         &figure->scale);
   if (draw && stick) {
     strut_window at = *window;
-    at.box.x = box.x, at.box.y = box.y + key + row - at.box.height;
+    at.box.x = box.x, at.box.y = box.y + height - at.box.height;
     draw_yardstick(canvas, &at);
   }
-  return key + row;
+  return height;
 }
 
 double strut_draw_views(strut_canvas *canvas, strut_box box, const strut_figure *figure,

@@ -8,7 +8,7 @@
 #include "engine/forces/elements.h"
 #include "engine/output/draw/figure.h"
 
-enum { TITLE = 200, MOST = STRUT_MODES_FIGURE_MOST };
+enum { NAMED = 12, TITLE = 200, MOST = STRUT_MODES_FIGURE_MOST };
 
 static const double MARGIN = 13.0, NARROWEST = 112.0; /* [pt]; panels, for their titles */
 static const double UNSTRAINED = 1e-9; /* strain by rounding, relative to displacement over size */
@@ -99,7 +99,7 @@ static void add_mode(picture *self, const strut_mode *mode) {
   shape->style.no_supports = true;
   shape->ground = false;
   strut_add_displacements(&self->figure, panel, model, q, moved);
-  shape->names = true;
+  shape->names = model->node_count <= NAMED;
   for (int32_t k = 0; k < self->modes->closed_count; k++) {
     const double *at = q + 2 * self->modes->closed[k];
     strut_add_mark(&self->figure, panel, at[0], at[1], NULL)->ring = true;
