@@ -214,16 +214,16 @@ static const strut_option plot_options[] = {
     {STRUT_FILLS(plot), "plot", "FILE", "write the figure into FILE (.svg, .pdf, .png or .json)"},
     {.table = strut_width_options},
     {STRUT_FILLS(kind), "kind", "KIND", "curves (default) or map", .words = kinds},
-    {STRUT_FILLS(x), "x", "COLUMN", "column of the x axis (default: the first)"},
-    {STRUT_FILLS(y), "y", "COLUMN,...", "columns of the y axis (default: the second)"},
-    {STRUT_FILLS(by), "by", "COLUMN", "one curve for each value of the column"},
-    {STRUT_FILLS(panels), "panels", "COLUMN", "one panel for each value of the column"},
-    {STRUT_FILLS(band), "band", "COLUMN=TEXT", "grey background where COLUMN is TEXT"},
-    {STRUT_FILLS(only), "only", "COLUMN=TEXT", "only rows in which COLUMN is TEXT"},
-    {STRUT_FILLS(difference), "difference", "COLUMN",
+    {STRUT_FILLS(drawn.x), "x", "COLUMN", "column of the x axis (default: the first)"},
+    {STRUT_FILLS(drawn.y), "y", "COLUMN,...", "columns of the y axis (default: the second)"},
+    {STRUT_FILLS(drawn.series), "by", "COLUMN", "one curve for each value of the column"},
+    {STRUT_FILLS(drawn.panels), "panels", "COLUMN", "one panel for each value of the column"},
+    {STRUT_FILLS(drawn.band), "band", "COLUMN=TEXT", "grey background where COLUMN is TEXT"},
+    {STRUT_FILLS(drawn.only), "only", "COLUMN=TEXT", "only rows in which COLUMN is TEXT"},
+    {STRUT_FILLS(drawn.difference), "difference", "COLUMN",
      "draw the column's second text minus its first; hatch maps where they differ"},
-    {STRUT_FILLS(label), "label", "COLUMN", "values of a map"},
-    {STRUT_FILLS(doubt), "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
+    {STRUT_FILLS(drawn.color), "label", "COLUMN", "values of a map"},
+    {STRUT_FILLS(drawn.doubt), "doubt", "COLUMN", "hatch a map where COLUMN is not 0"},
     {STRUT_FILLS(log), "log", "AXES", "logarithmic axes: x, y or xy", .words = "x|y|xy"},
     {STRUT_FILLS(labels), "labels", "TEXT,...", "what the legend calls the curves, in their order"},
     {STRUT_FILLS(title), "title", "TEXT", "title above the figure", .of_figure = true},
@@ -233,45 +233,6 @@ static const strut_option plot_options[] = {
      .words = "auto|sequential|diverging|grey"},
     {.name = NULL},
 };
-
-/* STRUT_USAGE with a message if the table has no column of that name, of `length` bytes. */
-static strut_status check_column(const strut_arguments *arguments, const strut_table *table,
-                                 const char *option, const char *name, size_t length) {
-  char word[200];
-  if (strut_table_column_of(table, name, length) != STRUT_NO_COLUMN) return STRUT_OK;
-  snprintf(word, sizeof word, "%.*s", (int)length, name);
-  const strut_named_rows *columns = STRUT_NAMED(table->columns, table->column_count);
-  return strut_usage_error(arguments, "--%s: the table has no column '%s'%s", option, word,
-                           strut_near_to(word, strut_row_name, columns).text);
-}
-
-/* The same of all that options name. */
-static strut_status check_columns(const strut_arguments *arguments, const strut_table *table,
-                                  const strut_study_figure *f) {
-  const struct {
-    const char *option, *text, *before; /* NULL: not given, and what ends a name */
-  } names[] = {{"x", f->x, ""},         {"by", f->series, ""},
-               {"label", f->color, ""}, {"panels", f->panels, ""},
-               {"doubt", f->doubt, ""}, {"band", f->band, "="},
-               {"only", f->only, "="},  {"difference", f->difference, ""}};
-  strut_status status = STRUT_OK;
-  int count = 0;
-  for (size_t i = 0; i < sizeof names / sizeof *names && !status; i++) {
-    size_t length = names[i].text ? strcspn(names[i].text, names[i].before) : 0;
-    if (!names[i].text) continue;
-    if (*names[i].before && !names[i].text[length])
-      return strut_usage_error(arguments, "--%s expects COLUMN=TEXT, not '%s'", names[i].option,
-                               names[i].text);
-    status = check_column(arguments, table, names[i].option, names[i].text, length);
-  }
-  for (const char *y = f->y, *end; y && !status; y = *end ? end + 1 : NULL) {
-    end = y + strcspn(y, ",");
-    if (count++ == STRUT_MOST_Y)
-      return strut_usage_error(arguments, "--y: at most %d columns", STRUT_MOST_Y);
-    status = check_column(arguments, table, "y", y, (size_t)(end - y));
-  }
-  return status;
-}
 
 /* Texts with commas between, in the table's arena. */
 static strut_status read_labels(const strut_arguments *arguments, strut_table *table,
@@ -292,44 +253,43 @@ static strut_status read_labels(const strut_arguments *arguments, strut_table *t
 static strut_status read_figure(const strut_arguments *arguments, strut_table *table,
                                 strut_study_figure *figure) {
   const strut_table_column *columns = table->columns;
-  bool map = arguments->kind.index == 1, third = map && table->column_count > 2;
-  const char *second = columns[table->column_count > 1 ? 1 : 0].name;
+  const strut_figure_columns names = {"the table", strut_row_name, NULL,
+                                      STRUT_NAMED(table->columns, table->column_count)};
   const strut_given_word *log = &arguments->log;
-  *figure =
-      (strut_study_figure){.kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES,
-                           .x = arguments->x ? arguments->x : columns[0].name,
-                           .y = arguments->y ? arguments->y : second,
-                           .series = arguments->by,
-                           .panels = arguments->panels,
-                           .color = third && !arguments->label ? columns[2].name : arguments->label,
-                           .doubt = arguments->doubt,
-                           .band = arguments->band,
-                           .only = arguments->only,
-                           .difference = arguments->difference,
-                           .log_x = log->text && log->index != 1,
-                           .log_y = log->text && log->index != 0,
-                           .colours = (strut_study_colours)arguments->colors.index};
-  strut_status status = check_columns(arguments, table, figure);
-  if (!status && map && !figure->color)
-    status = strut_usage_error(arguments, "a map needs a third column");
-  return status ? status : read_labels(arguments, table, figure);
+  char fault[STRUT_MESSAGE_MOST];
+  bool map = arguments->kind.index == 1;
+  *figure = arguments->drawn;
+  figure->kind = map ? STRUT_FIGURE_MAP : STRUT_FIGURE_LINES;
+  figure->log_x = log->text && log->index != 1, figure->log_y = log->text && log->index != 0;
+  figure->colours = (strut_study_colours)arguments->colors.index;
+  if (!figure->x) figure->x = columns[0].name;
+  if (!figure->y) figure->y = columns[table->column_count > 1 ? 1 : 0].name;
+  if (!figure->color && map && table->column_count > 2) figure->color = columns[2].name;
+  const strut_figure_key *wrong = strut_figure_fault(figure, &names, fault);
+  if (wrong) return strut_usage_error(arguments, "--%s: %s", wrong->option, fault);
+  if (map && !figure->color) return strut_usage_error(arguments, "a map needs a third column");
+  return read_labels(arguments, table, figure);
 }
 
 /* Refuses options that belong to the other kind of diagram. */
 static strut_status check_kind(const strut_arguments *arguments) {
   const bool map = arguments->kind.index == 1;
-  const char *other = map ? (arguments->by         ? "by"
-                             : arguments->band     ? "band"
-                             : arguments->labels   ? "labels"
-                             : arguments->log.text ? "log"
-                                                   : NULL)
-                          : (arguments->label         ? "label"
-                             : arguments->doubt       ? "doubt"
-                             : arguments->colors.text ? "colors"
-                                                      : NULL);
-  if (!other) return STRUT_OK;
-  return strut_usage_error(arguments, "--kind %s has no option --%s", map ? "map" : "curves",
-                           other);
+  const strut_study_figure *drawn = &arguments->drawn;
+  const struct {
+    const char *option, *text;
+    bool map;
+  } own[] = {{"by", drawn->series, false},
+             {"band", drawn->band, false},
+             {"labels", arguments->labels, false},
+             {"log", arguments->log.text, false},
+             {"label", drawn->color, true},
+             {"doubt", drawn->doubt, true},
+             {"colors", arguments->colors.text, true}};
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    if (own[i].text && own[i].map != map)
+      return strut_usage_error(arguments, "--kind %s has no option --%s", map ? "map" : "curves",
+                               own[i].option);
+  return STRUT_OK;
 }
 
 static strut_status run_plot(const strut_arguments *arguments) {

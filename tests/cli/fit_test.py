@@ -105,6 +105,7 @@ def crawls():
     run("sweep", "film/uncertain.yaml", "--count", "-o", "uncertain")
     for picture in ("fit.svg", "residuals.svg", "profiles.svg"):
         check(read("film", picture).startswith(b"<?xml") or b"<svg" in read("film", picture), picture)
+    check(read("film", "fit.svg").count(b">measured<") == 1, "fit.svg: a legend for each panel")
     # without the alignment, and with another law or mass, the model does not explain the film
     for name, change in (("smooth", ("law: coulomb, mu: friction", "law: smooth, mu: friction, width: 5 mm/s")),
                          ("light", ("mass: 100 g", "mass: 90 g"))):

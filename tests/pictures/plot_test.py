@@ -269,6 +269,30 @@ for name in ("map.svg", "panels.svg"):
     plot(name.replace("svg", "csv"), *words, "--plot", name)
     check(open(name, "rb").read() == first, f"{name}: other bytes the second time")
 
+# Oscillations too fast to be seen are an area, from least to largest; slower ones are a curve.
+for per_point, area in ((0.02, False), (0.45, True)):
+    write("fast.csv", "t [s],x [m]\n" + "".join(
+        f"{i},{(1 + i / 2000) * math.sin(2 * math.pi * per_point * i)}\n" for i in range(1000)))
+    plot("fast.csv", "--width", "column", "--plot", "fast.svg")
+    areas = [path.lines[0] for path in read("fast.svg")[2] if path.fill and near(path.fill, FIRST)]
+    check(len(areas) == area and ("areas: ranges of oscillations" in texts("fast.svg")) == area, f"fast.svg: {areas}")
+    if area:
+        left, right = ([p[1] for p in areas[0] if side(p[0])] for side in (
+            lambda x: x < areas[0][0][0] + 8, lambda x: x > max(p[0] for p in areas[0]) - 8))
+        grown = (max(right) - min(right)) / (max(left) - min(left))
+        check(abs(grown - 1.5) < 0.06, f"fast.svg: the area is {grown} times as high at its end")
+
+# Numbers over texts are bars side by side, as high as the numbers.
+write("bars.csv", "gait,speed [mm/s],side\n" + "".join(f"{g},{v},{s}\n" for g, v, s in (
+    ("walk", 2, "a"), ("hop", -4, "a"), ("crawl", 6, "a"), ("walk", 3, "b"), ("hop", 1, "b"))))
+plot("bars.csv", "--by", "side", "--plot", "bars.svg")
+bars = [path.lines[0] for path in read("bars.svg")[2] if path.stroke and path.width > 5 and len(path.lines[0]) == 2]
+heights = [line[0][1] - line[1][1] for line in bars]
+check(len(bars) == 5 and all(abs(h / heights[0] - v / 2) < 0.01 for h, v in zip(heights, (2, -4, 6, 3, 1))),
+      f"bars.svg: {heights}")
+check(len({round(line[0][0]) for line in bars}) == 5, "bars.svg: bars lie over each other")
+check({"walk", "hop", "crawl", "side a", "side b"} <= set(texts("bars.svg")), f"bars.svg: {texts('bars.svg')}")
+
 # Refusals: where, what was expected, and nothing left behind.
 plot("curves.csv", "--x", "freqency", "--plot", "a.svg", code=1, err="did you mean 'frequency'?")
 plot("panels.csv", "--y", "start", "--plot", "a.svg", code=1, err="does not hold numbers")
@@ -278,6 +302,7 @@ plot("curves.csv", "--kind", "pie", "--plot", "a.svg", code=1, err="curves")
 plot("curves.csv", "--doubt", "one", "--plot", "a.svg", code=1, err="has no option --doubt")
 plot("curves.csv", "--plot", "nowhere/a.svg", code=4, err="nowhere")
 plot("ways.csv", "--only", "way=slo", "--plot", "a.svg", code=1, err="has 'slo' in column 'way'")
+plot("ways.csv", "--band", "way=slo", "--plot", "a.svg", code=1, err="has 'slo' in column 'way'")
 plot("ways.csv", "--only", "way", "--plot", "a.svg", code=1, err="expects COLUMN=TEXT")
 plot("ways.csv", "--difference", "mu", "--plot", "a.svg", code=1, err="nothing to compare")
 plot("ways.csv", "--difference", "f", "--plot", "a.svg", code=1, err="more than 2 sides to compare")

@@ -156,7 +156,7 @@ check([panel["title"][3:] for panel in panels] == ["stiffness = 0.1 kN/m", "stif
 check(panels[0]["x"]["shown"] == "deg" and near([180 / math.pi * panels[0]["x"]["shown_size"]] * 3, (1, 1, 1)),
       f"all.json: {panels[0]['x']}")
 said = sweep(UNITS.replace(", steep]", "]"), code=2)
-check("figure 'named' of the study: 'labels' has 2 labels for the 3 values of 'tilt'" in said, said)
+check("'labels' of figure 'named': 2 labels for the 3 values of 'tilt'" in said and "study.yaml:" in said, said)
 os.rename("out", "units")
 os.rename("driven", "out")
 
@@ -174,11 +174,12 @@ for figure, wanted in (
         ("{x: time, y: velocity}", "the table has no column 'time'"),
         ("{x: variant, y: velocity, x_limits: [2, 1]}", "'x_limits' of figure 'bad' must be two ascending"),
         ("{kind: map, colors: red}", "'colors'"),
-        ("{kind: snapshots, only: node}", "'only' expects COLUMN=TEXT")):
+        ("{x: mass, y: velocity, band: variant=rst}", "'band' of figure 'bad': 'rst' is no value of 'variant'"),
+        ("{kind: snapshots, only: node}", "'only' of figure 'bad': expects COLUMN=TEXT")):
     said = sweep(STUDY + f"  bad: {figure}\n", code=2)
-    check(wanted in said, f"{figure}: {said}")
+    check(wanted in said and said.startswith("study.yaml:"), f"{figure}: {said}")
 said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n", code=2)
-check("add 'trajectories: yes' to the study" in said, said)
+check("add 'trajectories: yes' to the study" in said and "study.yaml:" in said, said)
 os.rename("out", "before")
 said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1)
 check("no run recorded any of this" in said, said)

@@ -235,15 +235,15 @@ static const unsigned char *pixel(strut_canvas *canvas, double x, double y) {
 /* Two by two cells: each quarter of the frame has its category's colour; without seams between. */
 TEST(map) {
   static const double xs[] = {1, 2}, ys[] = {10, 20};
-  static const int category[] = {0, 1, 1, 0};
+  static const double category[] = {0, 1, 1, 0};
   static const char *const names[] = {"I", "II"};
   const strut_map map = {.columns = 2,
                          .rows = 2,
                          .xs = xs,
                          .ys = ys,
-                         .category = category,
-                         .category_count = 2,
-                         .names = names};
+                         .name_count = 2,
+                         .names = names,
+                         .value = category};
   strut_panel panel = {.x = strut_axis_of("a", ""), .y = strut_axis_of("b", ""), .map = &map};
   strut_arena arena = {0};
   strut_canvas *canvas;

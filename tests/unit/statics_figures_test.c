@@ -58,11 +58,11 @@ TEST(texts) {
   static const char text[] = "\xD7\xA9\xD7\x9C\xD7\x95\xD7\x9D \xE2\x82\xAC \xF0\x9F\x98\x80 node";
   strut_canvas *canvas = NULL;
   assert_ok(strut_canvas_open_pixels(1, 1, 1.0, &canvas, NULL));
-  double line = strut_text_height(canvas, text, (strut_font){.size = 8});
+  double line = strut_text_box(canvas, text, (strut_font){.size = 8}).height;
   for (double room = 200; room > 20; room -= 3) {
     const strut_font font = {.size = 8, .width = room, .lines = 1};
-    assert_true(strut_text_width(canvas, text, font) <= room + 1e-3);
-    assert_true(fabs(strut_text_height(canvas, text, font) - line) < 0.5 * line);
+    assert_true(strut_text_box(canvas, text, font).width <= room + 1e-3);
+    assert_true(fabs(strut_text_box(canvas, text, font).height - line) < 0.5 * line);
   }
   strut_canvas_free(canvas);
   assert_all_equal(strut_text_bytes("abc", 2), 2, strut_text_bytes("a\xE2\x82\xAC", 3), 1);

@@ -22,19 +22,14 @@ static const strut_table table = {
     .column_count = COLUMNS + 1, .row_count = ROWS, .columns = columns};
 static const int compared[] = {Y, WORD};
 
-static strut_table_pairing pairing(bool between) {
-  return (strut_table_pairing){.keys = {STRUT_NO_COLUMN, COLUMNS, X},
-                               .key_count = 3,
-                               .between = between,
-                               .values = compared,
-                               .value_count = 2};
-}
-
 static strut_status choose(int only, const char *text, int difference, bool between,
                            strut_arena *arena, strut_table_rows *rows, strut_error *error) {
-  const strut_table_choice choice = {.only = only, .only_value = text, .difference = difference};
-  const strut_table_pairing how = pairing(between);
-  return strut_table_rows_choose(&table, &choice, &how, arena, rows, error);
+  *rows = (strut_table_rows){.table = &table,
+                             .keys = {STRUT_NO_COLUMN, COLUMNS, X},
+                             .between = between,
+                             .values = compared,
+                             .value_count = 2};
+  return strut_table_rows_choose(rows, only, text, difference, arena, error);
 }
 
 static size_t count_shown(const strut_table_rows *rows) {

@@ -169,7 +169,8 @@ static const double LEAST_LEFT = 26; /* so that frames one above the other line 
 static double widest_text(strut_canvas *canvas, const strut_tick_set *set) {
   double widest = 0;
   for (size_t i = 0; i < set->count; i++)
-    widest = fmax(widest, strut_text_width(canvas, set->text[i], (strut_font){.size = TICK_SIZE}));
+    widest =
+        fmax(widest, strut_text_box(canvas, set->text[i], (strut_font){.size = TICK_SIZE}).width);
   return widest;
 }
 
@@ -190,8 +191,8 @@ static strut_tick_set ticks_along_y(const strut_axis *axis, double height) {
 }
 
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y) {
-  double line = strut_text_height(canvas, "0", (strut_font){.size = TICK_SIZE});
-  double label = strut_text_height(canvas, "0", (strut_font){.size = LABEL_SIZE});
+  double line = strut_text_box(canvas, "0", (strut_font){.size = TICK_SIZE}).height;
+  double label = strut_text_box(canvas, "0", (strut_font){.size = LABEL_SIZE}).height;
   double above = 0.5 * TICK_SIZE;
   double below = x.names && !x.name_count ? GAP : TICK + GAP + line + label;
   double height = fmax(box.height - above - below, 10);
@@ -217,7 +218,7 @@ void strut_axes_point(const strut_axes *axes, double x, double y, double point[2
 static void label_x(strut_canvas *canvas, const strut_box *box, double y, const char *label) {
   strut_font font = {.size = LABEL_SIZE, .across = 0.5};
   double right = box->x + box->width + RIGHT, left = fmax(box->x - LEAST_LEFT - LABEL_SIZE, 0.0);
-  double width = strut_text_width(canvas, label, font);
+  double width = strut_text_box(canvas, label, font).width;
   if (width > right - left) width = font.width = right - left, font.lines = 1;
   strut_draw_text(canvas, fmin(box->x + 0.5 * box->width, right - 0.5 * width), y, label, font);
 }
@@ -233,8 +234,11 @@ static void draw_tick(strut_canvas *canvas, const strut_axes *axes, int d, doubl
   if (text && d) strut_draw_segment(canvas, box->x, at[1], box->x + box->width, at[1], grid);
   if (text && !d) strut_draw_segment(canvas, at[0], box->y, at[0], bottom, grid);
   strut_draw_segment(canvas, at[0], at[1], at[0] - d * length, at[1] + (1 - d) * length, tick);
+  strut_font font = {.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0};
+  if (!d && axes->x.name_count) /* names side by side */
+    font.lines = 1, font.width = box->width / (double)axes->x.name_count - 2;
   strut_draw_text(canvas, d ? box->x - TICK - GAP : at[0], d ? at[1] : bottom + TICK + 1, text,
-                  (strut_font){.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0});
+                  font);
 }
 
 static void draw_ticks(strut_canvas *canvas, const strut_axes *axes, int d,
@@ -247,7 +251,7 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
   const strut_box *box = &axes->frame;
   const strut_tick_set x = ticks_along_x(canvas, &axes->x, box->width);
   const strut_tick_set y = ticks_along_y(&axes->y, box->height);
-  double line = strut_text_height(canvas, "0", (strut_font){.size = TICK_SIZE});
+  double line = strut_text_box(canvas, "0", (strut_font){.size = TICK_SIZE}).height;
   double left = fmax(widest_text(canvas, &y), LEAST_LEFT - TICK - GAP);
   draw_ticks(canvas, axes, 0, &x);
   draw_ticks(canvas, axes, 1, &y);
@@ -291,7 +295,7 @@ static size_t gather(const strut_panel *panels, size_t count, bool scale, double
       for (size_t k = 0; k < panel->series[s].count; k++, known++)
         if (values)
           values[known] = scale ? panel->series[s].points[k].value : panel->series[s].points[k].y;
-    for (size_t k = 0; scale && map && map->value && k < map->columns * map->rows; k++, known++)
+    for (size_t k = 0; scale && map && k < map->columns * map->rows; k++, known++)
       if (values) values[known] = map->value[k];
   }
   return known;

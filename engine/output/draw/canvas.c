@@ -52,44 +52,25 @@ static double clamp_coordinate(double coordinate) {
   return coordinate < FARTHEST ? coordinate : FARTHEST;
 }
 
-/* ---- numbers in SVG files ---- */
-
-/* Cairo numbers the surfaces of SVG files through the life of the process. Counting them from the first one
-   in every picture makes its bytes independent of what was drawn before. */
-
-/* Length of the prefix of a numbered name at `text`, of Cairo 1.16 or 1.18, or 0. Texts are outlines, so no other
-   text matches. */
-static size_t numbered(const char *text) {
-  static const char *const prefixes[] = {"surface", "source-"};
-  for (size_t i = 0; i < sizeof prefixes / sizeof *prefixes; i++) {
-    size_t length = strlen(prefixes[i]);
-    if (strncmp(text, prefixes[i], length) == 0 && text[length] >= '0' && text[length] <= '9')
-      return length;
-  }
-  return 0;
+/* Cairo (1.16: surface7, 1.18: source-7) numbers the surfaces of SVG files through the life of the process. Counting
+   them from the first one in every picture makes its bytes independent of what was drawn before. Texts are outlines,
+   so no other text matches. */
+static gboolean renumber(const GMatchInfo *found, GString *svg, gpointer first) {
+  gchar *name = g_match_info_fetch(found, 1), *digits = g_match_info_fetch(found, 2);
+  long number = atol(digits), *base = first;
+  if (*base < 0) *base = number;
+  g_string_append_printf(svg, "%s%ld", name, number - *base);
+  g_free(name);
+  g_free(digits);
+  return FALSE;
 }
 
-static void renumber_surfaces(char *svg) {
-  unsigned long first = 0;
-  char *out = svg;
-  for (const char *in = svg; *in;) {
-    size_t length = *in == 's' ? numbered(in) : 0;
-    if (!length) {
-      *out++ = *in++;
-      continue;
-    }
-    char *end, digits[24];
-    unsigned long number = strtoul(in + length, &end, 10);
-    if (!first) first = number;
-    memmove(out, in, length);
-    /* Not longer than it was. */
-    size_t count =
-        (size_t)snprintf(digits, sizeof digits, "%lu", number >= first ? number - first : number);
-    memcpy(out + length, digits, count);
-    out += length + count;
-    in = end;
-  }
-  *out = '\0';
+static gchar *renumber_surfaces(const char *svg) {
+  long first = -1;
+  GRegex *regex = g_regex_new("(surface|source-)([0-9]+)", G_REGEX_RAW, 0, NULL);
+  gchar *result = g_regex_replace_eval(regex, svg, -1, 0, 0, renumber, &first, NULL);
+  g_regex_unref(regex);
+  return result;
 }
 
 /* ---- texts, set by Pango: any script, either direction, taken literally ---- */
@@ -166,23 +147,10 @@ static strut_box measure_layout(strut_canvas *canvas, bool ink) {
                      (double)box.width / PANGO_SCALE, (double)box.height / PANGO_SCALE};
 }
 
-void strut_text_size(strut_canvas *canvas, const char *text, strut_font font, double *width,
-                     double *height) {
+strut_box strut_text_box(strut_canvas *canvas, const char *text, strut_font font) {
+  if (!text || !*text) return (strut_box){0};
   set_text(canvas, text, &font);
-  const strut_box box = measure_layout(canvas, false);
-  *width = box.width, *height = box.height;
-}
-
-double strut_text_width(strut_canvas *canvas, const char *text, strut_font font) {
-  double width, height;
-  strut_text_size(canvas, text, font, &width, &height);
-  return width;
-}
-
-double strut_text_height(strut_canvas *canvas, const char *text, strut_font font) {
-  double width, height;
-  strut_text_size(canvas, text, font, &width, &height);
-  return height;
+  return measure_layout(canvas, false);
 }
 
 /* True if the box is on the page and inside the clip, but for a hair. */
@@ -377,23 +345,23 @@ const unsigned char *strut_canvas_pixels(strut_canvas *canvas, size_t *stride) {
 
 /* Writes the gathered SVG with its metadata before the last tag; false with the reason in errno. */
 static bool write_svg(strut_canvas *canvas) {
-  char *svg = strut_buffer_take(&canvas->svg), *end = svg;
-  bool good = svg && !canvas->texts.failed && !canvas->lines.failed;
+  FILE *stream = canvas->file.stream;
+  char *gathered = strut_buffer_take(&canvas->svg);
   errno = ENOMEM;
-  if (good) {
-    renumber_surfaces(svg);
-    end = strstr(svg, "</svg>");
-    errno = 0;
-    good = end && fprintf(canvas->file.stream, "%.*s", (int)(end - svg), svg) >= 0;
-    if (good && canvas->lines.length)
-      fprintf(canvas->file.stream, "<g font-family=\"%s\">\n%s</g>\n", FAMILY, canvas->lines.text);
-    if (good && canvas->texts.length)
-      fprintf(canvas->file.stream,
-              "<metadata><texts xmlns=\"urn:strut:texts\">\n%s</texts></metadata>\n",
-              canvas->texts.text);
-    good = good && fputs(end, canvas->file.stream) >= 0;
-  }
-  strut_release(svg);
+  if (!gathered || canvas->texts.failed || canvas->lines.failed)
+    return strut_release(gathered), false;
+  gchar *svg = renumber_surfaces(gathered);
+  const char *end = strstr(svg, "</svg>");
+  errno = 0;
+  bool good = end && fprintf(stream, "%.*s", (int)(end - svg), svg) >= 0;
+  if (good && canvas->lines.length)
+    fprintf(stream, "<g font-family=\"%s\">\n%s</g>\n", FAMILY, canvas->lines.text);
+  if (good && canvas->texts.length)
+    fprintf(stream, "<metadata><texts xmlns=\"urn:strut:texts\">\n%s</texts></metadata>\n",
+            canvas->texts.text);
+  good = good && fputs(end, stream) >= 0;
+  g_free(svg);
+  strut_release(gathered);
   return good;
 }
 

@@ -111,12 +111,8 @@ STRUT_API void strut_draw_arrow(strut_canvas *canvas, double x1, double y1, doub
  */
 STRUT_API void strut_draw_text(strut_canvas *canvas, double x, double y, const char *text,
                                strut_font font);
-/** Width and height of a text [pt], unrotated. */
-STRUT_API void strut_text_size(strut_canvas *canvas, const char *text, strut_font font,
-                               double *width, double *height);
-/** One of them. */
-STRUT_API double strut_text_width(strut_canvas *canvas, const char *text, strut_font font);
-STRUT_API double strut_text_height(strut_canvas *canvas, const char *text, strut_font font);
+/** A text's width and height [pt], unrotated; zero without one. */
+STRUT_API strut_box strut_text_box(strut_canvas *canvas, const char *text, strut_font font);
 
 /** A text beside what it names. */
 typedef struct strut_label {

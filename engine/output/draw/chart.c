@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The chart of a panel: bands, axes, cells, lines, points, marks, and a legend clear of them. */
+/* The chart of a panel: title, legend, bands, axes, cells, lines, points, marks. */
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
@@ -9,17 +9,20 @@
 #include "engine/output/draw/painter.h"
 
 static const double GRAIN = 0.25, MARKER = 2.0, LONE_MARKER = 1.4, CLOUD = 2.6; /* [pt] */
-static const double INSET = 4, PADDING = 3, STRIP = 18, TITLE = 8.5, TITLE_GAP = 2.5, GAP = 6,
-                    SCALE = 52;
+static const double PADDING = 3, TITLE = 8.5, TITLE_GAP = 2.5, WIDEST = 150;
 static const double NOTE_WIDTH = 0.6, NOTE_INSET = 3; /* of the frame; [pt] */
-enum { FEW_POINTS = 30, MARKERS = 8, MOST_LABELLED = 6 };
+/* Between turns of a line that is an area, on average: along x and up or down; its columns [pt]. */
+static const double TURN = 1.25, VISIBLE = 8, COLUMN = 4;
+enum { FEW_POINTS = 30, MARKERS = 8 };
 
 /* A series on the page. */
 typedef struct line {
   const strut_series *series;
   size_t look, count;
   strut_pen pen;
-  double (*at)[2]; /* (count) thinned, broken lines with NAN between; NULL before they are placed */
+  double (*at)[2]; /* (count) thinned, broken lines with NAN between */
+  size_t area_count;
+  double (*area)[2]; /* (area_count) its outline where it turns too often to be seen; else NULL */
 } line;
 
 /** A chart being drawn. */
@@ -27,8 +30,7 @@ typedef struct chart {
   strut_canvas *canvas;
   const strut_panel *panel; /* axes and scale settled */
   strut_axes axes;
-  strut_box strip; /* above the frame, for lost points; height 0: none */
-  line *lines;     /* (series) */
+  line *lines; /* (series) */
   strut_arena *arena;
 } chart;
 
@@ -73,15 +75,12 @@ void strut_map_limits(const double *at, size_t count, double limits[2]) {
   limits[0] = edge(at, count, 0), limits[1] = edge(at, count, count);
 }
 
-static bool has_result(const strut_map *map, size_t k) {
-  return map->category ? map->category[k] >= 0 : isfinite(map->value[k]);
-}
+static bool has_result(const strut_map *map, size_t k) { return isfinite(map->value[k]); }
 
 /* ---- the legend ---- */
 
 size_t strut_panel_legend_room(const strut_panel *panel) {
-  return panel->series_count + panel->band_count + (panel->map ? panel->map->category_count : 0) +
-         2;
+  return panel->series_count + panel->band_count + (panel->map ? panel->map->name_count : 0) + 2;
 }
 
 static size_t add_item(strut_key_item *items, size_t count, strut_key_item item) {
@@ -104,7 +103,7 @@ static size_t name_cells(const strut_map *map, strut_key_item *items, size_t cou
     doubt = doubt || (map->doubtful && map->doubtful[k]);
     missing = missing || !has_result(map, k);
   }
-  for (size_t i = 0; map->category && i < map->category_count; i++)
+  for (size_t i = 0; map->names && i < map->name_count; i++)
     count = add_area(items, count, category_fill(i), map->names[i]);
   if (missing) count = add_area(items, count, fill, "no result");
   fill.hatch = STRUT_HATCH_RISING;
@@ -116,11 +115,11 @@ static const strut_fill band_fill = {.colour = {0.86, 0.86, 0.86, 1}};
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
-    strut_key_sign sign = pen.width > 4 ? STRUT_KEY_AREA : STRUT_KEY_LINE; /* bars */
-    if (panel->series[i].cloud) sign = STRUT_KEY_CLOUD;
+    strut_key_sign sign = pen.width > STRUT_LEAST_BAR ? STRUT_KEY_AREA : STRUT_KEY_LINE;
+    if (panel->series[i].cloud) sign = STRUT_KEY_DOT;
     count = add_item(items, count,
                      (strut_key_item){.sign = sign,
-                                      .pen = pen,
+                                      .pen = panel->series[i].cloud ? (strut_pen){.width = 0} : pen,
                                       .fill = {.colour = pen.colour},
                                       .marked = has_markers(panel, &panel->series[i]),
                                       .look = look_of(panel, i),
@@ -129,38 +128,6 @@ size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_
   for (size_t i = 0; i < panel->band_count; i++)
     count = add_area(items, count, band_fill, panel->bands[i].label);
   return panel->map ? name_cells(panel->map, items, count) : count;
-}
-
-/* Whether samples of the lines lie in a box. */
-static bool covers(const chart *self, strut_box box) {
-  for (const line *l = self->lines; l < self->lines + self->panel->series_count; l++)
-    for (size_t k = 0; k + 1 < l->count; k++) {
-      const double *a = l->at[k], *b = l->at[k + 1];
-      if (isnan(a[0])) continue;
-      int pieces = isnan(b[0]) ? 0 : (int)fmin(fmax(fabs(b[0] - a[0]), fabs(b[1] - a[1])) / 3, 100);
-      for (int m = 0; m <= pieces; m++) {
-        double t = pieces ? (double)m / pieces : 0;
-        double x = t > 0 ? a[0] + t * (b[0] - a[0]) : a[0];
-        double y = t > 0 ? a[1] + t * (b[1] - a[1]) : a[1];
-        if (x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height) return true;
-      }
-    }
-  return false;
-}
-
-/* Finds a place for a legend of this size that covers no curve; false if every place covers one. */
-static bool find_corner(const chart *self, strut_box *key) {
-  const strut_box *box = &self->axes.frame;
-  if (self->panel->map || key->width > 0.6 * box->width || key->height > 0.6 * box->height)
-    return false;
-  for (int k = 0; k < 6; k++) {
-    double across = k < 4 ? (k % 2 ? 0 : 1) : 0.5, down = k < 4 ? k / 2 : k - 4;
-    key->x = box->x + INSET + across * (box->width - key->width - 2 * INSET);
-    key->y = box->y + INSET + down * (box->height - key->height - 2 * INSET);
-    if (!covers(self, (strut_box){key->x - 2, key->y - 2, key->width + 4, key->height + 4}))
-      return true;
-  }
-  return false;
 }
 
 /* ---- points on the page ---- */
@@ -186,7 +153,7 @@ size_t strut_thin(double (*points)[2], size_t count, double grain) {
   return kept;
 }
 
-/* Where point k of a line is: lost ones in the strip, each series at its own height. */
+/* Where point k of a line is. */
 static void place(const chart *self, const line *l, size_t k, double at[2]) {
   const strut_point *p = &l->series->points[k];
   const strut_box *frame = &self->axes.frame;
@@ -197,8 +164,43 @@ static void place(const chart *self, const line *l, size_t k, double at[2]) {
   if (self->axes.x.logarithmic && !(p->x > 0)) return;
   strut_axes_point(&self->axes, p->x, lost || zero ? self->axes.y.high : p->y, at);
   if (zero) at[1] = frame->y + frame->height; /* is off a logarithmic scale */
-  double part = ((double)l->look + 0.5) / (double)self->panel->series_count;
-  if (lost) at[1] = self->strip.y + self->strip.height * (0.2 + 0.6 * fmin(part, 1));
+}
+
+/* The outline of the least and largest values of (count) points of ascending x, column by column. */
+static void find_outline(const chart *self, line *l, size_t count) {
+  double left = l->at[0][0], column = -1;
+  size_t most = 2 * (size_t)((l->at[count - 1][0] - left) / COLUMN) + 2, used = 0;
+  double(*high)[2] = strut_arena_allocate(self->arena, 3 * most, sizeof *high);
+  double(*low)[2] = high + 2 * most;
+  for (size_t k = 0; high && k < count; k++) {
+    const double *at = l->at[k];
+    bool begins = floor((at[0] - left) / COLUMN) > column;
+    if (begins) column = floor((at[0] - left) / COLUMN), used += 2;
+    for (size_t i = used - 2; i < used; i++) { /* from the first to the last point of a column */
+      if (begins || i % 2) high[i][0] = low[i][0] = at[0];
+      high[i][1] = begins ? at[1] : fmin(high[i][1], at[1]); /* the page's y points down */
+      low[i][1] = begins ? at[1] : fmax(low[i][1], at[1]);
+    }
+  }
+  for (size_t i = 0; i < used; i++) memcpy(high[used + i], low[used - 1 - i], sizeof *high);
+  l->area = high, l->area_count = 2 * used;
+}
+
+/* An unbroken line that turns more often than can be seen gets an outline. */
+static void find_area(const chart *self, line *l) {
+  size_t turns = 0, count = l->count;
+  double way = 0, before = 0; /* up and down in all; the latest step */
+  l->area = NULL;
+  if (count && isnan(l->at[count - 1][0])) count--;
+  for (size_t k = 1; k < count; k++) {
+    double step = l->at[k][1] - l->at[k - 1][1];
+    if (!(l->at[k][0] >= l->at[k - 1][0])) return;
+    turns += step * before < 0;
+    if (step != 0) before = step;
+    way += fabs(step);
+  }
+  if (turns < FEW_POINTS || way < VISIBLE * (double)turns) return;
+  if ((double)turns * TURN > l->at[count - 1][0] - l->at[0][0]) find_outline(self, l, count);
 }
 
 /* Fills the points of a line. Lines that change along them keep all points. */
@@ -220,31 +222,17 @@ static void place_line(const chart *self, line *l) {
   l->count = used;
 }
 
-/* Places the frame in a box, with the strip above. */
-static void place_frame(chart *self, strut_box box) {
-  const strut_panel *panel = self->panel;
-  bool lost = false;
-  for (size_t i = 0; i < panel->series_count && panel->lost; i++)
-    for (size_t k = 0; k < panel->series[i].count; k++)
-      lost = lost || !isfinite(panel->series[i].points[k].y);
-  double strip = lost ? STRIP : 0;
-  const strut_box rest = {box.x, box.y + strip, box.width, box.height - strip};
-  self->axes = strut_axes_place(self->canvas, rest, panel->x, panel->y);
-  self->strip = self->axes.frame;
-  self->strip.height = strip, self->strip.y -= strip;
-}
-
 /* Places all lines. False: out of memory. */
 static bool place_lines(chart *self) {
   const strut_panel *panel = self->panel;
-  if (!self->lines)
-    self->lines = strut_arena_allocate(self->arena, panel->series_count + 1, sizeof *self->lines);
+  self->lines = strut_arena_allocate(self->arena, panel->series_count + 1, sizeof *self->lines);
   for (size_t i = 0; self->lines && i < panel->series_count; i++) {
     line *l = &self->lines[i];
     l->series = &panel->series[i], l->look = look_of(panel, i), l->pen = pen_of(panel, i);
-    if (!l->at) l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
+    l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
     if (!l->at) return false;
     place_line(self, l);
+    if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(self, l);
   }
   return self->lines != NULL;
 }
@@ -271,13 +259,14 @@ static void draw_bands(const chart *self) {
   }
 }
 
-/* A note inside a box, where it is emptiest, near its upper right corner. */
-static void draw_note(const chart *self, const strut_box *box, const char *text, double wide) {
+/* A note inside the frame, where it is emptiest, near its upper right corner. */
+static void draw_note(const chart *self, const char *text) {
+  const strut_box *box = &self->axes.frame;
   const strut_label note = {.text = text,
                             .font = {.size = 7,
                                      .colour = strut_grey(0.3),
                                      .halo = strut_grey(1),
-                                     .width = wide * box->width},
+                                     .width = NOTE_WIDTH * box->width},
                             .at = {box->x + box->width, box->y},
                             .inside = {box->x + NOTE_INSET, box->y + NOTE_INSET,
                                        box->width - 2 * NOTE_INSET, box->height - 2 * NOTE_INSET},
@@ -301,6 +290,12 @@ static void stroke(const chart *self, const line *l, size_t from, size_t to) {
 /* Stretches without a gap and of one stability, which share their ends. */
 static void draw_line(const chart *self, const line *l) {
   const strut_point *points = l->series->points;
+  const strut_fill fill = {.colour = strut_faded(l->pen.colour, 0.35)};
+  const strut_pen rim = {.colour = l->pen.colour, .width = 0.5};
+  if (l->area) {
+    strut_draw_polygon(self->canvas, (const double(*)[2])l->area, l->area_count, &fill, &rim);
+    return;
+  }
   for (size_t k = 0, from = 0; k < l->count; k++) {
     if (isnan(l->at[k][0])) {
       from = k + 1;
@@ -313,24 +308,30 @@ static void draw_line(const chart *self, const line *l) {
   }
 }
 
-/* True on the frame's edge, too, and in the strip above it. */
+/* True on the frame's edge, too. */
 static bool is_inside(const chart *self, const double at[2]) {
   const double hair = 0.01; /* [pt] */
   const strut_box *box = &self->axes.frame;
-  return at[0] >= box->x - hair && at[0] <= box->x + box->width + hair &&
-         at[1] >= self->strip.y - hair && at[1] <= box->y + box->height + hair;
+  return at[0] >= box->x - hair && at[0] <= box->x + box->width + hair && at[1] >= box->y - hair &&
+         at[1] <= box->y + box->height + hair;
 }
 
-static void draw_whisker(const chart *self, const strut_point *p, strut_colour colour) {
-  const strut_pen bar = {.colour = colour, .width = 0.7, .butt = true};
-  double ends[2][2];
-  if (!isfinite(p->low) || !isfinite(p->high)) return;
-  if (self->axes.y.logarithmic && !(p->low > 0)) return;
-  strut_axes_point(&self->axes, p->x, p->low, ends[0]);
-  strut_axes_point(&self->axes, p->x, p->high, ends[1]);
-  strut_draw_line(self->canvas, (const double(*)[2])ends, 2, bar);
-  for (int e = 0; e < 2; e++)
-    strut_draw_segment(self->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+static void draw_whiskers(const chart *self, const line *l) {
+  const strut_series *series = l->series;
+  const strut_pen bar = {
+      .colour = l->pen.width > STRUT_LEAST_BAR ? strut_grey(0.15) : l->pen.colour,
+      .width = 0.7,
+      .butt = true};
+  for (const strut_point *p = series->points; p < series->points + series->count; p++) {
+    double ends[2][2];
+    if (!isfinite(p->low) || !isfinite(p->high)) continue;
+    if (self->axes.y.logarithmic && !(p->low > 0)) continue;
+    strut_axes_point(&self->axes, p->x, p->low, ends[0]);
+    strut_axes_point(&self->axes, p->x, p->high, ends[1]);
+    strut_draw_line(self->canvas, (const double(*)[2])ends, 2, bar);
+    for (int e = 0; e < 2; e++)
+      strut_draw_segment(self->canvas, ends[e][0] - 2, ends[e][1], ends[e][0] + 2, ends[e][1], bar);
+  }
 }
 
 static void draw_point(const chart *self, const line *l, size_t k) {
@@ -339,7 +340,6 @@ static void draw_point(const chart *self, const line *l, size_t k) {
   double at[2];
   place(self, l, k, at);
   if (!isfinite(at[0]) || !is_inside(self, at)) return;
-  draw_whisker(self, p, l->pen.colour);
   if (!l->series->cloud) {
     strut_draw_marker(self->canvas, l->look, at[0], at[1], MARKER);
     return;
@@ -365,7 +365,7 @@ static strut_fill cell_fill(const strut_panel *panel, size_t k) {
   const strut_map *map = panel->map;
   const strut_colour_scale *scale = &panel->scale;
   if (!has_result(map, k)) return (strut_fill){.colour = strut_grey(1)};
-  if (map->category) return category_fill((size_t)map->category[k]);
+  if (map->names) return category_fill((size_t)map->value[k]);
   return (strut_fill){.colour =
                           strut_palette_at(scale->colours, map->value[k], scale->low, scale->high)};
 }
@@ -382,9 +382,7 @@ static strut_box cell_box(const chart *self, size_t k, size_t count) {
 }
 
 static bool look_alike(const strut_map *map, size_t a, size_t b) {
-  bool has = has_result(map, a);
-  if (!has || has != has_result(map, b)) return has == has_result(map, b);
-  return map->category ? map->category[a] == map->category[b] : map->value[a] == map->value[b];
+  return map->value[a] == map->value[b] || (!has_result(map, a) && !has_result(map, b));
 }
 
 /* Hatching on a doubtful cell, a dot on one without a result. */
@@ -440,7 +438,6 @@ static void mark_beyond(const chart *self) {
   strut_beyond beyond = {0};
   const strut_axis *axis = &self->axes.y;
   char text[STRUT_BEYOND_TEXT];
-  size_t labelled = 0;
   for (size_t i = 0; i < self->panel->series_count; i++) {
     const strut_series *series = &self->panel->series[i];
     const strut_point *farthest = NULL; /* of the excursion that k is in */
@@ -452,34 +449,24 @@ static void mark_beyond(const chart *self) {
         beyond.above++;
         if (fabs(p->y) > fabs(beyond.farthest)) beyond.farthest = p->y;
       } else if (farthest) {
-        const char *unit = axis->unit && *axis->unit ? axis->unit : "1";
-        const strut_rounded_quantity value =
-            strut_quantity_shown(farthest->y, 3, unit, axis->shown);
-        strut_label mark =
-            strut_mark_of(farthest->x, farthest->y, labelled++ < MOST_LABELLED ? value.text : NULL);
-        mark.steady = 0.2;
+        strut_label mark = strut_mark_of(farthest->x, farthest->y, NULL);
         draw_mark(self, &mark);
         farthest = NULL;
       }
     }
   }
-  draw_note(self, &self->axes.frame,
-            strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text), NOTE_WIDTH);
+  draw_note(self, strut_beyond_text(&beyond, "point", axis->unit, axis->shown, text));
 }
 
 static void draw_data(const chart *self) {
   const strut_panel *panel = self->panel;
-  const strut_fill grey = {.colour = strut_grey(0.94)};
   const strut_pen frame = {.colour = strut_grey(0.25), .width = 0.6};
   const line *end = self->lines + panel->series_count;
+  bool lost = false, areas = false;
   strut_canvas_clip(self->canvas, self->axes.frame);
   draw_bands(self);
   strut_canvas_unclip(self->canvas);
   strut_draw_axes(self->canvas, &self->axes);
-  if (self->strip.height > 0) {
-    strut_draw_box(self->canvas, self->strip, &grey, &frame);
-    draw_note(self, &self->strip, panel->lost, 1);
-  }
   strut_canvas_clip(self->canvas, self->axes.frame);
   if (panel->map) draw_map(self);
   strut_canvas_unclip(self->canvas);
@@ -487,62 +474,53 @@ static void draw_data(const chart *self) {
     if (l->series->cloud) draw_points(self, l);
   strut_canvas_clip(self->canvas, self->axes.frame);
   for (const line *l = self->lines; l < end; l++)
-    if (!l->series->cloud) draw_line(self, l);
+    if (!l->series->cloud) draw_line(self, l), draw_whiskers(self, l);
   strut_canvas_unclip(self->canvas);
   if (panel->map) strut_draw_box(self->canvas, self->axes.frame, NULL, &frame);
   for (const line *l = self->lines; l < end; l++)
     if (!l->series->cloud) draw_points(self, l);
   if (panel->outliers) mark_beyond(self);
   for (size_t i = 0; i < panel->mark_count; i++) draw_mark(self, &panel->marks[i]);
-  if (panel->remark) draw_note(self, &self->axes.frame, panel->remark, NOTE_WIDTH);
+  for (size_t i = 0; i < panel->series_count && panel->lost && !lost; i++)
+    for (size_t k = 0; k < panel->series[i].count; k++)
+      lost = lost || !isfinite(panel->series[i].points[k].y);
+  if (lost) draw_note(self, panel->lost);
+  if (panel->remark) draw_note(self, panel->remark);
+  for (const line *l = self->lines; l < end; l++) areas = areas || l->area;
+  if (areas) draw_note(self, "areas: ranges of oscillations");
 }
 
 /* A title, centred above the frame; returns its height. */
 static double draw_title(const chart *self, strut_box box, bool draw) {
   const strut_box *f = &self->axes.frame;
   const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
-  if (!self->panel->title || !*self->panel->title) return 0;
+  double height = strut_text_box(self->canvas, self->panel->title, font).height;
   if (draw) strut_draw_text(self->canvas, f->x + 0.5 * f->width, box.y, self->panel->title, font);
-  return strut_text_height(self->canvas, self->panel->title, font) + TITLE_GAP;
+  return height > 0 ? height + TITLE_GAP : 0;
 }
 
 bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
                       strut_arena *arena) {
-  const strut_fill white = {.colour = strut_faded(strut_grey(1), 0.85)};
-  const strut_pen rim = {.colour = strut_grey(0.8), .width = 0.4};
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
   if (!items) return false;
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
-  strut_box rest = box, key = strut_draw_key(canvas, (strut_box){0, 0, 0, 0}, items, count, false);
-  if (panel->scale.name) rest.width = fmax(box.width - SCALE, 60);
-  place_frame(&c, rest);
+  strut_box rest = box;
+  c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
   double title = draw_title(&c, box, false);
-  rest.y += title, rest.height -= title;
-  place_frame(&c, rest);
+  const strut_box key = {c.axes.frame.x + PADDING, rest.y + title + PADDING,
+                         fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
+  double above = strut_draw_key(canvas, key, items, count, true).height;
+  above = title + (count ? above + 2 * PADDING : 0);
+  const strut_box scale = {c.axes.frame.x, rest.y + above, fmin(c.axes.frame.width, WIDEST),
+                           STRUT_SCALE_HEIGHT};
+  if (panel->scale.name) above += scale.height;
+  rest.y += above, rest.height -= above;
+  c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
   if (!place_lines(&c)) return false;
-  key.width += 2 * PADDING, key.height += 2 * PADDING;
-  bool inside = count && find_corner(&c, &key);
-  if (count && !inside) {
-    key = (strut_box){c.axes.frame.x + PADDING, rest.y + PADDING,
-                      fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
-    double height = strut_draw_key(canvas, key, items, count, false).height + 2 * PADDING;
-    rest.y += height, rest.height -= height;
-    place_frame(&c, rest);
-    place_lines(&c);
-  }
   draw_title(&c, box, true);
   draw_data(&c);
-  if (inside) { /* on a white ground */
-    strut_draw_box(canvas, key, &white, &rim);
-    key = (strut_box){key.x + PADDING, key.y + PADDING, 0, 0};
-  }
-  strut_draw_key(canvas, key, items, count, true);
-  if (panel->scale.name)
-    strut_draw_colour_scale(canvas,
-                            (strut_box){rest.x + rest.width + GAP, c.axes.frame.y - 8, SCALE - GAP,
-                                        fmax(c.axes.frame.height, 60)},
-                            &panel->scale);
+  if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;
 }

@@ -61,9 +61,9 @@ static size_t find_row(const page *self, size_t first, double inner, double *wid
 
 static double chart_height(const page *self, const strut_panel *panel, double width) {
   double aspect = self->figure->aspect > 0 ? self->figure->aspect : ASPECT;
-  if (panel->height > 0) return panel->height;
-  if (!(self->figure->least_width > 0)) return aspect * width;
-  return fmax(LOWEST, fmin(aspect * width, HIGHEST));
+  double height = aspect * width, scale = panel->scale.name ? STRUT_SCALE_HEIGHT : 0;
+  if (self->figure->least_width > 0) height = fmax(LOWEST, fmin(height, HIGHEST));
+  return panel->height > 0 ? panel->height : height + scale;
 }
 
 /* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */
@@ -87,9 +87,8 @@ static double put_row(page *self, strut_canvas *canvas, strut_box box, size_t fi
 static double put_heading(strut_canvas *canvas, strut_box box, const char *text, strut_font font,
                           bool draw) {
   font.width = box.width;
-  if (!text || !*text) return 0;
   if (draw) strut_draw_text(canvas, box.x, box.y, text, font);
-  return strut_text_height(canvas, text, font) + LINE_GAP;
+  return text && *text ? strut_text_box(canvas, text, font).height + LINE_GAP : 0;
 }
 
 /* Lays all out and draws it if `fine`. Returns the height of the page. */

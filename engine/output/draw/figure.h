@@ -18,13 +18,11 @@
 /* ---- what things mean: legends beside data, the key below a figure ---- */
 
 typedef enum strut_key_sign {
-  STRUT_KEY_LINE,   /* a short line by `pen`, with the marker of a look if `marked` */
-  STRUT_KEY_ARROW,  /* an arrow by `pen` */
-  STRUT_KEY_DOT,    /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
-  STRUT_KEY_CLOUD,  /* a dot by `fill`, in the middle of where lines are */
-  STRUT_KEY_AREA,   /* a box by `fill` */
-  STRUT_KEY_SIGNED, /* the colours of strut_palette_signed between the words `before` and `text` */
-  STRUT_KEY_WORDS   /* no sign */
+  STRUT_KEY_LINE,  /* a short line by `pen`, with the marker of a look if `marked` */
+  STRUT_KEY_ARROW, /* an arrow by `pen` */
+  STRUT_KEY_DOT,   /* a circle by `fill` and `pen`, with `letter` beside it where there is one */
+  STRUT_KEY_AREA,  /* a box by `fill` */
+  STRUT_KEY_WORDS  /* no sign */
 } strut_key_sign;
 
 typedef struct strut_key_item {
@@ -33,7 +31,6 @@ typedef struct strut_key_item {
   strut_fill fill;
   bool marked;
   size_t look;
-  const char *before; /* for STRUT_KEY_SIGNED */
   const char *letter; /* for STRUT_KEY_DOT; or NULL */
   const char *text;   /* NULL: the item is left out */
 } strut_key_item;
@@ -77,10 +74,9 @@ typedef struct strut_band {
 typedef struct strut_map {
   size_t columns, rows;
   const double *xs, *ys; /* (columns), (rows) ascending; cell edges are midpoints */
-  const int *category;   /* (rows, columns) index into names, -1: no result; or NULL */
-  size_t category_count;
-  const char *const *names; /* (category_count) */
-  const double *value;      /* (rows, columns) where category is NULL; NAN: no result */
+  size_t name_count;
+  const char *const *names; /* (name_count) of categories; NULL: numbers */
+  const double *value;      /* (rows, columns) a number, or index into names; NAN: no result */
   const bool *doubtful;     /* (rows, columns) drawn hatched; or NULL */
   const char *doubt;        /* meaning of the hatching, for the legend */
 } strut_map;
@@ -137,7 +133,7 @@ typedef struct strut_panel {
   strut_series *series;
   strut_band *bands;
   const strut_map *map;
-  const char *lost; /* name of points whose y is not finite, which lie in a strip above; or NULL */
+  const char *lost; /* says what points whose y is not finite are, at the upper edge; or NULL */
   double room;      /* of a range that is found, beside the data along x; along y it is 0.06 */
   double least;     /* such a range of y is at least so large, */
   bool zero;        /* and holds zero */
@@ -182,6 +178,9 @@ STRUT_API strut_series *strut_add_series(strut_figure *figure, strut_panel *pane
                                          const char *label);
 STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x,
                                        double y);
+/** A bar from 0 to y, of a series whose pen is as wide; returns its end, for a whisker. */
+STRUT_API strut_point *strut_add_bar(strut_figure *figure, strut_series *series, double x,
+                                     double y);
 /** The line ends, and the next point begins another. */
 STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
 STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,
@@ -228,6 +227,8 @@ STRUT_API strut_colour_scale strut_force_scale(double limit, const strut_beyond 
 STRUT_API int strut_text_bytes(const char *text, int most);
 /** The pen of the i-th series: its colour and dashes. */
 STRUT_API strut_pen strut_series_pen(size_t look);
+/** The largest of 1, 2 or 5 times a power of ten up to a value. */
+STRUT_API double strut_round_below(double value);
 /** The largest magnitude of those that are finite; 0 of none. */
 STRUT_API double strut_largest(const double *values, size_t count);
 

@@ -49,6 +49,12 @@ strut_point *strut_add_point(strut_figure *figure, strut_series *series, double 
   return point;
 }
 
+strut_point *strut_add_bar(strut_figure *figure, strut_series *series, double x, double y) {
+  strut_add_gap(figure, series);
+  strut_add_point(figure, series, x, 0);
+  return strut_add_point(figure, series, x, y);
+}
+
 void strut_add_gap(strut_figure *figure, strut_series *series) {
   strut_add_point(figure, series, (double)NAN, (double)NAN);
 }
@@ -274,8 +280,8 @@ STRUT_VALUES_HERE(band_values, BAND, const strut_band *b = of->at)
 /* A category by name, or a number, row by row. */
 static strut_value cell(const strut_result_object *of, size_t k) {
   const strut_map *map = of->at;
-  if (!map->category) return STRUT_VALUE_AS_NUMBER(map->value[k]);
-  return STRUT_VALUE_AS_TEXT(map->category[k] < 0 ? NULL : map->names[map->category[k]]);
+  if (!map->names) return STRUT_VALUE_AS_NUMBER(map->value[k]);
+  return STRUT_VALUE_AS_TEXT(isnan(map->value[k]) ? NULL : map->names[(size_t)map->value[k]]);
 }
 
 static strut_value doubt(const strut_result_object *of, size_t k) {

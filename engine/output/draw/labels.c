@@ -205,9 +205,9 @@ static bool place_label(const strut_labels *labels, const strut_label *label,
       .labels = labels, .canvas = canvas, .label = label, .inside = find_inside(canvas, label)};
   double most = fmin(s.inside.width, label->loose ? HUGE_VAL : MOST_WIDTH);
   strut_font font = label->font;
-  if (strut_text_width(canvas, label->text, font) > most) font.width = most, font.lines = 1;
-  strut_text_size(canvas, label->text, font, &s.width, &s.height);
-  s.height *= LETTERS;
+  if (strut_text_box(canvas, label->text, font).width > most) font.width = most, font.lines = 1;
+  const strut_box text = strut_text_box(canvas, label->text, font);
+  s.width = text.width, s.height = LETTERS * text.height;
   if (!find_place(&s)) return false;
   draw_line(canvas, label, &s.best);
   font.across = font.down = 0.5;

@@ -47,55 +47,36 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 
 static const double BAR = 8, BAR_TEXT = 7, BAR_TICK = 2; /* [pt] */
 
-/* The colours alone. */
-static void draw_shades(strut_canvas *canvas, strut_box strip, const strut_colour_scale *scale) {
-  enum { SHADES = 40 };
-  bool upright = strip.height > strip.width;
-  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
-    double rest = (double)(SHADES - i) / SHADES, part = (i + 0.5) / SHADES;
-    double value = scale->low + part * (scale->high - scale->low);
-    const strut_fill fill = {.colour =
-                                 strut_palette_at(scale->colours, value, scale->low, scale->high)};
-    strut_box cell = strip;
-    if (upright)
-      cell.height *= rest;
-    else
-      cell.x += (1 - rest) * strip.width, cell.width *= rest;
-    strut_draw_box(canvas, cell, &fill, NULL);
-  }
-}
-
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale) {
-  bool upright = box.height > box.width;
   const strut_axis axis = {.name = scale->name,
                            .unit = scale->unit,
                            .low = scale->low,
                            .high = scale->high,
                            .shown = scale->shown};
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
-  strut_font font = {.size = BAR_TEXT, .across = upright ? 0 : 0.5, .down = upright ? 0.5 : 0};
+  strut_font font = {.size = BAR_TEXT, .across = 0.5};
+  enum { SHADES = 40 };
   strut_tick_set set;
-  double line = strut_text_height(canvas, "0", font);
-  strut_axis_ticks(&axis, (int)fmax(3, upright ? box.height / 24 : box.width / 40), &set);
-  strut_box strip = upright ? (strut_box){box.x, box.y + line + 6, BAR, box.height - line - 10}
-                            : (strut_box){box.x + 8, box.y + line + 2, box.width - 16, BAR};
-  double right = strip.x + strip.width, bottom = strip.y + strip.height;
-  draw_shades(canvas, strip, scale);
-  strut_draw_box(canvas, strip, NULL, &(strut_pen){.colour = strut_grey(0.3), .width = 0.4});
-  for (int end = -1; end < 2; end += 2) { /* values beyond the ends */
-    const double out[2] = {upright ? 0 : end, upright ? -end : 0};
-    double x = upright ? strip.x + 0.5 * BAR : end > 0 ? right : strip.x;
-    double y = !upright ? strip.y + 0.5 * BAR : end > 0 ? strip.y : bottom;
-    if (end > 0 ? scale->beyond.above : scale->beyond.below)
-      strut_draw_beyond(canvas, x, y, out, STRUT_BEYOND_SIZE);
+  double line = strut_text_box(canvas, "0", font).height;
+  const strut_box strip = {box.x + 8, box.y + line + 2, box.width - 16, BAR};
+  const double bottom = strip.y + BAR, right = strip.x + strip.width;
+  strut_axis_ticks(&axis, (int)fmax(3, box.width / 40), &set);
+  for (int i = 0; i < SHADES; i++) { /* each covers the rest, so that no viewer shows seams */
+    double x = strip.x + strip.width * i / SHADES;
+    double value = scale->low + (i + 0.5) / SHADES * (scale->high - scale->low);
+    const strut_fill fill = {.colour =
+                                 strut_palette_at(scale->colours, value, scale->low, scale->high)};
+    strut_draw_box(canvas, (strut_box){x, strip.y, right - x, BAR}, &fill, NULL);
   }
+  strut_draw_box(canvas, strip, NULL, &pen);
+  for (int end = -1; end < 2; end += 2) /* values beyond the ends */
+    if (end > 0 ? scale->beyond.above : scale->beyond.below)
+      strut_draw_beyond(canvas, end > 0 ? right : strip.x, strip.y + 0.5 * BAR,
+                        (const double[2]){end, 0}, STRUT_BEYOND_SIZE);
   for (size_t i = 0; i < set.count; i++) {
-    double part = (set.at[i] - scale->low) / (scale->high - scale->low);
-    double x = upright ? right : strip.x + strip.width * part;
-    double y = upright ? strip.y + strip.height * (1 - part) : bottom;
-    double end[2] = {upright ? x + BAR_TICK : x, upright ? y : y + BAR_TICK};
-    strut_draw_segment(canvas, x, y, end[0], end[1], pen);
-    strut_draw_text(canvas, end[0] + 2 * upright, end[1] + !upright, set.text[i], font);
+    double x = strip.x + strip.width * (set.at[i] - scale->low) / (scale->high - scale->low);
+    strut_draw_segment(canvas, x, bottom, x, bottom + BAR_TICK, pen);
+    strut_draw_text(canvas, x, bottom + BAR_TICK + 1, set.text[i], font);
   }
   if (scale->beyond.below + scale->beyond.above) {
     size_t used = strlen(set.label);
@@ -104,22 +85,18 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
                                   scale->shown)
                  .text);
   }
-  /* A long name ends where the box does, rather than beyond the page. */
-  bool wide = strut_text_width(canvas, set.label, font) > box.width;
-  font = (strut_font){.size = BAR_TEXT, .halo = strut_grey(1)};
-  font.across = upright ? wide : 0.5;
-  strut_draw_text(canvas, box.x + font.across * box.width, box.y, set.label, font);
+  font.halo = strut_grey(1);
+  strut_draw_text(canvas, box.x + 0.5 * box.width, box.y, set.label, font);
 }
 
 /* ---- keys ---- */
 
-static const double LINE = 11.0, SIGN = 20.0, SCALE = 34.0, SIGN_GAP = 4.0,
-                    BETWEEN = 13.0; /* [pt] */
-static const double DOT = 2.6, MARKER = 2.0, BAND = 5.0, AREA = 7.0;
+static const double LINE = 11.0, SIGN = 20.0, SIGN_GAP = 4.0, BETWEEN = 13.0; /* [pt] */
+static const double DOT = 2.6, MARKER = 2.0, AREA = 7.0;
 static const strut_font letters = {.size = 7.5, .down = 0.5};
 
 static double text_width(strut_canvas *canvas, const char *text) {
-  return text && *text ? strut_text_width(canvas, text, letters) : 0;
+  return strut_text_box(canvas, text, letters).width;
 }
 
 /* How far right of the sign the text begins. */
@@ -127,9 +104,7 @@ static double width_of_sign(strut_canvas *canvas, const strut_key_item *item) {
   double letter = item->letter ? text_width(canvas, item->letter) + SIGN_GAP : 0;
   return item->sign == STRUT_KEY_WORDS ? 0
          : item->sign == STRUT_KEY_DOT ? 2 * DOT + SIGN_GAP + letter
-         : item->sign == STRUT_KEY_SIGNED
-             ? text_width(canvas, item->before) + SIGN_GAP + SCALE + SIGN_GAP
-             : SIGN + SIGN_GAP;
+                                       : SIGN + SIGN_GAP;
 }
 
 static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x, double y) {
@@ -142,18 +117,9 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
       strut_draw_circle(canvas, x + DOT, y, DOT, &item->fill, &item->pen);
       strut_draw_text(canvas, x + 2 * DOT + SIGN_GAP, y, item->letter, bold);
       break;
-    case STRUT_KEY_SIGNED:
-      strut_draw_text(canvas, x, y, item->before, letters);
-      x += text_width(canvas, item->before) + SIGN_GAP;
-      draw_shades(canvas, (strut_box){x, y - BAND / 2, SCALE, BAND},
-                  &(strut_colour_scale){.low = -1, .high = 1, .colours = STRUT_COLOURS_SIGNED});
-      break;
     case STRUT_KEY_LINE:
       strut_draw_segment(canvas, x, y, x + SIGN, y, item->pen);
       if (item->marked) strut_draw_marker(canvas, item->look, x + 0.5 * SIGN, y, MARKER);
-      break;
-    case STRUT_KEY_CLOUD:
-      strut_draw_circle(canvas, x + 0.5 * SIGN, y, DOT, &item->fill, NULL);
       break;
     case STRUT_KEY_ARROW: strut_draw_arrow(canvas, x, y, x + SIGN, y, 4.0, item->pen); break;
     case STRUT_KEY_AREA:
@@ -163,25 +129,25 @@ static void draw_sign(strut_canvas *canvas, const strut_key_item *item, double x
 
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                          size_t count, bool draw) {
-  double x = 0.0, y = 0.0, row = LINE, line = strut_text_height(canvas, "0", letters);
+  double x = 0.0, y = 0.0, row = LINE, line = strut_text_box(canvas, "0", letters).height;
   strut_box whole = {box.x, box.y, 0, 0};
   for (size_t i = 0; i < count; i++) {
     if (!items[i].text) continue;
-    double sign = width_of_sign(canvas, &items[i]), width, height;
+    double sign = width_of_sign(canvas, &items[i]);
     strut_font font = letters;
     font.down = 0.0;
     if (box.width > 0 && sign + text_width(canvas, items[i].text) > box.width)
       font.width = box.width - sign;
-    strut_text_size(canvas, items[i].text, font, &width, &height);
-    if (x > 0 && x + sign + width > box.width) x = 0.0, y += row, row = LINE;
+    const strut_box text = strut_text_box(canvas, items[i].text, font);
+    if (x > 0 && x + sign + text.width > box.width) x = 0.0, y += row, row = LINE;
     if (draw) {
       draw_sign(canvas, &items[i], box.x + x, box.y + y + 0.5 * LINE);
       strut_draw_text(canvas, box.x + x + sign, box.y + y + 0.5 * (LINE - line), items[i].text,
                       font);
     }
-    row = fmax(row, height + LINE - line);
-    whole.width = fmax(whole.width, x + sign + width);
-    x += sign + width + BETWEEN;
+    row = fmax(row, text.height + LINE - line);
+    whole.width = fmax(whole.width, x + sign + text.width);
+    x += sign + text.width + BETWEEN;
   }
   whole.height = x > 0.0 ? y + row : 0.0;
   return whole;

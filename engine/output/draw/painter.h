@@ -71,7 +71,9 @@ void strut_draw_marker(strut_canvas *canvas, size_t look, double x, double y, do
  */
 strut_box strut_draw_key(strut_canvas *canvas, strut_box box, const strut_key_item *items,
                          size_t count, bool draw);
+/** Draws a scale of colours with its ticks below and its name above. */
 void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_colour_scale *scale);
+#define STRUT_SCALE_HEIGHT 34.0
 /**
  * A mark at a frame's edge for what lies beyond the side towards `out`: a triangle STRUT_BEYOND_SIZE high, its tip so
  * far outside.
@@ -81,6 +83,8 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 #define STRUT_BEYOND_SIZE 5.0
 
 /* ---- charts (axes.c, chart.c) ---- */
+
+#define STRUT_LEAST_BAR 4.0 /* wider lines are bars [pt] */
 
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);

@@ -90,6 +90,11 @@ int strut_text_bytes(const char *text, int most) {
   return length - last + 1 < wanted ? last - 1 : length;
 }
 
+double strut_round_below(double value) {
+  double power = pow(10.0, floor(log10(value)));
+  return value >= 5 * power ? 5 * power : value >= 2 * power ? 2 * power : power;
+}
+
 /* ---- ranges of axes ---- */
 
 /* Part of the values that is rounding; lengths [m] and velocities [m/s] far below an atom's

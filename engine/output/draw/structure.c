@@ -234,13 +234,19 @@ static void draw_support(strut_canvas *canvas, const double tip[2], const double
   strut_draw_line(canvas, (const double(*)[2])at + 3, 2, pen);
 }
 
-/* Triangles below pinned nodes, on wheels where one direction is free. */
-static void draw_supports(const drawing *d) {
+/* The middle of all nodes on the page. */
+static void find_middle(const drawing *d, double middle[2]) {
   int32_t count = d->model->node_count;
-  double centre[2] = {0.0, 0.0}, middle[2], tip[2];
+  double centre[2] = {0.0, 0.0};
   for (int32_t i = 0; i < 2 * count; i++) centre[i % 2] += d->q[i] / count;
   strut_window_point(d->window, centre, middle);
-  for (int32_t i = 0; i < count; i++) {
+}
+
+/* Triangles below pinned nodes, on wheels where one direction is free. */
+static void draw_supports(const drawing *d) {
+  double middle[2], tip[2];
+  find_middle(d, middle);
+  for (int32_t i = 0; i < d->model->node_count; i++) {
     const bool *fixed = d->model->scene->nodes[i].fixed;
     if (!fixed[0] && !fixed[1]) continue;
     strut_window_point(d->window, d->q + 2 * i, tip);
@@ -256,20 +262,24 @@ static void draw_supports(const drawing *d) {
 
 static const double HINGE = 7.0, STOP = 4.0; /* radius of the arc, half a stop's bar [pt] */
 
+/* An arc from an angle on. */
+static void draw_arc(const drawing *d, const double centre[2], double radius, double first,
+                     double angle, strut_pen pen) {
+  enum { POINTS = 33 };
+  double arc[POINTS][2];
+  for (int i = 0; i < POINTS; i++) {
+    arc[i][0] = centre[0] + radius * cos(first + angle * i / (POINTS - 1));
+    arc[i][1] = centre[1] + radius * sin(first + angle * i / (POINTS - 1));
+  }
+  draw_places(d, arc, POINTS, pen);
+}
+
 /* A hinge: an arc around its node, from the first arm to the second by its angle. */
 static void draw_hinge(const drawing *d, const strut_hinge *hinge, double angle, strut_pen pen) {
-  enum { ARC = 24 };
   const double *at = d->q + 2 * hinge->node[1], *from = d->q + 2 * hinge->node[0];
-  double arc[ARC + 1][2],
-      arm = fmin(strut_distance(from, at), strut_distance(at, d->q + 2 * hinge->node[2]));
-  double radius = fmin(HINGE * d->thin / d->window->scale, 0.4 * arm);
-  double first = atan2(from[1] - at[1], from[0] - at[0]);
-  angle = fmax(-STRUT_TAU, fmin(STRUT_TAU, angle));
-  for (int i = 0; i <= ARC; i++) {
-    arc[i][0] = at[0] + radius * cos(first + angle * i / ARC);
-    arc[i][1] = at[1] + radius * sin(first + angle * i / ARC);
-  }
-  draw_places(d, arc, ARC + 1, pen);
+  double arm = fmin(strut_distance(from, at), strut_distance(at, d->q + 2 * hinge->node[2]));
+  draw_arc(d, at, fmin(HINGE * d->thin / d->window->scale, 0.4 * arm),
+           atan2(from[1] - at[1], from[0] - at[0]), fmax(-STRUT_TAU, fmin(STRUT_TAU, angle)), pen);
 }
 
 /* A stop that acts: a bar across the middle of its member. */
@@ -328,16 +338,10 @@ static void draw_distance(const drawing *d, const strut_element *e, const uint32
 
 /* The arc of a foot, as far as it may meet the ground while its member stands. */
 static void draw_foot(const drawing *d, const strut_element *e, const uint32_t *at, strut_pen pen) {
-  enum { POINTS = 33 };
   const double *from = d->q + at[0], *to = d->q + at[1];
-  double length = strut_distance(from, to), way[POINTS][2];
-  double ux = (to[0] - from[0]) / length, uy = (to[1] - from[1]) / length;
-  for (int k = 0; k < POINTS; k++) {
-    double angle = STRUT_PI * (0.8 * k / (POINTS - 1) - 0.4), c = cos(angle), s = sin(angle);
-    way[k][0] = from[0] + e->radius * (ux - (c * ux - s * uy));
-    way[k][1] = from[1] + e->radius * (uy - (s * ux + c * uy));
-  }
-  draw_places(d, way, POINTS, pen);
+  double x = to[0] - from[0], y = to[1] - from[1], part = e->radius / hypot(x, y);
+  const double centre[2] = {from[0] + part * x, from[1] + part * y};
+  draw_arc(d, centre, e->radius, atan2(-y, -x) - 0.4 * STRUT_PI, 0.8 * STRUT_PI, pen);
 }
 
 /* Hinges, stops that act, distances, feet, and circles of guides. */
@@ -436,12 +440,9 @@ void strut_draw_names(strut_canvas *canvas, const strut_window *window, const st
   enum { MOST_NAMED = 60 }; /* nodes; of larger structures none is named */
   const drawing d = {canvas, window, model, positions, NULL, 1.0};
   const strut_scene *scene = model->scene;
-  double middle[2] = {0.0, 0.0}, at[2], ends[2][2];
+  double middle[2], at[2], ends[2][2];
   if (scene->node_count > MOST_NAMED) return;
-  for (size_t i = 0; i < scene->node_count; i++) {
-    strut_window_point(window, positions + 2 * i, at);
-    for (int c = 0; c < 2; c++) middle[c] += at[c] / (double)scene->node_count;
-  }
+  find_middle(&d, middle);
   for (size_t i = 0; i < scene->node_count; i++) {
     strut_window_point(window, positions + 2 * i, at);
     draw_name(&d, at, find_outwards(at, middle), NODE_GAP, scene->nodes[i].name);

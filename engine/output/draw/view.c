@@ -18,77 +18,64 @@ enum { COLUMNS = 3, SMALL_COLUMNS = 6, TRAIL_SHADES = 64 };
 /* True if names cover little of what is seen. */
 static bool names_fit(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                       const strut_model *model) {
-  double covered = 0.0, seen = COVERED, width, height;
+  double covered = 0.0, seen = COVERED;
   for (int d = 0; d < 2; d++)
     seen *= (view->bounds.high[d] - view->bounds.low[d]) * window->scale + 2 * view->margin;
   for (int32_t i = 0; i < model->node_count; i++) {
-    strut_text_size(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5}, &width,
-                    &height);
-    covered += width * height;
+    const strut_box name =
+        strut_text_box(canvas, model->scene->nodes[i].name, (strut_font){.size = 7.5});
+    covered += name.width * name.height;
   }
   return covered <= seen;
 }
 
 /* From a trail's first point to its last, shortened by its gap where there is room: at the tip of an arrow, else at both ends. */
-static void draw_straight(strut_canvas *canvas, const strut_window *window,
-                          const strut_trail *trail) {
+static void draw_straight(strut_canvas *canvas, const strut_trail *trail) {
   bool arrow = trail->kind == STRUT_TRAIL_ARROW;
-  double from[2], to[2];
-  strut_window_point(window, trail->at[0], from);
-  strut_window_point(window, trail->at[trail->count - 1], to);
+  const double *from = trail->at[0], *to = trail->at[trail->count - 1];
   double x = to[0] - from[0], y = to[1] - from[1], length = hypot(x, y);
-  double part = trail->gap > 0.0 && length > 3.0 * trail->gap ? trail->gap / length : 0.0;
-  if (arrow && length < fmax(2 * trail->gap, 2)) return;
-  to[0] -= part * x, to[1] -= part * y;
-  if (arrow) {
-    strut_draw_arrow(canvas, from[0], from[1], to[0], to[1], 5, trail->pen);
-  } else {
-    from[0] += part * x, from[1] += part * y;
-    strut_draw_segment(canvas, from[0], from[1], to[0], to[1], trail->pen);
-  }
-}
-
-/* Through points [first, last], in pieces of the array's size. */
-static void draw_part(strut_canvas *canvas, const strut_window *window, const strut_trail *trail,
-                      size_t first, size_t last, strut_pen pen) {
-  enum { PIECE = 200 };
-  double points[PIECE][2];
-  size_t used = 0;
-  for (size_t i = first; i <= last; i++) {
-    strut_window_point(window, trail->at[i], points[used++]);
-    if (used < PIECE && i < last) continue;
-    strut_draw_line(canvas, (const double(*)[2])points, used, pen);
-    memcpy(points[0], points[used - 1], sizeof points[0]);
-    used = 1;
-  }
+  double end = trail->gap > 0.0 && length > 3.0 * trail->gap ? trail->gap / length : 0.0;
+  double start = arrow ? 0.0 : end;
+  if (arrow && length >= fmax(2 * trail->gap, 2))
+    strut_draw_arrow(canvas, from[0], from[1], to[0] - end * x, to[1] - end * y, 5, trail->pen);
+  else if (!arrow)
+    strut_draw_segment(canvas, from[0] + start * x, from[1] + start * y, to[0] - end * x,
+                       to[1] - end * y, trail->pen);
 }
 
 /* A path that is no longer than a dot is not drawn. */
-static bool is_visible(const strut_window *window, const strut_trail *trail) {
+static bool is_visible(const strut_trail *trail) {
   const double *at = trail->at[0];
   for (size_t i = 1; i < trail->count; i++)
-    if (hypot(trail->at[i][0] - at[0], trail->at[i][1] - at[1]) * window->scale > DOT) return true;
+    if (hypot(trail->at[i][0] - at[0], trail->at[i][1] - at[1]) > DOT) return true;
   return false;
 }
 
-static void draw_trail(strut_canvas *canvas, const strut_window *window, const strut_trail *trail) {
+/* Its points are on the page. */
+static void draw_trail(strut_canvas *canvas, const strut_trail *trail) {
   size_t shades = trail->kind == STRUT_TRAIL_SEQUENCE ? TRAIL_SHADES : 1, all = trail->count - 1;
   if (trail->kind == STRUT_TRAIL_ARROW || trail->count == 2) {
-    draw_straight(canvas, window, trail);
+    draw_straight(canvas, trail);
     return;
   }
-  for (size_t shade = 0; trail->count && is_visible(window, trail) && shade < shades; shade++) {
+  for (size_t shade = 0; trail->count && is_visible(trail) && shade < shades; shade++) {
     size_t first = shade * all / shades, last = (shade + 1) * all / shades;
     strut_pen pen = trail->pen;
     if (shades > 1) pen.colour = strut_palette_sequence((double)shade / (TRAIL_SHADES - 1));
-    if (last > first) draw_part(canvas, window, trail, first, last, pen);
+    if (last > first)
+      strut_draw_line(canvas, (const double(*)[2])trail->at + first, last - first + 1, pen);
   }
 }
 
+/* Draws trails, whose points go to the page. */
 static void draw_trails(strut_canvas *canvas, const strut_window *window, const strut_panel *view,
                         bool below) {
-  for (size_t i = 0; i < view->trail_count; i++)
-    if (view->trails[i].below == below) draw_trail(canvas, window, &view->trails[i]);
+  for (strut_trail *trail = view->trails; trail < view->trails + view->trail_count; trail++) {
+    if (trail->below != below) continue;
+    for (size_t k = 0; k < trail->count; k++)
+      strut_window_point(window, trail->at[k], trail->at[k]);
+    draw_trail(canvas, trail);
+  }
 }
 
 /* More than the margin takes below a view, for the forces of the ground [pt]. */
@@ -101,9 +88,7 @@ static double room_for_arrows(const strut_panel *view) {
 
 /* A scale bar with its length, such as "20 mm", in the lower left corner of the window's box. */
 static void draw_yardstick(strut_canvas *canvas, const strut_window *window) {
-  double room = 0.3 * window->box.width / window->scale, power = pow(10.0, floor(log10(room)));
-  /* The largest of 1, 2 or 5 times a power of ten that fits. */
-  double length = room >= 5 * power ? 5 * power : room >= 2 * power ? 2 * power : power;
+  double length = strut_round_below(0.3 * window->box.width / window->scale);
   double x = window->box.x + 3, y = window->box.y + window->box.height - 4,
          end = x + length * window->scale;
   const strut_pen pen = {.colour = strut_grey(0.2), .width = 0.9, .butt = true};
@@ -147,20 +132,14 @@ strut_window strut_draw_view(strut_canvas *canvas, strut_box box, const strut_pa
 /* What is written above a view; draws it if `draw`. */
 static double write_caption(strut_canvas *canvas, strut_box box, const strut_panel *panel,
                             bool draw) {
-  const struct {
-    const char *text;
-    strut_font font;
-  } lines[] = {
-      {panel->title, {.size = 8.5, .bold = true, .width = box.width, .lines = 2}},
-      {panel->note && *panel->note ? panel->note : NULL,
-       {.size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4}}};
-  double y = 0.0;
-  for (int i = 0; i < 2; i++) {
-    if (!lines[i].text) continue;
-    if (draw) strut_draw_text(canvas, box.x, box.y + y, lines[i].text, lines[i].font);
-    y += strut_text_height(canvas, lines[i].text, lines[i].font) + 1;
-  }
-  return y;
+  const strut_font bold = {.size = 8.5, .bold = true, .width = box.width, .lines = 2};
+  const strut_font grey = {
+      .size = panel->small ? 6.5 : 7, .colour = strut_grey(0.3), .width = box.width - 4};
+  double title = strut_text_box(canvas, panel->title, bold).height + (panel->title ? 1 : 0);
+  double note = strut_text_box(canvas, panel->note, grey).height;
+  if (draw) strut_draw_text(canvas, box.x, box.y, panel->title, bold);
+  if (draw) strut_draw_text(canvas, box.x, box.y + title, panel->note, grey);
+  return title + (note > 0 ? note + 1 : 0);
 }
 
 /* How panels are laid out: so many in a row, of this size, the drawing at their foot. */
@@ -220,33 +199,27 @@ static rows arrange(strut_canvas *canvas, double width, const strut_figure *figu
 
 /* ---- below ---- */
 
-static const double STICK = 17, BAR = 34, BAR_WIDTH = 150, WORDS = 150, SIDE = 14,
-                    NARROW = 170; /* [pt] */
+static const double STICK = 17, BAR_WIDTH = 150; /* [pt] */
 
 double strut_draw_foot(strut_canvas *canvas, strut_box box, const strut_figure *figure,
                        const strut_window *window, bool draw) {
   bool bar = figure->scale.name && figure->scale.high > figure->scale.low;
-  bool narrow = bar && box.width < NARROW; /* the scale of colours lies below the scale bar */
-  double right = narrow ? box.width : bar ? fmin(BAR_WIDTH, 0.45 * box.width) : 0.0;
-  double left = window && figure->yardstick ? 0.3 * window->box.width + SIDE : 0.0;
-  double row = (bar ? BAR : 0) + (left > 0 && (narrow || !bar) ? STICK : 0);
-  strut_box key = {box.x + left, box.y, box.width - left - right - (bar ? SIDE : 0), 0};
-  bool above = row > 0 && key.width < WORDS; /* the key stands above both bars */
-  if (above) key.x = box.x, key.width = box.width;
-  double high = strut_draw_key(canvas, key, figure->keys, figure->key_count, false).height;
-  double height = above ? high + row : fmax(high, row);
-  if (!draw) return height;
-  if (!above) key.y += 0.5 * (height - high);
-  strut_draw_key(canvas, key, figure->keys, figure->key_count, true);
-  if (bar)
+  bool stick = window && figure->yardstick;
+  double row = bar     ? STRUT_SCALE_HEIGHT
+               : stick ? STICK
+                       : 0,
+         right = fmin(BAR_WIDTH, 0.5 * box.width);
+  strut_box key = strut_draw_key(canvas, box, figure->keys, figure->key_count, draw);
+  bool beside = !stick && key.width + right < box.width;
+  double height = beside ? fmax(key.height, row) : key.height + row;
+  if (draw && bar)
     strut_draw_colour_scale(
-        canvas, (strut_box){box.x + box.width - right, box.y + height - BAR, right, BAR},
+        canvas, (strut_box){box.x + box.width - right, box.y + height - row, right, row},
         &figure->scale);
-  if (left > 0) {
-    strut_window stick = *window;
-    stick.box.x = box.x;
-    stick.box.y = box.y + height - stick.box.height - (narrow ? BAR : 0);
-    draw_yardstick(canvas, &stick);
+  if (draw && stick) {
+    strut_window at = *window;
+    at.box.x = box.x, at.box.y = box.y + height - at.box.height;
+    draw_yardstick(canvas, &at);
   }
   return height;
 }

@@ -147,8 +147,6 @@ static void add_keys(picture *self) {
                         strut_text_bytes(modes->at, 150), modes->at,
                         modes->at_rest ? "" : " (no equilibrium)"));
   strut_add_key(&self->figure, STRUT_KEY_ARROW, strut_displacement_pen(), "displacement");
-  strut_add_key(&self->figure, STRUT_KEY_SIGNED, grey, "stretches, relative per mode")->before =
-      "shortens";
   if (modes->closed_count) strut_add_key(&self->figure, STRUT_KEY_DOT, ring, "closed contact");
   const char *rest = describe_omitted(self);
   if (*rest) strut_add_key(&self->figure, STRUT_KEY_WORDS, grey, rest);
@@ -166,6 +164,8 @@ strut_status strut_modes_figure(const strut_plot *plot, const strut_model *model
   choose_modes(&p, panels);
   add_modes(&p);
   add_keys(&p);
+  p.figure.scale = strut_force_scale(1, NULL);
+  p.figure.scale.name = "strain, of the mode's largest", p.figure.scale.unit = "";
   return strut_figure_draw(plot, &p.figure, error);
 }
 

@@ -121,42 +121,23 @@ static path_stop *add_stop(path_picture *picture, const strut_path_state *at, co
   return stop;
 }
 
-/* The name of what an event happens to; "" where that is the whole structure. */
-static const char *subject_of(const strut_model *model, const strut_path_event *event) {
-  enum { WHOLE, MEMBER, NODE, ELEMENT };
-  static const char things[] = {[STRUT_PATH_SLACK] = MEMBER,       [STRUT_PATH_TAUT] = MEMBER,
-                                [STRUT_PATH_ZERO_LENGTH] = MEMBER, [STRUT_PATH_TOUCHDOWN] = NODE,
-                                [STRUT_PATH_LIFT_OFF] = NODE,      [STRUT_PATH_CORNER] = NODE,
-                                [STRUT_PATH_SLIP] = NODE,          [STRUT_PATH_STICK] = NODE,
-                                [STRUT_PATH_ENGAGE] = ELEMENT,     [STRUT_PATH_RELEASE] = ELEMENT,
-                                [STRUT_PATH_LAW] = ELEMENT};
-  const strut_scene *scene = model->scene;
-  switch ((size_t)event->kind < sizeof things ? things[event->kind] : WHOLE) {
-    case MEMBER: return scene->members[event->index].name;
-    case NODE: return scene->nodes[event->index].name;
-    case ELEMENT: return strut_element_name(scene, &model->elements.element[event->index]);
-    default: return "";
-  }
-}
-
-/* "slack: left" or, for events at the same place, "slack: left, right". */
+/* "limit point" or, of what happens to one thing, "left goes slack"; after what happens at the same place. */
 static const char *describe_event(path_picture *picture, const strut_path_event *event,
-                                  const strut_path_event *before, const char *text) {
-  const char *name = subject_of(picture->model, event);
-  int length = strut_text_bytes(name, NAME);
-  if (strlen(text) > TEXT - NAME) return text; /* the rest of the events here is not named */
-  if (before && before->kind == event->kind)
-    return strut_figure_text(&picture->figure, "%s%s%.*s", text, length ? ", " : "", length, name);
-  return strut_figure_text(&picture->figure, "%s%s%s%s%.*s", text, *text ? "; " : "",
-                           strut_path_event_name(event->kind), length ? ": " : "", length, name);
+                                  const char *before) {
+  bool whole = event->kind == STRUT_PATH_LIMIT || event->kind == STRUT_PATH_BIFURCATION ||
+               event->kind == STRUT_PATH_KINK_LIMIT || event->kind == STRUT_PATH_KINK_BIFURCATION;
+  const char *what = whole ? strut_path_event_name(event->kind) : event->detail;
+  int length = strut_text_bytes(what, (int)strcspn(what, ";:,"));
+  if (strlen(before) > TEXT - NAME) return before; /* the rest of the events here is not named */
+  return strut_figure_text(&picture->figure, "%s%s%.*s", before, *before ? "; " : "", length, what);
 }
 
 static void add_event(path_picture *picture, const strut_path_event *event, bool same) {
   if (same && picture->stop_count > 1 && !picture->events_left) {
     path_stop *stop = &picture->stops[picture->stop_count - 1];
-    stop->text = describe_event(picture, event, event - 1, stop->text);
+    stop->text = describe_event(picture, event, stop->text);
   } else if (picture->stop_count + 1 < MOST_STOPS) { /* one is kept for the end */
-    path_stop *stop = add_stop(picture, &event->at, describe_event(picture, event, NULL, ""));
+    path_stop *stop = add_stop(picture, &event->at, describe_event(picture, event, ""));
     stop->letter =
         strut_figure_text(&picture->figure, "%c", (char)('A' + (int)picture->stop_count - 2));
   } else {
@@ -255,7 +236,7 @@ static void add_mark(path_picture *picture, strut_panel *panel, size_t stop,
 
 /* 1, or a round factor that makes small motion visible. */
 static void choose_enlargement(path_picture *picture) {
-  double most = 0.0, steps[] = {1, 2, 5};
+  double most = 0.0;
   for (int32_t i = 0; i < 2 * picture->model->node_count; i++)
     most = fmax(most, fabs(largest_motion(picture->path, i)));
   picture->larger = 1.0;
@@ -263,9 +244,7 @@ static void choose_enlargement(path_picture *picture) {
   if (!(most > NO_MOTION * picture->model->size) || most >= SEEN * picture->model->size ||
       picture->model->scene->ground.present)
     return;
-  double wanted = LARGE * picture->model->size / most, power = pow(10.0, floor(log10(wanted)));
-  for (int i = 0; i < 3; i++)
-    if (steps[i] * power <= wanted) picture->larger = fmax(1.0, steps[i] * power);
+  picture->larger = fmax(1.0, strut_round_below(LARGE * picture->model->size / most));
 }
 
 /* The arrow of a load at the beginning [m]: outwards from its node, or from outside onto it. */

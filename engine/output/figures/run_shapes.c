@@ -147,8 +147,9 @@ const char *strut_run_period(strut_run_scene *run, strut_figure *figure) {
 enum { USUAL = 6 };
 
 static const double COMMON = 2.2; /* shapes closer than this, in their sizes, share a window */
-static const double SEEN = 2e-3;  /* of the drawing: least visible motion of the measured point */
-static const double MARGIN = 15;  /* [pt] */
+static const double LEVEL = 3;
+static const double SEEN = 2e-3; /* of the drawing: least visible motion of the measured point */
+static const double MARGIN = 15; /* [pt] */
 
 /* The panels, and what they have in common. */
 typedef struct grid {
@@ -217,24 +218,6 @@ static double way_to(const strut_run_scene *run, const grid *self, size_t i) {
   return strut_run_measured(run, self->frame[i], 0) - strut_run_measured(run, self->frame[0], 0);
 }
 
-/* How far the foot of a shape is above the ground below it; 0 or less: it stands there [m]. */
-static double foot_above(const strut_run_scene *run, const strut_bounds *bounds) {
-  return bounds->low[1] - strut_run_ground_at(run, 0.5 * (bounds->low[0] + bounds->high[0]));
-}
-
-/* Has all shapes on the ground begin as deep in it as the deepest, so that it is drawn at one height. */
-static void level_feet(const strut_run_scene *run, grid *self) {
-  double deepest = 0.0;
-  for (size_t i = 0; i < self->count; i++)
-    deepest = fmin(deepest, foot_above(run, &self->panels[i].bounds));
-  for (size_t i = 0; i < self->count; i++) {
-    strut_bounds *bounds = &self->panels[i].bounds;
-    double above = foot_above(run, bounds);
-    if (above <= 0.0) bounds->low[1] += deepest - above;
-    self->size[1] = fmax(self->size[1], bounds->high[1] - bounds->low[1]);
-  }
-}
-
 /* The range of all cells along each axis: one for all where the shapes are close together. */
 static void find_sizes(const strut_run_scene *run, grid *self) {
   const strut_ground *ground = &run->model->scene->ground;
@@ -244,12 +227,11 @@ static void find_sizes(const strut_run_scene *run, grid *self) {
         self->moves || fabs(way_to(run, self, i)) > SEEN * strut_bounds_extent(&self->all);
   for (int d = 0; d < 2; d++) {
     double together = self->all.high[d] - self->all.low[d];
-    self->common[d] = together <= fmax(COMMON * self->size[d], 0.5 * most);
-    if (d == 1 && ground->present && ground->slope != 0 && !self->common[0])
-      self->common[1] = false;
+    bool line = d == 1 && ground->present, slope = line && ground->slope != 0 && !self->common[0];
+    double far = line ? LEVEL : 1; /* on the ground even those farther apart */
+    self->common[d] = !slope && together <= far * fmax(COMMON * self->size[d], 0.5 * most);
     if (self->common[d]) self->size[d] = together;
   }
-  if (!self->common[1] && ground->present) level_feet(run, self);
 }
 
 /* What a cell shows, as large as all others: about its middle, from its foot or the ground on. */

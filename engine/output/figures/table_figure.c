@@ -46,14 +46,15 @@ strut_status strut_table_groups_find(const strut_table_rows *rows, int column, s
 /* A row that knows where its keys are, to be sorted. */
 typedef struct keyed {
   const strut_table_rows *rows;
-  size_t row, keys; /* that count */
+  size_t row;
+  int keys; /* that count */
 } keyed;
 
 /* Numbers by value, NAN first; texts alphabetically. */
 static int compare_keys(const void *first, const void *second) {
   const keyed *one = first, *two = second;
-  for (size_t i = 0; i < one->keys; i++) {
-    int column = one->rows->pairing.keys[i];
+  for (int i = 0; i < one->keys; i++) {
+    int column = one->rows->keys[i];
     if (column == STRUT_NO_COLUMN) continue;
     const strut_table_column *of = &one->rows->table->columns[column];
     int order;
@@ -76,7 +77,7 @@ static bool alongside(keyed first, keyed second) {
 
 /* Among (count) sorted rows. */
 static strut_table_partner find_partner(const keyed *first, size_t count, const keyed *wanted) {
-  const strut_table_pairing *pairing = &wanted->rows->pairing;
+  const strut_table_rows *rows = wanted->rows;
   size_t low = 0, high = count;
   while (low < high) { /* the first not before `wanted` */
     size_t middle = (low + high) / 2;
@@ -85,10 +86,10 @@ static strut_table_partner find_partner(const keyed *first, size_t count, const 
   }
   if (low < count && compare_keys(&first[low], wanted) == 0)
     return (strut_table_partner){first[low].row, first[low].row, 0};
-  if (!pairing->between || low == 0 || low == count || !alongside(first[low - 1], *wanted) ||
+  if (!rows->between || low == 0 || low == count || !alongside(first[low - 1], *wanted) ||
       !alongside(first[low], *wanted))
     return (strut_table_partner){SIZE_MAX, SIZE_MAX, 0};
-  const double *x = wanted->rows->table->columns[pairing->keys[pairing->key_count - 1]].value;
+  const double *x = rows->table->columns[rows->keys[STRUT_KEYS_OF_ROWS - 1]].value;
   size_t before = first[low - 1].row, after = first[low].row;
   return (strut_table_partner){before, after,
                                (x[wanted->row] - x[before]) / (x[after] - x[before])};
@@ -111,19 +112,19 @@ static strut_status pair_sides(strut_table_rows *rows, int of, strut_arena *aren
   memcpy(rows->side, sides.name, sizeof rows->side);
   for (size_t i = 0; i < all; i++) {
     if (!strut_table_belongs(rows, of, rows->side[0], i)) continue;
-    first[count++] = (keyed){rows, i, rows->pairing.key_count};
+    first[count++] = (keyed){rows, i, STRUT_KEYS_OF_ROWS};
     rows->shown[i] = false;
   }
   qsort(first, count, sizeof *first, compare_keys);
   for (size_t i = 0; i < all; i++)
     if (rows->shown[i])
-      rows->partner[i] = find_partner(first, count, &(keyed){rows, i, rows->pairing.key_count});
+      rows->partner[i] = find_partner(first, count, &(keyed){rows, i, STRUT_KEYS_OF_ROWS});
   return STRUT_OK;
 }
 
 bool strut_table_compares(const strut_table_rows *rows, int column) {
-  for (size_t i = 0; i < rows->pairing.value_count && rows->partner; i++)
-    if (rows->pairing.values[i] == column) return true;
+  for (size_t i = 0; i < rows->value_count && rows->partner; i++)
+    if (rows->values[i] == column) return true;
   return false;
 }
 
@@ -144,57 +145,56 @@ bool strut_table_differs(const strut_table_rows *rows, int column, size_t row) {
   return other == SIZE_MAX || strcmp(text[other], text[row]) != 0;
 }
 
-strut_status strut_table_rows_choose(const strut_table *table, const strut_table_choice *choice,
-                                     const strut_table_pairing *pairing, strut_arena *arena,
-                                     strut_table_rows *rows, strut_error *error) {
-  bool any = choice->only == STRUT_NO_COLUMN;
-  *rows = (strut_table_rows){.table = table,
-                             .pairing = *pairing,
-                             .shown = strut_arena_allocate(arena, table->row_count + 1, 1)};
+/* STRUT_USAGE where no row that is shown has the text in the column. */
+static strut_status find_text(const strut_table_rows *rows, int column, const char *text,
+                              strut_error *error) {
+  for (size_t i = 0; i < rows->table->row_count; i++)
+    if (strut_table_belongs(rows, column, text, i)) return STRUT_OK;
+  return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
+                    rows->table->columns[column].name);
+}
+
+strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const char *text,
+                                     int difference, strut_arena *arena, strut_error *error) {
+  size_t count = rows->table->row_count;
+  rows->shown = strut_arena_allocate(arena, count + 1, 1);
   if (!rows->shown) return strut_no_memory(error, "while drawing");
-  memset(rows->shown, true, table->row_count);
-  for (size_t i = 0; i < table->row_count && choice->only != STRUT_NO_COLUMN; i++) {
-    rows->shown[i] = strut_table_belongs(rows, choice->only, choice->only_value, i);
-    any = any || rows->shown[i];
-  }
-  if (!any)
-    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'",
-                      choice->only_value, table->columns[choice->only].name);
-  return choice->difference == STRUT_NO_COLUMN ? STRUT_OK
-                                               : pair_sides(rows, choice->difference, arena, error);
+  memset(rows->shown, true, count);
+  strut_status status = only == STRUT_NO_COLUMN ? STRUT_OK : find_text(rows, only, text, error);
+  for (size_t i = 0; i < count && !status; i++)
+    rows->shown[i] = strut_table_belongs(rows, only, text, i);
+  return status || difference == STRUT_NO_COLUMN ? status
+                                                 : pair_sides(rows, difference, arena, error);
 }
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
+static const double BARS = 0.7, BROADEST = 14,
+                    FRAME = 0.6; /* of a place; [pt]; of a panel's width */
 enum {
   DIGITS = 9 /* of a group's number */,
   NAME = 46,
-  MOST_NAMES = 3
-}; /* bytes and columns of an axis label; more are in the legend */
-enum { MOST_CELLS = 4000000 };
+  MOST_NAMES = 3 /* bytes and columns of an axis label; more are in the legend */,
+  MOST_CELLS = 4000000
+};
 
-/* The columns that a figure names, by number. */
-typedef struct resolved {
-  strut_study_figure_kind kind;
-  int x, y[STRUT_MOST_Y], y_count, panels;
-  strut_table_choice choice;
-  int by, band; /* of curves */
-  const char *band_value;
-  int value, doubt; /* of maps and points */
-  strut_colours colours;
-  strut_table_marks marks;
-} resolved;
-
-/* A figure being filled in. */
+/* A figure being filled in. Columns by number. */
 typedef struct maker {
   const strut_study_figure *wanted;
-  resolved *figure;
+  strut_table_marks marks;
+  int x, y[STRUT_MOST_Y], y_count, panel, by, band; /* `by` and `band` of curves */
+  int value, doubt;                                 /* of maps and points */
+  const char *band_text;
   strut_table_rows rows;
   strut_table_groups panels, curves; /* curves, or categories of a map */
+  strut_table_groups places;         /* along x, of bars; else none */
+  double bar;                        /* their width [pt] */
   double *at[2];                     /* of a map: the grid's positions */
   size_t count[2];
   strut_figure page;
   strut_error *error;
 } maker;
+
+static bool is_map(const maker *self) { return self->wanted->kind == STRUT_FIGURE_MAP; }
 
 static const strut_table_column *column_of(const maker *self, int column) {
   return column == STRUT_NO_COLUMN ? NULL : &self->rows.table->columns[column];
@@ -202,6 +202,13 @@ static const strut_table_column *column_of(const maker *self, int column) {
 
 static double value_of(const maker *self, int column, size_t row) {
   return strut_table_number(&self->rows, column, row);
+}
+
+/* The index of a text; NAN without one. */
+static double index_of(const strut_table_groups *groups, const char *text) {
+  for (size_t i = 0; i < groups->count; i++)
+    if (strcmp(groups->name[i], text) == 0) return (double)i;
+  return (double)NAN;
 }
 
 /* "stiffness 3 kN/m" of a group's first row, with `between` after the name; numbers without unit as they are written. */
@@ -225,83 +232,98 @@ static const char *name_of(maker *self, int column) {
 }
 
 static bool is_in_panel(const maker *self, size_t panel, size_t row) {
-  return strut_table_belongs(&self->rows, self->figure->panels, self->panels.name[panel], row);
+  return strut_table_belongs(&self->rows, self->panel, self->panels.name[panel], row);
 }
 
-/* ---- curves ---- */
+/* ---- curves and bars ---- */
 
 /* Rows of one curve in one panel. Returns how many. */
 static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *rows) {
   size_t count = 0;
   for (size_t i = 0; i < self->rows.table->row_count; i++)
     if (is_in_panel(self, panel, i) &&
-        strut_table_belongs(&self->rows, self->figure->by, self->curves.name[curve], i))
+        strut_table_belongs(&self->rows, self->by, self->curves.name[curve], i))
       rows[count++] = i;
   return count;
 }
 
 /* Grey areas over stretches of matching rows. */
 static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel *panel) {
-  const strut_table_column *band = column_of(self, self->figure->band);
-  const double *x = column_of(self, self->figure->x)->value;
-  const char *wanted = self->figure->band_value;
-  for (size_t i = 0; band && i < count; i++) {
-    if (strcmp(band->text[rows[i]], wanted) != 0) continue;
+  const strut_table_column *band = column_of(self, self->band);
+  const double *x = column_of(self, self->x)->value;
+  for (size_t i = 0; band && x && i < count; i++) {
+    if (strcmp(band->text[rows[i]], self->band_text) != 0) continue;
     size_t last = i;
-    while (last + 1 < count && strcmp(band->text[rows[last + 1]], wanted) == 0) last++;
+    while (last + 1 < count && strcmp(band->text[rows[last + 1]], self->band_text) == 0) last++;
     double low = x[rows[i]], high = x[rows[last]];
     if (i > 0) low = 0.5 * (low + x[rows[i - 1]]);
     if (last + 1 < count) high = 0.5 * (high + x[rows[last + 1]]);
     strut_add_band(&self->page, panel, fmin(low, high), fmax(low, high),
-                   strut_figure_text(&self->page, "%s %s", band->name, wanted));
+                   strut_figure_text(&self->page, "%s %s", band->name, self->band_text));
     i = last;
   }
 }
 
 /* What the legend says of y column k of a curve; NULL: there is one curve only. */
 static const char *curve_name(maker *self, size_t curve, int k) {
-  const resolved *figure = self->figure;
-  const char *column = name_of(self, figure->y[k]);
-  bool several = figure->y_count > 1;
+  const char *column = name_of(self, self->y[k]);
+  bool several = self->y_count > 1;
   if (self->wanted->label_count)
-    return self->wanted->labels[curve * (size_t)figure->y_count + (size_t)k];
-  if (self->curves.count * (size_t)figure->y_count < 2) return NULL;
-  if (figure->by == STRUT_NO_COLUMN) return column;
+    return self->wanted->labels[curve * (size_t)self->y_count + (size_t)k];
+  if (self->curves.count * (size_t)self->y_count < 2) return NULL;
+  if (self->by == STRUT_NO_COLUMN) return column;
   return strut_figure_text(&self->page, "%s%s%s", several ? column : "", several ? ", " : "",
-                           group_text(self, figure->by, &self->curves, curve, " "));
+                           group_text(self, self->by, &self->curves, curve, " "));
+}
+
+/* A bar for each row at the place of its text, `part` of the way through all bars of the place. */
+static void add_bars(maker *self, strut_series *series, int y, const size_t *rows, size_t count,
+                     double part) {
+  const char *const *text = column_of(self, self->x)->text;
+  series->pen = (strut_pen){.width = self->bar, .butt = true};
+  for (size_t i = 0; i < count; i++) {
+    double x = index_of(&self->places, text[rows[i]]) + BARS * (part - 0.5);
+    strut_add_bar(&self->page, series, x, value_of(self, y, rows[i]));
+  }
 }
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
-  const resolved *figure = self->figure;
+  size_t all = self->curves.count * (size_t)self->y_count;
   size_t *row =
       strut_arena_allocate(&self->page.arena, self->rows.table->row_count + 1, sizeof *row);
   panel->outliers = true;
-  self->page.failed = self->page.failed || !row;
-  for (size_t c = 0; c < self->curves.count && row; c++) {
-    size_t count = rows_of(self, number, c, row);
-    add_bands(self, row, count, panel);
-    for (int k = 0; k < figure->y_count; k++) {
-      strut_series *series = strut_add_series(&self->page, panel, curve_name(self, c, k));
-      for (size_t i = 0; i < count; i++)
-        strut_add_point(&self->page, series, value_of(self, figure->x, row[i]),
-                        value_of(self, figure->y[k], row[i]));
+  self->page.failed |= !row;
+  for (size_t n = 0, count = 0; n < all && row; n++) {
+    size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
+    if (k == 0) count = rows_of(self, number, curve, row);
+    if (k == 0) add_bands(self, row, count, panel);
+    strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
+    if (self->places.count) {
+      add_bars(self, series, self->y[k], row, count, ((double)n + 0.5) / (double)all);
+      series->pen.colour = strut_palette_thing(n);
     }
+    for (size_t i = 0; i < count && !self->places.count; i++)
+      strut_add_point(&self->page, series, value_of(self, self->x, row[i]),
+                      value_of(self, self->y[k], row[i]));
   }
+  if (!self->places.count) return;
+  panel->x.names = self->places.name, panel->x.name_count = self->places.count;
+  panel->x.low = -0.5, panel->x.high = (double)self->places.count - 0.5;
+  panel->zero = true;
 }
 
 /* ---- points ---- */
 
 /* A cloud of the points that are marked, with a ring around each, over one of the others. */
 static void add_points(maker *self, size_t number, strut_panel *panel) {
-  const resolved *figure = self->figure;
   for (int marked = 0; marked < 2; marked++) {
     strut_series *cloud = strut_add_series(&self->page, panel, NULL);
     cloud->cloud = true;
     cloud->look = 0;
     for (size_t i = 0; i < self->rows.table->row_count; i++) {
-      if (!is_in_panel(self, number, i) || figure->marks.marked[i] != marked) continue;
-      double x = value_of(self, figure->x, i), y = value_of(self, figure->y[0], i);
-      strut_add_point(&self->page, cloud, x, y)->value = value_of(self, figure->value, i);
+      if (!is_in_panel(self, number, i) || self->marks.marked[i] != marked) continue;
+      double x = value_of(self, self->x, i), y = value_of(self, self->y[0], i);
+      strut_add_point(&self->page, cloud, x, y)->value = value_of(self, self->value, i);
       if (marked) strut_add_mark(&self->page, panel, x, y, NULL)->ring = true;
     }
   }
@@ -313,26 +335,25 @@ static void add_points(maker *self, size_t number, strut_panel *panel) {
 
 /* ---- maps ---- */
 
-/* The different finite values of a column, ascending. False: out of memory. */
-static bool find_positions(maker *self, int column, int d) {
+/* The different finite values of a column, ascending. */
+static void find_positions(maker *self, int column, int d) {
   double *all = strut_figure_numbers(&self->page, self->rows.table->row_count);
   size_t used = 0, *kept = &self->count[d];
   for (size_t i = 0; all && i < self->rows.table->row_count; i++)
     if (self->rows.shown[i] && isfinite(value_of(self, column, i)))
       all[used++] = value_of(self, column, i);
-  if (all && used) gsl_sort(all, 1, used);
+  if (used) gsl_sort(all, 1, used);
   double grain = used ? 1e-9 * (all[used - 1] - all[0]) : 0; /* 0.1 + 0.2 equals 0.3 */
   for (size_t i = 0; i < used; i++)
     if (!*kept || all[i] - all[*kept - 1] > grain) all[(*kept)++] = all[i];
   self->at[d] = all;
-  return all != NULL;
 }
 
-/* Index of the nearest of (count) ascending positions. */
-static size_t nearest_index(const double *at, size_t count, double value) {
-  assert(count > 0);
-  size_t i = gsl_interp_bsearch(at, value, 0, count - 1);
-  return i + 1 < count && 0.5 * (at[i] + at[i + 1]) < value ? i + 1 : i;
+/* Index of the nearest of the positions. */
+static size_t nearest_index(const maker *self, int d, double value) {
+  const double *at = self->at[d];
+  size_t i = gsl_interp_bsearch(at, value, 0, self->count[d] - 1);
+  return i + 1 < self->count[d] && 0.5 * (at[i] + at[i + 1]) < value ? i + 1 : i;
 }
 
 static bool is_doubtful(const char *text) {
@@ -348,12 +369,10 @@ static int by_text(const void *first, const void *second) {
 
 /* Finds the grid's positions and the categories. */
 static strut_status prepare_grid(maker *self) {
-  const resolved *figure = self->figure;
   strut_table_groups *names = &self->curves;
   strut_status status = STRUT_OK;
-  names->count = 0;
-  if (!column_of(self, figure->value)->value)
-    status = strut_table_groups_find(&self->rows, figure->value, STRUT_MOST_TABLE_GROUPS,
+  if (!column_of(self, self->value)->value)
+    status = strut_table_groups_find(&self->rows, self->value, STRUT_MOST_TABLE_GROUPS,
                                      "categories", names, self->error);
   if (status) return status;
   qsort(names->name, names->count, sizeof *names->name, by_text);
@@ -361,13 +380,14 @@ static strut_status prepare_grid(maker *self) {
     names->count--;
     memmove(names->name, names->name + 1, names->count * sizeof *names->name);
   }
-  if (!find_positions(self, figure->x, 0) || !find_positions(self, figure->y[0], 1))
-    return strut_no_memory(self->error, "while drawing");
-  if (!self->count[0] || !self->count[1] || self->count[1] > MOST_CELLS / self->count[0])
-    return strut_fail(self->error, STRUT_USAGE,
-                      "the map would have %zu by %zu cells: its x and y have to form a grid",
-                      self->count[0], self->count[1]);
-  return STRUT_OK;
+  find_positions(self, self->x, 0);
+  find_positions(self, self->y[0], 1);
+  if (self->page.failed) return strut_no_memory(self->error, "while drawing");
+  if (self->count[0] && self->count[1] && self->count[1] <= MOST_CELLS / self->count[0])
+    return STRUT_OK;
+  return strut_fail(self->error, STRUT_USAGE,
+                    "the map would have %zu by %zu cells: its x and y have to form a grid",
+                    self->count[0], self->count[1]);
 }
 
 /* Cells without a row (+ 1) get that of a neighbour, again and again: of a grid that is refined in places. */
@@ -390,47 +410,41 @@ static uint32_t *find_rows(maker *self, size_t number) {
   size_t cells = self->count[0] * self->count[1];
   uint32_t *row = strut_arena_allocate(&self->page.arena, cells, sizeof *row);
   for (size_t i = 0; row && i < self->rows.table->row_count; i++) {
-    double x = value_of(self, self->figure->x, i), y = value_of(self, self->figure->y[0], i);
-    if (!is_in_panel(self, number, i) || !isfinite(x) || !isfinite(y)) continue;
-    row[nearest_index(self->at[1], self->count[1], y) * self->count[0] +
-        nearest_index(self->at[0], self->count[0], x)] = (uint32_t)i + 1;
+    double x = value_of(self, self->x, i), y = value_of(self, self->y[0], i);
+    if (is_in_panel(self, number, i) && isfinite(x) && isfinite(y))
+      row[nearest_index(self, 1, y) * self->count[0] + nearest_index(self, 0, x)] = (uint32_t)i + 1;
   }
-  if (row && self->figure->marks.spread)
+  if (row && self->marks.spread)
     spread(self, row, strut_arena_allocate(&self->page.arena, cells, sizeof *row));
   return row;
 }
 
 static void add_map(maker *self, size_t number, strut_panel *panel) {
-  const strut_table_column *of = column_of(self, self->figure->value),
-                           *doubt = column_of(self, self->figure->doubt);
+  const strut_table_column *of = column_of(self, self->value),
+                           *doubt = column_of(self, self->doubt);
   size_t count = self->count[0] * self->count[1];
   bool other = self->rows.partner && !of->value; /* of categories */
-  strut_arena *arena = &self->page.arena;
-  strut_map *map = strut_arena_allocate(arena, 1, sizeof *map);
-  int *category = strut_arena_allocate(arena, count, sizeof *category);
-  double *value = strut_arena_allocate(arena, count, sizeof *value);
-  bool *doubtful = strut_arena_allocate(arena, count, sizeof *doubtful);
-  const uint32_t *row = find_rows(self, number);
+  strut_map *map = strut_arena_allocate(&self->page.arena, 1, sizeof *map);
+  double *value = strut_figure_numbers(&self->page, count);
+  bool *doubtful = strut_arena_allocate(&self->page.arena, count, sizeof *doubtful);
+  const uint32_t *cells = find_rows(self, number);
   panel->map = map;
-  self->page.failed |= !map || !category || !value || !doubtful || !row;
+  self->page.failed |= !map || !value || !doubtful || !cells;
   if (self->page.failed) return;
   for (size_t k = 0; k < count; k++) {
-    value[k] = (double)NAN, category[k] = -1;
-    if (!row[k]) continue;
-    value[k] = value_of(self, self->figure->value, row[k] - 1);
-    for (size_t g = 0; g < self->curves.count; g++)
-      if (strcmp(self->curves.name[g], of->text[row[k] - 1]) == 0) category[k] = (int)g;
-    doubtful[k] = other   ? strut_table_differs(&self->rows, self->figure->value, row[k] - 1)
-                  : doubt ? is_doubtful(doubt->text[row[k] - 1])
-                          : false;
+    size_t row = cells[k] - 1;
+    value[k] = !cells[k]   ? (double)NAN
+               : of->value ? value_of(self, self->value, row)
+                           : index_of(&self->curves, of->text[row]);
+    doubtful[k] = cells[k] && (other ? strut_table_differs(&self->rows, self->value, row)
+                                     : doubt && is_doubtful(doubt->text[row]));
   }
   *map = (strut_map){.columns = self->count[0],
                      .rows = self->count[1],
                      .xs = self->at[0],
                      .ys = self->at[1],
-                     .category = of->value ? NULL : category,
-                     .category_count = self->curves.count,
-                     .names = self->curves.name,
+                     .name_count = self->curves.count,
+                     .names = of->value ? NULL : self->curves.name,
                      .value = value,
                      .doubtful = doubt || other ? doubtful : NULL,
                      .doubt = doubt ? doubt->name : NULL};
@@ -441,80 +455,80 @@ static void add_map(maker *self, size_t number, strut_panel *panel) {
 
 /* The label of the y axis: the names of its columns, or "" where they are too long or too many. */
 static const char *name_y_axis(maker *self) {
-  const resolved *figure = self->figure;
-  const char *text = name_of(self, figure->y[0]);
-  if (figure->y_count > MOST_NAMES) return "";
-  for (int k = 1; k < figure->y_count; k++)
-    text = strut_figure_text(&self->page, "%s, %s", text, name_of(self, figure->y[k]));
-  return figure->y_count > 1 && strlen(text) > NAME ? "" : text;
+  const char *text = name_of(self, self->y[0]);
+  if (self->y_count > MOST_NAMES) return "";
+  for (int k = 1; k < self->y_count; k++)
+    text = strut_figure_text(&self->page, "%s, %s", text, name_of(self, self->y[k]));
+  return self->y_count > 1 && strlen(text) > NAME ? "" : text;
 }
 
 static strut_status check_column(const maker *self, int column) {
-  const strut_table_column *table_column = column_of(self, column),
-                           *first = column_of(self, self->figure->y[0]);
-  if (!table_column || !table_column->value)
+  const strut_table_column *of = column_of(self, column), *first = column_of(self, self->y[0]);
+  if (!of || !of->value)
     return strut_fail(self->error, STRUT_USAGE, "column '%s' does not hold numbers",
-                      table_column ? table_column->name : "");
-  if (column == self->figure->x || strcmp(table_column->unit, first->unit) == 0) return STRUT_OK;
+                      of ? of->name : "");
+  if (column == self->x || strcmp(of->unit, first->unit) == 0) return STRUT_OK;
   return strut_fail(self->error, STRUT_USAGE,
                     "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
                     "separate figures",
-                    first->name, table_column->name, *first->unit ? first->unit : "none",
-                    *table_column->unit ? table_column->unit : "none");
+                    first->name, of->name, *first->unit ? first->unit : "none",
+                    *of->unit ? of->unit : "none");
+}
+
+/* Lines over texts are bars, unless a column is not there. */
+static bool has_bars(const maker *self) {
+  return self->wanted->kind == STRUT_FIGURE_LINES && self->x >= 0 &&
+         !column_of(self, self->x)->value;
 }
 
 /* Checks the columns and finds the groups of rows. */
 static strut_status prepare(maker *self) {
-  const resolved *figure = self->figure;
-  strut_status status = check_column(self, figure->x);
-  for (int k = 0; k < figure->y_count && !status; k++) status = check_column(self, figure->y[k]);
-  if (!status && figure->kind == STRUT_FIGURE_POINTS && figure->value >= 0 &&
-      !column_of(self, figure->value)->value)
-    status = strut_fail(self->error, STRUT_USAGE, "points are drawn over columns of numbers");
+  const strut_table_rows *rows = &self->rows;
+  strut_error *error = self->error;
+  bool lines = !is_map(self) && self->wanted->kind != STRUT_FIGURE_POINTS;
+  strut_status status = has_bars(self)
+                            ? strut_table_groups_find(rows, self->x, STRUT_MOST_TABLE_GROUPS,
+                                                      "places", &self->places, error)
+                            : check_column(self, self->x);
+  for (int k = 0; k < self->y_count && !status; k++) status = check_column(self, self->y[k]);
+  if (!status && self->wanted->kind == STRUT_FIGURE_POINTS && self->value >= 0 &&
+      !column_of(self, self->value)->value)
+    status = strut_fail(error, STRUT_USAGE, "points are drawn over columns of numbers");
   if (!status)
-    status = strut_table_groups_find(&self->rows, figure->panels, STRUT_MOST_PANELS, "panels",
-                                     &self->panels, self->error);
-  if (!status && figure->kind == STRUT_FIGURE_LINES)
-    status = strut_table_groups_find(&self->rows, figure->by, STRUT_MOST_TABLE_GROUPS, "curves",
-                                     &self->curves, self->error);
-  size_t curves = self->curves.count * (size_t)figure->y_count;
-  if (!status && self->wanted->label_count && self->wanted->label_count != curves)
-    status = strut_fail(self->error, STRUT_USAGE, "%zu labels were given for %zu curve%s",
-                        self->wanted->label_count, curves, curves == 1 ? "" : "s");
-  if (!status && figure->kind == STRUT_FIGURE_MAP) status = prepare_grid(self);
-  return status;
+    status = strut_table_groups_find(rows, self->panel, STRUT_MOST_PANELS, "panels", &self->panels,
+                                     error);
+  if (!status && lines)
+    status = strut_table_groups_find(rows, self->by, STRUT_MOST_TABLE_GROUPS, "curves",
+                                     &self->curves, error);
+  size_t curves = self->curves.count * (size_t)self->y_count, labels = self->wanted->label_count;
+  if (!status && labels && labels != curves)
+    status = strut_fail(error, STRUT_USAGE, "%zu labels were given for %zu curve%s", labels, curves,
+                        curves == 1 ? "" : "s");
+  if (!status && lines && self->band >= 0)
+    status = find_text(rows, self->band, self->band_text, error);
+  return status || !is_map(self) ? status : prepare_grid(self);
 }
 
 static void add_panel(maker *self, size_t i) {
-  const resolved *figure = self->figure;
-  const strut_table_column *x = column_of(self, figure->x), *y = column_of(self, figure->y[0]);
-  const strut_table_column *value = column_of(self, figure->value);
+  const strut_table_column *x = column_of(self, self->x), *y = column_of(self, self->y[0]);
+  const strut_table_column *value = column_of(self, self->value);
   strut_panel *panel = strut_add_panel(&self->page);
-  panel->x = strut_axis_of(x->name, x->unit);
-  panel->y = strut_axis_of(name_y_axis(self), y->unit);
-  panel->x.shown = x->shown, panel->y.shown = y->shown;
+  panel->x = strut_axis_in(x->name, x->unit, x->shown);
+  panel->y = strut_axis_in(name_y_axis(self), y->unit, y->shown);
   panel->x.logarithmic = self->wanted->log_x, panel->y.logarithmic = self->wanted->log_y;
   if (value && value->value)
-    panel->scale = (strut_colour_scale){.name = name_of(self, figure->value),
+    panel->scale = (strut_colour_scale){.name = name_of(self, self->value),
                                         .unit = value->unit,
                                         .shown = value->shown,
-                                        .colours = figure->colours};
-  if (figure->panels != STRUT_NO_COLUMN) /* "a) friction = 0.1" */
+                                        .colours = (strut_colours)self->wanted->colours};
+  if (is_map(self) && self->rows.partner && panel->scale.colours == STRUT_COLOURS_AUTO)
+    panel->scale.colours = STRUT_COLOURS_DIVERGING;
+  if (self->panel != STRUT_NO_COLUMN) /* "a) friction = 0.1" */
     panel->title = strut_figure_text(&self->page, "%c) %s", (char)('a' + (int)(i % 26)),
-                                     group_text(self, figure->panels, &self->panels, i, " = "));
-  (figure->kind == STRUT_FIGURE_MAP      ? add_map
-   : figure->kind == STRUT_FIGURE_POINTS ? add_points
-                                         : add_curves)(self, i, panel);
-}
-
-/* The rows that are compared are equal in these columns. */
-static strut_table_pairing pair_rows(const resolved *figure, bool between) {
-  bool map = figure->kind == STRUT_FIGURE_MAP;
-  return (strut_table_pairing){.keys = {map ? figure->y[0] : figure->by, figure->panels, figure->x},
-                               .key_count = 3,
-                               .between = between,
-                               .values = map ? &figure->value : figure->y,
-                               .value_count = map ? 1 : (size_t)figure->y_count};
+                                     group_text(self, self->panel, &self->panels, i, " = "));
+  (is_map(self)                                ? add_map
+   : self->wanted->kind == STRUT_FIGURE_POINTS ? add_points
+                                               : add_curves)(self, i, panel);
 }
 
 /* COLUMN=TEXT, or a column alone. */
@@ -524,48 +538,49 @@ static int find_column(const strut_table *table, const char *name, const char **
   return strut_table_column_of(table, name, length);
 }
 
-static resolved resolve(const strut_study_figure *wanted, const strut_table *table,
-                        strut_table_marks marks) {
-  bool map = wanted->kind == STRUT_FIGURE_MAP, points = wanted->kind == STRUT_FIGURE_POINTS;
-  resolved r = {.kind = map || points ? wanted->kind : STRUT_FIGURE_LINES,
-                .x = find_column(table, wanted->x, NULL),
-                .panels = find_column(table, wanted->panels, NULL),
-                .choice.difference = find_column(table, wanted->difference, NULL),
-                .by = find_column(table, map ? NULL : wanted->series, NULL),
-                .value = find_column(table, map || points ? wanted->color : NULL, NULL),
-                .doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL),
-                .colours = (strut_colours)wanted->colours,
-                .marks = marks};
-  r.choice.only = find_column(table, wanted->only, &r.choice.only_value);
-  r.band = find_column(table, map ? NULL : wanted->band, &r.band_value);
-  for (const char *y = wanted->y, *end; y && r.y_count < STRUT_MOST_Y; y = *end ? end + 1 : NULL) {
+/* Finds the columns by their names. */
+static void find_columns(maker *self, const strut_table *table) {
+  const strut_study_figure *wanted = self->wanted;
+  bool map = is_map(self), points = wanted->kind == STRUT_FIGURE_POINTS;
+  self->x = find_column(table, wanted->x, NULL);
+  self->panel = find_column(table, wanted->panels, NULL);
+  self->by = find_column(table, map ? NULL : wanted->series, NULL);
+  self->band = find_column(table, map ? NULL : wanted->band, &self->band_text);
+  self->value = find_column(table, map || points ? wanted->color : NULL, NULL);
+  self->doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL);
+  for (const char *y = wanted->y, *end; y && self->y_count < STRUT_MOST_Y;
+       y = *end ? end + 1 : NULL) {
     end = y + strcspn(y, ",");
-    r.y[r.y_count++] = strut_table_column_of(table, y, (size_t)(end - y));
+    self->y[self->y_count++] = strut_table_column_of(table, y, (size_t)(end - y));
   }
-  return r;
+  /* Rows that are compared are equal in these columns. */
+  self->rows = (strut_table_rows){.table = table,
+                                  .keys = {map ? self->y[0] : self->by, self->panel, self->x},
+                                  .between = wanted->kind == STRUT_FIGURE_MOTION,
+                                  .values = map ? &self->value : self->y,
+                                  .value_count = map ? 1 : (size_t)self->y_count};
 }
 
 strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *figure,
                               const strut_table *table, strut_table_marks marks,
                               strut_error *error) {
-  resolved drawn = resolve(figure, table, marks);
-  const strut_table_pairing pairing = pair_rows(&drawn, figure->kind == STRUT_FIGURE_MOTION);
-  bool map = figure->kind == STRUT_FIGURE_MAP;
-  maker m = {.wanted = figure,
-             .figure = &drawn,
-             .error = error,
-             .page = {.least_width = map ? MAP_WIDTH : CURVES_WIDTH,
-                      .aspect = map ? 0.8 : 0.62,
-                      .shared_axes = true,
-                      .one_legend = true}};
-  assert(drawn.y_count > 0);
-  strut_status status =
-      strut_table_rows_choose(table, &drawn.choice, &pairing, &m.page.arena, &m.rows, error);
+  const char *text = NULL;
+  maker m = {.wanted = figure, .marks = marks, .error = error};
+  m.page = (strut_figure){.least_width = is_map(&m) ? MAP_WIDTH : CURVES_WIDTH,
+                          .aspect = is_map(&m) ? 0.8 : 0.62,
+                          .shared_axes = true,
+                          .one_legend = true};
+  find_columns(&m, table);
+  assert(m.y_count > 0);
+  int only = find_column(table, figure->only, &text);
+  strut_status status = strut_table_rows_choose(
+      &m.rows, only, text, find_column(table, figure->difference, NULL), &m.page.arena, error);
   for (size_t i = 0; i < table->row_count && marks.shown && !status; i++)
     m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
-  if (map && m.rows.partner && drawn.colours == STRUT_COLOURS_AUTO)
-    drawn.colours = STRUT_COLOURS_DIVERGING;
   if (!status) status = prepare(&m);
+  double bars =
+      (double)(m.places.count * m.curves.count) * m.y_count * fmin((double)m.panels.count, 3);
+  m.bar = fmin(BROADEST, BARS * FRAME * (plot->width > 0 ? plot->width : 510) / fmax(bars, 1));
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);

@@ -11,14 +11,6 @@
 
 enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
 
-/** Selection of rows, and whether their differences are drawn. */
-typedef struct strut_table_choice {
-  int only; /* rows whose column has the text `only_value` */
-  const char *only_value;
-  int difference; /* its two texts are two sides: the second minus the first; of categories, the
-                     second with doubt where the first differs */
-} strut_table_choice;
-
 /** What a figure of a search shows besides. Zero: all rows, without rings. */
 typedef struct strut_table_marks {
   const bool *shown, *marked; /* (rows) shown, NULL: all; of points those with a ring */
@@ -39,16 +31,7 @@ STRUT_API strut_status strut_table_draw(const strut_plot *plot, const strut_stud
 
 /* Rows of a table that are drawn: all, those of a text, or those of a second side less the first. */
 
-enum { STRUT_MOST_TABLE_GROUPS = 40, STRUT_MOST_KEYS_OF_ROWS = 4 };
-
-/** What is compared of two sides. Columns by number. */
-typedef struct strut_table_pairing {
-  int keys[STRUT_MOST_KEYS_OF_ROWS]; /* equal in matching rows; -1: unused */
-  size_t key_count;
-  bool between;      /* the first side is interpolated linearly over the last key */
-  const int *values; /* (value_count) compared columns */
-  size_t value_count;
-} strut_table_pairing;
+enum { STRUT_MOST_TABLE_GROUPS = 40, STRUT_KEYS_OF_ROWS = 3 };
 
 /** The row of the first side, or two and a weight between them; SIZE_MAX: there is none. */
 typedef struct strut_table_partner {
@@ -56,23 +39,26 @@ typedef struct strut_table_partner {
   double weight; /* of `next` */
 } strut_table_partner;
 
+/** Columns by number. */
 typedef struct strut_table_rows {
   const strut_table *table;
-  bool *shown; /* (rows) */
-  /* Of a difference, else NULL. */
-  strut_table_pairing pairing;
-  const char *side[2];          /* the texts: first, second */
-  strut_table_partner *partner; /* (rows) */
+  int keys[STRUT_KEYS_OF_ROWS]; /* equal in rows that are compared; STRUT_NO_COLUMN: unused */
+  bool between;                 /* the first side is interpolated linearly over the last key */
+  const int *values;            /* (value_count) compared columns */
+  size_t value_count;
+  /* Found: */
+  bool *shown;                  /* (rows) */
+  const char *side[2];          /* of a difference the texts: first, second */
+  strut_table_partner *partner; /* (rows) of a difference, else NULL */
 } strut_table_rows;
 
 /**
- * Applies the choice, in the arena: first `only`, then `difference`, of whose two texts the rows of the second are
- * shown. STRUT_USAGE where there is no such row, or there are not two texts; STRUT_NO_MEMORY.
+ * Finds in the arena what is shown: first the rows with `text` in column `only`; then, of the two texts of column
+ * `difference`, those of the second. STRUT_USAGE where there is no such row, or there are not two texts;
+ * STRUT_NO_MEMORY.
  */
-STRUT_API strut_status strut_table_rows_choose(const strut_table *table,
-                                               const strut_table_choice *choice,
-                                               const strut_table_pairing *pairing,
-                                               strut_arena *arena, strut_table_rows *rows,
+STRUT_API strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const char *text,
+                                               int difference, strut_arena *arena,
                                                strut_error *error);
 /** True if there is a difference of this column. */
 STRUT_API bool strut_table_compares(const strut_table_rows *rows, int column);

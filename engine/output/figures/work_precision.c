@@ -63,22 +63,18 @@ strut_panel *strut_add_work_precision(strut_figure *figure, strut_axis cost, str
   panel->y = error;
   panel->x.logarithmic = panel->y.logarithmic = true;
   panel->room = 0.06;
-  panel->lost = "diverged";
+  panel->lost = "at the upper edge: diverged";
   figure->failed = figure->failed || !front;
   if (!front) return panel;
   strut_pareto_front(savings, count, front);
   add_front(figure, savings, count, front, panel);
-  for (size_t i = 0, end, look = 0; i < count;
-       i = end, look++) { /* diverged ones last, off the line */
+  for (size_t i = 0, end, look = 0; i < count; i = end, look++) {
     strut_series *series = strut_add_series(figure, panel, savings[i].group);
     series->look = (int)look;
     series->markers = STRUT_MARKERS_ALL;
-    for (end = i; end < count && strcmp(savings[end].group, savings[i].group) == 0;) end++;
-    for (size_t k = i; k < i + 2 * (end - i); k++) {
-      const strut_saving *s = &savings[k < end ? k : k - (end - i)];
-      if (diverged(s) != (k >= end)) continue;
-      strut_point *point = strut_add_point(figure, series, s->cost, s->error);
-      point->low = s->low, point->high = s->high;
+    for (end = i; end < count && strcmp(savings[end].group, savings[i].group) == 0; end++) {
+      strut_point *point = strut_add_point(figure, series, savings[end].cost, savings[end].error);
+      point->low = savings[end].low, point->high = savings[end].high;
     }
   }
   return panel;

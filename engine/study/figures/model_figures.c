@@ -127,8 +127,6 @@ static void add_keys(sheet *self) {
     if (is_seen(self, k))
       strut_add_key(&self->figure, STRUT_KEY_LINE,
                     (strut_pen){.colour = kinds[k].colour, .width = kinds[k].width}, kinds[k].text);
-  if (self->alike && self->count > 1)
-    strut_add_key(&self->figure, STRUT_KEY_WORDS, (strut_pen){0}, "same scale");
 }
 
 /* The name of all scenes; "" where they differ. */

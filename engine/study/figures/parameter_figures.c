@@ -48,7 +48,7 @@ static void add_data(strut_figure *figure, const strut_fit_result *result, size_
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
   panel->y = strut_axis_in(match->series[s].of, match->series[s].unit, (strut_file_unit){0});
-  panel->title = match->name;
+  if (result->fit->match_count > 1) panel->title = match->name;
   add_dots(figure, panel, "measured", match, s, match->series[s].measured, 1.0)->look = 1;
   strut_series *line = strut_add_series(figure, panel, "model");
   line->look = 0;
@@ -65,7 +65,7 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result, 
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
   panel->y = strut_axis_of(known ? "residual over noise" : "residual over its deviation", "");
-  panel->title = match->name;
+  if (result->fit->match_count > 1) panel->title = match->name;
   for (size_t s = 0; s < match->series_count; s++) {
     const double *residual = result->residual + strut_fit_first(result->fit, m, s);
     if (!is_measured(match, s)) continue;
@@ -112,6 +112,7 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
   const char *title = result->plan->study->name;
   const strut_figure empty = {.title = title, .columns = 2, .least_width = 200.0};
   strut_figure data = empty, residuals = empty, profiles = empty;
+  data.one_legend = profiles.one_legend = true;
   if (!result->found) return STRUT_OK;
   for (size_t m = 0; m < result->fit->match_count; m++) {
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++)
@@ -129,10 +130,9 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
 
 /* Indices as bars with whiskers, or over an axis of the study. */
 
-static const double ROW = 26.0, FRAME = 40.0; /* of a parameter; around the frame [pt] */
-static const double BAR = 0.32, CAP = 0.08;   /* a bar, half a whisker's end, of a row */
+static const double BAR = 0.32, BARS = 70, BROADEST = 10; /* of a place; all of a panel, one [pt] */
 static const double LEAST = -0.1, MOST = 1.2;
-static const double NARROWEST = 165; /* panel over an axis [pt] */
+static const double NARROWEST = 165; /* panel [pt] */
 
 /* The next result with indices at or after row i, in *first; how many parameters it has. */
 static size_t find_result(const strut_sensitivity_result *result, size_t i, size_t *first) {
@@ -147,55 +147,34 @@ static size_t find_result(const strut_sensitivity_result *result, size_t i, size
   return parameters;
 }
 
-static void add_line(strut_figure *figure, strut_series *series, double x1, double y1, double x2,
-                     double y2) {
-  strut_add_point(figure, series, fmin(MOST, fmax(LEAST, x1)), y1);
-  strut_add_point(figure, series, fmin(MOST, fmax(LEAST, x2)), y2);
-  strut_add_gap(figure, series);
-}
-
-/* Bars of the first order, of the whole, or their whiskers. */
-static void add_bars(strut_figure *figure, strut_series *series, int which,
-                     const strut_sensitivity_row *row, double place) {
-  for (int k = 0; k < 2; k++) {
-    const strut_estimate *estimate = &row[k].estimate;
-    double y = place + (k ? -0.5 : 0.5) * BAR, low = estimate->low, high = estimate->high;
-    if (!isfinite(estimate->value)) continue;
-    if (which == k) add_line(figure, series, 0, y, estimate->value, y);
-    if (which < 2 || !isfinite(low) || !isfinite(high)) continue;
-    add_line(figure, series, low, y, high, y);
-    add_line(figure, series, low, y - CAP, low, y + CAP);
-    add_line(figure, series, high, y - CAP, high, y + CAP);
-  }
-}
-
-/* Adds a panel of (count) parameters, from row `first` on, the first parameter at the top. */
+/* Adds a panel of (count) parameters, from row `first` on. */
 static void add_panel(strut_figure *figure, const strut_sensitivity_row *rows, size_t count) {
-  static const strut_pen pens[] = {{.colour = {0.16, 0.38, 0.62, 1.0}, .width = 8, .butt = true},
-                                   {.colour = {0.65, 0.76, 0.87, 1.0}, .width = 8, .butt = true},
-                                   {.colour = {0.15, 0.15, 0.15, 1.0}, .width = 0.7, .butt = true}};
-  static const char *const labels[] = {"first order",
-                                       "total, parts of the variance; whiskers: 95 %", NULL};
+  static const strut_colour colours[] = {{0.16, 0.38, 0.62, 1.0}, {0.65, 0.76, 0.87, 1.0}};
+  static const char *const labels[] = {"first order", "total; whiskers: 95 %"};
   strut_panel *panel = strut_add_panel(figure);
   const char **names = strut_arena_allocate(&figure->arena, count, sizeof *names);
   figure->failed |= !names;
-  for (size_t k = 0; k < count && names; k++) names[count - 1 - k] = rows[2 * k].parameter;
-  for (int i = 0; i < 3; i++) {
+  for (size_t k = 0; k < count && names; k++) names[k] = rows[2 * k].parameter;
+  for (size_t i = 0; i < 2; i++) {
     strut_series *series = strut_add_series(figure, panel, labels[i]);
-    series->pen = pens[i];
-    for (size_t k = 0; k < count; k++)
-      add_bars(figure, series, i, &rows[2 * k], (double)(count - 1 - k));
+    series->pen = (strut_pen){
+        .colour = colours[i], .width = fmin(BROADEST, BARS / (double)count), .butt = true};
+    for (size_t k = 0; k < count; k++) {
+      const strut_estimate *e = &rows[2 * k + i].estimate;
+      strut_point *end =
+          strut_add_bar(figure, series, (double)k + ((double)i - 0.5) * BAR, e->value);
+      end->low = e->low, end->high = e->high;
+    }
   }
   panel->title = rows->of;
-  panel->x.high = MOST;
-  panel->y =
-      (strut_axis){.low = -0.6, .high = (double)count - 0.4, .names = names, .name_count = count};
-  panel->height = FRAME + ROW * (double)count;
+  panel->x =
+      (strut_axis){.low = -0.5, .high = (double)count - 0.5, .names = names, .name_count = count};
+  panel->y = (strut_axis){.name = "part of the variance", .low = LEAST, .high = MOST};
 }
 
 static strut_status draw_bars(const strut_plot *plot, const strut_sensitivity_result *result,
                               bool *drawn, strut_error *error) {
-  strut_figure figure = {.one_legend = true};
+  strut_figure figure = {.least_width = NARROWEST, .columns = 2, .one_legend = true};
   size_t first = 0, count = 0;
   *drawn = false;
   for (size_t i = 0; (count = find_result(result, i, &first)); i = first + 2 * count) {

@@ -192,7 +192,7 @@
 
 #define STRUT_FIGURE_KEYS(X) \
   X(FIGURE, KIND, "kind", WORD, NONE, ANY, "lines", OPTIONAL, 0, "lines|map|motion|period|snapshots|best|points|winner", FIELD(strut_study_figure, kind), "Of the table: `lines`, or a `map` whose colour shows a value. Of recorded motions, which need `trajectories: yes`: `motion` (lines), `period` and `snapshots` (a picture of each run, as by `strut run --draw`). Of a [search](#search): `best` (best objective over evaluations), `points` (over `x` and `y`) and `winner` (the best model beside the start).") \
-  X(FIGURE, AT_X, "x", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x), "Column on the x axis; required for lines, maps and motion. Columns of a motion: the axes, `node`, `time`, `elapsed` since the start of the record, `x`, `y`, and displacements `dx`, `dy` since then.") \
+  X(FIGURE, AT_X, "x", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, x), "Column on the x axis; required for lines, maps and motion. Lines over texts are bars. Columns of a motion: the axes, `node`, `time`, `elapsed` since the start of the record, `x`, `y`, and displacements `dx`, `dy` since then.") \
   X(FIGURE, AT_Y, "y", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, y), "Column on the y axis; required for lines, maps and motion.") \
   X(FIGURE, SERIES, "series", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, series), "Lines: the column with one line for each of its values.") \
   X(FIGURE, COLOR, "color", NAME, NONE, ANY, "", OPTIONAL, 0, "", FIELD(strut_study_figure, color), "Map: the column that colour shows; hatched where `flips` is 1.") \

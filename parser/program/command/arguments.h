@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "engine/base/status.h"
+#include "engine/scene/study.h"
 #include "parser/language/keys/keys.h"
 #include "parser/language/read/read_scene.h"
 
@@ -87,7 +88,8 @@ typedef struct strut_arguments {
   const char *output, *plot, *animate, *width, *title, *scale, *times;
   const char *at, *supports, *load, *from, *until, *stop, *values;
   const char *shard, *time, *memory;
-  const char *x, *y, *by, *panels, *band, *only, *difference, *label, *labels, *doubt;
+  const char *labels;
+  strut_study_figure drawn; /* of a table */
   bool svg_text;
   const char *x_label, *y_label, *x_limits, *y_limits;
   strut_given_word integrator, bars, mass_model, friction_law, damping_law, friction, given;

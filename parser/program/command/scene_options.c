@@ -8,9 +8,11 @@
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
 #include "engine/integrate/integrator.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/scene/things.h"
 #include "parser/language/read/csv.h"
 #include "parser/language/read/read_scene.h"
+#include "parser/language/yaml/diagnostics.h"
 
 const strut_option strut_method_options[] = {
     {STRUT_FILLS(integrator), "integrator", "NAME",
@@ -410,6 +412,54 @@ strut_status strut_run_figure_read(const strut_arguments *arguments, strut_run_f
       arguments,
       "--times expects up to %d times with a comma between, such as \"0 s, 80 ms\"; not '%s'",
       STRUT_MOST_TIMES, text);
+}
+
+/* ---- of tables ---- */
+
+#define KEY(NAME, OPTION, ...) NAME, OPTION, offsetof(strut_study_figure, __VA_ARGS__)
+static const strut_figure_key keys[] = {{KEY("x", "x", x), "", true},
+                                        {KEY("y", "y", y), ",", true},
+                                        {KEY("series", "by", series), "", false},
+                                        {KEY("color", "label", color), "", false},
+                                        {KEY("panels", "panels", panels), "", false},
+                                        {KEY("doubt", "doubt", doubt), "", false},
+                                        {KEY("difference", "difference", difference), "", false},
+                                        {KEY("band", "band", band), "=", false},
+                                        {KEY("only", "only", only), "=", false}};
+
+/* Judges one name of `length` bytes; what follows it is `text`. */
+static void judge_name(const strut_figure_columns *columns, const strut_figure_key *key,
+                       const char *name, size_t length, char fault[STRUT_MESSAGE_MOST]) {
+  const char *other;
+  char word[200];
+  for (size_t i = 0; (other = columns->name(columns->context, i)); i++) {
+    if (strlen(other) != length || memcmp(other, name, length) != 0) continue;
+    if (columns->judge) columns->judge(columns->context, i, key, name + length + 1, fault);
+    return;
+  }
+  snprintf(word, sizeof word, "%.*s", (int)length, name);
+  snprintf(fault, STRUT_MESSAGE_MOST, "%s has no column '%s'%s", columns->of, word,
+           strut_near_to(word, columns->name, columns->context).text);
+}
+
+const strut_figure_key *strut_figure_fault(const strut_study_figure *figure,
+                                           const strut_figure_columns *columns,
+                                           char fault[STRUT_MESSAGE_MOST]) {
+  fault[0] = '\0';
+  for (const strut_figure_key *key = keys; key < keys + sizeof keys / sizeof *keys; key++) {
+    const char *name = *(const char *const *)((const char *)figure + key->member), *end;
+    for (int count = 1; name && !fault[0]; name = *end == ',' ? end + 1 : NULL, count++) {
+      end = name + strcspn(name, key->ends);
+      if (*key->ends == '=' && !*end)
+        snprintf(fault, STRUT_MESSAGE_MOST, "expects COLUMN=TEXT, not '%.200s'", name);
+      else if (count > STRUT_MOST_Y)
+        snprintf(fault, STRUT_MESSAGE_MOST, "at most %d columns", STRUT_MOST_Y);
+      else
+        judge_name(columns, key, name, (size_t)(end - name), fault);
+    }
+    if (fault[0]) return key;
+  }
+  return NULL;
 }
 
 enum { MOST_MESSAGES = 20 };

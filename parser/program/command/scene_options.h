@@ -101,6 +101,29 @@ strut_status strut_run_figure_read(const strut_arguments *arguments, strut_run_f
 
 /* A table of numbers and texts, from a file or the standard input. */
 
+/** A column that a figure of a table names: by a key of a study, by an option of `strut plot`. */
+typedef struct strut_figure_key {
+  const char *key, *option;
+  size_t member;    /* of strut_study_figure */
+  const char *ends; /* a name in the text: "," has several, "=" of COLUMN=TEXT; else "" */
+  bool number;      /* its column holds numbers */
+} strut_figure_key;
+
+/** The columns that a figure may name. */
+typedef struct strut_figure_columns {
+  const char *of;                                     /* "the table" */
+  const char *(*name)(const void *context, size_t i); /* NULL behind the last */
+  /** Says in `fault` why the key cannot have column i, or that text of it; may be NULL. */
+  void (*judge)(const void *context, size_t i, const strut_figure_key *key, const char *text,
+                char fault[STRUT_MESSAGE_MOST]);
+  const void *context;
+} strut_figure_columns;
+
+/** The first key whose column is not there, or has a fault, which it says; NULL where all is well. */
+const strut_figure_key *strut_figure_fault(const strut_study_figure *figure,
+                                           const strut_figure_columns *columns,
+                                           char fault[STRUT_MESSAGE_MOST]);
+
 /**
  * Reads the file, "-" being the standard input. The listener hears messages, with line and column;
  * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).

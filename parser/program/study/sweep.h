@@ -50,8 +50,8 @@ strut_status strut_sweep_texts_check(const strut_arguments *arguments,
 strut_status strut_sweep_texts_write(const strut_arguments *arguments,
                                      const strut_sweep_study *study, strut_error *error);
 
-/** Checks that all figures name existing columns. STRUT_BAD_SCENE with the reason. */
-strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error);
+/** Checks that all figures name existing columns. On STRUT_BAD_SCENE the study's messages say where and why. */
+strut_status strut_sweep_figures_check(strut_sweep_study *study);
 /**
  * Fails where strut would have to overwrite somebody else's table.csv or picture. Pictures of single runs
  * are refused when they are drawn.

@@ -13,98 +13,92 @@
 /* The source of a figure: the table, or the recorded runs. */
 typedef struct source {
   const strut_sweep_plan *plan;
-  bool runs;
+  bool runs, lines; /* lines may be bars over texts */
 } source;
 
 static const char *column_name(const void *context, size_t i) {
   const source *self = context;
   size_t count = self->runs ? self->plan->axis_columns : self->plan->column_count;
   if (i < count) return self->plan->columns[i].name;
-  return self->runs ? strut_study_motion_column(i - count) : NULL;
+  return self->runs ? strut_study_motion_column(i - count) : i == count ? "status" : NULL;
 }
 
-/* Checks that the figure may use this column; NULL: not given. */
-static strut_status check_column(const source *self, const strut_study_figure *figure,
-                                 const char *name, bool number, strut_error *error) {
-  const char *other = NULL;
-  for (size_t i = 0; name && (other = column_name(self, i)); i++) {
-    if (strcmp(other, name) != 0) continue;
-    /* What was recorded is numbers behind the names of nodes; it does not split rows into series. */
-    const size_t node = self->plan->axis_columns;
-    const bool texts = self->runs && i >= node ? i == node : self->plan->columns[i].word;
-    if (number ? !texts : !self->runs || i <= node) return STRUT_OK;
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      number
-                          ? "figure '%.60s' of the study: column '%.60s' holds texts, not numbers"
-                          : "figure '%.60s' of the study: '%.60s' is recorded; expected an axis, "
-                            "or 'node'",
-                      figure->name, name);
-  }
-  if (!name) return STRUT_OK;
-  return strut_fail(error, STRUT_BAD_SCENE, "figure '%.60s' of the study: %s no column '%.60s'%s",
-                    figure->name, self->runs ? "the motion has" : "the table has", name,
-                    strut_near_to(name, column_name, self).text);
+/* May a key have a text of this axis? */
+static bool has_text(const source *self, size_t i, const char *text) {
+  size_t a;
+  const strut_study_column *column = strut_grid_column(self->plan->study, i, &a);
+  for (int64_t k = 0; k < self->plan->study->axes[a].count && column->word; k++)
+    if (strcmp(column->words[k], text) == 0) return true;
+  return !column->word;
 }
 
-/* COLUMN=TEXT, where the column has to be there. */
-static strut_status check_match(const source *self, const strut_study_figure *figure,
-                                const char *text, const char *key, strut_error *error) {
-  char name[60];
-  if (!text) return STRUT_OK;
-  if (!strchr(text, '='))
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      "figure '%.60s' of the study: '%s' expects COLUMN=TEXT, not '%.60s'",
-                      figure->name, key, text);
-  snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
-  if (!self->runs && strcmp(name, "status") == 0) return STRUT_OK; /* of every table */
-  return check_column(self, figure, name, false, error);
+/* What was recorded is numbers behind the names of nodes; it does not split rows into series. */
+static void judge_column(const void *context, size_t i, const strut_figure_key *key,
+                         const char *text, char fault[STRUT_MESSAGE_MOST]) {
+  const source *self = context;
+  const strut_sweep_plan *plan = self->plan;
+  const size_t node = plan->axis_columns;
+  const char *name = column_name(self, i);
+  bool words =
+      self->runs && i >= node ? i == node : i == plan->column_count || plan->columns[i].word;
+  bool bars = self->lines && strcmp(key->key, "x") == 0;
+  if (key->number ? words && !bars : self->runs && i > node)
+    snprintf(fault, STRUT_MESSAGE_MOST,
+             key->number
+                 ? "column '%.60s' holds texts, not numbers; 'series' and 'panels' take texts"
+                 : "'%.60s' is recorded; expected an axis, or 'node'",
+             name);
+  else if (*key->ends == '=' && i < node && !has_text(self, i, text))
+    snprintf(fault, STRUT_MESSAGE_MOST, "'%.60s' is no value of '%.60s'", text, name);
 }
 
 /* A label for each value of an axis by itself; of other columns the curves are counted when they are drawn. */
-static strut_status check_labels(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                 strut_error *error) {
+static bool has_labels(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                       char fault[STRUT_MESSAGE_MOST]) {
   for (size_t i = 0, a; i < plan->axis_columns && figure->series && figure->label_count; i++) {
     if (strcmp(plan->columns[i].name, figure->series) != 0) continue;
     strut_grid_column(plan->study, i, &a);
     const strut_study_axis *axis = &plan->study->axes[a];
-    if (axis->column_count == 1 && axis->count != (int64_t)figure->label_count)
-      return strut_fail(error, STRUT_BAD_SCENE,
-                        "figure '%.60s' of the study: 'labels' has %zu labels for the %lld values "
-                        "of '%.60s'",
-                        figure->name, figure->label_count, (long long)axis->count, figure->series);
+    if (axis->column_count > 1 || axis->count == (int64_t)figure->label_count) continue;
+    snprintf(fault, STRUT_MESSAGE_MOST, "%zu labels for the %lld values of '%.60s'",
+             figure->label_count, (long long)axis->count, figure->series);
+    return false;
   }
-  return STRUT_OK;
+  return true;
 }
 
-static strut_status check_figure(const source *self, const strut_study_figure *figure,
-                                 strut_error *error) {
-  if (self->runs && !self->plan->study->trajectories)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      "figure '%.60s' of the study needs recorded runs: add "
-                      "'trajectories: yes' to the study",
-                      figure->name);
-  if (strut_figure_of_search(figure) && !self->plan->study->search)
-    return strut_fail(error, STRUT_BAD_SCENE,
-                      "figure '%.60s' of the study is of a search, which the study has not",
-                      figure->name);
-  strut_status status = check_column(self, figure, figure->x, true, error);
-  if (!status) status = check_column(self, figure, figure->y, true, error);
-  if (!status) status = check_column(self, figure, figure->series, false, error);
-  if (!status) status = check_column(self, figure, figure->color, false, error);
-  if (!status) status = check_column(self, figure, figure->panels, false, error);
-  if (!status) status = check_column(self, figure, figure->difference, false, error);
-  if (!status) status = check_labels(self->plan, figure, error);
-  if (!status) status = check_match(self, figure, figure->band, "band", error);
-  return status ? status : check_match(self, figure, figure->only, "only", error);
+/* The key that has a fault, which it says; NULL: none. */
+static const char *check_figure(const strut_sweep_plan *plan, const strut_study_figure *figure,
+                                char fault[STRUT_MESSAGE_MOST]) {
+  const source s = {plan, strut_figure_of_runs(figure), figure->kind == STRUT_FIGURE_LINES};
+  const strut_figure_columns columns = {s.runs ? "the motion" : "the table", column_name,
+                                        judge_column, &s};
+  const bool no_search = strut_figure_of_search(figure) && !plan->study->search;
+  if (no_search || (s.runs && !plan->study->trajectories)) {
+    snprintf(fault, STRUT_MESSAGE_MOST, "%s",
+             no_search ? "it is of a search, which the study has not"
+                       : "it needs recorded runs: add 'trajectories: yes' to the study");
+    return "kind";
+  }
+  if (!has_labels(plan, figure, fault)) return "labels";
+  const strut_figure_key *key = strut_figure_fault(figure, &columns, fault);
+  return key ? key->key : NULL;
 }
 
-strut_status strut_sweep_figures_check(const strut_sweep_plan *plan, strut_error *error) {
-  strut_status status = STRUT_OK;
-  for (size_t i = 0; i < plan->study->figure_count && !status; i++) {
-    const source s = {.plan = plan, .runs = strut_figure_of_runs(&plan->study->figures[i])};
-    status = check_figure(&s, &plan->study->figures[i], error);
+strut_status strut_sweep_figures_check(strut_sweep_study *study) {
+  strut_study_file *file = &study->file;
+  const strut_tree *figures = strut_tree_find(file->document.root, "figures", NULL);
+  char fault[STRUT_MESSAGE_MOST];
+  for (size_t i = 0; i < file->study.figure_count; i++) {
+    const strut_study_figure *figure = &file->study.figures[i];
+    const char *key = check_figure(&study->plan, figure, fault);
+    const strut_tree *own = strut_tree_find(figures, figure->name, NULL);
+    const strut_tree *at = key ? strut_tree_find(own, key, NULL) : NULL;
+    if (key)
+      strut_diagnose(&file->diagnostics, (at ? at : own)->place, "'%s' of figure '%.60s': %s", key,
+                     figure->name, fault);
   }
-  return status;
+  return file->diagnostics.count ? STRUT_BAD_SCENE : STRUT_OK;
 }
 
 strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const char *directory,

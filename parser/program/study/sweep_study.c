@@ -178,7 +178,7 @@ strut_status strut_sweep_study_try(const strut_arguments *arguments, strut_sweep
   if (!status && file->study.search) status = bind_search(study, error);
   if (!status && file->study.follow) status = strut_sweep_follow_check(study, error);
   if (!status && file->study.fit) status = bind_fit(study, error);
-  if (!status) status = strut_sweep_figures_check(&study->plan, error);
+  if (!status) status = strut_sweep_figures_check(study);
   if (!status) status = strut_sweep_sensitivity_check(study);
   if (status) return status;
   if (!identify(arguments, file, study->slots.hash)) return strut_no_memory(error, "");
