@@ -151,9 +151,17 @@ typedef struct strut_study_fit {
   int64_t seed;
   size_t column;    /* of the first variable, among the columns of all axes */
   size_t set_count; /* columns behind those of the variables: parameters that matches set */
+  size_t
+      beside_count; /* of variables and delays, along which fits beside the best one are sought */
 } strut_study_fit;
 
-enum { STRUT_FIT_MOST_VARIABLES = 20, STRUT_FIT_MOST_MATCHES = 10, STRUT_FIT_MOST_SERIES = 200 };
+/* ROUNDS: how often is looked beside the best fit while that leads to a better one. */
+enum {
+  STRUT_FIT_ROUNDS = 3,
+  STRUT_FIT_MOST_VARIABLES = 20,
+  STRUT_FIT_MOST_MATCHES = 10,
+  STRUT_FIT_MOST_SERIES = 200
+};
 
 /* ---- branches ---- */
 

@@ -74,13 +74,12 @@ typedef struct strut_fit_result {
   const strut_study_fit *fit;
   const strut_sweep_plan *plan;
   size_t parameters, aligned_count, variable_count;
-  size_t start_count, best; /* best: a start */
+  size_t start_count, best; /* best: a start, or beside one */
+  bool settled;             /* beside the best none was found that is better */
   bool found;               /* some start has residuals: all below is there */
-  strut_fit_row *starts;    /* (start_count) */
-  strut_fit_row *ends;      /* (variables, 2) of the profiles, low and high */
-  size_t elsewhere_count;
-  strut_fit_row *elsewhere; /* (elsewhere_count) with other delays, without values */
-  size_t omission_count;
+  strut_fit_row *starts; /* (start_count), then (beside_count) that lie beside the best of them */
+  strut_fit_row *ends;   /* (variables, 2) of the profiles, low and high */
+  size_t beside_count, omission_count;
   strut_fit_row *omissions; /* (omission_count) without each match; none where there is only one */
   strut_fit_estimate *estimates; /* (parameters) alignments first */
   double *correlation;           /* (variables, variables) */

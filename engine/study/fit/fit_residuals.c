@@ -44,6 +44,7 @@ typedef struct prediction {
   size_t index; /* of the match */
   alignment align;
   double delay[2];           /* in which range it is to be found; both 0: it is known */
+  double from, to;           /* times of the samples from which it is found */
   strut_study_value *values; /* of all columns of the axes */
 } prediction;
 
@@ -116,11 +117,13 @@ static void prepare_run(const strut_model *model, double duration, strut_experim
 }
 
 /* Even times that cover all delays. */
-static size_t spread_samples(const prediction *self, double *time) {
+static size_t spread_samples(prediction *self, double *time) {
   const strut_fit_match *match = self->match;
   size_t count = 3 * match->count + 3;
-  double end = match->at[count_early(self->one, match) - 1] - self->delay[0];
-  for (size_t i = 0; i < count; i++) time[i] = end * (double)i / (double)(count - 1);
+  self->from = fmax(0.0, match->at[0] - self->delay[1]);
+  self->to = match->at[count_early(self->one, match) - 1] - self->delay[0];
+  for (size_t i = 0; i < count; i++)
+    time[i] = self->from + (self->to - self->from) * (double)i / (double)(count - 1);
   return count;
 }
 
@@ -164,7 +167,10 @@ static void take_samples(const prediction *self, size_t each, const double *samp
 /* ---- placing ---- */
 
 /* Of so many delays the best is sought; of longer series not every number counts for that. */
-enum { MOST_DELAYS = 1000, COUNTED = 2000, NEWTON_STEPS = 4 };
+enum { MOST_DELAYS = 1000, COUNTED = 2000, RANKS = 40, NEWTON_STEPS = 4 };
+
+/* Delays are no others if they leave this part of the largest sum. */
+static const double ALIKE = 0.5;
 
 /* The turn with the least c'Qc, c = (cos, sin, -1): in closed form where Q is alike in both, then Newton's steps. */
 static double best_turn(double q[3][3]) {
@@ -218,14 +224,15 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
   return sum;
 }
 
-/* The numbers of a match delayed so far, of samples (count, series) at even times up to `end`, and placed. */
+/* The numbers of a match delayed so far, of samples (count, series) at even times, and placed. */
 static double place_delayed(const prediction *self, double delay, const double *sampled,
-                            size_t count, double end, alignment *a) {
+                            size_t count, alignment *a) {
   const strut_fit_match *match = self->match;
   const strut_fit_source *sources = self->one->layout->parts[self->index].sources;
   size_t n = match->series_count;
   for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
-    double at = (double)(count - 1) * fmin(fmax(match->at[i] - delay, 0.0) / end, 1.0);
+    double part = (match->at[i] - delay - self->from) / (self->to - self->from);
+    double at = (double)(count - 1) * fmin(fmax(part, 0.0), 1.0);
     size_t k = (size_t)fmin(at, (double)(count - 2));
     for (size_t s = 0; s < n; s++)
       self->one->predicted[0][sources[s].first + i] =
@@ -235,25 +242,32 @@ static double place_delayed(const prediction *self, double delay, const double *
   return place(self->one, self->index, a);
 }
 
-/* Finds the delay of a match, and what else places it: of those with a least sum nearby the best or second best. */
-static void find_delay(prediction *self, const double *sampled, size_t count, double end) {
-  double low = self->delay[0], high = self->delay[1];
+/*
+ * Finds the delay of a match, and what else places it: of those with a least sum nearby, which is not like the largest,
+ * the best or a later one. False: there is none.
+ */
+static bool find_delay(prediction *self, const double *sampled, size_t count) {
+  double low = self->delay[0], high = self->delay[1], most = 0.0;
   size_t delays = 3 * self->match->count < MOST_DELAYS ? 3 * self->match->count : MOST_DELAYS;
   double step = (high - low) / (double)delays, sum[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
-  double least[2] = {HUGE_VAL, HUGE_VAL}, at[2] = {low, low};
+  double least[RANKS] = {HUGE_VAL}, at[RANKS] = {low};
+  size_t ranks = 0, rank = self->one->elsewhere == (int32_t)self->index ? self->one->rank : 0;
   for (size_t j = 0; j <= delays + 1; j++) {
     sum[0] = sum[1], sum[1] = sum[2], sum[2] = HUGE_VAL;
     if (j <= delays)
-      sum[2] = place_delayed(self, low + step * (double)j, sampled, count, end, &self->align);
-    if (!(sum[1] < sum[0] && sum[1] <= sum[2] && sum[1] < least[1])) continue;
+      sum[2] = place_delayed(self, low + step * (double)j, sampled, count, &self->align);
+    if (isfinite(sum[2])) most = fmax(most, sum[2]);
+    if (!(sum[1] < sum[0] && sum[1] <= sum[2])) continue;
     double bend = sum[0] - 2.0 * sum[1] + sum[2];
     double part = isfinite(bend) ? 0.5 * (sum[0] - sum[2]) / bend : 0.0;
-    int rank = sum[1] < least[0] ? 0 : 1;
-    if (!rank) least[1] = least[0], at[1] = at[0];
-    least[rank] = sum[1], at[rank] = low + step * ((double)j - 1.0 + part);
+    size_t r = ranks < RANKS ? ranks++ : RANKS - 1;
+    if (r == RANKS - 1 && ranks == RANKS && least[r] > 0.0 && !(sum[1] < least[r])) continue;
+    for (; r > 0 && sum[1] < least[r - 1]; r--) least[r] = least[r - 1], at[r] = at[r - 1];
+    least[r] = sum[1], at[r] = low + step * ((double)j - 1.0 + part);
   }
-  int rank = isfinite(least[1]) && self->one->second == (int32_t)self->index;
-  place_delayed(self, at[rank], sampled, count, end, &self->align);
+  if (rank && (rank >= ranks || least[rank] > ALIKE * most)) return false;
+  place_delayed(self, at[rank], sampled, count, &self->align);
+  return true;
 }
 
 /* Runs the model, and samples it. */
@@ -277,10 +291,9 @@ static strut_status predict_motion(prediction *self, strut_setup *setup, const s
   prepare_run(model, end, &setup->experiment);
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);
-  if (!status && delays)
-    find_delay(self, value, samples.count, end);
-  else if (!status)
-    take_samples(self, each, value);
+  if (!status && delays && !find_delay(self, value, samples.count))
+    return strut_fail(error, STRUT_DIVERGED, "there is no other delay");
+  if (!status && !delays) take_samples(self, each, value);
   return status;
 }
 
@@ -347,15 +360,18 @@ static bool predict_table(prediction *self) {
   return fine;
 }
 
-/* The range of the delay that is to be found. */
+/* The range of the delay that is to be found: all of it, or of a wide one what is about the present delay. */
 static void choose_delays(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
-  bool given = !self->one->placing || self->one->second == STRUT_FIT_GIVEN_DELAYS;
-  for (size_t i = 0; i < layout->aligned_count && !given; i++) {
+  double now = self->align.number[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
+  for (size_t i = 0; i < layout->aligned_count; i++) {
     if (layout->aligned[i].match != self->index || layout->aligned[i].what != STRUT_FIT_DELAY)
       continue;
-    self->delay[0] = strut_fit_value(layout, i, layout->low[i]);
-    self->delay[1] = strut_fit_value(layout, i, layout->high[i]);
+    double low = strut_fit_value(layout, i, layout->low[i]);
+    double high = strut_fit_value(layout, i, layout->high[i]);
+    bool wide = high - low > (STRUT_FIT_OWN_CLOCK + 3.0) * span;
+    self->delay[0] = wide ? fmax(low, now - span) : low;
+    self->delay[1] = wide ? fmin(high, now + span) : high;
   }
 }
 
@@ -379,9 +395,10 @@ static bool predict(strut_fit_case *one, const double *parameters) {
   one->known = values != NULL;
   if (!values) one->status = strut_no_memory(&one->error, "");
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
-    prediction p = {one, &fit->matches[m], m, align(layout, m, parameters), {0.0, 0.0}, values};
+    prediction p = {.one = one, .match = &fit->matches[m], .index = m, .values = values};
+    p.align = align(layout, m, parameters);
     if ((int32_t)m == one->left_out) continue;
-    choose_delays(&p);
+    if (one->placing && one->delays) choose_delays(&p);
     strut_fit_fill_values(layout, 0, parameters, values);
     for (size_t k = 0; k < fit->set_count; k++)
       values[fit->column + fit->variable_count + k] = p.match->values[k];
@@ -466,9 +483,11 @@ static bool find_residuals(void *context, const double *parameters, double *resi
   return has_numbers(one, residual);
 }
 
-double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters) {
+double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,
+                       double *parameters) {
   if (!one->layout->aligned_count) return HUGE_VAL;
-  one->known = false, one->placing = parameters, one->second = second, one->placed_sum = 0.0;
+  one->known = false, one->placing = parameters, one->placed_sum = 0.0;
+  one->delays = delays, one->elsewhere = elsewhere, one->rank = rank;
   bool fine = predict(one, parameters);
   one->known = false, one->placing = NULL;
   return fine ? one->placed_sum : HUGE_VAL;

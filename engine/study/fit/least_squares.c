@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed"};
+const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed", "none"};
 
 /* Gradients, and changes of the sum, at which the method ends, relative. */
 static const double FLAT = 1e-15;
@@ -97,10 +97,13 @@ static void differentiate(solver *self, size_t i, double *derivative, double sid
   double at = self->at[i], h = problem->step * fmax(fabs(at), 1.0);
   double low = fmax(at - h, problem->low[i]), high = fmin(at + h, problem->high[i]);
   if (!problem->derivative || !problem->derivative(problem->context, self->at, i, derivative)) {
-    const double *back = look_beside(self, i, &low, self->back);
     const double *ahead = look_beside(self, i, &high, self->ahead);
+    bool enough = problem->one_sided && high > at;
+    double first = enough ? at : low;
+    const double *back = look_beside(self, i, &first, self->back);
     for (size_t j = 0; j < problem->count; j++)
-      derivative[j] = high > low ? (ahead[j] - back[j]) / (high - low) : 0.0;
+      derivative[j] = high > first ? (ahead[j] - back[j]) / (high - first) : 0.0;
+    if (!enough) low = first;
   }
   side[0] = at - low;
   side[1] = high - at;

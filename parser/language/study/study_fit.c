@@ -339,11 +339,14 @@ static void read_sets(strut_study_reader *reader, const strut_tree *const *sets,
 
 /* ---- all of it ---- */
 
-/* The axis that numbers the fits: of starts, of both ends of each interval, without each match. */
-static void add_rows(strut_study_reader *reader, const strut_study_fit *fit, size_t variables,
+/* The axis that numbers the fits: of starts, beside the best, of both ends of each interval, without each match. */
+static void add_rows(strut_study_reader *reader, strut_study_fit *fit, size_t variables,
                      strut_study_axis *axis) {
   size_t count =
       (size_t)fit->starts + 2 * variables + (fit->match_count > 1 ? fit->match_count : 0);
+  fit->beside_count = variables;
+  for (size_t m = 0; m < fit->match_count; m++) fit->beside_count += fit->matches[m].align.delay;
+  count += STRUT_FIT_ROUNDS * fit->beside_count;
   double *numbers = strut_study_allocate(reader, count, sizeof *numbers);
   *axis = (strut_study_axis){.count = numbers ? (int64_t)count : 1, .column_count = 1};
   axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
