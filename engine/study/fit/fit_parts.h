@@ -70,13 +70,13 @@ typedef struct strut_fit_layout {
 /** An evaluation: of one thread at a time. */
 typedef struct strut_fit_case {
   const strut_fit_layout *layout;
-  double share;         /* of the time of motions that counts */
-  int32_t left_out;     /* this match does not count; -1: all do */
-  double *weight;       /* (count) factors of residuals; 0: a gap, or it does not count */
-  size_t used;          /* residuals that count */
-  int64_t evaluations;  /* of the residuals, so far */
-  double *predicted[3]; /* (count) by the model, before and after by a short time, not aligned */
-  double *latest;       /* (parameters) of that */
+  double share;        /* of the time of motions that counts */
+  int32_t left_out;    /* this match does not count; -1: all do */
+  double *weight;      /* (count) factors of residuals; 0: a gap, or it does not count */
+  size_t used;         /* residuals that count */
+  int64_t evaluations; /* of the residuals, so far */
+  double *predicted;   /* (count) by the model, not aligned */
+  double *latest;      /* (parameters) of that */
   bool known;
   double *placing;   /* parameters whose alignments are to be found while the model is predicted */
   bool delays;       /* with their delays */

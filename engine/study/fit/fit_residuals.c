@@ -15,20 +15,16 @@ static const double TOLERANCE = STRUT_FIT_EXACT;
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
 static const double STEP = 1e-4, NEAR = 1e-6;
 
-/* Part of the time between samples at which the rate of a motion is taken. */
-static const double BESIDE = 0.01;
-
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
 
 /* The alignments of a match at the parameters. */
 typedef struct alignment {
   double number[STRUT_FIT_ALIGNS_COUNT];
-  double others; /* factor of numbers that are no coordinates */
 } alignment;
 
 static alignment align(const strut_fit_layout *layout, size_t match, const double *parameters) {
-  alignment a = {.others = 1.0};
+  alignment a = {{0.0}};
   for (size_t i = 0; i < layout->aligned_count; i++)
     if (layout->aligned[i].match == match)
       a.number[layout->aligned[i].what] = strut_fit_value(layout, i, parameters[i]);
@@ -69,11 +65,6 @@ static size_t count_early(const strut_fit_case *one, const strut_fit_match *matc
   size_t count = match->count;
   while (count > 1 && !is_early(one, match, count - 1)) count--;
   return count;
-}
-
-/* By how much samples are beside each other from which a rate is taken [s]. */
-static double beside(const strut_fit_match *match) {
-  return BESIDE * strut_fit_span(match) / (double)match->count;
 }
 
 const strut_quantity_definition *strut_fit_quantity(const strut_experiment *experiment,
@@ -127,41 +118,26 @@ static size_t spread_samples(prediction *self, double *time) {
   return count;
 }
 
-/* Times of the samples of a match, `each` of them for every number; returns how many. */
-static size_t place_samples(const prediction *self, size_t each, double *time) {
+/* Times of the samples of a match; returns how many. */
+static size_t place_samples(const prediction *self, double *time) {
   const strut_fit_match *match = self->match;
-  size_t count = count_early(self->one, match);
-  if (!match->at) {
-    time[0] = 0.0, time[1] = AT_ONCE;
-    return 2;
-  }
-  double delay = self->align.number[STRUT_FIT_DELAY];
-  for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < each; k++) {
-      double t = match->at[i] - delay + ((double)k - (each > 1 ? 1.0 : 0.0)) * beside(match);
-      time[i * each + k] = fmax(t, 0.0);
-    }
-  size_t placed = count * each;
-  if (placed == 1) time[placed++] = time[0];
-  time[placed - 1] = fmax(time[placed - 1], AT_ONCE);
-  return placed;
-}
-
-/* Takes the samples of a run, in the order: number, then each, then series. */
-static void take_samples(const prediction *self, size_t each, const double *sampled) {
-  static const int places[] = {1, 0, 2}; /* before, at, after */
-  const strut_fit_match *match = self->match;
-  const strut_fit_source *source = self->one->layout->parts[self->index].sources;
   size_t count = match->at ? count_early(self->one, match) : 1;
   for (size_t i = 0; i < count; i++)
+    time[i] = match->at ? fmax(match->at[i] - self->align.number[STRUT_FIT_DELAY], 0.0) : 0.0;
+  if (count == 1) time[count++] = time[0];
+  time[count - 1] = fmax(time[count - 1], AT_ONCE);
+  return count;
+}
+
+/* Takes the samples of a run, in the order: number, series; without times all are the first. */
+static void take_samples(const prediction *self, const double *sampled) {
+  const strut_fit_match *match = self->match;
+  const strut_fit_source *source = self->one->layout->parts[self->index].sources;
+  size_t count = match->at ? count_early(self->one, match) : match->count;
+  for (size_t i = 0; i < count; i++)
     for (size_t s = 0; s < match->series_count; s++)
-      for (size_t k = 0; k < each; k++) {
-        double value = sampled[(i * each + k) * match->series_count + s];
-        self->one->predicted[each > 1 ? places[k] : 0][source[s].first + i] = value;
-      }
-  for (size_t s = 0; s < match->series_count && !match->at; s++)
-    for (size_t i = 1; i < match->count; i++)
-      self->one->predicted[0][source[s].first + i] = self->one->predicted[0][source[s].first];
+      self->one->predicted[source[s].first + i] =
+          sampled[(match->at ? i : 0) * match->series_count + s];
 }
 
 /* ---- placing ---- */
@@ -188,7 +164,7 @@ static double best_turn(double q[3][3]) {
 static double place(const strut_fit_case *one, size_t m, alignment *a) {
   const strut_fit_match *match = &one->layout->fit->matches[m];
   const strut_fit_source *sources = one->layout->parts[m].sources;
-  const double *from = one->predicted[0];
+  const double *from = one->predicted;
   double sums[2][4][4] = {{{0.0}}}, q[3][3] = {{0.0}}, rest = 0.0;
   for (size_t s = 0; s < match->series_count; s++)
     for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
@@ -235,7 +211,7 @@ static double place_delayed(const prediction *self, double delay, const double *
     double at = (double)(count - 1) * fmin(fmax(part, 0.0), 1.0);
     size_t k = (size_t)fmin(at, (double)(count - 2));
     for (size_t s = 0; s < n; s++)
-      self->one->predicted[0][sources[s].first + i] =
+      self->one->predicted[sources[s].first + i] =
           sampled[k * n + s] + (at - (double)k) * (sampled[(k + 1) * n + s] - sampled[k * n + s]);
   }
   a->number[STRUT_FIT_DELAY] = delay;
@@ -273,11 +249,10 @@ static bool find_delay(prediction *self, const double *sampled, size_t count) {
 /* Runs the model, and samples it. */
 static strut_status predict_motion(prediction *self, strut_setup *setup, const strut_model *model,
                                    strut_error *error) {
-  size_t each = self->match->align.delay ? 3 : 1;
   bool delays = self->delay[0] < self->delay[1];
   double *time = self->one->buffer, *value = time + 3 * self->match->count + 3;
-  strut_run_samples samples = {
-      delays ? spread_samples(self, time) : place_samples(self, each, time), time, value};
+  strut_run_samples samples = {delays ? spread_samples(self, time) : place_samples(self, time),
+                               time, value};
   const strut_run_options options = {
       .interrupt = self->one->layout->interrupt,
       .most_evaluations = self->one->layout->plan->study->limit.evaluations,
@@ -293,7 +268,7 @@ static strut_status predict_motion(prediction *self, strut_setup *setup, const s
   strut_summary_free(&summary);
   if (!status && delays && !find_delay(self, value, samples.count))
     return strut_fail(error, STRUT_DIVERGED, "there is no other delay");
-  if (!status && !delays) take_samples(self, each, value);
+  if (!status && !delays) take_samples(self, value);
   return status;
 }
 
@@ -306,10 +281,10 @@ static strut_status predict_curve(prediction *self, strut_setup *setup, const st
   strut_status status =
       strut_statics_path(&layout->parts[self->index].study, setup, model, &path, error);
   for (size_t i = 0; i < self->match->count && !status; i++)
-    self->one->predicted[0][source[0].first + i] = strut_goals_force_at(&path, self->match->at[i]);
+    self->one->predicted[source[0].first + i] = strut_goals_force_at(&path, self->match->at[i]);
   strut_path_free(&path);
   for (size_t i = 0; i < self->match->count && !status; i++)
-    if (isnan(self->one->predicted[0][source[0].first + i]))
+    if (isnan(self->one->predicted[source[0].first + i]))
       status =
           strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", self->match->at[i]);
   return status;
@@ -354,7 +329,7 @@ static bool predict_table(prediction *self) {
   strut_status status = !job ? STRUT_NO_MEMORY : job->status ? job->status : job->cells.row.status;
   for (size_t s = 0; s < self->match->series_count && !status; s++)
     for (size_t i = 0; i < self->match->count; i++)
-      self->one->predicted[0][source[s].first + i] = job->cells.numbers[source[s].column];
+      self->one->predicted[source[s].first + i] = job->cells.numbers[source[s].column];
   bool fine = settle_status(self->one, status, job ? &job->error : &(strut_error){0});
   strut_arena_free(&arena);
   return fine;
@@ -385,12 +360,21 @@ static void keep_placing(prediction *self) {
           strut_fit_parameter(layout, i, self->align.number[layout->aligned[i].what]);
 }
 
+/* Do both have the same runs? Shifts and turns need none. */
+static bool has_same_runs(const strut_fit_layout *layout, const double *a, const double *b) {
+  size_t i = 0;
+  while (i < layout->parameters && (a[i] == b[i] || (i < layout->aligned_count &&
+                                                     layout->aligned[i].what != STRUT_FIT_DELAY)))
+    i++;
+  return i == layout->parameters;
+}
+
 /* Fills what the model predicts at the parameters, unless that is known. */
 static bool predict(strut_fit_case *one, const double *parameters) {
   const strut_fit_layout *layout = one->layout;
   const strut_study_fit *fit = layout->fit;
-  size_t bytes = layout->parameters * sizeof *parameters;
-  if (one->known && memcmp(one->latest, parameters, bytes) == 0) return true;
+  if (one->known && has_same_runs(layout, one->latest, parameters)) return true;
+  one->evaluations++;
   strut_study_value *values = strut_allocate(layout->plan->axis_columns + 1, sizeof *values);
   one->known = values != NULL;
   if (!values) one->status = strut_no_memory(&one->error, "");
@@ -406,7 +390,7 @@ static bool predict(strut_fit_case *one, const double *parameters) {
     if (one->known && one->placing) keep_placing(&p);
   }
   strut_release(values);
-  memcpy(one->latest, parameters, bytes);
+  memcpy(one->latest, parameters, layout->parameters * sizeof *parameters);
   return one->known;
 }
 
@@ -417,7 +401,7 @@ static double align_number(const strut_fit_source *sources, size_t s, const doub
                            const alignment *a) {
   const strut_fit_source *source = &sources[s];
   double turn = a->number[STRUT_FIT_ROTATE], own = from[source->first + i];
-  if (source->axis < 0) return a->others * own;
+  if (source->axis < 0) return own;
   double shift = a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
   if (source->partner < 0) return own + shift;
   double other = from[sources[source->partner].first + i];
@@ -436,7 +420,7 @@ static void align_match(const strut_fit_layout *layout, size_t m, const double *
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to) {
   for (size_t m = 0; m < one->layout->fit->match_count; m++) {
     alignment a = align(one->layout, m, parameters);
-    align_match(one->layout, m, one->predicted[0], &a, to);
+    align_match(one->layout, m, one->predicted, &a, to);
   }
 }
 
@@ -474,7 +458,6 @@ static bool has_numbers(strut_fit_case *one, const double *residual) {
 
 static bool find_residuals(void *context, const double *parameters, double *residual) {
   strut_fit_case *one = context;
-  one->evaluations++;
   if (one->status || !predict(one, parameters)) return false;
   strut_fit_align_all(one, parameters, residual);
   for (size_t k = 0; k < one->layout->count; k++)
@@ -493,34 +476,6 @@ double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size
   return fine ? one->placed_sum : HUGE_VAL;
 }
 
-/* How fast the numbers of a match change with its delay, not aligned. */
-static void fill_rates(const strut_fit_case *one, size_t m, double *rate) {
-  const strut_fit_match *match = &one->layout->fit->matches[m];
-  size_t first = one->layout->parts[m].sources[0].first;
-  for (size_t k = first; k < first + match->series_count * match->count; k++)
-    rate[k] = (one->predicted[1][k] - one->predicted[2][k]) / (2.0 * beside(match));
-}
-
-/* Alignments need no further runs: a turn's derivative is the motion a quarter of a turn further. */
-static bool find_derivative(void *context, const double *parameters, size_t i, double *derivative) {
-  strut_fit_case *one = context;
-  const strut_fit_layout *layout = one->layout;
-  const strut_fit_aligned *by = &layout->aligned[i];
-  if (i >= layout->aligned_count || one->status || !predict(one, parameters)) return false;
-  bool turns = by->what == STRUT_FIT_ROTATE, delays = by->what == STRUT_FIT_DELAY;
-  alignment a = align(layout, by->match, parameters);
-  a.number[STRUT_FIT_SHIFT_X] = a.number[STRUT_FIT_SHIFT_Y] = 0.0;
-  a.number[by->what] += turns ? 1.5707963267948966 : 1.0;
-  a.others = delays;
-  memset(derivative, 0, layout->count * sizeof *derivative);
-  memset(one->buffer, 0, layout->count * sizeof *one->buffer);
-  if (delays) fill_rates(one, by->match, one->buffer);
-  align_match(layout, by->match, turns ? one->predicted[0] : one->buffer, &a, derivative);
-  for (size_t k = 0; k < layout->count; k++)
-    derivative[k] = one->weight[k] > 0.0 ? one->weight[k] * derivative[k] * by->scale : 0.0;
-  return true;
-}
-
 strut_least_squares strut_fit_problem(strut_fit_case *one) {
   const strut_fit_layout *layout = one->layout;
   return (strut_least_squares){.count = layout->count,
@@ -532,7 +487,6 @@ strut_least_squares strut_fit_problem(strut_fit_case *one) {
                                .held = -1,
                                .most_steps = 60,
                                .residuals = find_residuals,
-                               .derivative = find_derivative,
                                .context = one};
 }
 
@@ -548,10 +502,8 @@ bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) 
   one->buffer = strut_arena_allocate(arena, most, sizeof(double));
   one->latest = strut_arena_allocate(arena, layout->parameters, sizeof(double));
   one->weight = strut_arena_allocate(arena, layout->count, sizeof(double));
-  for (int k = 0; k < 3; k++)
-    one->predicted[k] = strut_arena_allocate(arena, layout->count, sizeof(double));
-  bool fine = one->buffer && one->latest && one->weight && one->predicted[0] && one->predicted[1] &&
-              one->predicted[2];
+  one->predicted = strut_arena_allocate(arena, layout->count, sizeof(double));
+  bool fine = one->buffer && one->latest && one->weight && one->predicted;
   if (fine) strut_fit_choose(one, 1.0, -1);
   return fine;
 }

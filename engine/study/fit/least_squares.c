@@ -96,15 +96,13 @@ static void differentiate(solver *self, size_t i, double *derivative, double sid
   const strut_least_squares *problem = self->problem;
   double at = self->at[i], h = problem->step * fmax(fabs(at), 1.0);
   double low = fmax(at - h, problem->low[i]), high = fmin(at + h, problem->high[i]);
-  if (!problem->derivative || !problem->derivative(problem->context, self->at, i, derivative)) {
-    const double *ahead = look_beside(self, i, &high, self->ahead);
-    bool enough = problem->one_sided && high > at;
-    double first = enough ? at : low;
-    const double *back = look_beside(self, i, &first, self->back);
-    for (size_t j = 0; j < problem->count; j++)
-      derivative[j] = high > first ? (ahead[j] - back[j]) / (high - first) : 0.0;
-    if (!enough) low = first;
-  }
+  const double *ahead = look_beside(self, i, &high, self->ahead);
+  bool enough = problem->one_sided && high > at;
+  double first = enough ? at : low;
+  const double *back = look_beside(self, i, &first, self->back);
+  for (size_t j = 0; j < problem->count; j++)
+    derivative[j] = high > first ? (ahead[j] - back[j]) / (high - first) : 0.0;
+  if (!enough) low = first;
   side[0] = at - low;
   side[1] = high - at;
 }

@@ -29,8 +29,6 @@ typedef struct strut_least_squares {
    */
   bool (*residuals)(void *context, const double *parameters, double *residual);
   void *context;
-  /** Fills the derivative (count) by a parameter where that needs no differences; NULL or false: it does. */
-  bool (*derivative)(void *context, const double *parameters, size_t parameter, double *derivative);
 } strut_least_squares;
 
 typedef enum strut_fit_end {
