@@ -63,10 +63,6 @@ typedef struct fitting {
   bool unexplained;            /* no interval is given */
 } fitting;
 
-static size_t omission_rows(const strut_study_fit *fit) {
-  return fit->match_count > 1 ? fit->match_count : 0;
-}
-
 /* The match with the k-th free delay. */
 static int32_t matches_delay(const strut_study_fit *fit, size_t k) {
   int32_t m = 0;
@@ -611,7 +607,7 @@ static strut_status run_stages(fitting *self) {
   strut_fit_result *result = self->result;
   size_t starts = result->start_count, beside = fit->beside_count;
   size_t profiles = 2 * fit->variable_count;
-  size_t all = starts + STRUT_FIT_ROUNDS * beside + profiles + result->omission_count;
+  size_t all = starts + STRUT_FIT_ROUNDS * beside + profiles + fit->omission_count;
   result->starts = strut_arena_allocate(&result->arena, all, sizeof *result->starts);
   if (!result->starts) return strut_no_memory(self->points.error, "");
   strut_status status = run_stage(self, starts);
@@ -625,7 +621,7 @@ static strut_status run_stages(fitting *self) {
   }
   result->ends = result->starts + starts + result->beside_count;
   result->omissions = result->ends + profiles;
-  if (!status) status = run_stage(self, profiles + result->omission_count);
+  if (!status) status = run_stage(self, profiles + fit->omission_count);
   bool fine = status || !result->found ||
               (fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result));
   return fine ? status : strut_no_memory(self->points.error, "");
@@ -650,7 +646,7 @@ strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
   strut_points_begin(&self.points);
   strut_status status = strut_fit_layout_make(plan, options->interrupt, &layout, error);
   result->parameters = layout.parameters, result->aligned_count = layout.aligned_count;
-  result->variable_count = fit->variable_count, result->omission_count = omission_rows(fit);
+  result->variable_count = fit->variable_count;
   if (!status) status = strut_points_open(&self.points, plan, options, &arena);
   if (!status) status = run_stages(&self);
   strut_points_close(&self.points);
@@ -658,12 +654,6 @@ strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
   strut_arena_free(&arena);
   if (!self.points.status) self.points.status = status;
   return strut_points_end(&self.points);
-}
-
-size_t strut_fit_first(const strut_study_fit *fit, size_t match, size_t series) {
-  size_t first = 0;
-  for (size_t m = 0; m < match; m++) first += fit->matches[m].count * fit->matches[m].series_count;
-  return first + series * fit->matches[match].count;
 }
 
 void strut_fit_result_free(strut_fit_result *result) { strut_arena_free(&result->arena); }

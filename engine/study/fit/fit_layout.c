@@ -67,8 +67,7 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
     if (unit && strcmp(unit, match->series[s].unit) != 0)
       return refuse(layout, m, s, "has another unit than its numbers", error);
-    sources[s] =
-        (strut_fit_source){.first = layout->count, .partner = -1, .column = (size_t)column};
+    sources[s] = (strut_fit_source){.partner = -1, .column = (size_t)column};
     sources[s].axis = moves ? axis_of(quantity, &places[s]) : -1;
     for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
       if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
@@ -119,13 +118,6 @@ static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns wha
   return name != NULL;
 }
 
-/* Has a series numbers? A coordinate beside a measured one may have none. */
-static bool is_measured(const strut_fit_match *match, size_t s) {
-  size_t i = 0;
-  while (i < match->count && isnan(match->series[s].measured[i])) i++;
-  return i < match->count;
-}
-
 /* `own`: the duration of the model's own run. */
 static bool add_alignments(strut_fit_layout *layout, size_t m, double own) {
   const strut_fit_match *match = &layout->fit->matches[m];
@@ -134,7 +126,7 @@ static bool add_alignments(strut_fit_layout *layout, size_t m, double own) {
   for (int axis = 0; axis < 2 && match->align.shift; axis++) {
     bool there = false;
     for (size_t s = 0; s < match->series_count; s++)
-      there = there || (layout->parts[m].sources[s].axis == axis && is_measured(match, s));
+      there = there || (layout->parts[m].sources[s].axis == axis && !match->series[s].empty);
     if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, own, range) && fine;
   }
   if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, own, 1.0) && fine;

@@ -36,7 +36,6 @@ typedef struct strut_fit_aligned {
 
 /** A series as the model has it. */
 typedef struct strut_fit_source {
-  size_t first;    /* of its residuals */
   int axis;        /* 0: x of a place, 1: y, -1: neither */
   int32_t partner; /* the series of the other coordinate of the same place, or -1 */
   size_t column;   /* of a TABLE: its number among those of numbers */

@@ -62,7 +62,7 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   double square = 0.0, lags = 0.0, series = 0.0;
   *of = (strut_fit_residuals){.match = match, .lag = (double)NAN};
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + layout->parts[m].sources[s].first;
+    const double *residual = result->residual + match->series[s].first;
     double lag = match->kind == STRUT_FIT_MOTION ? find_lag(residual, match->count) : (double)NAN;
     if (!isnan(lag)) lags += lag, series += 1.0;
     for (size_t i = 0; i < match->count; i++) {
@@ -409,7 +409,8 @@ static strut_value correlations_of(const strut_result_object *of, size_t i) {
     .label = {"starts that agree"})                                                                \
   X("starts", "", LIST(r->starts, r->start_count), "one by one", .rows = &start_values,            \
     .label = {""})                                                                                 \
-  X("omissions", "", IF(r->found && r->omission_count, LIST(r->omissions, r->omission_count)),     \
+  X("omissions", "",                                                                               \
+    IF(r->found && r->fit->omission_count, LIST(r->omissions, r->fit->omission_count)),            \
     "fits without one match", .rows = &omission_values, .label = {""})
 STRUT_VALUES(strut_fit_values, FIT, const strut_fit_result *r = of->at)
 
@@ -481,7 +482,7 @@ static char *residuals_csv(const strut_fit_result *result) {
   for (size_t m = 0; m < result->fit->match_count; m++)
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++) {
       const strut_fit_match *match = &result->fit->matches[m];
-      size_t first = strut_fit_first(result->fit, m, s);
+      size_t first = match->series[s].first;
       for (size_t i = 0; i < match->count; i++) {
         const double numbers[] = {match->at ? match->at[i] : (double)NAN,
                                   match->series[s].measured[i], result->predicted[first + i],

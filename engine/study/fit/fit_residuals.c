@@ -132,11 +132,10 @@ static size_t place_samples(const prediction *self, double *time) {
 /* Takes the samples of a run, in the order: number, series; without times all are the first. */
 static void take_samples(const prediction *self, const double *sampled) {
   const strut_fit_match *match = self->match;
-  const strut_fit_source *source = self->one->layout->parts[self->index].sources;
   size_t count = match->at ? count_early(self->one, match) : match->count;
   for (size_t i = 0; i < count; i++)
     for (size_t s = 0; s < match->series_count; s++)
-      self->one->predicted[source[s].first + i] =
+      self->one->predicted[match->series[s].first + i] =
           sampled[(match->at ? i : 0) * match->series_count + s];
 }
 
@@ -168,10 +167,11 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
   double sums[2][4][4] = {{{0.0}}}, q[3][3] = {{0.0}}, rest = 0.0;
   for (size_t s = 0; s < match->series_count; s++)
     for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
-      size_t at = sources[s].first + i;
+      size_t at = match->series[s].first + i;
       double weight = one->weight[at], measured = one->layout->measured[at];
       if (!(weight > 0.0)) continue;
-      double other = sources[s].partner < 0 ? 0.0 : from[sources[sources[s].partner].first + i];
+      double other =
+          sources[s].partner < 0 ? 0.0 : from[match->series[sources[s].partner].first + i];
       const double row[] = {from[at], sources[s].axis ? other : -other, measured, 1.0};
       for (int j = 0; j < 4 && sources[s].axis >= 0; j++)
         for (int k = 0; k < 4; k++)
@@ -204,14 +204,13 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
 static double place_delayed(const prediction *self, double delay, const double *sampled,
                             size_t count, alignment *a) {
   const strut_fit_match *match = self->match;
-  const strut_fit_source *sources = self->one->layout->parts[self->index].sources;
   size_t n = match->series_count;
   for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
     double part = (match->at[i] - delay - self->from) / (self->to - self->from);
     double at = (double)(count - 1) * fmin(fmax(part, 0.0), 1.0);
     size_t k = (size_t)fmin(at, (double)(count - 2));
     for (size_t s = 0; s < n; s++)
-      self->one->predicted[sources[s].first + i] =
+      self->one->predicted[match->series[s].first + i] =
           sampled[k * n + s] + (at - (double)k) * (sampled[(k + 1) * n + s] - sampled[k * n + s]);
   }
   a->number[STRUT_FIT_DELAY] = delay;
@@ -275,16 +274,16 @@ static strut_status predict_motion(prediction *self, strut_setup *setup, const s
 static strut_status predict_curve(prediction *self, strut_setup *setup, const strut_model *model,
                                   strut_error *error) {
   const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *source = layout->parts[self->index].sources;
   strut_path path = {0};
   setup->experiment.interrupt = layout->interrupt;
   strut_status status =
       strut_statics_path(&layout->parts[self->index].study, setup, model, &path, error);
   for (size_t i = 0; i < self->match->count && !status; i++)
-    self->one->predicted[source[0].first + i] = strut_goals_force_at(&path, self->match->at[i]);
+    self->one->predicted[self->match->series[0].first + i] =
+        strut_goals_force_at(&path, self->match->at[i]);
   strut_path_free(&path);
   for (size_t i = 0; i < self->match->count && !status; i++)
-    if (isnan(self->one->predicted[source[0].first + i]))
+    if (isnan(self->one->predicted[self->match->series[0].first + i]))
       status =
           strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", self->match->at[i]);
   return status;
@@ -329,7 +328,7 @@ static bool predict_table(prediction *self) {
   strut_status status = !job ? STRUT_NO_MEMORY : job->status ? job->status : job->cells.row.status;
   for (size_t s = 0; s < self->match->series_count && !status; s++)
     for (size_t i = 0; i < self->match->count; i++)
-      self->one->predicted[source[s].first + i] = job->cells.numbers[source[s].column];
+      self->one->predicted[self->match->series[s].first + i] = job->cells.numbers[source[s].column];
   bool fine = settle_status(self->one, status, job ? &job->error : &(strut_error){0});
   strut_arena_free(&arena);
   return fine;
@@ -396,25 +395,22 @@ static bool predict(strut_fit_case *one, const double *parameters) {
 
 /* ---- residuals ---- */
 
-/* A number of a series, turned and shifted as its match is. */
-static double align_number(const strut_fit_source *sources, size_t s, const double *from, size_t i,
-                           const alignment *a) {
-  const strut_fit_source *source = &sources[s];
-  double turn = a->number[STRUT_FIT_ROTATE], own = from[source->first + i];
-  if (source->axis < 0) return own;
-  double shift = a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
-  if (source->partner < 0) return own + shift;
-  double other = from[sources[source->partner].first + i];
-  return own * cos(turn) + (source->axis ? other : -other) * sin(turn) + shift;
-}
-
+/* The numbers of a match, turned and shifted. */
 static void align_match(const strut_fit_layout *layout, size_t m, const double *from,
                         const alignment *a, double *to) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  const strut_fit_source *sources = layout->parts[m].sources;
-  for (size_t s = 0; s < match->series_count; s++)
+  double c = cos(a->number[STRUT_FIT_ROTATE]), s = sin(a->number[STRUT_FIT_ROTATE]);
+  for (size_t k = 0; k < match->series_count; k++) {
+    const strut_fit_source *source = &layout->parts[m].sources[k];
+    size_t first = match->series[k].first,
+           partner = source->partner < 0 ? k : (size_t)source->partner;
+    double across = partner == k ? 0.0 : source->axis ? s : -s, along = partner == k ? 1.0 : c;
+    double shift =
+        source->axis < 0 ? 0.0 : a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
     for (size_t i = 0; i < match->count; i++)
-      to[sources[s].first + i] = align_number(sources, s, from, i, a);
+      to[first + i] =
+          along * from[first + i] + across * from[match->series[partner].first + i] + shift;
+  }
 }
 
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to) {
