@@ -497,14 +497,17 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
   if (!column) refuse_name(reader, value, owner, *table);
   if (!column) return NULL;
   const char *name = strut_sanitised_text(reader, column->name);
+  const char *unit = expected && !strut_dimension_equal(*expected, STRUT_DIM_LENGTH)
+                         ? strut_dimension_unit(*expected)
+                         : "mm";
   if (!column->values) {
     row = column->flaw;
     snprintf(message, sizeof message, "expected a finite number");
   } else if (!column->unit) {
     snprintf(message, sizeof message,
-             "column '%s' has no unit that is known; write it in the header, '%s [mm]', or under "
-             "'units' of the data, {%s: mm}; 1: none",
-             name, name, name);
+             "column '%s' has no unit that is known; write it in the header, '%s [%s]', or under "
+             "'units' of the data, {%s: %s}; 1: none",
+             name, name, unit, name, unit);
   } else if (expected && !strut_dimension_equal(column->dimension, *expected)) {
     strut_expected_quantity(key, *expected, wanted, sizeof wanted);
     snprintf(message, sizeof message, "expected %s for '%s' of %s, found the unit '%s' of %s",
