@@ -222,9 +222,11 @@ static const char *compare_starts(double rise, strut_fit_result *result) {
     better = better || result->ends[i].sum < least - SAME * rise;
   if (better)
     why = "beside the best fit there is a better one, which no start has found: give more starts";
-  if (!*why && !known && result->start_count > 1 && result->agreeing < 2)
-    why =
-        "only one start ends at the best fit, and without the noise nothing says that it is right";
+  if (!*why && !(known && result->freedom > 0.0) && result->start_count > 1 && result->agreeing < 2)
+    why = known
+              ? "only one start ends at the best fit, and there are no more numbers than parameters"
+              : "only one start ends at the best fit, and without the noise nothing says that it "
+                "is right";
   return why;
 }
 
