@@ -414,14 +414,11 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
   if (!strut_slots_get(self->points.slots, point, &slot))
     return strut_fail(self->points.error, STRUT_FILE_TROUBLE, "row %lld of the fit is missing",
                       (long long)point);
-  size_t words = 0, own = 0;
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    words += plan->columns[i].word;
-    if (i < layout->fit->column) own += !plan->columns[i].word;
-  }
-  const double *numbers = slot.numbers + plan->axis_columns - words;
+  size_t first = plan->axis_columns, own = strut_slot_place(plan->columns, layout->fit->column);
+  const double *numbers = slot.numbers + strut_slot_place(plan->columns, first + WORDS);
+  const char *end = slot.words[strut_slot_place(plan->columns, first + END)];
   for (int k = 0; k < STRUT_FIT_END_COUNT; k++)
-    if (strcmp(slot.words[words + END], strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
+    if (strcmp(end, strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
   memcpy(row->values, slot.numbers + own, variables * sizeof(double));

@@ -3,19 +3,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/study/fit/fit_parts.h"
 #include "engine/study/sweep/sweep.h"
 
-static const double MOST_TURN = 6.283185307179586;
-
 /* The number of a column among those of numbers, or -1. */
 static int64_t find_number(const strut_sweep_plan *plan, const char *name) {
-  int64_t number = 0;
-  for (size_t i = 0; i < plan->column_count; i++) {
-    if (plan->columns[i].word) continue;
-    if (i >= plan->axis_columns && strcmp(plan->columns[i].name, name) == 0) return number;
-    number++;
-  }
+  for (size_t i = plan->axis_columns; i < plan->column_count; i++)
+    if (!plan->columns[i].word && strcmp(plan->columns[i].name, name) == 0)
+      return (int64_t)strut_slot_place(plan->columns, i);
   return -1;
 }
 
@@ -105,7 +101,7 @@ static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns wha
   static const char *const units[] = {"m", "m", "rad", "s"};
   const strut_fit_match *match = &layout->fit->matches[m];
   bool delay = what == STRUT_FIT_DELAY;
-  const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
+  const double range[] = {HUGE_VAL, HUGE_VAL, STRUT_TAU, scale};
   double first = delay ? match->at[0] : 0.0, latest = fmax(own, STRUT_FIT_OWN_CLOCK * scale);
   double start = first < 0.0 || first > latest ? first : 0.0;
   double from = start - range[what], to = fmax(start, first) + range[what];

@@ -142,24 +142,15 @@ static void take_samples(const prediction *self, const double *sampled) {
 /* ---- placing ---- */
 
 /* Of so many delays the best is sought; of longer series not every number counts for that. */
-enum { MOST_DELAYS = 1000, COUNTED = 2000, RANKS = 40, NEWTON_STEPS = 4 };
+enum { MOST_DELAYS = 1000, COUNTED = 2000, RANKS = 40 };
 
 /* Delays are no others if they leave this part of the largest sum. */
 static const double ALIKE = 0.5;
 
-/* The turn with the least c'Qc, c = (cos, sin, -1): in closed form where Q is alike in both, then Newton's steps. */
-static double best_turn(double q[3][3]) {
-  double turn = atan2(q[1][2], q[0][2]), across = q[1][1] - q[0][0];
-  for (int k = 0; k < NEWTON_STEPS; k++) {
-    double c = cos(turn), s = sin(turn);
-    double slope = across * c * s + q[0][1] * (c * c - s * s) + q[0][2] * s - q[1][2] * c;
-    double bend = across * (c * c - s * s) - 4.0 * q[0][1] * c * s + q[0][2] * c + q[1][2] * s;
-    if (bend > 0.0) turn -= slope / bend;
-  }
-  return turn;
-}
-
-/* Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. */
+/*
+ * Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. The turn is
+ * the best where both coordinates count alike.
+ */
 static double place(const strut_fit_case *one, size_t m, alignment *a) {
   const strut_fit_match *match = &one->layout->fit->matches[m];
   const strut_fit_source *sources = one->layout->parts[m].sources;
@@ -187,7 +178,7 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
         q[j][k] += of[j][k] - (shifts[axis] ? of[j][3] * of[k][3] / of[3][3] : 0.0);
   }
   bool turns = match->align.rotate && sums[0][3][3] > 0.0 && sums[1][3][3] > 0.0;
-  double turn = turns ? best_turn(q) : a->number[STRUT_FIT_ROTATE], sum = rest;
+  double turn = turns ? atan2(q[1][2], q[0][2]) : a->number[STRUT_FIT_ROTATE], sum = rest;
   const double by[] = {cos(turn), sin(turn), -1.0};
   a->number[STRUT_FIT_ROTATE] = turn;
   for (int axis = 0; axis < 2; axis++) {
@@ -278,14 +269,13 @@ static strut_status predict_curve(prediction *self, strut_setup *setup, const st
   setup->experiment.interrupt = layout->interrupt;
   strut_status status =
       strut_statics_path(&layout->parts[self->index].study, setup, model, &path, error);
-  for (size_t i = 0; i < self->match->count && !status; i++)
-    self->one->predicted[self->match->series[0].first + i] =
-        strut_goals_force_at(&path, self->match->at[i]);
+  for (size_t i = 0; i < self->match->count && !status; i++) {
+    double at = self->match->at[i], force = strut_goals_force_at(&path, at);
+    self->one->predicted[self->match->series[0].first + i] = force;
+    if (isnan(force))
+      status = strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", at);
+  }
   strut_path_free(&path);
-  for (size_t i = 0; i < self->match->count && !status; i++)
-    if (isnan(self->one->predicted[self->match->series[0].first + i]))
-      status =
-          strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", self->match->at[i]);
   return status;
 }
 
