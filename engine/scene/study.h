@@ -120,6 +120,8 @@ typedef struct strut_fit_series {
   const char *unit;       /* of the numbers, SI; "1": none */
   const double *measured; /* (count of the match) SI; NAN: a gap */
   const double *weights;  /* (count) of their squared residuals; NULL: 1 */
+  size_t first;           /* of them among the numbers of all matches */
+  bool empty;             /* all are gaps: the other coordinate of a place that turns */
 } strut_fit_series;
 
 /** Alignment of the model with what was measured that is found together with the parameters. */
@@ -150,9 +152,16 @@ typedef struct strut_study_fit {
   int64_t seed;
   size_t column;    /* of the first variable, among the columns of all axes */
   size_t set_count; /* columns behind those of the variables: parameters that matches set */
+  size_t beside_count, omission_count; /* along which other fits are sought; fits without a match */
 } strut_study_fit;
 
-enum { STRUT_FIT_MOST_VARIABLES = 20, STRUT_FIT_MOST_MATCHES = 10, STRUT_FIT_MOST_SERIES = 200 };
+/* ROUNDS: how often is looked beside the best fit while that leads to a better one. */
+enum {
+  STRUT_FIT_ROUNDS = 3,
+  STRUT_FIT_MOST_VARIABLES = 20,
+  STRUT_FIT_MOST_MATCHES = 10,
+  STRUT_FIT_MOST_SERIES = 200
+};
 
 /* ---- branches ---- */
 

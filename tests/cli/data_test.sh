@@ -7,7 +7,7 @@
 # ---- one table in many forms ----
 
 printf 't [s],x [mm],y [mm]\n0,1,-2\n0.5,1.5,\n1,2.25,-3\n' >strut.csv
-printf '\357\273\277"t";"x";"y"\r\ns;mm;mm\r\n0,0;1,0;-2,0\r\n0,5;1,5;\r\n1,0;2,25;-3,0\r\n' >machine.csv
+printf '\357\273\277"t";"x";"y"\r\ns;mm;mm\r\n"0,0";"1,0";-2,0\r\n0,5;1,5;\r\n1,0;2,25;-3,0\r\n' >machine.csv
 printf 'Machine;4711\n\nt (s);x (mm);y (mm);\n0;1;-2;\n0,5;1,5;;\n1,0;2,25;-3;\n' >header.csv
 printf 'mass_A\nt\tx\ty\n0\t0.001\t-0.002\n0.5\t0.0015\tnan\n1.0\t2.25e-3\t-0.003\n' >tracker.tsv
 printf '# of an array\n# t, x, y\n0,10,20\n0.5,15,\n1,22.5,30\n' >pixels.csv

@@ -12,13 +12,6 @@ static const double USUAL = 2.0;
 
 enum { CURVE = 41 }; /* points of a parabola */
 
-/* Does a series have numbers that were measured? */
-static bool is_measured(const strut_fit_match *match, size_t s) {
-  bool some = false;
-  for (size_t i = 0; i < match->count; i++) some = some || !isnan(match->series[s].measured[i]);
-  return some;
-}
-
 static strut_axis axis_of_match(const strut_fit_match *match) {
   if (match->kind == STRUT_FIT_MOTION) return strut_axis_of("time", "s");
   if (match->kind == STRUT_FIT_CURVE) return strut_axis_of("displacement", "m");
@@ -44,7 +37,7 @@ static strut_series *add_dots(strut_figure *figure, strut_panel *panel, const ch
 /* Numbers as dots, and the model as a line, a panel for each series. */
 static void add_data(strut_figure *figure, const strut_fit_result *result, size_t m, size_t s) {
   const strut_fit_match *match = &result->fit->matches[m];
-  const double *model = result->predicted + strut_fit_first(result->fit, m, s);
+  const double *model = result->predicted + match->series[s].first;
   strut_panel *panel = strut_add_panel(figure);
   panel->x = axis_of_match(match);
   panel->y = strut_axis_in(match->series[s].of, match->series[s].unit, (strut_file_unit){0});
@@ -67,8 +60,8 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result, 
   panel->y = strut_axis_of(known ? "residual over noise" : "residual over its deviation", "");
   if (result->fit->match_count > 1) panel->title = match->name;
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + strut_fit_first(result->fit, m, s);
-    if (!is_measured(match, s)) continue;
+    const double *residual = result->residual + match->series[s].first;
+    if (match->series[s].empty) continue;
     add_dots(figure, panel, match->series[s].of, match, s, residual, unit);
   }
   strut_add_band(figure, panel, -USUAL, USUAL, "95 % of the usual ones")->level = true;
@@ -116,7 +109,7 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
   if (!result->found) return STRUT_OK;
   for (size_t m = 0; m < result->fit->match_count; m++) {
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++)
-      if (is_measured(&result->fit->matches[m], s)) add_data(&data, result, m, s);
+      if (!result->fit->matches[m].series[s].empty) add_data(&data, result, m, s);
     add_residuals(&residuals, result, m);
   }
   for (size_t k = 0; k < result->variable_count; k++) add_profile(&profiles, result, k);

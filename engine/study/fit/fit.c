@@ -20,6 +20,16 @@ static const double NEAR_FIRST = 1e-3;
 /* Share of the time by which motions are placed; a placing is better than a fit if it leaves so much of its sum. */
 static const double PLACED = 0.5, BETTER = 0.99;
 
+/*
+ * Another fit is within reach of the best if a few steps bring the sum to so many times the least, the first of them to
+ * FAR times that; where FEW are not in a row, no more are tried. A range is walked over in so many paces, unless the
+ * sum should rise to FAR times what is within reach in the first.
+ */
+#define REACH 4.0
+#define FAR 25.0
+static const double FALL = 0.05; /* of a rise to an end of an interval: it falls */
+enum { STEPS_BESIDE = 6, PACES = 16 };
+
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
@@ -32,7 +42,8 @@ static const double OUTSIDE = 0.05;
 
 /* Columns of the table behind those of the axes, before the alignments. */
 enum { KIND, OF, END, WORDS, SUM = 0, USED, EVALUATIONS, NUMBERS };
-static const char *const kinds[] = {"start", "low", "high", "without"};
+enum { START, BESIDE, LOW, HIGH, WITHOUT };
+static const char *const kinds[] = {"start", "beside", "low", "high", "without"};
 static const struct {
   const char *name;
   bool word;
@@ -47,12 +58,16 @@ typedef struct fitting {
   strut_fit_result *result;
   strut_fit_spectrum spectrum; /* at the best, once it is known */
   const double *best;          /* (parameters) */
+  double least;                /* sum there */
   double rise;                 /* of the sum to an end of an interval */
   bool unexplained;            /* no interval is given */
 } fitting;
 
-static size_t omission_rows(const strut_study_fit *fit) {
-  return fit->match_count > 1 ? fit->match_count : 0;
+/* The match with the k-th free delay. */
+static int32_t matches_delay(const strut_study_fit *fit, size_t k) {
+  int32_t m = 0;
+  for (; !fit->matches[m].align.delay || k; m++) k -= fit->matches[m].align.delay;
+  return m;
 }
 
 /* ---- parameters ---- */
@@ -100,9 +115,10 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
       strut_search_spread_begin(fit->variable_count + layout->aligned_count, (uint64_t)fit->seed);
   for (size_t i = 0; i < layout->parameters; i++) {
     size_t k = i - layout->aligned_count;
-    parameters[i] = is_aligned(layout, i) ? strut_fit_parameter(layout, i, layout->aligned[i].start)
-                    : start == 0          ? 1.0 + strut_search_start(&fit->variables[k])
-                                          : 1.0 + strut_search_spread_at(&spread, start - 1, k);
+    const double *starts = is_aligned(layout, i) ? layout->aligned[i].starts : NULL;
+    parameters[i] = starts       ? strut_fit_parameter(layout, i, starts[start % 4 == 2])
+                    : start == 0 ? 1.0 + strut_search_start(&fit->variables[k])
+                                 : 1.0 + strut_search_spread_at(&spread, start - 1, k);
   }
 }
 
@@ -110,23 +126,22 @@ void strut_fit_choose_start(const strut_fit_layout *layout, int64_t start, doubl
  * Fits short motions first, so that long ones begin near, and in the end once more where they are better placed
  * elsewhere.
  */
-static strut_status fit_from(strut_fit_case *one, strut_fit_delays delays, double *parameters,
+static strut_status fit_from(strut_fit_case *one, bool delays, double *parameters,
                              strut_fit_solution *solution) {
   double placed[STRUT_LEAST_SQUARES_MOST];
   size_t bytes = one->layout->parameters * sizeof *placed;
   strut_status status = STRUT_OK;
   strut_fit_choose(one, PLACED, -1);
-  strut_fit_place(one, delays, parameters);
+  strut_fit_place(one, delays, -1, 0, parameters);
   for (int k = 0; k <= SHARES && !status; k++) {
     bool last = k + 1 >= SHARES;
     strut_fit_choose(one, last ? 1.0 : shares[k], -1);
     if (!last && one->used < FEW * one->layout->parameters) continue;
     memcpy(placed, parameters, bytes);
-    if (k == SHARES &&
-        !(strut_fit_place(one, STRUT_FIT_BEST_DELAYS, placed) < BETTER * solution->sum))
-      break;
+    if (k == SHARES && !(strut_fit_place(one, true, -1, 0, placed) < BETTER * solution->sum)) break;
     memcpy(parameters, placed, bytes);
     strut_least_squares problem = strut_fit_problem(one);
+    problem.one_sided = !last;
     if (!last) problem.most_steps = STEPS_FIRST, problem.near = NEAR_FIRST;
     status = strut_least_squares_solve(&problem, parameters, solution);
     if (solution->end == STRUT_FIT_FAILED) break;
@@ -137,11 +152,10 @@ static strut_status fit_from(strut_fit_case *one, strut_fit_delays delays, doubl
 /* The fit of a start, which begins elsewhere where the model cannot be computed there. */
 static strut_status fit_start(strut_fit_case *one, int64_t start, double *parameters,
                               strut_fit_solution *solution) {
-  strut_fit_delays delays = start % 4 == 1 ? STRUT_FIT_GIVEN_DELAYS : STRUT_FIT_BEST_DELAYS;
   strut_status status = STRUT_OK;
   for (int k = 0; k < STRUT_FIT_MOST_PLACES && !status && !one->status; k++) {
     strut_fit_choose_start(one->layout, start + k * one->layout->fit->starts, parameters);
-    status = fit_from(one, delays, parameters, solution);
+    status = fit_from(one, start % 4 != 1, parameters, solution);
     if (solution->end != STRUT_FIT_FAILED) break;
   }
   return status;
@@ -196,7 +210,7 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
                                      double side, double *parameters,
                                      strut_fit_solution *solution) {
   size_t n = self->layout->parameters;
-  double best = self->result->starts[self->result->best].sum;
+  double best = self->least;
   double bound = side < 0.0 ? self->layout->low[i] : self->layout->high[i];
   double most = fabs(bound - self->best[i]), inside = 0.0, outside = HUGE_VAL, height_inside = 0.0;
   double distance = sqrt(self->rise * self->spectrum.covariance[i * n + i]);
@@ -220,33 +234,119 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
   return status;
 }
 
+/* Goes on from a place beside the best fit while few steps bring the sum within reach. */
+static strut_status fit_again(const fitting *self, strut_fit_case *one, double *parameters,
+                              strut_fit_solution *solution) {
+  static const double reach[] = {FAR * REACH, REACH, HUGE_VAL};
+  strut_status status = STRUT_OK;
+  for (int k = 0; k < 3 && !status; k++) {
+    strut_least_squares problem = strut_fit_problem(one);
+    if (k < 2) problem.most_steps = k ? STEPS_BESIDE : FEW, problem.near = NEAR_FIRST;
+    status = strut_least_squares_solve(&problem, parameters, solution);
+    if (!(solution->sum < reach[k] * self->least)) break;
+  }
+  return status;
+}
+
+/*
+ * Walks over the range of parameter i, from the best fit to both sides and on from its other end, which of an angle is
+ * the same, where the least sum over all others is within reach. Where it falls again another fit is near: the
+ * parameters of the lowest such place, or false.
+ */
+static bool walk(const fitting *self, strut_fit_case *one, size_t i, double *parameters) {
+  const strut_fit_layout *layout = self->layout;
+  size_t n = layout->parameters, bytes = n * sizeof *parameters;
+  double pace = (layout->high[i] - layout->low[i]) / PACES, lowest = HUGE_VAL;
+  double now[STRUT_LEAST_SQUARES_MOST], next[STRUT_LEAST_SQUARES_MOST];
+  double reach = REACH * self->least;
+  strut_fit_solution latest;
+  strut_least_squares problem = strut_fit_problem(one);
+  problem.held = (int32_t)i, problem.most_steps = STEPS_BESIDE, problem.near = NEAR_FIRST;
+  if (pace * pace > FAR * reach * self->spectrum.covariance[i * n + i]) return false;
+  for (double side = -pace; side <= pace; side += 2.0 * pace) {
+    double step[STRUT_LEAST_SQUARES_MOST], peak = self->least;
+    memcpy(now, self->best, bytes);
+    for (size_t j = 0; j < n; j++) step[j] = side * slope_of_least(self, j, i);
+    for (int k = 1; k <= PACES; k++) {
+      for (size_t j = 0; j < n; j++)
+        next[j] = fmin(fmax(now[j] + step[j], layout->low[j]), layout->high[j]);
+      if (next[i] == now[i]) next[i] = side < 0.0 ? layout->high[i] : layout->low[i];
+      if (strut_least_squares_solve(&problem, next, &latest) || !(latest.sum < reach)) break;
+      for (size_t j = 0; j < n; j++) step[j] = j == i ? side : next[j] - now[j];
+      memcpy(now, next, bytes);
+      peak = fmax(peak, latest.sum);
+      if (peak - latest.sum < FALL * self->rise || latest.sum > lowest) continue;
+      lowest = latest.sum;
+      memcpy(parameters, next, bytes);
+    }
+  }
+  return lowest < HUGE_VAL;
+}
+
+/* Has a fit the values of the best one, up to their intervals? */
+static bool is_best(const fitting *self, const double *parameters) {
+  size_t n = self->layout->parameters;
+  bool same = true;
+  for (size_t i = self->layout->aligned_count; i < n; i++)
+    same = same && fabs(parameters[i] - self->best[i]) <=
+                       sqrt(self->rise * self->spectrum.covariance[i * n + i]);
+  return same;
+}
+
+/* Another fit beside the best one: along a variable, or the least from the next best delays of a match. */
+static strut_status fit_beside(const fitting *self, strut_fit_case *one, size_t item,
+                               double *parameters, strut_fit_solution *solution) {
+  const strut_study_fit *fit = self->layout->fit;
+  size_t bytes = self->layout->parameters * sizeof *parameters;
+  double at[STRUT_LEAST_SQUARES_MOST], least = HUGE_VAL;
+  bool delay = item >= fit->variable_count;
+  int32_t match = delay ? matches_delay(fit, item - fit->variable_count) : -1;
+  strut_fit_solution latest;
+  strut_status status = STRUT_OK;
+  memcpy(parameters, self->best, bytes);
+  for (int rank = 1, vain = 0; !status && vain < FEW && (delay || rank == 1); rank++) {
+    memcpy(at, self->best, bytes);
+    if (delay ? !(strut_fit_place(one, true, match, (size_t)rank, at) < HUGE_VAL)
+              : !walk(self, one, self->layout->aligned_count + item, at))
+      break;
+    status = fit_again(self, one, at, &latest);
+    vain = latest.sum < REACH * self->least ? 0 : vain + 1;
+    if (!(latest.sum < least) || is_best(self, at)) continue;
+    least = latest.sum, *solution = latest;
+    memcpy(parameters, at, bytes);
+  }
+  return status;
+}
+
 /* What row is which fit. */
 typedef struct row_kind {
   int kind;    /* of `kinds` */
-  size_t item; /* start, variable or match */
+  size_t item; /* start, variable, match, or what is beside */
 } row_kind;
 
 static row_kind kind_of(const strut_study_fit *fit, int64_t row) {
-  if (row < fit->starts) return (row_kind){0, (size_t)row};
+  int64_t profiles = 2 * (int64_t)fit->variable_count, beside = (int64_t)fit->beside_count;
+  if (row < fit->starts) return (row_kind){START, (size_t)row};
   row -= fit->starts;
-  int64_t profiles = 2 * (int64_t)fit->variable_count;
-  if (row < profiles) return (row_kind){1 + (int)(row % 2), (size_t)row / 2};
-  return (row_kind){3, (size_t)(row - profiles)};
+  if (row < STRUT_FIT_ROUNDS * beside) return (row_kind){BESIDE, (size_t)(row % beside)};
+  row -= STRUT_FIT_ROUNDS * beside;
+  if (row < profiles) return (row_kind){row % 2 ? HIGH : LOW, (size_t)row / 2};
+  return (row_kind){WITHOUT, (size_t)(row - profiles)};
 }
 
 static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind what,
                             double *parameters, strut_fit_solution *solution) {
   const strut_fit_layout *layout = self->layout;
-  *solution = (strut_fit_solution){.end = STRUT_FIT_FAILED, .sum = (double)NAN};
-  if (what.kind == 0) {
-    return fit_start(one, (int64_t)what.item, parameters, solution);
-  }
+  *solution = (strut_fit_solution){.end = STRUT_FIT_NONE, .sum = (double)NAN};
+  if (what.kind == START) return fit_start(one, (int64_t)what.item, parameters, solution);
   strut_fit_choose_start(layout, 0, parameters);
-  if (!self->best || (self->unexplained && what.kind < 3))
-    return STRUT_OK; /* no start has residuals, or they are too large */
-  if (what.kind < 3)
+  bool vain =
+      what.kind == BESIDE ? self->result->settled : self->unexplained && what.kind != WITHOUT;
+  if (!self->best || vain) return STRUT_OK;
+  if (what.kind == BESIDE) return fit_beside(self, one, what.item, parameters, solution);
+  if (what.kind != WITHOUT)
     return find_profile_end(self, one, layout->aligned_count + what.item,
-                            what.kind == 1 ? -1.0 : 1.0, parameters, solution);
+                            what.kind == LOW ? -1.0 : 1.0, parameters, solution);
   strut_fit_choose(one, 1.0, (int32_t)what.item);
   memcpy(parameters, self->best, layout->parameters * sizeof *parameters);
   strut_least_squares problem = strut_fit_problem(one);
@@ -257,9 +357,12 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
 /* ---- rows ---- */
 
 static const char *item_name(const strut_study_fit *fit, row_kind what) {
-  return what.kind == 0  ? ""
-         : what.kind < 3 ? fit->variables[what.item].name
-                         : fit->matches[what.item].name;
+  size_t variables = fit->variable_count;
+  bool delay = what.kind == BESIDE && what.item >= variables;
+  return what.kind == START     ? ""
+         : delay                ? fit->matches[matches_delay(fit, what.item - variables)].name
+         : what.kind == WITHOUT ? fit->matches[what.item].name
+                                : fit->variables[what.item].name;
 }
 
 /* The cells of a row: axes, words, numbers, alignments. */
@@ -311,14 +414,11 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
   if (!strut_slots_get(self->points.slots, point, &slot))
     return strut_fail(self->points.error, STRUT_FILE_TROUBLE, "row %lld of the fit is missing",
                       (long long)point);
-  size_t words = 0, own = 0;
-  for (size_t i = 0; i < plan->axis_columns; i++) {
-    words += plan->columns[i].word;
-    if (i < layout->fit->column) own += !plan->columns[i].word;
-  }
-  const double *numbers = slot.numbers + plan->axis_columns - words;
+  size_t first = plan->axis_columns, own = strut_slot_place(plan->columns, layout->fit->column);
+  const double *numbers = slot.numbers + strut_slot_place(plan->columns, first + WORDS);
+  const char *end = slot.words[strut_slot_place(plan->columns, first + END)];
   for (int k = 0; k < STRUT_FIT_END_COUNT; k++)
-    if (strcmp(slot.words[words + END], strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
+    if (strcmp(end, strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
   memcpy(row->values, slot.numbers + own, variables * sizeof(double));
@@ -369,22 +469,17 @@ static int64_t count_rows(void *context) {
   return 0;
 }
 
-/* Computes the rows of a stage, or waits until other workers have. */
-static strut_status run_stage(fitting *self, int64_t first, int64_t count) {
-  self->first = first, self->count = count;
-  return strut_points_complete(&self->points, count_rows);
+/* Computes the rows of the next stage, or waits until other workers have, and reads them. */
+static strut_status run_stage(fitting *self, size_t count) {
+  self->first += self->count, self->count = (int64_t)count;
+  strut_status status = strut_points_complete(&self->points, count_rows);
+  for (int64_t i = self->first; i < self->first + self->count && !status; i++)
+    status = read_row(self, i, &self->result->starts[i]);
+  return status;
 }
 
 static bool has_residuals(const strut_fit_row *row) {
   return row->end != STRUT_FIT_FAILED && isfinite(row->sum);
-}
-
-static strut_status read_rows(fitting *self, int64_t first, size_t count, strut_fit_row **rows) {
-  *rows = strut_arena_allocate(&self->result->arena, count + 1, sizeof **rows);
-  strut_status status = *rows ? STRUT_OK : strut_no_memory(self->points.error, "");
-  for (size_t i = 0; i < count && !status; i++)
-    status = read_row(self, first + (int64_t)i, &(*rows)[i]);
-  return status;
 }
 
 /* ---- what the best fit says ---- */
@@ -410,33 +505,6 @@ static strut_status find_spectrum(fitting *self, strut_fit_case *one) {
                            "the model cannot be computed beside the best fit");
 }
 
-/*
- * Fits from the best fit once more, but with the second best delay of each match in turn, since what repeats itself fits
- * nearly as well a period later.
- */
-static strut_status fit_elsewhere(fitting *self, strut_fit_case *one) {
-  strut_fit_result *result = self->result;
-  size_t n = result->parameters, matches = self->layout->fit->match_count;
-  strut_status status = STRUT_OK;
-  result->elsewhere = strut_arena_allocate(&result->arena, matches, sizeof *result->elsewhere);
-  for (size_t m = 0; result->elsewhere && m < matches && !status; m++) {
-    if (!self->layout->fit->matches[m].align.delay) continue;
-    strut_fit_row *row = &result->elsewhere[result->elsewhere_count];
-    strut_fit_solution solution;
-    strut_least_squares problem = strut_fit_problem(one);
-    row->parameters = strut_arena_copy(&result->arena, self->best, n, sizeof(double));
-    if (!row->parameters) return strut_no_memory(self->points.error, "");
-    strut_fit_place(one, (int32_t)m, row->parameters);
-    problem.most_steps = STEPS_FIRST;
-    status = strut_least_squares_solve(&problem, row->parameters, &solution);
-    row->end = solution.end, row->sum = solution.sum;
-    result->elsewhere_count++;
-  }
-  if (status || !result->elsewhere) return strut_no_memory(self->points.error, "");
-  return one->status ? strut_fail(self->points.error, one->status, "%s", one->error.message)
-                     : STRUT_OK;
-}
-
 /* Why there are no residuals at the first start. */
 static strut_status find_failure(fitting *self, strut_fit_case *one) {
   strut_fit_result *result = self->result;
@@ -450,15 +518,17 @@ static strut_status find_failure(fitting *self, strut_fit_case *one) {
   return residual && result->reason ? STRUT_OK : strut_no_memory(self->points.error, "");
 }
 
-/* The best start, its scale of errors, and the rise of the sum at the ends of intervals. */
-static strut_status find_best(fitting *self) {
+/* The best fit so far, its scale of errors, and the rise of the sum at the ends of intervals. */
+static strut_status find_best(fitting *self, size_t count) {
   strut_fit_result *result = self->result;
   strut_fit_case one;
-  for (size_t i = 0; i < result->start_count; i++) {
-    bool better = !result->found || result->starts[i].sum < result->starts[result->best].sum;
-    if (!has_residuals(&result->starts[i]) || !better) continue;
-    result->best = i, result->found = true;
+  for (size_t i = 0; i < count; i++) {
+    double least = result->found ? self->least : HUGE_VAL;
+    if (i >= result->start_count) least -= FALL * self->rise;
+    if (!has_residuals(&result->starts[i]) || !(result->starts[i].sum < least)) continue;
+    result->best = i, result->found = true, self->least = result->starts[i].sum;
   }
+  if (self->best == result->starts[result->best].parameters) return STRUT_OK;
   if (!strut_fit_case_create(self->layout, &one)) return strut_no_memory(self->points.error, "");
   if (!result->found) {
     strut_status failed = find_failure(self, &one);
@@ -481,7 +551,6 @@ static strut_status find_best(fitting *self) {
   self->unexplained =
       self->layout->noise_known && strut_fit_is_unexplained(best->sum, result->freedom);
   strut_status status = find_spectrum(self, &one);
-  if (!status && !self->unexplained) status = fit_elsewhere(self, &one);
   strut_fit_case_free(&one);
   return status;
 }
@@ -533,20 +602,26 @@ static bool fill_estimates(fitting *self) {
 static strut_status run_stages(fitting *self) {
   const strut_study_fit *fit = self->layout->fit;
   strut_fit_result *result = self->result;
-  int64_t starts = fit->starts, profiles = 2 * (int64_t)fit->variable_count,
-          omissions = (int64_t)omission_rows(fit);
-  strut_status status = run_stage(self, 0, starts);
-  if (!status) status = read_rows(self, 0, (size_t)starts, &result->starts);
-  if (!status) status = find_best(self);
-  if (!status) status = run_stage(self, starts, profiles + omissions);
-  if (!status) status = read_rows(self, starts, (size_t)profiles, &result->ends);
-  if (!status) status = read_rows(self, starts + profiles, (size_t)omissions, &result->omissions);
-  if (!status && result->found && !fill_estimates(self))
-    status = strut_no_memory(self->points.error, "");
-  if (!status && result->found &&
-      !strut_fit_judge(self->layout, &self->spectrum, self->best, result))
-    status = strut_no_memory(self->points.error, "");
-  return status;
+  size_t starts = result->start_count, beside = fit->beside_count;
+  size_t profiles = 2 * fit->variable_count;
+  size_t all = starts + STRUT_FIT_ROUNDS * beside + profiles + fit->omission_count;
+  result->starts = strut_arena_allocate(&result->arena, all, sizeof *result->starts);
+  if (!result->starts) return strut_no_memory(self->points.error, "");
+  strut_status status = run_stage(self, starts);
+  if (!status) status = find_best(self, starts);
+  for (int round = 0; round < STRUT_FIT_ROUNDS && !status; round++) {
+    size_t best = result->best;
+    status = run_stage(self, beside);
+    result->beside_count += beside;
+    if (!status) status = find_best(self, starts + result->beside_count);
+    result->settled = result->best == best;
+  }
+  result->ends = result->starts + starts + result->beside_count;
+  result->omissions = result->ends + profiles;
+  if (!status) status = run_stage(self, profiles + fit->omission_count);
+  bool fine = status || !result->found ||
+              (fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result));
+  return fine ? status : strut_no_memory(self->points.error, "");
 }
 
 strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
@@ -568,7 +643,7 @@ strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
   strut_points_begin(&self.points);
   strut_status status = strut_fit_layout_make(plan, options->interrupt, &layout, error);
   result->parameters = layout.parameters, result->aligned_count = layout.aligned_count;
-  result->variable_count = fit->variable_count, result->omission_count = omission_rows(fit);
+  result->variable_count = fit->variable_count;
   if (!status) status = strut_points_open(&self.points, plan, options, &arena);
   if (!status) status = run_stages(&self);
   strut_points_close(&self.points);
@@ -576,12 +651,6 @@ strut_status strut_fit_run(const strut_sweep_plan *plan, strut_slots *slots,
   strut_arena_free(&arena);
   if (!self.points.status) self.points.status = status;
   return strut_points_end(&self.points);
-}
-
-size_t strut_fit_first(const strut_study_fit *fit, size_t match, size_t series) {
-  size_t first = 0;
-  for (size_t m = 0; m < match; m++) first += fit->matches[m].count * fit->matches[m].series_count;
-  return first + series * fit->matches[match].count;
 }
 
 void strut_fit_result_free(strut_fit_result *result) { strut_arena_free(&result->arena); }

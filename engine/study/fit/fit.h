@@ -74,14 +74,13 @@ typedef struct strut_fit_result {
   const strut_study_fit *fit;
   const strut_sweep_plan *plan;
   size_t parameters, aligned_count, variable_count;
-  size_t start_count, best; /* best: a start */
+  size_t start_count, best; /* best: a start, or beside one */
+  bool settled;             /* beside the best none was found that is better */
   bool found;               /* some start has residuals: all below is there */
-  strut_fit_row *starts;    /* (start_count) */
-  strut_fit_row *ends;      /* (variables, 2) of the profiles, low and high */
-  size_t elsewhere_count;
-  strut_fit_row *elsewhere; /* (elsewhere_count) with other delays, without values */
-  size_t omission_count;
-  strut_fit_row *omissions; /* (omission_count) without each match; none where there is only one */
+  strut_fit_row *starts; /* (start_count), then (beside_count) that lie beside the best of them */
+  strut_fit_row *ends;   /* (variables, 2) of the profiles, low and high */
+  size_t beside_count;
+  strut_fit_row *omissions;      /* without each match; none where there is only one */
   strut_fit_estimate *estimates; /* (parameters) alignments first */
   double *correlation;           /* (variables, variables) */
   size_t direction_count;
@@ -114,8 +113,6 @@ STRUT_API strut_status strut_fit_figures(const strut_fit_result *result, const c
                                          strut_error *error);
 /** Are all parameters identified? */
 STRUT_API bool strut_fit_is_identified(const strut_fit_result *result);
-/** Where the numbers of a series begin among those of all matches. */
-STRUT_API size_t strut_fit_first(const strut_study_fit *fit, size_t match, size_t series);
 /** The rows of a result as people and programs read them. */
 STRUT_API extern const strut_value_rows strut_fit_values;
 /**

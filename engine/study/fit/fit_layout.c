@@ -3,19 +3,15 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
 #include "engine/study/fit/fit_parts.h"
 #include "engine/study/sweep/sweep.h"
 
-static const double MOST_TURN = 6.283185307179586;
-
 /* The number of a column among those of numbers, or -1. */
 static int64_t find_number(const strut_sweep_plan *plan, const char *name) {
-  int64_t number = 0;
-  for (size_t i = 0; i < plan->column_count; i++) {
-    if (plan->columns[i].word) continue;
-    if (i >= plan->axis_columns && strcmp(plan->columns[i].name, name) == 0) return number;
-    number++;
-  }
+  for (size_t i = plan->axis_columns; i < plan->column_count; i++)
+    if (!plan->columns[i].word && strcmp(plan->columns[i].name, name) == 0)
+      return (int64_t)strut_slot_place(plan->columns, i);
   return -1;
 }
 
@@ -67,8 +63,7 @@ static strut_status find_sources(strut_fit_layout *layout, size_t m, const strut
     const char *unit = moves ? quantity->unit : match->kind == STRUT_FIT_CURVE ? "N" : NULL;
     if (unit && strcmp(unit, match->series[s].unit) != 0)
       return refuse(layout, m, s, "has another unit than its numbers", error);
-    sources[s] =
-        (strut_fit_source){.first = layout->count, .partner = -1, .column = (size_t)column};
+    sources[s] = (strut_fit_source){.partner = -1, .column = (size_t)column};
     sources[s].axis = moves ? axis_of(quantity, &places[s]) : -1;
     for (size_t k = 0; k < s && sources[s].axis >= 0; k++)
       if (sources[k].axis == 1 - sources[s].axis && places[k].kind == places[s].kind &&
@@ -98,54 +93,41 @@ static double range_of(const strut_fit_match *match) {
 
 /*
  * Turns and delays have a range, as parameters do: by a delay a motion begins no further from its start, or from its own
- * first time, than it lasts.
+ * first time, than it lasts. Where it begins long after the model's own run has ended, or before 0, its clock is its own.
  */
-static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double start,
+static bool add_aligned(strut_fit_layout *layout, size_t m, strut_fit_aligns what, double own,
                         double scale) {
   static const char *const names[] = {"shift_x", "shift_y", "rotate", "delay"};
   static const char *const units[] = {"m", "m", "rad", "s"};
   const strut_fit_match *match = &layout->fit->matches[m];
   bool delay = what == STRUT_FIT_DELAY;
-  const double range[] = {HUGE_VAL, HUGE_VAL, MOST_TURN, scale};
-  double from = start - range[what], to = start + range[what];
-  if (delay) to = fmax(to, match->at[0] + scale);
+  const double range[] = {HUGE_VAL, HUGE_VAL, STRUT_TAU, scale};
+  double first = delay ? match->at[0] : 0.0, latest = fmax(own, STRUT_FIT_OWN_CLOCK * scale);
+  double start = first < 0.0 || first > latest ? first : 0.0;
+  double from = start - range[what], to = fmax(start, first) + range[what];
   const char *name =
       strut_arena_format(&layout->arena, "%s.%s", layout->fit->matches[m].name, names[what]);
   size_t i = layout->aligned_count++;
-  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], start, scale};
+  layout->aligned[i] = (strut_fit_aligned){m, what, name, units[what], {start, first}, scale};
   layout->low[i] = 1.0 + from / scale;
   layout->high[i] = 1.0 + to / scale;
   return name != NULL;
 }
 
-/* Has a series numbers? A coordinate beside a measured one may have none. */
-static bool is_measured(const strut_fit_match *match, size_t s) {
-  size_t i = 0;
-  while (i < match->count && isnan(match->series[s].measured[i])) i++;
-  return i < match->count;
-}
-
-/* A film that begins this many of its lengths late, or before 0, is taken to have a clock of its own. */
-static const double OWN_CLOCK = 10.0;
-
-static bool add_alignments(strut_fit_layout *layout, size_t m) {
+/* `own`: the duration of the model's own run. */
+static bool add_alignments(strut_fit_layout *layout, size_t m, double own) {
   const strut_fit_match *match = &layout->fit->matches[m];
   bool fine = true;
   double range = range_of(match);
   for (int axis = 0; axis < 2 && match->align.shift; axis++) {
     bool there = false;
     for (size_t s = 0; s < match->series_count; s++)
-      there = there || (layout->parts[m].sources[s].axis == axis && is_measured(match, s));
-    if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, 0.0, range) && fine;
+      there = there || (layout->parts[m].sources[s].axis == axis && !match->series[s].empty);
+    if (there) fine = add_aligned(layout, m, (strut_fit_aligns)axis, own, range) && fine;
   }
-  if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, 0.0, 1.0) && fine;
+  if (match->align.rotate) fine = add_aligned(layout, m, STRUT_FIT_ROTATE, own, 1.0) && fine;
   if (match->align.delay)
-    fine = add_aligned(layout, m, STRUT_FIT_DELAY,
-                       match->at[0] >= 0.0 && match->at[0] <= OWN_CLOCK * strut_fit_span(match)
-                           ? 0.0
-                           : match->at[0],
-                       strut_fit_span(match)) &&
-           fine;
+    fine = add_aligned(layout, m, STRUT_FIT_DELAY, own, strut_fit_span(match)) && fine;
   return fine;
 }
 
@@ -183,11 +165,12 @@ static strut_status find_all(strut_fit_layout *layout, strut_error *error) {
   strut_status status = plan->scenes.setup(plan->scenes.context, values, &setup, error);
   strut_release(values);
   if (status) return status;
+  double own = strut_experiment_span(&setup.experiment, &setup.scene).duration;
   for (size_t m = 0; m < layout->fit->match_count && !status; m++) {
     const strut_fit_match *match = &layout->fit->matches[m];
     status = make_table(layout, m, error);
     if (!status) status = find_sources(layout, m, &setup, error);
-    if (!status && !add_alignments(layout, m)) status = strut_no_memory(error, "");
+    if (!status && !add_alignments(layout, m, own)) status = strut_no_memory(error, "");
     layout->parts[m].noise = match->noise > 0.0 ? match->noise : range_of(match);
     layout->noise_known = layout->noise_known && match->noise > 0.0;
   }

@@ -23,17 +23,19 @@ typedef enum strut_fit_aligns {
   STRUT_FIT_ALIGNS_COUNT
 } strut_fit_aligns;
 
+/** A film that begins at most this many of its lengths late may have the clock of the run. */
+#define STRUT_FIT_OWN_CLOCK 10.0
+
 /** A number of an alignment. */
 typedef struct strut_fit_aligned {
   size_t match;
   strut_fit_aligns what;
   const char *name, *unit; /* "film.shift_x" */
-  double start, scale;     /* SI */
+  double starts[2], scale; /* SI; the second of a start in four */
 } strut_fit_aligned;
 
 /** A series as the model has it. */
 typedef struct strut_fit_source {
-  size_t first;    /* of its residuals */
   int axis;        /* 0: x of a place, 1: y, -1: neither */
   int32_t partner; /* the series of the other coordinate of the same place, or -1 */
   size_t column;   /* of a TABLE: its number among those of numbers */
@@ -67,17 +69,19 @@ typedef struct strut_fit_layout {
 /** An evaluation: of one thread at a time. */
 typedef struct strut_fit_case {
   const strut_fit_layout *layout;
-  double share;         /* of the time of motions that counts */
-  int32_t left_out;     /* this match does not count; -1: all do */
-  double *weight;       /* (count) factors of residuals; 0: a gap, or it does not count */
-  size_t used;          /* residuals that count */
-  int64_t evaluations;  /* of the residuals, so far */
-  double *predicted[3]; /* (count) by the model, before and after by a short time, not aligned */
-  double *latest;       /* (parameters) of that */
+  double share;        /* of the time of motions that counts */
+  int32_t left_out;    /* this match does not count; -1: all do */
+  double *weight;      /* (count) factors of residuals; 0: a gap, or it does not count */
+  size_t used;         /* residuals that count */
+  int64_t evaluations; /* of the residuals, so far */
+  double *predicted;   /* (count) by the model, not aligned */
+  double *latest;      /* (parameters) of that */
   bool known;
-  double *placing; /* parameters whose alignments are to be found while the model is predicted */
-  int32_t second;  /* the match of those that takes the second best delay; or a strut_fit_delays */
-  double placed_sum;               /* of squares, then */
+  double *placing;   /* parameters whose alignments are to be found while the model is predicted */
+  bool delays;       /* with their delays */
+  int32_t elsewhere; /* this match takes one of the next best, by its rank; -1: none does */
+  size_t rank;       /* 0: the best */
+  double placed_sum; /* of squares, then */
   const strut_fit_series *missing; /* the model has no such number at the latest point; or NULL */
   double *buffer;                  /* (3 count + 3) */
   strut_status status;             /* of what must stop all */
@@ -106,17 +110,13 @@ void strut_fit_case_free(strut_fit_case *one);
 strut_least_squares strut_fit_problem(strut_fit_case *one);
 /** The numbers of all series as the case has predicted them at the parameters, aligned: (count). */
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to);
-/** Which delays a placing takes. */
-typedef enum strut_fit_delays {
-  STRUT_FIT_BEST_DELAYS = -1,
-  STRUT_FIT_GIVEN_DELAYS = -2
-} strut_fit_delays;
 /**
- * Sets the alignments at the other parameters to those with the least sum, shifts and turns in closed form. `second`: a
- * match that takes the second best delay, or a strut_fit_delays. A turn needs both coordinates. Returns the sum;
- * HUGE_VAL, without a change, where the model cannot be computed or nothing is aligned.
+ * Sets the alignments at the other parameters to those with the least sum, shifts and turns in closed form, and delays
+ * too if so said, of the match `elsewhere` (-1: none) to a next best one. A turn needs both coordinates. Returns the sum;
+ * HUGE_VAL, without a change, where the model cannot be computed, nothing is aligned or there is no such delay.
  */
-double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters);
+double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,
+                       double *parameters);
 /** Residuals count within a share of the time of motions, and of all matches but one; -1: of all. */
 void strut_fit_choose(strut_fit_case *one, double share, int32_t left_out);
 
@@ -149,4 +149,4 @@ bool strut_fit_is_unexplained(double sum, double freedom);
  * out.
  */
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
-                     const double *best, strut_fit_result *result);
+                     strut_fit_result *result);

@@ -11,44 +11,49 @@
 typedef struct planning {
   const strut_fit_layout *layout;
   strut_fit_plan *plan;
-  const double *jacobian; /* (count, parameters) */
-  double *part;           /* (count, parameters) */
+  const double *jacobian; /* (count, parameters); rows of gaps are 0 */
+  double *part;           /* (count, parameters) of a candidate */
+  size_t rows, numbers;   /* of it */
 } planning;
 
-/* Puts the rows of a series into the part; returns how many. */
-static size_t take_series(const planning *self, size_t m, size_t s, size_t used) {
+/* Adds a series to the candidate. */
+static void take_series(planning *self, size_t m, size_t s) {
   const strut_fit_match *match = &self->layout->fit->matches[m];
-  size_t n = self->layout->parameters, first = self->layout->parts[m].sources[s].first;
-  for (size_t i = 0; i < match->count; i++) {
-    if (isnan(match->series[s].measured[i])) continue;
-    memcpy(self->part + used * n, self->jacobian + (first + i) * n, n * sizeof(double));
-    used++;
-  }
-  return used;
+  size_t n = self->layout->parameters;
+  memcpy(self->part + self->rows * n, self->jacobian + match->series[s].first * n,
+         match->count * n * sizeof(double));
+  self->rows += match->count;
+  for (size_t i = 0; i < match->count; i++)
+    if (!isnan(match->series[s].measured[i])) self->numbers++;
 }
 
-/* Values a candidate by the rows in the part: of all alignments those that it moves. */
-static bool add_candidate(planning *self, const char *name, size_t used) {
+static void take_match(planning *self, size_t m) {
+  for (size_t s = 0; s < self->layout->fit->matches[m].series_count; s++) take_series(self, m, s);
+}
+
+/* Values the candidate, which is empty then: of all alignments those that it moves. */
+static bool add_candidate(planning *self, const char *name) {
   const strut_fit_layout *layout = self->layout;
   strut_fit_plan *plan = self->plan;
-  size_t n = layout->parameters, first = layout->aligned_count, kept = 0,
+  size_t n = layout->parameters, first = layout->aligned_count, rows = self->rows, kept = 0,
          of[STRUT_LEAST_SQUARES_MOST];
   strut_fit_spectrum spectrum;
   for (size_t i = 0; i < n; i++) {
     bool moves = i >= first;
-    for (size_t k = 0; k < used && !moves; k++) moves = self->part[k * n + i] != 0.0;
+    for (size_t k = 0; k < rows && !moves; k++) moves = self->part[k * n + i] != 0.0;
     if (moves) of[kept++] = i;
   }
   strut_fit_candidate *candidate = &plan->candidates[plan->count];
-  *candidate = (strut_fit_candidate){.name = name, .numbers = used, .determinant = -HUGE_VAL};
+  *candidate = (strut_fit_candidate){name, self->numbers, -HUGE_VAL, 0.0, NULL};
   candidate->errors = strut_arena_allocate(&plan->arena, plan->variable_count, sizeof(double));
   if (!candidate->errors || !name) return false;
   plan->count++;
+  self->rows = self->numbers = 0;
   for (size_t k = 0; k < plan->variable_count; k++) candidate->errors[k] = HUGE_VAL;
-  if (used < kept) return true;
-  for (size_t k = 0; k < used; k++)
+  if (candidate->numbers < kept) return true;
+  for (size_t k = 0; k < rows; k++)
     for (size_t i = 0; i < kept; i++) self->part[k * kept + i] = self->part[k * n + of[i]];
-  if (!strut_fit_spectrum_find(self->part, used, kept, &plan->arena, &spectrum)) return false;
+  if (!strut_fit_spectrum_find(self->part, rows, kept, &plan->arena, &spectrum)) return false;
   candidate->least = spectrum.singular[kept - 1];
   candidate->determinant = 0.0;
   for (size_t i = 0; i < kept; i++) candidate->determinant += 2.0 * log10(spectrum.singular[i]);
@@ -60,35 +65,32 @@ static bool add_candidate(planning *self, const char *name, size_t used) {
   return true;
 }
 
-/* "n1" of "n1.x": the place of a series whose coordinates are taken together. */
-static const char *name_place(planning *self, size_t m, size_t s) {
+/* Candidates of a match: places, "n1" of "n1.x" and "n1.y", and the whole. */
+static bool add_match(planning *self, size_t m) {
   const strut_fit_match *match = &self->layout->fit->matches[m];
-  const char *of = match->series[s].of, *dot = strrchr(of, '.');
-  bool whole = self->layout->parts[m].sources[s].partner < 0 || !dot;
-  return strut_arena_format(&self->plan->arena, "%s: %.*s", match->name,
-                            whole ? (int)strlen(of) : (int)(dot - of), of);
+  size_t before = self->plan->count;
+  bool fine = true;
+  for (size_t s = 0; s < match->series_count && fine; s++) {
+    int32_t partner = self->layout->parts[m].sources[s].partner;
+    const char *of = match->series[s].of, *dot = strrchr(of, '.');
+    int length = (int)(partner >= 0 && dot ? dot - of : (int64_t)strlen(of));
+    if (partner >= 0 && partner < (int32_t)s) continue;
+    take_series(self, m, s);
+    if (partner >= 0) take_series(self, m, (size_t)partner);
+    fine = add_candidate(
+        self, strut_arena_format(&self->plan->arena, "%s: %.*s", match->name, length, of));
+  }
+  if (self->plan->count - before < 2) return fine;
+  take_match(self, m);
+  return fine && add_candidate(self, match->name);
 }
 
 static bool add_all(planning *self) {
-  const strut_study_fit *fit = self->layout->fit;
-  size_t all = 0;
+  size_t matches = self->layout->fit->match_count;
   bool fine = true;
-  for (size_t m = 0; m < fit->match_count && fine; m++) {
-    size_t used = 0, parts = 0;
-    for (size_t s = 0; s < fit->matches[m].series_count && fine; s++) {
-      int32_t partner = self->layout->parts[m].sources[s].partner;
-      if (partner >= 0 && partner < (int32_t)s) continue;
-      size_t own = take_series(self, m, s, 0);
-      if (partner >= 0) own = take_series(self, m, (size_t)partner, own);
-      fine = add_candidate(self, name_place(self, m, s), own);
-      parts++;
-    }
-    for (size_t s = 0; s < fit->matches[m].series_count; s++) used = take_series(self, m, s, used);
-    if (parts > 1) fine = fine && add_candidate(self, fit->matches[m].name, used);
-  }
-  for (size_t m = 0; m < fit->match_count; m++)
-    for (size_t s = 0; s < fit->matches[m].series_count; s++) all = take_series(self, m, s, all);
-  return fine && (fit->match_count == 1 || add_candidate(self, "all", all));
+  for (size_t m = 0; m < matches && fine; m++) fine = add_match(self, m);
+  for (size_t m = 0; m < matches; m++) take_match(self, m);
+  return fine && (matches == 1 || add_candidate(self, "all"));
 }
 
 /* The most certain first. */
@@ -111,8 +113,8 @@ strut_status strut_fit_plan_find(const strut_sweep_plan *of, const strut_flag *i
     most += 1 + plan->fit->matches[m].series_count;
   double *jacobian = strut_arena_allocate(arena, layout.count * n + 1, sizeof *jacobian);
   double *residual = strut_arena_allocate(arena, layout.count + 1, sizeof *residual);
-  planning self = {&layout, plan, jacobian,
-                   strut_arena_allocate(arena, layout.count * n + 1, sizeof(double))};
+  planning self = {.layout = &layout, .plan = plan, .jacobian = jacobian};
+  self.part = strut_arena_allocate(arena, layout.count * n + 1, sizeof(double));
   plan->candidates = strut_arena_allocate(&plan->arena, most, sizeof *plan->candidates);
   plan->at = strut_arena_allocate(&plan->arena, n + 1, sizeof *plan->at);
   bool fine = jacobian && residual && self.part && plan->candidates && plan->at &&

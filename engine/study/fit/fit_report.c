@@ -62,7 +62,7 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   double square = 0.0, lags = 0.0, series = 0.0;
   *of = (strut_fit_residuals){.match = match, .lag = (double)NAN};
   for (size_t s = 0; s < match->series_count; s++) {
-    const double *residual = result->residual + layout->parts[m].sources[s].first;
+    const double *residual = result->residual + match->series[s].first;
     double lag = match->kind == STRUT_FIT_MOTION ? find_lag(residual, match->count) : (double)NAN;
     if (!isnan(lag)) lags += lag, series += 1.0;
     for (size_t i = 0; i < match->count; i++) {
@@ -75,15 +75,25 @@ static void describe_residuals(const strut_fit_layout *layout, size_t m, strut_f
   of->chi_square = layout->noise_known ? square : (double)NAN;
 }
 
-/* Why the model does not explain the data; "" if it does, or NULL: memory is out. */
+/*
+ * Why the model does not explain the data; "" if it does, or NULL: memory is out. A match of its own has no more
+ * degrees of freedom than numbers.
+ */
 static const char *find_flaw(strut_fit_result *result) {
   const char *flaw = "";
-  if (!isnan(result->probability) && strut_fit_is_unexplained(result->chi_square, result->freedom))
-    flaw = strut_arena_format(&result->arena,
-                              "the residuals are %.3g times the noise: chi square %.4g with %.0f "
-                              "degrees of freedom",
-                              sqrt(result->chi_square / result->freedom), result->chi_square,
-                              result->freedom);
+  bool known = !isnan(result->chi_square);
+  for (size_t m = 0; m <= result->fit->match_count && known && flaw && !*flaw; m++) {
+    const strut_fit_residuals *of = m ? &result->residuals[m - 1] : NULL;
+    double square = of ? of->chi_square : result->chi_square;
+    double freedom = of ? (double)of->used : result->freedom;
+    if (strut_fit_is_unexplained(square, freedom))
+      flaw = strut_arena_format(&result->arena,
+                                "the residuals%s%.40s%s are %.3g times the noise: chi square %.4g "
+                                "with %.0f degrees of freedom%s",
+                                of ? " of '" : "", of ? of->match->name : "", of ? "'" : "",
+                                sqrt(square / freedom), square, freedom,
+                                result->agreeing > 1 ? "" : "; only one start ends there");
+  }
   for (size_t m = 0; m < result->fit->match_count && flaw && !*flaw; m++)
     if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
       flaw = strut_arena_format(&result->arena,
@@ -91,6 +101,13 @@ static const char *find_flaw(strut_fit_result *result) {
                                 "errors",
                                 result->residuals[m].match->name, result->residuals[m].lag);
   return flaw;
+}
+
+/* By how much the noise of a match is larger than its residuals, where it is too large for them; else 0. */
+static double find_excess(const strut_fit_result *result, const strut_fit_residuals *of) {
+  double freedom = (double)of->used - (double)result->parameters;
+  bool large = freedom > 0.0 && gsl_cdf_chisq_P(of->chi_square, freedom) < RARE;
+  return large ? sqrt(freedom / of->chi_square) : 0.0;
 }
 
 /* ---- directions ---- */
@@ -108,38 +125,44 @@ static bool takes_part(const strut_fit_spectrum *spectrum, double scale, size_t 
 }
 
 /* What of two parameters is determined where a direction is not: "k/m", "k*m", or "a + 0.98 b" over the ranges. */
-static const char *name_determined(strut_arena *arena, const strut_search_variable *first,
-                                   const strut_search_variable *second, double other) {
-  if (!first->logarithmic || !second->logarithmic)
-    return strut_arena_format(arena, "%.40s %c %.3g %.40s", first->name, other < 0.0 ? '-' : '+',
-                              fabs(other), second->name);
+static const char *name_determined(strut_fit_result *result, size_t i, size_t j, double other) {
+  const strut_fit_estimate *first = &result->estimates[i], *second = &result->estimates[j];
+  size_t aligned = result->aligned_count;
+  const strut_search_variable *variables = result->fit->variables;
+  if (i < aligned || j < aligned || !variables[i - aligned].logarithmic ||
+      !variables[j - aligned].logarithmic)
+    return strut_arena_format(&result->arena, "%.40s %c %.3g %.40s", first->name,
+                              other < 0.0 ? '-' : '+', fabs(other), second->name);
   double power = other * log(first->to / first->from) / log(second->to / second->from);
   char text[40] = "";
   if (fabs(fabs(power) - 1.0) > WHOLE) snprintf(text, sizeof text, "^%.3g", fabs(power));
-  return strut_arena_format(arena, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*',
+  return strut_arena_format(&result->arena, "%.40s%c%.40s%s", first->name, power < 0.0 ? '/' : '*',
                             second->name, text);
 }
 
-/* "friction and damping together", and what of two is determined. False: memory is out. */
-static bool describe_direction(strut_fit_result *result, const bool *takes,
+/*
+ * "friction and damping together", and what of two is determined: the fitted ones that take part, then the
+ * alignments. False: memory is out.
+ */
+static bool describe_direction(strut_fit_result *result, const bool *takes, const double *part,
                                strut_fit_direction *direction) {
   char text[300] = "";
   size_t used = 0, taken = 0, pair[2] = {0, 0};
-  const strut_search_variable *variables = result->fit->variables;
-  for (size_t k = 0; k < result->variable_count; k++) {
-    if (!takes[k]) continue;
-    if (taken < 2) pair[taken] = k;
+  for (size_t k = 0; k < result->parameters; k++) {
+    size_t i = (k + result->aligned_count) % result->parameters;
+    if (!takes[i]) continue;
+    if (taken < 2) pair[taken] = i;
     taken++;
     if (used < sizeof text - 60)
       used += (size_t)snprintf(text + used, sizeof text - used, "%s%.40s", used ? " and " : "",
-                               variables[k].name);
+                               result->estimates[i].name);
   }
   if (taken > 1) snprintf(text + used, sizeof text - used, " together");
   direction->words = strut_arena_text(&result->arena, text, strlen(text));
-  if (taken != 2) return direction->words != NULL;
-  direction->determined = name_determined(&result->arena, &variables[pair[0]], &variables[pair[1]],
-                                          -direction->part[pair[0]] / direction->part[pair[1]]);
-  return direction->words && direction->determined;
+  if (taken == 2)
+    direction->determined =
+        name_determined(result, pair[0], pair[1], -part[pair[0]] / part[pair[1]]);
+  return direction->words && (taken != 2 || direction->determined);
 }
 
 /* Directions in which the numbers determine nothing, and who takes part in them. */
@@ -154,14 +177,14 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
     if (!part) return false;
     for (size_t i = first; i < n; i++) size = hypot(size, spectrum->direction[k * n + i]);
     if (!(error * size > WIDE) || !(size > PART)) continue;
-    for (size_t i = first; i < n; i++) {
-      part[i - first] = spectrum->direction[k * n + i] / size;
-      takes[i - first] = takes_part(spectrum, result->scale, k, i, size);
-      if (takes[i - first]) result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
+    for (size_t i = 0; i < n; i++) {
+      part[i] = spectrum->direction[k * n + i] / size;
+      takes[i] = takes_part(spectrum, result->scale, k, i, size);
+      if (takes[i]) result->estimates[i].verdict = STRUT_FIT_UNDETERMINED;
     }
     strut_fit_direction *direction = &result->directions[result->direction_count++];
-    *direction = (strut_fit_direction){.error = error, .part = part};
-    if (!describe_direction(result, takes, direction)) return false;
+    *direction = (strut_fit_direction){.error = error, .part = part + first};
+    if (!describe_direction(result, takes, part, direction)) return false;
   }
   return result->directions != NULL;
 }
@@ -169,31 +192,28 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
 /* ---- starts ---- */
 
 /* Is a fit that is as good as the best one another answer? Where that is not determined it may be anywhere. */
-static bool is_another(const strut_fit_layout *layout, const strut_fit_result *result,
-                       const strut_fit_row *row, const double *best) {
-  for (size_t i = layout->aligned_count; i < layout->parameters; i++) {
-    const strut_fit_estimate *estimate = &result->estimates[i];
+static bool is_another(const strut_fit_result *result, const strut_fit_row *row) {
+  const strut_fit_estimate *estimate = result->estimates + result->aligned_count;
+  for (size_t k = 0; k < result->variable_count; k++, estimate++) {
     double half = 0.5 * (estimate->high - estimate->low);
     if (estimate->verdict == STRUT_FIT_IDENTIFIED &&
-        fabs(strut_fit_value(layout, i, row->parameters[i]) - strut_fit_value(layout, i, best[i])) >
-            AWAY * half)
+        fabs(row->values[k] - estimate->value) > AWAY * half)
       return true;
   }
   return false;
 }
 
 /* Why starts disagree; "": they agree. `rise`: of the sum at an end of an interval. */
-static const char *compare_starts(const strut_fit_layout *layout, const double *best, double rise,
-                                  strut_fit_result *result) {
+static const char *compare_starts(double rise, strut_fit_result *result) {
   double least = result->starts[result->best].sum;
-  bool better = false;
+  bool better = !result->settled, known = !isnan(result->chi_square);
   const char *why = "";
-  for (size_t i = 0; i < result->start_count + result->elsewhere_count; i++) {
+  for (size_t i = 0; i < result->start_count + result->beside_count; i++) {
     bool start = i < result->start_count;
-    strut_fit_row *row = start ? &result->starts[i] : &result->elsewhere[i - result->start_count];
+    strut_fit_row *row = &result->starts[i];
     if (row->sum < least - SAME * rise) better = true;
     if (row->end == STRUT_FIT_FAILED || !(row->sum <= least + rise)) continue;
-    bool another = is_another(layout, result, row, best);
+    bool another = is_another(result, row);
     row->agrees = !another && row->sum <= least + SAME * rise;
     result->agreeing += start && row->agrees;
     if (another) why = "a fit with residuals as small ends elsewhere";
@@ -202,9 +222,11 @@ static const char *compare_starts(const strut_fit_layout *layout, const double *
     better = better || result->ends[i].sum < least - SAME * rise;
   if (better)
     why = "beside the best fit there is a better one, which no start has found: give more starts";
-  if (!*why && !layout->noise_known && result->start_count > 1 && result->agreeing < 2)
-    why =
-        "only one start ends at the best fit, and without the noise nothing says that it is right";
+  if (!*why && !(known && result->freedom > 0.0) && result->start_count > 1 && result->agreeing < 2)
+    why = known
+              ? "only one start ends at the best fit, and there are no more numbers than parameters"
+              : "only one start ends at the best fit, and without the noise nothing says that it "
+                "is right";
   return why;
 }
 
@@ -226,7 +248,7 @@ static void withdraw(strut_fit_estimate *estimate) {
 }
 
 bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *spectrum,
-                     const double *best, strut_fit_result *result) {
+                     strut_fit_result *result) {
   size_t first = layout->aligned_count;
   double sum = result->starts[result->best].sum;
   double rise = gsl_cdf_chisq_Pinv(0.95, 1.0) * result->scale * result->scale;
@@ -241,7 +263,7 @@ bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *s
   for (size_t i = 0; i < layout->parameters; i++)
     result->estimates[i].verdict = first_verdict(&result->estimates[i]);
   if (!find_directions(layout, spectrum, result)) return false;
-  const char *flaw = find_flaw(result), *other = compare_starts(layout, best, rise, result);
+  const char *other = compare_starts(rise, result), *flaw = find_flaw(result);
   if (!flaw) return false;
   result->reason = *flaw ? flaw : other;
   for (size_t i = first; i < layout->parameters && *result->reason; i++)
@@ -316,6 +338,8 @@ static const char *unit_of_match(const strut_fit_match *match) {
     .label = {"residuals"})                                                                        \
   X("noise", "", IF(r->match->noise > 0.0, IN(r->match->noise_unit, r->match->noise)),             \
     "standard deviation of the numbers, as given", .label = {""})                                  \
+  X("excess", "1", IF(find_excess(result_of(of), r) > 0.0, NUMBER(find_excess(result_of(of), r))), \
+    "the noise given is so many times what the residuals show", .label = {"noise too large by"})   \
   X("chi_square", "1", IF(!isnan(r->chi_square), NUMBER(r->chi_square)),                           \
     "sum of squared residuals in units of the noise", .label = {"chi square"})                     \
   X("lag", "1", IF(!isnan(r->lag), NUMBER(r->lag)),                                                \
@@ -387,7 +411,8 @@ static strut_value correlations_of(const strut_result_object *of, size_t i) {
     .label = {"starts that agree"})                                                                \
   X("starts", "", LIST(r->starts, r->start_count), "one by one", .rows = &start_values,            \
     .label = {""})                                                                                 \
-  X("omissions", "", IF(r->found && r->omission_count, LIST(r->omissions, r->omission_count)),     \
+  X("omissions", "",                                                                               \
+    IF(r->found && r->fit->omission_count, LIST(r->omissions, r->fit->omission_count)),            \
     "fits without one match", .rows = &omission_values, .label = {""})
 STRUT_VALUES(strut_fit_values, FIT, const strut_fit_result *r = of->at)
 
@@ -459,7 +484,7 @@ static char *residuals_csv(const strut_fit_result *result) {
   for (size_t m = 0; m < result->fit->match_count; m++)
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++) {
       const strut_fit_match *match = &result->fit->matches[m];
-      size_t first = strut_fit_first(result->fit, m, s);
+      size_t first = match->series[s].first;
       for (size_t i = 0; i < match->count; i++) {
         const double numbers[] = {match->at ? match->at[i] : (double)NAN,
                                   match->series[s].measured[i], result->predicted[first + i],

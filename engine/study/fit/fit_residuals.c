@@ -15,20 +15,16 @@ static const double TOLERANCE = STRUT_FIT_EXACT;
 /* Steps of differences, and where the method ends, in parts of a parameter's range. */
 static const double STEP = 1e-4, NEAR = 1e-6;
 
-/* Part of the time between samples at which the rate of a motion is taken. */
-static const double BESIDE = 0.01;
-
 /* Duration of a run that is only wanted where it starts [s]. */
 static const double AT_ONCE = 1e-6;
 
 /* The alignments of a match at the parameters. */
 typedef struct alignment {
   double number[STRUT_FIT_ALIGNS_COUNT];
-  double others; /* factor of numbers that are no coordinates */
 } alignment;
 
 static alignment align(const strut_fit_layout *layout, size_t match, const double *parameters) {
-  alignment a = {.others = 1.0};
+  alignment a = {{0.0}};
   for (size_t i = 0; i < layout->aligned_count; i++)
     if (layout->aligned[i].match == match)
       a.number[layout->aligned[i].what] = strut_fit_value(layout, i, parameters[i]);
@@ -44,6 +40,7 @@ typedef struct prediction {
   size_t index; /* of the match */
   alignment align;
   double delay[2];           /* in which range it is to be found; both 0: it is known */
+  double from, to;           /* times of the samples from which it is found */
   strut_study_value *values; /* of all columns of the axes */
 } prediction;
 
@@ -68,11 +65,6 @@ static size_t count_early(const strut_fit_case *one, const strut_fit_match *matc
   size_t count = match->count;
   while (count > 1 && !is_early(one, match, count - 1)) count--;
   return count;
-}
-
-/* By how much samples are beside each other from which a rate is taken [s]. */
-static double beside(const strut_fit_match *match) {
-  return BESIDE * strut_fit_span(match) / (double)match->count;
 }
 
 const strut_quantity_definition *strut_fit_quantity(const strut_experiment *experiment,
@@ -116,80 +108,61 @@ static void prepare_run(const strut_model *model, double duration, strut_experim
 }
 
 /* Even times that cover all delays. */
-static size_t spread_samples(const prediction *self, double *time) {
+static size_t spread_samples(prediction *self, double *time) {
   const strut_fit_match *match = self->match;
   size_t count = 3 * match->count + 3;
-  double end = match->at[count_early(self->one, match) - 1] - self->delay[0];
-  for (size_t i = 0; i < count; i++) time[i] = end * (double)i / (double)(count - 1);
+  self->from = fmax(0.0, match->at[0] - self->delay[1]);
+  self->to = match->at[count_early(self->one, match) - 1] - self->delay[0];
+  for (size_t i = 0; i < count; i++)
+    time[i] = self->from + (self->to - self->from) * (double)i / (double)(count - 1);
   return count;
 }
 
-/* Times of the samples of a match, `each` of them for every number; returns how many. */
-static size_t place_samples(const prediction *self, size_t each, double *time) {
+/* Times of the samples of a match; returns how many. */
+static size_t place_samples(const prediction *self, double *time) {
   const strut_fit_match *match = self->match;
-  size_t count = count_early(self->one, match);
-  if (!match->at) {
-    time[0] = 0.0, time[1] = AT_ONCE;
-    return 2;
-  }
-  double delay = self->align.number[STRUT_FIT_DELAY];
-  for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < each; k++) {
-      double t = match->at[i] - delay + ((double)k - (each > 1 ? 1.0 : 0.0)) * beside(match);
-      time[i * each + k] = fmax(t, 0.0);
-    }
-  size_t placed = count * each;
-  if (placed == 1) time[placed++] = time[0];
-  time[placed - 1] = fmax(time[placed - 1], AT_ONCE);
-  return placed;
-}
-
-/* Takes the samples of a run, in the order: number, then each, then series. */
-static void take_samples(const prediction *self, size_t each, const double *sampled) {
-  static const int places[] = {1, 0, 2}; /* before, at, after */
-  const strut_fit_match *match = self->match;
-  const strut_fit_source *source = self->one->layout->parts[self->index].sources;
   size_t count = match->at ? count_early(self->one, match) : 1;
   for (size_t i = 0; i < count; i++)
+    time[i] = match->at ? fmax(match->at[i] - self->align.number[STRUT_FIT_DELAY], 0.0) : 0.0;
+  if (count == 1) time[count++] = time[0];
+  time[count - 1] = fmax(time[count - 1], AT_ONCE);
+  return count;
+}
+
+/* Takes the samples of a run, in the order: number, series; without times all are the first. */
+static void take_samples(const prediction *self, const double *sampled) {
+  const strut_fit_match *match = self->match;
+  size_t count = match->at ? count_early(self->one, match) : match->count;
+  for (size_t i = 0; i < count; i++)
     for (size_t s = 0; s < match->series_count; s++)
-      for (size_t k = 0; k < each; k++) {
-        double value = sampled[(i * each + k) * match->series_count + s];
-        self->one->predicted[each > 1 ? places[k] : 0][source[s].first + i] = value;
-      }
-  for (size_t s = 0; s < match->series_count && !match->at; s++)
-    for (size_t i = 1; i < match->count; i++)
-      self->one->predicted[0][source[s].first + i] = self->one->predicted[0][source[s].first];
+      self->one->predicted[match->series[s].first + i] =
+          sampled[(match->at ? i : 0) * match->series_count + s];
 }
 
 /* ---- placing ---- */
 
 /* Of so many delays the best is sought; of longer series not every number counts for that. */
-enum { MOST_DELAYS = 1000, COUNTED = 2000, NEWTON_STEPS = 4 };
+enum { MOST_DELAYS = 1000, COUNTED = 2000, RANKS = 40 };
 
-/* The turn with the least c'Qc, c = (cos, sin, -1): in closed form where Q is alike in both, then Newton's steps. */
-static double best_turn(double q[3][3]) {
-  double turn = atan2(q[1][2], q[0][2]), across = q[1][1] - q[0][0];
-  for (int k = 0; k < NEWTON_STEPS; k++) {
-    double c = cos(turn), s = sin(turn);
-    double slope = across * c * s + q[0][1] * (c * c - s * s) + q[0][2] * s - q[1][2] * c;
-    double bend = across * (c * c - s * s) - 4.0 * q[0][1] * c * s + q[0][2] * c + q[1][2] * s;
-    if (bend > 0.0) turn -= slope / bend;
-  }
-  return turn;
-}
+/* Delays are no others if they leave this part of the largest sum. */
+static const double ALIKE = 0.5;
 
-/* Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. */
+/*
+ * Finds shift and turn of a match for what is predicted of it; returns the sum of squares that they leave. The turn is
+ * the best where both coordinates count alike.
+ */
 static double place(const strut_fit_case *one, size_t m, alignment *a) {
   const strut_fit_match *match = &one->layout->fit->matches[m];
   const strut_fit_source *sources = one->layout->parts[m].sources;
-  const double *from = one->predicted[0];
+  const double *from = one->predicted;
   double sums[2][4][4] = {{{0.0}}}, q[3][3] = {{0.0}}, rest = 0.0;
   for (size_t s = 0; s < match->series_count; s++)
     for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
-      size_t at = sources[s].first + i;
+      size_t at = match->series[s].first + i;
       double weight = one->weight[at], measured = one->layout->measured[at];
       if (!(weight > 0.0)) continue;
-      double other = sources[s].partner < 0 ? 0.0 : from[sources[sources[s].partner].first + i];
+      double other =
+          sources[s].partner < 0 ? 0.0 : from[match->series[sources[s].partner].first + i];
       const double row[] = {from[at], sources[s].axis ? other : -other, measured, 1.0};
       for (int j = 0; j < 4 && sources[s].axis >= 0; j++)
         for (int k = 0; k < 4; k++)
@@ -205,7 +178,7 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
         q[j][k] += of[j][k] - (shifts[axis] ? of[j][3] * of[k][3] / of[3][3] : 0.0);
   }
   bool turns = match->align.rotate && sums[0][3][3] > 0.0 && sums[1][3][3] > 0.0;
-  double turn = turns ? best_turn(q) : a->number[STRUT_FIT_ROTATE], sum = rest;
+  double turn = turns ? atan2(q[1][2], q[0][2]) : a->number[STRUT_FIT_ROTATE], sum = rest;
   const double by[] = {cos(turn), sin(turn), -1.0};
   a->number[STRUT_FIT_ROTATE] = turn;
   for (int axis = 0; axis < 2; axis++) {
@@ -218,52 +191,58 @@ static double place(const strut_fit_case *one, size_t m, alignment *a) {
   return sum;
 }
 
-/* The numbers of a match delayed so far, of samples (count, series) at even times up to `end`, and placed. */
+/* The numbers of a match delayed so far, of samples (count, series) at even times, and placed. */
 static double place_delayed(const prediction *self, double delay, const double *sampled,
-                            size_t count, double end, alignment *a) {
+                            size_t count, alignment *a) {
   const strut_fit_match *match = self->match;
-  const strut_fit_source *sources = self->one->layout->parts[self->index].sources;
   size_t n = match->series_count;
   for (size_t i = 0; i < match->count; i += 1 + match->count / COUNTED) {
-    double at = (double)(count - 1) * fmin(fmax(match->at[i] - delay, 0.0) / end, 1.0);
+    double part = (match->at[i] - delay - self->from) / (self->to - self->from);
+    double at = (double)(count - 1) * fmin(fmax(part, 0.0), 1.0);
     size_t k = (size_t)fmin(at, (double)(count - 2));
     for (size_t s = 0; s < n; s++)
-      self->one->predicted[0][sources[s].first + i] =
+      self->one->predicted[match->series[s].first + i] =
           sampled[k * n + s] + (at - (double)k) * (sampled[(k + 1) * n + s] - sampled[k * n + s]);
   }
   a->number[STRUT_FIT_DELAY] = delay;
   return place(self->one, self->index, a);
 }
 
-/* Finds the delay of a match, and what else places it: of those with a least sum nearby the best or second best. */
-static void find_delay(prediction *self, const double *sampled, size_t count, double end) {
-  double low = self->delay[0], high = self->delay[1];
+/*
+ * Finds the delay of a match, and what else places it: of those with a least sum nearby, which is not like the largest,
+ * the best or a later one. False: there is none.
+ */
+static bool find_delay(prediction *self, const double *sampled, size_t count) {
+  double low = self->delay[0], high = self->delay[1], most = 0.0;
   size_t delays = 3 * self->match->count < MOST_DELAYS ? 3 * self->match->count : MOST_DELAYS;
   double step = (high - low) / (double)delays, sum[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
-  double least[2] = {HUGE_VAL, HUGE_VAL}, at[2] = {low, low};
+  double least[RANKS] = {HUGE_VAL}, at[RANKS] = {low};
+  size_t ranks = 0, rank = self->one->elsewhere == (int32_t)self->index ? self->one->rank : 0;
   for (size_t j = 0; j <= delays + 1; j++) {
     sum[0] = sum[1], sum[1] = sum[2], sum[2] = HUGE_VAL;
     if (j <= delays)
-      sum[2] = place_delayed(self, low + step * (double)j, sampled, count, end, &self->align);
-    if (!(sum[1] < sum[0] && sum[1] <= sum[2] && sum[1] < least[1])) continue;
+      sum[2] = place_delayed(self, low + step * (double)j, sampled, count, &self->align);
+    if (isfinite(sum[2])) most = fmax(most, sum[2]);
+    if (!(sum[1] < sum[0] && sum[1] <= sum[2])) continue;
     double bend = sum[0] - 2.0 * sum[1] + sum[2];
     double part = isfinite(bend) ? 0.5 * (sum[0] - sum[2]) / bend : 0.0;
-    int rank = sum[1] < least[0] ? 0 : 1;
-    if (!rank) least[1] = least[0], at[1] = at[0];
-    least[rank] = sum[1], at[rank] = low + step * ((double)j - 1.0 + part);
+    size_t r = ranks < RANKS ? ranks++ : RANKS - 1;
+    if (r == RANKS - 1 && ranks == RANKS && least[r] > 0.0 && !(sum[1] < least[r])) continue;
+    for (; r > 0 && sum[1] < least[r - 1]; r--) least[r] = least[r - 1], at[r] = at[r - 1];
+    least[r] = sum[1], at[r] = low + step * ((double)j - 1.0 + part);
   }
-  int rank = isfinite(least[1]) && self->one->second == (int32_t)self->index;
-  place_delayed(self, at[rank], sampled, count, end, &self->align);
+  if (rank && (rank >= ranks || least[rank] > ALIKE * most)) return false;
+  place_delayed(self, at[rank], sampled, count, &self->align);
+  return true;
 }
 
 /* Runs the model, and samples it. */
 static strut_status predict_motion(prediction *self, strut_setup *setup, const strut_model *model,
                                    strut_error *error) {
-  size_t each = self->match->align.delay ? 3 : 1;
   bool delays = self->delay[0] < self->delay[1];
   double *time = self->one->buffer, *value = time + 3 * self->match->count + 3;
-  strut_run_samples samples = {
-      delays ? spread_samples(self, time) : place_samples(self, each, time), time, value};
+  strut_run_samples samples = {delays ? spread_samples(self, time) : place_samples(self, time),
+                               time, value};
   const strut_run_options options = {
       .interrupt = self->one->layout->interrupt,
       .most_evaluations = self->one->layout->plan->study->limit.evaluations,
@@ -277,28 +256,26 @@ static strut_status predict_motion(prediction *self, strut_setup *setup, const s
   prepare_run(model, end, &setup->experiment);
   strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, error);
   strut_summary_free(&summary);
-  if (!status && delays)
-    find_delay(self, value, samples.count, end);
-  else if (!status)
-    take_samples(self, each, value);
+  if (!status && delays && !find_delay(self, value, samples.count))
+    return strut_fail(error, STRUT_DIVERGED, "there is no other delay");
+  if (!status && !delays) take_samples(self, value);
   return status;
 }
 
 static strut_status predict_curve(prediction *self, strut_setup *setup, const strut_model *model,
                                   strut_error *error) {
   const strut_fit_layout *layout = self->one->layout;
-  const strut_fit_source *source = layout->parts[self->index].sources;
   strut_path path = {0};
   setup->experiment.interrupt = layout->interrupt;
   strut_status status =
       strut_statics_path(&layout->parts[self->index].study, setup, model, &path, error);
-  for (size_t i = 0; i < self->match->count && !status; i++)
-    self->one->predicted[0][source[0].first + i] = strut_goals_force_at(&path, self->match->at[i]);
+  for (size_t i = 0; i < self->match->count && !status; i++) {
+    double at = self->match->at[i], force = strut_goals_force_at(&path, at);
+    self->one->predicted[self->match->series[0].first + i] = force;
+    if (isnan(force))
+      status = strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", at);
+  }
   strut_path_free(&path);
-  for (size_t i = 0; i < self->match->count && !status; i++)
-    if (isnan(self->one->predicted[0][source[0].first + i]))
-      status =
-          strut_fail(error, STRUT_DIVERGED, "the path does not reach %g m", self->match->at[i]);
   return status;
 }
 
@@ -341,21 +318,24 @@ static bool predict_table(prediction *self) {
   strut_status status = !job ? STRUT_NO_MEMORY : job->status ? job->status : job->cells.row.status;
   for (size_t s = 0; s < self->match->series_count && !status; s++)
     for (size_t i = 0; i < self->match->count; i++)
-      self->one->predicted[0][source[s].first + i] = job->cells.numbers[source[s].column];
+      self->one->predicted[self->match->series[s].first + i] = job->cells.numbers[source[s].column];
   bool fine = settle_status(self->one, status, job ? &job->error : &(strut_error){0});
   strut_arena_free(&arena);
   return fine;
 }
 
-/* The range of the delay that is to be found. */
+/* The range of the delay that is to be found: all of it, or of a wide one what is about the present delay. */
 static void choose_delays(prediction *self) {
   const strut_fit_layout *layout = self->one->layout;
-  bool given = !self->one->placing || self->one->second == STRUT_FIT_GIVEN_DELAYS;
-  for (size_t i = 0; i < layout->aligned_count && !given; i++) {
+  double now = self->align.number[STRUT_FIT_DELAY], span = strut_fit_span(self->match);
+  for (size_t i = 0; i < layout->aligned_count; i++) {
     if (layout->aligned[i].match != self->index || layout->aligned[i].what != STRUT_FIT_DELAY)
       continue;
-    self->delay[0] = strut_fit_value(layout, i, layout->low[i]);
-    self->delay[1] = strut_fit_value(layout, i, layout->high[i]);
+    double low = strut_fit_value(layout, i, layout->low[i]);
+    double high = strut_fit_value(layout, i, layout->high[i]);
+    bool wide = high - low > (STRUT_FIT_OWN_CLOCK + 3.0) * span;
+    self->delay[0] = wide ? fmax(low, now - span) : low;
+    self->delay[1] = wide ? fmin(high, now + span) : high;
   }
 }
 
@@ -369,19 +349,29 @@ static void keep_placing(prediction *self) {
           strut_fit_parameter(layout, i, self->align.number[layout->aligned[i].what]);
 }
 
+/* Do both have the same runs? Shifts and turns need none. */
+static bool has_same_runs(const strut_fit_layout *layout, const double *a, const double *b) {
+  size_t i = 0;
+  while (i < layout->parameters && (a[i] == b[i] || (i < layout->aligned_count &&
+                                                     layout->aligned[i].what != STRUT_FIT_DELAY)))
+    i++;
+  return i == layout->parameters;
+}
+
 /* Fills what the model predicts at the parameters, unless that is known. */
 static bool predict(strut_fit_case *one, const double *parameters) {
   const strut_fit_layout *layout = one->layout;
   const strut_study_fit *fit = layout->fit;
-  size_t bytes = layout->parameters * sizeof *parameters;
-  if (one->known && memcmp(one->latest, parameters, bytes) == 0) return true;
+  if (one->known && has_same_runs(layout, one->latest, parameters)) return true;
+  one->evaluations++;
   strut_study_value *values = strut_allocate(layout->plan->axis_columns + 1, sizeof *values);
   one->known = values != NULL;
   if (!values) one->status = strut_no_memory(&one->error, "");
   for (size_t m = 0; m < fit->match_count && one->known; m++) {
-    prediction p = {one, &fit->matches[m], m, align(layout, m, parameters), {0.0, 0.0}, values};
+    prediction p = {.one = one, .match = &fit->matches[m], .index = m, .values = values};
+    p.align = align(layout, m, parameters);
     if ((int32_t)m == one->left_out) continue;
-    choose_delays(&p);
+    if (one->placing && one->delays) choose_delays(&p);
     strut_fit_fill_values(layout, 0, parameters, values);
     for (size_t k = 0; k < fit->set_count; k++)
       values[fit->column + fit->variable_count + k] = p.match->values[k];
@@ -389,37 +379,34 @@ static bool predict(strut_fit_case *one, const double *parameters) {
     if (one->known && one->placing) keep_placing(&p);
   }
   strut_release(values);
-  memcpy(one->latest, parameters, bytes);
+  memcpy(one->latest, parameters, layout->parameters * sizeof *parameters);
   return one->known;
 }
 
 /* ---- residuals ---- */
 
-/* A number of a series, turned and shifted as its match is. */
-static double align_number(const strut_fit_source *sources, size_t s, const double *from, size_t i,
-                           const alignment *a) {
-  const strut_fit_source *source = &sources[s];
-  double turn = a->number[STRUT_FIT_ROTATE], own = from[source->first + i];
-  if (source->axis < 0) return a->others * own;
-  double shift = a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
-  if (source->partner < 0) return own + shift;
-  double other = from[sources[source->partner].first + i];
-  return own * cos(turn) + (source->axis ? other : -other) * sin(turn) + shift;
-}
-
+/* The numbers of a match, turned and shifted. */
 static void align_match(const strut_fit_layout *layout, size_t m, const double *from,
                         const alignment *a, double *to) {
   const strut_fit_match *match = &layout->fit->matches[m];
-  const strut_fit_source *sources = layout->parts[m].sources;
-  for (size_t s = 0; s < match->series_count; s++)
+  double c = cos(a->number[STRUT_FIT_ROTATE]), s = sin(a->number[STRUT_FIT_ROTATE]);
+  for (size_t k = 0; k < match->series_count; k++) {
+    const strut_fit_source *source = &layout->parts[m].sources[k];
+    size_t first = match->series[k].first,
+           partner = source->partner < 0 ? k : (size_t)source->partner;
+    double across = partner == k ? 0.0 : source->axis ? s : -s, along = partner == k ? 1.0 : c;
+    double shift =
+        source->axis < 0 ? 0.0 : a->number[source->axis ? STRUT_FIT_SHIFT_Y : STRUT_FIT_SHIFT_X];
     for (size_t i = 0; i < match->count; i++)
-      to[sources[s].first + i] = align_number(sources, s, from, i, a);
+      to[first + i] =
+          along * from[first + i] + across * from[match->series[partner].first + i] + shift;
+  }
 }
 
 void strut_fit_align_all(const strut_fit_case *one, const double *parameters, double *to) {
   for (size_t m = 0; m < one->layout->fit->match_count; m++) {
     alignment a = align(one->layout, m, parameters);
-    align_match(one->layout, m, one->predicted[0], &a, to);
+    align_match(one->layout, m, one->predicted, &a, to);
   }
 }
 
@@ -457,7 +444,6 @@ static bool has_numbers(strut_fit_case *one, const double *residual) {
 
 static bool find_residuals(void *context, const double *parameters, double *residual) {
   strut_fit_case *one = context;
-  one->evaluations++;
   if (one->status || !predict(one, parameters)) return false;
   strut_fit_align_all(one, parameters, residual);
   for (size_t k = 0; k < one->layout->count; k++)
@@ -466,40 +452,14 @@ static bool find_residuals(void *context, const double *parameters, double *resi
   return has_numbers(one, residual);
 }
 
-double strut_fit_place(strut_fit_case *one, int32_t second, double *parameters) {
+double strut_fit_place(strut_fit_case *one, bool delays, int32_t elsewhere, size_t rank,
+                       double *parameters) {
   if (!one->layout->aligned_count) return HUGE_VAL;
-  one->known = false, one->placing = parameters, one->second = second, one->placed_sum = 0.0;
+  one->known = false, one->placing = parameters, one->placed_sum = 0.0;
+  one->delays = delays, one->elsewhere = elsewhere, one->rank = rank;
   bool fine = predict(one, parameters);
   one->known = false, one->placing = NULL;
   return fine ? one->placed_sum : HUGE_VAL;
-}
-
-/* How fast the numbers of a match change with its delay, not aligned. */
-static void fill_rates(const strut_fit_case *one, size_t m, double *rate) {
-  const strut_fit_match *match = &one->layout->fit->matches[m];
-  size_t first = one->layout->parts[m].sources[0].first;
-  for (size_t k = first; k < first + match->series_count * match->count; k++)
-    rate[k] = (one->predicted[1][k] - one->predicted[2][k]) / (2.0 * beside(match));
-}
-
-/* Alignments need no further runs: a turn's derivative is the motion a quarter of a turn further. */
-static bool find_derivative(void *context, const double *parameters, size_t i, double *derivative) {
-  strut_fit_case *one = context;
-  const strut_fit_layout *layout = one->layout;
-  const strut_fit_aligned *by = &layout->aligned[i];
-  if (i >= layout->aligned_count || one->status || !predict(one, parameters)) return false;
-  bool turns = by->what == STRUT_FIT_ROTATE, delays = by->what == STRUT_FIT_DELAY;
-  alignment a = align(layout, by->match, parameters);
-  a.number[STRUT_FIT_SHIFT_X] = a.number[STRUT_FIT_SHIFT_Y] = 0.0;
-  a.number[by->what] += turns ? 1.5707963267948966 : 1.0;
-  a.others = delays;
-  memset(derivative, 0, layout->count * sizeof *derivative);
-  memset(one->buffer, 0, layout->count * sizeof *one->buffer);
-  if (delays) fill_rates(one, by->match, one->buffer);
-  align_match(layout, by->match, turns ? one->predicted[0] : one->buffer, &a, derivative);
-  for (size_t k = 0; k < layout->count; k++)
-    derivative[k] = one->weight[k] > 0.0 ? one->weight[k] * derivative[k] * by->scale : 0.0;
-  return true;
 }
 
 strut_least_squares strut_fit_problem(strut_fit_case *one) {
@@ -513,7 +473,6 @@ strut_least_squares strut_fit_problem(strut_fit_case *one) {
                                .held = -1,
                                .most_steps = 60,
                                .residuals = find_residuals,
-                               .derivative = find_derivative,
                                .context = one};
 }
 
@@ -529,10 +488,8 @@ bool strut_fit_case_create(const strut_fit_layout *layout, strut_fit_case *one) 
   one->buffer = strut_arena_allocate(arena, most, sizeof(double));
   one->latest = strut_arena_allocate(arena, layout->parameters, sizeof(double));
   one->weight = strut_arena_allocate(arena, layout->count, sizeof(double));
-  for (int k = 0; k < 3; k++)
-    one->predicted[k] = strut_arena_allocate(arena, layout->count, sizeof(double));
-  bool fine = one->buffer && one->latest && one->weight && one->predicted[0] && one->predicted[1] &&
-              one->predicted[2];
+  one->predicted = strut_arena_allocate(arena, layout->count, sizeof(double));
+  bool fine = one->buffer && one->latest && one->weight && one->predicted;
   if (fine) strut_fit_choose(one, 1.0, -1);
   return fine;
 }

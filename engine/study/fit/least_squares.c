@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed"};
+const char *const strut_fit_ends[STRUT_FIT_END_COUNT] = {"converged", "stuck", "failed", "none"};
 
 /* Gradients, and changes of the sum, at which the method ends, relative. */
 static const double FLAT = 1e-15;
@@ -96,12 +96,13 @@ static void differentiate(solver *self, size_t i, double *derivative, double sid
   const strut_least_squares *problem = self->problem;
   double at = self->at[i], h = problem->step * fmax(fabs(at), 1.0);
   double low = fmax(at - h, problem->low[i]), high = fmin(at + h, problem->high[i]);
-  if (!problem->derivative || !problem->derivative(problem->context, self->at, i, derivative)) {
-    const double *back = look_beside(self, i, &low, self->back);
-    const double *ahead = look_beside(self, i, &high, self->ahead);
-    for (size_t j = 0; j < problem->count; j++)
-      derivative[j] = high > low ? (ahead[j] - back[j]) / (high - low) : 0.0;
-  }
+  const double *ahead = look_beside(self, i, &high, self->ahead);
+  bool enough = problem->one_sided && high > at;
+  double first = enough ? at : low;
+  const double *back = look_beside(self, i, &first, self->back);
+  for (size_t j = 0; j < problem->count; j++)
+    derivative[j] = high > first ? (ahead[j] - back[j]) / (high - first) : 0.0;
+  if (!enough) low = first;
   side[0] = at - low;
   side[1] = high - at;
 }
@@ -166,20 +167,20 @@ static double sum_of_squares(const double *residual, size_t count) {
 
 /* By how much the sum of squares would fall by a step of at most 1 along each singular direction; -1: memory is out. */
 static double find_fall(const gsl_matrix *jacobian, const gsl_vector *residual) {
-  size_t n = jacobian->size2;
-  gsl_matrix *left = gsl_matrix_alloc(jacobian->size1, n), *right = gsl_matrix_alloc(n, n);
-  gsl_vector *size = gsl_vector_alloc(n), *along = gsl_vector_alloc(n);
-  double fall = left && right && size && along ? 0.0 : -1.0;
-  if (fall == 0.0) {
-    gsl_matrix_memcpy(left, jacobian);
-    gsl_linalg_SV_decomp(left, right, size, along);
-    gsl_blas_dgemv(CblasTrans, 1.0, left, residual, 0.0, along);
-    for (size_t k = 0; k < n; k++) {
-      double part = fabs(along->data[k]), s = size->data[k];
-      fall += part < s ? part * part : s * (2.0 * part - s);
-    }
+  strut_arena arena = {0};
+  strut_fit_spectrum spectrum;
+  size_t rows = jacobian->size1, n = jacobian->size2;
+  double *left = strut_arena_copy(&arena, jacobian->data, rows * n, sizeof *left);
+  bool fine = left && strut_fit_spectrum_find(left, rows, n, &arena, &spectrum);
+  double fall = fine ? 0.0 : -1.0;
+  for (size_t k = 0; k < n && fine; k++) {
+    gsl_vector_const_view side = gsl_vector_const_view_array_with_stride(left + k, n, rows);
+    double part, s = spectrum.singular[k];
+    gsl_blas_ddot(&side.vector, residual, &part);
+    part = fabs(part);
+    fall += part < s ? part * part : s * (2.0 * part - s);
   }
-  gsl_matrix_free(left), gsl_matrix_free(right), gsl_vector_free(size), gsl_vector_free(along);
+  strut_arena_free(&arena);
   return fall;
 }
 

@@ -20,6 +20,7 @@ typedef struct strut_least_squares {
   const double *low, *high; /* (parameters) the box; infinite where there is no bound */
   double step;              /* of differences, relative to a parameter where that is above 1 */
   double near;              /* changes of parameters at which the method ends, relative likewise */
+  bool one_sided;           /* differences that cost half, where they need not be exact */
   int32_t held;             /* this parameter stays where it is; -1: none */
   int32_t most_steps;       /* of the method */
   /**
@@ -28,14 +29,13 @@ typedef struct strut_least_squares {
    */
   bool (*residuals)(void *context, const double *parameters, double *residual);
   void *context;
-  /** Fills the derivative (count) by a parameter where that needs no differences; NULL or false: it does. */
-  bool (*derivative)(void *context, const double *parameters, size_t parameter, double *derivative);
 } strut_least_squares;
 
 typedef enum strut_fit_end {
   STRUT_FIT_CONVERGED,
   STRUT_FIT_STUCK,  /* too many steps, or residuals end where they get smaller */
   STRUT_FIT_FAILED, /* there are no residuals where it begins */
+  STRUT_FIT_NONE,   /* nothing was to be solved */
   STRUT_FIT_END_COUNT
 } strut_fit_end;
 

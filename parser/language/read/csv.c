@@ -65,17 +65,21 @@ static strut_place line_place(const reader *self, record line) {
 
 /* ---- lines ---- */
 
-static void keep(reader *self, char *cell) {
+/* Keeps a cell, with a point for the comma of 1,5 where commas do not separate. */
+static void keep(reader *self, char *from, char *to) {
   if (!strut_grow(&self->cell, &self->cell_capacity, self->cell_count, sizeof *self->cell))
     self->failed = true;
   else
-    self->cell[self->cell_count++] = cell;
+    self->cell[self->cell_count++] = from;
+  char *comma = self->separator == ',' ? NULL : memchr(from, ',', (size_t)(to - from));
+  size_t digits = comma ? strspn(from, "+-0123456789eE,") : 0;
+  if (comma && from + digits == to && !memchr(comma + 1, ',', (size_t)(to - comma - 1)))
+    *comma = '.';
 }
 
 /* A cell in quotes, which are doubled inside. */
 static void read_quoted(reader *self) {
   char *open = self->at, *to = ++self->at, *from = to;
-  keep(self, to);
   for (; from < self->end && (*from != '"' || from[1] == '"'); from++) {
     if (*from == '"') from++;
     *to++ = *from;
@@ -87,10 +91,11 @@ static void read_quoted(reader *self) {
            self->separator == ',' ? "expected a comma or the end of the line after a quoted cell"
                                   : "expected the end of the cell after its quote");
   *to = '\0';
+  keep(self, open + 1, to);
   while (self->at < self->end && *self->at != self->separator && *self->at != '\n') self->at++;
 }
 
-/* Without spaces around it; with a point for the comma of 1,5 where commas do not separate. */
+/* Without spaces around it. */
 static void read_plain(reader *self) {
   char *from = self->at, *to = from;
   while (to < self->end && *to != self->separator && *to != '\n') to++;
@@ -98,11 +103,7 @@ static void read_plain(reader *self) {
   if (to > from && to[-1] == '\r') *--to = '\0';
   while (*from == ' ' && from < to) from++;
   while (to > from && to[-1] == ' ') *--to = '\0';
-  keep(self, from);
-  char *comma = self->separator == ',' ? NULL : memchr(from, ',', (size_t)(to - from));
-  size_t digits = comma ? strspn(from, "+-0123456789eE,") : 0;
-  if (comma && from + digits == to && !memchr(comma + 1, ',', (size_t)(to - comma - 1)))
-    *comma = '.';
+  keep(self, from, to);
 }
 
 /* Reads one line. */

@@ -199,44 +199,37 @@ static double *coordinate(const loader *self, size_t i, int *axis) {
   return (double *)(uintptr_t)column->values;
 }
 
-/* The numbers of the column whose name has y where that of column i has x, or NULL. */
-static double *partner_of(const loader *self, size_t i) {
+/* The numbers of the column whose name has y where that of column i has x, or x where it has y; or NULL. */
+static double *partner_of(const loader *self, size_t i, int axis) {
   const char *name = self->columns[i].name;
   size_t at = (size_t)(axis_in(name) - name);
-  int axis;
   for (size_t k = 0; k < self->table->column_count; k++) {
     const char *other = self->columns[k].name;
     if (strlen(other) == strlen(name) && strncmp(other, name, at) == 0 &&
-        other[at] == name[at] + 1 && strcmp(other + at + 1, name + at + 1) == 0)
+        other[at] == name[at] + 1 - 2 * axis && strcmp(other + at + 1, name + at + 1) == 0)
       return coordinate(self, k, &axis);
   }
   return NULL;
 }
 
-static void move(loader *self, const double factor[2], const double shift[2]) {
+/* Scales or flips coordinates, turns pairs of them, and shifts them. */
+static bool move(loader *self, const double factor[2]) {
+  const strut_data_table *table = self->table;
+  bool turns = table->rotate != 0.0;
   int axis;
-  for (size_t i = 0; i < self->table->column_count; i++) {
-    double *values = coordinate(self, i, &axis);
-    for (size_t k = 0; values && k < self->table->row_count; k++)
-      values[k] = values[k] * factor[axis] + shift[axis];
-  }
-}
-
-static bool rotate(loader *self) {
   double s, c;
-  int axis;
-  strut_sincos_turns(self->table->rotate / STRUT_TAU, &s, &c);
-  for (size_t i = 0; i < self->table->column_count && self->table->rotate != 0.0; i++) {
-    double *x = coordinate(self, i, &axis), *y = x && !axis ? partner_of(self, i) : NULL;
-    if (!x || axis) continue;
-    if (!y)
+  strut_sincos_turns(table->rotate / STRUT_TAU, &s, &c);
+  for (size_t i = 0; i < table->column_count; i++) {
+    double *x = coordinate(self, i, &axis), *y = x && turns ? partner_of(self, i, axis) : NULL;
+    if (x && turns && !y)
       return strut_report_error(self->reader, value_of(self, STRUT_KEY_DATA_ROTATE)->place,
-                                "column '%s' has no column of y beside it to be turned with",
-                                strut_sanitised_text(self->reader, self->columns[i].name));
-    for (size_t k = 0; k < self->table->row_count; k++) {
-      double before = x[k];
-      x[k] = c * before - s * y[k];
-      y[k] = s * before + c * y[k];
+                                "column '%s' has no column of %c beside it to be turned with",
+                                strut_sanitised_text(self->reader, self->columns[i].name),
+                                axis ? 'x' : 'y');
+    for (size_t k = 0; x && !(y && axis) && k < table->row_count; k++) {
+      double along = x[k] * factor[axis], across = y ? y[k] * factor[1] : 0.0;
+      x[k] = (y ? c * along - s * across : along) + table->shift[axis];
+      if (y) y[k] = s * along + c * across + table->shift[1];
     }
   }
   return true;
@@ -269,7 +262,6 @@ static bool require_coordinates(loader *self) {
 
 /* Flips, scales, turns and shifts coordinates. False: that was reported. */
 static bool place_coordinates(loader *self) {
-  static const double one[2] = {1.0, 1.0}, nothing[2] = {0.0, 0.0};
   const strut_data_table *table = self->table;
   double scale[2];
   int axis;
@@ -285,10 +277,7 @@ static bool place_coordinates(loader *self) {
   }
   if (!require_coordinates(self)) return false;
   for (int k = 0; k < 2; k++) scale[k] = table->flip >> k & 1u ? -table->scale : table->scale;
-  move(self, scale, nothing);
-  bool fine = rotate(self);
-  move(self, one, table->shift);
-  return fine;
+  return move(self, scale);
 }
 
 /* ---- weights ---- */
@@ -489,14 +478,17 @@ const strut_data_column *strut_read_data_column(strut_reader *reader, const stru
   if (!column) refuse_name(reader, value, owner, *table);
   if (!column) return NULL;
   const char *name = strut_sanitised_text(reader, column->name);
+  const char *unit = expected && !strut_dimension_equal(*expected, STRUT_DIM_LENGTH)
+                         ? strut_dimension_unit(*expected)
+                         : "mm";
   if (!column->values) {
     row = column->flaw;
     snprintf(message, sizeof message, "expected a finite number");
   } else if (!column->unit) {
     snprintf(message, sizeof message,
-             "column '%s' has no unit that is known; write it in the header, '%s [mm]', or under "
-             "'units' of the data, {%s: mm}; 1: none",
-             name, name, name);
+             "column '%s' has no unit that is known; write it in the header, '%s [%s]', or under "
+             "'units' of the data, {%s: %s}; 1: none",
+             name, name, unit, name, unit);
   } else if (expected && !strut_dimension_equal(column->dimension, *expected)) {
     strut_expected_quantity(key, *expected, wanted, sizeof wanted);
     snprintf(message, sizeof message, "expected %s for '%s' of %s, found the unit '%s' of %s",

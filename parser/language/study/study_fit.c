@@ -203,8 +203,11 @@ static void add_partner(strut_study_reader *reader, reading *self, const strut_t
     if (strcmp(to->series[s].of, text) == 0) return;
   strut_tree other = *key;
   other.text = text;
-  to->series[to->series_count++] = (strut_fit_series){
-      .of = text, .place = {key->place.line, key->place.column}, .unit = "m", .measured = gaps};
+  to->series[to->series_count++] = (strut_fit_series){.of = text,
+                                                      .place = {key->place.line, key->place.column},
+                                                      .unit = "m",
+                                                      .measured = gaps,
+                                                      .empty = true};
   if (!strut_study_measure(reader->file, &other)) reader->reader->out_of_memory = true;
 }
 
@@ -338,11 +341,20 @@ static void read_sets(strut_study_reader *reader, const strut_tree *const *sets,
 
 /* ---- all of it ---- */
 
-/* The axis that numbers the fits: of starts, of both ends of each interval, without each match. */
-static void add_rows(strut_study_reader *reader, const strut_study_fit *fit, size_t variables,
+/* The axis that numbers the fits: of starts, beside the best, of both ends of each interval, without each match. */
+static void add_rows(strut_study_reader *reader, strut_study_fit *fit, size_t variables,
                      strut_study_axis *axis) {
-  size_t count =
-      (size_t)fit->starts + 2 * variables + (fit->match_count > 1 ? fit->match_count : 0);
+  size_t numbers_before = 0;
+  for (size_t m = 0; m < fit->match_count; m++)
+    for (size_t s = 0; s < fit->matches[m].series_count; s++) {
+      fit->matches[m].series[s].first = numbers_before;
+      numbers_before += fit->matches[m].count;
+    }
+  fit->beside_count = variables;
+  for (size_t m = 0; m < fit->match_count; m++) fit->beside_count += fit->matches[m].align.delay;
+  fit->omission_count = fit->match_count > 1 ? fit->match_count : 0;
+  size_t count = (size_t)fit->starts + STRUT_FIT_ROUNDS * fit->beside_count + 2 * variables +
+                 fit->omission_count;
   double *numbers = strut_study_allocate(reader, count, sizeof *numbers);
   *axis = (strut_study_axis){.count = numbers ? (int64_t)count : 1, .column_count = 1};
   axis->columns = strut_study_allocate(reader, 1, sizeof *axis->columns);
