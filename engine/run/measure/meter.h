@@ -66,10 +66,11 @@ typedef struct strut_dense {
   const strut_model *model;
   double *q, *v;             /* (length) at the instant */
   double *begin_q, *begin_v; /* (length) at the begin of a step of the grid */
+  double *begin_memory;      /* (strut_history_count) there; forces within it follow from that */
   double *a[2];              /* (length) accelerations at its ends */
   double begin_work[STRUT_POWER_ROOM], power[2][STRUT_POWER_ROOM];
   /* what the state has at the end of the piece, while it is elsewhere */
-  double *end_q, *end_v;
+  double *end_q, *end_v, *end_memory;
   double end_work[STRUT_POWER_ROOM];
   bool away;   /* the state has been elsewhere since strut_dense_return */
   bool coarse; /* positions and velocities by polynomials of one order less */
