@@ -67,6 +67,15 @@ static double hermite_of_second_order(const strut_motion_piece *piece, int32_t i
          piece->q[1][i] * s3 * (1.0 + 3.0 * r + 6.0 * r * r);
 }
 
+/* Its derivative: of fifth order, where the cubic through the rates is of fourth. */
+static double slope_of_second_order(const strut_motion_piece *piece, int32_t i, double s) {
+  double h = piece->length, r = 1.0 - s, rise = (piece->q[1][i] - piece->q[0][i]) / h;
+  return 30.0 * rise * s * s * r * r + piece->v[0][i] * r * r * (1.0 - 3.0 * s) * (1.0 + 5.0 * s) +
+         piece->v[1][i] * s * s * (1.0 - 3.0 * r) * (1.0 + 5.0 * r) +
+         0.5 * h * s * r *
+             (piece->a[0][i] * r * (2.0 - 5.0 * s) - piece->a[1][i] * s * (2.0 - 5.0 * r));
+}
+
 static void interpolate(strut_dense *matrix, const strut_motion_piece *piece, double s) {
   double h = piece->length;
   for (int32_t i = 0; i < matrix->model->length; i++) {
@@ -81,7 +90,9 @@ static void interpolate(strut_dense *matrix, const strut_motion_piece *piece, do
     } else {
       matrix->q[i] = hermite_of_second_order(piece, i, s);
       matrix->v[i] =
-          strut_hermite(piece->v[0][i], piece->a[0][i], piece->v[1][i], piece->a[1][i], h, s);
+          i < 2 * matrix->model->node_count
+              ? slope_of_second_order(piece, i, s)
+              : strut_hermite(piece->v[0][i], piece->a[0][i], piece->v[1][i], piece->a[1][i], h, s);
     }
   }
 }

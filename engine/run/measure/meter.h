@@ -58,7 +58,7 @@ static inline double strut_hermite(double x0, double v0, double x1, double v1, d
  * Dense output: the state at any instant within a piece of the motion.
  *
  * Positions are the polynomials of fifth order through positions, velocities and accelerations at both
- * ends, velocities and works the cubics through their values and rates. Contact forces follow by
+ * ends, velocities their derivatives, works and internal states the cubics through their values and rates. Contact forces follow by
  * their own law, in the modes that a method with events has frozen.
  */
 
