@@ -253,6 +253,7 @@ void strut_history_store(const strut_model *model, const strut_state *state, dou
   const strut_element_table *elements = &model->elements;
   size_t slots = (size_t)elements->history_slots, count = (size_t)elements->history_count;
   memcpy(memory, state->latest->rest + elements->history_slot, slots * sizeof(double));
+  memcpy(memory += slots, state->history.material, slots * sizeof(double));
   memcpy(memory + slots, state->history.plastic, count * sizeof(double));
   memcpy(memory + slots + count, state->history.broken_at,
          (size_t)elements->breakable_count * sizeof(double));
@@ -262,11 +263,25 @@ void strut_history_load(const strut_model *model, strut_state *state, const doub
   const strut_element_table *elements = &model->elements;
   size_t slots = (size_t)elements->history_slots, count = (size_t)elements->history_count;
   memcpy(state->latest->rest + elements->history_slot, memory, slots * sizeof(double));
-  memcpy(state->history.material, memory, slots * sizeof(double));
+  memcpy(state->history.material, memory += slots, slots * sizeof(double));
   memcpy(state->history.plastic, memory + slots, count * sizeof(double));
   memcpy(state->history.broken_at, memory + slots + count,
          (size_t)elements->breakable_count * sizeof(double));
   strut_history_follow(model, state);
+}
+
+void strut_history_place(const strut_model *model, strut_state *state, const double *memory,
+                         double t, bool frozen) {
+  const strut_element_table *table = &model->elements;
+  strut_history_load(model, state, memory);
+  if (frozen) strut_history_keep(model, state);
+  if (frozen || state->forgetful) return;
+  strut_drive_apply(model, state, t);
+  for (int32_t m = 0; m < table->history_count; m++) {
+    const strut_element *element = &table->element[table->memory[m]];
+    if (yields(element) && !strut_element_is_gone(state->latest->rest[element->slot]))
+      strut_slider_return(model, state, table->memory[m], state->q, false);
+  }
 }
 
 /* ---- what breaks ---- */

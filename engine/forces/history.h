@@ -95,7 +95,8 @@ void strut_history_keep(const strut_model *model, strut_state *state);
 /** Size of what the elements of a model remember. */
 static inline size_t strut_history_count(const strut_model *model) {
   const strut_element_table *elements = &model->elements;
-  return (size_t)(elements->history_slots + elements->history_count + elements->breakable_count);
+  return (size_t)(2 * elements->history_slots + elements->history_count +
+                  elements->breakable_count);
 }
 /** Copies it from a state, and back. */
 STRUT_API void strut_history_store(const strut_model *model, const strut_state *state,
@@ -136,6 +137,12 @@ double strut_element_plastic(const strut_model *model, const strut_state *state,
  * have jumped by that.
  */
 bool strut_history_renew(const strut_model *model, strut_state *state, double t);
+/**
+ * What elements remember at time t within a step, at the state's q and v, from what they did at its begin; the method
+ * has frozen their modes, or not. Nothing breaks. Losses are not those of the step.
+ */
+void strut_history_place(const strut_model *model, strut_state *state, const double *memory,
+                         double t, bool frozen);
 /** Before the first step: what is beyond its force already, or due. Keeps no balance. */
 STRUT_API void strut_history_begin(const strut_model *model, strut_state *state, double t);
 

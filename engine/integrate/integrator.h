@@ -134,6 +134,7 @@ typedef struct strut_motion_piece {
   const double *q[2], *v[2];        /* [m], [m/s] */
   const double *a[2];               /* [m/s^2]; NULL: of a method without events, see meter.h */
   const double *work[2], *power[2]; /* [J], [W]; only with the energy balance */
+  const double *memory; /* what elements remember at the begin, as strut_history_store has it */
   bool smooth;    /* it continues the piece before: nothing has switched or jumped in between */
   bool ends_only; /* velocities have jumped within it: only its ends are known */
   /** Fills the state's held contact forces for an instant within the piece; NULL: they follow from

@@ -40,7 +40,7 @@ static bool make_surfaces(const strut_model *model, strut_state *state) {
   ARRAY(history.guide_mode, model->elements.history_slots)                                         \
   ARRAY(history.guide_side, model->elements.history_slots)                                         \
   ARRAY(history.guide_drop, model->elements.history_slots)                                         \
-  ARRAY(history.kept, model->elements.history_slots + model->elements.history_count +              \
+  ARRAY(history.kept, 2 * model->elements.history_slots + model->elements.history_count +          \
                           model->elements.breakable_count)                                         \
   ARRAY(signals.started, model->scene->signal_count)                                               \
   ARRAY(signals.trigger_was, model->scene->signal_count)                                           \

@@ -108,9 +108,7 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   strut_span span = strut_experiment_span(experiment, model->scene);
   recording->start = begin + span.record_start;
   recording->every = span.record_every;
-  /* What elements remember, such as a plastic set, is known at the ends of steps only. */
-  bool between = experiment->output_every > 0.0 && !model->elements.history_slots;
-  double in_step = between ? recording->grid.step / recording->every : 0.0;
+  double in_step = experiment->output_every > 0.0 ? recording->grid.step / recording->every : 0.0;
   if (!(in_step < MOST_IN_STEP))
     return strut_fail(
         error, STRUT_USAGE,

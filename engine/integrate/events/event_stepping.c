@@ -49,8 +49,9 @@ bool strut_event_stepper_observe(const strut_model *model, strut_state *state, v
   if (!view) return false;
   view->q = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
   view->v = strut_arena_allocate(arena, (size_t)model->length, sizeof(double));
+  view->memory = strut_arena_allocate(arena, strut_history_count(model), sizeof(double));
   stepper->view = view;
-  bool failed = !view->q || !view->v;
+  bool failed = !view->q || !view->v || !view->memory;
   strut_step_end_create(model, arena, false, &view->instant, &failed);
   return !failed;
 }
@@ -381,6 +382,7 @@ static void show_piece(const strut_model *model, strut_state *state, strut_event
                                    .a = {begin->a, end->a},
                                    .work = {view->work, state->work},
                                    .power = {begin->power, end->power},
+                                   .memory = view->memory,
                                    .smooth = view->smooth,
                                    .hold = hold_contacts,
                                    .workspace = stepper};
@@ -416,6 +418,7 @@ static void accept_piece(const strut_model *model, strut_state *state, strut_eve
     memcpy(view->q, state->q, (size_t)model->length * sizeof(double));
     memcpy(view->v, state->v, (size_t)model->length * sizeof(double));
     memcpy(view->work, state->work, sizeof view->work);
+    strut_history_store(model, state, view->memory);
   }
   accept_step(model, state, stepper, state->balance);
   if (stepper->scales) keep_scales(stepper, piece);

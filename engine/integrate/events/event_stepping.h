@@ -155,6 +155,7 @@ typedef struct strut_event_stepper strut_event_stepper;
 typedef struct strut_event_view {
   double *q, *v;                 /* (length) at the begin of the step */
   double work[STRUT_POWER_ROOM]; /* there [J] */
+  double *memory;                /* (strut_history_count) there */
   strut_step_end instant;        /* of contact forces within the piece */
   bool smooth;                   /* nothing has switched or jumped since the latest piece */
 } strut_event_view;

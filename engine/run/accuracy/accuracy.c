@@ -164,6 +164,17 @@ static void refuse_open_balance(const strut_accuracy *accuracy) {
            100.0 * fabs(summary->energy.residual) / summary->energy.moved);
 }
 
+/* Of a motion that has not become steady nothing is known but what it was within the window. */
+static void refuse_transient(const strut_accuracy *accuracy) {
+  strut_summary *summary = accuracy->summary;
+  if (summary->status != STRUT_OK || summary->steady.kind != STRUT_MOTION_TRANSIENT) return;
+  withhold(summary);
+  snprintf(summary->accuracy.why, sizeof summary->accuracy.why,
+           "the motion is not steady within %lld periods; more run.periods show whether it becomes "
+           "so, and 'steady: no' measures its mean over the window",
+           (long long)summary->steady.periods);
+}
+
 strut_status strut_simulate_accurately(const strut_model *model, const strut_experiment *experiment,
                                        const strut_run_options *options, strut_summary *summary,
                                        strut_error *error) {
@@ -188,15 +199,13 @@ strut_status strut_simulate_accurately(const strut_model *model, const strut_exp
   if (model->terms & STRUT_TERM_MEMORY || model->contacts.grips) velocity = false;
   if (strut_feedback_remembers(&model->feedback)) velocity = false;
   if (!status && velocity) status = strut_accuracy_try_midpoint(&a, &done);
-  bool orbit =
-      false; /* whose balance is that of the coarse way to it, and which another method confirms */
   if (!status && !done && velocity && experiment->periods > 0.0 && !a.single_method)
-    status = strut_accuracy_try_orbit(&a, &orbit);
-  done = done || orbit;
+    status = strut_accuracy_try_orbit(&a, &done);
   if (!status && !done) status = strut_accuracy_climb_ladder(&a);
   summary->spent.wall_time = strut_run_clock() - begin;
   summary->status = status;
-  if (!orbit) refuse_open_balance(&a);
+  refuse_transient(&a);
+  refuse_open_balance(&a);
   summary->settle_time = start.how.time, summary->settle = start.how;
   strut_summary_warn_of_start(summary);
   refuse_wide_bands(&a);

@@ -160,6 +160,7 @@ typedef struct strut_ladder {
   int runs, coarse_runs;         /* of all, the first ones, by the coarse method */
   int tried, failures;           /* runs, with those that failed; the latter */
   double expected, margin; /* estimated error of the latest run, relative; reported over that */
+  double unsteady;         /* how far that run is from its steady motion, as `change` */
   bool same_motion, kept, budget_spent;
   bool implicit;  /* runs with error control are by the implicit method */
   bool precise;   /* or by the method of higher order */

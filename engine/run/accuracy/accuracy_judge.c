@@ -62,6 +62,8 @@ static const double NOISE = 1e-9;
 static const double OF_DISTANCE = 0.5;
 /* Nor, over what is allowed of it, than this part of what is reported of the quantity that is known worst. */
 static const double OF_WORST = 0.1;
+/* Nor, where a motion repeats itself, a single run with error control, whose tolerance may add as much in each period. */
+static const double OF_FIRST_RUN = 0.5;
 /* Runs by the coarse method; and what those after the second may cost, over the first: as a run with error control. */
 enum { MOST_COARSE_RUNS = 4 };
 static const double WORTH = 5.0;
@@ -130,6 +132,28 @@ void strut_ladder_extend_coarse(strut_ladder *ladder) {
   if (spent <= WORTH * (double)ladder->rung[0].cost) ladder->coarse_runs++;
 }
 
+/* What the rest of the transient adds to quantity i of a run until its motion is steady, SI. */
+static double rest_of_transient(const strut_summary *summary, size_t i) {
+  const strut_measured *measured = &summary->measured[i];
+  const strut_steady_summary *steady = &summary->steady;
+  if (!steady->kind || measured->zero || measured->arrival) return 0.0;
+  double change =
+      steady->kind == STRUT_MOTION_PERIODIC ? steady->residual * measured->scale : (double)NAN;
+  return (1.0 + steady->left) * fmin(measured->spread, change);
+}
+
+/* The relative error of the velocity, or of the quantity of which it is largest, that this makes. */
+static double distance_from_steady(const strut_ladder *ladder) {
+  const strut_summary *summary = &ladder->now->s;
+  double worst = 0.0;
+  if (!summary->measured_count)
+    return summary->steady.interval / strut_ladder_velocity_size(ladder, summary->velocity);
+  for (size_t i = 0; i < summary->measured_count; i++)
+    worst = fmax(worst, rest_of_transient(summary, i) /
+                            strut_ladder_tolerated_error(ladder, &summary->measured[i], i));
+  return ladder->a->target * worst;
+}
+
 /* Runs whose range counts where they are the same motion: earlier ones were further from it. */
 enum { LATEST = 3 };
 static const double RANGE_MARGIN = 2.0;
@@ -179,18 +203,22 @@ void strut_ladder_judge(strut_ladder *ladder) {
   ladder->same_motion = ladder->distance <= SAME_MOTION;
   ladder->expected = evidence ? estimate_error(ladder, evidence) : HUGE_VAL;
   ladder->margin = evidence ? evidence->margin : 1.0;
+  ladder->unsteady = distance_from_steady(ladder);
+  double allowed = (wanted - ladder->unsteady) / ladder->margin;
   bool near = evidence && ladder->distance <= evidence->apart_of_wanted * wanted;
   ladder->kept = evidence && strut_accuracy_is_kept(near && followed, ladder->expected,
-                                                    evidence->enough * wanted);
+                                                    fmin(evidence->enough * wanted, allowed));
   if (ladder->kept || ladder->same_motion || !followed) return;
   ladder->expected = estimate_mean_error(ladder);
-  ladder->kept = strut_accuracy_is_kept(true, ladder->expected, ENOUGH_OF_MEANS * wanted);
+  ladder->kept =
+      strut_accuracy_is_kept(true, ladder->expected, fmin(ENOUGH_OF_MEANS * wanted, allowed));
 }
 
 void strut_ladder_judge_last(strut_ladder *ladder) {
   bool fine = strut_ladder_runs_with_error_control(ladder) > 1 && !ladder->failed;
   if (ladder->runs < 2 || !ladder->same_motion || !is_followed(ladder, &ladder->now->s)) return;
-  ladder->kept = strut_accuracy_is_kept(fine, ladder->margin * ladder->expected, ladder->a->target);
+  ladder->kept = strut_accuracy_is_kept(fine, ladder->margin * ladder->expected + ladder->unsteady,
+                                        ladder->a->target);
 }
 
 /* ---- what is said ---- */
@@ -286,7 +314,9 @@ static void report_quantities(const strut_ladder *ladder) {
            error = factor * ladder->difference[i];
     if (!measured->zero && error < HUGE_VAL)
       error = fmax(error, fmax(apart * fabs(measured->value), worst * allowed));
-    if (ladder->runs > 1) measured->expected = fmax(ladder->margin * error, ladder->shifted[i]);
+    if (ladder->runs > 1)
+      measured->expected =
+          fmax(ladder->margin * error, ladder->shifted[i]) + rest_of_transient(summary, i);
     measured->kept =
         ladder->kept || strut_accuracy_is_kept(ladder->same_motion && is_followed(ladder, summary),
                                                measured->expected, allowed);
@@ -302,6 +332,15 @@ static void report_quantities(const strut_ladder *ladder) {
   }
 }
 
+/* The relative error of the velocity, which is printed beside the quantities. */
+static double error_of_velocity(const strut_ladder *ladder, const strut_summary *summary) {
+  size_t n = ladder->a->experiment.quantity_count, width = n + 1;
+  const double *latest = ladder->results + (size_t)(ladder->runs - 1) * width;
+  if (summary->velocity_zero || ladder->runs < 2) return 0.0;
+  return (ladder->margin * fabs(latest[n] - latest[n - width]) + summary->steady.interval) /
+         strut_ladder_velocity_size(ladder, summary->velocity);
+}
+
 void strut_ladder_report(strut_ladder *ladder) {
   strut_accuracy *accuracy = ladder->a;
   strut_summary *summary = accuracy->summary;
@@ -309,9 +348,14 @@ void strut_ladder_report(strut_ladder *ladder) {
   if (ladder->same_motion)
     expected = ladder->margin *
                fmax(expected, summary->velocity_zero ? 0.0 : OF_DISTANCE * ladder->distance);
+  if (isfinite(expected)) expected += ladder->unsteady;
+  if (summary->steady.kind == STRUT_MOTION_PERIODIC && !summary->velocity_zero &&
+      strut_ladder_runs_with_error_control(ladder) == 1)
+    expected = fmax(expected, OF_FIRST_RUN * accuracy->target + ladder->unsteady);
   if (ladder->kept) expected = fmin(expected, accuracy->target);
   if (!isfinite(expected)) expected = range_of_runs(ladder, summary);
-  if (isfinite(expected)) expected = fmax(expected, ladder->sensitivity);
+  if (isfinite(expected))
+    expected = fmax(expected, fmax(ladder->sensitivity, error_of_velocity(ladder, summary)));
   if (!isfinite(expected)) expected = (double)NAN; /* a single run */
   summary->accuracy = (strut_accuracy_summary){.wanted = accuracy->target,
                                                .expected = expected,

@@ -541,7 +541,8 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   solve.orbit.y = solve.known.y = strut_orbit_solve_array(&solve);
   solve.fixed_point = strut_orbit_solve_array(&solve);
   bool steady = run_coarse(&solve);
-  if (!solve.status && solve.coarse_run.status == STRUT_OK) {
+  if (!solve.status && solve.coarse_run.status == STRUT_OK &&
+      !strut_accuracy_balance_is_open(accuracy, &solve.coarse_run)) {
     if (solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING) steady = find_creep(&solve);
     if (!is_over(&solve)) find_orbit(&solve, steady);
     if (!solve.status) confirm_orbit(&solve, &orbit);

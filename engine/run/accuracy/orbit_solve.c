@@ -336,9 +336,9 @@ static double estimate_error(const strut_orbit_solve *solve) {
   double error = fmax(solve->error, solve->apart) + method;
   if (solve->answer == STRUT_ORBIT_CORRECTED)
     error += STRUT_FIXED_POINT_PART * solve->a->target * size;
-  return solve->answer == STRUT_ORBIT_COARSE
-             ? error + fabs(solve->orbit.velocity - solve->coarse_run.velocity)
-             : error;
+  if (solve->answer == STRUT_ORBIT_COARSE)
+    error += fabs(solve->orbit.velocity - solve->coarse_run.velocity);
+  return error;
 }
 
 /* The force evaluations of all parts of the answer. */
@@ -363,13 +363,22 @@ static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summar
   summary->steady.periods = llround(before / solve->coarse_map.period);
 }
 
+/* Corrections of orbits to which a transient returns slowly were too small by up to a fifth of the estimate. */
+static const double SLOW_RETURN = 1.3;
+
+/* The relative error to state, which does not exceed the wanted one where the estimate is below that. */
+static double state_error(const strut_orbit_solve *solve, double velocity) {
+  double error = estimate_error(solve) / strut_accuracy_velocity_scale(solve->a, velocity);
+  if (solve->answer >= STRUT_ORBIT_IRREGULAR) return error;
+  return fmin(SLOW_RETURN * error, fmax(error, solve->a->target));
+}
+
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *summary = accuracy->summary;
   assert(solve->answer != STRUT_ORBIT_NONE);
   bool coarse_suffices = solve->answer == STRUT_ORBIT_COARSE;
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  double error = estimate_error(solve);
   int64_t corrections =
       solve->coarse_map.evaluations - solve->until_steady + solve->reference_map.evaluations;
   *summary = *orbit;
@@ -378,7 +387,8 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
       ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
   summary->settle_time = solve->coarse_run.settle_time;
   summary->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
-  summary->steady.interval = error;
+  double error = state_error(solve, summary->velocity);
+  summary->steady.interval = error * strut_accuracy_velocity_scale(accuracy, summary->velocity);
   tell_whole_motion(solve, orbit, summary);
   if (solve->mean.periods > 0) summary->window = solve->last_run.window; /* that of the mean */
   summary->spent.evaluations = sum_evaluations(solve);
@@ -391,7 +401,7 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
            adaptive ? strut_integrator_for(STRUT_ROLE_REFERENCE)->name : "");
   summary->accuracy = (strut_accuracy_summary){
       .wanted = accuracy->target,
-      .expected = error / strut_accuracy_velocity_scale(accuracy, summary->velocity),
+      .expected = error,
       .scale = accuracy->scale,
       .check_evaluations = accuracy->check_evaluations + orbit->spent.evaluations +
                            (coarse_suffices ? corrections : 0)};

@@ -7,6 +7,7 @@
 #include "engine/forces/drives/drives.h"
 #include "engine/forces/drives/moving_masses.h"
 #include "engine/forces/forces.h"
+#include "engine/forces/history.h"
 
 bool strut_dense_create(const strut_model *model, strut_arena *arena, strut_dense *matrix) {
   double **const arrays[] = {&matrix->q,       &matrix->v,    &matrix->begin_q,
@@ -15,7 +16,10 @@ bool strut_dense_create(const strut_model *model, strut_arena *arena, strut_dens
   for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++)
     if (!(*arrays[i] = strut_arena_allocate(arena, (size_t)model->length, sizeof(double))))
       return false;
-  return true;
+  size_t remembered = strut_history_count(model);
+  matrix->begin_memory = strut_arena_allocate(arena, remembered, sizeof(double));
+  matrix->end_memory = strut_arena_allocate(arena, remembered, sizeof(double));
+  return matrix->begin_memory && matrix->end_memory;
 }
 
 void strut_dense_keep(strut_dense *matrix, const strut_state *state) {
@@ -23,6 +27,7 @@ void strut_dense_keep(strut_dense *matrix, const strut_state *state) {
   memcpy(matrix->begin_q, state->q, bytes);
   memcpy(matrix->begin_v, state->v, bytes);
   memcpy(matrix->begin_work, state->work, sizeof matrix->begin_work);
+  strut_history_store(matrix->model, state, matrix->begin_memory);
 }
 
 strut_motion_piece strut_dense_step(strut_dense *matrix, const strut_state *state, double t,
@@ -33,6 +38,7 @@ strut_motion_piece strut_dense_step(strut_dense *matrix, const strut_state *stat
                               .v = {matrix->begin_v, state->v},
                               .work = {matrix->begin_work, state->work},
                               .power = {matrix->power[0], matrix->power[1]},
+                              .memory = matrix->begin_memory,
                               .smooth = true,
                               .ends_only = state->kicked};
 }
@@ -61,6 +67,15 @@ static double hermite_of_second_order(const strut_motion_piece *piece, int32_t i
          piece->q[1][i] * s3 * (1.0 + 3.0 * r + 6.0 * r * r);
 }
 
+/* Its derivative: of fifth order, where the cubic through the rates is of fourth. */
+static double slope_of_second_order(const strut_motion_piece *piece, int32_t i, double s) {
+  double h = piece->length, r = 1.0 - s, rise = (piece->q[1][i] - piece->q[0][i]) / h;
+  return 30.0 * rise * s * s * r * r + piece->v[0][i] * r * r * (1.0 - 3.0 * s) * (1.0 + 5.0 * s) +
+         piece->v[1][i] * s * s * (1.0 - 3.0 * r) * (1.0 + 5.0 * r) +
+         0.5 * h * s * r *
+             (piece->a[0][i] * r * (2.0 - 5.0 * s) - piece->a[1][i] * s * (2.0 - 5.0 * r));
+}
+
 static void interpolate(strut_dense *matrix, const strut_motion_piece *piece, double s) {
   double h = piece->length;
   for (int32_t i = 0; i < matrix->model->length; i++) {
@@ -75,7 +90,9 @@ static void interpolate(strut_dense *matrix, const strut_motion_piece *piece, do
     } else {
       matrix->q[i] = hermite_of_second_order(piece, i, s);
       matrix->v[i] =
-          strut_hermite(piece->v[0][i], piece->a[0][i], piece->v[1][i], piece->a[1][i], h, s);
+          i < 2 * matrix->model->node_count
+              ? slope_of_second_order(piece, i, s)
+              : strut_hermite(piece->v[0][i], piece->a[0][i], piece->v[1][i], piece->a[1][i], h, s);
     }
   }
 }
@@ -87,6 +104,7 @@ double strut_dense_place(strut_dense *matrix, strut_state *state, strut_motion_p
     matrix->end_q = state->q, matrix->end_v = state->v;
     memcpy(matrix->end_work, state->work, sizeof matrix->end_work);
     piece->work[1] = matrix->end_work;
+    strut_history_store(matrix->model, state, matrix->end_memory);
     matrix->away = true;
   }
   if (!piece->a[0]) accelerate_ends(matrix, state, piece);
@@ -94,11 +112,13 @@ double strut_dense_place(strut_dense *matrix, strut_state *state, strut_motion_p
   interpolate(matrix, piece, s);
   if (matrix->model->terms & STRUT_TERM_SUPPORT_MOTION)
     strut_support_motion_place(matrix->model, state, t, matrix->q, matrix->v);
+  state->latest->drive_time = (double)NAN;
+  if (piece->hold) piece->hold(piece, matrix->model, state, t, matrix->q, matrix->v);
+  if (matrix->model->elements.history_slots)
+    strut_history_place(matrix->model, state, piece->memory, t, piece->hold);
   for (int p = 0; p < STRUT_POWER_COUNT && state->balance; p++)
     state->work[p] = strut_hermite(piece->work[0][p], piece->power[0][p], piece->work[1][p],
                                    piece->power[1][p], piece->length, s);
-  state->latest->drive_time = (double)NAN;
-  if (piece->hold) piece->hold(piece, matrix->model, state, t, matrix->q, matrix->v);
   return t;
 }
 
@@ -109,6 +129,7 @@ void strut_dense_return(strut_dense *matrix, strut_state *state, const strut_mot
   matrix->away = false;
   state->q = matrix->end_q, state->v = matrix->end_v;
   memcpy(state->work, matrix->end_work, sizeof matrix->end_work);
+  strut_history_load(model, state, matrix->end_memory);
   state->latest->drive_time = (double)NAN;
   strut_drive_apply(model, state, t);
   if (model->terms & (STRUT_TERMS_RARE | STRUT_TERM_ELEMENTS | STRUT_TERM_RIGID))

@@ -58,7 +58,7 @@ static inline double strut_hermite(double x0, double v0, double x1, double v1, d
  * Dense output: the state at any instant within a piece of the motion.
  *
  * Positions are the polynomials of fifth order through positions, velocities and accelerations at both
- * ends, velocities and works the cubics through their values and rates. Contact forces follow by
+ * ends, velocities their derivatives, works and internal states the cubics through their values and rates. Contact forces follow by
  * their own law, in the modes that a method with events has frozen.
  */
 
@@ -66,10 +66,11 @@ typedef struct strut_dense {
   const strut_model *model;
   double *q, *v;             /* (length) at the instant */
   double *begin_q, *begin_v; /* (length) at the begin of a step of the grid */
+  double *begin_memory;      /* (strut_history_count) there; forces within it follow from that */
   double *a[2];              /* (length) accelerations at its ends */
   double begin_work[STRUT_POWER_ROOM], power[2][STRUT_POWER_ROOM];
   /* what the state has at the end of the piece, while it is elsewhere */
-  double *end_q, *end_v;
+  double *end_q, *end_v, *end_memory;
   double end_work[STRUT_POWER_ROOM];
   bool away;   /* the state has been elsewhere since strut_dense_return */
   bool coarse; /* positions and velocities by polynomials of one order less */

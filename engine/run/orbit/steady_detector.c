@@ -273,7 +273,7 @@ static bool repeats_itself(strut_steady_detector *detector, int64_t now, int k) 
   detector->result.kind = STRUT_MOTION_PERIODIC;
   detector->result.repeats = n;
   detector->result.periods = now;
-  detector->result.interval = change * (1.0 + rest);
+  detector->result.interval = change * (1.0 + rest), detector->result.left = rest;
   detector->result.residual =
       detector->latest.amplitude > 0.0 ? residual / detector->latest.amplitude : 0.0;
   return true;
