@@ -5,6 +5,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "tests/support/test.h"
+
 static const char *const nodes[] = {"n1", "left, \"upper\"", "\xc3\xa4"};
 static const char *const members[] = {"m1", "m2"};
 static const char *const total[] = {"total"};

@@ -12,7 +12,7 @@
 #include "engine/scene/things.h"
 #include "parser/language/read/csv.h"
 #include "parser/language/read/read_scene.h"
-#include "parser/language/yaml/diagnostics.h"
+#include "parser/language/yaml/document.h"
 
 const strut_option strut_method_options[] = {
     {STRUT_FILLS(integrator), "integrator", "NAME",
