@@ -99,17 +99,6 @@ void *strut_arena_copy(strut_arena *arena, const void *from, size_t count, size_
   return copy;
 }
 
-bool strut_arena_arrays(strut_arena *arena, const strut_array *list) {
-  bool all = true;
-  for (; list->pointer; list++) {
-    void *block = list->from ? strut_arena_copy(arena, list->from, list->count, list->size)
-                             : strut_arena_allocate(arena, list->count, list->size);
-    memcpy(list->pointer, &block, sizeof block);
-    all = all && block;
-  }
-  return all;
-}
-
 bool strut_arena_numbers(strut_arena *arena, size_t count, double **const *list) {
   bool all = true;
   for (; *list; list++) all = (**list = strut_arena_allocate(arena, count, sizeof(double))) && all;

@@ -40,20 +40,35 @@ typedef struct strut_arena {
 STRUT_API void *strut_arena_allocate(strut_arena *arena, size_t count, size_t size);
 /** A copy of count * size bytes, likewise. */
 STRUT_API void *strut_arena_copy(strut_arena *arena, const void *from, size_t count, size_t size);
-/** The address of a pointer, and how many items it gets: zeros, or a copy of `from`. */
-typedef struct strut_array {
-  void *pointer;
-  const void *from;
-  size_t count, size;
-} strut_array;
-#define STRUT_NEW(pointer, count)                                                                  \
-  { &(pointer), NULL, (size_t)(count), sizeof *(pointer) }
-#define STRUT_COPY(pointer, from, count)                                                           \
-  { &(pointer), (from), (size_t)(count), sizeof *(pointer) }
-/** Gives arrays to the pointers of all STRUT_NEW and STRUT_COPY listed; false: to some NULL, since memory is out. */
+/** A pointer and how many items of its type it gets. */
+#define STRUT_NEW(pointer, count) (pointer, count)
+/** Gives zeros to the pointers of up to 8 STRUT_NEW; false: to some NULL, since memory is out. */
 #define STRUT_ALLOCATE(arena, ...)                                                                 \
-  strut_arena_arrays(arena, (const strut_array[]){__VA_ARGS__, {NULL, NULL, 0, 0}})
-STRUT_API bool strut_arena_arrays(strut_arena *arena, const strut_array *list);
+  (STRUT_EACH(STRUT_GIVE, arena, __VA_ARGS__) STRUT_EACH(STRUT_GIVEN, arena, __VA_ARGS__) true)
+#define STRUT_GIVE(arena, pointer, count)                                                          \
+  (pointer) = strut_arena_allocate(arena, (size_t)(count), sizeof *(pointer)),
+#define STRUT_GIVEN(arena, pointer, count) (pointer) &&
+/** The same with copies of what they point to. */
+#define STRUT_DUPLICATE(arena, ...)                                                                \
+  (STRUT_EACH(STRUT_COPY, arena, __VA_ARGS__) STRUT_EACH(STRUT_GIVEN, arena, __VA_ARGS__) true)
+#define STRUT_COPY(arena, pointer, count)                                                          \
+  (pointer) = strut_arena_copy(arena, pointer, (size_t)(count), sizeof *(pointer)),
+/* DO(arena, pointer, count) for each. */
+#define STRUT_EACH(DO, arena, ...)                                                                 \
+  STRUT_9TH(__VA_ARGS__, STRUT_8, STRUT_7, STRUT_6, STRUT_5, STRUT_4, STRUT_3, STRUT_2, STRUT_1,   \
+            0)                                                                                     \
+  (DO, arena, __VA_ARGS__)
+#define STRUT_9TH(a, b, c, d, e, f, g, h, NAME, ...) NAME
+#define STRUT_1(DO, A, X) STRUT_DO(DO, A, STRUT_UNPACKED X)
+#define STRUT_2(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_1(DO, A, __VA_ARGS__)
+#define STRUT_3(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_2(DO, A, __VA_ARGS__)
+#define STRUT_4(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_3(DO, A, __VA_ARGS__)
+#define STRUT_5(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_4(DO, A, __VA_ARGS__)
+#define STRUT_6(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_5(DO, A, __VA_ARGS__)
+#define STRUT_7(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_6(DO, A, __VA_ARGS__)
+#define STRUT_8(DO, A, X, ...) STRUT_1(DO, A, X) STRUT_7(DO, A, __VA_ARGS__)
+#define STRUT_DO(DO, ...) DO(__VA_ARGS__)
+#define STRUT_UNPACKED(...) __VA_ARGS__
 /** The same of pointers to double whose addresses are listed, with `count` zeros each. */
 #define STRUT_NUMBERS(arena, count, ...)                                                           \
   strut_arena_numbers(arena, (size_t)(count), (double **[]){__VA_ARGS__, NULL})

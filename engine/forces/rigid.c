@@ -169,8 +169,8 @@ static strut_rigid *create(const strut_model *model, strut_arena *arena, double 
   if (!STRUT_ALLOCATE(arena, STRUT_NEW(rigid->member, bars), STRUT_NEW(rigid->length, bars),
                       STRUT_NEW(rigid->tension, bars), STRUT_NEW(rigid->at, nodes),
                       STRUT_NEW(rigid->end, bars), STRUT_NEW(rigid->foot, feet),
-                      STRUT_NEW(rigid->row, most), STRUT_NEW(rigid->direction, most),
-                      STRUT_NEW(rigid->matrix, most * most), STRUT_NEW(rigid->right, most),
+                      STRUT_NEW(rigid->row, most), STRUT_NEW(rigid->direction, most)) ||
+      !STRUT_ALLOCATE(arena, STRUT_NEW(rigid->matrix, most * most), STRUT_NEW(rigid->right, most),
                       STRUT_NEW(rigid->stuck, feet), STRUT_NEW(rigid->free, model->length),
                       STRUT_NEW(rigid->push, model->length)))
     return NULL;

@@ -7,11 +7,10 @@
 #include "engine/model/algebra/pull_rows.h"
 
 bool strut_triplets_reserve(strut_triplets *triplets, size_t capacity, strut_arena *arena) {
-  triplets->row = strut_arena_allocate(arena, capacity, sizeof *triplets->row);
-  triplets->column = strut_arena_allocate(arena, capacity, sizeof *triplets->column);
-  triplets->value = strut_arena_allocate(arena, capacity, sizeof *triplets->value);
   triplets->capacity = capacity;
-  return triplets->row && triplets->column && triplets->value;
+  return STRUT_ALLOCATE(arena, STRUT_NEW(triplets->row, capacity),
+                        STRUT_NEW(triplets->column, capacity),
+                        STRUT_NEW(triplets->value, capacity));
 }
 
 void strut_triplets_add(strut_triplets *triplets, int32_t row, int32_t column, double value) {

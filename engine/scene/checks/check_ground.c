@@ -183,9 +183,8 @@ static size_t *count_pieces(strut_checker *checker) {
 static bool has_surface(const strut_scene *scene, const strut_contact *contact,
                         const size_t *pieces) {
   if (!scene->ground_count) return contact->ground == 0 && contact->piece == 0;
-  if (contact->ground < 0 || (size_t)contact->ground >= scene->ground_count || contact->piece < 0)
-    return false;
-  return (size_t)contact->piece < pieces[contact->ground];
+  return strut_exists(contact->ground, scene->ground_count) &&
+         strut_exists(contact->piece, pieces[contact->ground]);
 }
 
 static void check_contacts(strut_checker *checker, const size_t *pieces) {
@@ -360,9 +359,8 @@ static void check_search(strut_checker *checker) {
   if ((double)search->seed > STRUT_MOST_SEED)
     strut_fault_of(checker, "seed", "the seed of the search for equilibria must be at most %.0f",
                    STRUT_MOST_SEED);
-  if (scene->start_equilibrium < -1 ||
-      (scene->start_equilibrium >= 0 &&
-       (size_t)scene->start_equilibrium >= scene->configuration_count))
+  if (scene->start_equilibrium != -1 &&
+      !strut_exists(scene->start_equilibrium, scene->configuration_count))
     strut_report_finding(
         checker, STRUT_ON_INITIAL, 0, NULL,
         "the initial state is the equilibrium of a configuration that does not exist");
@@ -379,7 +377,7 @@ void strut_check_shapes(strut_checker *checker) {
   if (!check.touches || !check.stamp) checker->out_of_memory = true;
   for (size_t i = 0; !checker->out_of_memory && i < scene->contact_count; i++) {
     int32_t node = scene->contacts[i].node;
-    if (node >= 0 && (size_t)node < scene->node_count) check.touches[node] = true;
+    if (strut_exists(node, scene->node_count)) check.touches[node] = true;
   }
   for (size_t i = 0; !checker->out_of_memory && i < scene->configuration_count; i++) {
     const strut_configuration *configuration = &scene->configurations[i];

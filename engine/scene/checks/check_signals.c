@@ -379,20 +379,20 @@ static void call_signal(strut_checker *checker, const size_t *user, size_t i) {
 static void find_users(const strut_scene *scene, size_t *user) {
   for (size_t i = scene->support_motion_count; i-- > 0;) {
     const strut_support_motion *motion = &scene->support_motions[i];
-    if (motion->signal >= 0 && (size_t)motion->signal < scene->signal_count && motion->node >= 0 &&
-        (size_t)motion->node < scene->node_count)
+    if (strut_exists(motion->signal, scene->signal_count) &&
+        strut_exists(motion->node, scene->node_count))
       user[motion->signal] = 1 + scene->actuator_count + scene->load_count + i;
   }
   for (size_t i = scene->load_count; i-- > 0;)
-    if (scene->loads[i].signal >= 0 && (size_t)scene->loads[i].signal < scene->signal_count)
+    if (strut_exists(scene->loads[i].signal, scene->signal_count))
       user[scene->loads[i].signal] = 1 + scene->actuator_count + i;
   for (size_t i = scene->actuator_count; i-- > 0;)
-    if (scene->actuators[i].signal >= 0 && (size_t)scene->actuators[i].signal < scene->signal_count)
+    if (strut_exists(scene->actuators[i].signal, scene->signal_count))
       user[scene->actuators[i].signal] = 1 + i;
   for (size_t i = scene->signal_count; i-- > 0;) /* terms precede their sum */
     for (size_t t = 0; t < part_count(&scene->signals[i]); t++) {
       int32_t term = part_of(&scene->signals[i], t);
-      if (term >= 0 && (size_t)term < i && !user[term]) user[term] = user[i];
+      if (strut_exists(term, i) && !user[term]) user[term] = user[i];
     }
 }
 

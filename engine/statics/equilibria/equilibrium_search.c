@@ -38,9 +38,8 @@ static bool copy_point(strut_equilibrium_search *search, const strut_critical_po
   strut_arena *arena = &search->out->arena;
   size_t length = (size_t)search->model->length;
   *to = *from;
-  return STRUT_ALLOCATE(arena, STRUT_COPY(to->q, from->q, length),
-                        STRUT_COPY(to->softest, from->softest, length),
-                        STRUT_COPY(to->eigenvalues, from->eigenvalues, from->eigenvalue_count));
+  return STRUT_DUPLICATE(arena, STRUT_NEW(to->q, length), STRUT_NEW(to->softest, length),
+                         STRUT_NEW(to->eigenvalues, from->eigenvalue_count));
 }
 
 static void measure_members(const strut_model *model, const double *positions, double *force) {

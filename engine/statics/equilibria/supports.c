@@ -58,13 +58,12 @@ static int32_t find_oblique_node(const strut_scene *scene) {
 
 static bool copy_arrays(strut_level_frame *level) {
   strut_scene *scene = &level->scene;
-  if (!STRUT_ALLOCATE(
-          &level->arena, STRUT_COPY(scene->nodes, scene->nodes, scene->node_count),
-          STRUT_COPY(scene->members, scene->members, scene->member_count),
-          STRUT_COPY(scene->hinges, scene->hinges, scene->hinge_count),
-          STRUT_COPY(scene->contacts, scene->contacts, scene->contact_count),
-          STRUT_COPY(scene->loads, scene->loads, scene->load_count),
-          STRUT_COPY(scene->configurations, scene->configurations, scene->configuration_count)))
+  if (!STRUT_DUPLICATE(&level->arena, STRUT_NEW(scene->nodes, scene->node_count),
+                       STRUT_NEW(scene->members, scene->member_count),
+                       STRUT_NEW(scene->hinges, scene->hinge_count),
+                       STRUT_NEW(scene->contacts, scene->contact_count),
+                       STRUT_NEW(scene->loads, scene->load_count),
+                       STRUT_NEW(scene->configurations, scene->configuration_count)))
     return false;
   for (size_t i = 0; i < scene->configuration_count; i++) {
     strut_configuration *configuration = &scene->configurations[i];

@@ -334,12 +334,10 @@ static bool allocate_quadratic(const strut_modes_work *work, quadratic *self) {
   self->value = gsl_vector_complex_calloc(2 * n);
   self->vector = gsl_matrix_complex_calloc(2 * n, 2 * n);
   self->w = gsl_eigen_nonsymmv_alloc(2 * n);
-  self->weight = strut_arena_allocate(work->arena, 2 * n * n, sizeof *self->weight);
-  self->taken = strut_arena_allocate(work->arena, 2 * n, sizeof *self->taken);
-  self->first = strut_arena_allocate(work->arena, n, sizeof *self->first);
-  self->second = strut_arena_allocate(work->arena, n, sizeof *self->second);
-  return self->system && self->damping && self->value && self->vector && self->w && self->weight &&
-         self->taken && self->first && self->second;
+  return self->system && self->damping && self->value && self->vector && self->w &&
+         STRUT_ALLOCATE(work->arena, STRUT_NEW(self->weight, 2 * n * n),
+                        STRUT_NEW(self->taken, 2 * n), STRUT_NEW(self->first, n),
+                        STRUT_NEW(self->second, n));
 }
 
 strut_status strut_modes_damping(const strut_modes_work *work, bool exactly, strut_mode *list,

@@ -126,14 +126,10 @@ static void number_rows(lattice_cell *cell) {
 static strut_status create_cell(const strut_model *model, strut_arena *arena, lattice_cell *cell,
                                 strut_error *error) {
   size_t nodes = (size_t)model->node_count, length = (size_t)model->length;
-  *cell = (lattice_cell){
-      .model = model,
-      .owner = strut_arena_allocate(arena, nodes, sizeof *cell->owner),
-      .shift = strut_arena_allocate(arena, nodes, sizeof *cell->shift),
-      .row = strut_arena_allocate(arena, length, sizeof *cell->row),
-      .first = strut_arena_allocate(arena, length, sizeof *cell->first),
-  };
-  if (!cell->owner || !cell->shift || !cell->row || !cell->first) return strut_no_memory(error, "");
+  *cell = (lattice_cell){.model = model};
+  if (!STRUT_ALLOCATE(arena, STRUT_NEW(cell->owner, nodes), STRUT_NEW(cell->shift, nodes),
+                      STRUT_NEW(cell->row, length), STRUT_NEW(cell->first, length)))
+    return strut_no_memory(error, "");
   if (model->scene->lattice_count == 0)
     return strut_fail(error, STRUT_USAGE,
                       "--wave needs 'lattice' in the scene, the steps by which the structure "

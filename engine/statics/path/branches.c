@@ -44,22 +44,21 @@ void strut_path_keep_fork(strut_path_walk *walk, const double *unknowns,
   strut_path_system *system = &walk->system;
   if (!strut_path_wants_fork(walk, unknowns)) return;
   strut_path_fork *fork = &walk->forks.fork[walk->forks.count];
+  const strut_model *model = system->model;
   *fork =
       (strut_path_fork){.y = strut_arena_copy(&system->arena, unknowns, 1, strut_path_bytes(walk)),
                         .rays = *rays,
-                        .pulling = strut_arena_copy(&system->arena, system->latest.pulling,
-                                                    (size_t)system->model->members.count, 1),
-                        .contact = strut_arena_copy(&system->arena, system->contacts.contact,
-                                                    (size_t)system->model->contacts.count,
-                                                    sizeof *system->contacts.contact),
-                        .element = strut_arena_copy(&system->arena, system->elements.element,
-                                                    (size_t)system->model->elements.count,
-                                                    sizeof *system->elements.element),
+                        .pulling = system->latest.pulling,
+                        .contact = system->contacts.contact,
+                        .element = system->elements.element,
                         .factor = strut_path_value(system, unknowns),
                         .arc = walk->arc + strut_path_distance(walk, walk->y, unknowns),
                         .path = walk->forks.path,
                         .depth = walk->forks.depth};
-  walk->failed = walk->failed || !fork->y || !fork->pulling || !fork->contact || !fork->element;
+  bool kept = STRUT_DUPLICATE(&system->arena, STRUT_NEW(fork->pulling, model->members.count),
+                              STRUT_NEW(fork->contact, model->contacts.count),
+                              STRUT_NEW(fork->element, model->elements.count));
+  walk->failed = walk->failed || !fork->y || !kept;
   for (int32_t k = 0; k < rays->count; k++)
     fork->rays.ray[k].done =
         fork->rays.ray[k].own < 0 || &rays->ray[k] == way || (!way && fork->rays.ray[k].own > 0);

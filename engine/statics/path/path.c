@@ -136,9 +136,9 @@ strut_status strut_path_set_actuator(const strut_model *drawn, int32_t actuator,
                                      strut_arena *arena, strut_scene *scene, strut_error *error) {
   const strut_actuator *a = &scene->actuators[actuator];
   double rest = drawn->members.rest[strut_actuator_slot(drawn, (size_t)actuator)] + value;
-  if (!STRUT_ALLOCATE(arena, STRUT_COPY(scene->cells, scene->cells, scene->cell_count),
-                      STRUT_COPY(scene->hinges, scene->hinges, scene->hinge_count),
-                      STRUT_COPY(scene->members, scene->members, scene->member_count)))
+  if (!STRUT_DUPLICATE(arena, STRUT_NEW(scene->cells, scene->cell_count),
+                       STRUT_NEW(scene->hinges, scene->hinge_count),
+                       STRUT_NEW(scene->members, scene->member_count)))
     return strut_no_memory(error, "");
   if (a->member < 0 && a->hinge < 0) scene->cells[a->cell].pressure = rest;
   if (a->member < 0 && a->hinge >= 0) scene->hinges[a->hinge].rest_angle = rest;
@@ -302,13 +302,13 @@ static bool create_guides(strut_path_system *system, const strut_path *after) {
   for (int32_t i = 0; i < elements->count; i++)
     some = some || strut_has_capstan(&elements->element[i]);
   if (!some) return true;
-  system->elements.material =
-      strut_arena_copy(&system->arena, system->model->members.rest, slots, sizeof(double));
-  system->elements.guide_mode =
-      strut_arena_allocate(&system->arena, slots, sizeof *system->elements.guide_mode);
-  if (system->elements.guide_mode && after && after->guide_mode)
+  if (!STRUT_ALLOCATE(&system->arena, STRUT_NEW(system->elements.material, slots),
+                      STRUT_NEW(system->elements.guide_mode, slots)))
+    return false;
+  memcpy(system->elements.material, system->model->members.rest, slots * sizeof(double));
+  if (after && after->guide_mode)
     memcpy(system->elements.guide_mode, after->guide_mode, slots * sizeof *after->guide_mode);
-  return system->elements.material && system->elements.guide_mode;
+  return true;
 }
 
 static strut_status create_walk(path_start *self, double until, strut_path_walk *walk,
@@ -341,10 +341,11 @@ static bool keep_pieces(const strut_path_system *system, strut_path *path) {
   int *piece = strut_arena_allocate(&path->arena, (size_t)count + 1, sizeof *piece);
   for (int32_t i = 0; i < count && piece; i++) piece[i] = system->elements.element[i].piece;
   path->piece = piece;
-  return piece &&
-         (!system->elements.material ||
-          STRUT_ALLOCATE(&path->arena, STRUT_COPY(path->material, system->elements.material, slots),
-                         STRUT_COPY(path->guide_mode, system->elements.guide_mode, slots)));
+  if (!system->elements.material) return piece;
+  path->material = system->elements.material, path->guide_mode = system->elements.guide_mode;
+  return STRUT_DUPLICATE(&path->arena, STRUT_NEW(path->material, slots),
+                         STRUT_NEW(path->guide_mode, slots)) &&
+         piece;
 }
 
 /* How much of the path, or of its steps, is done. */

@@ -116,13 +116,12 @@ static strut_status prepare(strut_slots *slots, strut_error *error) {
   size_t words = (size_t)(slots->plan.count / BITS + 1);
   slots->block_slots = BLOCK_BYTES / (int64_t)slots->layout.slot_bytes;
   slots->done = strut_allocate(words, sizeof *slots->done);
-  slots->block =
-      strut_arena_allocate(&slots->arena, (size_t)slots->block_slots, slots->layout.slot_bytes);
-  slots->numbers =
-      strut_arena_allocate(&slots->arena, slots->layout.number_count + 1, sizeof *slots->numbers);
-  slots->words =
-      strut_arena_allocate(&slots->arena, slots->layout.word_count + 1, sizeof *slots->words);
-  if (!slots->done || !slots->block || !slots->numbers || !slots->words)
+  if (!STRUT_ALLOCATE(
+          &slots->arena,
+          STRUT_NEW(slots->block, (size_t)slots->block_slots * slots->layout.slot_bytes),
+          STRUT_NEW(slots->numbers, slots->layout.number_count + 1),
+          STRUT_NEW(slots->words, slots->layout.word_count + 1)) ||
+      !slots->done)
     return no_memory(error, slots->path);
   atomic_store(&slots->missing, slots->plan.count);
   memcpy(&slots->seed, slots->plan.hash, sizeof slots->seed);

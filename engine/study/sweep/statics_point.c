@@ -457,10 +457,8 @@ static strut_status find_modes(const strut_study *study, strut_sweep_job *job,
                                rest_result *result) {
   int32_t wanted = (int32_t)lowest_of(study) + 3; /* motions of the whole come first */
   strut_modes_options options = {.at = study->at, .count = 0};
-  int32_t free_coordinates = 0;
-  for (int32_t i = 0; i < 2 * result->model->node_count; i++)
-    free_coordinates += !result->model->fixed[i];
-  if (free_coordinates > STRUT_DENSE_MODES && wanted > STRUT_SPARSE_MODES) options.count = wanted;
+  bool sparse = count_freedoms(result->model) > STRUT_DENSE_MODES;
+  if (sparse && wanted > STRUT_SPARSE_MODES) options.count = wanted;
   strut_status status = strut_modes_find(result->model, &job->setup.experiment, &options,
                                          &result->modes, &job->error);
   if (!status) warn_of_overload(job, result->model, result->modes.q, result->modes.at);

@@ -482,6 +482,7 @@ strut_status strut_tradeoff_make(const strut_setup *const *setups, size_t count,
 }
 
 void strut_tradeoff_free(strut_tradeoff *result) {
+  strut_release(result->rows);
   strut_arena_free(&result->arena);
   *result = (strut_tradeoff){.name = ""};
 }

@@ -180,13 +180,10 @@ static strut_tradeoff_row *new_row(tradeoff_study *study, const step_series *fro
                                    tradeoff_setting setting) {
   strut_tradeoff *tradeoff = study->result;
   const size_t points = tradeoff->point_count;
-  if (tradeoff->row_count == study->row_capacity) {
-    size_t capacity = study->row_capacity ? 2 * study->row_capacity : 64;
-    strut_tradeoff_row *rows = strut_tradeoff_allocate(study, capacity, sizeof *rows);
-    if (!rows) return NULL;
-    for (size_t i = 0; i < tradeoff->row_count; i++) rows[i] = tradeoff->rows[i];
-    tradeoff->rows = rows;
-    study->row_capacity = capacity;
+  if (!strut_grow(&tradeoff->rows, &study->row_capacity, tradeoff->row_count,
+                  sizeof *tradeoff->rows)) {
+    study->status = strut_no_memory(study->error, "");
+    return NULL;
   }
   strut_tradeoff_row *row = &tradeoff->rows[tradeoff->row_count];
   setting.step = strut_tradeoff_fit_step(study, 0, setting.step);
