@@ -11,7 +11,7 @@
 
 #include "engine/base/status.h"
 #include "engine/scene/things.h"
-#include "parser/language/expression/units.h"
+#include "parser/language/expression/expression.h"
 #include "parser/language/keys/keys_table.h"
 
 /** The mappings of the language. */

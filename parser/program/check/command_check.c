@@ -9,7 +9,7 @@
 #include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/result_values.h"
-#include "parser/language/expression/units.h"
+#include "parser/language/expression/expression.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
