@@ -268,5 +268,9 @@ int strut_switch_find(const char *text);
 /** The i-th word, copied into buffer, or NULL after the last. */
 STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size_t size);
 
+/** What names in expressions are made of, a letter first. */
+#define STRUT_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
+#define STRUT_DIGITS "0123456789"
+
 /** Size of the buffer of strut_dimension_suffix. */
 enum { STRUT_SUFFIX_TEXT = 120 };
