@@ -91,7 +91,8 @@ static strut_status check_files(strut_analysis *a, const strut_arguments *argume
   return names ? strut_check_output_writable(arguments, names) : strut_print_out_of_memory();
 }
 
-strut_status strut_analysis_open(strut_analysis *a, char **text) {
+/* Opens the model that the arguments name for statics. */
+static strut_status open_for_statics(strut_analysis *a, char **text) {
   strut_open_report kept = {.prints = true};
   strut_status status = strut_open_model(a->arguments, STRUT_OPEN_FOR_STATICS, a->setup, &kept);
   a->scenes.text = *text = kept.text;
@@ -114,7 +115,7 @@ static strut_status compute(strut_analysis *a, const strut_arguments *arguments,
   strut_status status = arguments->command->report ? arguments->command->report(a, arguments, error)
                                                    : report(a, arguments, plot, error);
   if (!status && a->kind->warn) a->kind->warn(a, arguments->listener);
-  if (!status && plot->path) status = a->kind->draw(a, plot, error);
+  if (!status && plot->path) status = a->kind->draw(a, plot, 0, error);
   if (!status && a->kind->verdict) status = a->kind->verdict(a, error);
   return computed ? computed : status;
 }
@@ -131,7 +132,7 @@ strut_status strut_analysis_run(const strut_arguments *arguments) {
                       .setup = &setup,
                       .scenes = {.file = strut_model_name(arguments)}};
   strut_status status = check_files(&a, arguments, &plot);
-  if (!status) status = command->open ? command->open(&a, &text) : strut_analysis_open(&a, &text);
+  if (!status) status = command->open ? command->open(&a, &text) : open_for_statics(&a, &text);
   if (!status && !a.kind->uncompiled) status = strut_model_compile(&setup.scene, &model, &error);
   a.model = model;
   if (!status) status = compute(&a, arguments, &plot, &error);
@@ -220,7 +221,7 @@ static const strut_option form_options[] = {
 };
 
 static strut_status open_form(strut_analysis *analysis, char **text) {
-  strut_status status = strut_analysis_open(analysis, text);
+  strut_status status = open_for_statics(analysis, text);
   if (status) return status;
   analysis->result.form.before = strut_setup_write(analysis->setup);
   return analysis->result.form.before ? STRUT_OK : strut_print_out_of_memory();

@@ -276,11 +276,6 @@ static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                 : strut_compare_figure(plot, result, 0, result->count, error);
 }
 
-static strut_status draw_figure(const strut_analysis *analysis, const strut_plot *plot,
-                                strut_error *error) {
-  return draw(analysis, plot, 0, error);
-}
-
 static const strut_output_file files[] = {
     {.name = "compare.csv", .list = "models"},
     {.name = "compare.json"},
@@ -333,7 +328,7 @@ static const strut_analysis_kind compare_analysis = {.files = files,
                                                      .asks = true,
                                                      .compute = compare,
                                                      .verdict = report_failures,
-                                                     .draw = draw_figure,
+                                                     .draw = draw,
                                                      .release = free_compared};
 
 static const strut_refused_option refused[] = {

@@ -254,11 +254,6 @@ static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
                                                                      error);
 }
 
-static strut_status draw_figure(const strut_analysis *analysis, const strut_plot *plot,
-                                strut_error *error) {
-  return draw(analysis, plot, FIGURE, error);
-}
-
 static const strut_output_file files[] = {
     {.name = "branches.csv", .list = "branches.points"},
     {.name = "branches.json"},
@@ -275,7 +270,7 @@ static const strut_analysis_kind periodic_analysis = {.files = files,
                                                       .uncompiled = true,
                                                       .asks = true,
                                                       .compute = compute,
-                                                      .draw = draw_figure,
+                                                      .draw = draw,
                                                       .release = free_study};
 
 static const strut_refused_option refused[] = {

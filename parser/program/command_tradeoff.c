@@ -159,22 +159,16 @@ static const strut_option options[] = {
     {.name = NULL},
 };
 
-static strut_status draw(const strut_analysis *analysis, const strut_plot *plot,
+static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
                          strut_error *error) {
+  (void)number;
   return strut_tradeoff_figure(plot, analysis->found, error);
 }
 
-static strut_status draw_file(const strut_analysis *analysis, const strut_plot *plot, size_t number,
-                              strut_error *error) {
-  (void)number;
-  return draw(analysis, plot, error);
-}
-
-static const strut_output_file files[] = {
-    {.name = "tradeoff.csv", .list = "settings"},
-    {.name = "tradeoff.json"},
-    {.name = "tradeoff.svg", .draw = draw_file, .width = PAGE},
-    {.name = NULL}};
+static const strut_output_file files[] = {{.name = "tradeoff.csv", .list = "settings"},
+                                          {.name = "tradeoff.json"},
+                                          {.name = "tradeoff.svg", .draw = draw, .width = PAGE},
+                                          {.name = NULL}};
 
 static strut_status read_methods(const strut_arguments *arguments, tradeoff_study *self) {
   const char *text = arguments->integrator.text;

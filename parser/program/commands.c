@@ -46,7 +46,8 @@ static const struct {
 };
 enum { COMMANDS = sizeof rows / sizeof rows[0] };
 
-const strut_command *strut_command_at(size_t i) { return i < COMMANDS ? rows[i].command : NULL; }
+/* The i-th command, or NULL after the last. */
+static const strut_command *command_at(size_t i) { return i < COMMANDS ? rows[i].command : NULL; }
 
 static const char *command_name_at(const void *context, size_t i) {
   (void)context;
@@ -70,7 +71,8 @@ const strut_command *strut_command_find(const char *name) {
   return NULL;
 }
 
-void strut_program_help(void) {
+/* Prints the help of the whole program on stdout. */
+static void print_program_help(void) {
   int width = 0;
   const char *group = "";
   for (size_t i = 0; i < COMMANDS; i++) {
@@ -117,7 +119,7 @@ static strut_status print_help(const strut_arguments *arguments) {
   if (command)
     strut_command_help(command);
   else
-    strut_program_help();
+    print_program_help();
   return STRUT_OK;
 }
 
@@ -140,7 +142,7 @@ static void offer(const completion *self, const char *text) {
 }
 
 static void offer_commands(const completion *self) {
-  for (size_t i = 0; strut_command_at(i); i++) offer(self, strut_command_at(i)->name);
+  for (size_t i = 0; command_at(i); i++) offer(self, command_at(i)->name);
 }
 
 static void offer_options(const completion *self, const strut_command *command) {

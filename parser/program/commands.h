@@ -32,8 +32,6 @@ extern const strut_command strut_command_merge;
 extern const strut_command strut_command_periodic;
 extern const strut_command strut_command_schema;
 
-/** The i-th command, or NULL after the last. */
-const strut_command *strut_command_at(size_t i);
 /** The command of that name, or NULL. */
 const strut_command *strut_command_named(const char *name);
 /** The same, with the reason and a suggestion on stderr. */
@@ -41,9 +39,6 @@ const strut_command *strut_command_find(const char *name);
 
 /** Is it the name of a section or a key of the language, which `strut keys` explains? */
 bool strut_keys_know(const char *name);
-
-/** Prints the help of the whole program on stdout. */
-void strut_program_help(void);
 
 /** Calls `each` with FOLDER/NAME.yaml of every model that comes with strut, in order. */
 void strut_examples_list(void (*each)(void *context, const char *model), void *context);
@@ -59,8 +54,6 @@ strut_status strut_print_values(const strut_arguments *arguments, const strut_va
  * computes, writes, prints and draws. Messages go to stderr.
  */
 strut_status strut_analysis_run(const strut_arguments *arguments);
-/** Opens the model that the arguments name for statics. */
-strut_status strut_analysis_open(struct strut_analysis *analysis, char **text);
 
 /** Prints the words that complete the last of `words` (count >= 0), which may be empty. */
 strut_status strut_complete(int count, char **words);

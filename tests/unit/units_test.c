@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units: the table's order and factors, and the words for dimensions. */
-#include "parser/language/expression/units.h"
 #include "parser/language/expression/expression.h"
 #include "tests/support/test.h"
 

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "engine/base/vec.h"
+#include "parser/language/expression/expression.h"
 #include "parser/language/expression/expression_parts.h"
-#include "parser/language/expression/units.h"
 
 /* Largest meaningful exponent of a dimension. */
 static const float POWER_MOST = 100;

@@ -11,7 +11,7 @@
 
 #include "engine/base/status.h"
 #include "engine/scene/things.h"
-#include "parser/language/expression/units.h"
+#include "parser/language/expression/expression.h"
 #include "parser/language/keys/keys_table.h"
 
 /** The mappings of the language. */
@@ -267,6 +267,10 @@ STRUT_API int strut_word_find(const char *words, const char *word);
 int strut_switch_find(const char *text);
 /** The i-th word, copied into buffer, or NULL after the last. */
 STRUT_API const char *strut_word_at(const char *words, int i, char *buffer, size_t size);
+
+/** What names in expressions are made of, a letter first. */
+#define STRUT_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_"
+#define STRUT_DIGITS "0123456789"
 
 /** Size of the buffer of strut_dimension_suffix. */
 enum { STRUT_SUFFIX_TEXT = 120 };

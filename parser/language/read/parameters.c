@@ -9,7 +9,8 @@
 #include "parser/language/read/reader.h"
 #include "parser/language/read/reuse/copies.h"
 
-const char *strut_parameter_name(const void *context, size_t i) {
+/* The name with that number, for suggestions. */
+static const char *parameter_name(const void *context, size_t i) {
   const strut_reader *reader = context;
   return i < reader->parameter_count ? reader->parameters[i].name : NULL;
 }
@@ -239,7 +240,7 @@ static int look_up_parameter(void *context, const char *name, size_t length,
 }
 
 strut_scope strut_parameter_scope(strut_reader *reader) {
-  return (strut_scope){look_up_parameter, strut_parameter_name, reader, !strut_hints_left(reader),
+  return (strut_scope){look_up_parameter, parameter_name, reader, !strut_hints_left(reader),
                        strut_diagnostics_full(reader->diagnostics)};
 }
 
@@ -257,16 +258,11 @@ static bool check_parameter_name(strut_reader *reader, const strut_tree *key) {
         "'%s' cannot be the name of a parameter in a scene that places parts: it is "
         "the number of a copy",
         c);
-  for (size_t i = 0; i < length; i++) {
-    bool letter = (c[i] >= 'a' && c[i] <= 'z') || (c[i] >= 'A' && c[i] <= 'Z') || c[i] == '_';
-    if (letter || (i && c[i] >= '0' && c[i] <= '9')) continue;
-    return strut_report_error(
-        reader, key->place,
-        "'%s' cannot be the name of a parameter, expected a letter, then letters, digits "
-        "and '_', so that it can stand in expressions",
-        c);
-  }
-  return true;
+  if (!strchr(STRUT_DIGITS, *c) && strspn(c, STRUT_LETTERS STRUT_DIGITS) == length) return true;
+  return strut_report_error(reader, key->place,
+                            "'%s' cannot be the name of a parameter, expected a letter, then "
+                            "letters, digits and '_', so that it can stand in expressions",
+                            c);
 }
 
 void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
@@ -285,10 +281,9 @@ static void apply_setting(strut_reader *reader, const strut_setting *setting) {
   strut_parameter_state *parameters = strut_parameter_find(reader, setting->name);
   char message[300];
   if (!parameters) {
-    snprintf(
-        message, sizeof message, "the scene has no parameter '%s'%s",
-        strut_sanitised_text(reader, setting->name),
-        strut_hint(reader, setting->name, strut_parameter_name, reader, reader->parameter_count));
+    snprintf(message, sizeof message, "the scene has no parameter '%s'%s",
+             strut_sanitised_text(reader, setting->name),
+             strut_hint(reader, setting->name, parameter_name, reader, reader->parameter_count));
     const strut_tree *key = strut_slot_of(&reader->top, STRUT_KEY_SCENE_PARAMETERS)->key;
     report_setting(reader, setting, key ? key->place : strut_root_place(reader), message);
   } else if (parameters->set) {

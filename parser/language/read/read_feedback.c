@@ -15,13 +15,9 @@ strut_dimension strut_sensor_dimension(const strut_sensor *sensor) {
 
 bool strut_check_variable_name(strut_reader *reader, const strut_tree *key, const char *kind) {
   const char *name = strut_local_name(reader, key->text);
-  size_t length = strlen(name), word = 0;
+  size_t length = strlen(name), word = strspn(name, STRUT_LETTERS STRUT_DIGITS ".");
   if (!strut_read_name(reader, key, kind)) return false;
-  while (name[word] == '_' || (name[word] >= 'a' && name[word] <= 'z') ||
-         (name[word] >= 'A' && name[word] <= 'Z') ||
-         (word && ((name[word] >= '0' && name[word] <= '9') || name[word] == '.')))
-    word++;
-  if (word && name[word - 1] == '.') word = 0;
+  if (strchr(STRUT_DIGITS ".", *name) || (word && name[word - 1] == '.')) word = 0;
   bool sensor = strcmp(kind, "sensor") == 0, signal = strcmp(kind, "controller") == 0;
   const char *other =
       strcmp(name, "t") == 0 || strcmp(name, "time") == 0 ? "the time"

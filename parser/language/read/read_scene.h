@@ -5,7 +5,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/checks/check.h"
 #include "engine/scene/experiment.h"
-#include "parser/language/expression/units.h"
+#include "parser/language/expression/expression.h"
 #include "parser/language/yaml/document.h"
 
 /** One --set name=value. */

@@ -139,7 +139,7 @@ const char *strut_format_cycle(strut_reader *reader, const char *(*name)(strut_r
 
 bool strut_lacks_space(const strut_tree *value) {
   if (value->kind != STRUT_TREE_SCALAR || value->quoted) return false;
-  size_t word = strspn(value->text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_");
+  size_t word = strspn(value->text, STRUT_LETTERS);
   const char *colon = value->text + word;
   return word && colon[0] == ':' && colon[1] && colon[1] != ' ';
 }

@@ -424,8 +424,6 @@ void strut_declare_parameter(strut_reader *reader, const strut_tree *key,
                              strut_parameter_state *parameter);
 /** The scene's parameter of that name, or NULL. */
 strut_parameter_state *strut_parameter_find(const strut_reader *reader, const char *name);
-/** The name with that number, for suggestions. */
-const char *strut_parameter_name(const void *reader, size_t i);
 
 /* The sections, in the order in which they are read. */
 

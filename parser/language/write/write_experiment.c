@@ -240,11 +240,7 @@ static size_t begin_of(const strut_instruction *program, size_t end) {
 
 /* Names that an expression would split are written in parentheses. */
 static void put_owner(strut_writer *writer, const char *kind, const char *name) {
-  const char *c = name;
-  while ((*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || *c == '_' ||
-         (c > name && *c >= '0' && *c <= '9'))
-    c++;
-  bool plain = !*c;
+  bool plain = !strchr(STRUT_DIGITS, *name) && !name[strspn(name, STRUT_LETTERS STRUT_DIGITS)];
   for (int owner = 0; owner < STRUT_OWNER_COUNT && plain; owner++) {
     const char *group = strut_owner_row_of((strut_channel_owner)owner)->group;
     plain = !group || strcmp(group, name) != 0;

@@ -64,11 +64,7 @@ void strut_put_quoted(strut_writer *writer, const char *text) {
 }
 
 void strut_put_name(strut_writer *writer, const char *name) {
-  bool plain = *name && *name != '-' && *name != '.';
-  for (const char *c = name; *c && plain; c++)
-    plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9') ||
-            *c == '_' || *c == '-' || *c == '.';
-  if (plain)
+  if (!strchr("-.", *name) && !name[strspn(name, STRUT_LETTERS STRUT_DIGITS "-.")])
     strut_put(writer, name);
   else
     strut_put_quoted(writer, name);

@@ -55,7 +55,7 @@ static void put_relays(strut_writer *writer) {
   }
 }
 
-void strut_put_drives(strut_writer *writer) {
+static void put_drives(strut_writer *writer) {
   const strut_sliding_mass placed = {.member = -1,
                                      .share = (double)NAN}; /* the position is always written */
   strut_put_things(writer, STRUT_THING_SENSOR, STRUT_SECTION_SENSOR, NULL);
@@ -370,7 +370,7 @@ char *strut_setup_write(const strut_setup *setup) {
   strut_put_things(&writer, STRUT_THING_FOOT, STRUT_SECTION_FOOT, NULL);
   put_rayleigh(&writer);
   put_ground(&writer);
-  strut_put_drives(&writer);
+  put_drives(&writer);
   strut_put_shapes(&writer);
   strut_put_experiment(&writer);
   strut_c_locale_leave(locale);

@@ -77,7 +77,6 @@ const char *strut_signal_name(const strut_writer *writer, int32_t index);
 /** A signal's name, or the signal itself where it has none. */
 void strut_put_signal_reference(strut_writer *writer, int32_t index);
 /** signals, actuators, loads, run, solver, output. */
-void strut_put_drives(strut_writer *writer);
 void strut_put_experiment(strut_writer *writer);
 /** a program as an expression in quotes. */
 void strut_put_program(strut_writer *writer, const strut_instruction *program, size_t length);

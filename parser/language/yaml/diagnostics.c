@@ -92,7 +92,8 @@ void strut_diagnostics_own(strut_diagnostics *diagnostics, unsigned number, char
   used->file = name ? name : "<file>";
 }
 
-int strut_place_compare(strut_place a, strut_place b) {
+/* The order of two places: below, at or above 0, as strcmp. */
+static int compare_places(strut_place a, strut_place b) {
   if (a.file != b.file) return a.file < b.file ? -1 : 1;
   if (a.line != b.line) return a.line < b.line ? -1 : 1;
   return a.column < b.column ? -1 : a.column > b.column;
@@ -101,8 +102,7 @@ int strut_place_compare(strut_place a, strut_place b) {
 static bool has_note(const strut_diagnostics *diagnostics, strut_place place, const char *message) {
   for (size_t i = 0; i < diagnostics->note_count; i++) {
     const strut_diagnostic *note = &diagnostics->notes[i];
-    if (strut_place_compare(note->place, place) == 0 && strcmp(note->message, message) == 0)
-      return true;
+    if (compare_places(note->place, place) == 0 && strcmp(note->message, message) == 0) return true;
   }
   return false;
 }
@@ -205,7 +205,7 @@ static void append_source_line(strut_buffer *out, strut_cursor *line, strut_plac
 
 static int compare(const void *first, const void *second) {
   const strut_diagnostic *a = first, *b = second;
-  int order = strut_place_compare(a->place, b->place);
+  int order = compare_places(a->place, b->place);
   return order ? order : a->order < b->order ? -1 : a->order > b->order;
 }
 

@@ -27,9 +27,6 @@ typedef struct strut_place {
   uint32_t line, column, length : 24, file : 8;
 } strut_place;
 
-/** The order of two places: below, at or above 0, as strcmp. */
-STRUT_API int strut_place_compare(strut_place a, strut_place b);
-
 /** Most files that a text may use. */
 enum { STRUT_USED_FILES_MOST = 255, STRUT_PLACE_LENGTH_MOST = 0xFFFFFF };
 

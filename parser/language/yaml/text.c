@@ -46,7 +46,8 @@ size_t strut_text_points(const char *text, size_t length) {
   return points;
 }
 
-int strut_text_cut(const char *text, int most) {
+/* Bytes of text, at most `most`, that end where a character ends. */
+static int cut_text(const char *text, int most) {
   int length = (int)strnlen(text, (size_t)most + 1);
   if (length <= most) return length;
   for (length = most; length && continues((unsigned char)text[length]); length--) continue;
@@ -376,7 +377,7 @@ static bool refuse_key(const strut_tree *key, uint32_t earlier, strut_diagnostic
                    "'<<' is not allowed; use groups to share keys between things");
   else if (earlier)
     strut_diagnose(diagnostics, key->place, "duplicate key '%.*s'; the first one is in line %u",
-                   strut_text_cut(key->text, SHOWN_MOST), key->text, earlier);
+                   cut_text(key->text, SHOWN_MOST), key->text, earlier);
   else
     return false;
   return true;

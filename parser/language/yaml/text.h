@@ -19,8 +19,6 @@ size_t strut_text_decode(const char *text, size_t left, uint32_t *code);
 size_t strut_text_break(const char *text, size_t left);
 /** Code points in text[0..length); a bad byte counts as one. */
 size_t strut_text_points(const char *text, size_t length);
-/** Bytes of text, at most `most`, that end where a character ends. */
-int strut_text_cut(const char *text, int most);
 /** Bytes of a byte order mark at the beginning: 3 or 0. */
 size_t strut_text_mark(const char *text, size_t length);
 /** True for a code point that no text may hold: controls except tab and breaks, U+FEFF, ... */

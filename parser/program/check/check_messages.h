@@ -65,8 +65,6 @@ extern const strut_value_rows strut_check_values;
 
 /** Prints it as JSON and releases what it has found. */
 strut_status strut_check_print(strut_check_result *checked);
-/** Prints what a valid model consists of, its largest steps, and a table for each kind of its things. */
-strut_status strut_check_print_text(const strut_check_result *checked, int width);
 
 /* `strut check STUDY`: studies are edited beside models, and are checked likewise. */
 

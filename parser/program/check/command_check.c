@@ -9,7 +9,7 @@
 #include "engine/forces/elements.h"
 #include "engine/integrate/integrator.h"
 #include "engine/output/result_values.h"
-#include "parser/language/expression/units.h"
+#include "parser/language/expression/expression.h"
 #include "parser/program/check/check_messages.h"
 #include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
@@ -294,7 +294,8 @@ strut_status strut_check_print(strut_check_result *c) {
   return strut_print_block(text);
 }
 
-strut_status strut_check_print_text(const strut_check_result *checked, int width) {
+/* Prints what a valid model consists of, its largest steps, and a table for each kind of its things. */
+static strut_status print_text(const strut_check_result *checked, int width) {
   strut_buffer text = {0};
   const strut_scene *scene = checked->model->scene;
   strut_buffer_add(&text, "%s%s%svalid\n", width == STRUT_REPORT_LATEX ? "% " : "", scene->name,
@@ -327,9 +328,8 @@ static strut_status print_valid(const strut_arguments *arguments, strut_check_re
   const strut_scene *scene = result->model->scene;
   for (size_t i = 0; i < 2 * scene->node_count; i++)
     result->drawn[i] = scene->nodes[i / 2].position[i % 2];
-  strut_status status = arguments->json
-                            ? print_json(result, report)
-                            : strut_check_print_text(result, strut_report_width(arguments));
+  strut_status status = arguments->json ? print_json(result, report)
+                                        : print_text(result, strut_report_width(arguments));
   strut_release(result->drawn);
   return status;
 }

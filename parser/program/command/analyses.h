@@ -48,7 +48,9 @@ struct strut_analysis_kind {
   strut_status (*verdict)(const strut_analysis *analysis, strut_error *error);
   /** Tells the listener what is doubtful in the result. May be NULL. */
   void (*warn)(const strut_analysis *analysis, const strut_listener *listener);
-  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, strut_error *error);
+  /** Draws the figure of --plot, number 0. */
+  strut_status (*draw)(const strut_analysis *analysis, const strut_plot *plot, size_t number,
+                       strut_error *error);
   void (*release)(strut_analysis *analysis); /* may be NULL */
 };
 

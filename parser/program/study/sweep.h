@@ -40,16 +40,6 @@ const char *const *strut_sweep_words(const strut_arguments *arguments, strut_are
                                      size_t *count);
 void strut_sweep_study_close(strut_sweep_study *study);
 
-/**
- * STRUT_USAGE where the copies would take the place of other files of the user's: results go into
- * the study's own folder, and one of the names is taken there.
- */
-strut_status strut_sweep_texts_check(const strut_arguments *arguments,
-                                     const strut_sweep_study *study, strut_error *error);
-/** Writes study.yaml and model.yaml into the directory of the results, which exists. */
-strut_status strut_sweep_texts_write(const strut_arguments *arguments,
-                                     const strut_sweep_study *study, strut_error *error);
-
 /** Checks that all figures name existing columns. On STRUT_BAD_SCENE the study's messages say where and why. */
 strut_status strut_sweep_figures_check(strut_sweep_study *study);
 /**

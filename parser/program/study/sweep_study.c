@@ -289,13 +289,18 @@ static strut_status for_each(const strut_arguments *arguments, const strut_sweep
   return status;
 }
 
-strut_status strut_sweep_texts_check(const strut_arguments *arguments,
-                                     const strut_sweep_study *study, strut_error *error) {
+/*
+ * STRUT_USAGE where the copies would take the place of other files of the user's: results go into
+ * the study's own folder, and one of the names is taken there.
+ */
+static strut_status check_texts(const strut_arguments *arguments, const strut_sweep_study *study,
+                                strut_error *error) {
   return for_each(arguments, study, check_copy, error);
 }
 
-strut_status strut_sweep_texts_write(const strut_arguments *arguments,
-                                     const strut_sweep_study *study, strut_error *error) {
+/* Writes study.yaml and model.yaml into the directory of the results, which exists. */
+static strut_status write_texts(const strut_arguments *arguments, const strut_sweep_study *study,
+                                strut_error *error) {
   const strut_study_file *file = &study->file;
   strut_status status = for_each(arguments, study, write_copy, error);
   if (!status)
@@ -345,7 +350,7 @@ strut_status strut_study_job_open(strut_study_job *job, const char *path, strut_
   const strut_arguments *arguments = job->arguments;
   const bool search = strut_study_has_stages(job->study->plan.study);
   const strut_shard part = search ? (strut_shard){0} : job->shard;
-  strut_status status = strut_sweep_texts_check(arguments, job->study, error);
+  strut_status status = check_texts(arguments, job->study, error);
   if (!status && !part.count)
     status = strut_sweep_figures_check_files(&job->study->plan, arguments->output, error);
   if (!status) status = strut_directory_create(arguments->output, error);
@@ -370,7 +375,7 @@ strut_status strut_study_job_run(strut_study_job *job, strut_study_compute *comp
                                        .directory = job->arguments->output,
                                        .progress = show,
                                        .progress_context = &table};
-  strut_status status = strut_sweep_texts_write(job->arguments, job->study, error);
+  strut_status status = write_texts(job->arguments, job->study, error);
   if (!status) status = compute(job, &options, context, error);
   job->progress(job, NULL);
   strut_error late = {0};

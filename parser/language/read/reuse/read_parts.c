@@ -147,7 +147,7 @@ static bool mentions_number(const strut_tree *tree) {
     return false;
   }
   for (const char *c = tree->text; *c; c++) {
-    size_t word = strspn(c, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+    size_t word = strspn(c, STRUT_LETTERS STRUT_DIGITS);
     if (word == 1 && (*c == 'i' || *c == 'j')) return true;
     if (word) c += word - 1;
   }
