@@ -234,6 +234,23 @@ static const strut_option plot_options[] = {
     {.name = NULL},
 };
 
+static const char *column_name_at(const void *context, size_t i) {
+  const strut_table *table = context;
+  return i < table->column_count ? table->columns[i].name : NULL;
+}
+
+/* Some row has the text of COLUMN=TEXT. */
+static void judge_text(const void *context, size_t i, const strut_figure_key *key, const char *text,
+                       char fault[STRUT_MESSAGE_MOST]) {
+  const strut_table *table = context;
+  const strut_table_column *column = &table->columns[i];
+  for (size_t k = 0; k < table->row_count && *key->ends == '='; k++)
+    if (strcmp(column->text[k], text) == 0) return;
+  if (*key->ends == '=')
+    snprintf(fault, STRUT_MESSAGE_MOST, "no row of the table has '%.60s' in column '%.60s'", text,
+             column->name);
+}
+
 /* Texts with commas between, in the table's arena. */
 static strut_status read_labels(const strut_arguments *arguments, strut_table *table,
                                 strut_study_figure *figure) {
@@ -253,8 +270,7 @@ static strut_status read_labels(const strut_arguments *arguments, strut_table *t
 static strut_status read_figure(const strut_arguments *arguments, strut_table *table,
                                 strut_study_figure *figure) {
   const strut_table_column *columns = table->columns;
-  const strut_figure_columns names = {"the table", strut_row_name, NULL,
-                                      STRUT_NAMED(table->columns, table->column_count)};
+  const strut_figure_columns names = {"the table", column_name_at, judge_text, table};
   const strut_given_word *log = &arguments->log;
   char fault[STRUT_MESSAGE_MOST];
   bool map = arguments->kind.index == 1;

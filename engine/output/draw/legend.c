@@ -55,7 +55,7 @@ void strut_draw_colour_scale(strut_canvas *canvas, strut_box box, const strut_co
                            .shown = scale->shown};
   const strut_pen pen = {.colour = strut_grey(0.3), .width = 0.5, .butt = true};
   strut_font font = {.size = BAR_TEXT, .across = 0.5};
-  enum { SHADES = 40 };
+  enum { SHADES = 32 };
   strut_tick_set set;
   double line = strut_text_box(canvas, "0", font).height;
   const strut_box strip = {box.x + 8, box.y + line + 2, box.width - 16, BAR};

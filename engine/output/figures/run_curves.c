@@ -183,21 +183,18 @@ static double variation(const block *self, size_t item, size_t first) {
 }
 
 /* Chooses the items that vary most, in the scene's order. Returns how many. */
-static size_t choose_curves(const block *self, size_t chosen[MOST_CURVES + 1]) {
-  double lively[MOST_CURVES + 1];
+static size_t choose_curves(const block *self, size_t chosen[MOST_CURVES]) {
+  double *lively = strut_figure_numbers(self->run->page, self->count);
   size_t count = 0;
-  for (size_t i = 0; i < self->count; i++) {
-    double value = self->of == DRIVE ? HUGE_VAL : variation(self, i, self->first);
-    if (!(value > self->least) && !(self->of == DISPLACEMENT && i == 0)) continue;
-    chosen[count] = i;
-    lively[count++] = value;
-    if (count <= MOST_CURVES) continue;
-    size_t dullest = 0;
-    for (size_t k = 1; k < count; k++)
-      if (lively[k] <= lively[dullest]) dullest = k;
-    for (size_t k = dullest; k + 1 < count; k++)
-      chosen[k] = chosen[k + 1], lively[k] = lively[k + 1];
-    count--;
+  for (size_t i = 0; lively && i < self->count; i++) {
+    bool always = self->of == DRIVE || (self->of == DISPLACEMENT && i == 0);
+    lively[i] = always ? HUGE_VAL : variation(self, i, self->first);
+  }
+  for (size_t i = 0; lively && i < self->count; i++) {
+    size_t rank = 0;
+    for (size_t k = 0; k < self->count; k++)
+      rank += lively[k] > lively[i] || (lively[k] == lively[i] && k < i);
+    if (lively[i] > self->least && rank < MOST_CURVES) chosen[count++] = i;
   }
   return count;
 }
@@ -218,7 +215,7 @@ static void add_dots(const block *self, strut_panel *panel, size_t item, size_t 
 /* Adds the panel of a kind from frame `first` on, if anything changes in the whole record. */
 static void add_panel(strut_run_scene *run, kind of, size_t first, double height) {
   const block b = find_block(run, of, first);
-  size_t chosen[MOST_CURVES + 1], last = run->frames - 1;
+  size_t chosen[MOST_CURVES], last = run->frames - 1;
   double most = 0;
   bool wanted = false;
   for (size_t i = 0; i < b.count && !wanted; i++)

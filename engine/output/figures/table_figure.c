@@ -145,26 +145,18 @@ bool strut_table_differs(const strut_table_rows *rows, int column, size_t row) {
   return other == SIZE_MAX || strcmp(text[other], text[row]) != 0;
 }
 
-/* STRUT_USAGE where no row that is shown has the text in the column. */
-static strut_status find_text(const strut_table_rows *rows, int column, const char *text,
-                              strut_error *error) {
-  for (size_t i = 0; i < rows->table->row_count; i++)
-    if (strut_table_belongs(rows, column, text, i)) return STRUT_OK;
-  return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
-                    rows->table->columns[column].name);
-}
-
 strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const char *text,
                                      int difference, strut_arena *arena, strut_error *error) {
-  size_t count = rows->table->row_count;
+  size_t count = rows->table->row_count, shown = only == STRUT_NO_COLUMN;
   rows->shown = strut_arena_allocate(arena, count + 1, 1);
   if (!rows->shown) return strut_no_memory(error, "while drawing");
   memset(rows->shown, true, count);
-  strut_status status = only == STRUT_NO_COLUMN ? STRUT_OK : find_text(rows, only, text, error);
-  for (size_t i = 0; i < count && !status; i++)
-    rows->shown[i] = strut_table_belongs(rows, only, text, i);
-  return status || difference == STRUT_NO_COLUMN ? status
-                                                 : pair_sides(rows, difference, arena, error);
+  for (size_t i = 0; i < count; i++)
+    shown += rows->shown[i] = strut_table_belongs(rows, only, text, i);
+  if (!shown)
+    return strut_fail(error, STRUT_USAGE, "no row of the table has '%.60s' in column '%.60s'", text,
+                      rows->table->columns[only].name);
+  return difference == STRUT_NO_COLUMN ? STRUT_OK : pair_sides(rows, difference, arena, error);
 }
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
@@ -504,8 +496,6 @@ static strut_status prepare(maker *self) {
   if (!status && labels && labels != curves)
     status = strut_fail(error, STRUT_USAGE, "%zu labels were given for %zu curve%s", labels, curves,
                         curves == 1 ? "" : "s");
-  if (!status && lines && self->band >= 0)
-    status = find_text(rows, self->band, self->band_text, error);
   return status || !is_map(self) ? status : prepare_grid(self);
 }
 

@@ -93,32 +93,32 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
   }
 }
 
-/* Draws a figure as directory/name. */
-static strut_status draw(strut_figure *figure, const char *directory, const char *name,
-                         strut_error *error) {
-  const strut_plot plot = {.path = strut_figure_text(figure, "%s/%s", directory, name)};
-  return strut_figure_draw(&plot, figure, error);
-}
-
 strut_status strut_fit_figures(const strut_fit_result *result, const char *directory,
                                strut_error *error) {
-  const char *title = result->plan->study->name;
-  const strut_figure empty = {.title = title, .columns = 2, .least_width = 200.0};
-  strut_figure data = empty, residuals = empty, profiles = empty;
-  data.one_legend = profiles.one_legend = true;
+  static const char *const names[] = {"fit", "residuals", "profiles"};
+  strut_figure figures[3];
+  strut_status status = STRUT_OK;
   if (!result->found) return STRUT_OK;
+  for (int i = 0; i < 3; i++)
+    figures[i] = (strut_figure){.title = result->plan->study->name,
+                                .columns = 2,
+                                .least_width = 200.0,
+                                .one_legend = i != 1};
   for (size_t m = 0; m < result->fit->match_count; m++) {
     for (size_t s = 0; s < result->fit->matches[m].series_count; s++)
-      if (!result->fit->matches[m].series[s].empty) add_data(&data, result, m, s);
-    add_residuals(&residuals, result, m);
+      if (!result->fit->matches[m].series[s].empty) add_data(&figures[0], result, m, s);
+    add_residuals(&figures[1], result, m);
   }
-  for (size_t k = 0; k < result->variable_count; k++) add_profile(&profiles, result, k);
-  strut_add_key(&profiles, STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.6},
+  for (size_t k = 0; k < result->variable_count; k++) add_profile(&figures[2], result, k);
+  strut_add_key(&figures[2], STRUT_KEY_DOT, (strut_pen){.colour = strut_grey(0.1), .width = 0.6},
                 "end of the 95 % interval");
-  strut_status status = draw(&data, directory, "fit.svg", error);
-  strut_status second = draw(&residuals, directory, "residuals.svg", status ? NULL : error);
-  strut_status third = draw(&profiles, directory, "profiles.svg", status || second ? NULL : error);
-  return status ? status : second ? second : third;
+  for (int i = 0; i < 3; i++) { /* all, whatever happens to one */
+    const strut_plot plot = {.path =
+                                 strut_figure_text(&figures[i], "%s/%s.svg", directory, names[i])};
+    strut_status drawn = strut_figure_draw(&plot, &figures[i], status ? NULL : error);
+    if (!status) status = drawn;
+  }
+  return status;
 }
 
 /* Indices as bars with whiskers, or over an axis of the study. */

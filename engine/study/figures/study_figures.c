@@ -47,28 +47,6 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   return status;
 }
 
-strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
-                                const strut_study_figure *figure, const strut_table *table,
-                                const strut_refinement *refinement, strut_error *error) {
-  strut_arena arena = {0};
-  const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, figure->name);
-  const strut_plot plot = plot_of(figure, file);
-  strut_status status = STRUT_OK;
-  if (!file)
-    status = strut_no_memory(error, "");
-  else if (figure->kind == STRUT_FIGURE_MOTION)
-    status = draw_motion(plan, directory, figure, file, error);
-  else if (strut_figure_of_search(figure))
-    status = strut_search_figure(plan, figure, file, table, error);
-  else if (strut_figure_of_runs(figure))
-    status = strut_study_pictures(plan, directory, figure, PAGE, error);
-  else
-    status = strut_table_draw(&plot, figure, table,
-                              (strut_table_marks){.spread = refinement != NULL}, error);
-  strut_arena_free(&arena);
-  return status;
-}
-
 /* Figures of a search: its best objective over evaluations, and its points over two variables, its best point. */
 
 static const char BEST[] = "best so far"; /* a column */
@@ -189,8 +167,8 @@ static strut_status extend(const strut_table *from, const double *best, const ch
   return STRUT_OK;
 }
 
-strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                 const char *path, const strut_table *table, strut_error *error) {
+static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_figure *f,
+                                const char *path, const strut_table *table, strut_error *error) {
   const tracker t = track(plan, table);
   strut_table own = {0};
   strut_plot plot = plot_of(f, path);
@@ -215,6 +193,28 @@ strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study
     status = strut_table_draw(&plot, &figure, &own,
                               (strut_table_marks){.shown = shown, .marked = marked}, error);
   strut_arena_free(&own.arena);
+  return status;
+}
+
+strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
+                                const strut_study_figure *figure, const strut_table *table,
+                                const strut_refinement *refinement, strut_error *error) {
+  strut_arena arena = {0};
+  const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, figure->name);
+  const strut_plot plot = plot_of(figure, file);
+  strut_status status = STRUT_OK;
+  if (!file)
+    status = strut_no_memory(error, "");
+  else if (figure->kind == STRUT_FIGURE_MOTION)
+    status = draw_motion(plan, directory, figure, file, error);
+  else if (strut_figure_of_search(figure))
+    status = draw_search(plan, figure, file, table, error);
+  else if (strut_figure_of_runs(figure))
+    status = strut_study_pictures(plan, directory, figure, PAGE, error);
+  else
+    status = strut_table_draw(&plot, figure, table,
+                              (strut_table_marks){.spread = refinement != NULL}, error);
+  strut_arena_free(&arena);
   return status;
 }
 

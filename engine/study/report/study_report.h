@@ -84,9 +84,6 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
                                 const strut_refinement *refinement, strut_error *error);
 /** Has figures show the axes of the study's table in the units that the study gives them in. */
 void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table);
-/** Draws a figure of a search, of its table, into the file `path`. */
-strut_status strut_search_figure(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                                 const char *path, const strut_table *table, strut_error *error);
 /** Draws `best` beside the start of its search into the file `path`. */
 strut_status strut_search_winner_figure(const strut_sweep_plan *plan,
                                         const strut_study_figure *figure, const char *path,

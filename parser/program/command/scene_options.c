@@ -434,7 +434,7 @@ static void judge_name(const strut_figure_columns *columns, const strut_figure_k
   char word[200];
   for (size_t i = 0; (other = columns->name(columns->context, i)); i++) {
     if (strlen(other) != length || memcmp(other, name, length) != 0) continue;
-    if (columns->judge) columns->judge(columns->context, i, key, name + length + 1, fault);
+    columns->judge(columns->context, i, key, name + length + 1, fault);
     return;
   }
   snprintf(word, sizeof word, "%.*s", (int)length, name);

@@ -113,7 +113,7 @@ typedef struct strut_figure_key {
 typedef struct strut_figure_columns {
   const char *of;                                     /* "the table" */
   const char *(*name)(const void *context, size_t i); /* NULL behind the last */
-  /** Says in `fault` why the key cannot have column i, or that text of it; may be NULL. */
+  /** Says in `fault` why the key cannot have column i, or that text of it. */
   void (*judge)(const void *context, size_t i, const strut_figure_key *key, const char *text,
                 char fault[STRUT_MESSAGE_MOST]);
   const void *context;
