@@ -287,8 +287,8 @@ static void hear(void *context, strut_message_kind kind, const char *command, co
   abi_messages *self = context;
   (void)command;
   switch (kind) {
-    case STRUT_MESSAGE_USAGE: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
     case STRUT_MESSAGE_LINES: break; /* abi_fail_located has them */
+    case STRUT_MESSAGE_USAGE:
     case STRUT_MESSAGE_ERROR: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
     case STRUT_MESSAGE_WARNING:
     case STRUT_MESSAGE_NOTE:

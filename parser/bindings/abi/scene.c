@@ -56,9 +56,8 @@ const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t 
 
 size_t strutlib_name_count(const strutlib_scene *scene, const char *kind) {
   if (!scene || !kind) return 0;
-  const strut_scene *s = &scene->setup.scene;
   strut_thing thing = thing_of(kind);
-  if (thing != STRUT_THING_COUNT) return strut_thing_count(s, thing);
+  if (thing != STRUT_THING_COUNT) return strut_thing_count(&scene->setup.scene, thing);
   size_t count = 0;
   while (name_at(&scene->setup, kind, count)) count++;
   return count;
