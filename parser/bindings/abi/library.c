@@ -306,8 +306,6 @@ void abi_messages_free(abi_messages *messages) {
   *messages = (abi_messages){0};
 }
 
-/* The library as a whole: versions, codes, controls, and what holds while a call computes. */
-
 int strutlib_abi_version(void) { return STRUTLIB_ABI_VERSION; }
 const char *strutlib_version(void) { return STRUT_VERSION; }
 void strutlib_release(char *text) { strut_release(text); }

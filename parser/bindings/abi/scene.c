@@ -234,8 +234,6 @@ char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
   return text;
 }
 
-/* Scenes: a text that is read once, with settings. */
-
 /* ---- the text ---- */
 
 static void release_source(abi_source *source) {

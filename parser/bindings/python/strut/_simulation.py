@@ -47,7 +47,8 @@ def controlled(
         energy, initial = _energies(sim), sum(before[name] for name in ("kinetic", "elastic", "gravity", "contact"))
         words["energy"] = energy | {"initial": initial, "residual": _balance(energy) - _balance(before)}
         units = {name: "s" if name == "time" else _strut.unit(name) for name in arrays}
-        return Motion(_Stored("of a controller", arrays, units, json=json.dumps(words)), scene)
+        missing = "a run under a controller has no {}; plot() draws it, save('x.csv') writes it"
+        return Motion(_Stored(missing, arrays, units, json=json.dumps(words)), scene)
 
     try:
         while sim.time < until:
