@@ -97,7 +97,7 @@ class Guesses(unittest.TestCase):
             self.assertAlmostEqual(value, run.energy.get(name, 0.0), delta=1e-15, msg=name)
         self.assertEqual(motion.to_csv().split("\n")[1], run.to_csv().split("\n")[2])
         self.assertIn("completed", repr(pickle.loads(pickle.dumps(motion))))
-        self.assertRaisesRegex(ValueError, "of a controller has no html", motion.view)
+        self.assertRaisesRegex(ValueError, r"no html; plot\(\) draws it", motion.view)
 
         def push(sim):
             sim.load["top"] = (0, 0.1)
@@ -180,6 +180,7 @@ class Guesses(unittest.TestCase):
         crawlers = strut.compare(scene, scene(friction=0.2), no_motion=True)
         self.assertEqual([model["values"].friction for model in crawlers.models], [0.1, 0.05])
         self.assertIn("<svg", crawlers.svg())
+        self.assertRaisesRegex(ValueError, "no other svg; options of the figure", crawlers.svg, width="column")
         self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", strut.compare, scene, acuracy=1)
         self.assertRaisesRegex(ValueError, "accuracy.*'1 m'", strut.compare, scene, accuracy="1 m")
         self.assertRaises(strut.MissingFileError, strut.tradeoff, "none.yaml")

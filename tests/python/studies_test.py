@@ -144,8 +144,9 @@ class Studies(unittest.TestCase):
         self.assertEqual((done.stdout, done.stderr), ("", ""))
 
     def test_an_interrupted_study_resumes(self):
-        def stop(_: float) -> None:
-            raise RuntimeError("enough")
+        def stop(fraction: float) -> None:
+            if fraction > 0:  # on a busy machine no point is done at first
+                raise RuntimeError("enough")
 
         many = POINTS.replace("[50, 100, 1e9]", "{from: 50, to: 100, count: 3000}")
         pathlib.Path("points.yaml").write_text(many)

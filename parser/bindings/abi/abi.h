@@ -10,8 +10,8 @@
  * `output`. Numbers are in SI units and radians. Settings and options are pairs of texts: "frequency", "10 Hz", as in
  * `--set frequency="10 Hz"`; a number without unit is in SI units.
  *
- * NULL: an argument must not be NULL unless its function says that it may. A call that can fail then does, with
- * STRUTLIB_USAGE; any other answers as if there were nothing: NULL, 0, -1 or NAN.
+ * NULL: an argument must not be NULL unless its function says that it may, or releases it. A call that can fail then
+ * does, with STRUTLIB_USAGE; any other answers as if there were nothing: NULL, 0, -1 or NAN.
  *
  * Errors: the last argument of a call that can fail is `strutlib_error **error`. NULL: the caller does not want to
  * know. Otherwise *error becomes NULL on success, and on failure an error to be released by strutlib_error_free. Lack
@@ -94,7 +94,7 @@ STRUTLIB_API char *strutlib_schema(int study, strutlib_error **error);
  * the file in messages.
  */
 STRUTLIB_API char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **error);
-/** Releases a text that belongs to the caller. NULL is allowed. */
+/** Releases a text that belongs to the caller. */
 STRUTLIB_API void strutlib_release(char *text);
 /** A status as a word: "ok", "usage", "bad_scene", "diverged", ... Never NULL. */
 STRUTLIB_API const char *strutlib_status_name(int status);
@@ -135,7 +135,6 @@ STRUTLIB_API const char *strutlib_error_hint(const strutlib_error *error, size_t
  * scenes that were made from dictionaries rather than written by hand.
  */
 STRUTLIB_API const char *strutlib_error_key(const strutlib_error *error, size_t i);
-/** NULL is allowed. */
 STRUTLIB_API void strutlib_error_free(strutlib_error *error);
 
 /* ---- control: progress and interrupts ---- */
@@ -148,7 +147,7 @@ typedef int (*strutlib_progress)(void *context, double fraction);
 
 /** A control that is not interrupted. NULL: memory is out. It may serve any number of calls and threads. */
 STRUTLIB_API strutlib_control *strutlib_control_create(void);
-/** No call may be using it. NULL is allowed. */
+/** No call may be using it. */
 STRUTLIB_API void strutlib_control_free(strutlib_control *control);
 /**
  * Ends runs, sweeps, searches for equilibria and simulations with this control within 0.2 s, and calls that are made
@@ -183,7 +182,7 @@ STRUTLIB_API strutlib_scene *strutlib_open_text(const char *name, const char *te
 STRUTLIB_API strutlib_scene *strutlib_scene_with(const strutlib_scene *scene, size_t count,
                                                  const char *const *names,
                                                  const char *const *values, strutlib_error **error);
-/** Releases a scene; results and simulations made of it stay. NULL is allowed. */
+/** Releases a scene; results and simulations made of it stay. */
 STRUTLIB_API void strutlib_close(strutlib_scene *scene);
 
 /**
@@ -428,7 +427,6 @@ STRUTLIB_API char *strutlib_result_html(const strutlib_result *result, strutlib_
  * and a path, which have no page, it is that of the structure: strutlib_result_json has their numbers.
  */
 STRUTLIB_API char *strutlib_result_page_data(const strutlib_result *result, strutlib_error **error);
-/** NULL is allowed. */
 STRUTLIB_API void strutlib_result_free(strutlib_result *result);
 
 /* ---- simulation: a run that is advanced from outside ---- */
@@ -444,7 +442,7 @@ STRUTLIB_API strutlib_simulation *strutlib_simulation_open(const strutlib_scene 
                                                            const char *const *values,
                                                            strutlib_control *control,
                                                            strutlib_error **error);
-/** NULL is allowed. Snapshots of it stay, but can only be released. */
+/** Snapshots of it stay, but can only be released. */
 STRUTLIB_API void strutlib_simulation_close(strutlib_simulation *simulation);
 /**
  * Makes `steps` steps and updates the arrays. STRUTLIB_OK, or STRUTLIB_DIVERGED, STRUTLIB_INTERRUPTED, ...: the
@@ -492,7 +490,6 @@ STRUTLIB_API strutlib_snapshot *strutlib_simulation_snapshot(const strutlib_simu
 STRUTLIB_API int strutlib_simulation_restore(strutlib_simulation *simulation,
                                              const strutlib_snapshot *snapshot,
                                              strutlib_error **error);
-/** NULL is allowed. */
 STRUTLIB_API void strutlib_snapshot_free(strutlib_snapshot *snapshot);
 
 #ifdef __cplusplus

@@ -54,6 +54,15 @@ const char *abi_tree_text(const abi_tree *tree, const char *name);
 bool abi_tree_set(abi_tree *tree, const char *name, const char *key, double number,
                   const char *text);
 
+/** Fills DATA (COUNT, PARTS) with the VALUE of i and c. The function returns false where DATA is NULL. */
+#define ABI_FILL(DATA, COUNT, PARTS, VALUE)                                                        \
+  do {                                                                                             \
+    double *data_ = DATA;                                                                          \
+    if (!data_) return false;                                                                      \
+    for (size_t i = 0; i < (COUNT); i++)                                                           \
+      for (size_t c = 0; c < (PARTS); c++) data_[(PARTS)*i + c] = VALUE;                           \
+  } while (0)
+
 /* ---- control ---- */
 
 struct strutlib_control {
@@ -65,6 +74,11 @@ struct strutlib_control {
 /** The flag that stops a computation, or NULL. */
 static inline const strut_flag *abi_interrupt_of(const strutlib_control *control) {
   return control ? &control->interrupt : NULL;
+}
+
+/** Tells the progress to whoever wants to know, who may interrupt. */
+static inline void abi_progress(strutlib_control *control, double fraction) {
+  if (control->progress && control->progress(control->context, fraction)) control->interrupt = 1;
 }
 
 /* ---- errors ---- */

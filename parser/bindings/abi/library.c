@@ -287,8 +287,8 @@ static void hear(void *context, strut_message_kind kind, const char *command, co
   abi_messages *self = context;
   (void)command;
   switch (kind) {
-    case STRUT_MESSAGE_USAGE: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
     case STRUT_MESSAGE_LINES: break; /* abi_fail_located has them */
+    case STRUT_MESSAGE_USAGE:
     case STRUT_MESSAGE_ERROR: strut_fail(&self->error, STRUT_USAGE, "%s", text); break;
     case STRUT_MESSAGE_WARNING:
     case STRUT_MESSAGE_NOTE:
@@ -305,8 +305,6 @@ void abi_messages_free(abi_messages *messages) {
   strut_release((void *)messages->warnings);
   *messages = (abi_messages){0};
 }
-
-/* The library as a whole: versions, codes, controls, and what holds while a call computes. */
 
 int strutlib_abi_version(void) { return STRUTLIB_ABI_VERSION; }
 const char *strutlib_version(void) { return STRUT_VERSION; }

@@ -146,55 +146,43 @@ static char *result_page(const strutlib_result *result, bool still, page_writer 
   return text;
 }
 
-char *strutlib_result_html(const strutlib_result *result, strutlib_error **error) {
-  return result_page(result, false, strut_page_html, error);
-}
-
-char *strutlib_result_page_data(const strutlib_result *result, strutlib_error **error) {
-  return result_page(result, true, strut_page_data, error);
-}
-
-/* A page of a scene to be written, with the equilibria or a remark where they cannot be found. */
-typedef struct scene_page {
-  const strutlib_scene *scene;
-  bool equilibria;
-  strutlib_control *control;
-  page_writer *writer;
-} scene_page;
-
-static char *write_scene_page(const scene_page *wanted, const strut_setup *setup,
-                              const strut_model *model, strutlib_error **error) {
+/* With the equilibria, or a remark where they cannot be found. */
+static char *scene_page(const strut_setup *setup, const strut_model *model, bool equilibria,
+                        const strut_flag *interrupt, page_writer *writer, strutlib_error **error) {
   strut_equilibria all = {0};
-  strut_error remark = {0};
-  const strut_equilibria_options options = {.interrupt = abi_interrupt_of(wanted->control)};
+  strut_error remark = {.message = "No search for equilibria was made."};
+  const strut_equilibria_options options = {.interrupt = interrupt};
   strut_status status = STRUT_OK;
   char *text = NULL;
-  if (wanted->equilibria)
+  if (equilibria)
     status = strut_equilibria_find(model, &setup->experiment, &options, &all, &remark);
   strut_page page = {.model = model};
-  if (wanted->equilibria && status == STRUT_OK) page.equilibria = &all;
-  if (!page.equilibria)
-    page.remark = wanted->equilibria ? remark.message : "No search for equilibria was made.";
+  if (equilibria && status == STRUT_OK)
+    page.equilibria = &all;
+  else
+    page.remark = remark.message;
   if (status == STRUT_INTERRUPTED || status == STRUT_NO_MEMORY)
     abi_fail_with(error, status, &remark);
   else
-    text = write_page(&page, setup, wanted->writer, error);
+    text = write_page(&page, setup, writer, error);
   strut_equilibria_free(&all);
   return text;
 }
 
-static char *make_scene_page(const scene_page *wanted, strutlib_error **error) {
+static char *open_scene_page(const strutlib_scene *scene, bool equilibria,
+                             const strutlib_control *control, page_writer *writer,
+                             strutlib_error **error) {
   strut_model *model = NULL;
   strut_setup setup;
   strut_error what = {0};
   char *text = NULL;
-  if (abi_lacks(error, wanted->scene, "scene")) return NULL;
+  if (abi_lacks(error, scene, "scene")) return NULL;
   abi_enter(error);
-  if (abi_setup(wanted->scene, STRUT_FOR_ANY_STATICS, &setup, error) == STRUT_OK) {
+  if (abi_setup(scene, STRUT_FOR_ANY_STATICS, &setup, error) == STRUT_OK) {
     strut_status status = strut_resolve_start_equilibrium(&setup, &what);
     if (status == STRUT_OK) status = strut_model_compile(&setup.scene, &model, &what);
     if (status == STRUT_OK)
-      text = write_scene_page(wanted, &setup, model, error);
+      text = scene_page(&setup, model, equilibria, abi_interrupt_of(control), writer, error);
     else
       abi_fail_with(error, status, &what);
     strut_model_free(model);
@@ -204,14 +192,13 @@ static char *make_scene_page(const scene_page *wanted, strutlib_error **error) {
   return text;
 }
 
-char *strutlib_scene_html(const strutlib_scene *scene, int equilibria, strutlib_control *control,
-                          strutlib_error **error) {
-  const scene_page wanted = {scene, equilibria != 0, control, strut_page_html};
-  return make_scene_page(&wanted, error);
-}
-
-char *strutlib_scene_page_data(const strutlib_scene *scene, int equilibria,
-                               strutlib_control *control, strutlib_error **error) {
-  const scene_page wanted = {scene, equilibria != 0, control, strut_page_data};
-  return make_scene_page(&wanted, error);
-}
+#define PAGES(WORD, STILL, WRITER)                                                                 \
+  char *strutlib_result_##WORD(const strutlib_result *result, strutlib_error **error) {            \
+    return result_page(result, STILL, WRITER, error);                                              \
+  }                                                                                                \
+  char *strutlib_scene_##WORD(const strutlib_scene *scene, int equilibria,                         \
+                              strutlib_control *control, strutlib_error **error) {                 \
+    return open_scene_page(scene, equilibria != 0, control, WRITER, error);                        \
+  }
+PAGES(html, false, strut_page_html)
+PAGES(page_data, true, strut_page_data)

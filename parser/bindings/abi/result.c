@@ -249,21 +249,12 @@ strutlib_result *abi_result_leave(strutlib_result *result, bool kept) {
 
 /* ---- texts ---- */
 
-int strutlib_result_status(const strutlib_result *result) {
-  return result ? result->status : STRUTLIB_USAGE;
-}
-
-const char *strutlib_result_command(const strutlib_result *result) {
-  return result ? result->command->name : NULL;
-}
-
-const char *strutlib_result_json(const strutlib_result *result) {
-  return result && result->json ? result->json : "{}\n";
-}
-
-const char *strutlib_result_table(const strutlib_result *result) {
-  return result && result->table ? result->table : "";
-}
+#define OF_RESULT(TYPE, PART, VALUE, NONE)                                                         \
+  TYPE strutlib_result_##PART(const strutlib_result *result) { return result ? VALUE : NONE; }
+OF_RESULT(int, status, result->status, STRUTLIB_USAGE)
+OF_RESULT(const char *, command, result->command->name, NULL)
+OF_RESULT(const char *, json, result->json ? result->json : "{}\n", "{}\n")
+OF_RESULT(const char *, table, result->table ? result->table : "", "")
 
 const char *strutlib_result_warning(const strutlib_result *result, size_t i) {
   return result && i < result->messages.count ? result->messages.warnings[i] : NULL;

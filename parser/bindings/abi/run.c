@@ -58,10 +58,7 @@ static strut_status open_setup(abi_call *call, const strutlib_scene *scene, stru
   return status;
 }
 
-static void show_progress(void *context, double fraction) {
-  strutlib_control *control = context;
-  if (control->progress(control->context, fraction)) control->interrupt = 1;
-}
+static void show_progress(void *context, double fraction) { abi_progress(context, fraction); }
 
 static strut_status simulate(abi_call *call, const strutlib_scene *scene,
                              const strutlib_result *result, run_detail *run, strut_sink *sink,
@@ -227,17 +224,13 @@ int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
   return status == STRUT_OK ? STRUTLIB_OK : abi_fail_with(error, status, &what);
 }
 
-double strutlib_simulation_time(const strutlib_simulation *simulation) {
-  return simulation ? strut_stepping_time(simulation->stepping) : (double)NAN;
-}
-
-double strutlib_simulation_step(const strutlib_simulation *simulation) {
-  return simulation ? strut_stepping_step(simulation->stepping) : (double)NAN;
-}
-
-double strutlib_simulation_input_work(const strutlib_simulation *simulation) {
-  return simulation ? strut_stepping_input_work(simulation->stepping) : (double)NAN;
-}
+#define OF_SIMULATION(PART)                                                                        \
+  double strutlib_simulation_##PART(const strutlib_simulation *simulation) {                       \
+    return simulation ? strut_stepping_##PART(simulation->stepping) : (double)NAN;                 \
+  }
+OF_SIMULATION(time)
+OF_SIMULATION(step)
+OF_SIMULATION(input_work)
 
 /* ---- arrays ---- */
 
@@ -258,18 +251,23 @@ int strutlib_simulation_array(strutlib_simulation *simulation, const char *name,
               dimensions, shape, stride);
 }
 
-static const char *const input_names[] = {"rest", "actuators", "load", NULL};
+/* A strut_input; STRUT_INPUTS where none has the name. */
+static int input_named(const char *name) {
+  static const char *const names[STRUT_INPUTS] = {"rest", "actuators", "load"};
+  int i = 0;
+  while (i < STRUT_INPUTS && strcmp(names[i], name) != 0) i++;
+  return i;
+}
 
 int strutlib_simulation_input(strutlib_simulation *simulation, const char *name, double **data,
                               int *dimensions, size_t *shape, size_t *stride) {
   if (!simulation || !name || !data || !dimensions || !shape || !stride) return 0;
-  for (int i = 0; input_names[i]; i++) {
-    size_t count, components = i == STRUT_INPUT_LOAD ? 2 : 1;
-    if (strcmp(input_names[i], name) != 0) continue;
-    *data = strut_stepping_input(simulation->stepping, (strut_input)i, &count);
-    return *data ? show(count / components, components, dimensions, shape, stride) : 0;
-  }
-  return 0;
+  int input = input_named(name);
+  size_t count, components = input == STRUT_INPUT_LOAD ? 2 : 1;
+  *data = input < STRUT_INPUTS
+              ? strut_stepping_input(simulation->stepping, (strut_input)input, &count)
+              : NULL;
+  return *data ? show(count / components, components, dimensions, shape, stride) : 0;
 }
 
 /* Index of "m8", "drive" or "n1.x" in an input, or -1. */
@@ -287,14 +285,13 @@ static long index_of(const strut_scene *scene, int input, const char *name) {
 
 int strutlib_simulation_set(strutlib_simulation *simulation, const char *input, const char *name,
                             double value, strutlib_error **error) {
-  int which = 0;
   size_t count;
   if (abi_lacks(error, simulation, "simulation") || abi_lacks(error, input, "input") ||
       abi_lacks(error, name, "name"))
     return STRUTLIB_USAGE;
   if (error) *error = NULL;
-  while (input_names[which] && strcmp(input_names[which], input) != 0) which++;
-  if (!input_names[which])
+  int which = input_named(input);
+  if (which == STRUT_INPUTS)
     return abi_fail(error, STRUTLIB_USAGE,
                     "there is no input '%s'; expected rest, actuators or load", input);
   long index = index_of(&simulation->setup.scene, which, name);

@@ -56,9 +56,8 @@ const char *strutlib_name(const strutlib_scene *scene, const char *kind, size_t 
 
 size_t strutlib_name_count(const strutlib_scene *scene, const char *kind) {
   if (!scene || !kind) return 0;
-  const strut_scene *s = &scene->setup.scene;
   strut_thing thing = thing_of(kind);
-  if (thing != STRUT_THING_COUNT) return strut_thing_count(s, thing);
+  if (thing != STRUT_THING_COUNT) return strut_thing_count(&scene->setup.scene, thing);
   size_t count = 0;
   while (name_at(&scene->setup, kind, count)) count++;
   return count;
@@ -93,44 +92,33 @@ CHANNEL(column, AT, i < row->components, row->column_names[i])
 
 /* ---- arrays ---- */
 
-static bool add(strutlib_scene *scene, size_t *at, const char *name, const char *unit, size_t count,
-                size_t components, double **data) {
-  abi_array *self = &scene->arrays[(*at)++];
-  *data = strut_arena_allocate(&scene->arena, count * components, sizeof **data);
-  *self = abi_array_of(name, unit, *data, components > 1 ? 2 : 1, (size_t[]){count, components});
-  return *data != NULL;
+static double *add(strutlib_scene *scene, size_t at, const char *name, const char *unit,
+                   size_t count, size_t components) {
+  double *data = strut_arena_allocate(&scene->arena, count * components, sizeof *data);
+  const size_t shape[] = {count, components};
+  scene->arrays[at] = abi_array_of(name, unit, data, components > 1 ? 2 : 1, shape);
+  return data;
 }
 
 static bool fill_arrays(strutlib_scene *scene) {
   const strut_scene *s = &scene->setup.scene;
+  const strut_member *members = s->members;
   size_t n = s->node_count, m = s->member_count, at = 0;
-  double *position, *mass, *ends, *length, *rest, *stiffness, *damping, *weight, *tension;
-  bool good = add(scene, &at, "nodes.position", "m", n, 2, &position) &&
-              add(scene, &at, "nodes.mass", "kg", n, 1, &mass) &&
-              add(scene, &at, "members.nodes", "1", m, 2, &ends) &&
-              add(scene, &at, "members.length", "m", m, 1, &length) &&
-              add(scene, &at, "members.rest_length", "m", m, 1, &rest) &&
-              add(scene, &at, "members.stiffness", "N/m", m, 1, &stiffness) &&
-              add(scene, &at, "members.damping", "N s/m", m, 1, &damping) &&
-              add(scene, &at, "members.mass", "kg", m, 1, &weight) &&
-              add(scene, &at, "members.pretension", "N", m, 1, &tension);
-  if (!good) return false;
-  for (size_t i = 0; i < n; i++) {
-    memcpy(position + 2 * i, s->nodes[i].position, sizeof s->nodes[i].position);
-    mass[i] = s->nodes[i].mass;
-  }
-  for (size_t i = 0; i < m; i++) {
-    strut_rest r;
-    bool known = strut_member_rest(s, i, &r);
-    ends[2 * i] = s->members[i].node[0];
-    ends[2 * i + 1] = s->members[i].node[1];
-    length[i] = known ? r.drawn_length : (double)NAN;
-    rest[i] = known ? r.length : (double)NAN;
-    stiffness[i] = known ? r.stiffness : (double)NAN;
-    tension[i] = known ? r.pretension : (double)NAN;
-    damping[i] = s->members[i].damping;
-    weight[i] = s->members[i].mass;
-  }
+  strut_rest r;
+#define NODES(NAME, UNIT, PARTS, VALUE)                                                            \
+  ABI_FILL(add(scene, at++, "nodes." NAME, UNIT, n, PARTS), n, PARTS, VALUE)
+#define MEMBERS(NAME, UNIT, PARTS, VALUE)                                                          \
+  ABI_FILL(add(scene, at++, "members." NAME, UNIT, m, PARTS), m, PARTS, VALUE)
+#define REST(PART) (strut_member_rest(s, i, &r) ? r.PART : (double)NAN)
+  NODES("position", "m", 2, s->nodes[i].position[c]);
+  NODES("mass", "kg", 1, s->nodes[i].mass);
+  MEMBERS("nodes", "1", 2, members[i].node[c]);
+  MEMBERS("length", "m", 1, REST(drawn_length));
+  MEMBERS("rest_length", "m", 1, REST(length));
+  MEMBERS("stiffness", "N/m", 1, REST(stiffness));
+  MEMBERS("damping", "N s/m", 1, members[i].damping);
+  MEMBERS("mass", "kg", 1, members[i].mass);
+  MEMBERS("pretension", "N", 1, REST(pretension));
   return true;
 }
 
@@ -245,8 +233,6 @@ char *strutlib_scene_json(const strutlib_scene *scene, strutlib_error **error) {
   abi_leave();
   return text;
 }
-
-/* Scenes: a text that is read once, with settings. */
 
 /* ---- the text ---- */
 

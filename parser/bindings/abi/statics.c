@@ -153,25 +153,19 @@ static double made_length(const strut_model *model, size_t i) {
 }
 
 /* What programs need to write the structure in other formats. */
-static bool add_shape(strutlib_result *result, const strut_model *model, const double *positions) {
-  const strut_scene *scene = model->scene;
-  const size_t n = scene->node_count, m = scene->member_count;
-  double *position = abi_result_new_array(result, "position", "m", n, 2);
-  double *weight = abi_result_new_array(result, "weight", "kg", n, 1);
-  double *length = abi_result_new_array(result, "length", "m", m, 1);
-  double *rest = abi_result_new_array(result, "rest_length", "m", m, 1);
-  double *tension = abi_result_new_array(result, "tension", "N", m, 1);
-  double *damping = abi_result_new_array(result, "damping_coefficient", "N s/m", m, 1);
-  if (!position || !weight || !length || !rest || !tension || !damping) return false;
-  memcpy(position, positions, 2 * n * sizeof *position);
-  memcpy(weight, model->weight, n * sizeof *weight);
-  for (size_t i = 0; i < m; i++) {
-    bool running = scene->members[i].guide_count > 0;
-    length[i] = strut_member_path_length(model, (int32_t)i, positions);
-    rest[i] = made_length(model, i);
-    tension[i] = strut_member_elastic_tension(model, model->members.rest, (int32_t)i, positions);
-    damping[i] = running ? scene->members[i].damping : model->members.damping[i];
-  }
+static bool add_shape(strutlib_result *result, const strut_model *model, const double *q) {
+  const strut_member *members = model->scene->members;
+  const size_t n = model->scene->node_count, m = model->scene->member_count;
+#define SHAPE(NAME, UNIT, COUNT, PARTS, VALUE)                                                     \
+  ABI_FILL(abi_result_new_array(result, NAME, UNIT, COUNT, PARTS), COUNT, PARTS, VALUE)
+  SHAPE("position", "m", n, 2, q[2 * i + c]);
+  SHAPE("weight", "kg", n, 1, model->weight[i]);
+  SHAPE("length", "m", m, 1, strut_member_path_length(model, (int32_t)i, q));
+  SHAPE("rest_length", "m", m, 1, made_length(model, i));
+  SHAPE("tension", "N", m, 1,
+        strut_member_elastic_tension(model, model->members.rest, (int32_t)i, q));
+  SHAPE("damping_coefficient", "N s/m", m, 1,
+        members[i].guide_count > 0 ? members[i].damping : model->members.damping[i]);
   return true;
 }
 

@@ -204,8 +204,7 @@ static void show_progress(void *context, const strut_sweep_state *state) {
   sweep *self = context;
   double fraction = state->points > 0 ? (double)state->done / (double)state->points : 1.0;
   report_rows(self);
-  if (self->control->progress && self->control->progress(self->control->context, fraction))
-    self->control->interrupt = 1;
+  abi_progress(self->control, fraction);
 }
 
 static strut_status run_points(sweep *self, const abi_scratch *scratch, strut_sweep_state *state,
@@ -404,10 +403,8 @@ typedef struct study {
 
 static void show_study(const strut_study_job *job, const strut_sweep_state *state) {
   study *self = job->context;
-  strutlib_control *control = self->control;
-  if (!state || !control->progress || state->points <= 0) return;
-  if (control->progress(control->context, (double)state->done / (double)state->points))
-    control->interrupt = 1;
+  if (state && state->points > 0)
+    abi_progress(self->control, (double)state->done / (double)state->points);
 }
 
 static strut_status keep_report(const strut_study_job *job, const strut_value_rows *rows,

@@ -52,17 +52,9 @@ classdef strut
       end
     end
 
-    function result = equilibria(varargin)
-      result = strut.command('equilibria', varargin{:});
-    end
-
-    function result = modes(varargin)
-      result = strut.command('modes', varargin{:});
-    end
-
-    function result = path(varargin)
-      result = strut.command('path', varargin{:});
-    end
+    function result = equilibria(varargin), result = strut.command('equilibria', varargin{:}); end
+    function result = modes(varargin), result = strut.command('modes', varargin{:}); end
+    function result = path(varargin), result = strut.command('path', varargin{:}); end
 
     function [table, study] = sweep(varargin)
       model = model_of(varargin, 'sweep');

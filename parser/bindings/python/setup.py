@@ -9,12 +9,5 @@ from setuptools import Distribution, setup
 if not pathlib.Path(__file__).with_name("VERSION").exists():
     sys.exit("strut is built by CMake: cmake --build --preset release --target wheel")
 
-
-class Built(Distribution):
-    """A package that holds a compiled library, though it has no sources of one."""
-
-    def has_ext_modules(self) -> bool:
-        return True
-
-
-setup(distclass=Built)
+# It holds a compiled library, though it has no sources of one.
+setup(distclass=type("Built", (Distribution,), {"has_ext_modules": lambda self: True}))

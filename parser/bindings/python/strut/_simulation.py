@@ -44,10 +44,11 @@ def controlled(
         words |= {"status": "completed" if sim.time >= until else "interrupted", "duration": sim.time, "steps": steps}
         words |= {"step": sim.step, "velocity": float(sim.com.x - start) / sim.time if steps else None}
         words["nodes"] = {name: {"position": place.tolist()} for name, place in sim.position.items()}
-        words["energy"] = _energies(sim) | {"initial": _stored(before)}
-        words["energy"]["residual"] = _balance(words["energy"]) - _balance(before)
+        energy, initial = _energies(sim), sum(before[name] for name in ("kinetic", "elastic", "gravity", "contact"))
+        words["energy"] = energy | {"initial": initial, "residual": _balance(energy) - _balance(before)}
         units = {name: "s" if name == "time" else _strut.unit(name) for name in arrays}
-        return Motion(_Stored("of a controller", arrays, units, json=json.dumps(words)), scene)
+        missing = "a run under a controller has no {}; plot() draws it, save('x.csv') writes it"
+        return Motion(_Stored(missing, arrays, units, json=json.dumps(words)), scene)
 
     try:
         while sim.time < until:
@@ -68,16 +69,9 @@ def _energies(sim: Simulation) -> dict[str, float]:
     return {**{name: float(value) for name, value in sim.energy.items()}, "input_work": sim.input_work}
 
 
-def _stored(energy: Mapping[str, float]) -> float:
-    return sum(energy[name] for name in ("kinetic", "elastic", "gravity", "contact"))
-
-
 def _balance(energy: Mapping[str, float]) -> float:
     """What is stored and dissipated, less the work that was done."""
-    return _stored(energy) + sum(
-        -value if name.endswith("_work") else value if name.startswith("dissipated") else 0.0
-        for name, value in energy.items()
-    )
+    return sum(-value if name.endswith("_work") else value for name, value in energy.items())
 
 
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
@@ -86,8 +80,6 @@ _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
 class Simulation(Frozen):
     """A run that is advanced from outside, by one thread at a time.
 
-    `advance(steps)` makes steps; the bits do not depend on how steps are divided into calls. `snapshot()`
-    returns all of the state, inputs too, and `restore(snapshot)` goes back to it.
     Arrays are live: they follow every advance; copy() what shall stay. They are the channels that a scene
     can record: position and velocity (nodes, 2), length and force (members), contact (contacts, 2), com.x, energy, ...
     Inputs are written at any time, and hold from the next advance on: rest (members) [m], actuators (in

@@ -6,14 +6,10 @@
 
 const MOST_BYTES = 4e6; /* of a scene that a link may unpack to */
 
-function through(bytes, stream) {
-  return new Response(new Blob([bytes]).stream().pipeThrough(stream));
-}
+const through = (bytes, stream) => new Blob([bytes]).stream().pipeThrough(stream);
 
 function toBase64(bytes) {
-  let text = "";
-  for (const byte of bytes) text += String.fromCharCode(byte);
-  return btoa(text).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
 }
 
 function fromBase64(text) {
@@ -24,15 +20,13 @@ function fromBase64(text) {
 /** The fragment of a link to a state {text, name, settings, files}: "#s=...". */
 export async function encodeLink({ text, name, settings, files }) {
   const bytes = new TextEncoder().encode(JSON.stringify({ text, name, settings, files }));
-  const packed = await through(bytes, new CompressionStream("deflate-raw"));
-  return "#s=" + toBase64(new Uint8Array(await packed.arrayBuffer()));
+  const packed = through(bytes, new CompressionStream("deflate-raw"));
+  return "#s=" + toBase64(new Uint8Array(await new Response(packed).arrayBuffer()));
 }
 
 /* The text that bytes unpack to; an error where that is longer than a link may be. */
 async function unpack(bytes) {
-  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"))
-    .getReader();
-  const decoder = new TextDecoder();
+  const reader = through(bytes, new DecompressionStream("deflate-raw")).getReader(), decoder = new TextDecoder();
   let text = "", size = 0;
   for (;;) {
     const { done, value } = await reader.read();

@@ -72,11 +72,10 @@ export async function copyText(text, button) {
   const said = button.textContent;
   try {
     await navigator.clipboard.writeText(text);
-    button.textContent = "Copied";
   } catch {
     copyBySelection(text);
-    button.textContent = "Copied";
   }
+  button.textContent = "Copied";
   setTimeout(() => { button.textContent = said; }, 1500);
 }
 
