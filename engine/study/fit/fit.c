@@ -22,13 +22,13 @@ static const double PLACED = 0.5, BETTER = 0.99;
 
 /*
  * Another fit is within reach of the best if a few steps bring the sum to so many times the least, the first of them to
- * FAR times that; where FEW are not in a row, no more are tried. A range is walked over in so many paces, unless the
+ * FAR times that; where VAIN are not in a row, no more are tried. A range is walked over in so many paces, unless the
  * sum should rise to FAR times what is within reach in the first.
  */
 #define REACH 4.0
 #define FAR 25.0
 static const double FALL = 0.05; /* of a rise to an end of an interval: it falls */
-enum { STEPS_BESIDE = 6, PACES = 16 };
+enum { STEPS_BESIDE = 6, PACES = 16, VAIN = 8 };
 
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
@@ -304,7 +304,7 @@ static strut_status fit_beside(const fitting *self, strut_fit_case *one, size_t 
   strut_fit_solution latest;
   strut_status status = STRUT_OK;
   memcpy(parameters, self->best, bytes);
-  for (int rank = 1, vain = 0; !status && vain < FEW && (delay || rank == 1); rank++) {
+  for (int rank = 1, vain = 0; !status && vain < VAIN && (delay || rank == 1); rank++) {
     memcpy(at, self->best, bytes);
     if (delay ? !(strut_fit_place(one, true, match, (size_t)rank, at) < HUGE_VAL)
               : !walk(self, one, self->layout->aligned_count + item, at))
