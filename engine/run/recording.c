@@ -94,9 +94,6 @@ static strut_status begin_sinks(const strut_experiment *experiment, strut_record
   return STRUT_OK;
 }
 
-/* More samples in a step are a mistake. */
-static const double MOST_IN_STEP = 1e5;
-
 strut_status strut_recording_create(const strut_model *model, const strut_experiment *experiment,
                                     double begin, strut_recording *recording, strut_error *error) {
   *recording = (strut_recording){.sinks = recording->sinks,
@@ -109,11 +106,11 @@ strut_status strut_recording_create(const strut_model *model, const strut_experi
   recording->start = begin + span.record_start;
   recording->every = span.record_every;
   double in_step = experiment->output_every > 0.0 ? recording->grid.step / recording->every : 0.0;
-  if (!(in_step < MOST_IN_STEP))
+  if (!(in_step < STRUT_MOST_IN_STEP))
     return strut_fail(
         error, STRUT_USAGE,
         "'output: {every: %g s}' is %.3g samples in a step of %g s; at most %g are taken",
-        recording->every, in_step, recording->grid.step, MOST_IN_STEP);
+        recording->every, in_step, recording->grid.step, STRUT_MOST_IN_STEP);
   recording->in_step = in_step > 0.0 ? 1 + (size_t)in_step : 0;
   strut_channels wanted = 0;
   for (size_t s = 0; s < recording->sink_count; s++)

@@ -500,7 +500,7 @@ static strut_status choose_settle_step(strut_relaxation *relaxation, strut_error
   strut_status status =
       strut_step_limit_for_method(relaxation->model, relaxation->method, &limit, error);
   if (status) return status;
-  if (given > 0.0 && given <= limit)
+  if (given > 0.0 && given <= fmin(limit, settle->limit))
     relaxation->step = given;
   else
     relaxation->step = isfinite(limit) ? LIMIT_FRACTION * limit : 1e-4 * settle->limit;

@@ -574,6 +574,9 @@ strut_status strut_run_end(strut_run *run, strut_status status) {
     if (status || !run->answer.filled) fill_summary(run, status); /* where the run ended early */
     summary->spent.wall_time = strut_run_clock() - run->clock.start;
     strut_error first = *error;
+    bool known = !run->state->trouble && strut_run_find_lost_node(run->model, run->state) < 0;
+    if (status && known && strut_recording_lacks(&run->recording, run->state->step))
+      (void)strut_recording_sample(run->state, &run->recording, true, error);
     strut_status written = strut_recording_finish(&run->recording, status, error);
     if (written && (!status || status == STRUT_DIVERGED || status == STRUT_INTERRUPTED))
       status = written;

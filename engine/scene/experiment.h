@@ -15,6 +15,9 @@
 
 #define STRUT_USUAL_BUDGET 20 /* see strut_experiment.budget */
 
+/** More samples in a step are a mistake. */
+#define STRUT_MOST_IN_STEP 1e5
+
 /** Settling before t = 0: actuators, loads with a signal and the belt are off. */
 typedef struct strut_settle {
   bool wanted;

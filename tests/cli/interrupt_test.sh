@@ -48,6 +48,7 @@ err_has "interrupted at t = "
 files kept contacts.csv energy.csv members.csv nodes.csv scene.yaml summary.json trajectory.h5
 grep -q '"status":	"interrupted"' kept/summary.json || fail "summary.json is not marked"
 [ "$(wc -l <kept/nodes.csv)" -gt 1 ] || fail "nothing was kept"
+[ "$(tail -1 kept/nodes.csv | cut -d, -f1)" = "$(jq .duration kept/summary.json)" ] || fail "the last row is not the end"
 if command -v h5dump >/dev/null; then
   h5dump -a status kept/trajectory.h5 | grep -q '"interrupted"' || fail "HDF5 is not marked"
 fi

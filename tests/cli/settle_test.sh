@@ -72,6 +72,12 @@ for way in "--accuracy 1%" "--integrator verlet-events --step 50us" "--integrato
   same "way-$i/nodes.csv" "again-$i/nodes.csv"
 done
 
+# So does a file without a step: that of the command is not that of settling.
+grep -v '^solver' jumper.yaml >stepless.yaml
+expect 0 run stepless.yaml --quiet --integrator rk4 --step 20us -o stepless
+expect 0 run stepless/scene.yaml --quiet -o stepless-again
+same stepless/nodes.csv stepless-again/nodes.csv
+
 # An accurate run settles once. It took minutes, each of its runs settling by its own method.
 yaml cell.yaml <<'END'
 name: Leaning X-cell crawler

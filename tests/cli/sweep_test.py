@@ -110,6 +110,18 @@ axes: [{mass: [1 kg, 2 kg, 3 kg]}]
     write("rod.yaml", ROD.replace("settle: true", "settle: {perturb: yes}"))
     done = run("sweep", "rods.yaml", "-o", "hanging", "--json")
     check(not json.loads(done.stdout)["warnings"] and not done.stderr, "warnings of nothing")
+    write("deep.yaml", """strut: 1
+parameters: {depth: 1 mm}
+nodes: {block: {position: [0, -depth], mass: 1}}
+gravity: [0, -9.81]
+ground: {stiffness: 1e5, damping: 100, friction: {mu: 0.3, stick_velocity: 1 mm/s}}
+solver: {step: 0.1 ms}
+run: {duration: 1 ms}
+""")
+    write("deeper.yaml", "strut: 1\nstudy: s\nmodel: deep.yaml\naxes: [{depth: [0.01 mm, 20 mm, 30 mm]}]\n")
+    done = run("sweep", "deeper.yaml", "-o", "deeper", "--json")
+    deep = [(w["code"], w["runs"], w["point"]) for w in json.loads(done.stdout)["warnings"]]
+    check(("inside_ground", 2, 1) in deep and "node block starts inside the ground" in done.stderr, f"{deep}")
     check([row["start_unstable"] for row in rows("hanging/table.csv")] == ["0"] * 3, "the column of stable starts")
 
 

@@ -238,6 +238,12 @@ void strut_check_experiment(strut_checker *checker) {
   bool measure = strut_check_fields(checker, STRUT_FIELDS_MEASURE, experiment, &usual);
   strut_check_begin_with(checker, STRUT_ON_OUTPUT, 0, "the output");
   bool output = strut_check_fields(checker, STRUT_FIELDS_OUTPUT, experiment, &usual);
+  if (output && experiment->step > STRUT_MOST_IN_STEP * experiment->output_every &&
+      experiment->output_every > 0.0)
+    strut_report_finding(checker, STRUT_ON_OUTPUT, 0, "every",
+                         "'every' is %.3g samples in a step of %g s; at most %g are taken",
+                         experiment->step / experiment->output_every, experiment->step,
+                         STRUT_MOST_IN_STEP);
   if (!length_known) return;
   if (measure) check_window(checker, STRUT_ON_RUN, "cannot measure over", experiment->measure_last);
   if (output) check_window(checker, STRUT_ON_OUTPUT, "cannot record", experiment->output_last);

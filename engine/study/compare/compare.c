@@ -18,10 +18,10 @@
 #include "engine/study/sweep/sweep_parts.h"
 #include "engine/study/tradeoff/tradeoff_parts.h"
 
-/* What is computed at once: counts of parts; rigidity as drawn; states; at rest; the step; the motion; its window. */
+/* What is computed at once: counts of parts; rigidity; states; at rest; the step; the motion; its window. */
 typedef enum group {
   STRUCTURE,
-  DRAWN,
+  RIGIDITY,
   STABLE,
   FORCES,
   FREQUENCIES,
@@ -42,8 +42,8 @@ typedef struct facts {
   const char *missing[GROUPS]; /* why nothing of a group is known; NULL: it is */
   strut_error error;           /* of the latest computation */
   strut_rest_state rest;       /* q is NULL if there is none */
-  strut_rigidity drawn, forces;
-  int32_t start; /* of them, in which a run starts; -1: none */
+  strut_rigidity rigidity;     /* in the shape of the column */
+  int32_t start;               /* of them, in which a run starts; -1: none */
   strut_modes modes;
   strut_cost_estimate plan;
   strut_summary run;
@@ -137,13 +137,14 @@ static double lowest_barrier(const facts *f) {
 static double root_mean_square(const facts *f) {
   double squares = 0.0, count = (double)f->scene->member_count;
   for (size_t j = 0; j < f->scene->member_count; j++)
-    squares += f->forces.force[j] * f->forces.force[j];
+    squares += f->rigidity.force[j] * f->rigidity.force[j];
   return sqrt(squares / count);
 }
 
 static double largest_force(const facts *f, double sign) {
   double most = 0.0;
-  for (size_t j = 0; j < f->scene->member_count; j++) most = fmax(most, sign * f->forces.force[j]);
+  for (size_t j = 0; j < f->scene->member_count; j++)
+    most = fmax(most, sign * f->rigidity.force[j]);
   return f->scene->member_count ? most : (double)NAN;
 }
 
@@ -252,17 +253,6 @@ static strut_status find_rest(facts *f, const strut_model *model) {
   return status;
 }
 
-/* Self-stress and mechanisms of the drawn shape, as `strut rigidity` has them. */
-static strut_status find_drawn(facts *f, const strut_model *model) {
-  strut_arena scratch = {0};
-  strut_rest_state drawn;
-  strut_status status =
-      strut_rest_state_find(model, f->experiment, "drawn", &scratch, &drawn, &f->error);
-  if (!status) status = strut_rigidity_find(model, drawn.q, &f->drawn, &f->error);
-  strut_arena_free(&scratch);
-  return know(f, DRAWN, status, true);
-}
-
 /* The equilibrium of the list that a run starts in, or -1. */
 static int32_t find_start(const facts *f, const strut_model *model) {
   const double *q = f->rest.q;
@@ -322,9 +312,10 @@ static strut_status study_rest(facts *f) {
   strut_status status = strut_model_compile(f->scene, &model, &f->error);
   f->missing[STRUCTURE] = NULL;
   if (!status) status = find_rest(f, model);
-  if (!status) status = find_drawn(f, model);
-  if (!status && f->rest.q)
-    status = know(f, FORCES, strut_rigidity_find(model, f->rest.q, &f->forces, &f->error), true);
+  if (!status)
+    status =
+        know(f, RIGIDITY, strut_rigidity_find(model, f->column->q, &f->rigidity, &f->error), true);
+  if (!status && f->rest.q) f->missing[FORCES] = f->missing[RIGIDITY];
   if (!status) status = find_states(f, model);
   if (!status && f->rest.q)
     status = know(f, FREQUENCIES,
@@ -386,13 +377,15 @@ static strut_status describe_motion(const facts *f) {
   strut_compare_column *column = f->column;
   const strut_summary *run = &f->run;
   strut_motion kind = run->steady.kind;
-  column->motion = kind == STRUT_MOTION_NOT_WATCHED ? NULL : strut_motion_name(kind);
+  column->motion = kind == STRUT_MOTION_NOT_WATCHED
+                       ? strut_arena_format(f->arena, "mean over %.4g s", run->window.time)
+                       : strut_motion_name(kind);
   column->repeats = kind == STRUT_MOTION_PERIODIC ? run->steady.repeats : 0;
   column->how = strut_arena_format(f->arena, "%s", run->accuracy.why);
   column->inaccurate = strut_summary_is_inaccurate(run);
   column->still = fabs(run->velocity) <=
                   run->accuracy.expected * fmax(fabs(run->velocity), run->accuracy.scale);
-  return column->how ? STRUT_OK : STRUT_NO_MEMORY;
+  return column->motion && column->how ? STRUT_OK : STRUT_NO_MEMORY;
 }
 
 /*
@@ -453,8 +446,7 @@ static strut_status fill_column(const strut_compare_input *input,
   if (!status) status = study_run(&f);
   if (!status) fill_cells(&f);
   if (status && error) *error = f.error;
-  strut_rigidity_free(&f.drawn);
-  strut_rigidity_free(&f.forces);
+  strut_rigidity_free(&f.rigidity);
   strut_modes_free(&f.modes);
   strut_summary_free(&f.run);
   return status;

@@ -33,12 +33,12 @@ enum { STRUT_COMPARE_MOST = 100 };
   X(ACTUATORS, "actuators", "", STRUCTURE, (double)f->scene->actuator_count, NULL)                 \
   X(MASS, "mass", "kg", STRUCTURE, total_mass(f->scene), NULL)                                     \
   X(FREEDOMS, "degrees_of_freedom", "", STRUCTURE, free_coordinates(f->scene), NULL)               \
-  X(SELF_STRESSES, "self_stress_states", "", DRAWN, f->drawn.states.count, NULL)                   \
+  X(SELF_STRESSES, "self_stress_states", "", RIGIDITY, f->rigidity.states.count, NULL)             \
   /* all that stretch no member but rigid-body motions */                                          \
-  X(MECHANISMS, "mechanisms", "", DRAWN,                                                           \
-    f->drawn.mechanisms.count - f->drawn.mechanisms.rigid_body, NULL)                              \
-  X(FINITE, "finite_mechanisms", "", DRAWN, f->drawn.mechanisms.finite, NULL)                      \
-  X(RIGID_MOTIONS, "rigid_body_motions", "", DRAWN, f->drawn.mechanisms.rigid_body, NULL)          \
+  X(MECHANISMS, "mechanisms", "", RIGIDITY,                                                        \
+    f->rigidity.mechanisms.count - f->rigidity.mechanisms.rigid_body, NULL)                        \
+  X(FINITE, "finite_mechanisms", "", RIGIDITY, f->rigidity.mechanisms.finite, NULL)                \
+  X(RIGID_MOTIONS, "rigid_body_motions", "", RIGIDITY, f->rigidity.mechanisms.rigid_body, NULL)    \
   X(STATES, "stable_states", "", STABLE, (double)c->state_count, NULL)                             \
   X(LOWEST_ENERGY, "lowest_energy", "J", STABLE, state_energy(c, 0), why_no_state(f))              \
   X(ENERGY_SPAN, "energy_span", "J", STABLE,                                                       \

@@ -107,7 +107,8 @@ static const char *softest_node(const strut_compare_column *column, int axis) {
     "in it", .rows = &node_values)                                                                 \
   X("softest_in_x", "", TEXT(softest_node(c, 0)), "node")                                          \
   X("softest_in_y", "", TEXT(softest_node(c, 1)), "node")                                          \
-  X("motion", "", TEXT(c->motion), "periodic, irregular, ...", .label = {""})                      \
+  X("motion", "", TEXT(c->motion), "periodic, irregular, ..., or the window of a mean",            \
+    .label = {""})                                                                                 \
   X("repeats", "", IF(c->repeats > 0, COUNT(c->repeats)), "drive periods of one repetition",       \
     .label = {""})                                                                                 \
   X("still", "", IF(c->motion, FLAG(c->still)), "whether it does not travel")                      \

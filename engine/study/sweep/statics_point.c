@@ -426,13 +426,12 @@ static void warn_of_overload(strut_sweep_job *job, const strut_model *model,
                              const double *positions, const char *where) {
   strut_overload worst;
   if (job->warning_count > 0 || !strut_history_overload(model, positions, &worst)) return;
-  strut_warning *warning = &job->warnings[job->warning_count++];
-  warning->code = "overload";
-  snprintf(warning->text, sizeof warning->text,
-           "in %.60s %s '%.60s' carries %.4g %s, above the %.4g at which it %s; statics take it as "
-           "%s",
-           where, worst.kind, worst.name, worst.force, worst.hinge ? "N m" : "N", worst.limit,
-           worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
+  strut_sweep_warn(
+      job, "overload",
+      "in %.60s %s '%.60s' carries %.4g %s, above the %.4g at which it %s; statics take it as "
+      "%s",
+      where, worst.kind, worst.name, worst.force, worst.hinge ? "N m" : "N", worst.limit,
+      worst.breaks ? "breaks" : "yields", worst.breaks ? "whole" : "elastic");
 }
 
 static strut_status find_equilibria(const strut_sweep_worker *worker, strut_sweep_job *job,

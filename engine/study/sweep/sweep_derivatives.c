@@ -227,11 +227,9 @@ static strut_derivatives_parameter parameter_of(const derivation *self, const st
 
 /* Warns that derivatives are missing: by a parameter, or, where that is NULL, some of them. */
 static void warn(strut_sweep_job *job, const char *by, const char *why) {
-  if (job->warning_count == STRUT_MOST_WARNINGS) return;
-  strut_warning *warning = &job->warnings[job->warning_count++];
-  warning->code = "derivatives";
-  snprintf(warning->text, sizeof warning->text, "there are no derivatives%s%.60s%s: %.400s",
-           by ? " by '" : " that need a point beside this one", by ? by : "", by ? "'" : "", why);
+  strut_sweep_warn(job, "derivatives", "there are no derivatives%s%.60s%s: %.400s",
+                   by ? " by '" : " that need a point beside this one", by ? by : "", by ? "'" : "",
+                   why);
 }
 
 /* Lists what the scene of the job has scenes beside it for; derivatives by others are not known, or 0. */

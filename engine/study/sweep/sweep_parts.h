@@ -165,6 +165,9 @@ bool strut_sweep_is_analysed(const strut_study *study, const char *name);
  */
 strut_status strut_sweep_derivative_columns(strut_sweep_plan *plan, const strut_setup *setup,
                                             const strut_study_value *values, strut_error *error);
+/** Adds a warning of the job's run, with a printf-style text; too many are left out. */
+void strut_sweep_warn(strut_sweep_job *job, const char *code, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /** Appends the derivatives of the job's row, whose scene is still there, and adds a warning of what has none. */
 strut_status strut_sweep_derive(const strut_sweep_worker *worker, strut_sweep_job *job);
 

@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
@@ -12,6 +13,7 @@
 #include "engine/output/results.h"
 #include "engine/output/run_report.h"
 #include "engine/run/accuracy/accuracy.h"
+#include "engine/scene/checks/check.h"
 #include "engine/study/sweep/sweep_parts.h"
 
 /* Records one run of a sweep as `strut run -o` does. The HDF5 library is not thread-safe. */
@@ -248,12 +250,33 @@ strut_status strut_sweep_run_scene(const strut_sweep_worker *worker, strut_sweep
   return status;
 }
 
+void strut_sweep_warn(strut_sweep_job *job, const char *code, const char *format, ...) {
+  if (job->warning_count == STRUT_MOST_WARNINGS) return;
+  strut_warning *warning = &job->warnings[job->warning_count++];
+  va_list arguments;
+  warning->code = code;
+  va_start(arguments, format);
+  vsnprintf(warning->text, sizeof warning->text, format, arguments);
+  va_end(arguments);
+}
+
+/* What `strut run` says of a scene before it runs it. */
+static strut_status warn_of_scene(strut_sweep_job *job) {
+  strut_findings found = {0};
+  strut_status status = strut_setup_warn(&job->setup, &found);
+  for (size_t i = 0; i < found.count; i++)
+    strut_sweep_warn(job, found.items[i].key, "%s", found.items[i].message);
+  strut_findings_free(&found);
+  return status ? strut_no_memory(&job->error, "") : STRUT_OK;
+}
+
 /* The run of a point; word (STRUT_SLOT_WORD): what a second one is to repeat. */
 static strut_status run_first(const strut_sweep_worker *worker, strut_sweep_job *job, char *word) {
   char outcome[STRUT_SLOT_WORD] = "";
   strut_summary summary = {0};
   strut_sweep_record *record = NULL;
   strut_status status = strut_equilibrium_cache_resolve(worker->standing, &job->setup, &job->error);
+  if (!status) status = warn_of_scene(job);
   if (!status) status = begin_record(worker, job, &record);
   if (status) return status;
   status = strut_sweep_run_scene(worker, job, true, &summary);
@@ -265,8 +288,8 @@ static strut_status run_first(const strut_sweep_worker *worker, strut_sweep_job 
   }
   if (!status) status = name_outcome(worker, job, &summary, outcome);
   if (!status) {
-    job->warning_count = summary.warning_count;
-    memcpy(job->warnings, summary.warnings, sizeof job->warnings);
+    for (size_t i = 0; i < summary.warning_count; i++)
+      strut_sweep_warn(job, summary.warnings[i].code, "%s", summary.warnings[i].text);
     strut_sweep_fill(worker->plan, &job->setup, &summary, outcome, &job->cells);
     status = strut_sweep_derive(worker, job);
     snprintf(word, STRUT_SLOT_WORD, "%s", outcome_word(worker->plan, &summary, outcome));

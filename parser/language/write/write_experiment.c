@@ -46,13 +46,17 @@ static void put_initial_pair(strut_writer *writer, bool *begun, bool *listed, co
   strut_put(writer, "\n");
 }
 
+/* Above every stability limit: settling takes half of that then, as it does where the file gives no step at all. */
+static const double ABOVE_LIMITS = 1e9;
+
 /* The step of settling, if it differs from that of the run. */
 static void put_settling_step(strut_writer *writer, strut_mapping *mapping, int key,
                               const void *object) {
   const strut_settle *settle = object;
-  if (settle->step <= 0.0 || settle->step == writer->experiment->step) return;
+  double step = settle->step < 0.0 ? ABOVE_LIMITS : settle->step, of_run = writer->experiment->step;
+  if (step == of_run || !(settle->step > 0.0 || (settle->step < 0.0 && of_run > 0.0))) return;
   strut_put_key_name(writer, mapping, key);
-  strut_put_number(writer, settle->step);
+  strut_put_number(writer, step);
 }
 
 static void put_initial(strut_writer *writer) {

@@ -375,6 +375,7 @@ static void note_copy(strut_reader *reader, size_t item, const strut_copy *copy,
   char which[220] = "", first[120];
   const strut_placement *placement = copy->placement;
   int64_t all = copies_of(reader, placement->key);
+  if (copies > all) copies = all; /* several times in a copy */
   strut_place place = placement->key->place;
   size_t length = copy->prefix_length ? copy->prefix_length - 1 : 0; /* without the dot */
   snprintf(first, sizeof first, "%.*s", length > 100 ? 100 : (int)length, copy->prefix);
