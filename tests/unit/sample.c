@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/unit/sample.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
+#include "tests/support/test.h"
 
 static const char *const nodes[] = {"n1", "left, \"upper\"", "\xc3\xa4"};
 static const char *const members[] = {"m1", "m2"};
