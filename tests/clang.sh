@@ -11,7 +11,6 @@ clang=$2
 shift 2
 others=
 for folder; do others="$others -isystem $folder"; done
-# shellcheck disable=SC2086  # a list of words
 accepts() {
   xargs -P 2 -n 8 "$clang" -std=c17 -D_POSIX_C_SOURCE=200809L -DSTRUT_VERSION='"0"' -I . $others -w -fsyntax-only
 }

@@ -8,7 +8,6 @@
 # be what .ci/run runs, the one for users the same with another preset, and its last command runs here.
 #
 #   sh tests/docs.sh ROOT STRUT
-# shellcheck disable=SC2016  # backticks that mark a fence, not a command
 set -eu
 root=$(cd "$1" && pwd)
 strut=$(cd "$(dirname "$2")" && pwd)/strut

@@ -9,7 +9,6 @@
 #
 # CXX may be empty: then C++ is left out. In the folders are other libraries' headers, for ours that
 # are not public. Without libraries (.a, .so) exports are left out.
-# shellcheck disable=SC2086  # lists of words are meant to split
 set -eu
 root=$(cd "$1" && pwd)
 cc=$2

@@ -91,5 +91,4 @@ if [ ! -e "$policy" ]; then
   $as_root chmod 755 "$policy"
 fi
 apt update
-# shellcheck disable=SC2086
 apt install -y --no-install-recommends $missing

@@ -67,17 +67,14 @@ PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name strut.pc)")
 export PKG_CONFIG_PATH
 LD_LIBRARY_PATH=${PKG_CONFIG_PATH%/pkgconfig} # for shared ones, which nobody registered here
 export LD_LIBRARY_PATH
-# shellcheck disable=SC2046
 "$compiler" -std=c17 $sanitizers user.c -o user $(pkg-config --cflags --libs strut)
 ./user >by-pkg-config
 cmp by-cmake by-pkg-config
-# shellcheck disable=SC2046
 "$compiler" -std=c17 -DDRAW $sanitizers user.c -o drawer \
   $(pkg-config --cflags --libs strut strut-pictures)
 ./drawer >by-pkg-config
 cmp by-cmake by-pkg-config
 cmp shape-by-cmake.svg shape.svg
-# shellcheck disable=SC2046
 "$compiler" -std=c17 -DSWEEP $sanitizers user.c -o sweeper \
   $(pkg-config --cflags --libs strut strut-pictures)
 ./sweeper >by-pkg-config
@@ -103,7 +100,6 @@ cmake --build build >build.log 2>&1 || { cat build.log; exit 1; }
 ./build/example "$source/models/crawler/crawler.yaml" >by-cmake
 grep -q 'velocity 0.01003 m/s, motion periodic' by-cmake || { cat by-cmake; exit 1; }
 # The command that docs/api.md gives, with the compiler of this build as cc.
-# shellcheck disable=SC2016  # backticks of the document
 command=$(sed -n 's/^Build it with `\(cc .*\)`, or in CMake with$/\1/p' "$source/docs/api.md")
 printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$compiler" "$sanitizers" >cc
 chmod +x cc

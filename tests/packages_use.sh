@@ -51,7 +51,6 @@ ldconfig -p | grep -q 'libstrut\.so\.0' || fail "the loader does not know libstr
 # C, by pkg-config and by CMake, with the headers of the same release.
 cp "$here/install_user.c" user.c
 sed -n 's/^ *"\(.*\)\\n".*/\1/p' user.c >model.yaml
-# shellcheck disable=SC2046
 gcc -std=c17 user.c -o user $(pkg-config --cflags --libs strut)
 ./user >by-pkg-config
 grep -q '"status":[[:space:]]*"completed"' by-pkg-config || { cat by-pkg-config; fail "the C program failed"; }
@@ -74,7 +73,6 @@ int main(void) {
   return 0;
 }
 PROGRAM
-# shellcheck disable=SC2046
 gcc -std=c17 stable.c -o stable $(pkg-config --cflags --libs strut-abi)
 ./stable >version
 grep -q '^0\.1' version || { cat version; fail "no version from the shared library"; }

@@ -140,7 +140,6 @@ TEST(a_setting_changes_a_scene) {
   strutlib_error *error;
   const char *names[] = {"frequency", "friction"}, *values[] = {"12 Hz", "0.25"};
   const char *more_names[] = {"friction"}, *more_values[] = {"0.5"};
-  double value;
   strutlib_scene *scene = strutlib_open(crawler, 2, names, values, &error), *other;
   assert_non_null(scene);
   assert_number(scene, "parameters.frequency", 12.0);

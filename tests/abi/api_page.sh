@@ -28,10 +28,8 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir -p "$scratch/tree/docs" "$scratch/tree/parser/bindings/abi" "$scratch/tree/tests/abi"
 printf 'STRUTLIB_API void strutlib_close(strutlib_scene *scene);\n' >"$scratch/tree/parser/bindings/abi/abi.h"
 printf '/* licence */\nint a;\n' >"$scratch/tree/tests/abi/example.c"
-# shellcheck disable=SC2016  # backticks of a page
 printf '`strutlib_close`\n```c\nint a;\n```\n' >"$scratch/tree/docs/api.md"
 [ -z "$(differences "$scratch/tree")" ] || { echo "self-test: a good page fails"; exit 1; }
-# shellcheck disable=SC2016
 printf '`strutlib_open` `STRUTLIB_NO`\n```c\nint b;\n```\n' >"$scratch/tree/docs/api.md"
 [ "$(differences "$scratch/tree" | wc -l)" -eq 4 ] || { echo "self-test: a bad page passes"; exit 1; }
 

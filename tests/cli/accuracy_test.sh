@@ -7,6 +7,8 @@ crawler=$here/../../models/crawler/crawler.yaml
 
 # about FILTER WANTED PART: of the JSON in out, within PART of WANTED
 about() { near "$1 / $2" 1 "$3"; }
+# moves VELOCITY PART WORD...: the same of the velocity that strut run WORD... gives
+moves() { _want=$1 _part=$2 && shift 2 && expect 0 run "$@" --json; about .velocity "$_want" "$_part"; }
 
 while read -r friction velocity; do
   for bargain in "1% 0.01 1" "0.5% 0.005 1" "0.1% 0.001 2.5"; do
@@ -19,9 +21,7 @@ while read -r friction velocity; do
     holds ".force_evaluations / (5 * 40000) <= $3"
   done
   for method in rk4-events adaptive; do
-    expect 0 run "$crawler" --set friction="$friction" --steady 0.05% --integrator $method \
-      --step "0.02 ms" --json
-    about .velocity "$velocity" 0.001
+    moves "$velocity" 0.001 "$crawler" --set friction="$friction" --steady 0.05% --integrator $method --step "0.02 ms"
     holds '.steady.kind == "periodic" and .steady.repeats == 1 and .events > 100'
   done
 done <<END
@@ -53,17 +53,12 @@ holds '.force_evaluations + .accuracy.check_evaluations < 1e8'
 # that, and longer runs narrow it.
 yaml irregular.yaml <<'END'
 nodes: {a: [0, 0], b: [120 mm, 0], c: [95 mm, 55 mm], d: [-15 mm, 80 mm], shuttle: {position: [38 mm, 22 mm], mass: 60 g}}
-groups:
-  rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 40 g}
-  cable: {kind: cable, stiffness: 600 N/m, damping: 0.5 N s/m}
-members:
-  rising: {group: rod, nodes: [a, c], pretension: -4.1694 N}
-  falling: {group: rod, nodes: [b, d], pretension: -6.36372 N}
-  floor: {group: cable, nodes: [a, b], pretension: 4 N}
-  right: {group: cable, nodes: [b, c], pretension: 3.563664 N}
-  roof: {group: cable, nodes: [c, d], pretension: 5.2126 N}
-  left: {group: cable, nodes: [d, a], pretension: 2.125424 N}
-  spring: {kind: spring, nodes: [a, shuttle], stiffness: 800 N/m, damping: 0.5 N s/m}
+groups: {rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 40 g},
+         cable: {kind: cable, stiffness: 600 N/m, damping: 0.5 N s/m}}
+members: {rising: {group: rod, nodes: [a, c], pretension: -4.1694 N}, falling: {group: rod, nodes: [b, d], pretension: -6.36372 N},
+          floor: {group: cable, nodes: [a, b], pretension: 4 N}, right: {group: cable, nodes: [b, c], pretension: 3.563664 N},
+          roof: {group: cable, nodes: [c, d], pretension: 5.2126 N}, left: {group: cable, nodes: [d, a], pretension: 2.125424 N},
+          spring: {kind: spring, nodes: [a, shuttle], stiffness: 800 N/m, damping: 0.5 N s/m}}
 distances: {guide: {node: shuttle, line: [a, c], stiffness: 20 kN/m, damping: 2 N s/m}}
 gravity: [0, -9.81 m/s^2]
 ground: {stiffness: 100 kN/m, damping: 50 N s/m, friction: {law: coulomb, mu: 0.3}, nodes: [a, b, c, d]}
@@ -98,9 +93,7 @@ expect 0 run "$crawler" --set frequency="1.1 Hz" --steady 0.1% --integrator adap
   --tolerance 1e-7 --step "2 ms" --json
 near .velocity "${wanted% *}" "0.005 * ${wanted#* }"
 # Stiff members and slow motion, no ground: implicit midpoint, far above the explicit limit.
-expect 0 run "$here/../../models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1% \
-  --json
-about .velocity -2.068963889494835 0.001
+moves -2.068963889494835 0.001 "$here/../../models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1%
 holds '.method == "midpoint" and .accuracy.kept and .accuracy.expected <= 0.001'
 # verlet's largest stable step is 1.1 us here, which 2.3e6 evaluations go through
 holds '.force_evaluations + .accuracy.check_evaluations < 40000'
@@ -117,21 +110,18 @@ members: {m0: {kind: bar, nodes: [top, n0], stiffness: 4751175.461808136},
           m1: {kind: bar, nodes: [n0, n1], stiffness: 4801666.329171631},
           m2: {kind: bar, nodes: [n1, n2], stiffness: 6829995.2698824955}}
 gravity: [0, -9.81]
-initial:
-  velocities: {n0: [0.22865326921778406, 1.2676248431704797], n1: [-0.5758035887969262, 0.886345740786953],
-               n2: [1.4244794072675955, 0.6735004513954602]}
+initial: {velocities: {n0: [0.22865326921778406, 1.2676248431704797], n1: [-0.5758035887969262, 0.886345740786953],
+                       n2: [1.4244794072675955, 0.6735004513954602]}}
 solver: {step: 0.1 ms}
 run: {duration: 0.9258812002378766, measure: {node: n2}}
 output: {last: 1 ms}
 END
-expect 0 run kicked.yaml --accuracy 0.5% --json
-about .velocity 1.0417376 0.005
+moves 1.0417376 0.005 kicked.yaml --accuracy 0.5%
 holds '.accuracy.kept and .method != "midpoint"'
 # Told on the command line, the model needs no step of its own.
 sed '/^solver:/d' kicked.yaml >stepless.yaml
 shows 0 "1 % taken, as the model has no solver" run stepless.yaml
-expect 0 run stepless.yaml --accuracy 0.5% --json
-about .velocity 1.0417376 0.005
+moves 1.0417376 0.005 stepless.yaml --accuracy 0.5%
 expect 0 run stepless.yaml --step "0.1 ms" --json
 # What has to repeat itself is run until it does, also where midpoint would be cheaper.
 yaml shaken.yaml <<'END'
@@ -184,16 +174,14 @@ up 2.1 0.0064544045056
 END
 # Rigid bars, which one method takes: at 5/4 of its period the rod hangs, having been level at one.
 sed 's/^nodes:/bars: rigid\nnodes:/' "$here/../../models/basics/pendulum.yaml" >rod.yaml
-expect 0 run rod.yaml --accuracy 0.01% --json
-about .velocity -2.068963889494835 1e-6 # 4 length / period
+moves -2.068963889494835 1e-6 rod.yaml --accuracy 0.01% # 4 length / period
 holds '.method == "rk4" and .accuracy.kept'
 # and that no method takes together with exact friction
 edit 's/^nodes:/bars: rigid\nnodes:/; s/law: karnopp/law: coulomb/' "$crawler" tells 1 "no method supports both" run --accuracy 1%
 # Exact friction: speed^2 / (2 mu g) in a second.
 sed 's/law: karnopp/law: coulomb/; s/, stick_velocity: [^}]*//' \
   "$here/../../models/basics/sliding-block.yaml" >block.yaml
-expect 0 run block.yaml --accuracy 0.1% --json
-about .velocity 0.2548419979 1e-6
+moves 0.2548419979 1e-6 block.yaml --accuracy 0.1%
 # All steps count, those of corrections too: every one of them took one evaluation or more.
 expect 0 run "$crawler" --set friction=0.2 --accuracy 0.1% --json
 holds '.steps >= 100 * .steady.periods and .steps <= .force_evaluations'
@@ -202,15 +190,13 @@ holds '.steps >= 100 * .steady.periods and .steps <= .force_evaluations'
 sed 's/periods: 1100/periods: 12/; s/{last: 100}/{last: 10}/' "$crawler" >short.yaml
 expect 0 run short.yaml --integrator rk4-events --step "10 us" --json
 right=$(jq .velocity out)
-expect 0 run short.yaml --accuracy 0.1% --json
-about .velocity "$right" 0.001
+moves "$right" 0.001 short.yaml --accuracy 0.1%
 
 # Scenes of others. Steps that the motion bears well but for its accuracy: an independent program, and
 # adaptive with a tolerance of 1e-10, say 0.116804.
 for wanted in "1% 0.01" "0.2% 0.002"; do
   set -- $wanted
-  expect 0 run "$here/capped.yaml" --accuracy "$1" --json
-  about .velocity 0.116804 "$2"
+  moves 0.116804 "$2" "$here/capped.yaml" --accuracy "$1"
   holds '.accuracy.kept and .accuracy.expected > 0'
 done
 # Chaos is no answer: fine runs say 0.106, 0.122, 0.020.
@@ -243,8 +229,7 @@ shows 0 "known within" run catch.yaml
 for row in "chance 1% 0.01 0.036670" "chance 2% 0.02 0.036670" "growing 0.5% 0.005 0.054808" \
   "stalled 1% 0.01 0.0510317" "pair 0.3% 0.003 -0.0495417"; do
   set -- $row; scene=$1 accuracy=$2 part=$3 right=$4
-  expect 0 run "$here/$scene.yaml" --accuracy "$accuracy" --json
-  about .velocity "$right" "$part"
+  moves "$right" "$part" "$here/$scene.yaml" --accuracy "$accuracy"
   holds .accuracy.kept
 done
 
@@ -267,8 +252,7 @@ for wanted in "2% 0.02" "1% 0.01"; do
   holds .accuracy.kept
 done
 # Feet without normal force at the start: all methods, with steps that are small enough, say -0.20297.
-expect 0 run "$here/weightless.yaml" --accuracy 2% --json
-about .velocity -0.20297 0.02
+moves -0.20297 0.02 "$here/weightless.yaml" --accuracy 2%
 holds .accuracy.kept
 # An answer that the last bits of the start decide is known no better than they say.
 expect 5 run "$here/sensitive.yaml" --accuracy 1% --json
@@ -276,8 +260,7 @@ holds '(.accuracy.kept | not) and .accuracy.expected > 0.01'
 
 # An orbit that runs leave again is not extrapolated to, though its period is the drive's: beside it the steady
 # motion takes two periods, and is 7 % slower (adaptive until steady within 0.05 %: 16.708 mm/s).
-expect 0 run "$crawler" --set friction=0.1 --set "frequency=13.613 Hz" --set "amplitude=0.2986 mm" --accuracy 2% --json
-about .velocity 0.016708 0.02
+moves 0.016708 0.02 "$crawler" --set friction=0.1 --set "frequency=13.613 Hz" --set "amplitude=0.2986 mm" --accuracy 2%
 holds '.steady.repeats == 2'
 
 # A structure that becomes stiffer than at its start, here as it falls into state III, gets smaller steps, and not
@@ -326,12 +309,10 @@ actuators: {d0: {member: m13, signal: {square: {amplitude: 0.01496, frequency: 8
 run: {periods: 5, of: d0, measure: {last: 5}}
 solver: {integrator: adaptive, step: 1/(80*8.49)}
 END
-expect 0 run brief.yaml --accuracy 0.5% --json
-about .velocity -0.00441520472 .accuracy.expected
+moves -0.00441520472 .accuracy.expected brief.yaml --accuracy 0.5%
 holds '.accuracy.kept and .accuracy.expected < 0.005'
 for tolerance in 5e-6 1.6667e-7; do
-  expect 0 run brief.yaml --tolerance $tolerance --json
-  about .velocity -0.00441520472 0.002
+  moves -0.00441520472 0.002 brief.yaml --tolerance $tolerance
   holds '.events == 72'
 done
 
@@ -357,9 +338,7 @@ run: {duration: 0.956}
 solver: {step: 1 ms}
 END
 for setting in "implicit --tolerance 1e-10" "adaptive8 --tolerance 2e-9" "adaptive8 --tolerance 1e-10" "adaptive --tolerance 1e-8" "rk4-events --step 5e-6"; do
-  # shellcheck disable=SC2086
-  expect 0 run pushed.yaml --integrator $setting --json
-  about .velocity -0.260301183 1e-6
+  moves -0.260301183 1e-6 pushed.yaml --integrator $setting
   holds '.events == 77'
 done
 
@@ -379,9 +358,7 @@ solver: {step: 1 ms}
 END
 for setting in "implicit --tolerance 1e-10" "adaptive8 --tolerance 1e-10" "adaptive --tolerance 1e-10" \
   "rk4-events --step 1e-4"; do
-  # shellcheck disable=SC2086
-  expect 0 run held.yaml --integrator $setting --json
-  about .velocity 0.0011415962 1e-6
+  moves 0.0011415962 1e-6 held.yaml --integrator $setting
 done
 
 # What has just switched may switch back within the next step, where a root at its beginning hides the one that is

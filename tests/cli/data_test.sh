@@ -13,8 +13,7 @@ printf 'mass_A\nt\tx\ty\n0\t0.001\t-0.002\n0.5\t0.0015\tnan\n1.0\t2.25e-3\t-0.00
 printf '# of an array\n# t, x, y\n0,10,20\n0.5,15,\n1,22.5,30\n' >pixels.csv
 printf 'scorer,N,N,N,N,N,N\nbodyparts,p,p,p,q,q,q\ncoords,x,y,likelihood,x,y,likelihood\n0,10,20,1,1,1,1\n1,15,,0.5,1,1,1\n2,22.5,30,1,1,1,1\n' >film.csv
 printf 'Frame,p,,q,\n,x,y,x,y\n0,10,20,1,1\n1,15,,1,1\n2,22.5,30,1,1\n' >markers.csv
-cat >forms.yaml <<END
-strut: 1
+yaml forms.yaml <<END
 data:
   strut: {file: strut.csv}
   machine: {file: machine.csv}

@@ -74,7 +74,6 @@ if formats 0 vtk run -o vtk; then
 fi
 for draw in snapshots curves; do expect 0 run all.yaml --quiet --draw $draw --plot $draw.svg; done
 for what in equilibria "modes --at start" rigidity; do
-  # shellcheck disable=SC2086
   set -- $what
   command=$1
   shift

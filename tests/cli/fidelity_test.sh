@@ -8,7 +8,6 @@ rod=$here/../../models/basics/pendulum.yaml
 
 # same_run OPTIONS FILE MODEL: MODEL with the options runs as FILE without
 same_run() {
-  # shellcheck disable=SC2086 # options, not one word
   expect 0 run "$3" $1 --json
   cp "$work/out" "$work/one"
   expect 0 run "$2" --json

@@ -221,14 +221,12 @@ sed 's/-0.1/0.1/; s/height: -gap/through: [5, gap], normal: [0, -1]/; s/-20/20/'
 sed -e 's/\[1, -0.1\]/[-0.1, -1]/; s/\[2, 0\]/[0, -2]/; s/\[1, -20\]/[-20, -1]/' \
   -e 's/height: -gap/through: [-gap, 7], normal: [1, 0]/' floor.yaml >wall.yaml
 ends_as_on_the_floor() { # MODEL X Y: the point of the floor that the node's last place stands for
-  # shellcheck disable=SC2086
   expect 0 path "$1" $over --json
   jq -e --slurpfile floor floor.last "[.points[-1] | $2, $3, .contacts.b] as \$x |
     [range(3) | \$x[.] - \$floor[0][.] | fabs] | max < 1e-9" out >/dev/null ||
     fail "$1 $over ends at $(jq -c '.points[-1] | [.nodes.b, .contacts.b]' out), not $(cat floor.last)"
 }
 for over in '' '--over gap --until 0.05'; do
-  # shellcheck disable=SC2086
   expect 0 path floor.yaml $over --json
   jq -c '[.points[-1] | .nodes.b[], .contacts.b]' out >floor.last
   holds '.points[-1].contacts.b > 1'

@@ -3,8 +3,7 @@
 # Texts that would act in another language, or end where they should not: bytes of damaged files, names, folders.
 . "$(dirname "$0")/lib.sh"
 
-cat >model.yaml <<'END'
-strut: 1
+yaml model.yaml <<'END'
 name: "=HYPERLINK(\"http://example.org\")"
 parameters: {k: 100 N/m}
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
@@ -12,8 +11,7 @@ members: {m: {kind: spring, nodes: [a, b], stiffness: k}}
 solver: {step: 1 ms}
 run: {duration: 0.1 s}
 END
-cat >study.yaml <<'END'
-strut: 1
+yaml study.yaml <<'END'
 study: S
 model: model.yaml
 axes: [{points: points.csv}]
@@ -28,8 +26,7 @@ for cell in '1\0junk' '\0' '"1\0"' '1\n\0\0\0'; do
 done
 printf 'k\n1\n' >points.csv
 expect 0 check study.yaml
-cat >network.yaml <<'END'
-strut: 1
+yaml network.yaml <<'END'
 nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1}}
 members: {m: {kind: spring, nodes: [a, b], stiffness: 100}}
 controllers: {c: {network: net.csv, inputs: [0.5], scale: 1 mm}}
@@ -57,8 +54,7 @@ shows 0 "'=HYPERLINK" compare model.yaml model.yaml --csv
 
 # ---- names without a look ----
 named() {
-  cat >named.yaml <<END
-strut: 1
+  yaml named.yaml <<END
 nodes: {a: {position: [0, 0], fixed: both}, "$1": {position: [1, 0], mass: 1}}
 members: {m: {kind: spring, nodes: [a, "$1"], stiffness: 100}}
 END

@@ -7,7 +7,6 @@ hopper=$here/hopper.yaml
 # ticks PROCESS: processor time it has used [1/100 s]; nothing once it is over.
 ticks() {
   state=$(sed 's/.*) //' "/proc/$1/stat" 2>/dev/null) || return 0
-  # shellcheck disable=SC2086
   set -- $state
   [ $# -lt 13 ] || [ "$1" = Z ] || echo $((${12} + ${13}))
 }

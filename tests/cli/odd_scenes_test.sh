@@ -10,7 +10,6 @@ whole() {
     "form --given densities" "form --given lengths" "form --given prestress"; do
     for json in "" --json; do
       [ "$json" ] || [ "$words" != "equilibria --starts 1" ] || continue # one search will do
-      # shellcheck disable=SC2086
       "$strut" $words $json "$1.yaml" >out 2>err </dev/null
       code=$?
       case $code in 0 | 2 | 3) ;; *) fail "strut $words $json, $1: exit code $code" ;; esac

@@ -15,7 +15,6 @@ END
 
 # Unstable: said by run, by modes and by equilibria, with the node.
 for command in "run" "run --accuracy 1%" "run --quiet"; do
-  # shellcheck disable=SC2086
   tells 0 "unstable equilibrium" ${command%% *} rod.yaml ${command#run}
   err_has "node 'tip'" "initial.settle.perturb"
 done
@@ -30,7 +29,6 @@ out_has "unstable equilibrium"
 # Pushed off it hangs, for all of them.
 sed 's/settle: true/settle: {perturb: yes}/' rod.yaml >hangs.yaml
 for command in "run" "run --accuracy 1%" "modes" "equilibria"; do
-  # shellcheck disable=SC2086
   expect 0 ${command%% *} hangs.yaml ${command#"${command%% *}"}
   err_empty
   out_has_not "nstable equilibrium:"
@@ -63,7 +61,6 @@ head -2 plain/nodes.csv >start
 i=0
 for way in "--accuracy 1%" "--integrator verlet-events --step 50us" "--integrator adaptive --step 1ms"; do
   i=$((i + 1))
-  # shellcheck disable=SC2086
   expect 0 run jumper.yaml --quiet $way -o "way-$i"
   head -2 "way-$i/nodes.csv" >other
   same start other

@@ -109,7 +109,6 @@ done
 (SLURM_ARRAY_TASK_ID=6 sh job.sh) >out 2>err || fail "a task of the script fails"
 [ -s "it's here/shards/shard-0006-of-0007.slots" ] || fail "the script computes nothing"
 for wrong in "--time soon" "--memory much" "--shards 0" "--cpus 0"; do
-  # shellcheck disable=SC2086
   expect 1 sweep study.yaml -o x --emit slurm --shards 7 $wrong
 done
 tells 1 "--shards" sweep study.yaml -o x --emit slurm

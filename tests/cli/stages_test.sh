@@ -29,10 +29,7 @@ sed '/^path:/,$d' truss.yaml >plain.yaml
 { cat plain.yaml; echo 'path: {stages: [{load: side}, {load: push}]}'; } >two.yaml
 expect 0 path one.yaml --json
 end=$(jq -c '.points[-1].nodes.apex' "$work/out")
-expect 0 path two.yaml --json
-jq -e --argjson was "$end" '.points[-1].nodes.apex as [$x, $y] |
-  (($x - $was[0]) | fabs) < 1e-13 and (($y - $was[1]) | fabs) < 1e-13' "$work/out" >jq.out ||
-  fail "the order of loads"
+gives '.points[-1].nodes.apex' "$end" 1e-13 path two.yaml
 { sed 's/, side: .*}}$/}/' plain.yaml; echo 'path: {stages: [{load: push}]}'; } >single.yaml
 expect 0 path single.yaml --json
 jq -S 'del(.earlier_stages)' "$work/out" >staged.json
@@ -44,16 +41,12 @@ for end in "-1.2 -0.5" "-0.15 0.5"; do
   set -- $end
   { sed '/^loads:/d; /^actuators:/d' plain.yaml
     echo "path: {stages: [{over: apex.y, until: $1 m}, {release: apex.y}]}"; } >through.yaml
-  expect 0 path through.yaml --json
-  jq -e --argjson y "$2" '(.points[-1].nodes.apex[1] - $y | fabs) < 1e-12 and .end == "until"' \
-    "$work/out" >jq.out || fail "let go at $1"
+  finds "(.points[-1].nodes.apex[1] - $2 | fabs) < 1e-12 and .end == \"until\"" path through.yaml
 done
 # Back where it was held: the value of a displacement goes on from where a stage left it.
 { cat plain.yaml; echo 'path: {stages: [{over: apex.y, until: -100 mm}, {load: side}, {over: apex.y, until: 0}]}'; } >back.yaml
 expect 0 path back.yaml --json
-jq -e '.points[0].value == -0.1 and (.points[-1].nodes.apex[1] -
-  .earlier_stages[0].points[0].nodes.apex[1] | fabs) < 1e-14' "$work/out" \
-  >jq.out || fail "back where it was held"
+holds '.points[0].value == -0.1 and (.points[-1].nodes.apex[1] - .earlier_stages[0].points[0].nodes.apex[1] | fabs) < 1e-14'
 # A load beyond the truss's snaps; the stage ends where the apex has moved so far.
 { cat plain.yaml; echo 'path: {stages: [{load: push, until: 20, stop: {apex.y: -0.6 m}}, {load: side}]}'; } >stop.yaml
 finds '.earlier_stages[0].end == "stop" and (.points[0].nodes.apex[1] + 0.1 | fabs) < 1e-12' path stop.yaml

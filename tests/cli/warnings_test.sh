@@ -25,7 +25,6 @@ reported() { # FILE CODE WORDS
 
 unreported() { # FILE
   for command in check "run --force"; do
-    # shellcheck disable=SC2086
     expect 0 $command "$1"
     [ ! -s err ] || fail "$command has nothing to warn of"
   done
@@ -126,7 +125,6 @@ out_has '"caveat":	"fixed steps of rk4 pass over changes between sticking and sl
 shows 0 ' not known: fixed steps of rk4 pass over changes between sticking and slipping; --accuracy 1%' run slide.yaml
 grep -q '^  accuracy  *not known: fixed steps' out || fail "the remark has no label 'accuracy'"
 for method in "--integrator rk4-events" "--accuracy 1%"; do
-  # shellcheck disable=SC2086
   shows 0 '"caveat":	null' run slide.yaml --json $method
 done
 
@@ -141,14 +139,12 @@ solver: {step: 0.2}
 run: {duration: 629}
 EOF
 for case in "verlet 0.2 1" "euler 0.2 1" "verlet-events 0.2 1" "midpoint 0.2 2.1" "rk4 0.4 0.13"; do
-  # shellcheck disable=SC2086
   set -- $case
   expect 0 run sway.yaml --integrator "$1" --step "$2" --json
   out_has "\"caveat\":	\"steps of $2 s shift the phase of vibrations at 0.159 Hz, where most of the kinetic energy is, by some $3 rad\""
 done
 shows 0 "by some 0.14 rad; --accuracy 1%" run sway.yaml --integrator verlet --step 0.3 --set damping=0.02
 for silent in "verlet --step 0.1 --set damping=0.02" "rk4 --step 0.2" "adaptive --step 0.4"; do
-  # shellcheck disable=SC2086
   shows 0 '"caveat":	null' run sway.yaml --json --integrator $silent
 done
 

@@ -4,7 +4,6 @@
 # is killed and when; and the searches that workers cannot share.
 #
 #   sh workers_test.sh STRUT METHOD...     cma, nsga2, multistart
-# shellcheck disable=SC2086  # several processes are meant
 . "$(dirname "$0")/lib.sh"
 shift
 sed 's/^  seconds: 0.5/&\n  friction: 0.3/; s/mu: 0.3/mu: friction/' "$here/hopper.yaml" >model.yaml

@@ -48,8 +48,7 @@ TEST(bars_through_no_length_keep_their_balance) {
     double step = 1e-4, worst = 0;
     for (int half = 0; half < 4; half++, step /= 2) {
       setup = through(rest, misses[k / METHOD_COUNT]);
-      motion_experiment(&setup, step, 1.05);
-      setup.experiment.integrator = METHODS[k % METHOD_COUNT];
+      motion_experiment_by(&setup, step, 1.05, METHODS[k % METHOD_COUNT]);
       OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
       strut_run_options options = {0};
       OWN(strut_summary) s;

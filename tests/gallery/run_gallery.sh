@@ -52,7 +52,6 @@ ask() {
   answer=$scratch/$(printf '%s %s' "$1" "$2" | cksum | tr ' ' -)
   [ ! -e "$answer" ] || return 0
   model=$1
-  # shellcheck disable=SC2086
   set -- $2
   name_of_command=$1
   shift
@@ -66,7 +65,6 @@ ask() {
     esac
   done
   status=0
-  # shellcheck disable=SC2086
   "$strut" "$name_of_command" "$model" $options --json >"$answer" 2>"$scratch/message" || status=$?
   [ "$status" = 0 ] || jq -n --arg message "$(tr '\n' ' ' <"$scratch/message")" --argjson status "$status" \
     '{$status, $message}' >"$answer"

@@ -34,7 +34,6 @@ compare() {
 read_by() {
   mkdir -p "$scratch/reader-$1"
   for source in $reader; do
-    # shellcheck disable=SC2086
     "$1" $options "$2" -I. $includes -c "$source" -o "$scratch/reader-$1/$(echo "$source" | tr / _).o"
   done
 }
@@ -47,7 +46,6 @@ build() {
       all/* | */gcc/-O0 | */gcc/*native | */clang/-O3) ;;
       *) continue ;;
     esac
-    # shellcheck disable=SC2086
     "$1" $options $level -I. $includes $engine "$scratch/reader-$2"/*.o -o "$scratch/golden-$1" \
       $libraries -lm
     compare "$1 $level" "$scratch/golden-$1" "$scratch/$1"

@@ -22,10 +22,8 @@ static strut_summary bounce(const char *method, double step) {
   setup.scene.gravity[1] = -10;
   build_mass(&setup.scene, 0, 0.1, 1);
   build_contact(&setup.scene, 0, 1e5, 0);
-  motion_experiment(&setup, step, 1);
-  setup.experiment.integrator = method;
-  strut_summary s = motion_simulate(&setup);
-  return s;
+  motion_experiment_by(&setup, step, 1, method);
+  return motion_simulate(&setup);
 }
 
 /* Without losses its energy at the end is that at the start: known without the energy balance. */
@@ -56,8 +54,7 @@ static strut_summary let_go(double takes) {
   signal.value = build_numbers(&setup.scene, value, 3);
   build_actuator(&setup.scene, 1, build_signal(&setup.scene, signal));
   motion_experiment(&setup, 1e-4, 1);
-  strut_summary s = motion_simulate(&setup);
-  return s;
+  return motion_simulate(&setup);
 }
 
 TEST(a_drive_that_jumps) {
@@ -84,8 +81,7 @@ TEST(a_run_that_ends_at_a_jump) {
       signal.amplitude = 0.01152;
       signal.frequency = 6.99;
       build_actuator(&setup.scene, 0, build_signal(&setup.scene, signal));
-      motion_experiment(&setup, 1e-3, periods / signal.frequency);
-      setup.experiment.integrator = methods[i];
+      motion_experiment_by(&setup, 1e-3, periods / signal.frequency, methods[i]);
       setup.experiment.tolerance = 1e-9;
       OWN(strut_summary) s = motion_simulate(&setup);
       assert_near(s.energy.residual, 0, 1e-7);
@@ -171,8 +167,7 @@ TEST(a_loss_that_gives_ends_the_run) {
       strut_summary s;
       strut_error error = {0};
       builders[k](&setup.scene);
-      motion_experiment(&setup, 5e-4, 1);
-      setup.experiment.integrator = methods[i];
+      motion_experiment_by(&setup, 5e-4, 1, methods[i]);
       for (int forced = 0; forced < 2; forced++) {
         const strut_run_options options = {.force = forced};
         assert_ok(strut_model_compile(&setup.scene, &model, NULL));
@@ -204,8 +199,7 @@ TEST(friction_of_any_size_only_takes) {
       scene->nodes[1].velocity[0] = 0.1;
       build_rough_contact(scene, 1, 1e5, 10, mu[k], mu[k], 0);
       scene->contacts[0].friction.law = STRUT_FRICTION_COULOMB;
-      motion_experiment(&setup, 1e-4, 1);
-      setup.experiment.integrator = methods[i];
+      motion_experiment_by(&setup, 1e-4, 1, methods[i]);
       OWN(strut_summary) s = motion_simulate(&setup);
       if (right == 0) right = s.energy.dissipated_friction;
       assert_within(s.energy.dissipated_friction, 0, 0.5 * 0.1 * 0.1);

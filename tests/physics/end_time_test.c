@@ -15,8 +15,7 @@ static strut_setup pushed(const char *method, double step, double duration) {
   setup.scene.nodes[0].velocity[0] = SPEED;
   build_load(&setup.scene, 0, PUSH, 0, build_sine(&setup.scene, 1, FREQUENCY));
   build_actuator(&setup.scene, 0, build_sine(&setup.scene, 0.1, 1.3 * FREQUENCY));
-  motion_experiment(&setup, step, duration);
-  setup.experiment.integrator = method;
+  motion_experiment_by(&setup, step, duration, method);
   setup.experiment.tolerance = 1e-10;
   return setup;
 }
@@ -111,8 +110,7 @@ TEST(velocity_to_the_end) {
     build_mass(&setup.scene, 0, 0, MASS);
     setup.scene.nodes[0].velocity[0] = SPEED;
     build_load(&setup.scene, 0, PUSH, 0, build_sine(&setup.scene, 1, FREQUENCY));
-    motion_experiment(&setup, STEP, 0.049969);
-    setup.experiment.integrator = method->name;
+    motion_experiment_by(&setup, STEP, 0.049969, method->name);
     setup.experiment.tolerance = 1e-10;
     setup.experiment.measure_last = 0.0003; /* within the last step, which has 0.969 ms */
     OWN(strut_summary) s = motion_simulate(&setup);

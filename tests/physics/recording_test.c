@@ -239,8 +239,7 @@ TEST(samples_between_steps_do_not_reach_across_a_touchdown) {
     clean();
     build_contact(&setup.scene, build_mass(&setup.scene, 0, height, mass), k, 0);
     setup.scene.gravity[1] = -g;
-    motion_experiment(&setup, 1e-3, touch + 0.01);
-    setup.experiment.integrator = methods[i];
+    motion_experiment_by(&setup, 1e-3, touch + 0.01, methods[i]);
     setup.experiment.tolerance = 1e-9;
     setup.experiment.output_every = 1.7e-4;
     setup.experiment.channels = STRUT_CHANNEL_POSITION | STRUT_CHANNEL_VELOCITY |
@@ -346,8 +345,7 @@ TEST(contact_forces_of_methods_with_events) {
         (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = 0.5, .mu_kinetic = 0.4};
     setup.scene.gravity[1] = -g;
     build_load(&setup.scene, 0, push, 0, -1);
-    motion_experiment(&setup, 1e-3, 0.1);
-    setup.experiment.integrator = methods[i];
+    motion_experiment_by(&setup, 1e-3, 0.1, methods[i]);
     setup.experiment.output_every = 0.01;
     setup.experiment.channels = STRUT_CHANNEL_CONTACT;
     assert_ok(run(&setup));

@@ -149,8 +149,7 @@ static motion begin_crawler(strut_setup *setup, const char *method, int64_t step
   strut_setup_init(setup);
   structure_crawler(&setup->scene, 10, 1e-4, 0.2, false);
   setup->experiment.tolerance = 1e-7;
-  motion m = motion_begin_by(setup, method, 0.1 / (double)steps);
-  return m;
+  return motion_begin_by(setup, method, 0.1 / (double)steps);
 }
 
 /* Its derivative over a period from a steady motion against differences of runs with 30000 steps, relative to its

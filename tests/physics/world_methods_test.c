@@ -25,8 +25,7 @@ static outcome run(uint64_t seed, unsigned parts, const char *method, double ste
   const strut_run_options options = {0};
   random_world_make(&world, seed, parts);
   OWN(model_run) run = model_read_text("random.yaml", world.text, set_none);
-  motion_experiment(&run.setup, step, 0.2);
-  run.setup.experiment.integrator = method;
+  motion_experiment_by(&run.setup, step, 0.2, method);
   run.setup.experiment.tolerance = tolerance;
   OWN_POINTER(strut_model) model = motion_compile(&run.setup.scene);
   strut_status status = strut_simulate(model, &run.setup.experiment, &options, &s, NULL);
@@ -126,8 +125,7 @@ TEST(refused_memory) {
   random_world_make(&world, 1, WORLD_ALL | WORLD_LIGHT);
   OWN(model_run) run = model_read_text("random.yaml", world.text, set_none);
   for (int m = 0; m < 3; m++) {
-    motion_experiment(&run.setup, 1e-3, 2e-3);
-    run.setup.experiment.integrator = methods[m];
+    motion_experiment_by(&run.setup, 1e-3, 2e-3, methods[m]);
     REFUSE_EACH(n, status, 10) status = refused(n, compile_and_run(&run.setup));
   }
 }

@@ -31,13 +31,11 @@ sources="tests/recipes/recipes.c tests/recipes/things.c tests/recipes/observable
   $(find engine/scene engine/model engine/forces engine/integrate parser/language/yaml parser/language/expression parser/language/keys parser/language/read parser/language/write parser/language/study engine/run -name '*.c')
   engine/output/csv.c engine/output/file.c engine/output/buffer.c engine/output/results.c engine/statics/curvature.c engine/statics/dense_algebra.c engine/statics/sparse_algebra.c
   engine/statics/minimise.c engine/statics/potential.c engine/statics/spectrum.c"
-# shellcheck disable=SC2086
 printf '%s\n' $sources | xargs -P 2 -n 12 sh -c 'cc=$1 includes=$2; shift 2
   for file; do
     $cc -std=c17 -D_POSIX_C_SOURCE=200809L -DSTRUT_VERSION="\"recipes\"" -ffp-contract=off \
       -fno-math-errno -Wno-psabi -Wswitch -Werror=switch -O0 -I. $includes -c "$file" \
       -o "$(echo "$file" | tr / _).o" || exit 255
   done' sh "$cc" "$includes"
-# shellcheck disable=SC2086
 $cc ./*.o -o recipes $libraries -lpthread -lm
 ./recipes

@@ -24,7 +24,6 @@ printf '%s\n' parser/program/*.c parser/program/*/*.c engine/statics/modes/modes
   xargs -P 2 -n 12 sh -c 'cc=$1 flags=$2; shift 2
     for file; do eval "$cc $flags -O0 -w -c $file -o $(echo "$file" | tr / _).o" || exit 255; done' sh "$cc" "$flags"
 libraries=$(tr ' ' '\n' <"$rules/link.txt" | grep -E '[.](a|so)$|^-l' | tr '\n' ' ')
-# shellcheck disable=SC2086
 (cd "$build/parser/program" && $cc -Wl,--export-dynamic "$OLDPWD"/*.o -o "$OLDPWD/strut" $libraries)
 ln -s "$build/modules" modules
 

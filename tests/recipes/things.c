@@ -61,7 +61,7 @@ static void add(void *context, double number) {
 
 /* A scene that was made without a file: its number is checked, and counts for what is at rest. */
 static void change_the_scene(strut_setup *setup) {
-  OWN(strut_findings) findings = {0};
+  strut_findings findings = {0};
   numbers before = {0}, after = {0};
   strut_setup_at_rest(setup, add, &before);
   setup->scene.hinges[0].set += 0.01;
@@ -72,6 +72,7 @@ static void change_the_scene(strut_setup *setup) {
              strcmp(findings.items[0].key, "set") == 0 &&
              strstr(findings.items[0].message, "must not be negative"),
          "its range is not checked");
+  strut_findings_free(&findings);
 }
 
 int test_a_number_of_hinges(void) {

@@ -63,8 +63,12 @@ void motion_free(motion *m) {
 }
 
 void motion_experiment(strut_setup *setup, double step, double duration) {
-  setup->experiment.step = step;
-  setup->experiment.duration = duration;
+  setup->experiment.step = step, setup->experiment.duration = duration;
+}
+
+void motion_experiment_by(strut_setup *setup, double step, double duration, const char *method) {
+  motion_experiment(setup, step, duration);
+  setup->experiment.integrator = method;
 }
 
 strut_summary motion_simulate(const strut_setup *setup) {

@@ -40,5 +40,6 @@ strut_model *motion_compile(const strut_scene *scene);
 
 /** Runs the experiment with default options and expects STRUT_OK; free the summary. */
 strut_summary motion_simulate(const strut_setup *setup);
-/** Sets the experiment: step and duration [s]. */
+/** Sets the experiment: step and duration [s], and the method. */
 void motion_experiment(strut_setup *setup, double step, double duration);
+void motion_experiment_by(strut_setup *setup, double step, double duration, const char *method);

@@ -13,9 +13,8 @@
 static strut_status read_text(strut_setup *setup, const char *text, const strut_override *set,
                               size_t sets) {
   OWN(strut_diagnostics) diagnostics = {0};
-  strut_status status = strut_setup_read(setup, "test.yaml", text, strlen(text), set, sets,
-                                         STRUT_FOR_RUN, &diagnostics);
-  return status;
+  return strut_setup_read(setup, "test.yaml", text, strlen(text), set, sets, STRUT_FOR_RUN,
+                          &diagnostics);
 }
 
 /* Reads a scene that must be valid. */

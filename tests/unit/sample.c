@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/unit/sample.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
+#include "tests/support/test.h"
 
 #include "tests/support/test.h"
 
