@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/statics/search/critical.h"
 
-#ifdef _OPENMP
 #include <assert.h>
 #include <math.h>
-#include <omp.h>
 #include <string.h>
+
+#ifdef _OPENMP
+#include <omp.h>
 #endif
 
 #include "engine/model/pose.h"
