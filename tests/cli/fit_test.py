@@ -479,6 +479,32 @@ fit:
         identified(found, name, truth)
 
 
+def vibrates():
+    """A steady vibration does not say at which period the film begins: fits a period apart are nearly as good."""
+    write("vibrates.yaml", """strut: 1
+parameters: {k: 100 N/m, c: 2 N s/m}
+nodes: {w: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], mass: 1 kg, fixed: y}}
+members: {s: {kind: spring, nodes: [w, b], stiffness: k, damping: c, rest_length: 1 m}}
+loads: {p: {node: b, force: [1 N, 0], signal: {sine: {amplitude: 1, frequency: 1.5 Hz}}}}
+solver: {step: 1 ms}
+run: {duration: 20 s}
+""")
+    w = 3.0 * math.pi
+    size = 1.0 / complex(100.0 - w * w, 2.0 * w)
+    times = [10.0 + 0.01 * i for i in range(150)]
+    places = [1.0 + abs(size) * math.sin(w * t + math.atan2(size.imag, size.real)) for t in times]
+    for seed, over in ((3, "k: {from: 50, to: 200}, c: {from: 0.2, to: 20}"), (5, "k: {from: 50, to: 200}")):
+        table("vibrates.csv", {"t [s]": times, "x [m]": places}, 20e-6, seed)
+        found, _ = fit(f"vibrates-{seed}", f"""model: vibrates.yaml
+data: {{film: {{file: vibrates.csv}}}}
+fit:
+  over: {{{over}}}
+  match: {{film: {{time: film.t, b.x: film.x, noise: 20 um, align: {{delay: free}}}}}}
+  starts: 4
+""", code=5, err="about as small ends elsewhere")
+        refused(found, "starts disagree")
+
+
 def coverage(count, align=""):
     """In how many of so many noises the intervals hold the truth; `align`: of the match."""
     study = ALIKE.replace("    other: {from: 0.1 N s/m, to: 5 N s/m}\n", "").replace("starts: 3", "starts: 1").replace(
@@ -544,7 +570,7 @@ if "--long" in sys.argv:
     alike()
     long()
     finish()
-for part in (crawls, axis, member, statics, alike, ranges, delayed, placed, driven, refusals):
+for part in (crawls, axis, member, statics, alike, ranges, delayed, placed, driven, vibrates, refusals):
     part()
 for held in (coverage(20), coverage(12, SEEN_IN_PART)):
     check(all(share >= 0.75 for share in held.values()), f"intervals of noises hold: {held}")

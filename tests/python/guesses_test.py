@@ -106,6 +106,13 @@ class Guesses(unittest.TestCase):
         self.assertGreater(abs(pushed.energy.load_work + pushed.energy.input_work), 1e-5)
         self.assertLess(abs(pushed.energy.residual), 1e-8)
 
+        def pull(sim):
+            sim.rest[0] = sim.rest0[0] * (1 - 0.02 * sim.time)
+
+        pulled = robot.run(controller=pull, **how)
+        self.assertGreater(abs(pulled.energy.input_work), 1e-5)
+        self.assertLess(abs(pulled.energy.residual), 1e-3 * abs(pulled.energy.input_work))
+
         def stop(sim):
             if sim.time > 0.05:
                 raise KeyboardInterrupt
@@ -180,6 +187,8 @@ class Guesses(unittest.TestCase):
         crawlers = strut.compare(scene, scene(friction=0.2), no_motion=True)
         self.assertEqual([model["values"].friction for model in crawlers.models], [0.1, 0.05])
         self.assertIn("<svg", crawlers.svg())
+        strut.compare(scene, scene(friction=0.2), no_motion=True, plot=study.with_name("two.svg"), title="Two of them")
+        self.assertGreater(study.with_name("two.svg").stat().st_size, 10000)
         self.assertRaisesRegex(ValueError, "no other svg; options of the figure", crawlers.svg, width="column")
         self.assertRaisesRegex(TypeError, "did you mean 'accuracy'", strut.compare, scene, acuracy=1)
         self.assertRaisesRegex(ValueError, "accuracy.*'1 m'", strut.compare, scene, accuracy="1 m")

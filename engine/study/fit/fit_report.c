@@ -21,8 +21,11 @@ static const double CORRELATED = 5.0;
 /* Starts agree whose sums differ by this part of what an end of an interval takes. */
 static const double SAME = 0.05;
 
-/* Another fit that is as good, but so many half intervals away, is another answer. */
+/* Another fit that is about as good, but so many half intervals away, is another answer. */
 static const double AWAY = 2.0;
+
+/* There may be many such fits: one is left out only if its sum excludes it more surely than an interval has to. */
+static const double ELSEWHERE = 0.995;
 
 /* Along a direction with this standard deviation, in parts of ranges, nothing is determined. */
 static const double WIDE = 0.25;
@@ -191,7 +194,7 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
 
 /* ---- starts ---- */
 
-/* Is a fit that is as good as the best one another answer? Where that is not determined it may be anywhere. */
+/* Is a fit that is about as good as the best one another answer? What is not determined may be anywhere. */
 static bool is_another(const strut_fit_result *result, const strut_fit_row *row) {
   const strut_fit_estimate *estimate = result->estimates + result->aligned_count;
   for (size_t k = 0; k < result->variable_count; k++, estimate++) {
@@ -206,17 +209,19 @@ static bool is_another(const strut_fit_result *result, const strut_fit_row *row)
 /* Why starts disagree; "": they agree. `rise`: of the sum at an end of an interval. */
 static const char *compare_starts(double rise, strut_fit_result *result) {
   double least = result->starts[result->best].sum;
+  double elsewhere = gsl_cdf_chisq_Pinv(ELSEWHERE, 1.0) * result->scale * result->scale;
   bool better = !result->settled, known = !isnan(result->chi_square);
   const char *why = "";
   for (size_t i = 0; i < result->start_count + result->beside_count; i++) {
     bool start = i < result->start_count;
     strut_fit_row *row = &result->starts[i];
     if (row->sum < least - SAME * rise) better = true;
-    if (row->end == STRUT_FIT_FAILED || !(row->sum <= least + rise)) continue;
+    double more = row->end == STRUT_FIT_CONVERGED ? elsewhere : rise;
+    if (row->end == STRUT_FIT_FAILED || !(row->sum <= least + more)) continue;
     bool another = is_another(result, row);
     row->agrees = !another && row->sum <= least + SAME * rise;
     result->agreeing += start && row->agrees;
-    if (another) why = "a fit with residuals as small ends elsewhere";
+    if (another) why = "a fit with residuals about as small ends elsewhere";
   }
   for (size_t i = 0; i < 2 * result->variable_count; i++)
     better = better || result->ends[i].sum < least - SAME * rise;

@@ -235,13 +235,15 @@ bool strut_read_program(strut_reader *reader, const strut_tree *value, const cha
     reader->failed = true;
     return false;
   }
-  const bool text = strcmp(owner.kind, "the parameters") == 0 && !strchr(error.message, ';') &&
+  const bool text = strcmp(owner.kind, "the parameters") == 0 &&
                     strstr(error.message, "unknown parameter") &&
                     error.length == strlen(value->text);
   if (!fine && error.message[0])
     strut_report_error(reader, place_within(value, &error), "in '%s' of %s: %s%s", key,
                        strut_owner_text(reader, owner), error.message,
-                       text ? "; a text stands in quotes" : "");
+                       !text                        ? ""
+                       : strchr(error.message, ';') ? " (a text stands in quotes)"
+                                                    : "; a text stands in quotes");
   return fine;
 }
 

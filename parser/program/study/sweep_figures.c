@@ -44,9 +44,10 @@ static void judge_column(const void *context, size_t i, const strut_figure_key *
   bool bars = self->lines && strcmp(key->key, "x") == 0;
   if (key->number ? words && !bars : self->runs && i > node)
     snprintf(fault, STRUT_MESSAGE_MOST,
-             key->number
+             !key->number ? "'%.60s' is recorded; expected an axis, or 'node'"
+             : self->lines
                  ? "column '%.60s' holds texts, not numbers; 'series' and 'panels' take texts"
-                 : "'%.60s' is recorded; expected an axis, or 'node'",
+                 : "column '%.60s' holds texts, not numbers",
              name);
   else if (*key->ends == '=' && i < node && !has_text(self, i, text))
     snprintf(fault, STRUT_MESSAGE_MOST, "'%.60s' is no value of '%.60s'", text, name);

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class Motion(Run):
     """A run under a controller: what it recorded, and a summary with `velocity`, the mean one along x [m/s].
 
-    Energies are those at the end; `input_work` is the work of the controller. There is no figure and no page.
+    Energies are those at the end; `input_work` is the controller's part of `drive_work`. There is no figure and no page.
     """
 
     _guesses = {
@@ -70,8 +70,8 @@ def _energies(sim: Simulation) -> dict[str, float]:
 
 
 def _balance(energy: Mapping[str, float]) -> float:
-    """What is stored and dissipated, less the work that was done."""
-    return sum(-value if name.endswith("_work") else value for name, value in energy.items())
+    """What is stored and dissipated, less the work that was done; drive_work has input_work in it."""
+    return sum(-value if name.endswith("_work") else value for name, value in energy.items() if name != "input_work")
 
 
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
