@@ -113,13 +113,14 @@ stiffness_at: {{node: apex, direction: {degrees} deg}}
         x, y = 2000 / rest ** 2, 2000 * 0.09 / rest ** 2
         c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
         near(row["stiffness [N/m]"], 1 / (c * c / x + s * s / y), f"stiffness at {degrees} deg")
-    row = sweep("held", f"""model: {truss}
+    for node, degrees, model, axis in (("left", 0, truss, "load: [0 N]"), ("block", 90, "copied/basics/oscillator.yaml", "steps: [200]")):
+        row = sweep(f"held-{node}", f"""model: {model}
 compute: modes
-axes: [{{load: [0 N]}}]
+axes: [{{{axis}}}]
 keep: [stiffness]
-stiffness_at: {{node: left, direction: 0 deg}}
+stiffness_at: {{node: {node}, direction: {degrees} deg}}
 """)[0]
-    check(row["stiffness [N/m]"] == "", str(row))
+        check(row["stiffness [N/m]"] == "", str(row))
     points = [-0.05, -0.1, -0.2, -0.35, -0.5, -0.6]
     for off in (0.0, 2.0):
         pairs = ", ".join(f"[{u} m, {force(u) + off} N]" for u in points)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "engine/study/sweep/sweep_parts.h"
 
+#include <float.h>
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
@@ -110,8 +111,10 @@ strut_status strut_goals_stiffness(const strut_study *study, const strut_model *
   strut_status status =
       strut_node_stiffness_create(model, positions, &node_stiffness, &reason, error);
   if (status || !node_stiffness) return status;
-  const double direction[2] = {cos(study->goal.stiffness_direction),
-                               sin(study->goal.stiffness_direction)};
+  double direction[2] = {cos(study->goal.stiffness_direction),
+                         sin(study->goal.stiffness_direction)};
+  for (int i = 0; i < 2; i++) /* 90 degrees are along y alone */
+    if (fabs(direction[i]) < DBL_EPSILON) direction[i] = 0.0;
   *stiffness = strut_node_stiffness_along(node_stiffness, node, direction);
   strut_node_stiffness_free(node_stiffness);
   return STRUT_OK;

@@ -165,7 +165,7 @@ def unknown(name: str, known: Iterable[str], what: str = "name") -> str:
     """A sentence for a name that is not there, with those that may have been meant."""
     import difflib
 
-    names = [one for one in known if not one.startswith("_")]
+    names = list(dict.fromkeys(one for one in known if not one.startswith("_")))
     close = [_MEANT[name]] if _MEANT.get(name) in names else difflib.get_close_matches(name, names, 3)
     if close:
         return f"no {what} '{name}'; did you mean {' or '.join(map(repr, close))}?"
