@@ -63,7 +63,7 @@ STRUT_API strut_energies strut_energy_evaluate_at(const strut_model *model,
 /** The first of them alone, at velocities v (length) [J]. */
 STRUT_API double strut_energy_kinetic(const strut_model *model, const double *velocity);
 
-/** Sum of constant load times position [J]: its change is the work of the loads (gravity is none). */
+/** Sum of constant load times position [J], gravity left out: its change is the work of the loads. */
 STRUT_API double strut_energy_load_potential(const strut_model *model, const strut_state *state);
 
 /** Work of the constant loads since strut_energy_reset_load_work, which must have been called [J]. */

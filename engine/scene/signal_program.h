@@ -162,7 +162,7 @@ STRUT_API strut_signal_bounds strut_program_bound(const strut_program *program,
 /**
  * First time after t [s], up to `until`, at which the program may have a kink or a jump as a function of time alone:
  * where the argument of abs, min, max, floor, ceil, round or atan2 passes its edge. Those of its signals are not
- * looked for. INFINITY: none. Where the work allowed does not suffice, a time up to which there is none.
+ * looked for. INFINITY if it has none. If the work allowed is used up, a time before which none lies.
  */
 STRUT_API double strut_program_next_kink(const strut_program *program, const strut_signal *signals,
                                          const double *started, double t, double until);

@@ -189,7 +189,7 @@ void strut_feedback_apply(const strut_model *model, const strut_state *state, do
 void strut_feedback_add_rates(const strut_model *model, const strut_state *state, double t,
                               const double *velocity, double *force);
 
-/** The first sample after t [s]; INFINITY: there is none. */
+/** The time of the first sample after t [s], or INFINITY if no sample follows. */
 double strut_feedback_next_sample(const strut_model *model, double t);
 /**
  * Samples the signals that are due at time t [s] of the steps, within the tolerance [s], at the state's

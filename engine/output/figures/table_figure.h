@@ -33,7 +33,7 @@ STRUT_API strut_status strut_table_draw(const strut_plot *plot, const strut_stud
 
 enum { STRUT_MOST_TABLE_GROUPS = 40, STRUT_KEYS_OF_ROWS = 3 };
 
-/** The row of the first side, or two and a weight between them; SIZE_MAX: there is none. */
+/** The row of the first side, or two and a weight between them; SIZE_MAX if no row fits. */
 typedef struct strut_table_partner {
   size_t row, next;
   double weight; /* of `next` */

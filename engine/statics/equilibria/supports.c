@@ -366,7 +366,7 @@ static double share(grip_search *self, double along) {
   return change;
 }
 
-/* Moves g->q to the equilibrium; false where there is none near it. */
+/* Moves g->q to the equilibrium; false if no equilibrium is near it. */
 static bool find_rest(grip_search *self, double along, double *residual) {
   double scale = self->search->potential->force_scale;
   for (int turn = 0; turn < ROUNDS; turn++) {

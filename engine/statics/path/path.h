@@ -167,7 +167,7 @@ typedef struct strut_path_options {
   const double *start; /* (length) or, before `at`, the equilibrium itself, with the parameter at
                           `from`; a coordinate that is displaced has its value there */
   bool friction;       /* static and kinetic friction act, by the history of the path */
-  const strut_path *after; /* with `start`: the path whose end and memory it goes on from */
+  const strut_path *after; /* with `start`: the path that this one continues, with its memory */
   double from;             /* where the path begins: in SI, or the factor */
   double until;            /* where it ends; a load's factor from 0 to 0 ends at 1 */
   int32_t steps;           /* maximum number of steps; 0: the usual ones; of each branch, too */

@@ -234,7 +234,7 @@ static strut_status find_profile_end(const fitting *self, strut_fit_case *one, s
   return status;
 }
 
-/* Goes on from a place beside the best fit while few steps bring the sum within reach. */
+/* Fits again from a place beside the best fit, as long as a few steps bring the sum within reach. */
 static strut_status fit_again(const fitting *self, strut_fit_case *one, double *parameters,
                               strut_fit_solution *solution) {
   static const double reach[] = {FAR * REACH, REACH, HUGE_VAL};

@@ -99,7 +99,7 @@ void strut_fit_layout_free(strut_fit_layout *layout);
 
 /** The time that the numbers of a match take [s]. */
 double strut_fit_span(const strut_fit_match *match);
-/** The quantity of that name; NULL: there is none. */
+/** The quantity of that name, or NULL. */
 const strut_quantity_definition *strut_fit_quantity(const strut_experiment *experiment,
                                                     const char *name);
 

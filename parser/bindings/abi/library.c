@@ -360,14 +360,22 @@ char *strutlib_yaml_places(const char *name, const char *text, strutlib_error **
 /* ---- codes ---- */
 
 #define STATUSES(X)                                                                                \
-  X(OK, "ok"), X(USAGE, "usage"), X(BAD_SCENE, "bad_scene"), X(DIVERGED, "diverged"),              \
-      X(STEP_TOO_LARGE, "step_too_large"), X(NOT_SETTLED, "not_settled"), X(SINGULAR, "singular"), \
-      X(WORK_LIMIT, "work_limit"), X(FILE_TROUBLE, "file_trouble"), X(NO_MEMORY, "no_memory"),     \
-      X(INTERRUPTED, "interrupted"), X(INACCURATE, "inaccurate")
-#define NAME(CODE, WORD) [STRUTLIB_##CODE] = WORD
-/* Not a constant where the header has another number than strut_status. */
-#define SAME(CODE, WORD) SAME_##CODE = 1 / (STRUTLIB_##CODE == (int)STRUT_##CODE)
-enum { STATUSES(SAME), SAME_COUNT = 1 / (STRUTLIB_INACCURATE + 1 == (int)STRUT_STATUS_COUNT) };
+  X(OK, "ok")                                                                                      \
+  X(USAGE, "usage")                                                                                \
+  X(BAD_SCENE, "bad_scene")                                                                        \
+  X(DIVERGED, "diverged")                                                                          \
+  X(STEP_TOO_LARGE, "step_too_large")                                                              \
+  X(NOT_SETTLED, "not_settled")                                                                    \
+  X(SINGULAR, "singular")                                                                          \
+  X(WORK_LIMIT, "work_limit")                                                                      \
+  X(FILE_TROUBLE, "file_trouble")                                                                  \
+  X(NO_MEMORY, "no_memory")                                                                        \
+  X(INTERRUPTED, "interrupted")                                                                    \
+  X(INACCURATE, "inaccurate")
+#define NAME(CODE, WORD) [STRUTLIB_##CODE] = WORD,
+#define SAME(CODE, WORD) _Static_assert(STRUTLIB_##CODE == (int)STRUT_##CODE, WORD);
+STATUSES(SAME)
+_Static_assert(STRUTLIB_INACCURATE + 1 == (int)STRUT_STATUS_COUNT, "all have a word");
 static const char *const status_names[STRUT_STATUS_COUNT] = {STATUSES(NAME)};
 
 static bool is_status(int status) { return status >= 0 && status < (int)STRUT_STATUS_COUNT; }
