@@ -154,6 +154,7 @@ static void recompute(uint64_t seed, coverage *seen) {
   cover_forces(seen, &scene, &slow, state->v);
   for (unsigned term = 1; term <= STRUT_TERM_SOLVE; term <<= 1)
     seen->terms[term] += (model->terms & term) != 0;
+  slow_free(&slow);
 }
 
 TEST(random_scenes_agree_with_a_slow_recomputation) {

@@ -205,7 +205,8 @@ static void check_contacts(strut_checker *checker, const size_t *pieces) {
                  scene->contacts[i - 1].ground == contact->ground;
     if (!has_surface(scene, contact, pieces))
       strut_fault(checker, NULL, "is with a ground, or a piece of one, that does not exist");
-    else if (strut_friction_has_bristles(contact->friction.law) && !again)
+    else if ((unsigned)contact->friction.law < STRUT_FRICTION_LAW_COUNT &&
+             strut_friction_has_bristles(contact->friction.law) && !again)
       report_ground(checker, contact);
     strut_check_fields(checker, STRUT_FIELDS_CONTACT, contact, NULL);
     check_friction(checker);
