@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Far from the origin, parameters of any size, and motion that dies into the smallest numbers. */
+/* Far from the origin, parameters of any size, a ratio of 1e12, and motion that dies into the smallest numbers. */
 #include <gsl/gsl_errno.h>
 #include <time.h>
 
@@ -125,6 +125,29 @@ TEST(parameters_of_any_size) {
   print_message("1e-300 to 1e300: %d invalid, %d refused, %d stopped with a sentence, %d answers\n",
                 t.invalid, t.refused, t.stopped, t.answered);
   assert_true(t.answered > 100 && t.refused > 100);
+}
+
+/* Support - 1e12 N/m - 1 kg - 1 N/m - 1 kg: the slow mode from its end to its middle, in steps
+   that the fast one bears. */
+TEST(dynamics_of_a_stiffness_ratio) {
+  const double stiff = 1e12, soft = 1, pi = 3.14159265358979323846;
+  double sum = stiff + 2 * soft, product = stiff * soft;
+  double omega = sqrt(2 * product / (sum + sqrt(sum * sum - 4 * product)));
+  int64_t steps = 2600000;
+  double period = 2 * pi / omega, ratio = soft / (stiff + soft - omega * omega);
+  OWN(strut_scene) scene = build_scene();
+  build_support(&scene, 0, 0);
+  build_mass(&scene, 1, 0, 1);
+  build_mass(&scene, 2, 0, 1);
+  build_member(&scene, STRUT_BAR, 0, 1, stiff, 0, 0);
+  build_member(&scene, STRUT_SPRING, 1, 2, soft, 0, 0);
+  scene.nodes[1].start[0] = 1 + 0.25 * ratio, scene.nodes[2].start[0] = 2.25;
+  OWN(motion) m = motion_begin(&scene, period / (double)steps);
+  motion_steps(&m, steps / 4 * 5);
+  print_message("1e12 against 1 N/m: off by %.1e m after 5/4 periods of %lld steps\n",
+                fabs(m.state->q[4] - 2), (long long)steps);
+  assert_near(m.state->q[4], 2, 1e-9);
+  assert_near(m.state->q[2], 1, 1e-12);
 }
 
 static double cpu_seconds(void) {

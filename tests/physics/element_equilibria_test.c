@@ -47,12 +47,8 @@ static void add_nodes(structure *s, uint64_t *r) {
 }
 
 static void add_hinge(strut_scene *scene, uint64_t *r, int32_t a, int32_t b, int32_t c) {
-  strut_hinge *h = &scene->hinges[scene->hinge_count++];
-  *h = strut_hinge_default();
-  h->name = scene->hinge_count == 1 ? "h1" : "h2";
-  h->node[0] = a, h->node[1] = b, h->node[2] = c;
-  h->stiffness = random_between(r, 0.1, 1.0);
-  h->rest_angle = random_between(r, -STRUT_TAU / 2, STRUT_TAU / 2);
+  int32_t h = build_hinge(scene, a, b, c, random_between(r, 0.1, 1.0), 0);
+  scene->hinges[h].rest_angle = random_between(r, -STRUT_TAU / 2, STRUT_TAU / 2);
 }
 
 /* Springs that hold every free node, a running cable, two hinges, stops and a hardening spring. */
@@ -74,10 +70,7 @@ static void make(structure *s, uint64_t seed) {
   hard->stiffness = 0;
   double rest = random_between(&r, 1.5, 3), stiffness = random_between(&r, 5, 20);
   int32_t cable = build_sized(scene, STRUT_CABLE, 0, 2, stiffness, 0, 0, rest);
-  static int32_t guides[2] = {ANCHORS + 1, ANCHORS + 2};
-  scene->members[cable].guides = guides, scene->members[cable].guide_count = 2;
-  scene->hinges = strut_arena_allocate(&scene->arena, 2, sizeof *scene->hinges);
-  assert_non_null(scene->hinges);
+  build_guides(scene, cable, (const int32_t[]){ANCHORS + 1, ANCHORS + 2}, 2);
   add_hinge(scene, &r, 0, ANCHORS, ANCHORS + 1);
   add_hinge(scene, &r, ANCHORS, ANCHORS + 1, ANCHORS + 2);
   for (size_t j = 0; j < scene->member_count; j++) s->rest[j] = scene->members[j].rest_value;
