@@ -34,9 +34,8 @@ static double when(double omega) {
 }
 
 static strut_status run(const strut_setup *setup, bool force, strut_summary *s, strut_error *e) {
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   *e = (strut_error){0};
-  return strut_simulate(model, &setup->experiment, &(strut_run_options){.force = force}, s, e);
+  return motion_try(setup, (strut_run_options){.force = force}, s, e);
 }
 
 static const char *const METHODS[] = {"rk4",        "verlet",        "euler",

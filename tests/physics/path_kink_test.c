@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Paths with kinks, and with stiff bars: stability on each side and every digit, by closed forms. */
-#include <gsl/gsl_eigen.h>
-
 #include "engine/statics/potential.h"
 #include "tests/physics/walk.h"
+#include "tests/support/dense.h"
 
 FREED_BY(strut_potential_free, strut_potential)
 
@@ -214,30 +213,16 @@ static strut_setup random_net(uint64_t seed) {
 /* Negative eigenvalues of the potential's own second derivatives; -1 where one is about zero. */
 static int32_t count_negative(const strut_potential *potential, const double *q,
                               strut_arena *arena) {
-  size_t n = (size_t)potential->n;
   strut_sparse *hessian = strut_potential_matrix(potential, arena);
-  gsl_matrix *dense = gsl_matrix_calloc(n, n);
-  gsl_vector *values = gsl_vector_alloc(n);
-  gsl_eigen_symm_workspace *eigen = gsl_eigen_symm_alloc(n);
   int32_t count = 0;
-  assert_true(hessian && dense && values && eigen);
+  assert_non_null(hessian);
   strut_potential_hessian(potential, q, hessian);
-  for (size_t j = 0; j < n; j++)
-    for (int32_t at = hessian->start[j]; at < hessian->start[j + 1]; at++) {
-      gsl_matrix_set(dense, (size_t)hessian->row[at], j, hessian->value[at]);
-      gsl_matrix_set(dense, j, (size_t)hessian->row[at], hessian->value[at]);
-    }
-  gsl_eigen_symm(dense, values, eigen);
-  for (size_t i = 0; i < n && count >= 0; i++) {
-    double value = gsl_vector_get(values, i);
-    if (fabs(value) < 1e-7)
-      count = -1;
-    else if (value < 0)
-      count++;
+  OWN_POINTER(gsl_matrix) dense = dense_of(hessian, 0);
+  OWN_POINTER(gsl_vector) values = dense_eigenvalues(dense, NULL);
+  for (size_t i = 0; i < values->size; i++) {
+    if (fabs(gsl_vector_get(values, i)) < 1e-7) return -1;
+    count += gsl_vector_get(values, i) < 0;
   }
-  gsl_matrix_free(dense);
-  gsl_vector_free(values);
-  gsl_eigen_symm_free(eigen);
   return count;
 }
 

@@ -122,9 +122,8 @@ TEST(bars_and_stick_are_solved_together) {
 
 /* What strut_simulate says of a scene that it must refuse. */
 static strut_status refusal(const strut_setup *setup, strut_error *error) {
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   OWN(strut_summary) summary;
-  return strut_simulate(model, &setup->experiment, &(strut_run_options){0}, &summary, error);
+  return motion_try(setup, (strut_run_options){0}, &summary, error);
 }
 
 TEST(what_cannot_be_rigid_is_refused_by_name) {

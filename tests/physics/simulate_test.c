@@ -108,9 +108,8 @@ static strut_error error; /* of the latest simulate() */
 
 static strut_status simulate(const strut_setup *setup, strut_run_options options,
                              strut_summary *summary) {
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   error = (strut_error){0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, summary, &error);
+  strut_status status = motion_try(setup, options, summary, &error);
   assert_int_equal(summary->status, status);
   assert_string_equal(summary->reason, status ? error.message : "");
   return status;
@@ -202,9 +201,7 @@ static strut_setup hanging(void) {
 
 TEST(settling_finds_the_static_equilibrium) {
   OWN(strut_setup) setup = hanging();
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_summary) s;
-  assert_ok(strut_simulate(model, &setup.experiment, &(strut_run_options){0}, &s, NULL));
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_true(s.settle_time > 0);
   assert_int_equal(s.spent.steps, 1);
   assert_near(s.duration, 1e-3, 1e-18);
