@@ -7,7 +7,6 @@
 #include "engine/forces/history.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
-#include "tests/physics/slow_model.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 

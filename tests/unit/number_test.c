@@ -93,14 +93,13 @@ TEST(length_bounds_the_literal) {
 TEST(rounding_is_correct) {
   for (int i = 0; i < 300000; i++) {
     char text[80];
-    int used = 0, whole = (int)random_below(&seed, i % 2 ? 8 : 25) + 1,
-        digits = (int)random_below(&seed, 20);
+    int used = 0, whole = random_below(&seed, i % 2 ? 8 : 25) + 1, digits = random_below(&seed, 20);
     for (int k = 0; k < whole; k++) text[used++] = (char)('0' + random_below(&seed, 10));
     if (digits) text[used++] = '.';
     for (int k = 0; k < digits; k++) text[used++] = (char)('0' + random_below(&seed, 10));
     text[used] = '\0';
     if (random_below(&seed, 2))
-      snprintf(text + used, 20, "e%d", (int)random_below(&seed, i % 3 ? 60 : 600) - 300);
+      snprintf(text + used, 20, "e%d", random_below(&seed, i % 3 ? 60 : 600) - 300);
     double expected = strtod(text, NULL), got = -1;
     bool readable = isfinite(expected) && (expected != 0 || strspn(text, "0.e-+") == strlen(text));
     bool read = strut_number_read_scaled(text, strlen(text), 0, &got);
@@ -129,7 +128,7 @@ TEST(every_double_comes_back) {
 TEST(scaling_rounds_once) {
   for (int i = 0; i < 100000; i++) {
     char text[40], scaled[60];
-    int decimal = (int)random_below(&seed, 19) - 9;
+    int decimal = random_below(&seed, 19) - 9;
     snprintf(text, sizeof text, "%u.%04u", random_below(&seed, 100000), random_below(&seed, 10000));
     snprintf(scaled, sizeof scaled, "%se%d", text, decimal);
     double got = -1, expected = strtod(scaled, NULL);
