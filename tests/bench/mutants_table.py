@@ -111,7 +111,7 @@ MUTANTS = [
            "slack cables store energy", "energy|recompute|member_laws"),
     Mutant("geometric-stiffness-sign", "engine/forces/tangent.h", "double more = along - across;",
            "double more = along + across;", "the tangent stiffness has the prestress twice along the member",
-           "step_limit|step_limit_dense|potential"),
+           "step_limit|step_limit_dense|world_statics"),
     Mutant("edge-of-band", "engine/scene/laws/friction.h",
            "mask slides = at_least(magnitude(slip), f->stick_velocity);",
            "mask slides = less(f->stick_velocity, magnitude(slip));",
@@ -351,7 +351,7 @@ MUTANTS = [
            "  const double *g = potential->model->scene->gravity, *weight = potential->model->weight;\n",
            "  static const double g[2] = {0.0, 0.0};\n"
            "  const double *weight = potential->model->weight;\n",
-           "the potential energy of the weight is left out", "potential|equilibria|standing"),
+           "the potential energy of the weight is left out", "potential|world_statics|equilibria|standing"),
     Mutant("list-downhill", "engine/statics/equilibria/equilibria.c",
            "y < b",
            "y > b",
