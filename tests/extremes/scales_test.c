@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Far from the origin, parameters of any size, a ratio of 1e12, and motion that dies into the smallest numbers. */
 #include <gsl/gsl_errno.h>
-#include <time.h>
 
 #include "engine/scene/checks/check.h"
 #include "tests/support/random.h"
@@ -150,21 +149,15 @@ TEST(dynamics_of_a_stiffness_ratio) {
   assert_near(m.state->q[2], 1, 1e-12);
 }
 
-static double cpu_seconds(void) {
-  struct timespec now;
-  assert_int_equal(clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now), 0);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* The least of several times that a run of so many steps takes. */
 static double time_of(strut_setup *setup, const char *method, int steps) {
   double least = HUGE_VAL;
   setup->experiment.integrator = method;
   motion_experiment(setup, 1e-3, steps * 1e-3);
   for (int k = 0; k < 7; k++) {
-    double begin = cpu_seconds();
+    double begin = test_seconds();
     OWN(strut_summary) s = motion_simulate(setup);
-    least = fmin(least, cpu_seconds() - begin);
+    least = fmin(least, test_seconds() - begin);
   }
   return least;
 }

@@ -119,22 +119,15 @@ TEST(nothing_is_computed_twice) {
   close(log.file);
 }
 
-static double cpu_time(void) {
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-         1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
 /* The table of a file of slots: CPU time of a point [s]. */
 static double table_of(const char *folder, const char *path) {
   strut_slots *slots;
   strut_slots_description plan;
-  double began = cpu_time();
+  double began = test_seconds();
   assert_ok(strut_slots_read(path, &slots, &plan, NULL));
   assert_ok(strut_study_table_write(folder, "table", &slots, 1, NULL));
   strut_slots_close(slots);
-  return (cpu_time() - began) / MANY;
+  return (test_seconds() - began) / MANY;
 }
 
 /* Bounds that a busy machine keeps; what they are stands in the message. */
@@ -144,9 +137,9 @@ TEST(a_million_points_cost_little) {
   strut_sweep_state end;
   struct rusage before, after;
   getrusage(RUSAGE_SELF, &before);
-  double began = cpu_time();
+  double began = test_seconds();
   assert_ok(sweep(path, MANY, &log, &end));
-  double cost = (cpu_time() - began) / MANY, table = table_of(folder, path);
+  double cost = (test_seconds() - began) / MANY, table = table_of(folder, path);
   getrusage(RUSAGE_SELF, &after);
   assert_true(end.done == MANY && end.failed == MANY && end.computed == MANY);
   print_message("%.2f us of CPU a point and %.2f us for its row of the table, %ld kB more\n",
@@ -154,8 +147,8 @@ TEST(a_million_points_cost_little) {
   assert_true(THREADS_WATCHED || cost + table < 20e-6); /* without optimisation too */
   assert_true(THREADS_WATCHED ||
               after.ru_maxrss - before.ru_maxrss < 4000); /* a bit each is 122 kB */
-  began = cpu_time();
+  began = test_seconds();
   assert_ok(sweep(path, MANY, &log, &end));
   assert_true(end.computed == 0 && end.failed == MANY);
-  print_message("%.2f us of CPU a point that is done\n", 1e6 * (cpu_time() - began) / MANY);
+  print_message("%.2f us of CPU a point that is done\n", 1e6 * (test_seconds() - began) / MANY);
 }
