@@ -253,8 +253,6 @@ static void check_structure(uint64_t seed) {
       print_error("seed %d: a minimum met %d times was missed\n", (int)seed, known.hits[k]);
     assert_true(nearest < NEAR);
   }
-  print_message("seed %d: %zu stable, of which brute force met %zu; %zu stationary\n", (int)seed,
-                stable, known.count, set.count);
   assert_true(stable >= known.count);
   strut_critical_free(&set);
   strut_setup_free(&s.setup);

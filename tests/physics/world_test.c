@@ -189,7 +189,6 @@ TEST(motions) {
       end(&f);
       if (!(worst < MOTION_TOLERANCE)) break;
     }
-    print_message("parts %u: %d steps agree to %.2g\n", parts, steps, worst);
     assert_true(worst < MOTION_TOLERANCE && steps > (int)motions * STEPS / 4);
   }
 }
