@@ -6,6 +6,7 @@
 
 #include "parser/language/read/read_scene.h"
 #include "tests/support/motion.h"
+#include "tests/support/random.h"
 #include "tests/support/sanitized.h"
 #include "tests/unit/document_support.h"
 
@@ -207,10 +208,8 @@ TEST(random_texts_are_survived) {
   int good = 0;
   for (int i = 0; i < 100000; i++) {
     char text[200] = "";
-    for (uint64_t n = 1 + (seed >> 33) % 14; n; n--) {
-      seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407u;
-      strcat(text, parts[(seed >> 33) % (sizeof parts / sizeof parts[0])]);
-    }
+    for (int32_t n = 1 + random_below(&seed, 14); n; n--)
+      strcat(text, parts[random_below(&seed, sizeof parts / sizeof parts[0])]);
     OWN(strut_document) document = {0};
     OWN(strut_diagnostics) diagnostics = {0};
     strut_status status = read_text(text, &document, &diagnostics);

@@ -3,6 +3,7 @@
 #include "engine/statics/algebra.h"
 
 #include <float.h>
+#include <gsl/gsl_sort.h>
 
 #include "tests/support/check.h"
 #include "tests/support/random.h"
@@ -10,11 +11,6 @@
 enum { MOST = 60 };
 
 static double z[MOST * MOST], a[MOST * MOST], value[MOST], work[MOST];
-
-static int ascending(const void *x, const void *y) {
-  double d = *(const double *)x - *(const double *)y;
-  return (d > 0) - (d < 0);
-}
 
 /* |A v - lambda v| and |v_i . v_j - delta| within some last bits of the largest value. */
 static void check(int32_t rows) {
@@ -54,7 +50,7 @@ TEST(closed_form) {
     if (i > 0) a[i * n + i - 1] = a[(i - 1) * n + i] = -1.0;
   }
   check(n);
-  qsort(value, (size_t)n, sizeof *value, ascending);
+  gsl_sort(value, 1, (size_t)n);
   for (int32_t k = 1; k <= n; k++)
     assert_true(fabs(value[k - 1] - (2.0 - 2.0 * cos(k * acos(-1.0) / (n + 1)))) < 1e-13);
 }
