@@ -49,7 +49,6 @@ static void check(const char *name) {
   strut_error error;
   OWN(strut_setup) setup = tightening(name, step);
   assert_fails(run(&setup, false, &s, &error), STRUT_DIVERGED, error, "t = ");
-  print_message("%s: %s\n", name, error.message);
   assert_relative(s.step_limit, reach / 20, 1e-6);
   if (s.limit_fell.limit > 0) {
     assert_non_null(strstr(error.message, "use solver.step <= "));

@@ -319,24 +319,19 @@ TEST(measuring_changes_nothing) {
 TEST(works_without_the_balance) {
   OWN(strut_setup) setup;
   OWN(strut_summary) with = hop("rk4", ALL, &setup), without;
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  strut_run_options options = {.without_balance = true};
-  assert_ok(strut_simulate(model, &setup.experiment, &options, &without, NULL));
+  assert_ok(motion_try(&setup, (strut_run_options){.without_balance = true}, &without, NULL));
   assert_same_bits(without.measured[2].value, with.measured[2].value);
   assert_true(with.measured[2].value > 0);
 }
 
 /* A stopped window gives no number, and no crash. */
 TEST(a_run_that_is_interrupted) {
-  OWN(strut_setup) setup;
-  strut_summary full = hop("rk4", ALL, &setup), s;
-  strut_summary_free(&full);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_setup) setup = model_read_format(HOPPER, "rk4", ALL).setup;
+  OWN(strut_summary) s;
   strut_flag stop = 1;
   strut_run_options options = {.interrupt = &stop};
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_INTERRUPTED);
+  assert_int_equal(motion_try(&setup, options, &s, NULL), STRUT_INTERRUPTED);
   for (size_t k = 0; k < 6; k++) assert_true(isnan(s.measured[k].value) && !s.measured[k].zero);
-  strut_summary_free(&s);
 }
 
 /* Twice as many steps take as many allocations. */
