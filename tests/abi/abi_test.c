@@ -8,46 +8,20 @@
 #include <locale.h>
 #include <pthread.h>
 #include <signal.h>
-#include <strut/abi.h>
 #include <time.h>
 
+#include "tests/abi/library.h"
 #include "tests/abi/triangle.h"
-#include "tests/support/test.h"
-
-FREED_BY(strutlib_result_free, strutlib_result)
-FREED_BY(strutlib_close, strutlib_scene)
-FREED_BY(strutlib_control_free, strutlib_control)
-FREED_BY(strutlib_simulation_close, strutlib_simulation)
 
 static const char crawler[] = "models/crawler/crawler.yaml";
 
-static strutlib_scene *open_crawler(void) {
-  strutlib_error *error;
-  strutlib_scene *scene = strutlib_open(crawler, 0, NULL, NULL, &error);
-  if (!scene) print_message("%s", strutlib_error_report(error));
-  assert_non_null(scene);
-  assert_null(error);
-  return scene;
-}
+static strutlib_scene *open_crawler(void) { return library_open(crawler); }
 
 /* A falling, bouncing triangle: small, with a duration of its own. */
 static const char triangle[] =
     TRIANGLE("0.2 s", ", channels: [position, velocity, length, force, contact, energy]");
 
-static strutlib_scene *open_text(const char *text) {
-  strutlib_error *error;
-  strutlib_scene *scene = strutlib_open_text("text", text, strlen(text), 0, NULL, NULL, &error);
-  if (!scene) print_message("%s", strutlib_error_report(error));
-  assert_non_null(scene);
-  return scene;
-}
-
-static strutlib_scene *open_triangle(void) { return open_text(triangle); }
-
-static strutlib_result *good(strutlib_result *result) {
-  assert_non_null(result);
-  return result;
-}
+static strutlib_scene *open_triangle(void) { return library_open_text(triangle); }
 
 static void assert_number(const strutlib_scene *scene, const char *path, double expected) {
   double value;
@@ -55,28 +29,7 @@ static void assert_number(const strutlib_scene *scene, const char *path, double 
   if (value != expected) fail_msg("%s is %.17g, expected %.17g", path, value, expected);
 }
 
-typedef struct array {
-  const double *data;
-  int dimensions;
-  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-} array;
-
-static array array_of(const strutlib_result *result, const char *name) {
-  array a = {.data = NULL};
-  if (!strutlib_result_array(result, name, &a.data, &a.dimensions, a.shape, a.stride))
-    print_message("no array '%s'\n", name);
-  assert_non_null(a.data);
-  return a;
-}
-
-static void assert_refused(strutlib_error *error, int status, const char *words) {
-  assert_non_null(error);
-  if (strutlib_error_status(error) != status || !strstr(strutlib_error_message(error), words))
-    print_message("%d: %s\n", strutlib_error_status(error), strutlib_error_message(error));
-  assert_int_equal(strutlib_error_status(error), status);
-  assert_non_null(strstr(strutlib_error_message(error), words));
-  strutlib_error_free(error);
-}
+static strutlib_error *error; /* of the latest call */
 
 /* ---- versions and codes ---- */
 
@@ -137,21 +90,15 @@ TEST(a_scene_shows_names_and_values) {
 }
 
 TEST(a_setting_changes_a_scene) {
-  strutlib_error *error;
-  const char *names[] = {"frequency", "friction"}, *values[] = {"12 Hz", "0.25"};
-  const char *more_names[] = {"friction"}, *more_values[] = {"0.5"};
-  strutlib_scene *scene = strutlib_open(crawler, 2, names, values, &error), *other;
-  assert_non_null(scene);
-  assert_number(scene, "parameters.frequency", 12.0);
-  other = strutlib_scene_with(scene, 1, more_names, more_values, &error);
-  assert_non_null(other);
+  strutlib_scene *scene =
+      strutlib_open(crawler, WITH_BOTH("frequency", "12 Hz", "friction", "0.25"), &error);
+  assert_number(given(scene, error), "parameters.frequency", 12.0);
+  OWN_POINTER(strutlib_scene) other = strutlib_scene_with(scene, WITH("friction", "0.5"), &error);
   strutlib_close(scene); /* the text is shared */
-  assert_number(other, "parameters.frequency", 12.0);
+  assert_number(given(other, error), "parameters.frequency", 12.0);
   assert_number(other, "ground.friction.mu_static", 0.5);
-  more_names[0] = "fricton";
-  assert_null(strutlib_scene_with(other, 1, more_names, more_values, &error));
+  assert_null(strutlib_scene_with(other, WITH("fricton", "0.5"), &error));
   assert_refused(error, STRUTLIB_BAD_SCENE, "fricton");
-  strutlib_close(other);
 }
 
 TEST(json_is_a_scene_too) {
@@ -160,12 +107,11 @@ TEST(json_is_a_scene_too) {
       "0]},\n"
       " \"members\": {\"m\": {\"nodes\": [\"a\", \"b\"], \"kind\": \"spring\",\n"
       "  \"stiffness\": \"4 N/cm\", \"mass\": 2}}}";
-  strutlib_error *error;
-  OWN_POINTER(strutlib_scene) scene = open_text(json);
+  OWN_POINTER(strutlib_scene) scene = library_open_text(json);
   assert_number(scene, "members.m.stiffness", 400.0);
   char *again = strutlib_scene_json(scene, &error);
   assert_non_null(again);
-  OWN_POINTER(strutlib_scene) second = open_text(again);
+  OWN_POINTER(strutlib_scene) second = library_open_text(again);
   char *yaml = strutlib_scene_yaml(scene, 0, &error),
        *copy = strutlib_scene_yaml(second, 0, &error);
   assert_string_equal(yaml, copy);
@@ -175,7 +121,6 @@ TEST(json_is_a_scene_too) {
 }
 
 TEST(a_scene_is_written_short_too) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_triangle();
   char *flat = strutlib_scene_yaml(scene, 0, &error), *text = strutlib_scene_yaml(scene, 1, &error);
   assert_non_null(flat);
@@ -195,8 +140,7 @@ TEST(an_error_knows_all_its_places) {
       "  b: {position: [1, 0], mass: 3 s}\n"
       "members:\n"
       "  m: {nodes: [a, b], kind: spring, stifness: 3 N/m}\n";
-  strutlib_error *error;
-  assert_null(strutlib_open_text("bad.yaml", bad, sizeof bad - 1, 0, NULL, NULL, &error));
+  assert_null(strutlib_open_text("bad.yaml", bad, sizeof bad - 1, NONE, &error));
   assert_int_equal(strutlib_error_status(error), STRUTLIB_BAD_SCENE);
   assert_int_equal(strutlib_error_count(error), 2);
   assert_non_null(strstr(strutlib_error_message(error), "bad.yaml:4:31: "));
@@ -213,15 +157,14 @@ TEST(an_error_knows_all_its_places) {
   assert_null(strutlib_error_text(error, 2));
   assert_int_equal(strutlib_error_line(error, 2), 0);
   strutlib_error_free(error);
-  assert_null(strutlib_open_text("bad.yaml", bad, sizeof bad - 1, 0, NULL, NULL, NULL));
-  assert_null(strutlib_open("there-is-no-such-file", 0, NULL, NULL, &error));
+  assert_null(strutlib_open_text("bad.yaml", bad, sizeof bad - 1, NONE, NULL));
+  assert_null(strutlib_open("there-is-no-such-file", NONE, &error));
   assert_refused(error, STRUTLIB_FILE_TROUBLE, "there-is-no-such-file");
-  assert_null(strutlib_open("-", 0, NULL, NULL, &error));
+  assert_null(strutlib_open("-", NONE, &error));
   assert_refused(error, STRUTLIB_FILE_TROUBLE, "no file");
 }
 
 TEST(options_are_checked_as_on_the_command_line) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_crawler();
   static const struct {
     const char *name, *value, *words;
@@ -237,17 +180,13 @@ TEST(options_are_checked_as_on_the_command_line) {
     assert_null(strutlib_run(scene, 1, &wrong[i].name, &wrong[i].value, NULL, &error));
     assert_refused(error, STRUTLIB_USAGE, wrong[i].words);
   }
-  const char *names[] = {"at"}, *values[] = {"IV"};
-  assert_null(strutlib_modes(scene, 1, names, values, NULL, &error));
+  assert_null(strutlib_modes(scene, WITH("at", "IV"), NULL, &error));
   assert_refused(error, STRUTLIB_USAGE, "IV");
-  names[0] = "supports", values[0] = "n1,n9";
-  assert_null(strutlib_equilibria(scene, 1, names, values, NULL, &error));
+  assert_null(strutlib_equilibria(scene, WITH("supports", "n1,n9"), NULL, &error));
   assert_refused(error, STRUTLIB_USAGE, "there is no node 'n9'");
-  names[0] = "over", values[0] = "frequenz";
-  assert_null(strutlib_path(scene, 1, names, values, NULL, &error));
+  assert_null(strutlib_path(scene, WITH("over", "frequenz"), NULL, &error));
   assert_refused(error, STRUTLIB_USAGE, "did you mean 'frequency'?");
-  names[0] = "least-tension", values[0] = "-1 N";
-  assert_null(strutlib_form(scene, 1, names, values, NULL, &error));
+  assert_null(strutlib_form(scene, WITH("least-tension", "-1 N"), NULL, &error));
   assert_refused(error, STRUTLIB_USAGE, "must not be negative");
   assert_string_equal(strutlib_option_name("run", 0), "force");
   assert_non_null(strutlib_option_help("path", 0));
@@ -257,9 +196,8 @@ TEST(options_are_checked_as_on_the_command_line) {
 /* ---- runs ---- */
 
 TEST(a_run_has_its_channels) {
-  strutlib_error *error;
   strutlib_scene *scene = open_triangle();
-  OWN_POINTER(strutlib_result) result = good(strutlib_run(scene, 0, NULL, NULL, NULL, &error));
+  OWN_POINTER(strutlib_result) result = given(strutlib_run(scene, NONE, NULL, &error), error);
   assert_null(error);
   strutlib_close(scene); /* a result stays */
   assert_int_equal(strutlib_result_status(result), STRUTLIB_OK);
@@ -313,34 +251,31 @@ static void check_page_data(char *data, const char *wanted) {
 }
 
 TEST(a_run_records_what_is_asked_for) {
-  strutlib_error *error;
+  array none;
   OWN_POINTER(strutlib_scene) scene = open_triangle();
-  const char *names[] = {"channels"}, *values[] = {"force,energy"};
-  const double *data;
-  int dimensions;
-  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-  strutlib_result *result = good(strutlib_run(scene, 1, names, values, NULL, &error));
-  array_of(result, "force");
-  assert_int_equal(strutlib_result_array(result, "position", &data, &dimensions, shape, stride), 0);
-  assert_null(strutlib_result_svg(result, 0, NULL, NULL, &error));
+  OWN_POINTER(strutlib_result) some =
+      given(strutlib_run(scene, WITH("channels", "force,energy"), NULL, &error), error);
+  array_of(some, "force");
+  assert_int_equal(strutlib_result_array(some, "position", &none.data, &none.dimensions, none.shape,
+                                         none.stride),
+                   0);
+  assert_null(strutlib_result_svg(some, NONE, &error));
   assert_refused(error, STRUTLIB_USAGE, "recorded");
-  strutlib_result_free(result);
-  names[0] = "record", values[0] = "no";
-  result = good(strutlib_run(scene, 1, names, values, NULL, &error));
-  assert_null(strutlib_result_array_name(result, 0));
-  assert_null(strutlib_result_html(result, &error));
+  OWN_POINTER(strutlib_result) nothing =
+      given(strutlib_run(scene, WITH("record", "no"), NULL, &error), error);
+  assert_null(strutlib_result_array_name(nothing, 0));
+  assert_null(strutlib_result_html(nothing, &error));
   assert_refused(error, STRUTLIB_USAGE, "without a recorded motion");
-  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
-  strutlib_result_free(result);
+  check_page_data(strutlib_result_page_data(nothing, &error), "\"motion\":null");
 }
 
 TEST(a_run_that_diverges_is_there_up_to_then) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_triangle();
   const char *names[] = {"force", "step", "integrator"}, *values[] = {"yes", "5 ms", "rk4"};
   assert_null(strutlib_run(scene, 2, names + 1, values + 1, NULL, &error));
   assert_refused(error, STRUTLIB_STEP_TOO_LARGE, "largest stable step");
-  OWN_POINTER(strutlib_result) result = good(strutlib_run(scene, 3, names, values, NULL, &error));
+  OWN_POINTER(strutlib_result) result =
+      given(strutlib_run(scene, 3, names, values, NULL, &error), error);
   assert_int_equal(strutlib_result_status(result), STRUTLIB_DIVERGED);
   assert_string_equal(strutlib_result_text(result, "status"), "diverged");
   assert_refused(error, STRUTLIB_DIVERGED, "");
@@ -348,14 +283,14 @@ TEST(a_run_that_diverges_is_there_up_to_then) {
 
 /* ---- statics, pictures ---- */
 
-static void check_picture(const strutlib_result *result, const char *const *names,
-                          const char *const *values, size_t count) {
-  strutlib_error *error;
-  char *svg = strutlib_result_svg(result, count, names, values, &error);
-  if (!svg) print_message("%s\n", strutlib_error_message(error));
-  assert_non_null(svg);
+/* The data of its page, where it has one, have these words; it has a picture; and it is released. */
+static void check_shown(strutlib_result *result, const char *words) {
+  if (words) check_page_data(strutlib_result_page_data(result, &error), words);
+  char *svg = given(
+      strutlib_result_svg(result, WITH_BOTH("title", "A title", "width", "column"), &error), error);
   assert_non_null(strstr(svg, "<svg"));
   strutlib_release(svg);
+  strutlib_result_free(result);
 }
 
 /* Names given as options belong to the caller, who may release them after the call. */
@@ -368,18 +303,15 @@ TEST(pictures_of_paths_outlive_the_options) {
       "loads: {push: {node: b, force: [-9 N, 0]}}\n";
   const char *names[2][3] = {{"load", "steps"}, {"over", "steps", "until"}};
   for (size_t i = 0; i < 2; i++) {
-    strutlib_error *error;
     char name[] = "push    ";
     const char *values[] = {name, "9", "2 kN/m"};
     strcpy(name, i == 0 ? "push" : "softness");
-    OWN_POINTER(strutlib_scene) scene = open_text(text);
+    OWN_POINTER(strutlib_scene) scene = library_open_text(text);
     OWN_POINTER(strutlib_result) result =
-        strutlib_path(scene, 2 + i, names[i], values, NULL, &error);
-    if (!result) print_message("%s\n", strutlib_error_message(error));
-    assert_non_null(result);
-    char *before = strutlib_result_svg(result, 0, NULL, NULL, &error);
+        given(strutlib_path(scene, 2 + i, names[i], values, NULL, &error), error);
+    char *before = strutlib_result_svg(result, NONE, &error);
     memset(name, 'X', strlen(name));
-    char *after = strutlib_result_svg(result, 0, NULL, NULL, &error);
+    char *after = strutlib_result_svg(result, NONE, &error);
     assert_string_equal(before, after);
     strutlib_release(before);
     strutlib_release(after);
@@ -387,10 +319,8 @@ TEST(pictures_of_paths_outlive_the_options) {
 }
 
 TEST(statics_have_arrays_and_pictures) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_crawler();
-  const char *names[] = {"title", "width"}, *values[] = {"A title", "column"};
-  strutlib_result *result = good(strutlib_equilibria(scene, 0, NULL, NULL, NULL, &error));
+  strutlib_result *result = given(strutlib_equilibria(scene, NONE, NULL, &error), error);
   array energy = array_of(result, "equilibria.energy"),
         nodes = array_of(result, "equilibria.nodes");
   assert_int_equal(energy.shape[0], strutlib_result_count(result, "equilibria"));
@@ -399,57 +329,43 @@ TEST(statics_have_arrays_and_pictures) {
   assert_int_equal(strutlib_result_number(result, "equilibria.3.energy", &value), 1);
   assert_true(value == energy.data[3]);
   assert_non_null(strutlib_result_text(result, "equilibria.0.name"));
-  check_picture(result, names, values, 2);
-  char *page = strutlib_result_html(result, &error);
-  assert_non_null(page);
-  strutlib_release(page);
-  check_page_data(strutlib_result_page_data(result, &error), "\"fate\":\"stands\"");
-  strutlib_result_free(result);
+  strutlib_release(given(strutlib_result_html(result, &error), error));
+  check_shown(result, "\"fate\":\"stands\"");
 
-  result = good(strutlib_modes(scene, 0, NULL, NULL, NULL, &error));
+  result = given(strutlib_modes(scene, NONE, NULL, &error), error);
   assert_int_equal(array_of(result, "modes.frequency").shape[0], 10);
-  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   assert_int_equal(array_of(result, "modes.shape").dimensions, 3);
-  check_picture(result, NULL, NULL, 0);
-  strutlib_result_free(result);
+  check_shown(result, "\"motion\":null");
 
-  result = good(strutlib_rigidity(scene, 0, NULL, NULL, NULL, &error));
+  result = given(strutlib_rigidity(scene, NONE, NULL, &error), error);
   assert_int_equal(array_of(result, "self_stress.states.forces").shape[1], 9);
   int flag;
   assert_int_equal(strutlib_result_flag(result, "self_stress.states.0.feasible", &flag), 1);
-  check_picture(result, NULL, NULL, 0);
-  strutlib_result_free(result);
+  check_shown(result, NULL);
 
-  result = good(strutlib_form(scene, 0, NULL, NULL, NULL, &error));
+  result = given(strutlib_form(scene, NONE, NULL, &error), error);
   assert_int_equal(array_of(result, "forces").shape[0], 9);
-  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
   char *yaml = strutlib_result_yaml(result, &error);
-  strutlib_scene *found = strutlib_open_text("form", yaml, strlen(yaml), 0, NULL, NULL, &error);
-  assert_non_null(found);
-  strutlib_close(found);
+  strutlib_close(library_open_text(yaml));
   strutlib_release(yaml);
-  check_picture(result, NULL, NULL, 0);
-  strutlib_result_free(result);
+  check_shown(result, "\"motion\":null");
 
   const char *path_names[] = {"over", "until", "steps"}, *path_values[] = {"drive", "1 mm", "9"};
-  result = good(strutlib_path(scene, 3, path_names, path_values, NULL, &error));
+  result = given(strutlib_path(scene, 3, path_names, path_values, NULL, &error), error);
   assert_int_equal(array_of(result, "points.value").dimensions, 1);
-  check_page_data(strutlib_result_page_data(result, &error), "\"motion\":null");
-  check_picture(result, NULL, NULL, 0);
-  strutlib_result_free(result);
+  check_shown(result, "\"motion\":null");
 
-  result = good(strutlib_matrices(scene, 0, NULL, NULL, NULL, &error));
+  result = given(strutlib_matrices(scene, NONE, NULL, &error), error);
   array value_of = array_of(result, "mass.value"), size = array_of(result, "mass.size");
   double sum = 0.0; /* of a consistent mass matrix over x and y: twice the mass */
   for (size_t i = 0; i < value_of.shape[0]; i++) sum += value_of.data[i];
   assert_true(size.data[0] == 10 && size.data[1] == 10 && fabs(sum - 2 * 0.14) < 1e-12);
-  assert_null(strutlib_result_svg(result, 0, NULL, NULL, &error));
+  assert_null(strutlib_result_svg(result, NONE, &error));
   assert_refused(error, STRUTLIB_USAGE, "no figure of matrices");
   strutlib_result_free(result);
 }
 
 TEST(the_language_is_a_schema) {
-  strutlib_error *error;
   char *scene = strutlib_schema(0, &error), *study = strutlib_schema(1, NULL);
   assert_all(!error, strstr(scene, "\"title\":\t\"scene\""),
              strstr(study, "\"title\":\t\"study\""));
@@ -464,7 +380,6 @@ static void host_handler(const char *reason, const char *file, int line, int cod
 }
 
 TEST(nothing_of_the_host_is_changed) {
-  strutlib_error *error;
   struct sigaction before, after;
   const char *locale = setlocale(LC_ALL, "");
   char kept[200];
@@ -475,9 +390,8 @@ TEST(nothing_of_the_host_is_changed) {
   fenv_t mode;
   fegetenv(&mode);
   OWN_POINTER(strutlib_scene) scene = open_triangle();
-  OWN_POINTER(strutlib_result) result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
-  OWN_POINTER(strutlib_simulation) simulation =
-      strutlib_simulation_open(scene, 0, NULL, NULL, NULL, &error);
+  OWN_POINTER(strutlib_result) result = strutlib_run(scene, NONE, NULL, &error);
+  OWN_POINTER(strutlib_simulation) simulation = strutlib_simulation_open(scene, NONE, NULL, &error);
   strutlib_simulation_advance(simulation, 100, &error);
   volatile double tiny = 1e-310; /* flushed to zero where the mode were left on */
   assert_true(tiny * 1.0 != 0.0);
@@ -492,8 +406,8 @@ TEST(nothing_of_the_host_is_changed) {
 /* ---- threads and interrupts ---- */
 
 static void *run_once(void *scene) {
-  strutlib_error *error;
-  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  strutlib_error *own;
+  strutlib_result *result = strutlib_run(scene, NONE, NULL, &own);
   if (!result) return NULL;
   char *text = malloc(strlen(strutlib_result_json(result)) + 1);
   strcpy(text, strutlib_result_json(result));
@@ -536,15 +450,13 @@ static int interrupt_soon(void *context, double fraction) {
 }
 
 TEST(an_interrupt_returns_what_there_is) {
-  strutlib_error *error;
   strutlib_scene *scene = open_crawler();
   OWN_POINTER(strutlib_control) control = strutlib_control_create();
-  const char *names[] = {"step"}, *values[] = {"0.001 ms"};
   double begin = processor_time();
   start_of_interrupt = 0.0;
   assert_int_equal(strutlib_control_interrupted(control), 0);
   strutlib_control_on_progress(control, interrupt_soon, &begin);
-  strutlib_result *result = strutlib_run(scene, 1, names, values, control, &error);
+  strutlib_result *result = strutlib_run(scene, WITH("step", "0.001 ms"), control, &error);
   double late = processor_time() - start_of_interrupt;
   assert_non_null(result);
   assert_int_equal(strutlib_result_status(result), STRUTLIB_INTERRUPTED);
@@ -552,14 +464,14 @@ TEST(an_interrupt_returns_what_there_is) {
   assert_true(late < 0.2);
   assert_int_equal(strutlib_control_interrupted(control), 1);
   strutlib_result_free(result);
-  assert_null(strutlib_run(scene, 0, NULL, NULL, control, &error));
+  assert_null(strutlib_run(scene, NONE, control, &error));
   assert_refused(error, STRUTLIB_INTERRUPTED, "before anything");
   strutlib_control_reset(control);
   strutlib_control_on_progress(control, NULL, NULL);
   strutlib_close(scene);
   scene = open_triangle();
   OWN_POINTER(strutlib_simulation) simulation =
-      strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
+      strutlib_simulation_open(scene, NONE, control, &error);
   assert_non_null(simulation);
   strutlib_interrupt(control);
   assert_int_equal(strutlib_simulation_advance(simulation, 5, &error), STRUTLIB_INTERRUPTED);
@@ -577,13 +489,11 @@ static void *interrupt_later(void *control) {
 }
 
 TEST(another_thread_interrupts_searches_and_sweeps) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_crawler();
   OWN_POINTER(strutlib_control) control = strutlib_control_create();
   pthread_t thread;
-  const char *names[] = {"starts"}, *values[] = {"10000000"};
   pthread_create(&thread, NULL, interrupt_later, control);
-  assert_null(strutlib_equilibria(scene, 1, names, values, control, &error));
+  assert_null(strutlib_equilibria(scene, WITH("starts", "10000000"), control, &error));
   assert_refused(error, STRUTLIB_INTERRUPTED, "interrupted");
   pthread_join(thread, NULL);
   strutlib_control_reset(control);
@@ -606,18 +516,15 @@ TEST(statics_end_too) {
   static strutlib_result *(*const find[])(const strutlib_scene *, size_t, const char *const *,
                                           const char *const *, strutlib_control *,
                                           strutlib_error **) = {strutlib_form, strutlib_modes};
-  strutlib_error *error;
   OWN_POINTER(strutlib_control) control = strutlib_control_create();
-  const char *names[] = {"cells"}, *values[] = {"4000"};
   OWN_POINTER(strutlib_scene) scene =
-      strutlib_open("models/parts/x-chain.yaml", 1, names, values, &error);
-  assert_non_null(scene);
+      given(strutlib_open("models/parts/x-chain.yaml", WITH("cells", "4000"), &error), error);
   for (size_t i = 0; i < sizeof find / sizeof *find; i++) {
     pthread_t thread;
     strutlib_control_reset(control);
     pthread_create(&thread, NULL, interrupt_later, control);
     double begin = processor_time();
-    assert_null(find[i](scene, 0, NULL, NULL, control, &error));
+    assert_null(find[i](scene, NONE, control, &error));
     assert_true(processor_time() - begin < 5.0);
     assert_refused(error, STRUTLIB_INTERRUPTED, "interrupted");
     pthread_join(thread, NULL);

@@ -6,15 +6,12 @@
  *   test_abi_agreement PROGRAM
  */
 #include <stdbool.h>
-#include <strut/abi.h>
 #include <unistd.h>
 
-#include "tests/support/test.h"
-
-FREED_BY(strutlib_close, strutlib_scene)
+#include "tests/abi/library.h"
+#include "tests/unit/scratch.h"
 
 static const char *program;
-static char folder[] = "/tmp/strut-agreement-XXXXXX";
 
 static const char *const models[] = {
     "models/basics/oscillator.yaml",       "models/basics/pendulum.yaml",
@@ -25,32 +22,16 @@ static const char *const models[] = {
     "models/parts/spring-chain.yaml"};
 enum { MODELS = sizeof models / sizeof models[0] };
 
-/* The whole of a file as a text, or NULL. */
 static char *read_file(const char *name) {
-  char path[300];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  FILE *file = fopen(path, "rb");
-  if (!file) return NULL;
-  size_t room = 1 << 20, used = 0, got;
-  char *text = malloc(room);
-  while ((got = fread(text + used, 1, room - used - 1, file)) > 0)
-    if ((used += got) + 1 == room) text = realloc(text, room *= 2);
-  text[used] = '\0';
-  fclose(file);
-  return text;
-}
-
-static void clear(void) {
-  char command[400];
-  snprintf(command, sizeof command, "rm -rf %s/* %s/.strut-files", folder, folder);
-  if (system(command) != 0) fail();
+  size_t length;
+  return scratch_read(scratch_path(name), &length);
 }
 
 /* Runs the program; its exit code. Standard output goes into the file "out". */
 static int run_program(const char *words, const char *model) {
   char command[900];
-  snprintf(command, sizeof command, "%s %s %s --quiet >%s/out 2>%s/err", program, words, model,
-           folder, folder);
+  snprintf(command, sizeof command, "%s %s %s --quiet >%s 2>%s", program, words, model,
+           scratch_path("out"), scratch_path("err"));
   int status = system(command);
   return status == -1 ? -1 : status / 256;
 }
@@ -83,17 +64,11 @@ static size_t compare_file(const strutlib_result *result, const char *file) {
   char *header = strtok_r(text, "\n", &line_end);
   for (char *cell = strtok_r(header, ",", &save); cell; cell = strtok_r(NULL, ",", &save)) {
     char name[200], *unit = strstr(cell, " [");
-    int dimensions;
-    size_t shape[STRUTLIB_DIMENSIONS], strides[STRUTLIB_DIMENSIONS];
     if (unit) *unit = '\0';
     name_of_array(file, cell, name, sizeof name);
-    if (!strutlib_result_array(result, name, &data[columns], &dimensions, shape, strides)) {
-      print_message("%s: no array '%s'\n", file, name);
-      fail();
-    }
-    assert_int_equal(dimensions, 1);
-    rows = shape[0];
-    stride[columns++] = strides[0];
+    array a = array_of(result, name);
+    assert_int_equal(a.dimensions, 1);
+    rows = a.shape[0], data[columns] = a.data, stride[columns++] = a.stride[0];
   }
   for (size_t i = 0; i < rows; i++) {
     char *line = strtok_r(NULL, "\n", &line_end), *cells = NULL;
@@ -116,10 +91,9 @@ static void check_run(const char *model, const strutlib_scene *scene) {
   char words[400];
   strutlib_error *error;
   size_t compared = 0;
-  clear();
-  snprintf(words, sizeof words, "run -o %s", folder);
+  snprintf(words, sizeof words, "run -o %s", scratch_make());
   int code = run_program(words, model);
-  strutlib_result *result = strutlib_run(scene, 0, NULL, NULL, NULL, &error);
+  strutlib_result *result = strutlib_run(scene, NONE, NULL, &error);
   assert_int_equal(code, error ? strutlib_exit_code(strutlib_error_status(error)) : 0);
   strutlib_error_free(error);
   if (!result) return;
@@ -141,11 +115,11 @@ static bool check_statics(const char *model, const strutlib_scene *scene, const 
                           call *compute) {
   char words[100];
   strutlib_error *error;
-  clear();
+  scratch_make();
   snprintf(words, sizeof words, "%s --json", command);
   int code = run_program(words, model);
-  strutlib_result *result = compute(scene, 0, NULL, NULL, NULL, &error);
-  char *out = read_file("out"), *err = read_file("err");
+  OWN_POINTER(strutlib_result) result = compute(scene, NONE, NULL, &error);
+  FREED char *out = read_file("out"), *err = read_file("err");
   if (result) {
     assert_int_equal(code, 0);
     assert_string_equal(out, strutlib_result_json(result));
@@ -154,27 +128,15 @@ static bool check_statics(const char *model, const strutlib_scene *scene, const 
   } else {
     assert_int_equal(code, strutlib_exit_code(strutlib_error_status(error)));
     if (!strstr(err, strutlib_error_message(error)))
-      print_message("%s %s: '%s' is not in '%s'\n", command, model, strutlib_error_message(error),
-                    err);
-    assert_non_null(strstr(err, strutlib_error_message(error)));
+      fail_msg("%s %s: '%s' is not in '%s'", command, model, strutlib_error_message(error), err);
   }
-  bool there = result != NULL;
   strutlib_error_free(error);
-  strutlib_result_free(result);
-  free(out);
-  free(err);
-  return there;
+  return result != NULL;
 }
 
 BEFORE_ALL {
   program = test_word(1);
   assert_non_null(program);
-  assert_non_null(mkdtemp(folder));
-}
-
-AFTER_ALL {
-  clear();
-  rmdir(folder);
 }
 
 TEST(the_library_agrees_with_the_program) {
@@ -189,14 +151,13 @@ TEST(the_library_agrees_with_the_program) {
   size_t agreed = 0;
   for (size_t i = 0; i < MODELS; i++) {
     strutlib_error *error;
-    OWN_POINTER(strutlib_scene) scene = strutlib_open(models[i], 0, NULL, NULL, &error);
-    if (!scene) print_message("%s", strutlib_error_report(error));
-    assert_non_null(scene);
+    OWN_POINTER(strutlib_scene) scene = library_open(models[i]);
     print_message("%s\n", models[i]);
+    scratch_make();
     assert_int_equal(run_program("export", models[i]), 0);
-    char *out = read_file("out"), *yaml = strutlib_scene_yaml(scene, 0, &error);
+    FREED char *out = read_file("out");
+    char *yaml = strutlib_scene_yaml(scene, 0, &error);
     assert_string_equal(out, yaml);
-    free(out);
     strutlib_release(yaml);
     check_run(models[i], scene);
     for (size_t c = 0; c < sizeof commands / sizeof commands[0]; c++)

@@ -6,75 +6,63 @@
 #include <limits.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <strut/abi.h>
 #include <unistd.h>
 
-#include "tests/support/test.h"
-
-FREED_BY(strutlib_result_free, strutlib_result)
-FREED_BY(strutlib_close, strutlib_scene)
-FREED_BY(strutlib_simulation_close, strutlib_simulation)
+#include "tests/abi/library.h"
 
 static const char *const methods[] = {"rk4",          "euler",         "verlet",   "rk4-events",
                                       "euler-events", "verlet-events", "adaptive", "midpoint"};
 enum { METHODS = sizeof methods / sizeof methods[0] };
 
+static strutlib_error *error; /* of the latest call */
+
 /* On a ground that slides; midpoint cannot step over contacts and gets the crawler without it. */
 static strutlib_scene *open_for(const char *method) {
-  strutlib_error *error;
   bool hanging = strcmp(method, "midpoint") == 0;
-  strutlib_scene *scene =
-      strutlib_open(hanging ? "models/basics/oscillator.yaml" : "models/crawler/crawler.yaml", 0,
-                    NULL, NULL, &error);
-  if (!scene) print_message("%s", strutlib_error_report(error));
-  assert_non_null(scene);
-  return scene;
+  return library_open(hanging ? "models/basics/oscillator.yaml" : "models/crawler/crawler.yaml");
 }
 
-static strutlib_simulation *open_with(const strutlib_scene *scene, const char *method) {
-  strutlib_error *error;
-  const char *names[] = {"integrator", "step"}, *values[] = {method, "0.02 ms"};
-  strutlib_simulation *simulation = strutlib_simulation_open(scene, 2, names, values, NULL, &error);
-  if (!simulation) print_message("%s: %s\n", method, strutlib_error_message(error));
-  assert_non_null(simulation);
-  return simulation;
+static strutlib_simulation *open_by(const strutlib_scene *scene, const char *method,
+                                    const char *step) {
+  return given(
+      strutlib_simulation_open(scene, WITH_BOTH("integrator", method, "step", step), NULL, &error),
+      error);
 }
 
 static const double *channel(strutlib_simulation *simulation, const char *name, size_t *count) {
-  const double *data;
-  int dimensions;
-  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-  assert_int_equal(strutlib_simulation_array(simulation, name, &data, &dimensions, shape, stride),
-                   1);
-  *count = 1;
-  for (int d = 0; d < dimensions; d++) *count *= shape[d];
-  return data;
+  array a;
+  assert_int_equal(
+      strutlib_simulation_array(simulation, name, &a.data, &a.dimensions, a.shape, a.stride), 1);
+  *count = array_size(&a);
+  return a.data;
 }
 
 static double *input(strutlib_simulation *simulation, const char *name, size_t *count) {
   double *data;
-  int dimensions;
-  size_t shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-  assert_int_equal(strutlib_simulation_input(simulation, name, &data, &dimensions, shape, stride),
-                   1);
-  *count = 1;
-  for (int d = 0; d < dimensions; d++) *count *= shape[d];
+  array a;
+  assert_int_equal(
+      strutlib_simulation_input(simulation, name, &data, &a.dimensions, a.shape, a.stride), 1);
+  *count = array_size(&a);
   return data;
 }
 
 static void advance(strutlib_simulation *simulation, long steps) {
-  strutlib_error *error;
-  if (strutlib_simulation_advance(simulation, steps, &error) == STRUTLIB_OK) return;
-  print_message("%s\n", strutlib_error_message(error));
-  fail();
+  if (strutlib_simulation_advance(simulation, steps, &error))
+    fail_msg("%s", strutlib_error_message(error));
+}
+
+/* The call, which fills the error, has that status. */
+static void expect(int status, int expected) {
+  assert_int_equal(status, expected);
+  strutlib_error_free(error);
 }
 
 TEST(steps_do_not_depend_on_their_division) {
   for (int m = 0; m < METHODS; m++) {
     size_t n, k;
     strutlib_scene *scene = open_for(methods[m]);
-    OWN_POINTER(strutlib_simulation) whole = open_with(scene, methods[m]);
-    OWN_POINTER(strutlib_simulation) parts = open_with(scene, methods[m]);
+    OWN_POINTER(strutlib_simulation) whole = open_by(scene, methods[m], "0.02 ms");
+    OWN_POINTER(strutlib_simulation) parts = open_by(scene, methods[m], "0.02 ms");
     strutlib_close(scene); /* simulations stay */
     advance(whole, 1500);
     for (long done = 0, i = 0; done < 1500; i++) {
@@ -98,26 +86,18 @@ TEST(steps_are_those_of_a_run) {
       "s}}\n"
       "output: {last: 0.1 s, every: 0.1 s, channels: [position, force, contact, energy]}\n";
   for (int m = 0; m < METHODS - 1; m++) {
-    strutlib_error *error;
-    const double *last;
-    int dimensions;
-    size_t n, shape[STRUTLIB_DIMENSIONS], stride[STRUTLIB_DIMENSIONS];
-    const char *names[] = {"integrator", "step"}, *values[] = {methods[m], "0.025 ms"};
-    OWN_POINTER(strutlib_scene) scene =
-        strutlib_open_text("short.yaml", text, sizeof text - 1, 0, NULL, NULL, &error);
-    if (!scene) print_message("%s", strutlib_error_report(error));
-    assert_non_null(scene);
-    OWN_POINTER(strutlib_result) run = strutlib_run(scene, 2, names, values, NULL, &error);
-    OWN_POINTER(strutlib_simulation) simulation =
-        strutlib_simulation_open(scene, 2, names, values, NULL, &error);
-    assert_non_null(run);
-    assert_non_null(simulation);
+    size_t n;
+    OWN_POINTER(strutlib_scene) scene = library_open_text(text);
+    OWN_POINTER(strutlib_result) run = given(
+        strutlib_run(scene, WITH_BOTH("integrator", methods[m], "step", "0.025 ms"), NULL, &error),
+        error);
+    OWN_POINTER(strutlib_simulation) simulation = open_by(scene, methods[m], "0.025 ms");
     advance(simulation, 4000);
     for (int c = 0; c < 4; c++) {
       const char *name = (const char *const[]){"position", "force", "contact", "energy"}[c];
       const double *here = channel(simulation, name, &n);
-      assert_int_equal(strutlib_result_array(run, name, &last, &dimensions, shape, stride), 1);
-      assert_memory_equal(here, last + (shape[0] - 1) * stride[0], n * sizeof *here);
+      array last = array_of(run, name);
+      assert_memory_equal(here, last.data + (last.shape[0] - 1) * last.stride[0], n * sizeof *here);
     }
   }
 }
@@ -125,15 +105,13 @@ TEST(steps_are_those_of_a_run) {
 TEST(a_snapshot_goes_on_with_the_same_bits) {
   for (int m = 0; m < METHODS; m++) {
     size_t n, k;
-    strutlib_error *error;
     OWN_POINTER(strutlib_scene) scene = open_for(methods[m]);
-    OWN_POINTER(strutlib_simulation) a = open_with(scene, methods[m]),
-                                     *b = open_with(scene, methods[m]);
+    OWN_POINTER(strutlib_simulation) a = open_by(scene, methods[m], "0.02 ms"),
+                                     *b = open_by(scene, methods[m], "0.02 ms");
     const double *position = channel(a, "position", &n);
     double *rest = input(a, "rest", &k), drawn = rest[k - 1];
     advance(a, 500);
-    strutlib_snapshot *snapshot = strutlib_simulation_snapshot(a, &error);
-    assert_non_null(snapshot);
+    OWN_POINTER(strutlib_snapshot) snapshot = given(strutlib_simulation_snapshot(a, &error), error);
     FREED double *there = malloc(n * sizeof *there), *then = malloc(n * sizeof *then);
     memcpy(there, position, n * sizeof *there);
     advance(a, 333);
@@ -146,9 +124,7 @@ TEST(a_snapshot_goes_on_with_the_same_bits) {
     assert_memory_equal(position, there, n * sizeof *there);
     advance(a, 333);
     assert_memory_equal(position, then, n * sizeof *then);
-    assert_int_equal(strutlib_simulation_restore(b, snapshot, &error), STRUTLIB_USAGE);
-    strutlib_error_free(error);
-    strutlib_snapshot_free(snapshot);
+    expect(strutlib_simulation_restore(b, snapshot, &error), STRUTLIB_USAGE);
   }
 }
 
@@ -159,13 +135,9 @@ static double balance(const double *energy) {
 }
 
 static double open_balance(const char *step, double *worked) {
-  strutlib_error *error;
   size_t n, k, q, l;
-  const char *names[] = {"integrator", "step"}, *values[] = {"rk4-events", step};
   OWN_POINTER(strutlib_scene) scene = open_for("rk4-events");
-  OWN_POINTER(strutlib_simulation) s =
-      strutlib_simulation_open(scene, 2, names, values, NULL, &error);
-  assert_non_null(s);
+  OWN_POINTER(strutlib_simulation) s = open_by(scene, "rk4-events", step);
   const double *energy = channel(s, "energy", &n);
   double *rest = input(s, "rest", &k), *hold = input(s, "actuators", &q),
          *load = input(s, "load", &l);
@@ -207,17 +179,12 @@ static void check_held_input(const char *member) {
       "run: {duration: 1 s}\n";
   int length = snprintf(text, sizeof text, scene, member);
   assert_true(length > 0 && length < (int)sizeof text);
-  strutlib_error *error;
-  const char *names[] = {"rest", "pull"}, *values[] = {"0.8 m", "7 N"};
   size_t n;
-  OWN_POINTER(strutlib_scene) plain =
-      strutlib_open_text("spring", text, (size_t)length, 0, NULL, NULL, &error);
-  if (!plain) print_message("%s", strutlib_error_report(error));
+  OWN_POINTER(strutlib_scene) plain = library_open_text(text);
   OWN_POINTER(strutlib_scene) changed =
-      strutlib_open_text("spring", text, (size_t)length, 2, names, values, &error);
-  OWN_POINTER(strutlib_simulation) a = strutlib_simulation_open(plain, 0, NULL, NULL, NULL, &error);
-  OWN_POINTER(strutlib_simulation) b =
-      strutlib_simulation_open(changed, 0, NULL, NULL, NULL, &error);
+      strutlib_scene_with(plain, WITH_BOTH("rest", "0.8 m", "pull", "7 N"), &error);
+  OWN_POINTER(strutlib_simulation) a = strutlib_simulation_open(plain, NONE, NULL, &error);
+  OWN_POINTER(strutlib_simulation) b = strutlib_simulation_open(changed, NONE, NULL, &error);
   assert_int_equal(strutlib_simulation_set(a, "rest", "m", 0.8, &error), STRUTLIB_OK);
   assert_int_equal(strutlib_simulation_set(a, "load", "b.x", 7.0, &error), STRUTLIB_OK);
   advance(a, 400);
@@ -235,50 +202,38 @@ TEST(a_held_input_is_as_if_the_scene_had_it) {
 }
 
 TEST(inputs_are_checked) {
-  strutlib_error *error;
   size_t k;
   OWN_POINTER(strutlib_scene) scene = open_for("rk4");
-  strutlib_simulation *s = open_with(scene, "rk4");
+  strutlib_simulation *s = open_by(scene, "rk4", "0.02 ms");
   double *rest = input(s, "rest", &k), drawn = rest[0];
   rest[0] = -1.0;
-  assert_int_equal(strutlib_simulation_advance(s, 10, &error), STRUTLIB_USAGE);
-  assert_non_null(strstr(strutlib_error_message(error), "member 'm1'"));
-  strutlib_error_free(error);
+  strutlib_simulation_advance(s, 10, &error);
+  assert_refused(error, STRUTLIB_USAGE, "member 'm1'");
   assert_true(strutlib_simulation_time(s) == 0.0);
   rest[0] = drawn;
   advance(s, 10);
-  assert_int_equal(strutlib_simulation_set(s, "rest", "m10", 1.0, &error), STRUTLIB_USAGE);
-  strutlib_error_free(error);
-  assert_int_equal(strutlib_simulation_set(s, "colour", "m1", 1.0, &error), STRUTLIB_USAGE);
-  strutlib_error_free(error);
-  assert_int_equal(strutlib_simulation_set(s, "load", "n1.z", 1.0, &error), STRUTLIB_USAGE);
-  strutlib_error_free(error);
-  assert_int_equal(strutlib_simulation_advance(s, -1, &error), STRUTLIB_USAGE);
-  strutlib_error_free(error);
+  expect(strutlib_simulation_set(s, "rest", "m10", 1.0, &error), STRUTLIB_USAGE);
+  expect(strutlib_simulation_set(s, "colour", "m1", 1.0, &error), STRUTLIB_USAGE);
+  expect(strutlib_simulation_set(s, "load", "n1.z", 1.0, &error), STRUTLIB_USAGE);
+  expect(strutlib_simulation_advance(s, -1, &error), STRUTLIB_USAGE);
   strutlib_simulation_close(s);
-  const char *names[] = {"step"}, *values[] = {"5 ms"};
-  assert_null(strutlib_simulation_open(scene, 1, names, values, NULL, &error));
-  assert_int_equal(strutlib_error_status(error), STRUTLIB_STEP_TOO_LARGE);
-  strutlib_error_free(error);
+  assert_null(strutlib_simulation_open(scene, WITH("step", "5 ms"), NULL, &error));
+  assert_refused(error, STRUTLIB_STEP_TOO_LARGE, "");
 }
 
 TEST(a_divergence_stays_until_a_restore) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_for("rk4");
   const char *names[] = {"step", "force", "integrator"}, *values[] = {"2 ms", "yes", "rk4"};
   OWN_POINTER(strutlib_simulation) s =
       strutlib_simulation_open(scene, 3, names, values, NULL, &error);
   assert_non_null(s);
-  strutlib_snapshot *snapshot = strutlib_simulation_snapshot(s, &error);
-  assert_int_equal(strutlib_simulation_advance(s, 100000, &error), STRUTLIB_DIVERGED);
-  strutlib_error_free(error);
+  OWN_POINTER(strutlib_snapshot) snapshot = strutlib_simulation_snapshot(s, &error);
+  expect(strutlib_simulation_advance(s, 100000, &error), STRUTLIB_DIVERGED);
   double time = strutlib_simulation_time(s);
-  assert_int_equal(strutlib_simulation_advance(s, 1, &error), STRUTLIB_DIVERGED);
-  strutlib_error_free(error);
+  expect(strutlib_simulation_advance(s, 1, &error), STRUTLIB_DIVERGED);
   assert_true(strutlib_simulation_time(s) == time);
   assert_int_equal(strutlib_simulation_restore(s, snapshot, &error), STRUTLIB_OK);
   advance(s, 1);
-  strutlib_snapshot_free(snapshot);
 }
 
 static strutlib_control *control;
@@ -290,18 +245,15 @@ static void interrupt(int signal) {
 
 /* The largest number of steps is a number of steps, which an interrupt ends. */
 TEST(an_endless_advance_can_be_interrupted) {
-  strutlib_error *error;
   OWN_POINTER(strutlib_scene) scene = open_for("rk4");
   control = strutlib_control_create();
   OWN_POINTER(strutlib_simulation) s =
-      strutlib_simulation_open(scene, 0, NULL, NULL, control, &error);
-  assert_non_null(s);
+      given(strutlib_simulation_open(scene, NONE, control, &error), error);
   advance(s, 3);
   double before = strutlib_simulation_time(s);
   signal(SIGALRM, interrupt);
   alarm(1);
-  assert_int_equal(strutlib_simulation_advance(s, LONG_MAX, &error), STRUTLIB_INTERRUPTED);
-  strutlib_error_free(error);
+  expect(strutlib_simulation_advance(s, LONG_MAX, &error), STRUTLIB_INTERRUPTED);
   assert_true(strutlib_simulation_time(s) > before);
   strutlib_control_free(control);
 }

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Large grids of X-frames that land on the ground: energy, momentum, memory and pace over many steps.
    Arguments: nodes and steps of the large one, steps of one of 1000 nodes, nodes of the largest. */
-#include <time.h>
-
 #include "engine/forces/forces.h"
 #include "engine/integrate/limit/step_limit.h"
 #include "engine/run/measure/measure.h"
@@ -15,8 +13,6 @@ static int64_t steps = 1000, many_steps = 4000;
 /* A third of the largest stable step; where nodes stick and slip it takes less for the balance. */
 static const double STEP = 5e-4, ROUGH_STEP = 1e-4;
 static const double HEIGHT = 0.001, FALL = 1.0;
-
-static double seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 /* A grid of about n nodes that falls at 1 m/s, and drifts where it may slide. */
 static strut_setup falling(int32_t n, strut_mass_model mass, double mu) {
@@ -72,9 +68,9 @@ static void march(motion *m, int64_t count) {
   long memory = 0;
   for (int part = 0; part < PARTS; part++) {
     if (part == 1) calls = allocations_so_far(), memory = resident(); /* all has been touched */
-    double start = seconds();
+    double start = test_seconds();
     motion_steps(m, count / PARTS);
-    pace[part] = (seconds() - start) * unit;
+    pace[part] = (test_seconds() - start) * unit;
     least = fmin(least, pace[part]);
   }
   assert_true(allocations_so_far() == calls);
@@ -87,13 +83,13 @@ static void march(motion *m, int64_t count) {
 static void land(int32_t n, int64_t count, strut_mass_model mass, double mu) {
   OWN(motion) m;
   strut_energies stored;
-  double size, start = seconds();
+  double size, start = test_seconds();
   OWN(strut_setup) setup = falling(n, mass, mu);
   begin(&m, &setup, mu > 0 ? ROUGH_STEP : STEP, &stored);
   double before = momentum(&m, &size);
   print_message("%s mass, friction %g, %d nodes, %zu members, %lld steps; made in %.2f s\n",
                 mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", mu, (int)n,
-                setup.scene.member_count, (long long)count, seconds() - start);
+                setup.scene.member_count, (long long)count, test_seconds() - start);
   march(&m, count);
   double after = momentum(&m, &size), left = residual(&m, &stored), speed = fastest(&m);
   print_message("  residual %.1e of the energy moved, fastest %.2f m/s, momentum changed by %.1e\n",
@@ -170,18 +166,18 @@ static void take_largest(strut_mass_model mass) {
   strut_step_limit limit;
   OWN(strut_setup) setup = falling(largest_nodes, mass, 0.3);
   motion_experiment(&setup, STEP, 10 * STEP);
-  double start = seconds();
+  double start = test_seconds();
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  double compiled = seconds() - start;
+  double compiled = test_seconds() - start;
   assert_ok(strut_step_limit_estimate(model, &limit, NULL));
-  double bounded = seconds() - start - compiled;
+  double bounded = test_seconds() - start - compiled;
   assert_ok(strut_simulate(model, &setup.experiment, &(strut_run_options){0}, &summary, NULL));
   print_message(
       "%s mass, %d nodes, %zu members: compiled in %.2f s, largest step in %.2f s (%s "
       "%.4g s), 10 steps in %.2f s, peak memory %.0f MB\n",
       mass == STRUT_MASS_LUMPED ? "lumped" : "consistent", (int)largest_nodes,
       setup.scene.member_count, compiled, bounded, limit.bound ? "at least" : "about", limit.limit,
-      seconds() - start - compiled - bounded, (double)resident() * 1024e-6);
+      test_seconds() - start - compiled - bounded, (double)resident() * 1024e-6);
   assert_true(limit.bound);
   /* 1.68 ms and 1.11 ms, which smaller grids of the kind are found to have */
   assert_within(limit.limit, mass == STRUT_MASS_LUMPED ? 1.5e-3 : 0.85e-3,

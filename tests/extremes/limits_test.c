@@ -2,7 +2,6 @@
 /* Beside the largest stable step: growth per step, from the motion, against the method's theory. */
 #include <complex.h>
 
-#include "engine/integrate/limit/step_limit.h"
 #include "tests/support/motion.h"
 #include "tests/support/widening.h"
 
@@ -111,19 +110,5 @@ TEST(growth_beside_the_limit) {
     for (int i = 0; i < (METHODS[k].damped ? 4 : 1); i++) {
       check_growth(&METHODS[k], zeta[i], 0.99);
       check_growth(&METHODS[k], zeta[i], 1.01);
-    }
-}
-
-/* What check prints is that limit. */
-TEST(the_limit_is_predicted) {
-  static const double zeta[] = {0, 0.1, 1, 10};
-  for (int k = 0; k < METHOD_COUNT; k++)
-    for (int i = 0; i < (METHODS[k].damped ? 4 : 1); i++) {
-      strut_step_limit limit;
-      OWN(strut_setup) setup = oscillator(zeta[i]);
-      OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-      assert_ok(strut_step_limit_estimate(model, &limit, NULL));
-      double predicted = strut_step_limit_of_method(&limit, strut_integrator_find(METHODS[k].name));
-      assert_relative(predicted * sqrt(K / MASS), limit_of(&METHODS[k], zeta[i]), 1e-2);
     }
 }

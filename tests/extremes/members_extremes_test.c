@@ -49,11 +49,9 @@ TEST(bars_through_no_length_keep_their_balance) {
     for (int half = 0; half < 4; half++, step /= 2) {
       setup = through(rest, misses[k / METHOD_COUNT]);
       motion_experiment_by(&setup, step, 1.05, METHODS[k % METHOD_COUNT]);
-      OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-      strut_run_options options = {0};
       OWN(strut_summary) s;
       strut_error error = {0};
-      strut_status status = strut_simulate(model, &setup.experiment, &options, &s, &error);
+      strut_status status = motion_try(&setup, (strut_run_options){0}, &s, &error);
       if (status) { /* a named stop */
         assert_fails(status, STRUT_DIVERGED, error, "n2");
       } else {

@@ -57,6 +57,16 @@ model_run model_read_text(const char *name, const char *text, const char *const 
   return run;
 }
 
+model_run model_read_format(const char *format, ...) {
+  char text[4000];
+  va_list arguments;
+  va_start(arguments, format);
+  int length = vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  assert_true(length >= 0 && (size_t)length < sizeof text);
+  return model_read_text("scene", text, set_none);
+}
+
 model_run model_read(const char *name, const char *const *settings) {
   char path[256], *text = NULL;
   size_t length = 0;

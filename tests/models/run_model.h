@@ -28,6 +28,8 @@ typedef struct model_run {
 model_run model_read(const char *name, const char *const *settings);
 /** Reads a scene from its text, whose first line, that of all scenes, may be left out; `name` is for messages. */
 model_run model_read_text(const char *name, const char *text, const char *const *settings);
+/** The same of a text in which `format` leaves places open, as printf has it. */
+__attribute__((format(printf, 1, 2))) model_run model_read_format(const char *format, ...);
 /** Compiles and runs what was read (and perhaps changed); fails the test unless it completes. */
 void model_simulate(model_run *run);
 /** The same by that method. */

@@ -258,8 +258,6 @@ static const strut_barrier *barrier(const char *from, const char *to) {
     if (strcmp(all.list[b->from].name, from) || strcmp(all.list[b->to].name, to)) continue;
     const strut_equilibrium *saddle = &all.list[b->saddle];
     assert_true(!saddle->supports && saddle->point.negative == 1);
-    print_message("%s to %s: %.9f J over %s, straight %.9f J\n", from, to, b->height, saddle->name,
-                  b->direct);
     return b;
   }
   fail_msg("no barrier from %s to %s", from, to);

@@ -3,12 +3,13 @@
  * The crawler straight from the paper, slowly: equations (1) to (10), (14) and (15), Table 1.
  *
  * It shares no code with strut, so that strut can be compared with it. The mass matrix is the dense
- * one of all ten coordinates, inverted by Gauss elimination.
+ * one of all ten coordinates, inverted by GSL.
  *
  * See reference_crawler.h.
  */
 #include "tests/paper/reference_crawler.h"
 
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,32 +41,6 @@ static void mass_matrix(double mass[DOF][DOF]) {
       mass[a][a] += table1[j].m / 3, mass[b][b] += table1[j].m / 3;
       mass[a][b] += table1[j].m / 6, mass[b][a] += table1[j].m / 6;
     }
-}
-
-/* Gauss-Jordan with row exchanges. */
-static void invert(double a[DOF][DOF], double inverse[DOF][DOF]) {
-  for (int i = 0; i < DOF; i++)
-    for (int j = 0; j < DOF; j++) inverse[i][j] = i == j;
-  for (int column = 0; column < DOF; column++) {
-    int pivot = column;
-    for (int i = column + 1; i < DOF; i++)
-      if (fabs(a[i][column]) > fabs(a[pivot][column])) pivot = i;
-    for (int j = 0; j < DOF; j++) {
-      double x = a[column][j], y = inverse[column][j];
-      a[column][j] = a[pivot][j], a[pivot][j] = x;
-      inverse[column][j] = inverse[pivot][j], inverse[pivot][j] = y;
-    }
-    double diagonal = a[column][column];
-    for (int j = 0; j < DOF; j++) a[column][j] /= diagonal, inverse[column][j] /= diagonal;
-    for (int i = 0; i < DOF; i++) {
-      double factor = a[i][column];
-      if (i == column || factor == 0) continue;
-      for (int j = 0; j < DOF; j++) {
-        a[i][j] -= factor * a[column][j];
-        inverse[i][j] -= factor * inverse[column][j];
-      }
-    }
-  }
 }
 
 /* (1), (2), (6), (7): everything but the contact; force has DOF entries. */
@@ -183,8 +158,11 @@ double reference_centre(const double *q) {
 /* State II is the mirror image of I: x becomes -x, and nodes 1 and 2 change names. */
 void reference_prepare(crawler *it, int mirrored, double *z) {
   double mass[DOF][DOF];
+  gsl_matrix_view inverse = gsl_matrix_view_array(*mass, DOF, DOF);
   mass_matrix(mass);
-  invert(mass, it->inverse_mass);
+  gsl_linalg_cholesky_decomp1(&inverse.matrix);
+  gsl_linalg_cholesky_invert(&inverse.matrix);
+  memcpy(it->inverse_mass, mass, sizeof mass);
   memset(z, 0, 2 * DOF * sizeof *z);
   for (int i = 0; i < NODES; i++) {
     int from = mirrored && i < 2 ? 1 - i : i;

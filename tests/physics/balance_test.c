@@ -118,10 +118,8 @@ TEST(without_a_balance_nothing_is_said) {
   build_mass(&setup.scene, 0, 0.1, 1);
   build_contact(&setup.scene, 0, 1e5, 0);
   motion_experiment(&setup, 2e-3, 1);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  const strut_run_options options = {.without_balance = true};
   OWN(strut_summary) s;
-  assert_ok(strut_simulate(model, &setup.experiment, &options, &s, NULL));
+  assert_ok(motion_try(&setup, (strut_run_options){.without_balance = true}, &s, NULL));
   assert_all_equal(s.balance, STRUT_BALANCE_NOT_KEPT, s.warning_count, 0);
 }
 

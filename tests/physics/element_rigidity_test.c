@@ -12,7 +12,6 @@ enum { NODES = 6 };
 
 /* Two supports, four free nodes, bars, a cable that meets a node twice, two hinges. */
 static strut_setup make(uint64_t *r) {
-  static int32_t guides[3] = {2, 3, 2};
   strut_setup setup = build_setup();
   strut_scene *scene = &setup.scene;
   build_support(scene, -1, 0);
@@ -23,16 +22,8 @@ static strut_setup make(uint64_t *r) {
   }
   for (int i = 2; i < NODES; i++) build_member(scene, STRUT_BAR, i % 2, i, 100, 0, 0);
   int32_t cable = build_member(scene, STRUT_CABLE, 0, 4, 100, 0, 0);
-  scene->members[cable].guides = guides, scene->members[cable].guide_count = 3;
-  scene->hinges = strut_arena_allocate(&scene->arena, 2, sizeof *scene->hinges);
-  assert_non_null(scene->hinges);
-  for (int32_t i = 0; i < 2; i++) {
-    strut_hinge *h = &scene->hinges[scene->hinge_count++];
-    *h = strut_hinge_default();
-    h->name = i ? "h2" : "h1";
-    h->node[0] = i, h->node[1] = 3 + i, h->node[2] = 5 - i * 3;
-    h->stiffness = 1;
-  }
+  build_guides(scene, cable, (const int32_t[]){2, 3, 2}, 3);
+  for (int32_t i = 0; i < 2; i++) build_hinge(scene, i, 3 + i, 5 - i * 3, 1, 0);
   return setup;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run ends at the time that was asked for, whatever its step, and so does what is recorded. */
+#include "engine/output/trajectory.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846;
@@ -25,44 +26,19 @@ static double place_at(double t) {
   return SPEED * t + PUSH / (MASS * w) * (t - sin(w * t) / w);
 }
 
-typedef struct rows {
-  size_t width, count;
-  double last, time, place;
-} rows;
-
-static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
-  (void)error;
-  *(rows *)context = (rows){.width = layout->width, .last = -1};
-  return STRUT_OK;
-}
-
-static strut_status take(void *context, const double *data, size_t count, strut_error *error) {
-  rows *r = context;
-  (void)error;
-  for (size_t i = 0; i < count; i++, data += r->width) {
-    r->last = r->time;
-    r->time = data[0], r->place = data[1];
-    r->count++;
-    assert_true(r->count == 1 || r->time > r->last);
-  }
-  return STRUT_OK;
-}
-
-static strut_status end(void *context, strut_status status, strut_error *error) {
-  (void)context, (void)error;
-  return status == STRUT_OK ? STRUT_OK : STRUT_USAGE;
-}
-
-static strut_summary record(const strut_setup *setup, strut_run_options options, rows *r) {
-  strut_sink sink = {
-      .context = r, .begin = begin, .rows = take, .end = end, .channels = STRUT_CHANNEL_POSITION};
-  strut_sink *sinks[] = {&sink};
+/* Runs and records positions, at times that increase. */
+static strut_summary record(const strut_setup *setup, strut_run_options options,
+                            strut_trajectory *t) {
   strut_summary s;
   strut_error error = {0};
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  options.sinks = sinks, options.sink_count = 1;
-  if (strut_simulate(model, &setup->experiment, &options, &s, &error))
-    fail_msg("%s", error.message);
+  *t = (strut_trajectory){0};
+  strut_sink *sink =
+      strut_trajectory_sink(t, &setup->scene, STRUT_CHANNEL_POSITION, STRUT_TRAJECTORY_ROOM);
+  options.sinks = &sink, options.sink_count = 1;
+  if (motion_try(setup, options, &s, &error)) fail_msg("%s", error.message);
+  strut_trajectory_sink_free(sink);
+  assert_int_equal(t->status, STRUT_OK);
+  for (size_t i = 1; i < t->frames; i++) assert_true(t->time[i] > t->time[i - 1]);
   return s;
 }
 
@@ -72,15 +48,16 @@ typedef struct places {
 } places;
 
 static places places_after(const char *method, double step, double duration) {
-  rows r;
+  OWN(strut_trajectory) t;
   OWN(strut_setup) setup = pushed(method, step, duration);
   setup.experiment.output_every = 7e-3; /* does not divide it */
-  OWN(strut_summary) s = record(&setup, (strut_run_options){0}, &r);
+  OWN(strut_summary) s = record(&setup, (strut_run_options){0}, &t);
+  const double *last = t.position + (t.frames - 1) * 2 * t.node_count;
   places p = {s.end.positions[0], s.end.positions[4]};
   assert_same_bits(s.duration, duration);
-  assert_same_bits(r.time, duration);
-  assert_same_bits(r.place, p.forced);
-  if (step == STEP) assert_int_equal(r.count, (size_t)ceil(duration / 7e-3 - 1e-9) + 1);
+  assert_same_bits(t.time[t.frames - 1], duration);
+  assert_same_bits(last[0], p.forced);
+  if (step == STEP) assert_int_equal(t.frames, (size_t)ceil(duration / 7e-3 - 1e-9) + 1);
   assert_int_equal(s.spent.steps, (int64_t)ceil(duration / step - 1e-6));
   return p;
 }
@@ -122,15 +99,15 @@ TEST(velocity_to_the_end) {
 
 /* A run of whole steps has the bits of its steps, and its last sample where it always was. */
 TEST(whole_steps_are_not_cut) {
-  rows r;
+  OWN(strut_trajectory) t;
   OWN(strut_setup) setup = pushed("rk4", STEP, 0.05);
   OWN(motion) m = motion_begin_by(&setup, "rk4", STEP);
   motion_steps(&m, 50);
-  OWN(strut_summary) s = record(&setup, (strut_run_options){0}, &r);
+  OWN(strut_summary) s = record(&setup, (strut_run_options){0}, &t);
   assert_int_equal(s.spent.steps, 50);
   for (int i = 0; i < 6; i++) assert_same_bits(s.end.positions[i], m.state->q[i]);
-  assert_int_equal(r.count, 51); /* every step: a thousandth of it is less */
-  assert_same_bits(r.time, 0.05);
+  assert_int_equal(t.frames, 51); /* every step: a thousandth of it is less */
+  assert_same_bits(t.time[50], 0.05);
 }
 
 /* What goes on from the end of a run does so at its time, and with the drives as they are then. */
@@ -139,14 +116,15 @@ TEST(going_on_between_steps) {
     const strut_integrator *method = strut_integrator_at(i);
     double q[8], v[8];
     strut_snapshot kept = {.q = q, .v = v};
-    rows r;
+    OWN(strut_trajectory) before, after;
     OWN(strut_setup) setup = pushed(method->name, STEP, 0.0256);
-    OWN(strut_summary) first = record(&setup, (strut_run_options){.to = &kept}, &r);
+    OWN(strut_summary) first = record(&setup, (strut_run_options){.to = &kept}, &before);
     assert_same_bits(kept.time, 0.0256);
     motion_experiment(&setup, STEP, 0.0247);
     strut_snapshot then = kept;
-    OWN(strut_summary) second = record(&setup, (strut_run_options){.from = &then, .to = &kept}, &r);
-    assert_all_near(1e-15, kept.time, 0.0503, r.time, 0.0503);
+    OWN(strut_summary) second =
+        record(&setup, (strut_run_options){.from = &then, .to = &kept}, &after);
+    assert_all_near(1e-15, kept.time, 0.0503, after.time[after.frames - 1], 0.0503);
     places exact = places_after("adaptive", 0.0503 / 51, 0.0503);
     places whole = places_after(method->name, 0.0503 / 51, 0.0503);
     assert_near(second.end.positions[0], exact.forced,

@@ -144,16 +144,14 @@ TEST(the_step_limit_counts_smooth_friction) {
 TEST(exact_friction_needs_a_method_with_events) {
   strut_error error = {0};
   strut_summary summary;
-  strut_run_options options = {0};
   OWN(strut_setup) setup = block(0, 0.4, 0);
   strut_friction *friction = &setup.scene.contacts[0].friction;
   friction->law = STRUT_FRICTION_COULOMB, friction->mu_static = friction->mu_kinetic;
   motion_experiment(&setup, 1e-4, 1e-2);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  assert_fails(strut_simulate(model, &setup.experiment, &options, &summary, &error), STRUT_USAGE,
-               error, "rk4-events");
+  assert_fails(motion_try(&setup, (strut_run_options){0}, &summary, &error), STRUT_USAGE, error,
+               "rk4-events");
   strut_summary_free(&summary);
   setup.experiment.integrator = "rk4-events";
-  assert_ok(strut_simulate(model, &setup.experiment, &options, &summary, &error));
+  summary = motion_simulate(&setup);
   strut_summary_free(&summary);
 }

@@ -115,8 +115,6 @@ TEST(the_balance_of_a_driven_leg_closes) {
     OWN(model_run) run = model_read_text("leg", leg, set_none);
     model_simulate_by(&run, known[i].method);
     const strut_energy *e = &run.summary.energy;
-    print_message("%s: residual %.2g of %.3g J\n", known[i].method, e->residual / e->moved,
-                  e->moved);
     assert_true(e->drive_work > 0.01 && e->dissipated_members > 0.01);
     assert_near(e->residual, 0, known[i].tolerance * e->moved);
   }

@@ -9,10 +9,10 @@
 #include "tests/models/run_model.h"
 #include "tests/support/motion.h"
 
-/* Runs a text to the accuracy that it asks for. */
-static strut_summary run_text(const char *text, strut_setup *setup) {
+/* Runs to the accuracy that is asked for; free the setup too. */
+static strut_summary run_as_asked(model_run read, strut_setup *setup) {
   strut_summary s;
-  *setup = model_read_text("test", text, (const char *const[]){NULL}).setup;
+  *setup = read.setup;
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   assert_ok(strut_simulate_as_asked(model, &setup->experiment, &(strut_run_options){0}, &s, NULL));
   return s;
@@ -120,17 +120,17 @@ static two_oscillators random_oscillators(void) {
 
 static strut_summary run_two(const two_oscillators *o, const char *accuracy, double duration,
                              const char *quantities, strut_setup *setup) {
-  char text[1600];
-  snprintf(text, sizeof text,
-           "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y},"
-           " c: {position: [0, 1], fixed: both}, e: {position: [1, 1], mass: 1, fixed: y}}\n"
-           "members: {p: {kind: spring, nodes: [a, b], stiffness: %.17g, rest_length: %.17g},"
-           " q: {kind: spring, nodes: [c, e], stiffness: %.17g, rest_length: %.17g}}\n"
-           "solver: {integrator: adaptive, step: 10 ms%s%s}\n"
-           "run: {duration: %.17g, measure: {quantities: {%s}}}\n",
-           o->k[0], 1.0 - o->a[0], o->k[1], 1.0 - o->a[1], accuracy[0] ? ", accuracy: " : "",
-           accuracy, duration, quantities);
-  return run_text(text, setup);
+  return run_as_asked(
+      model_read_format(
+          "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y},"
+          " c: {position: [0, 1], fixed: both}, e: {position: [1, 1], mass: 1, fixed: y}}\n"
+          "members: {p: {kind: spring, nodes: [a, b], stiffness: %.17g, rest_length: %.17g},"
+          " q: {kind: spring, nodes: [c, e], stiffness: %.17g, rest_length: %.17g}}\n"
+          "solver: {integrator: adaptive, step: 10 ms%s%s}\n"
+          "run: {duration: %.17g, measure: {quantities: {%s}}}\n",
+          o->k[0], 1.0 - o->a[0], o->k[1], 1.0 - o->a[1], accuracy[0] ? ", accuracy: " : "",
+          accuracy, duration, quantities),
+      setup);
 }
 
 /* Extremes at kinks and between samples are as exact as asked for, and as told. */
@@ -220,22 +220,22 @@ TEST(steps_of_an_expression) {
 }
 
 static strut_summary run_linkage(const char *more, strut_setup *setup) {
-  char text[1200];
-  snprintf(
-      text, sizeof text,
-      "gravity: [0, -9.81]\n"
-      "bars: rigid\n"
-      "groups: {r: {kind: bar, stiffness: 1e8}}\n"
-      "nodes: {o: {position: [0, 0], fixed: both}, m: {position: [0.5, sin(60 deg)], mass: 0.1},"
-      " a: {position: [1, 0], fixed: y, mass: 0.5}, b: {position: [0, 2*sin(60 deg)], mass: 1},"
-      " c: {position: [0.9, 1.4], mass: 0.01}}\n"
-      "members: {om: {group: r, nodes: [o, m]}, am: {group: r, nodes: [a, m]},"
-      " mb: {group: r, nodes: [m, b]}, ac: {group: r, nodes: [a, c]},"
-      " bc: {group: r, nodes: [b, c]}, mc: {group: r, nodes: [m, c]}}\n"
-      "solver: {accuracy: 0.1 %%}\n"
-      "run: {duration: 0.3 s, measure: {quantities: {y: {of: b.y, take: final}%s}}}\n",
-      more);
-  return run_text(text, setup);
+  return run_as_asked(
+      model_read_format(
+          "gravity: [0, -9.81]\n"
+          "bars: rigid\n"
+          "groups: {r: {kind: bar, stiffness: 1e8}}\n"
+          "nodes: {o: {position: [0, 0], fixed: both}, m: {position: [0.5, sin(60 deg)], mass: "
+          "0.1},"
+          " a: {position: [1, 0], fixed: y, mass: 0.5}, b: {position: [0, 2*sin(60 deg)], mass: 1},"
+          " c: {position: [0.9, 1.4], mass: 0.01}}\n"
+          "members: {om: {group: r, nodes: [o, m]}, am: {group: r, nodes: [a, m]},"
+          " mb: {group: r, nodes: [m, b]}, ac: {group: r, nodes: [a, c]},"
+          " bc: {group: r, nodes: [b, c]}, mc: {group: r, nodes: [m, c]}}\n"
+          "solver: {accuracy: 0.1 %%}\n"
+          "run: {duration: 0.3 s, measure: {quantities: {y: {of: b.y, take: final}%s}}}\n",
+          more),
+      setup);
 }
 
 /* A straight-line linkage: a range of exactly zero is rounding, is kept and costs nothing. */

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Laws of members and stops in motion, against closed forms. */
+#include <gsl/gsl_sf_ellint.h>
+
 #include "tests/models/run_model.h"
 #include "tests/support/check.h"
 
@@ -7,34 +9,22 @@ static const double PI = 3.14159265358979323846;
 
 static const char *const events[] = {"rk4-events", "adaptive", "verlet-events", "euler-events"};
 
-/* Complete elliptic integral of the first kind, of the parameter m. */
-static double complete_elliptic(double m) {
-  double a = 1, b = sqrt(1 - m);
-  for (int i = 0; i < 8; i++) {
-    double mean = 0.5 * (a + b);
-    b = sqrt(a * b), a = mean;
-  }
-  return PI / (2 * a);
-}
-
 /* A mass on a spring of a law, drawn at rest, let go at x = 1 + out. */
 static const char oscillator[] =
-    "parameters: {out: 0.2}\n"
     "nodes:\n"
     "  wall: {position: [0, 0], fixed: both}\n"
     "  block: {position: [1, 0], fixed: y, mass: 2}\n"
     "members:\n"
     "  m: {kind: spring, nodes: [wall, block], %s}\n"
-    "initial: {positions: {block: [1 + out, 0]}}\n"
+    "initial: {positions: {block: [1 + %g, 0]}}\n"
     "solver: {step: 1 ms}\n"
     "run: {duration: 1 s}\n"
     "output: {channels: [position, velocity, force]}\n";
 
-static model_run read_oscillator(const char *member, const char *out) {
-  char text[1200];
-  assert_true(snprintf(text, sizeof text, oscillator, member) < (int)sizeof text);
-  return model_read_text("oscillator", text, set_to(out));
-}
+static const char BILINEAR[] =
+    "stiffness: 50, law: {kind: bilinear, knee: 50 mm, second_stiffness: 300 N/m}";
+static const char TABLE[] =
+    "law: {kind: table, points: [[-1, -287.5], [-50 mm, -2.5], [50 mm, 2.5], [1, 287.5]]}";
 
 /* k x + k3 x^3: T = 4 K(m) / omega_r with omega_r^2 = (k + k3 A^2) / M, m = k3 A^2 / 2 / (k + k3 A^2). */
 TEST(duffings_oscillator_keeps_its_period) {
@@ -42,10 +32,11 @@ TEST(duffings_oscillator_keeps_its_period) {
                                         "midpoint"};
   static const double tolerance[] = {1e-10, 1e-10, 1e-6, 1e-5, 1e-5};
   const double k = 50, k3 = 4000, out = 0.2, hard = k + k3 * out * out;
-  const double period = 4 * complete_elliptic(0.5 * k3 * out * out / hard) / sqrt(hard / 2);
+  const double period =
+      4 * gsl_sf_ellint_Kcomp(sqrt(0.5 * k3 * out * out / hard), 0) / sqrt(hard / 2);
   for (int i = 0; i < 5; i++) {
-    OWN(model_run) run = read_oscillator(
-        "law: {kind: polynomial, coefficients: [50 N/m, 0, 4000 N/m^3]}", "out=0.2");
+    OWN(model_run) run = model_read_format(
+        oscillator, "law: {kind: polynomial, coefficients: [50 N/m, 0, 4000 N/m^3]}", 0.2);
     run.setup.experiment.integrator = methods[i];
     run.setup.experiment.duration = 2.25 * period;
     run.setup.experiment.step = run.setup.experiment.duration / 9000;
@@ -71,11 +62,8 @@ TEST(bilinear_springs_and_free_play_keep_their_period) {
   for (int law = 0; law < 2; law++)
     for (int i = 0; i < 4; i++) {
       double quarter = law ? quarter_play : quarter_bilinear;
-      OWN(model_run) run =
-          read_oscillator(law ? "stiffness: 50, law: {kind: play, gap: 50 mm}"
-                              : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
-                                "second_stiffness: 300 N/m}",
-                          "out=0.2");
+      OWN(model_run) run = model_read_format(
+          oscillator, law ? "stiffness: 50, law: {kind: play, gap: 50 mm}" : BILINEAR, 0.2);
       run.setup.experiment.integrator = events[i];
       run.setup.experiment.duration = 9 * quarter;
       run.setup.experiment.step = run.setup.experiment.duration / 9000;
@@ -92,12 +80,7 @@ TEST(a_table_is_the_spring_that_it_lists) {
   for (int i = 0; i < 4; i++) {
     double at[2];
     for (int table = 0; table < 2; table++) {
-      OWN(model_run) run = read_oscillator(
-          table ? "law: {kind: table, points: [[-1, -287.5], [-50 mm, -2.5], [50 mm, "
-                  "2.5], [1, 287.5]]}"
-                : "stiffness: 50, law: {kind: bilinear, knee: 50 mm, "
-                  "second_stiffness: 300 N/m}",
-          "out=0.2");
+      OWN(model_run) run = model_read_format(oscillator, table ? TABLE : BILINEAR, 0.2);
       model_simulate_by(&run, events[i]);
       at[table] = model_position(&run, "block")[0];
     }
@@ -108,15 +91,13 @@ TEST(a_table_is_the_spring_that_it_lists) {
 /* Elastic energy is the integral of the table, and force its value, at rest and beyond its ends. */
 TEST(a_tables_energy_is_its_integral) {
   static const struct {
-    const char *out;
-    double force, energy;
-  } known[] = {{"out=0.05", 1, 0.025},
-               {"out=0.2", 5, 0.1 + 0.35},
-               {"out=0.5", 14, 0.1 + 1.0 + 2.2},
-               {"out=-0.5", -10, 2.5}};
+    double out, force, energy;
+  } known[] = {
+      {0.05, 1, 0.025}, {0.2, 5, 0.1 + 0.35}, {0.5, 14, 0.1 + 1.0 + 2.2}, {-0.5, -10, 2.5}};
   for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-    OWN(model_run) run = read_oscillator(
-        "law: {kind: table, points: [[-1, -20], [0, 0], [0.1, 2], [0.3, 8]]}", known[i].out);
+    OWN(model_run) run = model_read_format(
+        oscillator, "law: {kind: table, points: [[-1, -20], [0, 0], [0.1, 2], [0.3, 8]]}",
+        known[i].out);
     run.setup.experiment.duration = run.setup.experiment.step;
     model_simulate(&run);
     assert_relative(model_value(&run, 0, STRUT_CHANNEL_FORCE, "m", 0), known[i].force, 1e-13);
@@ -128,14 +109,13 @@ TEST(a_tables_energy_is_its_integral) {
 
 /* A block flies at 3 m/s against the longest length of a spring without stiffness. */
 static const char against_stop[] =
-    "parameters: {c: 0}\n"
     "nodes:\n"
     "  wall: {position: [0, 0], fixed: both}\n"
-    "  block: {position: [%s, 0], fixed: y, mass: 0.5}\n"
+    "  block: {position: [%g, 0], fixed: y, mass: 0.5}\n"
     "members:\n"
     "  m: {kind: spring, nodes: [wall, block], stiffness: 1e-9, shortest: 0.8, longest: 1.2, "
-    "stop_stiffness: 800, stop_damping: c}\n"
-    "initial: {velocities: {block: [%s, 0]}}\n"
+    "stop_stiffness: 800, stop_damping: %.17g}\n"
+    "initial: {velocities: {block: [%g, 0]}}\n"
     "solver: {step: 0.1 ms}\n"
     "run: {duration: 0.3 s}\n"
     "output: {channels: [velocity]}\n";
@@ -152,10 +132,8 @@ TEST(a_stop_gives_back_what_its_damper_leaves) {
     for (int damped = 0; damped < 3; damped++)
       for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++) {
         double zeta = 0.3 * damped, limit = side ? -1 : 1;
-        char text[1200], c[40];
-        snprintf(text, sizeof text, against_stop, side ? "0.9" : "1.1", side ? "-3" : "3");
-        snprintf(c, sizeof c, "c=%.17g", 2 * zeta * sqrt(800 * 0.5));
-        OWN(model_run) run = model_read_text("against_stop", text, set_to(c));
+        OWN(model_run) run =
+            model_read_format(against_stop, 1 + 0.1 * limit, 2 * zeta * sqrt(800 * 0.5), 3 * limit);
         model_simulate_by(&run, methods[i]);
         double kept = exp(-2 * zeta * acos(zeta) / sqrt(1 - zeta * zeta));
         double held = 2 * acos(zeta) / sqrt(1 - zeta * zeta) / 40;
@@ -230,9 +208,7 @@ TEST(a_cable_of_any_law_throws_its_block_back) {
   static const double tolerance[] = {1e-6, 1e-5, 1e-4, 1e-2};
   for (size_t law = 0; law < sizeof laws / sizeof laws[0]; law++)
     for (int i = 0; i < 4; i++) {
-      char text[1200];
-      snprintf(text, sizeof text, thrown, laws[law]);
-      OWN(model_run) run = model_read_text(laws[law], text, set_none);
+      OWN(model_run) run = model_read_format(thrown, laws[law]);
       model_simulate_by(&run, events[i]);
       const strut_energy *e = &run.summary.energy;
       if (!(fabs(e->kinetic - 1) <= tolerance[i])) print_error("%s, %s\n", events[i], laws[law]);
@@ -275,9 +251,7 @@ TEST(the_balance_of_driven_laws_closes) {
     for (size_t law = 0; law < sizeof laws / sizeof laws[0]; law++)
       for (int i = 0; i < 4; i++) {
         if (kind && !law) continue;
-        char text[1200];
-        snprintf(text, sizeof text, driven, kinds[kind], laws[law]);
-        OWN(model_run) run = model_read_text(laws[law], text, set_none);
+        OWN(model_run) run = model_read_format(driven, kinds[kind], laws[law]);
         model_simulate_by(&run, methods[i]);
         const strut_energy *e = &run.summary.energy;
         if (!(fabs(e->residual) <= tolerance[i] * e->moved))

@@ -32,33 +32,23 @@ static double limit_height(void) {
   return sqrt(l * l - SPAN * SPAN);
 }
 
-static strut_path follow(strut_model *model, const strut_path_options *options) {
-  const strut_experiment experiment = strut_experiment_default();
-  strut_path path;
-  strut_error error = {0};
-  strut_status status = strut_path_follow(model, &experiment, options, &path, &error);
-  if (status) print_error("%s\n", error.message);
-  assert_ok(status);
-  return path;
-}
-
 /* The apex is pushed through: its reaction draws the curve past both limit points, which are none. */
 static void check_displaced_apex(bool supported, double from) {
   const double k = 1000, until = -0.6;
   OWN(strut_setup) setup = arch(k);
   setup.scene.nodes[APEX].fixed[1] = supported;
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_path) path = follow(
-      model,
-      &(strut_path_options){
+  OWN(walk) w = walk_by(
+      &setup,
+      (strut_path_options){
           .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .from = from, .until = until});
-  assert_int_equal(path.end, STRUT_PATH_UNTIL);
-  assert_string_equal(path.unit, "m");
-  assert_int_equal(path.event_count, 0);
-  assert_true(path.points[0].at.factor == from);
-  assert_true(path.points[path.point_count - 1].at.factor == until);
+  const strut_path *path = &w.path;
+  assert_int_equal(path->end, STRUT_PATH_UNTIL);
+  assert_string_equal(path->unit, "m");
+  assert_int_equal(path->event_count, 0);
+  assert_true(path->points[0].at.factor == from);
+  assert_true(path->points[path->point_count - 1].at.factor == until);
   double most = 0, least = 0;
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
+  for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = HEIGHT + p->at.factor, l = hypot(SPAN, y);
     assert_near(p->at.q[2 * APEX + 1], y, 1e-15);
     assert_near(p->at.reaction[2 * APEX + 1], -arch_load(k, y), 1e-11);
@@ -85,13 +75,13 @@ TEST(displacement_under_load) {
   const double k = 1000, load = 5;
   OWN(strut_setup) setup = arch(k);
   build_load(&setup.scene, APEX, 0, -load, -1);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_path) path =
-      follow(model, &(strut_path_options){
-                        .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
-  double start = path.points[0].at.q[2 * APEX + 1];
+  OWN(walk) w = walk_by(
+      &setup, (strut_path_options){
+                  .over = STRUT_PATH_OVER_COORDINATE, .index = 2 * APEX + 1, .until = -0.5});
+  const strut_path *path = &w.path;
+  double start = path->points[0].at.q[2 * APEX + 1];
   assert_relative(arch_load(k, start), load, 1e-11);
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++)
+  for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++)
     assert_near(p->at.reaction[2 * APEX + 1], load - arch_load(k, start + p->at.factor), 1e-10);
 }
 
@@ -104,13 +94,13 @@ TEST(displacement_of_a_support) {
   setup.scene.nodes[node].fixed[1] = true;
   build_member(&setup.scene, STRUT_SPRING, wall, node, spring, 0, 0);
   build_sized(&setup.scene, STRUT_CABLE, node, hand, cable, 0, 0, 1 + slack);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_path) path = follow(
-      model,
-      &(strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
-  assert_all_equal(path.event_count, 1, path.events[0].kind, STRUT_PATH_TAUT);
-  assert_near(path.events[0].at.factor, slack, 1e-14);
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
+  OWN(walk) w = walk_by(
+      &setup,
+      (strut_path_options){.over = STRUT_PATH_OVER_COORDINATE, .index = 2 * hand, .until = 0.5});
+  const strut_path *path = &w.path;
+  assert_all_equal(path->event_count, 1, path->events[0].kind, STRUT_PATH_TAUT);
+  assert_near(path->events[0].at.factor, slack, 1e-14);
+  for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double pull = spring * cable / (spring + cable) * fmax(0, p->at.factor - slack);
     assert_all_near(1e-11, p->at.reaction[2 * hand], pull, p->at.reaction[2 * wall], -pull);
     assert_near(p->at.force[1], pull, 1e-11);
@@ -146,19 +136,19 @@ TEST(actuator_snaps) {
   int32_t above = build_support(&setup.scene, 0, HEIGHT + LEVER);
   int32_t member = build_sized(&setup.scene, STRUT_SPRING, above, APEX, LEVER_SPRING, 0, 0, LEVER);
   build_actuator(&setup.scene, member, build_sine(&setup.scene, 0.1, 1));
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_path) path = follow(
-      model, &(strut_path_options){.over = STRUT_PATH_OVER_ACTUATOR, .index = 0, .until = 1.2});
+  OWN(walk) w = walk_by(
+      &setup, (strut_path_options){.over = STRUT_PATH_OVER_ACTUATOR, .index = 0, .until = 1.2});
+  const strut_path *path = &w.path;
   double turn = turning_height(k);
-  assert_all_equal(walk_count(&path, STRUT_PATH_LIMIT), 2, path.event_count, 2);
+  assert_all_equal(walk_count(path, STRUT_PATH_LIMIT), 2, path->event_count, 2);
   for (int i = 0; i < 2; i++) {
-    const strut_path_event *e = &path.events[i];
+    const strut_path_event *e = &path->events[i];
     double y = i ? -turn : turn;
     assert_relative(e->at.factor, lever_length(k, y), 1e-11);
     assert_near(e->at.q[2 * APEX + 1], y, 1e-8);
     assert_all_equal(e->before, i, e->after, 1 - i);
   }
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
+  for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = p->at.q[2 * APEX + 1];
     assert_near(p->at.factor, lever_length(k, y), 1e-12);
     assert_near(p->at.force[2], -arch_load(k, y), 1e-10);
@@ -198,16 +188,16 @@ TEST(stiffness_of_a_scene) {
   family f = {0};
   OWN(strut_setup) setup;
   assert_ok(scene_of_stiffness(&f, 1000, &setup, NULL));
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   strut_path_options options = over_stiffness(&f, 1000, 60);
   options.steps = 60;
-  OWN(strut_path) path = follow(model, &options);
-  assert_int_equal(path.events[0].kind, STRUT_PATH_LIMIT);
+  OWN(walk) w = walk_by(&setup, options);
+  const strut_path *path = &w.path;
+  assert_int_equal(path->events[0].kind, STRUT_PATH_LIMIT);
   double soft = 1 / arch_load(1, limit_height());
-  assert_relative(path.events[0].at.factor, soft, 1e-11);
-  assert_near(path.events[0].at.q[2 * APEX + 1], limit_height(), 1e-8);
-  assert_non_null(strstr(path.events[0].detail, "k can fall no further"));
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
+  assert_relative(path->events[0].at.factor, soft, 1e-11);
+  assert_near(path->events[0].at.q[2 * APEX + 1], limit_height(), 1e-8);
+  assert_non_null(strstr(path->events[0].detail, "k can fall no further"));
+  for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = p->at.q[2 * APEX + 1];
     assert_near(arch_load(p->at.factor, y), 1, 1e-11);
     assert_int_equal(p->negative, y < limit_height() ? 1 : 0);
@@ -219,17 +209,15 @@ TEST(end_of_validity) {
   family f = {.unloaded = true};
   OWN(strut_setup) setup;
   assert_ok(scene_of_stiffness(&f, 1000, &setup, NULL));
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  strut_path_options options = over_stiffness(&f, 1000, -10);
-  strut_path path = follow(model, &options);
-  assert_int_equal(path.end, STRUT_PATH_INVALID);
-  assert_near(path.points[path.point_count - 1].at.factor, 50, 1e-3);
-  assert_non_null(strstr(path.remark, "k must be 50 N/m at least"));
-  assert_non_null(strstr(path.remark, "the path ends at k 50"));
-  strut_path_free(&path);
-  options = over_stiffness(&f, 10, 1000);
+  OWN(walk) w = walk_by(&setup, over_stiffness(&f, 1000, -10));
+  assert_int_equal(w.path.end, STRUT_PATH_INVALID);
+  assert_near(w.path.points[w.path.point_count - 1].at.factor, 50, 1e-3);
+  assert_non_null(strstr(w.path.remark, "k must be 50 N/m at least"));
+  assert_non_null(strstr(w.path.remark, "the path ends at k 50"));
+  strut_path_options options = over_stiffness(&f, 10, 1000);
   strut_error error = {0};
-  assert_int_equal(strut_path_follow(model, &setup.experiment, &options, &path, &error),
+  strut_path path;
+  assert_int_equal(strut_path_follow(w.model, &setup.experiment, &options, &path, &error),
                    STRUT_BAD_SCENE);
   assert_string_equal(error.message, "k must be 50 N/m at least");
   strut_path_free(&path);
@@ -252,16 +240,16 @@ static strut_status scene_of_ground(void *context, double value, strut_setup *se
 TEST(rising_ground) {
   OWN(strut_setup) setup;
   assert_ok(scene_of_ground(NULL, -0.2, &setup, NULL));
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_path) path = follow(model, &(strut_path_options){.over = STRUT_PATH_OVER_SCENE,
-                                                             .name = "height",
-                                                             .unit = "m",
-                                                             .scene_at = scene_of_ground,
-                                                             .from = -0.2,
-                                                             .until = 0.1});
-  assert_all_equal(path.event_count, 1, path.events[0].kind, STRUT_PATH_TOUCHDOWN);
-  assert_near(path.events[0].at.factor, 0, 1e-13);
-  for (const strut_path_point *p = path.points; p < path.points + path.point_count; p++) {
+  OWN(walk) w = walk_by(&setup, (strut_path_options){.over = STRUT_PATH_OVER_SCENE,
+                                                     .name = "height",
+                                                     .unit = "m",
+                                                     .scene_at = scene_of_ground,
+                                                     .from = -0.2,
+                                                     .until = 0.1});
+  const strut_path *path = &w.path;
+  assert_all_equal(path->event_count, 1, path->events[0].kind, STRUT_PATH_TOUCHDOWN);
+  assert_near(path->events[0].at.factor, 0, 1e-13);
+  for (const strut_path_point *p = path->points; p < path->points + path->point_count; p++) {
     double y = 1000 * fmax(0, p->at.factor) / 1100;
     assert_near(p->at.q[3], y, 1e-13);
     assert_all_near(1e-10, p->at.contact[0], 100 * y, p->at.reaction[1], 100 * -y);

@@ -1,52 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Measured quantities against closed forms: each column, each reduction, and what they cost. */
-#include "parser/language/read/read_scene.h"
+#include "tests/models/run_model.h"
 #include "tests/support/motion.h"
 
 static const double PI = 3.14159265358979323846, GRAVITY = 9.81;
 
-/* A scene without its first line, which is that of all. */
-static void read_scene(const char *rest, const strut_override *set, size_t count,
-                       strut_setup *setup) {
-  char text[2000];
-  OWN(strut_diagnostics) diagnostics = {0};
-  int length = snprintf(text, sizeof text, "strut: 1\n%s", rest);
-  assert_true(length > 0 && (size_t)length < sizeof text);
-  strut_status status = strut_setup_read(setup, "test", text, (size_t)length, set, count,
-                                         STRUT_FOR_RUN, &diagnostics);
-  if (status) print_message("%s", strut_diagnostics_render(&diagnostics, 10));
-  assert_ok(status);
+/* What was read, with the summary of its run. */
+static model_run measured(model_run read) {
+  read.summary = motion_simulate(&read.setup);
+  assert_int_equal(read.summary.measured_count, read.setup.experiment.quantity_count);
+  return read;
 }
 
-/* The scene and the summary of its run; measured_run_free frees both. */
-typedef struct measured_run {
-  strut_setup setup;
-  strut_summary summary;
-} measured_run;
-
-static measured_run run_with(const char *text, const strut_override *set, size_t count) {
-  measured_run r;
-  read_scene(text, set, count, &r.setup);
-  r.summary = motion_simulate(&r.setup);
-  assert_int_equal(r.summary.measured_count, r.setup.experiment.quantity_count);
-  return r;
+static model_run run_text(const char *text) {
+  return measured(model_read_text("test", text, set_none));
 }
 
-static measured_run run_text(const char *text) { return run_with(text, NULL, 0); }
-
-static void measured_run_free(measured_run *r) {
-  strut_summary_free(&r->summary);
-  strut_setup_free(&r->setup);
-}
-
-static const strut_measured *get(const measured_run *r, const char *name) {
+static const strut_measured *get(const model_run *r, const char *name) {
   for (size_t i = 0; i < r->summary.measured_count; i++)
     if (strcmp(r->summary.measured[i].name, name) == 0) return &r->summary.measured[i];
   fail_msg("no quantity '%s'", name);
   return NULL;
 }
 
-static double value(const measured_run *r, const char *name) { return get(r, name)->value; }
+static double value(const model_run *r, const char *name) { return get(r, name)->value; }
 
 /* m g + sqrt((m g)^2 + 2 k m g h) where a mass falls by h before the cable pulls. */
 TEST(a_mass_caught_by_a_cable) {
@@ -64,7 +41,7 @@ TEST(a_mass_caught_by_a_cable) {
       "                 factor: {of: catch.force / (stiff * drop), take: max},\n"
       "                 deep: {of: bob.y + 1 m, take: min, accuracy: 0.1 mm},\n"
       "                 stretch: {of: catch.stretch, take: max}, side: com.vx}\n";
-  measured_run r = run_text(text);
+  model_run r = run_text(text);
   const double weight = 2 * GRAVITY, k = 2000;
   double peak = weight + sqrt(weight * weight + 2 * k * weight * 0.5);
   assert_all_relative(1e-6, value(&r, "peak"), peak, value(&r, "factor"), peak / (k * 0.5),
@@ -75,17 +52,16 @@ TEST(a_mass_caught_by_a_cable) {
   const strut_quantity_definition *q = r.setup.experiment.quantities;
   assert_true(q[0].accuracy == 0.005 && !q[0].accuracy_unit);
   assert_true(q[2].accuracy == 1e-4 && q[2].accuracy_unit);
-  measured_run_free(&r);
-  const strut_override set[] = {{"drop", "0.2 m"}, {"stiff", "500 N/m"}};
-  r = run_with(text, set, 2);
+  model_run_free(&r);
+  r = measured(model_read_text("test", text, set_to("drop=0.2 m", "stiff=500 N/m")));
   peak = weight + sqrt(weight * weight + 2 * 500 * weight * 0.2);
   assert_all_relative(1e-6, value(&r, "peak"), peak, value(&r, "factor"), peak / (500 * 0.2));
-  measured_run_free(&r);
+  model_run_free(&r);
 }
 
 /* An undamped oscillator of 50 rad/s about x = 1 m, amplitude 0.1 m, over ten whole periods. */
 TEST(an_oscillator) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 2 kg, fixed: "
       "y}}\n"
       "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 5 kN/m}}\n"
@@ -130,17 +106,16 @@ TEST(peaks_between_steps) {
       "run: {duration: 12, measure: {quantities: {peak: {of: spring.force, take: max},"
       " dip: {of: -spring.force, take: min}}}}\n";
   for (int i = 0; i < 10; i++) {
-    char late[16];
-    snprintf(late, sizeof late, "%g", 3 + 0.013 * i);
-    const strut_override set[] = {{"late", late}};
-    OWN(measured_run) r = run_with(text, set, 1);
+    char late[20];
+    snprintf(late, sizeof late, "late=%g", 3 + 0.013 * i);
+    OWN(model_run) r = measured(model_read_text("test", text, set_to(late)));
     assert_all_relative(1e-5, value(&r, "peak"), 0.1, value(&r, "dip"), -0.1);
   }
 }
 
 /* A force that jumps has no vertex between its steps: nothing is larger than what was there. */
 TEST(a_jump_is_no_peak) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {ball: {position: [0, 0.3], mass: 1 kg}}\n"
       "gravity: [0, -9.81]\n"
       "ground: {stiffness: 100 kN/m, damping: 400 N s/m}\n"
@@ -153,7 +128,7 @@ TEST(a_jump_is_no_peak) {
 
 /* A rigid pendulum released at 60 degrees: tension m g (3 - 2 cos) at the bottom. */
 TEST(a_pendulum) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "bars: rigid\n"
       "gravity: [0, -9.81]\n"
       "nodes: {top: {position: [0, 0], fixed: both},"
@@ -183,7 +158,7 @@ TEST(a_pendulum) {
 
 /* Angles go on beyond a turn: a spoke that spins at 7 rad/s for 10 s. */
 TEST(an_angle_beyond_a_turn) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "bars: rigid\n"
       "nodes: {hub: {position: [0, 0], fixed: both}, rim: {position: [1, 0], mass: 1 kg}}\n"
       "members: {spoke: {nodes: [hub, rim], kind: bar, stiffness: 1}}\n"
@@ -197,7 +172,7 @@ TEST(an_angle_beyond_a_turn) {
 
 /* Free fall above a slope of 30 degrees, over the last second of two. */
 TEST(a_falling_mass) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {ball: {position: [1, 50], mass: 2 kg}, other: {position: [5, 60], mass: 1 kg}}\n"
       "gravity: [0, -9.81]\n"
       "ground: {stiffness: 1e5, slope: 30 deg, height: 1 m, nodes: [ball]}\n"
@@ -223,18 +198,16 @@ TEST(a_falling_mass) {
 }
 
 static void rest_on_slope(const char *method) {
-  char text[900];
-  snprintf(text, sizeof text,
-           "nodes: {foot: {position: [0, 1 mm], mass: 4 kg}}\n"
-           "gravity: [0, -9.81]\n"
-           "ground: {stiffness: 1e5, damping: 1e3, slope: 10 deg,"
-           " friction: {mu: 0.5, stick_velocity: 1 mm/s}}\n"
-           "solver: {integrator: %s, step: 0.1 ms}\n"
-           "run: {duration: 1 s, measure: {last: 0.1 s, quantities: {up: foot.normal,"
-           " along: {of: foot.friction, take: final}, deep: {of: -foot.height, take: max},"
-           " spring: {of: energy.contact, take: final}}}}\n",
-           method);
-  OWN(measured_run) r = run_text(text);
+  OWN(model_run) r = measured(model_read_format(
+      "nodes: {foot: {position: [0, 1 mm], mass: 4 kg}}\n"
+      "gravity: [0, -9.81]\n"
+      "ground: {stiffness: 1e5, damping: 1e3, slope: 10 deg,"
+      " friction: {mu: 0.5, stick_velocity: 1 mm/s}}\n"
+      "solver: {integrator: %s, step: 0.1 ms}\n"
+      "run: {duration: 1 s, measure: {last: 0.1 s, quantities: {up: foot.normal,"
+      " along: {of: foot.friction, take: final}, deep: {of: -foot.height, take: max},"
+      " spring: {of: energy.contact, take: final}}}}\n",
+      method));
   double normal = 4 * GRAVITY * cos(PI / 18);
   assert_all_relative(1e-6, value(&r, "up"), normal, value(&r, "along"), 4 * GRAVITY * sin(PI / 18),
                       value(&r, "deep"), normal / 1e5, value(&r, "spring"), normal * normal / 2e5);
@@ -247,7 +220,7 @@ TEST(contact_forces_at_rest_carry_the_weight) {
 
 /* x = A sin in the drive's own frame: works and losses of a damper that an actuator pulls. */
 TEST(works_and_periods) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1e9 kg}}\n"
       "members: {piston: {nodes: [wall, block], kind: spring, damping: 30 N s/m}}\n"
       "actuators: {drive: {member: piston,"
@@ -280,16 +253,14 @@ TEST(a_short_way_is_not_rounding) {
   static const char *const methods[] = {"rk4-events", "euler-events"};
   static const double mu[] = {1e9, 1e6};
   for (int k = 0; k < 2; k++) {
-    char text[600];
-    snprintf(text, sizeof text,
-             "nodes: {n: {position: [0, -9.81e-5], mass: 1}}\n"
-             "gravity: [0, -9.81]\n"
-             "ground: {stiffness: 1e5, damping: 100, friction: {law: coulomb, mu: %g}}\n"
-             "initial: {velocity: [1, 0]}\n"
-             "solver: {step: 0.1 ms, integrator: %s}\n"
-             "run: {duration: 1 s, measure: {quantities: {way: {of: n.x, take: final}}}}\n",
-             mu[k], methods[k]);
-    OWN(measured_run) r = run_text(text);
+    OWN(model_run) r = measured(model_read_format(
+        "nodes: {n: {position: [0, -9.81e-5], mass: 1}}\n"
+        "gravity: [0, -9.81]\n"
+        "ground: {stiffness: 1e5, damping: 100, friction: {law: coulomb, mu: %g}}\n"
+        "initial: {velocity: [1, 0]}\n"
+        "solver: {step: 0.1 ms, integrator: %s}\n"
+        "run: {duration: 1 s, measure: {quantities: {way: {of: n.x, take: final}}}}\n",
+        mu[k], methods[k]));
     if (k == 0) assert_relative(value(&r, "way"), 1 / (2 * mu[k] * GRAVITY), 1e-6);
     assert_false(get(&r, "way")->zero || r.summary.velocity_zero);
   }
@@ -297,7 +268,7 @@ TEST(a_short_way_is_not_rounding) {
 
 /* Two masses that swing against each other: the centre stays, to rounding. */
 TEST(zero_by_symmetry) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {a: {position: [-1/3, 0.2], mass: 0.7}, b: {position: [1/3, 0.2], mass: 0.7}}\n"
       "members: {spring: {nodes: [a, b], kind: spring, stiffness: 777, damping: 0.1}}\n"
       "initial: {velocities: {a: [-0.3, 0], b: [0.3, 0]}}\n"
@@ -324,9 +295,7 @@ static const char ALL[] =
     " l: {of: leg.force, take: min}, e: {of: energy.total, take: final}, v: com.vx}";
 
 static strut_summary hop(const char *method, const char *quantities, strut_setup *setup) {
-  char text[1400];
-  snprintf(text, sizeof text, HOPPER, method, quantities);
-  read_scene(text, NULL, 0, setup);
+  *setup = model_read_format(HOPPER, method, quantities).setup;
   return motion_simulate(setup);
 }
 
@@ -350,35 +319,27 @@ TEST(measuring_changes_nothing) {
 TEST(works_without_the_balance) {
   OWN(strut_setup) setup;
   OWN(strut_summary) with = hop("rk4", ALL, &setup), without;
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  strut_run_options options = {.without_balance = true};
-  assert_ok(strut_simulate(model, &setup.experiment, &options, &without, NULL));
+  assert_ok(motion_try(&setup, (strut_run_options){.without_balance = true}, &without, NULL));
   assert_same_bits(without.measured[2].value, with.measured[2].value);
   assert_true(with.measured[2].value > 0);
 }
 
 /* A stopped window gives no number, and no crash. */
 TEST(a_run_that_is_interrupted) {
-  OWN(strut_setup) setup;
-  strut_summary full = hop("rk4", ALL, &setup), s;
-  strut_summary_free(&full);
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
+  OWN(strut_setup) setup = model_read_format(HOPPER, "rk4", ALL).setup;
+  OWN(strut_summary) s;
   strut_flag stop = 1;
   strut_run_options options = {.interrupt = &stop};
-  assert_int_equal(strut_simulate(model, &setup.experiment, &options, &s, NULL), STRUT_INTERRUPTED);
+  assert_int_equal(motion_try(&setup, options, &s, NULL), STRUT_INTERRUPTED);
   for (size_t k = 0; k < 6; k++) assert_true(isnan(s.measured[k].value) && !s.measured[k].zero);
-  strut_summary_free(&s);
 }
 
 /* Twice as many steps take as many allocations. */
 TEST(steps_allocate_nothing) {
   uint64_t count[2];
   for (int i = 0; i < 2; i++) {
-    OWN(strut_setup) setup;
+    OWN(strut_setup) setup = model_read_format(HOPPER, "rk4", ALL).setup;
     OWN(strut_summary) s;
-    char text[1400];
-    snprintf(text, sizeof text, HOPPER, "rk4", ALL);
-    read_scene(text, NULL, 0, &setup);
     setup.experiment.step /= 1 + i;
     OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
     uint64_t before = strut_allocation_count();
@@ -398,8 +359,7 @@ TEST(memory_that_runs_out) {
     status = refused(n, strut_setup_read(&setup, "test", text, strlen(text), NULL, 0, STRUT_FOR_RUN,
                                          &diagnostics));
   }
-  OWN(strut_setup) setup;
-  read_scene(strchr(text, '\n') + 1, NULL, 0, &setup);
+  OWN(strut_setup) setup = model_read_format(HOPPER, "rk4", ALL).setup;
   setup.experiment.step = 1e-4;
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
   REFUSE_EACH(n, status, 5) {
@@ -411,7 +371,7 @@ TEST(memory_that_runs_out) {
 
 /* Driven at 1 Hz and 0.5 Hz, of which the first counts: a motion of two periods. */
 TEST(a_steady_run_measures_its_whole_orbit) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {wall: {position: [0, 0], fixed: both}, block: {position: [1, 0], mass: 1 kg, fixed: "
       "y}}\n"
       "members: {spring: {nodes: [wall, block], kind: spring, stiffness: 100, damping: 4}}\n"
@@ -432,7 +392,7 @@ TEST(a_steady_run_measures_its_whole_orbit) {
 
 /* A mass on an arm with a hinge: sqrt(kappa/(m l^2)) = 2 rad/s, 0.3 rad about the rest angle. */
 TEST(a_hinge_swings) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {a: {position: [-1, 0], fixed: both}, o: {position: [0, 0], fixed: both},"
       " c: {position: [1, 0], mass: 0.5 kg}}\n"
       "members: {arm: {nodes: [o, c], kind: bar, stiffness: 1e6}}\n"
@@ -451,7 +411,7 @@ TEST(a_hinge_swings) {
 
 /* A running cable's length is its path's; its stretch is the tension over the stiffness. */
 TEST(a_running_cable) {
-  OWN(measured_run) r = run_text(
+  OWN(model_run) r = run_text(
       "nodes: {low: {position: [0, -1], mass: 3 kg}, left: {position: [0, 0], fixed: both},"
       " right: {position: [1, 0], fixed: both}, high: {position: [1, -2], mass: 1 kg}}\n"
       "gravity: [0, -10]\n"
@@ -497,12 +457,10 @@ TEST(a_blow_between_steps) {
     const strut_integrator *method = strut_integrator_at(i);
     const bool adaptive = strut_experiment_is_adaptive(method->name);
     const double close = adaptive ? 1e-5 : method->order < 2 ? 2e-2 : 1e-2;
-    char filled[2000];
     /* between the ends of steps positions are of fifth degree, whatever the order of the method */
     const char *step = !adaptive ? "0.31 ms" : method->order > 5 ? "1 ms" : "10 ms";
-    snprintf(filled, sizeof filled, text, method->name, step);
     if (method->no_ground) continue;
-    OWN(measured_run) r = run_text(filled);
+    OWN(model_run) r = measured(model_read_format(text, method->name, step));
     assert_all_relative(close, value(&r, "blow"), peak, value(&r, "span"), peak);
     assert_relative(value(&r, "mean") * time, 2 * m * v, close);
     assert_relative(value(&r, "rms") * value(&r, "rms") * time, peak * peak * PI / (2 * w), close);
@@ -525,16 +483,15 @@ TEST(a_step_too_coarse_for_a_peak) {
       "solver: {step: dt}\n"
       "run: {duration: 1 s, measure: {quantities: {p: {of: spring.force * block.vx, take: "
       "max}}}}\n";
-  const strut_override coarse[] = {{"dt", "20 ms"}};
-  measured_run r = run_text(text);
+  model_run r = run_text(text);
   assert_relative(value(&r, "p"), 0.5 * 5000 * 0.1 * 0.1 * 50, 1e-5);
   assert_int_equal(r.summary.warning_count, 0);
-  measured_run_free(&r);
-  r = run_with(text, coarse, 1);
+  model_run_free(&r);
+  r = measured(model_read_text("test", text, set_to("dt=20 ms")));
   bool warned = false;
   for (size_t i = 0; i < r.summary.warning_count; i++)
     warned = warned || (strcmp(r.summary.warnings[i].code, "coarse_step") == 0 &&
                         strstr(r.summary.warnings[i].text, "'p'"));
   assert_true(warned);
-  measured_run_free(&r);
+  model_run_free(&r);
 }

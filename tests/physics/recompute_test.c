@@ -2,7 +2,7 @@
 /* Every compiled force, M and M^-1 F against the slow recomputation, on 200 random scenes. */
 #include "engine/model/mass.h"
 #include "tests/physics/random_scene.h"
-#include "tests/physics/slow_model.h"
+#include "tests/physics/slow_world.h"
 #include "tests/support/motion.h"
 
 enum { SCENES = 200 };
@@ -13,84 +13,93 @@ typedef struct coverage {
   int block[STRUT_DENSE_BLOCK + 1][2]; /* by size, by whether x and y share */
   int factor[2], diagonal, lumped, alone[2];
   int terms[STRUT_TERM_SOLVE + 1];
-  int slack, taut, clipped, touching, flying, sticking, breaking, sliding, driven[STRUT_SUM + 1];
+  int slack, taut, touching, flying, sticking, breaking, sliding, driven[STRUT_SUM + 1];
   int loaded[STRUT_SUM + 1], fixed_member;
 } coverage;
 
-static void check_mass(const strut_scene *scene, const strut_model *model, const slow_model *slow) {
-  double scale = slow_largest(slow->mass, slow->n * slow->n);
+/* A scene in its motion, by both. */
+typedef struct fixture {
+  strut_scene scene;
+  strut_model *model;
+  strut_state *state;
+  slow_world slow;
+  slow_instant at;
+  slow_rates rates;
+} fixture;
+
+static void check_mass(const fixture *f) {
+  static long double mass[SLOW_NODES][SLOW_NODES];
+  slow_world_mass(&f->scene, mass);
+  size_t nodes = f->scene.node_count;
+  double scale = slow_largest(mass[0], nodes * SLOW_NODES);
   for (size_t c = 0; c < 2; c++) {
-    const strut_mass_operator *op = &model->mass->coordinate[c];
+    const strut_mass_operator *op = &f->model->mass->coordinate[c];
     const strut_sparse *m = op->matrix;
-    FREED double *dense = calloc(slow->n * slow->n + 1, sizeof *dense);
+    FREED double *dense = calloc(nodes * nodes + 1, sizeof *dense);
     size_t row_count = 0;
     assert_non_null(dense);
     for (int32_t j = 0; j < m->n; j++)
       for (int32_t k = m->start[j]; k < m->start[j + 1]; k++) {
-        size_t a = 2 * (size_t)op->matrix_node[m->row[k]] + c;
-        size_t b = 2 * (size_t)op->matrix_node[j] + c;
+        size_t a = (size_t)op->matrix_node[m->row[k]], b = (size_t)op->matrix_node[j];
         assert_true(m->row[k] >= j);
-        dense[a * slow->n + b] = dense[b * slow->n + a] = m->value[k];
+        dense[a * nodes + b] = dense[b * nodes + a] = m->value[k];
       }
-    for (size_t i = c; i < slow->n; i += 2) {
-      row_count += !scene->nodes[i / 2].fixed[c];
-      for (size_t j = c; j < slow->n; j += 2) {
-        bool fixed = scene->nodes[i / 2].fixed[c] || scene->nodes[j / 2].fixed[c];
-        double expected = fixed ? 0 : (double)slow->mass[i * slow->n + j];
-        assert_near(dense[i * slow->n + j], expected, TOLERANCE * scale);
+    for (size_t i = 0; i < nodes; i++) {
+      row_count += !f->scene.nodes[i].fixed[c];
+      for (size_t j = 0; j < nodes; j++) {
+        bool fixed = f->scene.nodes[i].fixed[c] || f->scene.nodes[j].fixed[c];
+        assert_near(dense[i * nodes + j], fixed ? 0 : (double)mass[i][j], TOLERANCE * scale);
       }
     }
     assert_int_equal(m->n, row_count);
   }
 }
 
-static void check_forces(const strut_scene *scene, const strut_model *model, strut_state *state,
-                         const slow_model *slow, double t) {
-  size_t n = slow->n;
-  FREED double *length = calloc(scene->member_count, sizeof *length);
-  FREED double *tension = calloc(scene->member_count, sizeof *tension);
-  assert_true(length && tension);
-  double scale =
-      fmax(slow_largest(slow->force, n), slow_largest(slow->tension, scene->member_count));
-  scale = fmax(scale, slow_largest(slow->normal, scene->contact_count));
-  strut_forces_evaluate(model, state, t, state->q, state->v);
-  motion_members(model, state, length, tension);
-  for (size_t i = 0; i < n; i++)
-    assert_near(state->latest->force[i], (double)slow->force[i], TOLERANCE * scale);
-  for (size_t j = 0; j < scene->member_count; j++)
-    assert_near(tension[j], (double)slow->tension[j], TOLERANCE * scale);
-  for (size_t i = 0; i < scene->contact_count; i++) {
-    assert_near(state->latest->normal[i], (double)slow->normal[i], TOLERANCE * scale);
-    assert_near(state->latest->friction[i], (double)slow->friction[i], TOLERANCE * scale);
+static void check_forces(const fixture *f) {
+  const strut_latest *latest = f->state->latest;
+  double length[SLOW_ITEMS], tension[SLOW_ITEMS];
+  long double slow[SLOW_ITEMS] = {0};
+  for (size_t j = 0; j < f->scene.member_count; j++)
+    slow[j] = slow_world_member(&f->slow, &f->at, j);
+  double scale = fmax(slow_largest(f->rates.force, f->slow.n), slow_largest(slow, SLOW_ITEMS));
+  scale = fmax(scale, slow_largest(f->rates.normal, f->scene.contact_count));
+  strut_forces_evaluate(f->model, f->state, (double)f->at.t, f->state->q, f->state->v);
+  motion_members(f->model, f->state, length, tension);
+  for (size_t i = 0; i < f->slow.n; i++)
+    assert_near(latest->force[i], (double)f->rates.force[i], TOLERANCE * scale);
+  for (size_t j = 0; j < f->scene.member_count; j++)
+    assert_near(tension[j], (double)slow[j], TOLERANCE * scale);
+  for (size_t i = 0; i < f->scene.contact_count; i++) {
+    assert_near(latest->normal[i], (double)f->rates.normal[i], TOLERANCE * scale);
+    assert_near(latest->friction[i], (double)f->rates.friction[i], TOLERANCE * scale);
   }
 }
 
-static void check_powers(const strut_state *state, const slow_model *slow) {
-  const long double expected[] = {slow->drive,   slow->load,    slow->belt,
-                                  slow->members, slow->contact, slow->rubbed};
+static void check_powers(const fixture *f) {
+  const double *power = f->state->latest->power;
+  long double expected[STRUT_POWER_EXCHANGED];
   double scale = 0;
+  slow_world_powers(&f->slow, &f->at, &f->rates, expected);
   for (int p = 0; p < STRUT_POWER_EXCHANGED; p++) scale += (double)fabsl(expected[p]);
   for (int p = 0; p < STRUT_POWER_EXCHANGED; p++)
-    assert_near(state->latest->power[p], (double)expected[p], TOLERANCE * scale);
-  assert_true(state->latest->power[STRUT_POWER_EXCHANGED] >= scale * (1 - TOLERANCE));
+    assert_near(power[p], (double)expected[p], TOLERANCE * scale);
+  assert_true(power[STRUT_POWER_EXCHANGED] >= scale * (1 - TOLERANCE));
 }
 
-static void check_acceleration(const strut_scene *scene, const strut_model *model,
-                               strut_state *state, const slow_model *slow, double t) {
-  FREED double *a = calloc((size_t)model->length, sizeof *a);
-  FREED double *with_balance = calloc((size_t)model->length, sizeof *a);
-  assert_true(a && with_balance);
-  double scale = slow_largest(slow->acceleration, slow->n);
-  strut_forces_acceleration(model, state, t, state->q, state->v, a);
-  for (size_t i = 0; i < slow->n; i++) {
-    assert_near(a[i], (double)slow->acceleration[i], TOLERANCE * scale);
-    if (scene->nodes[i / 2].fixed[i % 2]) assert_true(a[i] == 0);
+static void check_acceleration(const fixture *f) {
+  double a[2 * SLOW_PLACES] = {0}, with_balance[2 * SLOW_PLACES] = {0};
+  double t = (double)f->at.t, scale = slow_largest(f->rates.a, f->slow.n);
+  assert_true(f->model->length <= 2 * SLOW_PLACES);
+  strut_forces_acceleration(f->model, f->state, t, f->state->q, f->state->v, a);
+  for (size_t i = 0; i < f->slow.n; i++) {
+    assert_near(a[i], (double)f->rates.a[i], TOLERANCE * scale);
+    if (f->scene.nodes[i / 2].fixed[i % 2]) assert_true(a[i] == 0);
   }
-  state->balance = true;
-  strut_forces_acceleration(model, state, t, state->q, state->v, with_balance);
-  assert_memory_equal(a, with_balance, slow->n * sizeof *a);
-  check_powers(state, slow);
-  state->balance = false;
+  f->state->balance = true;
+  strut_forces_acceleration(f->model, f->state, t, f->state->q, f->state->v, with_balance);
+  assert_memory_equal(a, with_balance, f->slow.n * sizeof *a);
+  check_powers(f);
+  f->state->balance = false;
 }
 
 static void cover_mass(coverage *seen, const strut_scene *scene, const strut_mass *mass) {
@@ -105,12 +114,12 @@ static void cover_mass(coverage *seen, const strut_scene *scene, const strut_mas
   seen->lumped += scene->mass_model == STRUT_MASS_LUMPED;
 }
 
-static void cover_forces(coverage *seen, const strut_scene *scene, const slow_model *slow,
-                         const double *v) {
+static void cover_forces(coverage *seen, const fixture *f) {
+  const strut_scene *scene = &f->scene;
   for (size_t j = 0; j < scene->member_count; j++) {
     const strut_member *m = &scene->members[j];
     const strut_node *a = &scene->nodes[m->node[0]], *b = &scene->nodes[m->node[1]];
-    bool cable = m->kind == STRUT_CABLE, pulls = slow->tension[j] > 0;
+    bool cable = m->kind == STRUT_CABLE, pulls = slow_world_member(&f->slow, &f->at, j) > 0;
     seen->slack += cable && !pulls;
     seen->taut += cable && pulls;
     seen->fixed_member += a->fixed[0] && a->fixed[1] && b->fixed[0] && b->fixed[1];
@@ -121,13 +130,13 @@ static void cover_forces(coverage *seen, const strut_scene *scene, const slow_mo
     if (scene->loads[i].signal >= 0) seen->loaded[scene->signals[scene->loads[i].signal].kind]++;
   for (size_t i = 0; i < scene->contact_count; i++) {
     const strut_contact *c = &scene->contacts[i];
-    const double *w = v + 2 * c->node;
+    const double *w = f->state->v + 2 * c->node;
     double slip = w[0] * cos(scene->ground.slope) + w[1] * sin(scene->ground.slope) -
                   scene->ground.belt_speed;
-    bool touching = slow->normal[i] > 0, rough = c->friction.law == STRUT_FRICTION_KARNOPP;
+    bool touching = f->rates.normal[i] > 0, rough = c->friction.law == STRUT_FRICTION_KARNOPP;
     bool fast = fabs(slip) >= c->friction.stick_velocity;
-    double bound = c->friction.mu_kinetic * (double)slow->normal[i];
-    bool at_bound = fabs(fabs((double)slow->friction[i]) - bound) < 1e-9 * bound;
+    double bound = c->friction.mu_kinetic * (double)f->rates.normal[i];
+    bool at_bound = fabs(fabs((double)f->rates.friction[i]) - bound) < 1e-9 * bound;
     seen->touching += touching;
     seen->flying += !touching;
     seen->sliding += touching && rough && fast;
@@ -137,24 +146,28 @@ static void cover_forces(coverage *seen, const strut_scene *scene, const slow_mo
 }
 
 static void recompute(uint64_t seed, coverage *seen) {
-  OWN(strut_scene) scene;
-  OWN_POINTER(strut_state) state;
-  slow_model slow;
+  static fixture f;
   double t;
-  random_scene(&scene, seed);
-  OWN_POINTER(strut_model) model = motion_compile(&scene);
-  assert_non_null(model->mass);
-  assert_ok(strut_state_create(model, &state, NULL));
-  random_motion(&scene, seed, &t, state->q, state->v);
-  slow_evaluate(&slow, &scene, t, state->q, state->v);
-  check_forces(&scene, model, state, &slow, t);
-  check_mass(&scene, model, &slow);
-  check_acceleration(&scene, model, state, &slow, t);
-  cover_mass(seen, &scene, model->mass);
-  cover_forces(seen, &scene, &slow, state->v);
+  random_scene(&f.scene, seed);
+  f.model = motion_compile(&f.scene);
+  assert_non_null(f.model->mass);
+  assert_ok(strut_state_create(f.model, &f.state, NULL));
+  random_motion(&f.scene, seed, &t, f.state->q, f.state->v);
+  slow_world_begin(&f.slow, &f.scene, NULL, 0, &f.at);
+  f.at.t = t;
+  for (size_t i = 0; i < f.slow.n; i++) f.at.q[i] = f.state->q[i], f.at.v[i] = f.state->v[i];
+  slow_world_rates(&f.slow, &f.at, &f.rates);
+  assert_false(f.rates.undecided);
+  check_forces(&f);
+  check_mass(&f);
+  check_acceleration(&f);
+  cover_mass(seen, &f.scene, f.model->mass);
+  cover_forces(seen, &f);
   for (unsigned term = 1; term <= STRUT_TERM_SOLVE; term <<= 1)
-    seen->terms[term] += (model->terms & term) != 0;
-  slow_free(&slow);
+    seen->terms[term] += (f.model->terms & term) != 0;
+  strut_state_free(f.state);
+  strut_model_free(f.model);
+  strut_scene_free(&f.scene);
 }
 
 TEST(random_scenes_agree_with_a_slow_recomputation) {

@@ -58,10 +58,9 @@ static strut_status run(const strut_setup *setup) {
                         {&second, begin, rows, end, second_wants}};
   strut_sink *all[] = {&sinks[0], &sinks[1]};
   strut_run_options options = {.sinks = all, .sink_count = 2, .force = true};
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   OWN(strut_summary) summary;
   error = (strut_error){0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
+  strut_status status = motion_try(setup, options, &summary, &error);
   assert_int_equal(summary.status, status);
   return status;
 }

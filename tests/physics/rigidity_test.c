@@ -341,16 +341,9 @@ static void compare_methods(strut_scene *scene) {
 }
 
 TEST(methods_agree) {
-  strut_scene scene = grid(8, 1.0, true);
-  compare_methods(&scene);
-  scene = grid(8, 1.0, false);
-  compare_methods(&scene);
-  scene = arm();
-  compare_methods(&scene);
-  scene = wheel(6, 4, 3);
-  compare_methods(&scene);
-  scene = wheel(6, 4, 1);
-  compare_methods(&scene);
+  strut_scene scenes[] = {grid(8, 1.0, true), grid(8, 1.0, false), arm(), wheel(6, 4, 3),
+                          wheel(6, 4, 1)};
+  for (int i = 0; i < 5; i++) compare_methods(&scenes[i]);
 }
 
 /* 20 x 20 cells: 441 nodes, by QR. */

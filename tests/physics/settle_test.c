@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* One settling for whoever starts from it: the same bits, bounded, and judged for stability. */
 #include "engine/run/settle.h"
+#include "engine/output/trajectory.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "engine/statics/equilibria/equilibria.h"
 #include "tests/support/motion.h"
@@ -142,43 +143,22 @@ TEST(every_method_starts_from_the_same_bits) {
   }
 }
 
-/* The first row of a run: where it starts. */
-typedef struct first_row {
-  double position[16];
-  bool taken;
-} first_row;
-
-static strut_status begin(void *context, const strut_record_layout *layout, strut_error *error) {
-  (void)error;
-  ((first_row *)context)->taken = false;
-  return layout->width <= 16 ? STRUT_OK : STRUT_USAGE;
-}
-
-static strut_status rows(void *context, const double *row, size_t count, strut_error *error) {
-  first_row *to = context;
-  (void)error;
-  if (!to->taken && count > 0) memcpy(to->position, row + 1, 4 * sizeof *row), to->taken = true;
-  return STRUT_OK;
-}
-
-static strut_status end(void *context, strut_status status, strut_error *error) {
-  (void)context, (void)status, (void)error;
-  return STRUT_OK;
-}
-
 TEST(an_accurate_run_starts_where_the_plain_one_does) {
-  first_row plain = {.taken = false}, accurate = {.taken = false};
-  strut_sink sink = {&plain, begin, rows, end, STRUT_CHANNEL_POSITION}, *sinks[] = {&sink};
-  strut_run_options options = {.sinks = sinks, .sink_count = 1};
+  OWN(strut_trajectory) plain = {0}, accurate = {0};
   OWN(strut_summary) s, t;
   OWN(strut_setup) setup = rod(1e5, 0);
   OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  assert_ok(strut_simulate(model, &setup.experiment, &options, &s, NULL));
-  sink.context = &accurate;
-  setup.experiment.accuracy = 0.01;
-  assert_ok(strut_simulate_accurately(model, &setup.experiment, &options, &t, NULL));
-  assert_true(plain.taken && accurate.taken);
-  assert_memory_equal(plain.position, accurate.position, sizeof plain.position);
+  strut_trajectory *const taken[] = {&plain, &accurate};
+  for (int i = 0; i < 2; i++) {
+    strut_sink *sink = strut_trajectory_sink(taken[i], &setup.scene, STRUT_CHANNEL_POSITION, 1000);
+    const strut_run_options options = {.sinks = &sink, .sink_count = 1};
+    setup.experiment.accuracy = 0.01 * i;
+    assert_ok(i ? strut_simulate_accurately(model, &setup.experiment, &options, &t, NULL)
+                : strut_simulate(model, &setup.experiment, &options, &s, NULL));
+    strut_trajectory_sink_free(sink);
+  }
+  assert_true(plain.frames > 0 && accurate.frames > 0);
+  assert_memory_equal(plain.position, accurate.position, 4 * sizeof *plain.position);
   assert_true(s.settle.unstable && t.settle.unstable);
   assert_int_equal(s.settle.evaluations, t.settle.evaluations); /* of one settling */
   assert_same_bits(s.settle_time, t.settle_time);

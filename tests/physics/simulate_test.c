@@ -104,59 +104,55 @@ static strut_setup stiff(double step, double duration) {
   return setup;
 }
 
-static strut_error error; /* of the latest simulate() */
+/* Of the latest simulate(). */
+static strut_error error;
+static strut_summary latest;
 
-static strut_status simulate(const strut_setup *setup, strut_run_options options,
-                             strut_summary *summary) {
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
+static strut_status simulate(const strut_setup *setup, strut_run_options options) {
   error = (strut_error){0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, summary, &error);
-  assert_int_equal(summary->status, status);
-  assert_string_equal(summary->reason, status ? error.message : "");
+  strut_summary_free(&latest);
+  strut_status status = motion_try(setup, options, &latest, &error);
+  assert_int_equal(latest.status, status);
+  assert_string_equal(latest.reason, status ? error.message : "");
   return status;
 }
+
+AFTER_ALL { strut_summary_free(&latest); }
 
 static const strut_run_options plainly = {0};
 
 TEST(a_step_above_the_limit_is_refused) {
-  strut_summary s;
   OWN(strut_setup) setup = stiff(0.142, 1);
-  assert_fails(simulate(&setup, plainly, &s), STRUT_STEP_TOO_LARGE, error, "0.142 s", "0.1414 s");
-  assert_relative(s.step_limit, sqrt(8) / 20, 1e-6);
-  assert_int_equal(s.spent.steps, 0);
-  strut_summary_free(&s);
+  assert_fails(simulate(&setup, plainly), STRUT_STEP_TOO_LARGE, error, "0.142 s", "0.1414 s");
+  assert_relative(latest.step_limit, sqrt(8) / 20, 1e-6);
+  assert_int_equal(latest.spent.steps, 0);
   setup.experiment.step = 0.141;
-  assert_ok(simulate(&setup, plainly, &s));
-  strut_summary_free(&s);
+  assert_ok(simulate(&setup, plainly));
 }
 
 TEST(force_runs_above_the_limit_until_it_diverges) {
-  strut_summary s;
   strut_run_options options = {.force = true};
   OWN(strut_setup) setup = stiff(0.142, 0.142 * 20);
-  assert_ok(simulate(&setup, options, &s)); /* a short run survives */
-  assert_int_equal(s.spent.steps, 20);
-  strut_summary_free(&s);
+  assert_ok(simulate(&setup, options)); /* a short run survives */
+  assert_int_equal(latest.spent.steps, 20);
   setup.experiment.step = 0.2, setup.experiment.duration = 1000;
-  assert_fails(simulate(&setup, options, &s), STRUT_DIVERGED, error, "node 'n2'",
-               "t = ", "dt = 0.2 s", "0.1414 s", "smaller step");
-  assert_true(s.spent.steps > 0 && s.spent.steps < 5000);
-  assert_near(s.duration, 0.2 * (double)s.spent.steps, 1e-9);
-  assert_int_equal(s.end.node_count, 2);
-  assert_string_equal(s.end.node_names[1], "n2");
-  strut_summary_free(&s);
+  assert_fails(simulate(&setup, options), STRUT_DIVERGED, error, "node 'n2'", "t = ", "dt = 0.2 s",
+               "0.1414 s", "smaller step");
+  assert_true(latest.spent.steps > 0 && latest.spent.steps < 5000);
+  assert_near(latest.duration, 0.2 * (double)latest.spent.steps, 1e-9);
+  assert_int_equal(latest.end.node_count, 2);
+  assert_string_equal(latest.end.node_names[1], "n2");
 }
 
 /* A mass that is blown away without any instability: beyond 1e10 sizes it is lost. */
 TEST(a_mass_that_flies_beyond_all_bounds_is_lost) {
-  OWN(strut_summary) s;
   OWN(strut_setup) setup = stiff(0.01, 100);
   build_mass(&setup.scene, 0, 1, 1);
   setup.scene.nodes[2].velocity[1] = 1e9;
-  assert_fails(simulate(&setup, plainly, &s), STRUT_DIVERGED, error, "node 'n3'");
+  assert_fails(simulate(&setup, plainly), STRUT_DIVERGED, error, "node 'n3'");
   assert_null(strstr(error.message, "use a smaller step"));
-  assert_within(s.duration, 10, 10 + 64 * 0.01 + 1e-9);
-  assert_true(isfinite(s.end.positions[2]));
+  assert_within(latest.duration, 10, 10 + 64 * 0.01 + 1e-9);
+  assert_true(isfinite(latest.end.positions[2]));
 }
 
 static strut_flag stop;
@@ -170,18 +166,17 @@ static void stop_at_once(void *context, double fraction) {
 }
 
 TEST(an_interrupt_stops_within_a_second) {
-  OWN(strut_summary) s;
   strut_run_options options = {
       .interrupt = &stop, .progress = stop_at_once, .progress_context = &reported};
   stop = 0;
   reported = 0;
   OWN(strut_setup) setup = stiff(1e-3, 1e9);
-  assert_int_equal(simulate(&setup, options, &s), STRUT_INTERRUPTED);
+  assert_int_equal(simulate(&setup, options), STRUT_INTERRUPTED);
   assert_int_equal(reported, 1);
-  assert_within(s.spent.wall_time, 0, 1);
-  assert_true(s.spent.steps > 0);
-  assert_near(s.duration, 1e-3 * (double)s.spent.steps, 1e-9 * s.duration);
-  assert_true(isfinite(s.end.positions[2]) && isfinite(s.energy.residual));
+  assert_within(latest.spent.wall_time, 0, 1);
+  assert_true(latest.spent.steps > 0);
+  assert_near(latest.duration, 1e-3 * (double)latest.spent.steps, 1e-9 * latest.duration);
+  assert_true(isfinite(latest.end.positions[2]) && isfinite(latest.energy.residual));
 }
 
 /* A weight on a spring, with everything on that settling must leave aside. */
@@ -202,9 +197,7 @@ static strut_setup hanging(void) {
 
 TEST(settling_finds_the_static_equilibrium) {
   OWN(strut_setup) setup = hanging();
-  OWN_POINTER(strut_model) model = motion_compile(&setup.scene);
-  OWN(strut_summary) s;
-  assert_ok(strut_simulate(model, &setup.experiment, &(strut_run_options){0}, &s, NULL));
+  OWN(strut_summary) s = motion_simulate(&setup);
   assert_true(s.settle_time > 0);
   assert_int_equal(s.spent.steps, 1);
   assert_near(s.duration, 1e-3, 1e-18);
@@ -216,10 +209,9 @@ TEST(settling_finds_the_static_equilibrium) {
 }
 
 TEST(settling_gives_up_at_its_limit) {
-  OWN(strut_summary) s;
   OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 0.05;
-  assert_fails(simulate(&setup, plainly, &s), STRUT_NOT_SETTLED, error, "0.05 s");
+  assert_fails(simulate(&setup, plainly), STRUT_NOT_SETTLED, error, "0.05 s");
 }
 
 /* On a slope of 0.2 rad a block rests with mu 0.5 if friction is kept, and without it never. */
@@ -231,10 +223,9 @@ TEST(settling_on_a_slope_needs_friction) {
     setup.experiment.step = 1e-4, setup.experiment.duration = 0.01;
     setup.experiment.settle = (strut_settle){
         .wanted = true, .friction = kept, .speed = 1e-8, .acceleration = 1e-6, .limit = 3};
-    OWN(strut_summary) s;
-    assert_int_equal(simulate(&setup, plainly, &s), kept ? STRUT_OK : STRUT_NOT_SETTLED);
+    assert_int_equal(simulate(&setup, plainly), kept ? STRUT_OK : STRUT_NOT_SETTLED);
     if (kept) /* the weight's share across the slope, over the ground's stiffness */
-      assert_near(s.end.positions[0] * sin(0.2) - s.end.positions[1] * cos(0.2),
+      assert_near(latest.end.positions[0] * sin(0.2) - latest.end.positions[1] * cos(0.2),
                   9.81 * cos(0.2) / 1e4, 1e-9);
     else
       assert_non_null(strstr(error.message, "initial.settle.friction"));
@@ -242,29 +233,23 @@ TEST(settling_on_a_slope_needs_friction) {
 }
 
 TEST(settling_can_be_interrupted) {
-  strut_summary s;
   strut_run_options options = {.interrupt = &stop};
   OWN(strut_setup) setup = hanging();
   setup.experiment.settle.limit = 1e9,
   setup.experiment.settle.speed = setup.experiment.settle.acceleration = 1e-30;
   stop = 1;
-  assert_int_equal(simulate(&setup, options, &s), STRUT_INTERRUPTED);
-  strut_summary_free(&s);
+  assert_int_equal(simulate(&setup, options), STRUT_INTERRUPTED);
   setup.scene.contact_count = 0, setup.scene.ground.present = false;
   setup.scene.members[0].kind = STRUT_CABLE;
   setup.scene.members[0].rest_value = 1e30; /* a free fall, in which nothing ever slows down */
-  assert_int_equal(simulate(&setup, options, &s), STRUT_INTERRUPTED);
-  strut_summary_free(&s);
+  assert_int_equal(simulate(&setup, options), STRUT_INTERRUPTED);
 }
 
 TEST(a_scene_without_mass_or_method_does_not_run) {
-  strut_summary s;
   OWN(strut_setup) setup = stiff(1e-3, 1);
   setup.experiment.integrator = "leapfrog";
-  assert_fails(simulate(&setup, plainly, &s), STRUT_USAGE, error, "leapfrog");
-  strut_summary_free(&s);
+  assert_fails(simulate(&setup, plainly), STRUT_USAGE, error, "leapfrog");
   setup.experiment.integrator = "rk4";
   setup.scene.nodes[1].mass = 0;
-  assert_int_equal(simulate(&setup, plainly, &s), STRUT_SINGULAR);
-  strut_summary_free(&s);
+  assert_int_equal(simulate(&setup, plainly), STRUT_SINGULAR);
 }

@@ -92,9 +92,26 @@ static long double slope_along(const slow_strain *s, long double *q, size_t i) {
   return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h);
 }
 
+static void path_gradient(const slow_strain *s, const long double *q, long double *b) {
+  memset(b, 0, 2 * s->count * sizeof *b);
+  for (size_t k = 0; k + 1 < s->count; k++) {
+    const long double *from = q + 2 * s->node[k], *to = q + 2 * s->node[k + 1];
+    long double length = distance(from, to);
+    for (size_t c = 0; c < 2 && length > 0; c++) {
+      b[2 * k + c] -= (to[c] - from[c]) / length;
+      b[2 * k + 2 + c] += (to[c] - from[c]) / length;
+    }
+  }
+}
+
 /* Where the nearest point is does not matter to first order, but bends where it comes to an end. */
-void slow_strain_gradient(const slow_strain *strain, long double *q, long double *b) {
+void slow_strain_gradient(const slow_strain *strain, const long double *at, long double *b) {
+  long double *q = (long double *)(uintptr_t)at; /* moved and put back */
   slow_strain held = *strain, *s = &held;
+  if (s->kind == SLOW_PATH) {
+    path_gradient(s, q, b);
+    return;
+  }
   if (s->kind == SLOW_REACH) held.held = true, held.share = share_of(strain, q);
   for (size_t k = 0; k < s->count; k++) {
     bool again = false;

@@ -8,7 +8,7 @@
 #include "engine/scene/scene.h"
 #include "tests/support/widening.h"
 
-enum { SLOW_MOST = 32 }; /* nodes of a scene, and of a strain */
+enum { SLOW_MOST = 32 }; /* nodes of a strain */
 
 typedef enum slow_kind {
   SLOW_PATH,  /* sum of the distances from node to node */
@@ -31,8 +31,8 @@ typedef struct slow_strain {
 slow_strain slow_path_of(const strut_member *member);
 long double slow_strain_value(const slow_strain *s, const long double *q);
 /** b (2 count): derivatives along each node's x and y; a node that stands twice has all of it once. q is
-    moved, and left as it was. */
-void slow_strain_gradient(const slow_strain *s, long double *q, long double *b);
+    moved, and left as it was; it is no constant. */
+void slow_strain_gradient(const slow_strain *s, const long double *q, long double *b);
 
 /** A law by its words in the language, without memory; k: the element's stiffness. */
 long double slow_law_force(const strut_law *law, long double k, long double e, long double e0);

@@ -2,7 +2,6 @@
 #include "tests/physics/slow_world.h"
 
 #include "tests/physics/slow_expression.h"
-#include "tests/physics/slow_model.h"
 #include "tests/support/check.h"
 
 enum { NONE = SLOW_STATES };
@@ -33,9 +32,10 @@ static long double direct_value(const slow_world *w, const slow_instant *at, int
   long double value = 0, rate;
   if (s->kind == STRUT_EXPRESSION) return expression_of(w, at, s->name);
   if (s->kind != STRUT_SUM) {
-    slow_signal(w->scene, i, at->t, &value, &rate);
+    slow_signal(s, at->t, &value, &rate);
     return value;
   }
+  if (at->t < s->start || at->t >= s->stop) return 0;
   for (size_t k = 0; k < s->term_count; k++) value += slow_world_signal(w, at, s->terms[k]);
   return value;
 }
@@ -101,10 +101,11 @@ long double slow_world_signal_rate(const slow_world *w, const slow_instant *at, 
   if (s->every > 0) return 0;
   if (w->lag_of[i] != NONE || s->kind == STRUT_EXPRESSION) return rate_along(w, at, signal_at, &i);
   if (s->kind == STRUT_SUM) {
+    if (at->t < s->start || at->t >= s->stop) return 0;
     for (size_t k = 0; k < s->term_count; k++) value += slow_world_signal_rate(w, at, s->terms[k]);
     return value;
   }
-  slow_signal(w->scene, i, at->t, &value, &rate);
+  slow_signal(s, at->t, &value, &rate);
   return rate;
 }
 
@@ -148,11 +149,10 @@ static void weigh(const strut_scene *scene, bool members, long double *mass) {
   }
 }
 
-/* Of all coordinates along one axis. */
-static void assemble_mass(const strut_scene *scene, long double m[SLOW_MOST][SLOW_MOST]) {
-  long double lumped[SLOW_MOST];
+void slow_world_mass(const strut_scene *scene, long double m[SLOW_NODES][SLOW_NODES]) {
+  long double lumped[SLOW_NODES];
   bool consistent = scene->mass_model == STRUT_MASS_CONSISTENT;
-  memset(m, 0, SLOW_MOST * sizeof *m);
+  memset(m, 0, scene->node_count * sizeof *m);
   weigh(scene, !consistent, lumped);
   for (size_t i = 0; i < scene->node_count; i++) m[i][i] = lumped[i];
   for (size_t j = 0; j < scene->member_count && consistent; j++) {
@@ -226,7 +226,7 @@ static long double element_force(const strut_law *law, long double k, long doubl
 
 /* 2 zeta sqrt(stiffness / sum |de/dq|^2 / m) as drawn. */
 static long double ratio_damping(const slow_world *w, const strut_member *m, long double k) {
-  long double drawn[SLOW_PLACES], mass[SLOW_MOST], b[2 * SLOW_MOST], sum = 0;
+  long double drawn[SLOW_PLACES], mass[SLOW_NODES], b[2 * SLOW_MOST], sum = 0;
   slow_strain path = slow_path_of(m);
   for (size_t i = 0; i < w->n; i++) drawn[i] = w->scene->nodes[i / 2].position[i % 2];
   weigh(w->scene, true, mass);
@@ -243,24 +243,24 @@ typedef struct stretched {
   long double b[2 * SLOW_MOST], e, rate; /* strain, its gradient and rate */
   long double natural, winding;          /* driven rest length, and its rate */
   long double stiffness, damping;        /* at the start */
-  long double present;                   /* stiffness at the driven rest length */
+  long double present;                   /* stiffness at the driven rest length, */
+  long double least;                     /* which has no effect on it below this one */
 } stretched;
 
 static stretched stretch_of(const slow_world *w, const slow_instant *at, size_t j) {
   const strut_member *m = &w->scene->members[j];
-  slow_instant here = *at;
   stretched s = {.path = slow_path_of(m)};
   drive rest = drive_of(w, at, 0, j, false);
-  s.e = slow_strain_value(&s.path, here.q);
-  slow_strain_gradient(&s.path, here.q, s.b);
+  s.e = slow_strain_value(&s.path, at->q);
+  slow_strain_gradient(&s.path, at->q, s.b);
   s.rate = rate_of(&s.path, s.b, at->v);
   slow_member_rest(w->scene, m, &s.natural, &s.stiffness);
-  long double least = 1e-6L * s.natural; /* nothing is left of it */
+  s.least = 1e-6L * s.natural; /* nothing is left of it */
   s.natural += rest.value, s.winding = rest.rate;
   long double first = first_stiffness(&m->law, s.stiffness);
   s.damping = m->damping + w->scene->rayleigh_stiffness * first;
   if (m->damping_ratio > 0) s.damping += ratio_damping(w, m, first);
-  s.present = m->axial_stiffness > 0 ? m->axial_stiffness / fmaxl(s.natural, least) : s.stiffness;
+  s.present = m->axial_stiffness > 0 ? m->axial_stiffness / fmaxl(s.natural, s.least) : s.stiffness;
   return s;
 }
 
@@ -356,12 +356,11 @@ static long double rubbing_damper(const stretched *s, const rubbing *r) {
 
 static void pull_rubbing(const slow_world *w, const slow_instant *at, const stretched *s, size_t j,
                          long double *force) {
-  slow_instant here = *at;
-  rubbing r = rub(w, s, j, here.q);
+  rubbing r = rub(w, s, j, at->q);
   long double damper = rubbing_damper(s, &r), b[4];
   for (size_t k = 0; k < r.segments; k++) {
     slow_strain part = {.count = 2, .node = {s->path.node[k], s->path.node[k + 1]}};
-    slow_strain_gradient(&part, here.q, b);
+    slow_strain_gradient(&part, at->q, b);
     pull(&part, b, r.tension[k] + damper, force);
   }
 }
@@ -415,12 +414,11 @@ static long double hinge_damping(const slow_world *w, const strut_hinge *h) {
 static void add_hinges(const slow_world *w, const slow_instant *at, slow_rates *r) {
   for (size_t i = 0; i < w->scene->hinge_count; i++) {
     const strut_hinge *h = &w->scene->hinges[i];
-    slow_instant here = *at;
     slow_strain s = angle_of(w, i);
     drive rest = drive_of(w, at, 1, i, false);
-    long double b[6], e = slow_strain_value(&s, here.q), natural = w->rest_angle[i] + rest.value;
+    long double b[6], e = slow_strain_value(&s, at->q), natural = w->rest_angle[i] + rest.value;
     long double damping = hinge_damping(w, h);
-    slow_strain_gradient(&s, here.q, b);
+    slow_strain_gradient(&s, at->q, b);
     long double t = w->gone[1][i] ? 0
                                   : element_force(&h->law, h->stiffness, damping, natural,
                                                   e - natural, rate_of(&s, b, at->v) - rest.rate,
@@ -434,14 +432,13 @@ static void add_hinges(const slow_world *w, const slow_instant *at, slow_rates *
 static void add_cells(const slow_world *w, const slow_instant *at, slow_rates *r) {
   for (size_t i = 0; i < w->scene->cell_count; i++) {
     const strut_cell *c = &w->scene->cells[i];
-    slow_instant here = *at;
     slow_strain s = {.kind = SLOW_AREA, .count = c->node_count, .near = 1};
     long double b[2 * SLOW_MOST], drawn[SLOW_PLACES], pressure = c->pressure;
     memcpy(s.node, c->node, c->node_count * sizeof *s.node);
     for (size_t k = 0; k < w->n; k++) drawn[k] = w->scene->nodes[k / 2].position[k % 2];
     s.near = slow_strain_value(&s, drawn);
-    long double first = fabsl(s.near), now = slow_strain_value(&s, here.q);
-    slow_strain_gradient(&s, here.q, b);
+    long double first = fabsl(s.near), now = slow_strain_value(&s, at->q);
+    slow_strain_gradient(&s, at->q, b);
     if (now < first / 100) r->undecided = true; /* a run ends where a cell collapses */
     if (strut_cell_is_elastic(c)) {
       long double natural = isnan(c->rest_area) ? first : (long double)c->rest_area;
@@ -460,9 +457,8 @@ static void add_cells(const slow_world *w, const slow_instant *at, slow_rates *r
 
 static void add_touch(const strut_collision *c, const slow_strain *s, const slow_instant *at,
                       slow_rates *r) {
-  slow_instant here = *at;
-  long double b[6], e = slow_strain_value(s, here.q);
-  slow_strain_gradient(s, here.q, b);
+  long double b[6], e = slow_strain_value(s, at->q);
+  slow_strain_gradient(s, at->q, b);
   long double push = c->stiffness * (c->thickness - e) - c->damping * rate_of(s, b, at->v);
   if (e < c->thickness && push > 0) pull(s, b, -push, r->force);
   if (e < 1e-3L) r->undecided = true;
@@ -492,16 +488,15 @@ static void add_collisions(const slow_world *w, const slow_instant *at, slow_rat
 static void add_distances(const slow_world *w, const slow_instant *at, slow_rates *r) {
   for (size_t i = 0; i < w->scene->distance_count; i++) {
     const strut_distance_spring *d = &w->scene->distances[i];
-    slow_instant here = *at;
     slow_strain s = {
         .kind = SLOW_ALONG, .count = 2, .node = {d->node[0], d->node[1]}, .near = d->along};
     if (d->line[0] >= 0)
       s = (slow_strain){
           .kind = SLOW_OFFSET, .count = 3, .node = {d->node[0], d->line[0], d->line[1]}};
-    long double b[6], drawn[SLOW_PLACES], e = slow_strain_value(&s, here.q);
+    long double b[6], drawn[SLOW_PLACES], e = slow_strain_value(&s, at->q);
     for (size_t k = 0; k < w->n; k++) drawn[k] = w->scene->nodes[k / 2].position[k % 2];
     long double natural = isnan(d->rest_distance) ? slow_strain_value(&s, drawn) : d->rest_distance;
-    slow_strain_gradient(&s, here.q, b);
+    slow_strain_gradient(&s, at->q, b);
     pull(&s, b,
          element_force(&d->law, d->stiffness, d->damping, natural, e - natural,
                        rate_of(&s, b, at->v), sign_of(d->law.carries), 0),
@@ -513,9 +508,9 @@ static void add_distances(const slow_world *w, const slow_instant *at, slow_rate
 
 static void add_loads(const slow_world *w, const slow_instant *at, slow_rates *r) {
   const strut_scene *scene = w->scene;
-  long double mass[SLOW_MOST], m[SLOW_MOST][SLOW_MOST];
+  long double mass[SLOW_NODES], m[SLOW_NODES][SLOW_NODES];
   weigh(scene, true, mass);
-  assemble_mass(scene, m);
+  slow_world_mass(scene, m);
   for (size_t i = 0; i < w->n; i++) {
     r->force[i] += mass[i / 2] * scene->gravity[i % 2];
     for (size_t k = 0; k < scene->node_count; k++)
@@ -639,17 +634,18 @@ static bool is_open(const strut_scene *scene, size_t first, size_t end, const to
 static void rub_node(const strut_scene *scene, size_t first, size_t end, const touch *touches,
                      long double *f, slow_rates *r) {
   for (int sweep = 0; sweep < 5000; sweep++) {
-    long double changed = 0;
+    long double changed = 0, size = 1;
     for (size_t i = first; i < end; i++) {
       const touch *k = &touches[i];
       if (!(r->normal[i] > 0)) continue;
       long double others = f[0] * k->t[0] + f[1] * k->t[1] - r->friction[i];
       long double now = friction_of(&scene->contacts[i].friction, r->normal[i], k->slip, others);
       changed = fmaxl(changed, fabsl(now - r->friction[i]));
+      size = fmaxl(size, fabsl(others));
       for (int c = 0; c < 2; c++) f[c] += (now - r->friction[i]) * k->t[c];
       r->friction[i] = now;
     }
-    if (changed >= 1e-16L) continue;
+    if (changed >= 1e-16L * size) continue;
     if (is_open(scene, first, end, touches, r)) break;
     return;
   }
@@ -673,7 +669,7 @@ static void add_contacts(const slow_world *w, const slow_instant *at, slow_rates
 
 static long double sensor_value(const slow_world *w, const slow_instant *at,
                                 const strut_sensor *s) {
-  long double sum = 0, m[SLOW_MOST][SLOW_MOST];
+  long double sum = 0, m[SLOW_NODES][SLOW_NODES];
   slow_strain strain;
   switch ((int)s->kind) {
     case STRUT_COLUMN_LENGTH:
@@ -693,7 +689,7 @@ static long double sensor_value(const slow_world *w, const slow_instant *at,
       return 0;
     case STRUT_COLUMN_KINETIC:
       assert_int_equal(s->energy, 0);
-      assemble_mass(w->scene, m);
+      slow_world_mass(w->scene, m);
       for (size_t i = 0; i < w->n; i++)
         for (size_t k = 0; k < w->scene->node_count; k++)
           sum += m[i / 2][k] * at->v[i] * at->v[2 * k + i % 2] / 2;
@@ -722,8 +718,8 @@ static int32_t signal_that_moves(const slow_world *w, size_t i) {
 
 /* -M_fc a_c: what supports that move push by the mass that free nodes share with them. */
 static void add_pushes(const slow_world *w, const slow_instant *at, slow_rates *r) {
-  long double m[SLOW_MOST][SLOW_MOST];
-  assemble_mass(w->scene, m);
+  long double m[SLOW_NODES][SLOW_NODES];
+  slow_world_mass(w->scene, m);
   for (size_t k = 0; k < w->n; k++) {
     int32_t signal = signal_that_moves(w, k);
     if (signal < 0) continue;
@@ -736,10 +732,10 @@ static void add_pushes(const slow_world *w, const slow_instant *at, slow_rates *
 /* M a = F of the free coordinates. */
 static void accelerate(const slow_world *w, slow_rates *r) {
   static long double a[SLOW_PLACES * (SLOW_PLACES + 1)];
-  long double m[SLOW_MOST][SLOW_MOST];
+  long double m[SLOW_NODES][SLOW_NODES];
   size_t n = w->n, width = n + 1;
-  assemble_mass(w->scene, m);
-  memset(a, 0, sizeof a);
+  slow_world_mass(w->scene, m);
+  memset(a, 0, n * width * sizeof *a);
   for (size_t i = 0; i < n; i++) {
     bool fixed = w->scene->nodes[i / 2].fixed[i % 2];
     for (size_t k = i % 2; k < n; k += 2)
@@ -763,6 +759,42 @@ void slow_world_rates(const slow_world *w, const slow_instant *at, slow_rates *r
   add_pushes(w, at, r);
   add_contacts(w, at, r);
   accelerate(w, r);
+}
+
+/* What a drive does to a spring of EA x^2 / (2 L0), beside pulling: that falls as L0 grows. */
+static long double softening(const stretched *s, long double elastic) {
+  if (elastic == 0 || s->natural <= s->least) return 0;
+  return -elastic * (s->e - s->natural) / (2 * s->natural) * s->winding;
+}
+
+void slow_world_powers(const slow_world *w, const slow_instant *at, const slow_rates *r,
+                       long double *power) {
+  const strut_scene *scene = w->scene;
+  memset(power, 0, STRUT_POWER_EXCHANGED * sizeof *power);
+  for (size_t j = 0; j < scene->member_count; j++) {
+    const strut_member *m = &scene->members[j];
+    stretched s = stretch_of(w, at, j);
+    bool slack = m->kind == STRUT_CABLE && s.e <= s.natural;
+    long double t = slow_world_member(w, at, j);
+    long double elastic = slack ? 0 : s.present * (s.e - s.natural);
+    power[STRUT_POWER_DRIVE] -= t * s.winding;
+    if (m->axial_stiffness > 0) power[STRUT_POWER_DRIVE] += softening(&s, elastic);
+    power[STRUT_POWER_MEMBERS] += (t - elastic) * (s.rate - s.winding);
+  }
+  for (size_t i = 0; i < scene->load_count; i++) {
+    const strut_load *load = &scene->loads[i];
+    const long double *v = at->v + 2 * load->node;
+    if (load->signal >= 0)
+      power[STRUT_POWER_LOAD] +=
+          slow_world_signal(w, at, load->signal) * (load->force[0] * v[0] + load->force[1] * v[1]);
+  }
+  for (size_t i = 0; i < scene->contact_count; i++) {
+    touch k = touch_of(w, at, i);
+    long double damper = r->normal[i] > 0 && k.into < 0 ? scene->contacts[i].damping : 0;
+    power[STRUT_POWER_CONTACT] += damper * k.into * k.into;
+    power[STRUT_POWER_FRICTION] -= r->friction[i] * k.slip;
+    power[STRUT_POWER_BELT] += r->friction[i] * scene->ground.belt_speed;
+  }
 }
 
 void slow_world_place(const slow_world *w, slow_instant *at) {
@@ -836,11 +868,10 @@ static void remember(slow_world *w, const slow_instant *at) {
     const strut_hinge *h = &w->scene->hinges[i];
     slow_strain s = angle_of(w, i);
     drive rest = drive_of(w, at, 1, i, false);
-    slow_instant here = *at;
-    long double b[6], e = slow_strain_value(&s, here.q);
+    long double b[6], e = slow_strain_value(&s, at->q);
     long double natural = w->rest_angle[i] + rest.value, x = e - natural;
     w->turn[i] = e;
-    slow_strain_gradient(&s, here.q, b);
+    slow_strain_gradient(&s, at->q, b);
     yield_to(&h->law, h->stiffness, x, &w->plastic[1][i]);
     long double moment =
         element_force(&h->law, h->stiffness, hinge_damping(w, h), natural, x,

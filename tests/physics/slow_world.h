@@ -6,11 +6,13 @@
  */
 #pragma once
 
+#include "engine/model/state.h"
 #include "tests/physics/slow_elements.h"
 
 enum {
-  SLOW_PLACES = 2 * SLOW_MOST,
-  SLOW_ITEMS = 128, /* of members, hinges, signals, contacts each */
+  SLOW_NODES = 104,
+  SLOW_PLACES = 2 * SLOW_NODES,
+  SLOW_ITEMS = 256, /* of members, hinges, signals, contacts each */
   SLOW_STATES = 16
 };
 
@@ -57,6 +59,11 @@ void slow_world_rates(const slow_world *w, const slow_instant *at, slow_rates *r
     something was undecided: the instant then stays. */
 bool slow_world_step(slow_world *w, slow_instant *at, long double h);
 
+/** Powers [W] of plain scenes, without elements, by STRUT_POWER_...; rates: those there. */
+void slow_world_powers(const slow_world *w, const slow_instant *at, const slow_rates *rates,
+                       long double *power);
+/** Of all nodes along one axis, supports too. */
+void slow_world_mass(const strut_scene *scene, long double m[SLOW_NODES][SLOW_NODES]);
 /** Value of a signal, and its rate along the motion. */
 long double slow_world_signal(const slow_world *w, const slow_instant *at, int32_t signal);
 long double slow_world_signal_rate(const slow_world *w, const slow_instant *at, int32_t signal);
@@ -66,3 +73,15 @@ long double slow_world_member(const slow_world *w, const slow_instant *at, size_
 /** Gap and outward normal of a node at p against the surface of a contact at rest. In slow_grounds.c. */
 long double slow_ground_gap(const strut_scene *scene, const strut_contact *contact,
                             const long double *p, long double *normal);
+
+/* In slow_parts.c. */
+
+/** Value and rate of a signal of the time alone, by its definition; no sum. */
+void slow_signal(const strut_signal *signal, long double t, long double *value, long double *rate);
+/** lambda_0 and c of a member, over its guides, from the shape as drawn. */
+void slow_member_rest(const strut_scene *scene, const strut_member *m, long double *rest,
+                      long double *stiffness);
+/** x[n] of a (n, n + 1) row by row, whose last column is the right-hand side; a is destroyed. */
+void slow_solve(long double *a, size_t n, long double *x);
+/** The largest size of n numbers. */
+double slow_largest(const long double *x, size_t n);

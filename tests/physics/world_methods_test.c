@@ -22,14 +22,11 @@ static outcome run(uint64_t seed, unsigned parts, const char *method, double ste
   static random_world world;
   outcome o = {.n = 0};
   OWN(strut_summary) s;
-  const strut_run_options options = {0};
   random_world_make(&world, seed, parts);
   OWN(model_run) run = model_read_text("random.yaml", world.text, set_none);
   motion_experiment_by(&run.setup, step, 0.2, method);
   run.setup.experiment.tolerance = tolerance;
-  OWN_POINTER(strut_model) model = motion_compile(&run.setup.scene);
-  strut_status status = strut_simulate(model, &run.setup.experiment, &options, &s, NULL);
-  o.stopped = status != STRUT_OK;
+  o.stopped = motion_try(&run.setup, (strut_run_options){0}, &s, NULL) != STRUT_OK;
   o.n = 2 * run.setup.scene.node_count;
   if (!o.stopped) {
     memcpy(o.q, s.end.positions, o.n * sizeof *o.q);

@@ -7,7 +7,6 @@
 #include "engine/forces/history.h"
 #include "tests/models/run_model.h"
 #include "tests/physics/random_world.h"
-#include "tests/physics/slow_model.h"
 #include "tests/support/motion.h"
 #include "tests/support/random.h"
 
@@ -190,7 +189,6 @@ TEST(motions) {
       end(&f);
       if (!(worst < MOTION_TOLERANCE)) break;
     }
-    print_message("parts %u: %d steps agree to %.2g\n", parts, steps, worst);
     assert_true(worst < MOTION_TOLERANCE && steps > (int)motions * STEPS / 4);
   }
 }

@@ -71,12 +71,16 @@ void motion_experiment_by(strut_setup *setup, double step, double duration, cons
   setup->experiment.integrator = method;
 }
 
-strut_summary motion_simulate(const strut_setup *setup) {
+strut_status motion_try(const strut_setup *setup, strut_run_options options, strut_summary *summary,
+                        strut_error *error) {
   OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
-  strut_run_options options = {0};
+  return strut_simulate(model, &setup->experiment, &options, summary, error);
+}
+
+strut_summary motion_simulate(const strut_setup *setup) {
   strut_summary summary;
   strut_error error = {0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, &error);
+  strut_status status = motion_try(setup, (strut_run_options){0}, &summary, &error);
   if (status) print_error("%s\n", error.message);
   assert_ok(status);
   return summary;

@@ -38,7 +38,10 @@ void motion_members(const strut_model *model, const strut_state *state, double *
 /** Checks and compiles; whatever fails, fails the test. Free it with strut_model_free. */
 strut_model *motion_compile(const strut_scene *scene);
 
-/** Runs the experiment with default options and expects STRUT_OK; free the summary. */
+/** Compiles and runs the experiment; free the summary, whatever comes of it. */
+strut_status motion_try(const strut_setup *setup, strut_run_options options, strut_summary *summary,
+                        strut_error *error);
+/** The same with default options, and expects STRUT_OK. */
 strut_summary motion_simulate(const strut_setup *setup);
 /** Sets the experiment: step and duration [s], and the method. */
 void motion_experiment(strut_setup *setup, double step, double duration);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tests/support/test.h"
 
-#include <stdbool.h>
+#include <time.h>
 
 enum { MOST_TESTS = 100 };
 
@@ -33,6 +33,8 @@ const char *test_word(int n) { return n < word_count ? words[n] : NULL; }
 double test_number(int n, double otherwise) {
   return test_word(n) ? strtod(test_word(n), NULL) : otherwise;
 }
+
+double test_seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
 /* Compilers may reorder the constructors of a file. */
 static int by_line(const void *a, const void *b) {

@@ -66,6 +66,8 @@ void check_all(const bool *conditions, size_t count, const char *what, const cha
 const char *test_word(int n);
 /** The same as a number; `otherwise` where there are fewer words. */
 double test_number(int n, double otherwise);
+/** Processor time that this program has taken [s]. */
+double test_seconds(void);
 
 /*
  * Variables that are freed where their block ends, last declared first. Not where an assertion fails: what

@@ -5,24 +5,18 @@
 #include "engine/output/draw/figure.h"
 #include "engine/output/file.h"
 #include "tests/support/test.h"
+#include "tests/unit/scratch.h"
 
 static const char *const endings[] = {"svg", "pdf", "png"};
 
-static char folder[] = "/tmp/strut-canvas-XXXXXX";
+static const char *folder;
 
-static const char *path_of(const char *name, const char *ending, char path[200]) {
-  snprintf(path, 200, "%s/%s.%s", folder, name, ending);
-  return path;
-}
+BEFORE_EACH { folder = scratch_make(); }
 
-BEFORE_ALL { assert_non_null(mkdtemp(folder)); }
-
-/* Fails if a test left anything but the list of files that are strut's own. */
-AFTER_ALL {
-  char list[200];
-  snprintf(list, sizeof list, "%s/.strut-files", folder);
-  unlink(list);
-  assert_int_equal(rmdir(folder), 0);
+static const char *path_of(const char *name, const char *ending) {
+  char full[40];
+  snprintf(full, sizeof full, "%s.%s", name, ending);
+  return scratch_path(full);
 }
 
 static void draw_something(strut_canvas *c) {
@@ -53,14 +47,6 @@ static void write_picture(const char *path) {
   commit(c);
 }
 
-static size_t read_all(const char *path, char *bytes, size_t room) {
-  FILE *file = fopen(path, "rb");
-  assert_non_null(file);
-  size_t count = fread(bytes, 1, room, file);
-  fclose(file);
-  return count;
-}
-
 #define MINUS "\xe2\x88\x92"
 
 /* A quantity's ASCII u is drawn as micro, and the sign of a number as a minus; those of words are not. */
@@ -87,18 +73,18 @@ TEST(signs) {
 
 /* Labels that crowd around one point are all drawn, none over another, else a note counts the rest. */
 TEST(labels) {
-  char path[200], bytes[100000] = "";
+  const char *path = scratch_path("labels.svg");
   double box[40][4];
-  size_t count = 0;
-  strut_canvas *c = open_canvas(path_of("labels", "svg", path), 200, 160);
+  size_t count = 0, length;
+  strut_canvas *c = open_canvas(path, 200, 160);
   for (int i = 0; i < 20; i++) {
     char text[20];
     snprintf(text, sizeof text, "label %d", i);
     strut_draw_label(c, &(strut_label){.text = text, .at = {100, 80}, .gap = 3, .angle = 0.1 * i});
   }
   commit(c);
-  size_t length = read_all(path, bytes, sizeof bytes - 1);
-  bytes[length < sizeof bytes - 1 ? length : sizeof bytes - 1] = '\0';
+  FREED char *bytes = scratch_read(path, &length);
+  assert_non_null(bytes);
   for (char *at = strstr(bytes, "<t box"); at; at = strstr(at + 1, "<t box")) {
     double *b = box[count++];
     assert_int_equal(sscanf(at, "<t box=\"%lf %lf %lf %lf\">", &b[0], &b[1], &b[2], &b[3]), 4);
@@ -112,7 +98,6 @@ TEST(labels) {
       double high = fmin(box[i][1] + box[i][3], box[k][1] + box[k][3]) - fmax(box[i][1], box[k][1]);
       assert_true(wide < 0.2 || high < 0.2);
     }
-  unlink(path);
 }
 
 /* What labels keep off, of a net of lines and an area at round places; the noise is that of rounding. */
@@ -151,31 +136,28 @@ TEST(rounding_moves_no_ink) {
 }
 
 TEST(same_bytes) {
-  enum { ROOM = 1 << 20 };
-  FREED char *first = malloc(ROOM), *second = malloc(ROOM);
-  char a[200], b[200];
   for (size_t k = 0; k < 3; k++) {
-    write_picture(path_of("first", endings[k], a));
+    const char *one = path_of("first", endings[k]), *two = path_of("second", endings[k]);
+    size_t size;
+    write_picture(one);
     if (k == 1) sleep(1); /* a clock in the file would show */
-    write_picture(path_of("second", endings[k], b));
-    size_t size = read_all(a, first, ROOM);
-    assert_true(size > 500 && size < ROOM);
-    assert_int_equal(read_all(b, second, ROOM), size);
-    assert_memory_equal(first, second, size);
-    unlink(a);
-    unlink(b);
+    write_picture(two);
+    FREED char *first = scratch_read(one, &size);
+    assert_true(first && size > 500);
+    scratch_expect(two, first, size);
   }
+  assert_int_equal(scratch_count(folder), 6);
 }
 
 TEST(png_size) {
-  char path[200];
-  unsigned char head[24];
-  write_picture(path_of("size", "png", path));
-  assert_int_equal(read_all(path, (char *)head, sizeof head), sizeof head);
+  size_t length;
+  write_picture(scratch_path("size.png"));
+  FREED char *bytes = scratch_read(scratch_path("size.png"), &length);
+  const unsigned char *head = (const unsigned char *)bytes;
+  assert_true(head && length > 24);
   assert_memory_equal(head + 1, "PNG", 3);
   assert_int_equal(head[18] << 8 | head[19], 417); /* 100 pt at 300 to the inch, rounded */
   assert_int_equal(head[22] << 8 | head[23], 333);
-  unlink(path);
 }
 
 TEST(names) {
@@ -192,12 +174,11 @@ TEST(names) {
 
 TEST(nothing_left) {
   strut_canvas *c;
-  char path[200];
   for (size_t k = 0; k < 3; k++) {
-    c = open_canvas(path_of("left", endings[k], path), 100, 80);
+    c = open_canvas(path_of("left", endings[k]), 100, 80);
     draw_something(c);
     strut_canvas_free(c);
-    assert_int_not_equal(access(path, F_OK), 0);
+    assert_int_equal(scratch_count(folder), 0);
   }
   strut_status status = strut_canvas_open("/nowhere/at/all.svg", 100, 80, "", &c, NULL);
   assert_int_equal(status, STRUT_FILE_TROUBLE);
@@ -206,14 +187,13 @@ TEST(nothing_left) {
 
 /* A full disk is reported on commit. */
 TEST(full) {
-  char path[200];
-  strut_canvas *c = open_canvas(path_of("full", "svg", path), 100, 80);
+  strut_canvas *c = open_canvas(scratch_path("full.svg"), 100, 80);
   draw_something(c);
   /* No disk is needed: writing into /dev/full fails the same way. */
   assert_true(freopen("/dev/full", "wb", strut_canvas_file(c)->stream) != NULL);
   assert_int_equal(strut_canvas_commit(c, NULL), STRUT_FILE_TROUBLE);
   strut_canvas_free(c);
-  assert_int_not_equal(access(path, F_OK), 0);
+  assert_int_equal(scratch_count(folder), 0);
 }
 
 static void assert_pixel(strut_canvas *c, int x, int y, unsigned red, unsigned green,
@@ -248,11 +228,10 @@ TEST(pixels) {
 
 /* Numbers that no page has change nothing else. */
 TEST(far_away) {
-  char path[200];
   const strut_pen pen = {.colour = strut_grey(0), .width = 1};
   const strut_fill fill = {.colour = strut_grey(0.5), .hatch = STRUT_HATCH_RISING};
   const double points[3][2] = {{NAN, 1}, {1e300, -INFINITY}, {3, -1e300}};
-  strut_canvas *c = open_canvas(path_of("far", "svg", path), 100, 80);
+  strut_canvas *c = open_canvas(scratch_path("far.svg"), 100, 80);
   strut_draw_line(c, points, 3, pen);
   strut_draw_line(c, points, 0, pen);
   strut_draw_circle(c, NAN, INFINITY, 3, &fill, &pen);
@@ -262,7 +241,7 @@ TEST(far_away) {
   strut_draw_text(c, 1, 1, "", (strut_font){0});
   strut_draw_text(c, 1, 1, "not UTF-8: \xff\xfe", (strut_font){0});
   commit(c);
-  unlink(path);
+  assert_int_equal(scratch_count(folder), 1);
 }
 
 /* Lightness as the eye sees it, about: luma of the sRGB values. */

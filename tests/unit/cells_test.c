@@ -24,7 +24,8 @@ static double slope_of(double (*f)(strut_law_kind, double, double), strut_law_ki
 }
 
 TEST(force_is_the_slope_of_the_energy) {
-  for (int kind = STRUT_LAW_PRESSURE; kind < STRUT_LAW_COUNT; kind++)
+  for (int kind = STRUT_LAW_PRESSURE; kind < STRUT_LAW_COUNT; kind++) {
+    assert_near(energy((strut_law_kind)kind, 2, 5), 0, 1e-15);
     for (double e = 0.1; e < 20; e *= 1.37)
       for (double e0 = 0.5; e0 < 50; e0 *= 3.1) {
         strut_law_kind k = (strut_law_kind)kind;
@@ -34,16 +35,7 @@ TEST(force_is_the_slope_of_the_energy) {
         assert_near(at.slope, slope_of(force, k, e, e0, true), 1e-9 * scale / e);
         assert_near(at.excess - at.force, slope_of(energy, k, e, e0, false), 1e-9 * scale);
       }
-}
-
-TEST(gases_follow_their_formulas) {
-  assert_near(force(STRUT_LAW_PRESSURE, 7, 5), -5, 0);
-  assert_near(force(STRUT_LAW_ISOTHERMAL, 4, 5), 3 - 2.5, 1e-15);
-  assert_near(energy(STRUT_LAW_ISOTHERMAL, 4, 5), -10 * log(2) + 6, 1e-14);
-  assert_near(force(STRUT_LAW_ISENTROPIC, 4, 5), 3 - 5 * pow(0.5, 1.4), 1e-14);
-  assert_near(energy(STRUT_LAW_ISENTROPIC, 4, 5), 10 / 0.4 * (pow(0.5, 0.4) - 1) + 6, 1e-14);
-  for (int kind = STRUT_LAW_PRESSURE; kind < STRUT_LAW_COUNT; kind++)
-    assert_near(energy((strut_law_kind)kind, 2, 5), 0, 1e-15);
+  }
 }
 
 /* With next to no area left the force goes straight on, and pushes ever more. */

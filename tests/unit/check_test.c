@@ -2,77 +2,47 @@
 /* The semantic rules on scenes made without a file: each spoilt in one way, each finding named. Rules that files break
    as well are seen in tests/language/bad, with the places of their messages. */
 #include "engine/scene/checks/check.h"
-#include "tests/support/test.h"
+#include "tests/models/run_model.h"
 
-/* A valid scene that uses everything, in arrays that a test may spoil. */
+/* A valid scene that uses much: its signals are wave, the table, the sum of both, the ramp. */
+static const char text[] =
+    "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0]},\n"
+    "        c: {position: [2, 0], mass: 1}}\n"
+    "members: {ab: {kind: bar, nodes: [a, b], stiffness: 10, mass: 2},\n"
+    "          bc: {kind: bar, nodes: [b, c], stiffness: 10, mass: 2}}\n"
+    "ground: {stiffness: 100, nodes: [b, c],\n"
+    "         friction: {mu_static: 0.2, mu_kinetic: 0.1, stick_velocity: 1e-4}}\n"
+    "signals: {wave: {sine: {frequency: 2, amplitude: 0.1}}}\n"
+    "actuators: {drive: {member: bc, signal: {sum: [wave, {table: [[0, 0], [1, 1]]}]}}}\n"
+    "loads: {push: {node: c, force: [1, 0]},\n"
+    "        swell: {node: b, force: [1, 0], signal: {ramp: {amplitude: 1, stop: 2}}}}\n"
+    "initial: {settle: true}\n"
+    "solver: {step: 1 ms}\n"
+    "run: {periods: 10, of: wave, measure: {last: 5}}\n"
+    "output: {last: 10}\n";
+
+/* The same in arrays that a test may spoil. */
 typedef struct sample {
   strut_setup setup;
-  strut_node nodes[3];
-  strut_member members[2];
-  strut_contact contacts[2];
-  strut_actuator actuators[1];
-  strut_load loads[2];
-  strut_signal signals[4];
+  strut_node *nodes;
+  strut_member *members;
+  strut_contact *contacts;
+  strut_actuator *actuators;
+  strut_load *loads;
+  strut_signal *signals;
   double time[2], value[2];
   int32_t terms[2];
 } sample;
 
-static void fill_structure(sample *s) {
-  for (int i = 0; i < 3; i++) {
-    static const char *const names[] = {"a", "b", "c"};
-    s->nodes[i] = strut_node_default();
-    s->nodes[i].name = names[i];
-    s->nodes[i].position[0] = s->nodes[i].start[0] = i;
-  }
-  s->nodes[0].fixed[0] = s->nodes[0].fixed[1] = true;
-  s->nodes[2].mass = 1;
-  for (int i = 0; i < 2; i++) {
-    static const char *const names[] = {"ab", "bc"};
-    s->members[i] = strut_member_default();
-    s->members[i].name = names[i];
-    s->members[i].node[0] = i, s->members[i].node[1] = i + 1;
-    s->members[i].stiffness = 10, s->members[i].mass = 2;
-    s->contacts[i] = strut_contact_default();
-    s->contacts[i].node = i + 1;
-    s->contacts[i].stiffness = 100;
-    s->contacts[i].friction = (strut_friction){
-        .law = STRUT_FRICTION_KARNOPP, .mu_static = 0.2, .mu_kinetic = 0.1, .stick_velocity = 1e-4};
-  }
-}
-
-static void fill_drives(sample *s) {
-  s->time[1] = s->value[1] = 1;
-  s->terms[1] = 1;
-  s->signals[0] = strut_signal_default(STRUT_SINE);
-  s->signals[0].name = "wave", s->signals[0].frequency = 2, s->signals[0].amplitude = 0.1;
-  s->signals[1] = strut_signal_default(STRUT_TABLE);
-  s->signals[1].time = s->time, s->signals[1].value = s->value, s->signals[1].point_count = 2;
-  s->signals[2] = strut_signal_default(STRUT_SUM);
-  s->signals[2].terms = s->terms, s->signals[2].term_count = 2;
-  s->signals[3] = strut_signal_default(STRUT_RAMP);
-  s->signals[3].amplitude = 1, s->signals[3].stop = 2;
-  s->actuators[0] = (strut_actuator){.name = "drive", .member = 1, .signal = 2};
-  s->loads[0] = (strut_load){.name = "push", .node = 2, .force = {1, 0}, .signal = -1};
-  s->loads[1] = (strut_load){.name = "swell", .node = 1, .force = {1, 0}, .signal = 3};
-}
-
 static void fill(sample *s) {
-  memset(s, 0, sizeof *s);
-  fill_structure(s);
-  fill_drives(s);
-  strut_setup *setup = &s->setup;
-  strut_setup_init(setup);
-  setup->scene.nodes = s->nodes, setup->scene.node_count = 3;
-  setup->scene.members = s->members, setup->scene.member_count = 2;
-  setup->scene.contacts = s->contacts, setup->scene.contact_count = 2;
-  setup->scene.actuators = s->actuators, setup->scene.actuator_count = 1;
-  setup->scene.loads = s->loads, setup->scene.load_count = 2;
-  setup->scene.signals = s->signals, setup->scene.signal_count = 4;
-  setup->scene.ground.present = true;
-  setup->experiment.settle.wanted = true;
-  setup->experiment.step = 1e-3;
-  setup->experiment.periods = 10, setup->experiment.period_signal = 0;
-  setup->experiment.measure_last = 5, setup->experiment.output_last = 10;
+  strut_setup_free(&s->setup);
+  s->setup = model_read_text("sample", text, set_none).setup;
+  strut_scene *scene = &s->setup.scene;
+  s->nodes = scene->nodes, s->members = scene->members, s->contacts = scene->contacts;
+  s->actuators = scene->actuators, s->loads = scene->loads, s->signals = scene->signals;
+  s->signals[1].time = memcpy(s->time, s->signals[1].time, sizeof s->time);
+  s->signals[1].value = memcpy(s->value, s->signals[1].value, sizeof s->value);
+  s->signals[2].terms = memcpy(s->terms, s->signals[2].terms, sizeof s->terms);
 }
 
 /* Checks the spoilt sample: exactly one finding, about that key, whose text has the word. */
@@ -96,6 +66,7 @@ static void expect(sample *s, strut_subject subject, size_t index, const char *k
 static sample s;
 
 BEFORE_EACH { fill(&s); }
+AFTER_ALL { strut_setup_free(&s.setup); }
 
 /* The same of the sample after a change. */
 #define EXPECT(change, subject, index, key, word)                                                  \
@@ -214,6 +185,22 @@ TEST(drives) {
   EXPECT(s.loads[0].node = -1, LOAD, 0, "node", "does not exist");
   EXPECT(s.loads[0].force[1] = (double)NAN, LOAD, 0, "force", "finite");
   EXPECT(s.loads[0].signal = 4, LOAD, 0, "signal", "does not exist");
+}
+
+TEST(motions) {
+  strut_support_motion motions[2], *second = &motions[1];
+#define SPOILT(change, subject, index, key, word)                                                  \
+  do {                                                                                             \
+    motions[0] = (strut_support_motion){0, 0, 0}, motions[1] = (strut_support_motion){0, 1, 0};    \
+    s.setup.scene.support_motions = motions, s.setup.scene.support_motion_count = 2;               \
+    EXPECT(change, subject, index, key, word);                                                     \
+  } while (0)
+  SPOILT(second->axis = 0, NODE, 0, "moves", "out of order");
+  SPOILT(second->node = 1, NODE, 1, "moves", "not fixed");
+  SPOILT(second->node = 7, SCENE, 0, "nodes", "does not exist");
+  SPOILT(second->axis = 2, NODE, 0, "moves", "axis");
+  SPOILT(second->signal = 4, NODE, 0, "moves", "a signal that does not exist");
+#undef SPOILT
 }
 
 TEST(shapes) {

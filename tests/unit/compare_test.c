@@ -2,12 +2,11 @@
 /* Comparing: differences of texts, every allocation failing once, an interrupt, what is reported. */
 #include "engine/study/compare/compare.h"
 #include "engine/output/result_values.h"
-#include "parser/language/read/read_scene.h"
 #include "parser/language/read/reuse/overlay.h"
+#include "tests/models/run_model.h"
 #include "tests/support/check.h"
 
 static const char hopper[] =
-    "strut: 1\n"
     "name: hopper, of \"one\" leg\n"
     "nodes: {a: {position: [0, 0], mass: 1 kg}, b: {position: [0, 0.1], mass: 1 kg}}\n"
     "members: {leg: {kind: spring, nodes: [a, b], stiffness: 4000 N/m, damping: 20 N s/m}}\n"
@@ -18,11 +17,7 @@ static const char hopper[] =
     "solver: {step: 0.1 ms}\n"
     "run: {periods: 20, of: d, measure: {last: 5}}\n";
 
-static void read_hopper(strut_setup *setup) {
-  OWN(strut_diagnostics) diagnostics = {0};
-  assert_ok(strut_setup_read(setup, "hopper", hopper, strlen(hopper), NULL, 0, STRUT_FOR_ANY,
-                             &diagnostics));
-}
+static strut_setup read_hopper(void) { return model_read_text("hopper", hopper, set_none).setup; }
 
 TEST(differences) {
   static const char first[] = "name: A\na: {b: 1, c: [1, {d: 2}], e: {f: 3}}\ng: 1\nsame: {x: 1}\n";
@@ -65,7 +60,7 @@ static strut_status make(const strut_compare_options *options, bool tell) {
   strut_setup scenes[2];
   OWN(strut_compare) result;
   strut_error error = {0};
-  for (int i = 0; i < 2; i++) read_hopper(&scenes[i]);
+  for (int i = 0; i < 2; i++) scenes[i] = read_hopper();
   const strut_compare_input inputs[2] = {{.label = "one", .setup = &scenes[0]},
                                          {.label = "two",
                                           .setup = &scenes[1],
@@ -98,7 +93,7 @@ TEST(without_memory) {
     strut_setup probe; /* what reading takes is not asked here */
     uint64_t start = strut_allocation_count();
     for (int i = 0; i < 2; i++) {
-      read_hopper(&probe);
+      probe = read_hopper();
       strut_setup_free(&probe);
     }
     int64_t reading = (int64_t)(strut_allocation_count() - start);
@@ -117,9 +112,8 @@ TEST(interrupted) {
 }
 
 TEST(what_is_reported) {
-  OWN(strut_setup) setup;
+  OWN(strut_setup) setup = read_hopper();
   OWN(strut_compare) result;
-  read_hopper(&setup);
   const strut_compare_input input = {.label = "one", .setup = &setup};
   const strut_compare_options options = {.accuracy = 0.01};
   assert_ok(strut_compare_make(&input, 1, &options, &result, NULL));

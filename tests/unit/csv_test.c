@@ -54,15 +54,17 @@ static void assert_all_tables(size_t rows) {
                (const size_t[]){21, 22, 23}, 3);
 }
 
+static const char *directory;
+
+BEFORE_EACH { directory = scratch_make(); }
+
 TEST(every_value_comes_back) {
-  const char *directory = scratch_make();
   assert_ok(feed(directory, 1500, STRUT_OK, NULL));
   assert_int_equal(scratch_count(directory), 4);
   assert_all_tables(1500);
 }
 
 TEST(a_run_that_stopped_keeps_its_rows) {
-  const char *directory = scratch_make();
   assert_ok(feed(directory, 7, STRUT_INTERRUPTED, NULL));
   assert_all_tables(7);
   assert_ok(feed(directory, 8, STRUT_DIVERGED, NULL));
@@ -72,7 +74,6 @@ TEST(a_run_that_stopped_keeps_its_rows) {
 }
 
 TEST(trouble_elsewhere_removes_the_files) {
-  const char *directory = scratch_make();
   assert_ok(feed(directory, 7, STRUT_FILE_TROUBLE, NULL));
   assert_int_equal(scratch_count(directory), 0);
   assert_ok(feed(directory, 7, STRUT_NO_MEMORY, NULL));
@@ -84,7 +85,6 @@ TEST(trouble_elsewhere_removes_the_files) {
 }
 
 TEST(only_files_with_channels) {
-  const char *directory = scratch_make();
   strut_record_layout layout = *sample_layout();
   layout.channel_count = 1;
   strut_sink *sink = strut_csv_create(directory);
@@ -97,7 +97,6 @@ TEST(only_files_with_channels) {
 
 TEST(numbers_that_are_none) {
   size_t length;
-  const char *directory = scratch_make();
   strut_record_layout layout = *sample_layout();
   layout.channels = &layout.channels[5];
   layout.channel_count = 1;
@@ -137,7 +136,7 @@ TEST(no_memory) {
   size_t before = 0;
   for (int round = 0; round < 12; round++) {
     if (round == 4) before = heap_in_use();
-    const char *directory = scratch_make();
+    directory = scratch_make();
     REFUSE_EACH(n, status, 11) {
       status = refused(n, feed(directory, 5, STRUT_OK, NULL));
       if (status) assert_int_equal(scratch_count(directory), 0);

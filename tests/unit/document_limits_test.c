@@ -2,11 +2,11 @@
 /* The YAML reader under pressure: limits, bombs, big texts, lost memory, files. */
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "parser/language/read/read_scene.h"
 #include "tests/support/motion.h"
+#include "tests/support/random.h"
 #include "tests/support/sanitized.h"
 #include "tests/unit/document_support.h"
 
@@ -84,10 +84,10 @@ static void expect_bomb_defused(const char *name, char *text, const char *messag
     struct rusage before, after;
     strut_diagnostics_source(&diagnostics, name, text, strlen(text));
     getrusage(RUSAGE_SELF, &before);
-    clock_t begin = clock();
+    double begin = test_seconds();
     got.status = (int)strut_document_read(&document, &diagnostics);
     const char *shown = strut_diagnostics_render(&diagnostics, 50);
-    got.seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+    got.seconds = test_seconds() - begin;
     getrusage(RUSAGE_SELF, &after);
     got.memory = (double)(after.ru_maxrss - before.ru_maxrss) / 1024;
     if (shown && diagnostics.count == 1)
@@ -159,9 +159,9 @@ TEST(big_texts_are_read) {
   FREED char *text = numbered("members:\n", "  m#: {group: rod, nodes: [n#, k#]}\n", 100000);
   OWN(strut_document) document = {0};
   OWN(strut_diagnostics) diagnostics = {0};
-  clock_t begin = clock();
+  double begin = test_seconds();
   assert_ok(read_text(text, &document, &diagnostics));
-  double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+  double seconds = test_seconds() - begin;
   assert_int_equal(document.root->first->next->count, 100000);
   print_message("%.2f s for %.1f MB, %.1f MB of tree\n", seconds, (double)strlen(text) * 1e-6,
                 (double)document.arena.bytes * 1e-6);
@@ -208,10 +208,8 @@ TEST(random_texts_are_survived) {
   int good = 0;
   for (int i = 0; i < 100000; i++) {
     char text[200] = "";
-    for (uint64_t n = 1 + (seed >> 33) % 14; n; n--) {
-      seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407u;
-      strcat(text, parts[(seed >> 33) % (sizeof parts / sizeof parts[0])]);
-    }
+    for (int32_t n = 1 + random_below(&seed, 14); n; n--)
+      strcat(text, parts[random_below(&seed, sizeof parts / sizeof parts[0])]);
     OWN(strut_document) document = {0};
     OWN(strut_diagnostics) diagnostics = {0};
     strut_status status = read_text(text, &document, &diagnostics);

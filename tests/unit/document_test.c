@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The YAML reader: trees and places, and every refusal with its words. */
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 #include "tests/unit/document_support.h"
 
@@ -135,13 +136,12 @@ TEST(keys_are_plain_and_single) {
 /* More keys than are compared in pairs: the hash table finds what a plain search finds. */
 TEST(many_keys_are_compared_alike) {
   enum { MOST = 3000 };
-  uint32_t seed = 5;
+  uint64_t seed = 5;
   for (int count = 5; count < MOST; count = count * 2 + 1) {
     FREED char *text = calloc(MOST, 16);
     int *number = calloc(MOST, sizeof *number), doubles = 0;
     for (int i = 0; i < count; i++) {
-      seed = seed * 1664525 + 1013904223;
-      number[i] = (int)(seed >> 8) % (4 * count);
+      number[i] = random_below(&seed, 4 * count);
       bool again = false;
       for (int k = 0; k < i; k++) again = again || number[k] == number[i];
       doubles += again;

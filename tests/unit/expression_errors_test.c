@@ -2,6 +2,7 @@
 /* Expressions that are refused: the place and the words; limits; random texts. */
 #include "engine/base/memory.h"
 #include "tests/support/check.h"
+#include "tests/support/random.h"
 #include "tests/unit/expression_support.h"
 
 TEST(malformed_numbers_are_named) {
@@ -179,10 +180,8 @@ TEST(random_texts_are_survived) {
   int accepted = 0;
   for (int i = 0; i < 60000; i++) {
     char text[200] = "";
-    for (uint64_t n = 1 + (seed >> 33) % 9; n; n--) {
-      seed = seed * UINT64_C(6364136223846793005) + 1442695040888963407u;
-      strcat(text, parts[(seed >> 33) % (sizeof parts / sizeof parts[0])]);
-    }
+    for (int32_t n = 1 + random_below(&seed, 9); n; n--)
+      strcat(text, parts[random_below(&seed, sizeof parts / sizeof parts[0])]);
     strut_quantity q;
     strut_expression_error error;
     if (strut_expression_evaluate(text, &test_scope, &q, &error)) {

@@ -48,19 +48,20 @@ static void assert_content(const char *path, const char *expected) {
   assert_string_equal(text, expected);
 }
 
-BEFORE_EACH { scratch_make(); }
+static const char *folder;
+
+BEFORE_EACH { folder = scratch_make(); }
 
 TEST(a_file_appears_on_commit_only) {
   strut_file file = {0};
-  const char *directory = scratch_make();
-  assert_ok(strut_file_open(&file, directory, "a.txt", NULL));
+  assert_ok(strut_file_open(&file, folder, "a.txt", NULL));
   fputs("hello\n", file.stream);
   fflush(file.stream);
   assert_false(scratch_exists(scratch_path("a.txt")));
-  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(scratch_count(folder), 1);
   assert_ok(strut_file_commit(&file, NULL));
   assert_content(scratch_path("a.txt"), "hello\n");
-  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(scratch_count(folder), 1);
   assert_null(file.stream);
   strut_file_abandon(&file); /* nothing happens */
   assert_true(scratch_exists(scratch_path("a.txt")));
@@ -68,22 +69,20 @@ TEST(a_file_appears_on_commit_only) {
 
 TEST(abandon_keeps_the_old_file) {
   strut_file file = {0};
-  const char *directory = scratch_make();
-  assert_ok(strut_file_write_text(directory, "a.txt", "old", NULL));
-  assert_ok(strut_file_open(&file, directory, "a.txt", NULL));
+  assert_ok(strut_file_write_text(folder, "a.txt", "old", NULL));
+  assert_ok(strut_file_open(&file, folder, "a.txt", NULL));
   fputs("new", file.stream);
   strut_file_abandon(&file);
   assert_content(scratch_path("a.txt"), "old");
-  assert_int_equal(scratch_count(directory), 1);
-  assert_ok(strut_file_write_text(directory, "a.txt", "new", NULL));
+  assert_int_equal(scratch_count(folder), 1);
+  assert_ok(strut_file_write_text(folder, "a.txt", "new", NULL));
   assert_content(scratch_path("a.txt"), "new");
 }
 
 TEST(permissions_follow_the_umask) {
   struct stat found;
-  const char *directory = scratch_make();
   mode_t before = umask(027);
-  assert_ok(strut_file_write_text(directory, "a.txt", "x", NULL));
+  assert_ok(strut_file_write_text(folder, "a.txt", "x", NULL));
   umask(before);
   assert_int_equal(stat(scratch_path("a.txt"), &found), 0);
   assert_int_equal(found.st_mode & 0777, 0640);
@@ -91,66 +90,62 @@ TEST(permissions_follow_the_umask) {
 
 /* A file's bytes are on the disk before its name is, and the name before it is told to be there. */
 TEST(the_disk_has_a_file_before_its_name) {
-  struct stat folder, file;
-  const char *directory = scratch_make();
+  struct stat above, file;
   char text[5001];
   memset(text, 'x', 5000);
   text[5000] = '\0';
   asked_count = 0;
-  assert_ok(strut_file_write_text(directory, "a.txt", text, NULL));
-  assert_all_equal(stat(directory, &folder), 0, stat(scratch_path("a.txt"), &file), 0);
+  assert_ok(strut_file_write_text(folder, "a.txt", text, NULL));
+  assert_all_equal(stat(folder, &above), 0, stat(scratch_path("a.txt"), &file), 0);
   assert_int_equal(asked_count, 3);
   assert_true(!asked[0].renames && asked[0].file == file.st_ino && asked[0].size == 5000);
   assert_true(asked[1].renames && asked[1].file == file.st_ino);
-  assert_true(!asked[2].renames && asked[2].file == folder.st_ino);
+  assert_true(!asked[2].renames && asked[2].file == above.st_ino);
 }
 
 TEST(a_disk_that_cannot_keep_it_is_reported) {
   strut_error error = {0};
-  const char *directory = scratch_make();
   fsync_fails = EIO;
-  strut_status status = strut_file_write_text(directory, "a.txt", "x", &error);
+  strut_status status = strut_file_write_text(folder, "a.txt", "x", &error);
   fsync_fails = 0;
   assert_fails(status, STRUT_FILE_TROUBLE, error, "a.txt");
-  assert_int_equal(scratch_count(directory), 0);
+  assert_int_equal(scratch_count(folder), 0);
 }
 
 TEST(two_writers_do_not_meet) {
   strut_file first = {0}, second = {0};
-  const char *directory = scratch_make();
-  assert_ok(strut_file_open(&first, directory, "a.txt", NULL));
-  assert_ok(strut_file_open(&second, directory, "a.txt", NULL));
+  assert_ok(strut_file_open(&first, folder, "a.txt", NULL));
+  assert_ok(strut_file_open(&second, folder, "a.txt", NULL));
   fputs("first", first.stream);
   fputs("second", second.stream);
   assert_ok(strut_file_commit(&first, NULL));
   assert_ok(strut_file_commit(&second, NULL));
   assert_content(scratch_path("a.txt"), "second");
-  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(scratch_count(folder), 1);
 }
 
 /* What a killed process left is written over; what another one writes stays. */
 TEST(left_files_go) {
-  const char *directory = scratch_make();
   int ready[2];
   assert_int_equal(pipe(ready), 0);
   pid_t child = fork();
   if (child == 0) {
     strut_file file = {0};
-    bool begun = strut_file_open(&file, directory, "a.txt", NULL) == STRUT_OK &&
+    bool begun = strut_file_open(&file, folder, "a.txt", NULL) == STRUT_OK &&
                  fputs("a part that is longer", file.stream) >= 0 && fflush(file.stream) == 0;
     if (!begun || write(ready[1], "x", 1) != 1) _exit(1);
     for (;;) pause();
   }
   char byte;
   assert_int_equal(read(ready[0], &byte, 1), 1);
-  assert_int_equal(scratch_count(directory), 1);
-  assert_ok(strut_file_write_text(directory, "a.txt", "new\n", NULL));
-  assert_int_equal(scratch_count(directory), 2); /* its writer lives */
+  assert_int_equal(scratch_count(folder), 1);
+  assert_ok(strut_file_write_text(folder, "a.txt", "new\n", NULL));
+  assert_int_equal(scratch_count(folder), 2); /* its writer lives */
   kill(child, SIGKILL);
   assert_int_equal(waitpid(child, NULL, 0), child);
-  assert_int_equal(scratch_count(directory), 2);
-  assert_ok(strut_file_write_text(directory, "a.txt", "newer\n", NULL));
-  assert_int_equal(scratch_count(directory), 1);
+  assert_int_equal(scratch_count(folder), 2);
+  assert_ok(strut_file_write_text(folder, "a.txt", "newer\n", NULL));
+  assert_int_equal(scratch_count(folder), 1);
   assert_content(scratch_path("a.txt"), "newer\n");
   close(ready[0]);
   close(ready[1]);
@@ -199,10 +194,9 @@ TEST(a_full_disk_leaves_nothing) {
 }
 
 TEST(no_memory_leaves_nothing) {
-  const char *directory = scratch_make();
   REFUSE_EACH(n, status, 3) {
-    status = refused(n, strut_file_write_text(directory, "a", "text", NULL));
-    if (status) assert_int_equal(scratch_count(directory), 0);
+    status = refused(n, strut_file_write_text(folder, "a", "text", NULL));
+    if (status) assert_int_equal(scratch_count(folder), 0);
   }
 }
 

@@ -117,15 +117,17 @@ static void assert_file(size_t rows, const char *status, const char *scene) {
   assert_true(H5Fclose(file) >= 0);
 }
 
+static const char *directory;
+
+BEFORE_EACH { directory = scratch_make(); }
+
 TEST(every_value_comes_back) {
-  const char *directory = scratch_make();
   assert_ok(feed(directory, 1500, STRUT_OK, "strut: 1\n", NULL));
   assert_int_equal(scratch_count(directory), 1);
   assert_file(1500, "completed", "strut: 1\n");
 }
 
 TEST(a_run_that_stopped_is_marked) {
-  const char *directory = scratch_make();
   assert_ok(feed(directory, 7, STRUT_INTERRUPTED, "s", NULL));
   assert_file(7, "interrupted", "s");
   assert_ok(feed(directory, 41, STRUT_DIVERGED, "s", NULL));
@@ -136,7 +138,6 @@ TEST(a_run_that_stopped_is_marked) {
 
 TEST(a_long_scene_fits) {
   enum { LENGTH = 3000000 };
-  const char *directory = scratch_make();
   FREED char *scene = calloc(LENGTH + 1, 1);
   for (size_t i = 0; i < LENGTH; i++) scene[i] = (char)('a' + i % 23);
   assert_ok(feed(directory, 3, STRUT_OK, scene, NULL));
@@ -144,10 +145,9 @@ TEST(a_long_scene_fits) {
 }
 
 TEST(equal_runs_give_equal_bytes) {
-  size_t first_length, second_length;
-  const char *directory = scratch_make();
+  size_t length;
   assert_ok(feed(directory, 500, STRUT_OK, "scene", NULL));
-  FREED char *first = scratch_read(scratch_path("trajectory.h5"), &first_length);
+  FREED char *first = scratch_read(scratch_path("trajectory.h5"), &length);
   for (int i = 0; i < 5; i++) {
     for (size_t size = 16; size < 20000; size += 24 + size / 4) { /* other garbage in the heap */
       FREED char *block = malloc(size);
@@ -155,16 +155,13 @@ TEST(equal_runs_give_equal_bytes) {
     }
     if (i == 2) sleep(1); /* another second, another time stamp if there were one */
     assert_ok(feed(directory, 500, STRUT_OK, "scene", NULL));
-    FREED char *second = scratch_read(scratch_path("trajectory.h5"), &second_length);
-    assert_int_equal(second_length, first_length);
-    assert_memory_equal(second, first, first_length);
+    scratch_expect(scratch_path("trajectory.h5"), first, length);
   }
 }
 
 TEST(rows_longer_than_a_chunk) {
   enum { NODES = 50000, ROWS = 3 };
   static const char *const axes[] = {"x", "y"};
-  const char *directory = scratch_make();
   FREED const char **names = calloc(NODES, sizeof *names);
   for (size_t i = 0; i < NODES; i++) names[i] = "n";
   strut_record_channel channel = {
@@ -182,7 +179,6 @@ TEST(rows_longer_than_a_chunk) {
 }
 
 TEST(trouble_elsewhere_removes_the_file) {
-  const char *directory = scratch_make();
   assert_ok(feed(directory, 7, STRUT_FILE_TROUBLE, "", NULL));
   assert_int_equal(scratch_count(directory), 0);
   strut_sink *sink = strut_hdf5_create(directory, ""); /* begun, never ended */
@@ -200,7 +196,6 @@ TEST(the_host_keeps_its_error_handler) {
   H5E_auto2_t before = NULL, after = NULL;
   void *before_data = NULL, *after_data = NULL;
   int mine = 0;
-  const char *directory = scratch_make();
   H5Eget_auto2(H5E_DEFAULT, &before, &before_data);
   H5Eset_auto2(H5E_DEFAULT, note_error, &mine);
   assert_ok(feed(directory, 7, STRUT_OK, "", NULL));
@@ -254,7 +249,6 @@ TEST(a_full_disk_is_an_error_and_silent) {
 }
 
 TEST(no_memory) {
-  const char *directory = scratch_make();
   REFUSE_EACH(n, status, 16) {
     status = refused(n, feed(directory, 5, STRUT_OK, "scene", NULL));
     if (status) assert_int_equal(scratch_count(directory), 0);

@@ -16,34 +16,34 @@ static const char *names[] = {"n1", "a \"b\"\\\n"};
 static double positions[] = {0.1 + 0.2, -1e-300, 5e-324, 1.7976931348623157e308};
 static strut_contact_summary contacts[] = {{.node = "n1", .duty = 1.0 / 3.0, .max_height = 1.1e-3}};
 
-static strut_scene make_scene(void) {
-  strut_scene scene = {.name = "Cr\xc3\xa4wler", .description = "", .source = ""};
-  scene.nodes = &node;
-  scene.node_count = 1;
-  scene.parameters = parameters;
-  scene.parameter_count = 3;
-  return scene;
-}
+static strut_scene scene = {.name = "Cr\xc3\xa4wler",
+                            .description = "",
+                            .source = "",
+                            .nodes = &node,
+                            .node_count = 1,
+                            .parameters = parameters,
+                            .parameter_count = 3};
+static strut_summary summary;
 
-static strut_summary make_summary(void) {
-  return (strut_summary){.status = STRUT_OK,
-                         .velocity = 9.7812345678901234e-3,
-                         .velocity_spread = (double)NAN,
-                         .window.start = 100.0,
-                         .duration = 110.0,
-                         .settle_time = 0.7,
-                         .spent.steps = INT64_C(9007199254740993), /* not a double */
-                         .spent.evaluations = 4400000,
-                         .step = 1e-4,
-                         .step_limit = (double)INFINITY,
-                         .spent.wall_time = 0.25,
-                         .end.node_count = 2,
-                         .end.contact_count = 1,
-                         .end.node_names = names,
-                         .end.positions = positions,
-                         .end.contacts = contacts,
-                         .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 7.5, 8, 9, 10, 11, -1e-17, 13},
-                         .balance = STRUT_BALANCE_OPEN};
+BEFORE_EACH {
+  summary = (strut_summary){.status = STRUT_OK,
+                            .velocity = 9.7812345678901234e-3,
+                            .velocity_spread = (double)NAN,
+                            .window.start = 100.0,
+                            .duration = 110.0,
+                            .settle_time = 0.7,
+                            .spent.steps = INT64_C(9007199254740993), /* not a double */
+                            .spent.evaluations = 4400000,
+                            .step = 1e-4,
+                            .step_limit = (double)INFINITY,
+                            .spent.wall_time = 0.25,
+                            .end.node_count = 2,
+                            .end.contact_count = 1,
+                            .end.node_names = names,
+                            .end.positions = positions,
+                            .end.contacts = contacts,
+                            .energy = {1.0 / 7.0, 2, 3, 4, 5, 6, 7, 7.5, 8, 9, 10, 11, -1e-17, 13},
+                            .balance = STRUT_BALANCE_OPEN};
 }
 
 static const cJSON *at(const cJSON *from, const char *key) {
@@ -89,8 +89,6 @@ static void assert_energy(const cJSON *energy, const strut_energy *e) {
 }
 
 TEST(every_field) {
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   RELEASED char *text = strut_summary_json(&summary, &scene, true);
   assert_non_null(strstr(text, "\"steps\":\t9007199254740993,")); /* all digits */
   cJSON *json = cJSON_Parse(text);
@@ -124,8 +122,6 @@ TEST(every_field) {
 }
 
 TEST(files_know_no_wall_time) {
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   RELEASED char *first = strut_summary_json(&summary, &scene, false);
   summary.spent.wall_time = 17.0;
   RELEASED char *second = strut_summary_json(&summary, &scene, false);
@@ -134,8 +130,6 @@ TEST(files_know_no_wall_time) {
 }
 
 TEST(a_run_that_stopped_says_why) {
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   summary.status = STRUT_DIVERGED;
   strcpy(summary.reason, "node 'n1' left at t = 0.5 s");
   summary.velocity = (double)-INFINITY;
@@ -155,8 +149,6 @@ static void *counted_allocate(size_t size) { return strut_allocate(size, 1); }
 
 TEST(no_memory) {
   cJSON_Hooks hooks = {counted_allocate, strut_release};
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   cJSON_InitHooks(&hooks);
   RELEASED char *expected = strut_summary_json(&summary, &scene, true);
   for (int table = 0; table < 2; table++) REFUSE_EACH(n, status, table ? 0 : 99) {
@@ -171,8 +163,6 @@ TEST(no_memory) {
 }
 
 TEST(the_table) {
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   summary.spent.steps = 1100000;
   summary.step_limit = 5.123456e-4;
   summary.velocity_spread = 2e-6;
@@ -199,8 +189,6 @@ TEST(the_table) {
 
 TEST(a_long_table_is_cut) {
   enum { NODES = 5000 };
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   FREED const char **many = calloc(NODES, sizeof *many);
   FREED double *places = calloc(2 * NODES, sizeof *places);
   for (size_t i = 0; i < NODES; i++) many[i] = "n";
@@ -245,8 +233,6 @@ TEST(quantities) {
 
 /* A comma as decimal point must not come through; where no such locale is installed, skip. */
 TEST(the_locale_does_not_matter) {
-  strut_scene scene = make_scene();
-  strut_summary summary = make_summary();
   if (!setlocale(LC_ALL, "de_DE.UTF-8") && !setlocale(LC_ALL, "fr_FR.UTF-8")) skip();
   RELEASED char *json_there = strut_summary_json(&summary, &scene, true);
   RELEASED char *table_there = strut_summary_table(&summary, &scene, 0);

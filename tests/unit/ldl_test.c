@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Factors of matrices that need not be positive definite: solutions, signs, condition. */
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 
 #include "engine/model/algebra/linear_solver.h"
 #include "tests/support/check.h"
+#include "tests/support/dense.h"
 #include "tests/support/random.h"
 
-FREED_BY(gsl_matrix_free, gsl_matrix)
-FREED_BY(gsl_vector_free, gsl_vector)
 FREED_BY(strut_ldl_free, strut_ldl)
 
 enum { N = 40 };
@@ -25,25 +23,11 @@ static strut_sparse *random_matrix(uint64_t *r, double lift, strut_arena *arena)
   return strut_sparse_build(N, &triplets, arena);
 }
 
-static gsl_matrix *dense_of(const strut_sparse *m, double shift) {
-  gsl_matrix *a = gsl_matrix_calloc((size_t)m->n, (size_t)m->n);
-  for (int32_t j = 0; j < m->n; j++)
-    for (int32_t k = m->start[j]; k < m->start[j + 1]; k++) {
-      size_t i = (size_t)m->row[k], c = (size_t)j;
-      double value = m->value[k] + (i == c ? shift : 0);
-      gsl_matrix_set(a, i, c, value), gsl_matrix_set(a, c, i, value);
-    }
-  return a;
-}
-
 static int negative_eigenvalues(const strut_sparse *m, double shift) {
-  int32_t n = m->n, count = 0;
+  int count = 0;
   OWN_POINTER(gsl_matrix) a = dense_of(m, shift);
-  OWN_POINTER(gsl_vector) values = gsl_vector_alloc((size_t)n);
-  gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc((size_t)n);
-  gsl_eigen_symm(a, values, w);
-  for (int32_t i = 0; i < n; i++) count += gsl_vector_get(values, (size_t)i) < 0;
-  gsl_eigen_symm_free(w);
+  OWN_POINTER(gsl_vector) values = dense_eigenvalues(a, NULL);
+  for (size_t i = 0; i < values->size; i++) count += gsl_vector_get(values, i) < 0;
   return count;
 }
 

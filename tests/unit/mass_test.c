@@ -47,16 +47,6 @@ TEST(supports_cut_sets) {
   }
 }
 
-TEST(lumped_masses_are_diagonal) {
-  OWN(strut_scene) scene = build_scene();
-  scene.mass_model = STRUT_MASS_LUMPED;
-  build_row(&scene, 20, 2, 1);
-  OWN_POINTER(strut_model) model = motion_compile(&scene);
-  assert_all(model->mass->diagonal, !(model->terms & STRUT_TERM_SOLVE));
-  for (int i = 0; i < 20; i++)
-    assert_true(model->mass->inverse[2 * i] == (i == 0 || i == 19 ? 1 : 0.5));
-}
-
 TEST(a_node_without_mass_is_for_statics_only) {
   OWN(strut_scene) scene = build_scene();
   build_row(&scene, 3, 1, 1);
@@ -116,28 +106,14 @@ TEST(the_inverse_is_one_at_any_mass_ratio) {
     }
 }
 
+/* Cables have a mass, too; of 1e5 nodes some are a billion times lighter than others. */
 TEST(the_inverse_of_a_meshed_structure) {
-  OWN(strut_scene) scene = build_scene();
-  structure_chain(&scene, 500, STRUT_MASS_CONSISTENT);
-  for (size_t j = 0; j < scene.member_count; j++) scene.members[j].mass = 0.1; /* cables too */
-  check_inverse(&scene);
-}
-
-/* A uniform rigid rod: the inertia about its centre and about its end are exact. */
-TEST(a_consistent_bar_has_the_inertia_of_a_rod) {
-  OWN(strut_scene) scene = build_scene();
-  const double m = 0.6, l = 2;
-  build_node(&scene, 0, 0);
-  build_node(&scene, l, 0);
-  build_member(&scene, STRUT_BAR, 0, 1, 1, 0, m);
-  for (int pinned = 0; pinned < 2; pinned++) {
-    scene.nodes[0].fixed[0] = scene.nodes[0].fixed[1] = pinned;
-    OWN_POINTER(strut_model) model = motion_compile(&scene);
-    double f[16] = {0}, a[16] = {0}, work[16];
-    f[1] = pinned ? 0 : -1, f[3] = 1; /* a couple, or a force at the end */
-    strut_mass_solve(model, f, a, work);
-    double moment = l, inertia = pinned ? m * l * l / 3 : m * l * l / 12;
-    assert_relative((a[3] - a[1]) / l, moment / inertia, 1e-14);
-    assert_true(!pinned || (a[0] == 0 && a[1] == 0));
+  uint64_t r = 5;
+  for (int large = 0; large < 2; large++) {
+    OWN(strut_scene) scene = build_scene();
+    structure_chain(&scene, large ? 50000 : 500, STRUT_MASS_CONSISTENT);
+    for (size_t j = 0; j < scene.member_count; j++)
+      scene.members[j].mass = large ? random_scale(&r, 1e-9, 1) : 0.1;
+    check_inverse(&scene);
   }
 }

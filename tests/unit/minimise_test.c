@@ -109,7 +109,7 @@ TEST(stiffness_ratios) {
         strut_descent d;
         double error = tip_error(springs, ratio, sparse, &d);
         assert_int_equal(d.end, STRUT_DESCENT_REACHED);
-        assert_true(error < 1e-8);
+        assert_true(error < 1e-9);
       }
 }
 

@@ -7,15 +7,9 @@
 #include "parser/language/expression/expression.h"
 #include "parser/language/yaml/document.h"
 #include "tests/support/check.h"
+#include "tests/support/random.h"
 
-static uint64_t random_state = 42;
-
-static uint32_t random_below(uint32_t most) {
-  random_state ^= random_state << 13;
-  random_state ^= random_state >> 7;
-  random_state ^= random_state << 17;
-  return (uint32_t)((random_state >> 20) % most);
-}
+static uint64_t seed = 42;
 
 static bool same_bits(double a, double b) { return memcmp(&a, &b, sizeof a) == 0; }
 
@@ -99,13 +93,13 @@ TEST(length_bounds_the_literal) {
 TEST(rounding_is_correct) {
   for (int i = 0; i < 300000; i++) {
     char text[80];
-    int used = 0, whole = (int)random_below(i % 2 ? 8 : 25) + 1, digits = (int)random_below(20);
-    for (int k = 0; k < whole; k++) text[used++] = (char)('0' + random_below(10));
+    int used = 0, whole = random_below(&seed, i % 2 ? 8 : 25) + 1, digits = random_below(&seed, 20);
+    for (int k = 0; k < whole; k++) text[used++] = (char)('0' + random_below(&seed, 10));
     if (digits) text[used++] = '.';
-    for (int k = 0; k < digits; k++) text[used++] = (char)('0' + random_below(10));
+    for (int k = 0; k < digits; k++) text[used++] = (char)('0' + random_below(&seed, 10));
     text[used] = '\0';
-    if (random_below(2))
-      snprintf(text + used, 20, "e%d", (int)random_below(i % 3 ? 60 : 600) - 300);
+    if (random_below(&seed, 2))
+      snprintf(text + used, 20, "e%d", random_below(&seed, i % 3 ? 60 : 600) - 300);
     double expected = strtod(text, NULL), got = -1;
     bool readable = isfinite(expected) && (expected != 0 || strspn(text, "0.e-+") == strlen(text));
     bool read = strut_number_read_scaled(text, strlen(text), 0, &got);
@@ -119,7 +113,7 @@ TEST(rounding_is_correct) {
 /* What %.17g prints is read back to the same bits, whatever the bits. */
 TEST(every_double_comes_back) {
   for (int i = 0; i < 200000; i++) {
-    uint64_t bits = (uint64_t)random_below(0x80000000) << 32 | random_below(UINT32_MAX);
+    uint64_t bits = random_bits(&seed) >> 1;
     double value, got;
     memcpy(&value, &bits, sizeof value);
     if (!isfinite(value) || value == 0) continue;
@@ -134,8 +128,8 @@ TEST(every_double_comes_back) {
 TEST(scaling_rounds_once) {
   for (int i = 0; i < 100000; i++) {
     char text[40], scaled[60];
-    int decimal = (int)random_below(19) - 9;
-    snprintf(text, sizeof text, "%u.%04u", random_below(100000), random_below(10000));
+    int decimal = random_below(&seed, 19) - 9;
+    snprintf(text, sizeof text, "%u.%04u", random_below(&seed, 100000), random_below(&seed, 10000));
     snprintf(scaled, sizeof scaled, "%se%d", text, decimal);
     double got = -1, expected = strtod(scaled, NULL);
     assert_true(strut_number_read_scaled(text, strlen(text), decimal, &got));
@@ -153,13 +147,13 @@ TEST(grammar_is_the_one_of_the_language) {
   int accepted = 0, refused = 0;
   for (int i = 0; i < 200000; i++) {
     char text[32];
-    snprintf(text, sizeof text, "%s", seeds[random_below(sizeof seeds / sizeof seeds[0])]);
-    for (uint32_t changes = random_below(3) + 1; changes; changes--) {
-      size_t length = strlen(text), at = random_below((uint32_t)length + 1);
-      char letter = alphabet[random_below(sizeof alphabet - 1)];
-      if (random_below(3) == 0 && length) {
+    snprintf(text, sizeof text, "%s", seeds[random_below(&seed, sizeof seeds / sizeof seeds[0])]);
+    for (int changes = random_below(&seed, 3) + 1; changes; changes--) {
+      size_t length = strlen(text), at = (size_t)random_below(&seed, (int32_t)length + 1);
+      char letter = alphabet[random_below(&seed, sizeof alphabet - 1)];
+      if (random_below(&seed, 3) == 0 && length) {
         memmove(text + at, text + at + (at < length), length - at + (at == length));
-      } else if (random_below(2) && at < length) {
+      } else if (random_below(&seed, 2) && at < length) {
         text[at] = letter;
       } else if (length + 2 < sizeof text) {
         memmove(text + at + 1, text + at, length - at + 1);

@@ -3,14 +3,10 @@
 #include <stdbool.h>
 
 #include "engine/base/text.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
-static uint64_t state = UINT64_C(0x9e3779b97f4a7c15);
-
-static uint64_t next_random(void) { /* xorshift64* */
-  state ^= state >> 12, state ^= state << 25, state ^= state >> 27;
-  return state * UINT64_C(2685821657736338717);
-}
+static uint64_t seed = 1;
 
 static double from_bits(uint64_t bits) {
   double value;
@@ -61,16 +57,16 @@ static void assert_shortest(double value) {
 
 TEST(random_bits) {
   for (int i = 0; i < 300000; i++) {
-    double value = from_bits(next_random());
+    double value = from_bits(random_bits(&seed));
     if (isfinite(value)) assert_shortest(value);
   }
 }
 
 TEST(numbers_of_everyday_size) {
   for (int i = 0; i < 200000; i++) {
-    double unit = (double)(next_random() >> 11) / 9007199254740992.0;
-    assert_shortest((unit - 0.5) * pow(10.0, (double)(next_random() % 24) - 12.0));
-    assert_shortest((double)(next_random() % 1000000) / 1000.0);
+    double unit = random_between(&seed, -0.5, 0.5);
+    assert_shortest(unit * pow(10.0, random_below(&seed, 24) - 12));
+    assert_shortest((double)(random_bits(&seed) % 1000000) / 1000.0);
   }
 }
 

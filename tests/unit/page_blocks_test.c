@@ -6,12 +6,10 @@
 
 #include "engine/output/page/page.h"
 #include "tests/support/motion.h"
+#include "tests/support/random.h"
 
 static uint64_t seed = 1;
-static double uniform(void) { /* -1 to 1 */
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return (double)(int64_t)seed / 9223372036854775808.0;
-}
+static double uniform(void) { return random_between(&seed, -1, 1); }
 
 /* The block's values, (frames, columns); to be freed. Fails on bytes too many or too few. */
 static double *decode(const strut_block *block, size_t frames) {

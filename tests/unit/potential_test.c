@@ -1,115 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The potential energy, its gradient and Hessian against differences and the engine's own sums. */
+/* The potential energy in small: members of no length, a slope, no memory. Random scenes: world_statics_test.c. */
 #include "engine/statics/potential.h"
 
-#include "engine/forces/forces.h"
-#include "engine/forces/tangent.h"
 #include "tests/physics/random_scene.h"
 #include "tests/support/motion.h"
-#include "tests/support/random.h"
 
 FREED_BY(strut_potential_free, strut_potential)
-
-enum { SCENES = 120 };
-
-typedef struct fixture {
-  strut_scene scene;
-  strut_model *model;
-  strut_potential *potential;
-  double *q, *g, *up, *down;
-} fixture;
-
-/* Is every cable clear of slackness and every contact clear of the ground's line? */
-static bool clear_of_kinks(const strut_model *model, const double *q, double margin) {
-  const strut_member_table *t = &model->members;
-  const strut_contact_table *c = &model->contacts;
-  for (int32_t j = 0; j < t->count; j++) {
-    const double *a = q + t->from[j], *b = q + t->to[j];
-    double length = hypot(b[0] - a[0], b[1] - a[1]);
-    if (length < 20 * margin) return false;
-    if (t->slack[j] == 0 && fabs(length - t->rest[j]) < margin) return false;
-  }
-  for (int32_t i = 0; i < c->count; i++) {
-    const double *at = q + c->at[i];
-    double gap = at[0] * c->normal[0] + (at[1] - c->height) * c->normal[1];
-    if (fabs(gap) < margin) return false;
-  }
-  return true;
-}
-
-static bool set_up(fixture *f, uint64_t seed) {
-  uint64_t r = seed ^ 0x5bd1e995u;
-  double t, *v;
-  random_scene(&f->scene, seed);
-  assert_ok(strut_model_compile(&f->scene, &f->model, NULL));
-  size_t length = (size_t)f->model->length;
-  uint8_t *held = strut_arena_allocate(&f->scene.arena, length, 1);
-  f->q = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
-  f->g = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
-  f->up = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
-  f->down = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
-  v = strut_arena_allocate(&f->scene.arena, length, sizeof(double));
-  for (size_t i = 0; i < length; i++) held[i] = (uint8_t)random_once_in(&r, 10);
-  bool contacts = !random_once_in(&r, 4);
-  const uint8_t *mask = random_once_in(&r, 2) ? held : NULL;
-  assert_ok(strut_potential_create(f->model, mask, contacts, &f->potential, NULL));
-  for (uint64_t again = 0; again < 20; again++) {
-    random_motion(&f->scene, seed + 1000 * again, &t, f->q, v);
-    if (clear_of_kinks(f->model, f->q, 3e-3)) return f->potential->n > 0;
-  }
-  return false;
-}
-
-static void tear_down(fixture *f) {
-  strut_potential_free(f->potential);
-  strut_model_free(f->model);
-  strut_scene_free(&f->scene);
-}
-
-/* The engine's forces, energies and tangent stiffness know nothing of this room. */
-TEST(it_agrees_with_the_engine) {
-  for (uint64_t seed = 0; seed < SCENES; seed++) {
-    fixture f = {0};
-    if (!set_up(&f, seed)) {
-      tear_down(&f);
-      continue;
-    }
-    OWN(strut_arena) arena = {0};
-    strut_tangent tangent;
-    OWN_POINTER(strut_potential) all;
-    assert_ok(strut_potential_create(f.model, NULL, true, &all, NULL));
-    strut_sparse *k = strut_potential_matrix(all, &arena);
-    strut_potential_hessian(all, f.q, k);
-    assert_ok(strut_tangent_assemble(f.model, f.q, f.model->members.rest, STRUT_CLOSED_TOUCHING,
-                                     &arena, &tangent));
-    assert_int_equal(tangent.n, all->n);
-    double *x = strut_arena_allocate(&arena, (size_t)all->n, sizeof *x);
-    double *y = strut_arena_allocate(&arena, (size_t)all->n, sizeof *y);
-    double *z = strut_arena_allocate(&arena, (size_t)all->n, sizeof *z);
-    for (int32_t i = 0; i < all->n; i++) x[i] = sin(1.0 + 3.0 * i);
-    strut_sparse_multiply(k, x, y);
-    strut_sparse_multiply(tangent.stiffness, x, z);
-    for (int32_t i = 0; i < all->n; i++) assert_near(y[i], z[i], 1e-9 * (1 + fabs(z[i])));
-
-    f.scene.actuator_count = 0;
-    OWN_POINTER(strut_model) quiet;
-    OWN_POINTER(strut_state) still;
-    assert_ok(strut_model_compile(&f.scene, &quiet, NULL));
-    assert_ok(strut_state_create(quiet, &still, NULL));
-    memcpy(still->q, f.q, (size_t)f.model->length * sizeof *f.q);
-    memset(still->v, 0, (size_t)f.model->length * sizeof *f.q);
-    strut_energies stored = strut_energy_evaluate(quiet, still, 0);
-    double sum = stored.elastic + stored.gravity + stored.contact;
-    double loads = strut_energy_load_potential(quiet, still);
-    double scale = fabs(stored.elastic) + fabs(stored.gravity) + fabs(loads) + stored.contact;
-    assert_near(strut_potential_value(all, f.q), sum - loads, 1e-13 * scale);
-    assert_near(strut_potential_energy(all, f.q), stored.elastic + stored.gravity, 1e-13 * scale);
-    strut_potential_gradient(all, f.q, f.g);
-    strut_potential_force(all, f.q, f.up);
-    for (int32_t i = 0; i < all->n; i++) assert_same_bits(0 - f.g[i], 0 + f.up[all->coordinate[i]]);
-    tear_down(&f);
-  }
-}
 
 /* A spring of no length and no rest length pulls alike everywhere; one with a rest length not. */
 TEST(members_of_zero_length) {

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Searches through long profiles: the answers, and their bits, of a search through everything; and their time. */
-#include <time.h>
-
 #include "engine/model/pose.h"
 #include "engine/scene/profile.h"
 #include "tests/models/run_model.h"
@@ -9,12 +7,6 @@
 #include "tests/support/random.h"
 
 enum { LONGEST = 100000 };
-
-static double seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- convex pieces ---- */
 
@@ -208,15 +200,15 @@ TEST(long_profiles_are_checked_at_once) {
     points[k][0] = radius * cos(STRUT_TAU * turns), points[k][1] = radius * sin(STRUT_TAU * turns);
   }
   strut_ground g = profile_of(points, LONGEST);
-  double begin = seconds();
+  double begin = test_seconds();
   /* the line before its begin leads through all the turns */
   assert_int_equal(strut_profile_check(&g, &segment, &other), STRUT_PROFILE_CROSSES);
   assert_int_equal(other, 0);
-  assert_within(seconds() - begin, 0.0, 5.0);
+  assert_within(test_seconds() - begin, 0.0, 5.0);
   for (size_t k = 0; k < LONGEST; k++)
     points[k][0] = (double)k, points[k][1] = k % 2 ? -1.0 : -1.0001;
-  begin = seconds();
+  begin = test_seconds();
   assert_int_equal(strut_profile_check(&g, &segment, &other), STRUT_PROFILE_FINE);
-  assert_within(seconds() - begin, 0.0, 1.0);
+  assert_within(test_seconds() - begin, 0.0, 1.0);
   free(points);
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the reader makes of a text: values, groups, parameters, --set, layers; memory; locale. */
-#include <time.h>
 
 #include "parser/language/read/read_scene.h"
 #include "parser/language/write/write_scene.h"
@@ -290,10 +289,10 @@ static double seconds_to_read(int n, bool spoilt, strut_status expected) {
   FREED char *text = chain(n, spoilt, &length);
   OWN(strut_setup) s;
   OWN(strut_diagnostics) diagnostics = {0};
-  clock_t begin = clock();
+  double begin = test_seconds();
   assert_int_equal(strut_setup_read(&s, "f", text, length, NULL, 0, STRUT_FOR_RUN, &diagnostics),
                    expected);
-  double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+  double seconds = test_seconds() - begin;
   assert_int_equal(diagnostics.count + diagnostics.unstored, spoilt ? n : 0);
   return seconds;
 }

@@ -5,17 +5,10 @@
 
 #include "parser/language/read/reuse/used_files.h"
 #include "tests/support/check.h"
-
-static char folder[] = "/tmp/strut-safe-XXXXXX";
-
-static const char *at(const char *name) {
-  static char path[200];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
+#include "tests/unit/scratch.h"
 
 static void write_text(const char *name, const char *text) {
-  FILE *file = fopen(at(name), "wb");
+  FILE *file = fopen(scratch_path(name), "wb");
   assert_non_null(file);
   fputs(text, file);
   fclose(file);
@@ -26,45 +19,28 @@ static void write_text(const char *name, const char *text) {
  * points.csv, top/out and top/outside out, top/deep to in. top/pipe is a FIFO.
  */
 BEFORE_ALL {
-  char path[200];
-  assert_non_null(mkdtemp(folder));
-  mkdir(at("top"), 0700);
-  mkdir(at("top/in"), 0700);
-  mkdir(at("topless"), 0700);
+  scratch_make();
+  mkdir(scratch_path("top"), 0700);
+  mkdir(scratch_path("top/in"), 0700);
+  mkdir(scratch_path("topless"), 0700);
   write_text("secret.csv", "secret");
   write_text("topless/points.csv", "other");
   write_text("top/points.csv", "a,b\n1,2\n");
   write_text("top/in/part.yaml", "nodes: {}\n");
   write_text("top/empty", "");
-  assert_int_equal(symlink("points.csv", at("top/fine")), 0);
-  assert_int_equal(symlink("../secret.csv", at("top/out")), 0);
-  assert_int_equal(symlink("..", at("top/outside")), 0);
-  assert_int_equal(symlink("in", at("top/deep")), 0);
-  assert_int_equal(symlink("circle", at("top/circle")), 0);
-  assert_int_equal(symlink("/dev/zero", at("top/zero")), 0);
-  assert_int_equal(mkfifo(at("top/pipe"), 0600), 0);
-  snprintf(path, sizeof path, "%s", at("top"));
-  assert_int_equal(symlink(path, at("link")), 0);
-}
-
-AFTER_ALL {
-  static const char *const files[] = {
-      "link",           "top/fine",   "top/out",           "top/outside",      "top/deep",
-      "top/circle",     "top/zero",   "top/pipe",          "top/in/part.yaml", "top/empty",
-      "top/points.csv", "secret.csv", "topless/points.csv"};
-  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) unlink(at(files[i]));
-  rmdir(at("top/in"));
-  rmdir(at("top"));
-  rmdir(at("topless"));
-  assert_int_equal(rmdir(folder), 0);
+  assert_int_equal(symlink("points.csv", scratch_path("top/fine")), 0);
+  assert_int_equal(symlink("../secret.csv", scratch_path("top/out")), 0);
+  assert_int_equal(symlink("..", scratch_path("top/outside")), 0);
+  assert_int_equal(symlink("in", scratch_path("top/deep")), 0);
+  assert_int_equal(symlink("circle", scratch_path("top/circle")), 0);
+  assert_int_equal(symlink("/dev/zero", scratch_path("top/zero")), 0);
+  assert_int_equal(mkfifo(scratch_path("top/pipe"), 0600), 0);
+  assert_int_equal(symlink(scratch_path("top"), scratch_path("link")), 0);
 }
 
 static strut_status read_from(const char *root, const char *from, const char *name, size_t most,
                               strut_safe_text *file, strut_error *error) {
-  char top[200], source[200];
-  snprintf(top, sizeof top, "%s", at(root));
-  snprintf(source, sizeof source, "%s", at(from));
-  return strut_safe_read(top, source, name, most, file, error);
+  return strut_safe_read(scratch_path(root), scratch_path(from), name, most, file, error);
 }
 
 TEST(files_below_the_folder_are_read) {
@@ -72,7 +48,7 @@ TEST(files_below_the_folder_are_read) {
   assert_ok(read_from("top", "top/study.yaml", "points.csv", 8, &file, NULL));
   assert_string_equal(file.text, "a,b\n1,2\n");
   assert_int_equal(file.length, 8);
-  assert_string_equal(file.path, at("top/points.csv"));
+  assert_string_equal(file.path, scratch_path("top/points.csv"));
   assert_ok(read_from("link", "link/study.yaml", "./fine", 8, &same, NULL));
   assert_true(same.inode == file.inode && same.device == file.device);
   strut_safe_text_free(&file);

@@ -3,11 +3,6 @@
 #include "engine/scene/experiment.h"
 #include "tests/support/check.h"
 
-static void near(double found, double expected, double tolerance) {
-  if (!(fabs(found - expected) <= tolerance))
-    fail_msg("found %.17g, expected %.17g within %g", found, expected, tolerance);
-}
-
 /* One member of drawn length 5. */
 static strut_node nodes[2] = {{.name = "a", .position = {1, 1}}, {.name = "b", .position = {4, 5}}};
 
@@ -58,12 +53,12 @@ TEST(the_four_ways_agree) {
         strut_rest r;
         m.rest_kind = (strut_rest_kind)kind, m.rest_value = values[kind];
         assert_true(resolve(m, &r));
-        near(r.drawn_length, 5, 0);
-        near(r.length, length, 1e-14 * 50);
-        near(r.ratio, ratio, 1e-14 * 50);
-        near(r.stiffness, stiffness, 1e-12);
-        near(r.pretension, force, 1e-12);
-        near(r.force_density, force / 5, 1e-12);
+        assert_near(r.drawn_length, 5, 0);
+        assert_near(r.length, length, 1e-14 * 50);
+        assert_near(r.ratio, ratio, 1e-14 * 50);
+        assert_near(r.stiffness, stiffness, 1e-12);
+        assert_near(r.pretension, force, 1e-12);
+        assert_near(r.force_density, force / 5, 1e-12);
       }
     }
 }

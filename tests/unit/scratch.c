@@ -2,11 +2,10 @@
 #include "tests/unit/scratch.h"
 
 #include <dirent.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "tests/support/test.h"
 
 static char directory[64];
 static pid_t owner; /* the process that made it; a child that exits leaves it */
@@ -55,6 +54,13 @@ char *scratch_read(const char *path, size_t *length) {
   *length = fread(text, 1, (size_t)found.st_size, stream);
   fclose(stream);
   return text;
+}
+
+void scratch_expect(const char *path, const char *bytes, size_t length) {
+  size_t there = 0;
+  FREED char *now = scratch_read(path, &there);
+  assert_int_equal(there, length);
+  assert_memory_equal(now, bytes, length);
 }
 
 bool scratch_mount_small_disk(const char *path, int kilobytes) {

@@ -14,6 +14,8 @@ int scratch_count(const char *directory);
 bool scratch_exists(const char *path);
 /** A file's bytes with a NUL behind them, to be freed with free; NULL where it cannot be read. */
 char *scratch_read(const char *path, size_t *length);
+/** Fails the test unless the file has just these bytes. */
+void scratch_expect(const char *path, const char *bytes, size_t length);
 /** Puts a file system of `kilobytes` onto a directory; false where that is not allowed. */
 bool scratch_mount_small_disk(const char *directory, int kilobytes);
 void scratch_unmount(const char *directory);

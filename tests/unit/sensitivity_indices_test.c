@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Sensitivity indices of made-up results: closed forms, missing ones, and results that hardly vary. */
 #include "engine/study/sensitivity/sensitivity.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 enum { SAMPLES = 4096, FEW = 24 };
-
-static double uniform(uint64_t *seed) {
-  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
-  return ldexp((double)(*seed >> 11), -53);
-}
 
 /* f = 2 x + y on the unit square: variances 4/12 and 1/12. */
 TEST(linear) {
@@ -17,7 +13,11 @@ TEST(linear) {
   uint64_t seed = 7;
   size_t used;
   for (size_t j = 0; j < SAMPLES; j++) {
-    double a[2] = {uniform(&seed), uniform(&seed)}, b[2] = {uniform(&seed), uniform(&seed)};
+    double a[2], b[2];
+    for (int k = 0; k < 2; k++) {
+      a[k] = random_between(&seed, 0, 1);
+      b[k] = random_between(&seed, 0, 1);
+    }
     row[j][0] = 2 * a[0] + a[1];
     row[j][1] = 2 * b[0] + a[1];
     row[j][2] = 2 * a[0] + b[1];

@@ -2,16 +2,14 @@
 /* Bounds of random expressions against their values and rates; kinks and the longest steps of known ones. */
 
 #include "engine/scene/signal_program.h"
+#include "tests/support/random.h"
 #include "tests/support/test.h"
 
 enum { MOST = 40, PROGRAMS = 20000, POINTS = 40 };
 
 static uint64_t seed = 59;
 
-static double uniform(double low, double high) {
-  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
-}
+static double uniform(double low, double high) { return random_between(&seed, low, high); }
 
 static strut_instruction number(double x) {
   return (strut_instruction){.operation = STRUT_OPERATION_NUMBER, .number = x};

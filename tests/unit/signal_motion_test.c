@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Accelerations of signals against differences of their rates, and where their values jump. */
-#include "engine/scene/checks/check.h"
 #include "engine/scene/signal.h"
 #include "tests/support/test.h"
 
@@ -58,36 +57,4 @@ TEST(jumps_of_values_are_found) {
   s.start = 1, s.stop = 2;
   assert_false(strut_signal_value_jumps(&s, 0, HUGE_VAL, &when));
   assert_true(strut_signal_has_corners(&s, 0));
-}
-
-/* A scene made without the language is checked alike. */
-TEST(motions_are_checked) {
-  strut_node nodes[2] = {strut_node_default(), strut_node_default()};
-  strut_member member = strut_member_default();
-  strut_signal signal = wave(STRUT_SINE, 1e-3, 1);
-  strut_support_motion motions[2] = {{0, 0, 0}, {0, 1, 0}};
-  strut_setup setup;
-  strut_setup_init(&setup);
-  nodes[0].name = "a", nodes[1].name = "b", member.name = "m";
-  nodes[0].fixed[0] = nodes[0].fixed[1] = true;
-  nodes[1].position[0] = nodes[1].start[0] = 1, nodes[1].mass = 1;
-  member.node[0] = 0, member.node[1] = 1, member.stiffness = 1;
-  setup.scene.node_count = 2, setup.scene.nodes = nodes;
-  setup.scene.member_count = 1, setup.scene.members = &member;
-  setup.scene.signal_count = 1, setup.scene.signals = &signal;
-  setup.scene.support_motion_count = 2, setup.scene.support_motions = motions;
-  static const struct {
-    strut_support_motion second;
-    const char *words;
-  } cases[] = {{{0, 1, 0}, NULL},        {{0, 0, 0}, "out of order"},
-               {{1, 0, 0}, "not fixed"}, {{7, 0, 0}, "does not exist"},
-               {{0, 2, 0}, "axis"},      {{0, 1, 3}, "a signal that does not exist"}};
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    OWN(strut_findings) findings = {0};
-    motions[1] = cases[i].second;
-    strut_status status = strut_setup_check(&setup, STRUT_FOR_STATICS, &findings);
-    assert_int_equal(status, cases[i].words ? STRUT_BAD_SCENE : STRUT_OK);
-    assert_int_equal(findings.count, cases[i].words != NULL);
-    if (cases[i].words) assert_non_null(strstr(findings.items[0].message, cases[i].words));
-  }
 }

@@ -19,11 +19,6 @@ static double rate_of(const strut_signal *signals, int32_t index, double t) {
   return rate;
 }
 
-static void near(double found, double expected, double tolerance) {
-  if (!(fabs(found - expected) <= tolerance))
-    fail_msg("found %.17g, expected %.17g within %g", found, expected, tolerance);
-}
-
 static strut_signal sine(double amplitude, double frequency, double phase, double start) {
   strut_signal s = strut_signal_default(STRUT_SINE);
   s.amplitude = amplitude, s.frequency = frequency, s.phase = phase, s.start = start;
@@ -54,8 +49,8 @@ TEST(sines) {
   s.stop = 5;
   for (int i = 0; i < 1000; i++) {
     double t = 0.3 + 0.0047 * i, angle = 2 * PI * (10 * (t - 0.3) + 0.125);
-    near(value_of(&s, 0, t), t < 5 ? 2 * sin(angle) : 0, 1e-12);
-    near(rate_of(&s, 0, t), t < 5 ? 2 * 2 * PI * 10 * cos(angle) : 0, 1e-10);
+    assert_near(value_of(&s, 0, t), t < 5 ? 2 * sin(angle) : 0, 1e-12);
+    assert_near(rate_of(&s, 0, t), t < 5 ? 2 * 2 * PI * 10 * cos(angle) : 0, 1e-10);
   }
   assert_all(value_of(&s, 0, 0.2999) == 0.0, rate_of(&s, 0, 0.2999) == 0.0);
   assert_true(value_of(&s, 0, 5.0001) == 0.0);
@@ -75,9 +70,9 @@ TEST(half_sines_are_one_pulse) {
   strut_signal s = sine(0.8, 10, 0, 1);
   s.kind = STRUT_HALF_SINE;
   assert_true(value_of(&s, 0, 0.99) == 0.0);
-  near(value_of(&s, 0, 1.025), 0.8, 1e-13);
-  near(value_of(&s, 0, 1.01), 0.8 * sin(2 * PI * 0.1), 1e-13);
-  near(rate_of(&s, 0, 1), 0.8 * 2 * PI * 10, 1e-11);
+  assert_near(value_of(&s, 0, 1.025), 0.8, 1e-13);
+  assert_near(value_of(&s, 0, 1.01), 0.8 * sin(2 * PI * 0.1), 1e-13);
+  assert_near(rate_of(&s, 0, 1), 0.8 * 2 * PI * 10, 1e-11);
   assert_all(value_of(&s, 0, 1.0501) == 0.0, value_of(&s, 0, 1.125) == 0.0,
              rate_of(&s, 0, 1.06) == 0.0, strut_signal_period(&s, 0) == 1.0 / 10);
 }
@@ -125,8 +120,8 @@ TEST(sums_add_values_and_rates) {
                        sum(second, 2)};
   s[1].amplitude = 2, s[1].stop = 4;
   for (double t = 0; t < 5; t += 0.37) {
-    near(value_of(s, 2, t), value_of(s, 0, t) + 2 * value_of(s, 1, t), 1e-14);
-    near(rate_of(s, 3, t), 2 * rate_of(s, 0, t) + 2 * rate_of(s, 1, t), 1e-12);
+    assert_near(value_of(s, 2, t), value_of(s, 0, t) + 2 * value_of(s, 1, t), 1e-14);
+    assert_near(rate_of(s, 3, t), 2 * rate_of(s, 0, t) + 2 * rate_of(s, 1, t), 1e-12);
   }
 }
 
@@ -159,7 +154,7 @@ TEST(rates_are_derivatives) {
     for (double t = 0.0313; t < 1.9; t += 0.0177) {
       double h = 1e-6, slope = (value_of(s, i, t + h) - value_of(s, i, t - h)) / (2 * h);
       if (fabs(t - 0.2) < 2 * h || fabs(t - 0.9) < 2 * h || fabs(t - 1.7) < 2 * h) continue;
-      near(rate_of(s, i, t), slope, 1e-7);
+      assert_near(rate_of(s, i, t), slope, 1e-7);
     }
 }
 
@@ -238,18 +233,20 @@ TEST(data_with_straight_lines_are_a_table) {
 /* Monotone between points, smooth at them, with the rate that differences have. */
 TEST(smooth_data_stay_between_their_points) {
   strut_signal s = measured(true, STRUT_OUTSIDE_HOLD);
-  for (size_t i = 0; i < 5; i++) near(value_of(&s, 0, measured_times[i]), measured_values[i], 0);
+  for (size_t i = 0; i < 5; i++)
+    assert_near(value_of(&s, 0, measured_times[i]), measured_values[i], 0);
   for (int i = 1; i < 500; i++) {
     double t = 0.001 * i, h = 1e-7, value = value_of(&s, 0, t);
-    near(rate_of(&s, 0, t), (value_of(&s, 0, t + h) - value_of(&s, 0, t - h)) / (2 * h), 1e-4);
-    near(strut_signal_acceleration(&s, 0, t), (rate_of(&s, 0, t + h) - rate_of(&s, 0, t)) / h,
-         i % 50 ? 1e-2 : 1e9);
+    assert_near(rate_of(&s, 0, t), (value_of(&s, 0, t + h) - value_of(&s, 0, t - h)) / (2 * h),
+                1e-4);
+    assert_near(strut_signal_acceleration(&s, 0, t),
+                (rate_of(&s, 0, t + h) - rate_of(&s, 0, t)) / h, i % 50 ? 1e-2 : 1e9);
     assert_true(value >= -1.0 && value <= 2.0);
-    if (t > 0.1 && t < 0.15) near(value, 2.0, 0);
+    if (t > 0.1 && t < 0.15) assert_near(value, 2.0, 0);
   }
   /* Steffen's slopes: of the first piece at its begin, the smaller of two secants inside */
-  near(rate_of(&s, 0, 0.0), 10.0, 1e-12);
-  near(rate_of(&s, 0, 0.1), 0.0, 1e-12);
+  assert_near(rate_of(&s, 0, 0.0), 10.0, 1e-12);
+  assert_near(rate_of(&s, 0, 0.1), 0.0, 1e-12);
 }
 
 TEST(bounds_of_smooth_data_hold) {
@@ -272,16 +269,16 @@ TEST(repeated_data_are_periodic) {
   for (int smooth = 0; smooth < 2; smooth++) {
     strut_signal s = measured(smooth, STRUT_OUTSIDE_REPEAT);
     double when = 0.0, t = 0.0;
-    near(strut_signal_period(&s, 0), 0.5, 0);
+    assert_near(strut_signal_period(&s, 0), 0.5, 0);
     for (int i = 0; i < 400; i++)
-      near(value_of(&s, 0, 0.00125 * i + 7.5), value_of(&s, 0, 0.00125 * i), 1e-12);
+      assert_near(value_of(&s, 0, 0.00125 * i + 7.5), value_of(&s, 0, 0.00125 * i), 1e-12);
     assert_true(strut_signal_value_jumps(&s, 0, 1.0, &when) && when == 0.5);
     for (int k = 1; k <= 1000; k++) { /* each point, none twice */
       double next = strut_signal_next_break(&s, 0, t);
-      near(next, 0.5 * ((k - 1) / 4) + measured_times[(k - 1) % 4 + 1], 1e-10);
+      assert_near(next, 0.5 * ((k - 1) / 4) + measured_times[(k - 1) % 4 + 1], 1e-10);
       assert_true(next > t);
       t = next;
-      if (k % 4 == 0) near(value_of(&s, 0, t), 1.0, 1e-9); /* from the right */
+      if (k % 4 == 0) assert_near(value_of(&s, 0, t), 1.0, 1e-9); /* from the right */
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sweep/sweep.h"
 #include "tests/support/test.h"
+#include "tests/unit/scratch.h"
 
 /* The thread sanitizer's own threads do not outlive a fork, and memory and time are its own. */
 #if defined(__SANITIZE_THREAD__)
@@ -94,12 +95,10 @@ static bool run_and_kill(const char *path, log_t *log, int milliseconds) {
 
 /* First of all tests: a process that has threads of its own may not fork into more. */
 TEST(nothing_is_computed_twice) {
-  char folder[] = "/tmp/strut-sweep-XXXXXX", path[64], record[64];
   if (THREADS_WATCHED) skip();
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/slots", folder);
-  snprintf(record, sizeof record, "%s/log", folder);
-  log_t log = {open(record, O_RDWR | O_CREAT | O_APPEND, 0600)};
+  scratch_make();
+  const char *path = scratch_path("slots");
+  log_t log = {open(scratch_path("log"), O_RDWR | O_CREAT | O_APPEND, 0600)};
   assert_true(log.file >= 0);
   int kills = 0;
   bool done = false;
@@ -118,44 +117,29 @@ TEST(nothing_is_computed_twice) {
   assert_true(kills > 3);
   assert_true(again <= THREADS * kills); /* those in flight */
   close(log.file);
-  unlink(path);
-  unlink(record);
-  rmdir(folder);
-}
-
-static double cpu_time(void) {
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-         1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 /* The table of a file of slots: CPU time of a point [s]. */
 static double table_of(const char *folder, const char *path) {
   strut_slots *slots;
   strut_slots_description plan;
-  char table[64];
-  double began = cpu_time();
+  double began = test_seconds();
   assert_ok(strut_slots_read(path, &slots, &plan, NULL));
   assert_ok(strut_study_table_write(folder, "table", &slots, 1, NULL));
   strut_slots_close(slots);
-  snprintf(table, sizeof table, "%s/table", folder);
-  unlink(table);
-  return (cpu_time() - began) / MANY;
+  return (test_seconds() - began) / MANY;
 }
 
 /* Bounds that a busy machine keeps; what they are stands in the message. */
 TEST(a_million_points_cost_little) {
-  char folder[] = "/tmp/strut-sweep-XXXXXX", path[64];
+  const char *folder = scratch_make(), *path = scratch_path("slots");
   log_t log = {-1};
   strut_sweep_state end;
   struct rusage before, after;
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/slots", folder);
   getrusage(RUSAGE_SELF, &before);
-  double began = cpu_time();
+  double began = test_seconds();
   assert_ok(sweep(path, MANY, &log, &end));
-  double cost = (cpu_time() - began) / MANY, table = table_of(folder, path);
+  double cost = (test_seconds() - began) / MANY, table = table_of(folder, path);
   getrusage(RUSAGE_SELF, &after);
   assert_true(end.done == MANY && end.failed == MANY && end.computed == MANY);
   print_message("%.2f us of CPU a point and %.2f us for its row of the table, %ld kB more\n",
@@ -163,10 +147,8 @@ TEST(a_million_points_cost_little) {
   assert_true(THREADS_WATCHED || cost + table < 20e-6); /* without optimisation too */
   assert_true(THREADS_WATCHED ||
               after.ru_maxrss - before.ru_maxrss < 4000); /* a bit each is 122 kB */
-  began = cpu_time();
+  began = test_seconds();
   assert_ok(sweep(path, MANY, &log, &end));
   assert_true(end.computed == 0 && end.failed == MANY);
-  print_message("%.2f us of CPU a point that is done\n", 1e6 * (cpu_time() - began) / MANY);
-  unlink(path);
-  rmdir(folder);
+  print_message("%.2f us of CPU a point that is done\n", 1e6 * (test_seconds() - began) / MANY);
 }

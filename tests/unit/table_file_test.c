@@ -20,9 +20,10 @@ static strut_status read_text_as_file(const char *text, strut_table *table) {
   return strut_table_read(NULL, path, table); /* messages are for other tests */
 }
 
+BEFORE_EACH { scratch_make(); }
+
 TEST(cells_and_numbers) {
   strut_table table;
-  scratch_make();
   assert_ok(read_text_as_file("f [Hz],\"a, \"\"b\"\"\",v\r\n1.5,x,-2e3\r\n\r\n.25,\"y\nz\",nan\r\n",
                               &table));
   assert_all_equal(table.column_count, 3, table.row_count, 2);
@@ -38,7 +39,6 @@ TEST(cells_and_numbers) {
 TEST(a_table_with_errors_leaves_nothing) {
   static const char *const bad[] = {"", "a,b\n", "a,b\n1,2\n3\n", "a,b\n1,\"2\n", "a\n\"1\"2\n"};
   size_t before = 0;
-  scratch_make();
   for (int round = 0; round < 20; round++) {
     if (round == 8) before = heap_in_use(); /* by now malloc's caches are full */
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -56,7 +56,6 @@ TEST(no_memory_leaves_nothing) {
   size_t before = 0, length = strlen(text);
   while (length + 10 < sizeof text)
     length += (size_t)snprintf(text + length, sizeof text - length, "1,x\n");
-  scratch_make();
   for (int round = 0; round < 20; round++) {
     if (round == 8) before = heap_in_use();
     REFUSE_EACH(n, status, 2) {

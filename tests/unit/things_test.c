@@ -3,11 +3,9 @@
 #include "engine/scene/things.h"
 #include "engine/base/memory.h"
 #include "parser/language/keys/keys.h"
-#include "parser/language/read/read_scene.h"
-#include "tests/support/test.h"
+#include "tests/models/run_model.h"
 
 static const char text[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1},\n"
     "        c: {position: [1, 1], mass: 1}, d: {position: [0, 1], mass: 1}}\n"
     "members:\n"
@@ -24,7 +22,8 @@ static const char text[] =
     "configurations: {drawn: {}}\n"
     "grounds:\n"
     "  hill: {profile: [[-9, -1], [0, -2], [9, -1]], stiffness: 100, nodes: [b]}\n"
-    "  pipe: {circle: {centre: [0, 0], radius: 50, inside: yes}, stiffness: 100, nodes: [c]}\n";
+    "  pipe: {circle: {centre: [0, 0], radius: 50, inside: yes}, stiffness: 100, nodes: [c]}\n"
+    "run: {duration: 1}\n";
 
 typedef struct numbers {
   size_t count;
@@ -95,16 +94,6 @@ static void try_section(change *c, strut_section section, char *object, size_t s
   }
 }
 
-static strut_setup read_scene(void) {
-  strut_setup setup;
-  OWN(strut_diagnostics) diagnostics = {0};
-  strut_status status = strut_setup_read(&setup, "things", text, sizeof text - 1, NULL, 0,
-                                         STRUT_FOR_STATICS, &diagnostics);
-  if (status) print_error("%s\n", diagnostics.items[0].message);
-  assert_ok(status);
-  return setup;
-}
-
 /* A cached equilibrium is that of another structure as soon as one number differs. */
 TEST(every_number_at_rest_counts) {
   static const struct {
@@ -118,7 +107,7 @@ TEST(every_number_at_rest_counts) {
       {STRUT_THING_SLIDER, STRUT_SECTION_SLIDER},  {STRUT_THING_GROUND, STRUT_SECTION_GROUND},
       {STRUT_THING_CONTACT, STRUT_SECTION_CONTACT}};
   static change c;
-  OWN(strut_setup) setup = read_scene();
+  OWN(strut_setup) setup = model_read_text("things", text, set_none).setup;
   c.setup = &setup;
   c.before.count = 0;
   strut_setup_at_rest(&setup, add, &c.before);
@@ -140,7 +129,7 @@ TEST(every_number_at_rest_counts) {
 }
 
 TEST(names_follow_the_arrays) {
-  OWN(strut_setup) setup = read_scene();
+  OWN(strut_setup) setup = model_read_text("things", text, set_none).setup;
   assert_int_equal(strut_thing_count(&setup.scene, STRUT_THING_MEMBER), 3);
   assert_string_equal(strut_thing_name(&setup.scene, STRUT_THING_MEMBER, 2), "r");
   assert_null(strut_thing_name(&setup.scene, STRUT_THING_MEMBER, 3));

@@ -21,10 +21,9 @@ static strut_status record(const strut_setup *setup, unsigned channels, size_t r
                            strut_trajectory *t) {
   strut_sink *sinks[2] = {strut_trajectory_sink(t, &setup->scene, channels, room)};
   if (file) sinks[1] = strut_hdf5_create(scratch_path(""), "strut: 1\n");
-  OWN_POINTER(strut_model) model = motion_compile(&setup->scene);
   strut_run_options options = {.sinks = sinks, .sink_count = file ? 2 : 1, .force = true};
-  OWN(strut_summary) summary = {0};
-  strut_status status = strut_simulate(model, &setup->experiment, &options, &summary, NULL);
+  OWN(strut_summary) summary;
+  strut_status status = motion_try(setup, options, &summary, NULL);
   strut_trajectory_sink_free(sinks[0]);
   if (file) strut_hdf5_free(sinks[1]);
   return status;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Sine and cosine of turns against the C library's long double. */
+/* Sine and cosine of turns against the C library's long double; the largest of some numbers. */
 #include "engine/base/vec.h"
 #include "tests/support/check.h"
 #include "tests/support/random.h"
@@ -75,4 +75,10 @@ TEST(huge_turns_stay_within_one) {
       assert_true(fabs(sine) <= 1 && fabs(cosine) <= 1);
       assert_near(sine * sine + cosine * cosine, 1, 4 * BOUND);
     }
+}
+
+TEST(largest_magnitude_keeps_what_is_no_number) {
+  const double plain[] = {1, -3, 2}, poisoned[] = {1, (double)NAN, 2};
+  assert_all(strut_largest_magnitude(plain, 3) == 3, strut_largest_magnitude(plain, 0) == 0);
+  assert_true(isnan(strut_largest_magnitude(poisoned, 3)));
 }

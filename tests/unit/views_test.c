@@ -2,22 +2,22 @@
 /* Films where memory is out. */
 #include "engine/base/memory.h"
 #include "engine/output/figures/run_figure.h"
-#include "parser/language/read/read_scene.h"
+#include "tests/models/run_model.h"
 #include "tests/support/check.h"
 #include "tests/unit/scratch.h"
 
 enum { FRAMES = 3 };
 
 static const char text[] =
-    "strut: 1\n"
     "nodes: {a: {position: [0, 0], mass: 1}, b: {position: [1, 0], mass: 1},\n"
     "        c: {position: [0.5, 0.5], mass: 1}}\n"
     "members: {ab: {nodes: [a, b], kind: bar, stiffness: 10},\n"
     "          bc: {nodes: [b, c], kind: cable, stiffness: 10}}\n"
-    "ground: {stiffness: 1000}\n";
+    "ground: {stiffness: 1000}\n"
+    "run: {duration: 1}\n";
 
 typedef struct things {
-  strut_setup setup;
+  model_run run;
   strut_model *model;
   strut_trajectory motion;
   double time[FRAMES], position[FRAMES][6], force[FRAMES][2], contact[FRAMES][6];
@@ -26,12 +26,9 @@ typedef struct things {
 
 /* A motion of three frames over a tenth of a second. */
 static void make(things *t) {
-  strut_diagnostics diagnostics = {0};
   memset(t, 0, sizeof *t);
-  assert_ok(strut_setup_read(&t->setup, "views", text, sizeof text - 1, NULL, 0, STRUT_FOR_ANY,
-                             &diagnostics));
-  strut_diagnostics_free(&diagnostics);
-  assert_ok(strut_model_compile(&t->setup.scene, &t->model, NULL));
+  t->run = model_read_text("views", text, set_none);
+  assert_ok(strut_model_compile(&t->run.setup.scene, &t->model, NULL));
   for (int i = 0; i < FRAMES; i++) {
     t->time[i] = 0.05 * i;
     for (int k = 0; k < 6; k++) t->position[i][k] = t->model->start[k] + 0.1 * i;
@@ -54,7 +51,7 @@ static void make(things *t) {
 
 static void things_free(things *t) {
   strut_model_free(t->model);
-  strut_setup_free(&t->setup);
+  model_run_free(&t->run);
 }
 
 TEST(film_without_memory) {
@@ -63,7 +60,7 @@ TEST(film_without_memory) {
   strut_film film = {.path = scratch_path("a.gif"), .speed = 1};
   if (strut_film_check(&film, 0.1, NULL) != STRUT_OK) skip();
   make(&t);
-  film.experiment = &t.setup.experiment;
+  film.experiment = &t.run.setup.experiment;
   REFUSE_EACH(n, status, 5) {
     strut_error error = {0};
     status = refused(n, strut_film_make(&film, t.model, &t.motion, &error));
@@ -79,7 +76,7 @@ TEST(film_of_what_is_a_number) {
   strut_film film = {.path = scratch_path("a.gif"), .speed = 0.5};
   if (strut_film_check(&film, 0.1, NULL) != STRUT_OK) skip();
   make(&t);
-  film.experiment = &t.setup.experiment;
+  film.experiment = &t.run.setup.experiment;
   t.position[2][1] = (double)NAN;
   t.motion.status = STRUT_DIVERGED;
   assert_ok(strut_film_make(&film, t.model, &t.motion, NULL));
