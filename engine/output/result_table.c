@@ -359,7 +359,7 @@ static void add_lists(strut_buffer *text, const strut_value_rows *rows,
   for (size_t i = 0; i < rows->count; i++) {
     const strut_value_row *row = &rows->row[i];
     const strut_result_object within = {value[i].items, of, of->scene, 0};
-    if (value[i].kind == STRUT_VALUE_LIST && row->label[0])
+    if (value[i].kind == STRUT_VALUE_LIST && value[i].items && row->label[0])
       add_list(text, row, of, &value[i], before, page);
     else if (value[i].kind == STRUT_VALUE_MAP && row->rows && row->label[0])
       for (size_t k = 0; k < value[i].count; k++) {

@@ -2,8 +2,7 @@
 /*
  * strut_bench: how long a step takes.
  *
- *   strut_bench [--repeats N] [--members N]  the crawler in strut and elsewhere, then chains of
- *                                            X-frames of 10, 100, ... and N (default 1000000) members
+ *   strut_bench [--repeats N]                the crawler in strut and by hand, and each method
  *   strut_bench methods [METHOD [FINER]]     what a force evaluation costs by each method, alone
  *   strut_bench rivals [--limit S] [-o DIR] [SCENE...]   error against cost, strut and other solvers; a table
  *                                            for each scene, CSV and figures into DIR, S of CPU time per cell
@@ -16,128 +15,113 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
-#include "tests/bench/methods.h"
+#include "tests/bench/hand_kernel.h"
 #include "tests/bench/precision.h"
-#include "tests/bench/rivals.h"
 #include "tests/bench/scenes.h"
 
-enum { MOST_RIVALS = 16, MOST_REPEATS = 1001 };
+enum { MOST_REPEATS = 1001 };
 
 static int ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
 }
 
-static double median(double *values, int count) {
-  qsort(values, (size_t)count, sizeof *values, ascending);
-  return count % 2 ? values[count / 2] : 0.5 * (values[count / 2 - 1] + values[count / 2]);
+/* ---- the crawler: node 1 after two seconds tells whether all compute the same thing ---- */
+
+enum { STRUT, STRUT_WITH_BALANCE, BY_HAND, COMPETITORS, STEPS = 20000 };
+
+/* ns of a step. position: x of node 1 at the end [m]. */
+static double time_crawler(int which, double *position) {
+  bench_motion m;
+  double begin;
+  if (which == BY_HAND) {
+    begin = bench_seconds();
+    *position = hand_crawler_run(STEPS);
+    return 1e9 * (bench_seconds() - begin) / STEPS;
+  }
+  if (!bench_crawler(&m, "rk4", 1e-4)) return (double)NAN;
+  m.state->balance = which == STRUT_WITH_BALANCE;
+  begin = bench_seconds();
+  m.method->advance(m.model, m.state, m.workspace, 1e-4, STEPS);
+  double time = 1e9 * (bench_seconds() - begin) / STEPS;
+  *position = m.state->q[0];
+  bench_free(&m);
+  return time;
 }
 
-static double least(const double *values, int count) {
-  double low = values[0];
-  for (int i = 1; i < count; i++) low = fmin(low, values[i]);
-  return low;
-}
-
-/* The median of values / other, turn by turn, and the quartiles. */
-static void print_ratio(const double *values, const double *other, int count) {
-  static double ratio[MOST_REPEATS];
-  for (int i = 0; i < count; i++) ratio[i] = values[i] / other[i];
-  double middle = median(ratio, count);
-  printf(" %7.3f (%.3f to %.3f)", middle, ratio[count / 4], ratio[(3 * count) / 4]);
-}
-
-static double peak_megabytes(void) {
-  struct rusage usage;
-  getrusage(RUSAGE_SELF, &usage);
-  return (double)usage.ru_maxrss / 1024.0;
-}
-
-/* The crawler. Node 1 after a fifth of a second tells whether all compute the same thing. */
 static void compare_crawlers(int repeats) {
-  static double times[MOST_RIVALS][MOST_REPEATS];
-  void *crawlers[MOST_RIVALS] = {NULL};
-  double position[MOST_RIVALS] = {0};
-  const long long warm = 2000;
-  int count = 0;
-  for (; count < MOST_RIVALS && rival_at((size_t)count); count++) {
-    const rival *it = rival_at((size_t)count);
-    crawlers[count] = it->create();
-    if (!crawlers[count]) continue;
-    it->run(crawlers[count], warm);
-    position[count] = it->position(crawlers[count]);
-  }
+  static const char *const name[] = {"strut", "strut, with the energy balance", "by hand, scalar"};
+  static double times[COMPETITORS][MOST_REPEATS], ratio[MOST_REPEATS];
+  double position[COMPETITORS];
   for (int r = 0; r < repeats; r++)
-    for (int i = 0; i < count; i++) {
-      const rival *it = rival_at((size_t)i);
-      if (crawlers[i]) times[i][r] = 1e9 * it->run(crawlers[i], it->steps) / (double)it->steps;
+    for (int i = 0; i < COMPETITORS; i++) times[i][r] = time_crawler(i, &position[i]);
+  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %25s %14s\n", "", "ns/step", "of scalar, by hand",
+         "x_1(2 s) [mm]");
+  for (int i = 0; i < COMPETITORS; i++) {
+    double least = HUGE_VAL;
+    for (int r = 0; r < repeats; r++) {
+      ratio[r] = times[i][r] / times[BY_HAND][r];
+      least = fmin(least, times[i][r]);
     }
-  int scalar = 0;
-  for (int i = 0; i < count; i++)
-    if (strcmp(rival_at((size_t)i)->name, BENCH_SCALAR) == 0) scalar = i;
-  printf("crawler, RK4, 0.1 ms\n  %-32s %10s %25s %16s\n", "", "ns/step", "of scalar, by hand",
-         "x_1(0.2 s) [mm]");
-  for (int i = 0; i < count; i++) {
-    const rival *it = rival_at((size_t)i);
-    if (!crawlers[i]) {
-      printf("  %-32s %10s\n", it->name, "not here");
-      continue;
-    }
-    printf("  %-32s %10.1f", it->name, least(times[i], repeats));
-    print_ratio(times[i], times[scalar], repeats);
-    printf(" %14.9f\n", 1e3 * position[i]);
-    it->free(crawlers[i]);
+    qsort(ratio, (size_t)repeats, sizeof *ratio, ascending);
+    printf("  %-32s %10.1f %7.3f (%.3f to %.3f) %14.9f\n", name[i], least, ratio[repeats / 2],
+           ratio[repeats / 4], ratio[3 * repeats / 4], 1e3 * position[i]);
   }
 }
 
-static double chain_run(bench_motion *it, long long steps) {
-  double start = bench_seconds();
-  it->method->advance(it->model, it->state, it->workspace, 1e-4, steps);
-  return bench_seconds() - start;
+/* ---- methods ---- */
+
+static const struct method_row {
+  const char *method;
+  double step; /* of the grid [s] */
+} rows[] = {{"rk4", 5e-5},      {"verlet", 5e-5}, {"verlet-events", 5e-5}, {"rk4-events", 1e-4},
+            {"adaptive", 1e-3}, {"euler", 5e-5},  {"euler-events", 5e-5}};
+enum { ROWS = sizeof rows / sizeof rows[0], BALANCES = 2 };
+
+/* ns of a force evaluation. */
+static double time_method(const struct method_row *row, double step, bool balance) {
+  bench_motion m;
+  if (!bench_crawler(&m, row->method, step)) return (double)NAN;
+  m.state->balance = balance;
+  if (m.method->restart) m.method->restart(m.model, m.state, m.workspace, step);
+  double begin = bench_seconds();
+  m.method->advance(m.model, m.state, m.workspace, step, (int64_t)(0.2 / step));
+  double time = 1e9 * (bench_seconds() - begin) / (double)m.state->latest->evaluations;
+  bench_free(&m);
+  return time;
 }
 
-static void time_chain(size_t members, int repeats) {
-  static double times[2][MOST_REPEATS];
-  bench_motion chains[2];
-  bool made[2];
-  long long steps = members < 200000 ? (long long)(1000000 / members) : 5;
-  double farthest = 0;
-  for (int m = 0; m < 2; m++) {
-    made[m] = bench_chain(&chains[m], members, m ? STRUT_MASS_CONSISTENT : STRUT_MASS_LUMPED);
-    if (made[m]) chain_run(&chains[m], steps);
-  }
+static bool is_wanted(const struct method_row *row, const char *only) {
+  return !only || strcmp(row->method, only) == 0 || strcmp(row->method, "rk4") == 0;
+}
+
+/* A row for each method, or for `only`: time of an evaluation in the crawler, and how many times that of rk4; the best
+   of all repeats. All but rk4 take steps that are so many times `finer`: at 16 hardly one of them meets an event. */
+static void compare_methods(int repeats, const char *only, double finer) {
+  static double best[ROWS][BALANCES];
   for (int r = 0; r < repeats; r++)
-    for (int m = 0; m < 2; m++)
-      if (made[m])
-        times[m][r] = chain_run(&chains[m], steps) / (double)(steps * (long long)members);
-  printf("  %10zu", members);
-  for (int m = 0; m < 2; m++) {
-    if (!made[m]) {
-      printf(" %12s", "failed");
-      continue;
-    }
-    printf(" %12.2f", 1e9 * median(times[m], repeats));
-    for (int32_t i = 0; i < 2 * chains[m].model->node_count; i++)
-      farthest = fmax(farthest, fabs(chains[m].state->v[i]));
-    bench_free(&chains[m]);
+    for (int i = 0; i < ROWS; i++)
+      for (int b = 0; b < BALANCES && is_wanted(&rows[i], only); b++) {
+        double time = time_method(&rows[i], rows[i].step / (i ? finer : 1.0), b == 1);
+        best[i][b] = r ? fmin(best[i][b], time) : time;
+      }
+  printf(
+      "crawler, 10 Hz, friction 0.1: ns of a force evaluation, and times rk4; without the energy "
+      "balance, and with it\n");
+  for (int i = 0; i < ROWS; i++) {
+    if (!is_wanted(&rows[i], only)) continue;
+    const double *time = best[i], *rk4 = best[0];
+    printf("  %-16s   %5.1f %4.2f  %5.1f %4.2f\n", rows[i].method, time[0], time[0] / rk4[0],
+           time[1], time[1] / rk4[1]);
   }
-  printf("   %s\n", farthest > 0 && farthest < 100 ? "" : "(not a sound motion)");
 }
 
-static void compare_chains(size_t largest, int repeats) {
-  printf("\nchains of X-frames, RK4, 0.1 ms: ns per member and step\n  %10s %12s %12s\n", "members",
-         "lumped", "consistent");
-  for (size_t members = 10; members < largest; members *= 10)
-    time_chain(members, members >= 100000 && repeats > 5 ? 5 : repeats);
-  time_chain(largest, repeats > 5 ? 5 : repeats);
-  printf("  peak memory %.0f MB\n", peak_megabytes());
-}
+/* ---- the command line ---- */
 
 static int usage(void) {
   fprintf(stderr,
-          "usage: strut_bench [--repeats N] [--members N]\n"
+          "usage: strut_bench [--repeats N]\n"
           "       strut_bench methods [METHOD [FINER]]\n"
           "       strut_bench rivals [--limit S] [-o DIR] [SCENE...]\n"
           "       strut_bench rivals --check\n");
@@ -162,24 +146,14 @@ static int compare_rivals(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
+  int repeats = argc == 3 && strcmp(argv[1], "--repeats") == 0 ? atoi(argv[2]) : 15;
   if (argc >= 2 && strcmp(argv[1], "rivals") == 0) return compare_rivals(argc, argv);
   if (argc >= 2 && strcmp(argv[1], "methods") == 0) {
-    bench_methods(31, argc > 2 ? argv[2] : NULL, argc > 3 ? atof(argv[3]) : 1.0);
+    compare_methods(31, argc > 2 ? argv[2] : NULL, argc > 3 ? atof(argv[3]) : 1.0);
     return 0;
   }
-  int repeats = 15;
-  size_t members = 1000000;
-  for (int i = 1; i < argc; i += 2) {
-    if (i + 1 < argc && strcmp(argv[i], "--repeats") == 0)
-      repeats = atoi(argv[i + 1]);
-    else if (i + 1 < argc && strcmp(argv[i], "--members") == 0)
-      members = strtoul(argv[i + 1], NULL, 10);
-    else
-      return usage();
-  }
-  if (repeats < 1 || repeats > MOST_REPEATS) return usage();
+  if ((argc != 1 && argc != 3) || repeats < 1 || repeats > MOST_REPEATS) return usage();
   compare_crawlers(repeats);
-  bench_methods(repeats, NULL, 1.0);
-  compare_chains(members, repeats);
+  compare_methods(repeats, NULL, 1.0);
   return 0;
 }

@@ -7,7 +7,7 @@
 
 #include "engine/base/memory.h"
 #include "tests/bench/precision.h"
-#include "tests/bench/rivals.h"
+#include "tests/bench/scenes.h"
 
 enum { MOST_DENSE = 200 };
 

@@ -7,7 +7,7 @@
 #include "engine/forces/history.h"
 #include "engine/run/accuracy/accuracy.h"
 #include "tests/bench/precision.h"
-#include "tests/bench/rivals.h"
+#include "tests/bench/scenes.h"
 
 /* Steps up to step number `to`; not beyond the allowed time. */
 static bool advance(const precision_problem *p, const strut_integrator *method, strut_state *state,

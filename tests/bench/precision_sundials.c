@@ -18,7 +18,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "tests/bench/precision.h"
-#include "tests/bench/rivals.h"
+#include "tests/bench/scenes.h"
 
 enum { ADAMS, BDF, ERK5, ERK6, ERK8, DIRK4, DIRK5 };
 enum { MOST_DENSE = 200, MOST_TEST_FAILS = 100 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/** Scenes of the bench, ready to step: the paper's crawler, and chains of X-frames. */
+/** Scenes of the bench, ready to step, and a clock. */
 #pragma once
 
 #include "engine/integrate/integrator.h"
@@ -21,11 +21,7 @@ strut_status bench_read(strut_setup *setup, const char *file, const char *const 
  * False, with a message on stderr, where it cannot be made.
  */
 bool bench_crawler(bench_motion *m, const char *method, double step);
-
-/**
- * A chain of `members` / 5 X-frames (at least one), each two crossed bars and three cables and two
- * nodes more than the one before; the first two nodes are fixed. The cables are shorter than drawn,
- * so it vibrates. By rk4 with 0.1 ms; false as above.
- */
-bool bench_chain(bench_motion *m, size_t members, strut_mass_model mass);
 void bench_free(bench_motion *m);
+
+/** CPU time of this thread [s]. */
+double bench_seconds(void);

@@ -4,18 +4,16 @@
 usage: compare_test.py STRUT
 """
 import csv
-import io
 import json
 import math
 import os
 import re
 import xml.etree.ElementTree as tree
 
-from testing import answer, check, fail, files_in, finish, models, needs, run, work
+from testing import answer, check, exported, fail, files_in, finish, models, needs, read, run, work, write
 
 needs("numpy", "yaml")
 import numpy  # noqa: E402
-import yaml  # noqa: E402
 
 CRAWLER, X = f"{models}/crawler/crawler.yaml", f"{models}/gallery/x-frame.yaml"
 TRUSS = f"{models}/basics/von-mises-truss.yaml"
@@ -135,7 +133,7 @@ def stiffness(scene, at):
 
 
 def check_stiffness(path, model):
-    scene = yaml.safe_load(run("export", path).stdout)
+    scene = exported(path)
     wanted = stiffness(scene, model["nodes"])
     for node, reported in model["nodes"].items():
         for d in range(2):
@@ -186,8 +184,7 @@ for model in both["models"]:
     for key, value in model["values"].items():
         if (value is None) != (key in model["reasons"]):
             fail(f"{model['model']}: {key} is {value}, the reason {model['reasons'].get(key)}")
-reported = run("compare", CRAWLER, X, "--no-states", "--csv").stdout
-rows = list(csv.DictReader(io.StringIO(reported)))
+rows = list(csv.DictReader(run("compare", CRAWLER, X, "--no-states", "--csv").stdout.splitlines()))
 alone = answer("compare", CRAWLER, X, "--no-states")["models"]
 for row, model in zip(rows, alone):
     check(row["model"] == model["model"] and row["name"] == model["name"], f"CSV: {row['model']}")
@@ -206,8 +203,8 @@ nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1 kg}}
 members:
   ab: {kind: spring, nodes: [a, b], stiffness: stiff}
 """
-open("one.yaml", "w").write(text)
-open("two.yaml", "w").write(text.replace("name: one", "name: two").replace(
+write("one.yaml", text)
+write("two.yaml", text.replace("name: one", "name: two").replace(
     "stiffness: stiff}", "stiffness: 200 N/m}\n  ac: {kind: cable, nodes: [a, b], "
     "stiffness: 1 N/m}").replace(", unlike: 1", ""))
 found = answer("compare", "one.yaml", "two.yaml", "one.yaml", "--no-states", "--no-motion")
@@ -235,10 +232,9 @@ if names != ["compare.csv", "compare.json", "compare.svg", "model-1.svg", "model
 for name in names:
     if name.endswith(".svg"):
         tree.parse(f"kept/{name}")
-first = {n: open(f"kept/{n}", "rb").read() for n in names}
-run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "kept")
+run("compare", "one.yaml", "two.yaml", SQUARE, "--no-motion", "-q", "-o", "again")
 for name in names:
-    check(open(f"kept/{name}", "rb").read() == first[name], f"{name} is not the same a second time")
+    check(read("kept", name) == read("again", name), f"{name} is not the same a second time")
 run("compare", "one.yaml", "-q", "-o", "kept", "--no-motion")
 check(len(files_in("kept")) == 4, "a picture of an earlier comparison stays")
 run("compare", "one.yaml", "--no-states", "--plot", "sheet.svg")
@@ -252,8 +248,7 @@ def written(*words):
 
 
 # The title is the name of all scenes; the legend has what is to be seen, and a driven spring is seen as driven.
-open("driven.yaml", "w").write(
-    text + "actuators: {drive: {member: ab, signal: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}}\n")
+write("driven.yaml", text + "actuators: {drive: {member: ab, signal: {sine: {amplitude: 1 mm, frequency: 1 Hz}}}}\n")
 LEGEND = {"bar", "spring", "cable", "driven"}
 for words, first, legend in ((["driven.yaml", "driven.yaml"], ["one", "driven"], {"driven"}),
                              (["one.yaml", "driven.yaml"], ["one", "one"], {"spring", "driven"}),
@@ -264,7 +259,7 @@ for words, first, legend in ((["driven.yaml", "driven.yaml"], ["one", "driven"],
 
 # ---- one, twenty ----
 for i in range(20):
-    open(f"m{i}.yaml", "w").write(text.replace("100 N/m", f"{100 + i} N/m"))
+    write(f"m{i}.yaml", text.replace("100 N/m", f"{100 + i} N/m"))
 many = answer("compare", *[f"m{i}.yaml" for i in range(20)], "--no-states", "--no-motion")
 for i, model in enumerate(many["models"]):
     same(f"model {i} of twenty", model["values"]["stiffness_x"], 100 + i)
@@ -278,8 +273,8 @@ def refused(code, needle, *words, stdin=""):
 
 refused(1, "missing MODEL...")
 refused(4, "nosuch.yaml", "one.yaml", "nosuch.yaml", "-o", "none")
-open("bad.yaml", "w").write(text.replace("kind: spring", "kind: sprong"))
-open("worse.yaml", "w").write("strut: 1\nnods: {}\n")
+write("bad.yaml", text.replace("kind: spring", "kind: sprong"))
+write("worse.yaml", "strut: 1\nnods: {}\n")
 done = run("compare", "one.yaml", "bad.yaml", "worse.yaml", code=2)
 for needle in ("bad.yaml:6", "spring", "worse.yaml:2", "nodes"):
     check(needle in done.stderr, f"bad models among good ones: stderr lacks '{needle}': {done.stderr}")

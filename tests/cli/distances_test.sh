@@ -102,23 +102,4 @@ done
 gives '.equilibria | length' 1 0 equilibria crossed.yaml
 tells 2 'x is a distance' form held.yaml --given densities
 
-# What a distance cannot be.
-yaml bad.yaml <<'YAML'
-nodes: {a: [0, 0], b: [1, 0], c: [1, 1]}
-members: {m: {kind: spring, nodes: [a, b], stiffness: 1}}
-distances:
-  one: {nodes: [a, b], stiffness: 1}
-  two: {node: a, line: [b, b], stiffness: 1}
-  three: {nodes: [a, b], along: 3 m, stiffness: 1}
-  four: {nodes: [a, b], along: x}
-  five: {node: c, line: [a, b], along: x, stiffness: 1}
-  six: {nodes: [a, b], along: [1, 2], stiffness: 1}
-  seven: {nodes: [a, c], along: y, stiffness: 1, law: logarithmic}
-YAML
-tells 2 "bad.yaml:5:3: error: distance 'one' must have 'nodes' and 'along', or 'node' and 'line'" check bad.yaml
-err_has "distance 'two' names node 'b' twice"
-err_has "bad.yaml:7:33: error: expected an angle such as '30 deg' for 'along' of distance 'three', found a length"
-err_has "distance 'four' has neither stiffness nor damping" "distance 'five' must have"
-err_has "expected x, y, or an angle from +x for 'along' of distance 'six', found a list of 2"
-err_has "distance 'seven' has the law logarithmic, which is for members only"
 edit 's/along: 30 deg/along: x/; s/d.force/d.forse/' along.yaml tells 2 "distance 'd' has no column 'forse'; did you mean 'force'?" check

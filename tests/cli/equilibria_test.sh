@@ -110,6 +110,11 @@ END
 shows 0 "stable         0 J" equilibria four-bars.yaml --all
 out_has_not "fJ"
 
+# Two diagonals cross in every frame, and no node lies on another: of structures for sparse algebra, too.
+finds '.equilibria[0] | .crossings == 256 and .collapsed == false' equilibria "$here/../bench/net.yaml"
+gives '.equilibria[0].crossings' 200 0 equilibria "$here/../bench/chain.yaml"
+shows 0 "200 crossings" equilibria "$here/../bench/chain.yaml"
+
 # Large ones end soon, and say so.
 {
   printf 'strut: 1\ngravity: [0, -9.8 m/s^2]\ngroups:\n  bar: {kind: bar, stiffness: 1e6 N/m}\n'

@@ -1,42 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Folds of a Duffing oscillator, and their curve over the force, by strut path --periodic and by AUTO-07p (Debian's auto-07p), which discretises the
-# same periodic motion by collocation. Skipped where AUTO or gfortran is not installed.
-import json
+# Folds of a Duffing oscillator, and their curve over the force, by strut path --periodic and by AUTO-07p (Debian's
+# auto-07p), which discretises the same periodic motion by collocation. Skipped where AUTO or gfortran is not installed.
 import math
 import re
 import shutil
 import subprocess
 
-from testing import check, finish, needs, strut, work, write
+from periodic import DUFFING, follow, special
+from testing import check, finish, needs, work, write
 
 needs("auto-07p", "gfortran")
 
 auto = shutil.which("auto-07p")
 
-DAMPING, CUBIC, FORCE = 0.05, 0.05, 0.1
+DAMPING, CUBIC, FORCE = 0.05, 0.05, 0.1  # of DUFFING
 FROM, TO = 0.14, 0.22  # [Hz]
 
-write("duffing.yaml", f"""strut: 1
-name: Duffing
-parameters: {{frequency: {FROM} Hz, force: {FORCE} N}}
-nodes:
-  wall: {{position: [0, 0], fixed: both}}
-  mass: {{position: [10, 0], fixed: y, mass: 1}}
-members:
-  spring:
-    {{nodes: [wall, mass], kind: spring, law: {{kind: polynomial, coefficients: [1 N/m, 0, {CUBIC} N/m^3]}},
-     damping: {DAMPING}, rest_length: 10}}
-loads:
-  push: {{node: mass, force: [force, 0], signal: {{sine: {{amplitude: 1, frequency: frequency}}}}}}
-solver: {{integrator: rk4, step: 1 ms}}
-run: {{periods: 300, of: push, measure: {{node: mass}}}}
-""")
-done = subprocess.run([strut, "path", "--periodic", "duffing.yaml", "--over", f"frequency={FROM}Hz..{TO}Hz", "--and",
-                       "force=0.05N..0.2N", "--json"],
-                      capture_output=True, text=True, cwd=work, timeout=100, check=True)
-result = json.loads(done.stdout)
-points = result["branches"][0]["special"]
-ours = [p["value"] for p in points if p["point"] == "fold"]
+result = follow(DUFFING, f"frequency={FROM}Hz..{TO}Hz", "--and", "force=0.05N..0.2N")
+ours = [p["value"] for p in special(result, "fold")]
 
 # x' = v and so on over one period, and an oscillator that makes sin and cos of the drive
 write("duf.f90", f"""subroutine FUNC(NDIM,U,ICP,PAR,IJAC,F,DFDU,DFDP)

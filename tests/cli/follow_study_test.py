@@ -9,25 +9,11 @@ import signal
 import subprocess
 import time
 
+from periodic import DUFFING, duffing_folds_at
 from testing import answer, check, finish, path, rows, run, strut, work, write
 
-
-write("duffing.yaml", """strut: 1
-name: Duffing
-parameters: {frequency: 0.14 Hz, force: 0.1 N, periods: 200, step: 1 ms}
-nodes:
-  wall: {position: [0, 0], fixed: both}
-  mass: {position: [10, 0], fixed: y, mass: 1}
-members:
-  spring:
-    {nodes: [wall, mass], kind: spring, law: {kind: polynomial, coefficients: [1 N/m, 0, 0.05 N/m^3]},
-     damping: 0.05, rest_length: 10}
-loads:
-  push: {node: mass, force: [force, 0], signal: {sine: {amplitude: 1, frequency: frequency}}}
-configurations: {drawn: {}, far: {mass: [12, 0]}}
-solver: {integrator: rk4, step: step}
-run: {periods: periods, of: push, measure: {node: mass}}
-""")
+with open(DUFFING, encoding="utf-8") as file:
+    write("duffing.yaml", file.read() + "configurations: {drawn: {}}\n")
 STUDY = """strut: 1
 study: Duffing's folds
 model: duffing.yaml
@@ -39,20 +25,6 @@ follow:
 figures: {widest: {x: force, y: amplitude_max}}
 """
 write("study.yaml", STUDY)
-
-
-def balance(force):
-    """Folds of ((1 - w^2 + 3/4 b A^2)^2 + (c w)^2) A^2 = F^2 along A: where dw/dA vanishes."""
-    beta, damping, curve = 0.05, 0.05, []
-    for k in range(12000):
-        amplitude = 0.3 + k * 3e-4
-        half = 1 + 0.75 * beta * amplitude**2 - damping**2 / 2
-        inside = half**2 - (1 + 0.75 * beta * amplitude**2)**2 + (force / amplitude)**2
-        if inside >= 0:
-            curve.append(math.sqrt(half + math.sqrt(inside)))
-    least = min(range(1, len(curve) - 1), key=lambda i: curve[i] if curve[i] < curve[i - 1] else 9)
-    return max(curve[least:]) / 2 / math.pi, curve[least] / 2 / math.pi
-
 
 # ---- the same bytes from one thread and from several, and the folds of the harmonic balance
 
@@ -70,7 +42,7 @@ check(len(points) == sum(int(row["branch_points"]) for row in table), "rows of a
 for force in ("0.1", "0.15"):
     folds = [float(p["frequency [Hz]"]) for p in points if p["force [N]"] == force and p["point"] == "fold"]
     check(len(folds) == 2, f"folds at {force}: {folds}")
-    for got, want in zip(folds, balance(float(force))):
+    for got, want in zip(folds, duffing_folds_at(float(force))):
         check(abs(got - want) < 5e-3 * want, f"a fold at {force} N: {got}, expected {want}")
     wide = [row for row in table if row["force [N]"] == force][0]
     mine = max(float(p["amplitude [m]"]) for p in points if p["force [N]"] == force and p["stable"] == "yes")
@@ -127,9 +99,7 @@ check(len(rows("single", "branches.csv")) == len(result["branches"][0]["points"]
 
 # ---- a point that cannot be followed is a row
 
-write("weak.yaml", open(path("duffing.yaml"), encoding="utf-8").read().replace("damping: 0.05,", "damping: damped,").replace(
-    "step: 1 ms}", "step: 1 ms, damped: 0.05}"))
-write("damped.yaml", STUDY.replace("duffing.yaml", "weak.yaml").replace("force: [0.06 N, 0.1 N, 0.15 N]", "damped: [0, 0.05]").replace(
+write("damped.yaml", STUDY.replace("force: [0.06 N, 0.1 N, 0.15 N]", "damping: [0, 0.05]").replace(
     "figures: {widest: {x: force, y: amplitude_max}}", ""))
 done = run("sweep", "damped.yaml", "-o", "damped", "-q", code=3)
 table = rows("damped", "table.csv")
@@ -140,13 +110,10 @@ check("1 of 2 points failed" in done.stderr, done.stderr)
 # ---- refusals
 
 
-def refused(text, *words, study="study.yaml", change=None, code=1):
-    name = study
+def refused(text, *words, change=None, code=1):
     if change:
-        name = "changed.yaml"
-        with open(path(study), encoding="utf-8") as file:
-            write(name, file.read().replace(*change))
-    run(*(words or ("check",)), name, code=code, err=text)
+        write("changed.yaml", STUDY.replace(*change))
+    run(*(words or ("check",)), "changed.yaml" if change else "study.yaml", code=code, err=text)
 
 
 refused("--shard cannot be used", "sweep", "-o", "none", "--shard", "0/2")

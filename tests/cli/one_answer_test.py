@@ -1,36 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One run has one answer: no output option changes a number, a summary speaks of one span, all outputs list the same
 equilibria, and an accuracy that was not reached is reported everywhere."""
-import csv
 import json
 import os
 import re
 import shutil
 import subprocess
 
-from testing import answer, check, finish, run, work, write
+import testing
+from testing import answer, check, finish, models, run, work, write
 
-models, tests = os.path.abspath("models"), os.path.dirname(os.path.abspath(__file__))
+tests = os.path.dirname(os.path.abspath(__file__))
+os.chdir(work)
 
-# A robot that becomes steady long before its 400 periods are over, to an accuracy by its orbit.
-ROBOT = """strut: 1
-name: Oblique X
-parameters: {frequency: 23 Hz, amplitude: 0.5 mm, friction: 0.3, prestress: 3 N}
-groups: {rod: {kind: bar, stiffness: 100 kN/m, damping: 1 N s/m, mass: 50 g},
-         cable: {kind: cable, stiffness: 500 N/m, damping: 0.5 N s/m}}
-nodes: {a: [0, 0], b: [100 mm, 0], c: [80 mm, 60 mm], d: [0, 90 mm]}
-members: {rising: {group: rod, nodes: [a, c], pretension: -1.25*prestress},
-          falling: {group: rod, nodes: [b, d], pretension: -1.922*prestress},
-          floor: {group: cable, nodes: [a, b], pretension: prestress},
-          right: {group: cable, nodes: [b, c], pretension: 1.355*prestress},
-          roof: {group: cable, nodes: [c, d], pretension: 1.526*prestress},
-          left: {group: cable, nodes: [d, a], pretension: 0.75*prestress}}
-gravity: [0, -9.81 m/s^2]
-ground: {stiffness: 100 kN/m, damping: 50 N s/m, friction: {law: coulomb, mu: friction}}
-actuators: {drive: {member: left, signal: {sine: {amplitude: amplitude, frequency: frequency}}}}
-initial: {settle: true}
-solver: {accuracy: 1 %}
-run: {periods: 400, of: drive, measure: {last: 20, steady: true}}
+# A robot to an accuracy by its orbit.
+with open(f"{tests}/oblique-x.yaml", encoding="utf-8") as file:
+    ROBOT = file.read() + """solver: {accuracy: 1 %}
 output: {last: 5, every: 1/(100*frequency), channels: [position, force, energy]}
 """
 # Fixed steps that end when the motion is steady, also with a measured quantity, by the ladder.
@@ -67,29 +52,26 @@ def answers(name, *more, code=0):
         del found["wall_time"]
         summaries.append(found)
     warnings.append(run("run", name, *more, "--quiet", code=code).stderr)
-    with open("d/summary.json", encoding="utf-8") as file:
-        summaries.append(json.load(file))
+    summaries.append(json.loads(testing.read("d/summary.json")))
     for what, all_of_them in (("table", tables), ("summary", summaries), ("stderr", warnings)):
         for i, other in enumerate(all_of_them):
-            if other == all_of_them[0]:
-                continue
-            one = str(all_of_them[0]).split(", " if what == "summary" else "\n")
-            two = str(other).split(", " if what == "summary" else "\n")
-            differ = [pair for pair in zip(one, two) if pair[0] != pair[1]]
-            check(False, f"{name} {more}: {what} {i} says otherwise: {differ[:6]}")
+            parts = (str(text).split(", " if what == "summary" else "\n") for text in (all_of_them[0], other))
+            differ = [pair for pair in zip(*parts) if pair[0] != pair[1]]
+            check(other == all_of_them[0], f"{name} {more}: {what} {i} says otherwise: {differ[:6]}")
     return summaries[0], tables[0]
 
 
 def rows(name):
-    with open(name, encoding="utf-8", newline="") as file:
-        return [{key.split(" [")[0]: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    """Of a table, without the units of its columns."""
+    return [{key.split(" [")[0]: value for key, value in row.items()} for row in testing.rows(name)]
+
+
+def numbers(name):
+    return [{key: float(value) for key, value in row.items()} for row in rows(name)]
 
 
 def column(name, key):
-    """The cells of a column of a table, as texts."""
-    with open(name, encoding="utf-8", newline="") as file:
-        found = list(csv.DictReader(file))
-    return [value for row in found for name, value in row.items() if name.split(" [")[0] == key]
+    return [row[key] for row in rows(name)]
 
 
 def stored(energy):
@@ -98,15 +80,14 @@ def stored(energy):
 
 def check_span(name):
     """The summary in d is of the state at its duration, with works and losses until then."""
-    with open("d/summary.json", encoding="utf-8") as file:
-        s = json.load(file)
-    at = [abs(row["time"] - s["duration"]) < 1e-9 * s["duration"] for row in rows("d/nodes.csv")]
+    s = json.loads(testing.read("d/summary.json"))
+    at = [abs(row["time"] - s["duration"]) < 1e-9 * s["duration"] for row in numbers("d/nodes.csv")]
     check(sum(at) == 1, f"{name}: {sum(at)} records of the end")
-    last = rows("d/nodes.csv")[at.index(True)]
+    last = numbers("d/nodes.csv")[at.index(True)]
     for node, values in s["nodes"].items():
         there = [last[f"{node}.x"], last[f"{node}.y"]]
         check(there == values["position"], f"{name}: {node} ends at {values['position']}, recorded {there}")
-    last = rows("d/energy.csv")[at.index(True)]
+    last = numbers("d/energy.csv")[at.index(True)]
     for key, value in s["energy"].items():
         if key in last:
             check(abs(last[key] - value) <= 1e-12 * s["energy"]["exchanged"],
@@ -119,7 +100,6 @@ def check_span(name):
     return s
 
 
-os.chdir(work)
 write("robot.yaml", ROBOT)
 write("fixed.yaml", FIXED)
 write("measured.yaml", MEASURED)
@@ -166,8 +146,7 @@ for more in ("", "trajectories: yes\n"):
           "keep: [velocity, duration, work, losses, residual, force_evaluations, positions, contacts]\n" + more)
     shutil.rmtree("each", ignore_errors=True)
     run("sweep", "each.yaml", "-o", "each", "--quiet")
-    with open("each/table.csv", encoding="utf-8") as file:
-        tables.append(file.read())
+    tables.append(testing.read("each/table.csv"))
 check(tables[0] == tables[1], "trajectories change the table")
 alone = answer("run", "fixed.yaml")
 for key, value in (("velocity", alone["velocity"]), ("duration", alone["duration"]),
@@ -222,8 +201,7 @@ reported = answer("run", chaos, *little, code=5)
 check(reported["status"] == "completed" and not reported["accuracy"]["kept"], str(reported["accuracy"]))
 check([w["code"] for w in reported["warnings"]] == ["accuracy"] and reported["worth"].startswith("NOT kept"), str(reported))
 run("view", "chaos", "-o", "chaos.html")
-with open("chaos.html", encoding="utf-8") as file:
-    check("NOT kept" in file.read(), "the page does not say that the accuracy was not kept")
+check(b"NOT kept" in testing.read("chaos.html"), "the page does not say that the accuracy was not kept")
 with open(chaos, encoding="utf-8") as file:
     scene = re.sub(r"solver: .*", "solver: {accuracy: 0.2 %, budget: 1}", file.read())
 write("chaos.yaml", scene.replace("amplitude: 0.0369", "amplitude: push") + "parameters: {push: 0.0369}\n")

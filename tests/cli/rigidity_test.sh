@@ -58,3 +58,6 @@ crawler=$here/../../models/crawler/crawler.yaml
 shows 0 '"at":	"I"' rigidity "$crawler" --at I --json
 out_has '"equilibrium":	true' '"rank":	7'
 tells 1 "IV" rigidity "$crawler" --at IV
+# More states than are listed have no table.
+shows 0 "self stress s                            400" rigidity "$here/../bench/chain.yaml" --set cells=400
+finds '.self_stress | .count == 400 and .states == null' rigidity "$here/../bench/chain.yaml" --set cells=400

@@ -128,12 +128,7 @@ check(found["value"] is not None and abs(found["value"] + 0.05) < 1e-3, f"one-si
 
 # ---- statics: frequencies and the limit load of von Mises' truss ----
 
-write("spring.yaml", """strut: 1
-parameters: {stiffness: 100 N/m, mass: 1 kg}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: mass}}
-members: {s: {kind: spring, nodes: [a, b], stiffness: stiffness, rest_length: 1 m}}
-""")
-for row in sweep("modes", "model: spring.yaml\ncompute: modes\nkeep: [frequencies, at]\nlowest: 1\n"
+for row in sweep("modes", "model: copied/basics/oscillator.yaml\ncompute: modes\nkeep: [frequencies, at]\nlowest: 1\n"
                  "axes: [{stiffness: [100 N/m, 400 N/m]}]\nderivatives: [stiffness, mass]\n"):
     stiffness = float(row["stiffness [N/m]"])
     frequency = math.sqrt(stiffness) / 2 / math.pi
@@ -150,7 +145,7 @@ holds(cell(row, "limit_factor", "stiffness"), 2 * apex * (rest / length - 1), 1e
 
 # ---- a search that follows them: from the middle of the box to the one minimum in a few points ----
 
-SEARCH = ("model: spring.yaml\ncompute: modes\nkeep: [frequencies]\nlowest: 1\n"
+SEARCH = ("model: copied/basics/oscillator.yaml\ncompute: modes\nkeep: [frequencies]\nlowest: 1\n"
           'search: {minimise: "(frequency_1/(2 Hz) - 1)^2 + (mass/(1 kg) - 0.7)^2", evaluations: 40, method: bfgs,\n'
           "  over: {stiffness: {from: 10 N/m, to: 1000 N/m, scale: log}, mass: {from: 0.5 kg, to: 2 kg}}}\n")
 sweep("follows", SEARCH)

@@ -19,18 +19,13 @@ copy_models()
 
 def search(name, body, *words, code=0):
     """Runs the study and returns its report."""
-    write(name + ".yaml", "strut: 1\nstudy: A search\nmodel: spring.yaml\ncompute: modes\n"
+    write(name + ".yaml", "strut: 1\nstudy: A search\nmodel: copied/basics/oscillator.yaml\ncompute: modes\n"
           "keep: [frequencies, at]\n" + body)
     done = run("sweep", name + ".yaml", "-o", name, "--json", *words, code=code)
     return json.loads(done.stdout) if done.stdout else done.stderr
 
 
 # A mass on a spring: its frequency is sqrt(k/m)/(2 pi).
-write("spring.yaml", """strut: 1
-parameters: {stiffness: 100 N/m, mass: 1 kg}
-nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1 m, 0], fixed: y, mass: mass}}
-members: {s: {kind: spring, nodes: [a, b], stiffness: stiffness, rest_length: 1 m}}
-""")
 wanted = (2 * math.pi * 2.0) ** 2
 GOAL = "minimise: abs(frequency_1 - 2 Hz)"
 OVER = "over: {stiffness: {from: 10 N/m, to: 1000 N/m, scale: log}}"
@@ -212,12 +207,7 @@ refuse("search: {minimise: frequence_1, " + OVER + "}\n", "refused.yaml:6:20: ",
 refuse("search: {minimise: at, " + OVER + "}\n", "refused.yaml:6:20: ", "holds texts")
 refuse("search: {minimise: 2 Hz, " + OVER + "}\n", "refused.yaml:6:20: ", "names no column")
 refuse("search: {minimise: frequency_1 + 1 kg, " + OVER + "}\n", "refused.yaml:6:")
-refuse("search: {minimise: frequency_1, maximise: frequency_1, " + OVER + "}\n", "refused.yaml:6:", "maximise")
-refuse("search: {" + OVER + "}\n", "refused.yaml:6:9: ", "lacks 'maximise' or 'minimise'")
-refuse("search: {" + GOAL + "}\n", "refused.yaml:6:9: ", "lacks 'over'")
-for range_, text in (("{from: 1, to: 1}", "one value"), ("{from: 2, to: 1}", "reversed"),
-                     ("{from: 0, to: 1, scale: log}", "logarithmic"),
-                     ("{from: -2, to: -1, scale: log}", "logarithmic"),
+for range_, text in (("{from: -2, to: -1, scale: log}", "logarithmic"),
                      ("[1 N/m]", "no choice"), ("5", "needs a range"),
                      ("{from: 1.2, to: 1.8, integer: yes}", "whole numbers"),
                      ("{from: 1, to: 2, start: 3}", "'start' outside"),
@@ -230,7 +220,6 @@ for condition, text in (("frequency_1 < 1 kg", "compared"), ("at < 2", "texts"),
                         ("frequency_1 = 2", "numbers are compared"), ("frequency_1", "comparison"),
                         ("1 < frequency_1 < 2", "comparison"), ("1 < 2", "neither side")):
     refuse("search: {" + GOAL + ", " + OVER + f", subject_to: [\"{condition}\"]}}\n", "refused.yaml:6:", text)
-refuse("search: {" + GOAL + ", " + OVER + ", method: direct, starts: 3}\n", "refused.yaml:6:", "no seed")
 refuse("search: {minimise: [at], " + OVER + "}\n", "a list of two")
 refuse("search: {minimise: [frequency_1, frequency_2], " + OVER + ", method: cma}\n", "nsga2")
 refuse("search: {" + GOAL + ", " + OVER + ", method: nsga2}\n", "two goals")
@@ -240,7 +229,7 @@ refuse("axes: [{stiffness: [1, 2]}]\nsearch: {" + GOAL + ", " + OVER + "}\n", "g
 refuse("axes: [{mass: [1, 2]}]\nrefine: {where: at, depth: 1}\nsearch: {" + GOAL + ", " + OVER +
        "}\n", "no grid to refine")
 refuse("trajectories: yes\ncompute: run\nsearch: {" + GOAL + ", " + OVER + "}\n", "refused.yaml")
-write("fine.yaml", "strut: 1\nstudy: x\nmodel: spring.yaml\ncompute: modes\nsearch: {" + GOAL + ", " + OVER + "}\n")
+write("fine.yaml", "strut: 1\nstudy: x\nmodel: copied/basics/oscillator.yaml\ncompute: modes\nsearch: {" + GOAL + ", " + OVER + "}\n")
 run("sweep", "fine.yaml", "-o", "fine", "--retry", code=1, err="depends on those before")
 check(run("sweep", "fine.yaml", "--count").stdout.startswith("  points at most  203\n"), "--count")
 check("are finished" in run("sweep", "--merge", "one").stdout, "a finished search")

@@ -10,17 +10,10 @@ import signal
 import subprocess
 import time
 
-from testing import answer, check, finish, path, read, rows, run, strut, work, write
+from testing import answer, check, copy_models, finish, path, read, rows, run, strut, work, write
 
 
-write("truss.yaml", """strut: 1
-parameters: {height: 0.3 m, load: 0 N, stiffness: 1000 N/m}
-nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both},
-        apex: {position: [0, height], mass: 1 kg}}
-members: {a: {kind: bar, nodes: [apex, left], stiffness: stiffness},
-          b: {kind: bar, nodes: [apex, right], stiffness: stiffness}}
-loads: {weight: {node: apex, force: [0, -load]}}
-""")
+copy_models()
 
 
 def limit(height):
@@ -33,7 +26,7 @@ def limit(height):
 def study(name, heights, loads, more="", keep="stable_count"):
     write(name + ".yaml", f"""strut: 1
 study: map
-model: truss.yaml
+model: copied/basics/von-mises-truss.yaml
 compute: equilibria
 axes: [{{stiffness: [1000 N/m, 2000 N/m]}}, {{height: {heights}}}, {{load: {loads}}}]
 keep: [{keep}]
@@ -133,7 +126,7 @@ def numbers_and_failures():
     check(len(rows("steep/table.csv")) == 2 * 9 * 13, "everything differs")
     write("fails.yaml", """strut: 1
 study: fails
-model: truss.yaml
+model: copied/basics/von-mises-truss.yaml
 compute: path
 axes: [{height: {from: 0.2 m, to: 0.52 m, count: 3}}, {load: {from: 0 N, to: 90 N, count: 3}}]
 refine: {where: end, depth: 1}
@@ -148,7 +141,7 @@ path: {until: 0.1}
 def refused(more, said):
     write("bad.yaml", f"""strut: 1
 study: bad
-model: truss.yaml
+model: copied/basics/von-mises-truss.yaml
 compute: equilibria
 keep: [stable_count]
 axes: [{{height: {COARSE[0]}}}, {{load: {COARSE[1]}}}, {{stiffness: [1, 2]}}]

@@ -91,19 +91,9 @@ def rigidity():
             check(int(row[column]) == wanted, f"{column}: {row[column]}, expected {wanted}")
 
 
-TWO = """strut: 1
-parameters: {height: 0.3 m, load: 0 N}
-nodes: {left: {position: [-1, 0], fixed: both}, right: {position: [1, 0], fixed: both},
-        apex: {position: [0, height], mass: 1 kg}}
-members: {a: {kind: bar, nodes: [apex, left], stiffness: 1000}, b: {kind: bar, nodes: [apex, right], stiffness: 1000}}
-loads: {weight: {node: apex, force: [0, -load]}}
-"""
-
-
 def equilibria():
     """A truss with two states: energies and barriers by formula, then one state where the load is high."""
-    write("two.yaml", TWO)
-    study = "model: two.yaml\ncompute: equilibria\nlowest: 2\naxes: [{load: [0 N, 20 N]}]\n"
+    study = "model: copied/basics/von-mises-truss.yaml\ncompute: equilibria\nlowest: 2\naxes: [{load: [0 N, 20 N]}]\n"
     rows = sweep("two", study)
     check([row["stable_count"] for row in rows] == ["2", "1"], f"states: {rows}")
     top = 1000 * (math.hypot(1, 0.3) - 1) ** 2  # both bars straight
@@ -123,14 +113,9 @@ def equilibria():
 
 
 FRAME = """strut: 1
+base: copied/gallery/x-frame.yaml
 parameters: {stiffness: 100 N/m}
-nodes: {n1: {position: [0, 0], fixed: both}, n2: {position: [1, 0], fixed: y}, n3: {position: [1, 1]},
-        n4: {position: [0, 1]}}
-groups: {cable: {kind: cable, stiffness: stiffness, rest_length: 0.95 m},
-         bar: {kind: bar, stiffness: 1000 N/m, rest_length: sqrt(2)}}
-members: {bottom: {group: cable, nodes: [n1, n2]}, right: {group: cable, nodes: [n2, n3]},
-          top: {group: cable, nodes: [n3, n4]}, left: {group: cable, nodes: [n4, n1]},
-          falling: {group: bar, nodes: [n2, n4]}, rising: {group: bar, nodes: [n1, n3]}}
+groups: {cable: {stiffness: stiffness}}
 """
 
 

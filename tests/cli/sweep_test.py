@@ -19,7 +19,7 @@ import numpy as np  # noqa: E402
 
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 copy_models()
-
+os.chdir(work)
 
 BLOCK = """strut: 1
 name: Block
@@ -71,13 +71,13 @@ keep: [duration]
     check(table[-1]["mass [kg]"] == "2" and table[5]["seconds [s]"] == "0.015", "bits of the ends")
 
 
-CRAWLER = f"""strut: 1
+CRAWLER = """strut: 1
 study: crawler
 model: copied/crawler/crawler.yaml
 axes:
   - start: [I, II]
-  - frequency: {{from: 8 Hz, to: 16 Hz, count: 9}}
-run: {{periods: 12, measure: {{last: 4}}}}
+  - frequency: {from: 8 Hz, to: 16 Hz, count: 9}
+run: {periods: 12, measure: {last: 4}}
 keep: [velocity, force_evaluations, residual, work, contacts, positions, outcome]
 """
 
@@ -160,22 +160,22 @@ def the_same_bytes():
 
 
 # Points that fail or have other terms stand between those that go side by side; all are run twice.
-MIXED = f"""strut: 1
+MIXED = """strut: 1
 study: mixed
 model: copied/crawler/crawler.yaml
 axes:
   - start: [I, II]
   - step: [0.1 ms, 10 ms]
   - friction: [0, 0, 0.1, 0.1, 0.1, 0, 0, 0, 0, 0, 0, 0.5]
-run: {{periods: 10, measure: {{last: 1}}}}
-check: {{half_step: yes}}
+run: {periods: 10, measure: {last: 1}}
+check: {half_step: yes}
 """
-MOTIONS = f"""strut: 1
+MOTIONS = """strut: 1
 study: motions
 model: copied/crawler/crawler.yaml
 axes:
-  - frequency: {{from: 8 Hz, to: 16 Hz, count: 11}}
-run: {{periods: 10, measure: {{last: 1}}}}
+  - frequency: {from: 8 Hz, to: 16 Hz, count: 11}
+run: {periods: 10, measure: {last: 1}}
 trajectories: yes
 """
 EVENTS = CRAWLER.replace("study: crawler", "study: events").replace(
@@ -208,19 +208,18 @@ def threads_change_nothing():
 def killed_and_resumed():
     before = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "killed", "--threads", "2",
-                                  "--quiet"], cwd=work)
+        child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "killed", "--threads", "2", "--quiet"])
         time.sleep(random.uniform(0.0, 0.25))
         child.send_signal(signal.SIGKILL)
         if child.wait() == 0:  # over before: once more from the beginning
             check(read("killed/table.csv") == read("one/table.csv"), f"after {n} kills: table")
-            shutil.rmtree(f"{work}/killed")
+            shutil.rmtree("killed")
             before = 0
             continue
-        if not os.path.exists(f"{work}/killed/points.slots"):
+        if not os.path.exists("killed/points.slots"):
             continue
-        seen = subprocess.run([strut, "sweep", "crawler.yaml", "-o", "killed", "--status",
-                               "--json"], cwd=work, capture_output=True, text=True)
+        seen = subprocess.run([strut, "sweep", "crawler.yaml", "-o", "killed", "--status", "--json"],
+                              capture_output=True, text=True)
         if seen.returncode:  # killed before the header was whole
             continue
         done = json.loads(seen.stdout)["done"]
@@ -236,7 +235,7 @@ def killed_and_resumed():
 
 def stages(folder):
     """Folders below it in which results of runs are gathered."""
-    return [f"{path}/{name}" for path, names, _ in os.walk(f"{work}/{folder}") for name in names
+    return [f"{path}/{name}" for path, names, _ in os.walk(folder) for name in names
             if name.startswith(".strut-stage-")]
 
 
@@ -245,7 +244,7 @@ def killed_while_recording():
     run("sweep", "motions.yaml", "-o", "recorded", "--quiet")
     left = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet"], cwd=work)
+        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet"])
         deadline = time.monotonic() + 60
         while child.poll() is None and not stages("cut") and time.monotonic() < deadline:
             time.sleep(0.002)
@@ -253,16 +252,16 @@ def killed_while_recording():
         child.send_signal(signal.SIGKILL)
         child.wait()
         left += len(stages("cut"))
-        if os.path.exists(f"{work}/cut/points.slots") and n % 3 == 2:
-            os.remove(f"{work}/cut/points.slots")  # begin anew, so that there is something to kill
+        if os.path.exists("cut/points.slots") and n % 3 == 2:
+            os.remove("cut/points.slots")  # begin anew, so that there is something to kill
     check(left > 0, "no kill left anything: nothing was tested")
     # What is not provably strut's stays: other names, no mark, the mark of another machine.
     others = ["cut/runs/000000002/.strut-stage-mine", "cut/runs/000000003/.strut-stage-1-0"]
     for folder, name in zip(others, ("notes", ".strut-stage")):
-        os.makedirs(f"{work}/{folder}", exist_ok=True)
+        os.makedirs(folder, exist_ok=True)
         write(f"{folder}/{name}", "mine\n")
     run("sweep", "motions.yaml", "-o", "cut", "--quiet")
-    check(sorted(stages("cut")) == [f"{work}/{folder}" for folder in others], f"after kills: {stages('cut')}")
+    check(sorted(stages("cut")) == others, f"after kills: {stages('cut')}")
     for folder, name in zip(others, ("notes", ".strut-stage")):
         check(read(f"{folder}/{name}") == b"mine\n", f"{folder} was touched")
     check(read("cut/table.csv") == read("recorded/table.csv"), "after kills: table")
@@ -274,10 +273,10 @@ def killed_while_recording():
 
 def interrupted():
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
-    os.remove(f"{work}/stopped/points.slots")  # its table is that of an earlier sweep then
+    os.remove("stopped/points.slots")  # its table is that of an earlier sweep then
     child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "stopped", "--threads", "1"],
-                             cwd=work, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    path = f"{work}/stopped/points.slots"
+                             stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    path = "stopped/points.slots"
     while child.poll() is None and not (os.path.exists(path) and os.path.getsize(path) > 6000):
         time.sleep(0.001)
     child.send_signal(signal.SIGINT)
@@ -286,7 +285,7 @@ def interrupted():
         return  # it was over before
     check(child.returncode == 130, f"interrupted: exit code {child.returncode}")
     check("the same command resumes" in err, f"interrupted: {err}")
-    check(not os.path.exists(f"{work}/stopped/table.csv"), "an earlier table beside new points")
+    check(not os.path.exists("stopped/table.csv"), "an earlier table beside new points")
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     check(read("stopped/table.csv") == read("one/table.csv"), "after an interrupt: table")
 
@@ -313,10 +312,7 @@ keep: [velocity]
 def failed_points_once_more():
     """A failed point is never computed again, but by --retry; what is done is not."""
     def computed(*words):
-        done = subprocess.run([strut, "sweep", "fails.yaml", "-o", "fails", "--json", *words],
-                              cwd=work, capture_output=True, text=True)
-        check(done.returncode == 3, f"{words}: exit code {done.returncode}: {done.stderr}")
-        return json.loads(done.stdout)["computed"]
+        return answer("sweep", "fails.yaml", "-o", "fails", *words, code=3)["computed"]
     table, slots = read("fails/table.csv"), read("fails/points.slots")
     check(computed() == 0, "failed points are computed again")
     check(computed("--retry") == 2, "--retry")
@@ -332,7 +328,7 @@ def failed_points_once_more():
 
 def a_directory_stands_for_itself():
     """study.yaml and model.yaml of the results make them again, wherever they are."""
-    os.makedirs(f"{work}/models/deep")
+    os.makedirs("models/deep")
     write("models/deep/block.yaml", BLOCK)
     # Places of all kinds: in quotes, with an anchor, in a flow mapping, behind a wide character.
     ways = ["model: models/deep/block.yaml   # where it is",
@@ -344,7 +340,7 @@ def a_directory_stands_for_itself():
         copy = read(f"own{n}/study.yaml").decode()
         check("# A copy; its model was models/deep/block.yaml" in copy, copy)
         check("# It was run with --set seconds=0.1 s" in copy, copy)
-        os.rename(f"{work}/own{n}", f"{work}/models/moved{n}")
+        os.rename(f"own{n}", f"models/moved{n}")
         place = f"models/moved{n}"
         run("sweep", f"{place}/study.yaml", "-o", f"again{n}", "--set", "seconds=0.1 s", "--quiet")
         check(read(f"again{n}/table.csv") == read(f"{place}/table.csv"), f"{way}: table")
@@ -357,14 +353,14 @@ def a_directory_stands_for_itself():
     write("models/moved0/model.yaml", BLOCK.replace("1 N s/m", "2 N s/m"))
     run("sweep", "models/moved0/study.yaml", "-o", "again0", "--set", "seconds=0.1 s", code=1)
     # What is not ours stays: results in the study's own folder.
-    os.makedirs(f"{work}/home")
+    os.makedirs("home")
     write("home/block.yaml", BLOCK)
     write("home/model.yaml", "another one")
     write("home/mine.yaml", "strut: 1\nstudy: x\nmodel: block.yaml\naxes: [{mass: [1 kg]}]\n")
     run("sweep", "home/mine.yaml", "-o", "home", code=1, err="give another directory")
-    check(sorted(os.listdir(f"{work}/home")) == ["block.yaml", "mine.yaml", "model.yaml"] and
+    check(sorted(os.listdir("home")) == ["block.yaml", "mine.yaml", "model.yaml"] and
           read("home/model.yaml") == b"another one", "a file of the user's is gone")
-    os.remove(f"{work}/home/model.yaml")
+    os.remove("home/model.yaml")
     run("sweep", "home/mine.yaml", "-o", "home", "--quiet")
     run("sweep", "home/mine.yaml", "-o", "home", "--quiet")
 
@@ -398,7 +394,7 @@ figures:
     run("sweep", "figures.yaml", "-o", "figures", "--quiet")
     check(b"<svg" in read("figures/lines.svg"), "lines.svg")
     check(b"<svg" in read("figures/map.svg"), "map.svg")
-    os.remove(f"{work}/figures/map.svg")
+    os.remove("figures/map.svg")
     write("figures.yaml", study.replace("  lines:", "  curves:"))
     end = answer("sweep", "figures.yaml", "-o", "figures")
     check(end["computed"] == 0, "another figure is no other study")
@@ -417,7 +413,7 @@ trajectories: yes
     for n in range(2):
         run("run", "block.yaml", "-o", "alone", "--set", f"mass={n + 1} kg", "--set", "place=far", "--quiet")
         folder = f"motion/runs/{n:09d}"
-        check(sorted(os.listdir(f"{work}/{folder}")) ==
+        check(sorted(os.listdir(folder)) ==
               [".strut-files", "scene.yaml", "summary.json", "trajectory.h5"], "files of a run")
         # The scene's text names a parameter as it was given; the rest has the same bytes.
         there, alone = (json.loads(read(f"{d}/summary.json")) for d in (folder, "alone"))
@@ -461,7 +457,7 @@ def two_at_once():
     """The second is informed of the first, and what the first makes is the table."""
     write("two.yaml", read("crawler.yaml").decode())
     words = [strut, "sweep", "two.yaml", "-o", "two", "--threads", "1", "--quiet"]
-    children = [subprocess.Popen(words, cwd=work, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    children = [subprocess.Popen(words, stderr=subprocess.PIPE, text=True) for _ in range(2)]
     said = [child.communicate()[1] for child in children]
     codes = sorted(child.returncode for child in children)
     check(codes in ([0, 4], [0, 0]), f"two at once: exit codes {codes}")  # [0, 0]: one after another
@@ -471,10 +467,10 @@ def two_at_once():
 
 def no_room():
     """A full disk and one that cannot be written: exit code 4, and then the sweep goes on."""
-    os.makedirs(f"{work}/disk")
+    os.makedirs("disk")
 
     def mount(*options):
-        return subprocess.run(["mount", *options, f"{work}/disk"], capture_output=True).returncode == 0
+        return subprocess.run(["mount", *options, "disk"], capture_output=True).returncode == 0
     write("room.yaml", """strut: 1
 study: room
 model: block.yaml
@@ -489,7 +485,7 @@ keep: [velocity]
         return
     try:
         run("sweep", "room.yaml", "-o", "disk/x", "--quiet", code=4, err="No space left on device")
-        check(not os.path.exists(f"{work}/disk/x/table.csv"), "a table on a full disk")
+        check(not os.path.exists("disk/x/table.csv"), "a table on a full disk")
         mount("-o", "remount,rw,size=1000k")
         done = answer("sweep", "room.yaml", "-o", "disk/x", "--status")
         end = answer("sweep", "room.yaml", "-o", "disk/x")
@@ -500,7 +496,7 @@ keep: [velocity]
         run("sweep", "room.yaml", "-o", "disk/x", code=4)
         check(read("disk/x/table.csv") == read("room/table.csv"), "on a disk for reading: table")
     finally:
-        subprocess.run(["umount", f"{work}/disk"], check=True)
+        subprocess.run(["umount", "disk"], check=True)
 
 
 def wrong_use():
@@ -509,7 +505,7 @@ def wrong_use():
     run("sweep", "fails.yaml", "-o", "other", "--threads", "0", code=1)
     run("sweep", "nowhere.yaml", "-o", "other", code=4)
     run("sweep", "fails.yaml", "-o", "nothing", "--status", code=4)
-    check(not os.path.exists(f"{work}/nothing"), "--status makes no directory")
+    check(not os.path.exists("nothing"), "--status makes no directory")
     write("bad.yaml", "strut: 1\nstudy: x\nmodel: block.yaml\naxes:\n  - masss: [1 kg]\n")
     said = run("sweep", "bad.yaml", "-o", "other", code=2).stderr
     check("bad.yaml:5:5: error: the model has no parameter 'masss'; did you mean 'mass'?" in said
@@ -527,13 +523,12 @@ axes:
 keep: [velocity]
 """)
     text = read("many.yaml").decode()
+    # The address sanitizer would keep what was released.
+    keeps = {**os.environ, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":quarantine_size_mb=0"}
     peak = []
     for n, count in enumerate((5, 300)):
         write("many.yaml", text.replace("COUNT", str(count)))
-        # The address sanitizer would keep what was released.
-        keeps = os.environ.get("ASAN_OPTIONS", "") + ":quarantine_size_mb=0"
-        child = subprocess.Popen([strut, "sweep", "many.yaml", "-o", f"many{n}", "--quiet"],
-                                 cwd=work, env={**os.environ, "ASAN_OPTIONS": keeps})
+        child = subprocess.Popen([strut, "sweep", "many.yaml", "-o", f"many{n}", "--quiet"], env=keeps)
         most = 0
         while child.poll() is None:
             try:

@@ -1,39 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut tradeoff: errors against closed forms, fronts and percentiles once more, its files."""
-import csv
 import json
 import math
 import os
 import re
-import subprocess
+import statistics
 import sys
 
-from testing import check, fail, files_in, finish, strut, work as here
+import testing
+from testing import check, fail, files_in, finish, models, needs, path, write
+
+needs("numpy")
+import numpy  # noqa: E402
 
 slower = int(sys.argv[2]) if len(sys.argv) > 2 else 1
-OSCILLATOR, BALL = "models/basics/oscillator.yaml", "models/basics/bouncing-node.yaml"
-HOPPER = "tests/cli/hopper.yaml"
+OSCILLATOR, BALL, BLOCK, PENDULUM = (
+    f"{models}/basics/{name}.yaml" for name in ("oscillator", "bouncing-node", "sliding-block", "pendulum"))
+CRAWLER, TWO = f"{models}/crawler/crawler.yaml", f"{models}/gallery/two-mass-crawler.yaml"
+HOPPER = os.path.realpath("tests/cli/hopper.yaml")
 
 
-def budgeted(words):
-    """The words, with times after --cpu-time as much longer as this build is slower (sanitizers)."""
-    words = list(words)
-    for i, word in enumerate(words[1:], 1):
-        if words[i - 1] == "--cpu-time" and re.fullmatch(r"\d+ s", word):
-            words[i] = f"{slower * int(word[:-2])} s"
-    return words
-
-
-def run(*words, code=0):
-    done = subprocess.run([strut, "tradeoff", *budgeted(words)], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL)
-    check(done.returncode == code, f"strut tradeoff {' '.join(words)}: {done.returncode}, not {code}: {done.stderr}")
-    return done
+def run(*words, **how):
+    """Times after --cpu-time are as much longer as this build is slower (sanitizers)."""
+    longer = [re.sub(r"^\d+(?= s$)", lambda seconds: str(slower * int(seconds[0])), word) for word in words]
+    return testing.run("tradeoff", *longer, timeout=600 * slower, **how)
 
 
 def read(*words):
-    done = run(*words, "--json")
-    return json.loads(done.stdout) if done.returncode == 0 else None
+    return json.loads(run(*words, "--json").stdout)
+
+
+def without_clock(answer):
+    """The answer but for the time that the computation took."""
+    answer = json.loads(json.dumps(answer))
+    del answer["spent_seconds"], answer["base_seconds"]
+    for setting in answer["settings"]:
+        del setting["cpu"], setting["seconds"]
+    return answer
 
 
 def infinite(values):
@@ -41,28 +44,19 @@ def infinite(values):
 
 
 def close(a, b, relative=1e-12):
-    return a == b or abs(a - b) <= relative * max(abs(a), abs(b))
-
-
-def spread(values):
-    """Median, 90th percentile and worst, from the definitions."""
-    ordered = sorted(values)
-    n = len(ordered)
-    median = ordered[n // 2] if n % 2 else (ordered[n // 2 - 1] + ordered[n // 2]) / 2
-    ninety = next(v for v in ordered if 10 * sum(w <= v for w in ordered) >= 9 * n)
-    return median, ninety, ordered[-1]
+    return a == b or math.isclose(a, b, rel_tol=relative)
 
 
 def check_spreads(what, answer):
     for row in answer["settings"]:
         for kind in ("step_error", "total_error"):
             reported = row[kind]
-            wanted = spread(infinite(reported["points"]))
-            if not all(close(a, b) for a, b in zip(
-                    wanted, infinite([reported["median"], reported["percentile_90"], reported["worst"]]))):
-                fail(f"{what}: {row['group']} {row['step']}: {kind} {reported}, not {wanted}")
-        if row["diverged"] != sum(v is None for v in row["step_error"]["points"]):
-            fail(f"{what}: {row['group']} {row['step']} does not count what diverged")
+            points = infinite(reported["points"])
+            wanted = [statistics.median(points), numpy.percentile(points, 90, method="inverted_cdf"), max(points)]
+            found = infinite([reported["median"], reported["percentile_90"], reported["worst"]])
+            check(all(map(close, wanted, found)), f"{what}: {row['group']} {row['step']}: {kind} {found}, not {wanted}")
+        check(row["diverged"] == row["step_error"]["points"].count(None),
+              f"{what}: {row['group']} {row['step']} does not count what diverged")
 
 
 def check_front(what, answer):
@@ -88,9 +82,9 @@ def check_advice(what, answer):
                     r["total_error"]["worst"] <= advice["error"] for r in finer):
                 keepers.append(row["evaluations"])
         reported = advice["setting"]
-        if (reported is None) != (not keepers) or (
-                keepers and answer["settings"][reported]["evaluations"] != min(keepers)):
-            fail(f"{what}: advice for {advice['error']} is {reported}, costs that keep it: {keepers}")
+        cost = None if reported is None else answer["settings"][reported]["evaluations"]
+        check(cost == min(keepers, default=None),
+              f"{what}: advice for {advice['error']} is {reported}, costs that keep it: {keepers}")
 
 
 def check_errors(what, answer):
@@ -101,134 +95,107 @@ def check_errors(what, answer):
         for p, value in enumerate(row["values"]):
             for kind, m in (("step_error", model), ("total_error", own)):
                 reported, reference = row[kind]["points"][p], m["values"][p]
-                if value is None:
-                    wanted = None
-                else:
-                    wanted = max(abs(value - reference) / max(abs(reference), answer["scale"]), m["floor"]["points"][p])
-                if (reported is None) != (wanted is None) or (reported is not None and
-                                                          not close(reported, wanted, 1e-9)):
-                    fail(f"{what}: {row['group']} {row['step']}: {kind} {reported}, not {wanted}")
+                wanted = None if value is None else max(
+                    abs(value - reference) / max(abs(reference), answer["scale"]), m["floor"]["points"][p])
+                check(reported == wanted or (reported and wanted and close(reported, wanted, 1e-9)),
+                      f"{what}: {row['group']} {row['step']}: {kind} {reported}, not {wanted}")
 
 
 # ---- A mass on a spring: x = 1 + a Re R(i w h)^n for RK4, 1 + a cos(n acos(1 - z^2/2)) for Verlet.
 answer = read(OSCILLATOR)
-if answer:
-    w, a, size = 10.0, 0.01, 1.0
-    floor = answer["models"][0]["floor"]["worst"]
-    reference = answer["models"][0]["values"][2]
-    # Its end is where the cosine vanishes.
-    if abs(reference - 1) > max(floor, 1e-13) or not 0 <= floor < 1e-9:
-        fail(f"the oscillator ends at {reference}, floor {floor}")
-    seen = set()
-    for row in answer["settings"]:
-        n = round(answer["duration"] / row["step"])
-        z = w * answer["duration"] / n
-        if row["method"] == "rk4":
-            value = ((1 + 1j * z - z**2 / 2 - 1j * z**3 / 6 + z**4 / 24) ** n).real
-        elif row["method"] == "verlet" and z < 2:
-            value = math.cos(n * math.acos(1 - z * z / 2))
-        else:
-            continue
-        seen.add(row["method"])
-        wanted = max(a * abs(value) / size, floor)
-        if row["step_error"]["worst"] is None or row["step_error"]["worst"] > 1:
-            check(abs(value) * a >= 1, f"{row['group']} at {row['step']} diverged")
-        elif abs(row["step_error"]["worst"] - wanted) > 2 * floor + 1e-9 * wanted + 1e-13:
-            fail(f"{row['group']} at {row['step']}: {row['step_error']['worst']}, not {wanted}")
-        per_step = {"rk4": 4, "verlet": 1}[row["method"]]
-        ratio = n * per_step / answer["base_evaluations"]
-        if abs(row["evaluations"] / ratio - 1) > 2 / n:
-            fail(f"{row['group']} at {row['step']} costs {row['evaluations']}, not {ratio}")
-    check("rk4" in seen, "no rk4 for the oscillator")
-    steps = [r["step"] for r in answer["settings"] if r["method"] == "rk4"]
-    if not any(h > 2.828 / w for h in steps) or sum(h < 2.829 / w for h in steps) < 8:
-        fail(f"rk4's steps {steps} do not lie on both sides of its limit")
-    if not any(r["diverged"] and r["step_error"]["worst"] is None for r in answer["settings"]):
-        fail("nothing diverged above the limit")
-    check_front("oscillator", answer)
-    check_advice("oscillator", answer)
-    if any(r["method"].endswith("-events") for r in answer["settings"]):
-        fail("methods with events in a scene without any")
+w, a, size = 10.0, 0.01, 1.0
+floor = answer["models"][0]["floor"]["worst"]
+reference = answer["models"][0]["values"][2]
+# Its end is where the cosine vanishes.
+check(abs(reference - 1) <= max(floor, 1e-13) and 0 <= floor < 1e-9,
+      f"the oscillator ends at {reference}, floor {floor}")
+for row in answer["settings"]:
+    n = round(answer["duration"] / row["step"])
+    z = w * answer["duration"] / n
+    if row["method"] == "rk4":
+        value, per_step = ((1 + 1j * z - z**2 / 2 - 1j * z**3 / 6 + z**4 / 24) ** n).real, 4
+    elif row["method"] == "verlet" and z < 2:
+        value, per_step = math.cos(n * math.acos(1 - z * z / 2)), 1
+    else:
+        continue
+    what, error = f"{row['group']} at {row['step']}", row["step_error"]["worst"]
+    wanted = max(a * abs(value) / size, floor)
+    if error is None or error > 1:
+        check(abs(value) * a >= 1, f"{what} diverged")
+    else:
+        check(abs(error - wanted) <= 2 * floor + 1e-9 * wanted + 1e-13, f"{what}: {error}, not {wanted}")
+    ratio = n * per_step / answer["base_evaluations"]
+    check(abs(row["evaluations"] / ratio - 1) <= 2 / n, f"{what} costs {row['evaluations']}, not {ratio}")
+steps = [r["step"] for r in answer["settings"] if r["method"] == "rk4"]
+check(any(h > 2.828 / w for h in steps) and sum(h < 2.829 / w for h in steps) >= 8,
+      f"rk4's steps {steps} do not lie on both sides of its limit")
+check(any(r["diverged"] and r["step_error"]["worst"] is None for r in answer["settings"]),
+      "nothing diverged above the limit")
+check_front("oscillator", answer)
+check_advice("oscillator", answer)
+check(not any(r["method"].endswith("-events") for r in answer["settings"]),
+      "methods with events in a scene without any")
 
 # ---- The energy of the same: R R* to the n-th, no reference needed.
 answer = read(OSCILLATOR, "--measure", "energy", "--integrator", "rk4")
-if answer:
-    for row in answer["settings"]:
-        n = round(answer["duration"] / row["step"])
-        z = 10.0 * answer["duration"] / n
-        gain = (1 - z**6 / 72 + z**8 / 576) ** n - 1
-        reported = row["step_error"]["worst"]
-        if reported is not None and z < 1 and not 0.2 * abs(gain) < reported < 5 * abs(gain) + 1e-14:
-            fail(f"energy at {row['step']}: {reported}, of the order of {abs(gain)}")
+for row in answer["settings"]:
+    n = round(answer["duration"] / row["step"])
+    z = 10.0 * answer["duration"] / n
+    gain = abs((1 - z**6 / 72 + z**8 / 576) ** n - 1)
+    found = row["step_error"]["worst"]
+    check(found is None or z >= 1 or 0.2 * gain < found < 5 * gain + 1e-14,
+          f"energy at {row['step']}: {found}, of the order of {gain}")
 
 # ---- Contact, drawn at random: everything once more from the values. Twice the same bits.
 words = (HOPPER, "--vary", "stiffness=(300 N/m)..(0.5 kN/m)", "--points", "11",
          "--seed", "7", "--step-sizes", "3", "--own-model")
 answer = read(*words)
-if answer:
-    check_spreads("ball", answer)
-    check_errors("ball", answer)
-    check_front("ball", answer)
-    check_advice("ball", answer)
-    drawn = [p["stiffness"] for p in answer["points"]]
-    check(len(set(drawn)) == 11 and all(300 <= k <= 500 for k in drawn), f"stiffnesses {drawn}")
-    check(sum(r["base"] for r in answer["settings"]) == 1, "there is not one base")
-    base = answer["settings"][answer["base_setting"]]
-    check(base["method"] == "rk4" and base["evaluations"] == 1 and base["base"], f"the base is {base}")
-
-    def measured(answer):
-        answer = json.loads(json.dumps(answer))
-        for row in answer["settings"]:
-            row.pop("cpu"), row.pop("seconds")
-        answer.pop("base_seconds"), answer.pop("spent_seconds")
-        return answer
-
-    check(measured(read(*words)) == measured(answer), "the same seed gives something else")
-    other = read(*words[:-4], "8", *words[-3:])
-    check(not (other and other["points"] == answer["points"]), "another seed gives the same points")
+for judge in (check_spreads, check_errors, check_front, check_advice):
+    judge("ball", answer)
+drawn = [p["stiffness"] for p in answer["points"]]
+check(len(set(drawn)) == 11 and all(300 <= k <= 500 for k in drawn), f"stiffnesses {drawn}")
+check(sum(r["base"] for r in answer["settings"]) == 1, "there is not one base")
+base = answer["settings"][answer["base_setting"]]
+check(base["method"] == "rk4" and base["evaluations"] == 1 and base["base"], f"the base is {base}")
+check(without_clock(read(*words)) == without_clock(answer), "the same seed gives something else")
+check(read(*words[:-4], "8", *words[-3:])["points"] != answer["points"], "another seed gives the same points")
 
 # ---- Words are drawn too; other models of a block that slides.
-answer = read("models/basics/sliding-block.yaml", "--step-sizes", "3", "--vary", "mu=0.2,0.3", "--points", "6")
-if answer:
-    check({round(p["mu"], 9) for p in answer["points"]} == {0.2, 0.3}, f"words: {answer['points']}")
-    names = [m["name"] for m in answer["models"]]
-    check(names[0] == "unchanged model" and "Coulomb friction" in names, f"models of a block: {names}")
-    coulomb = answer["models"][names.index("Coulomb friction")]
-    for point, value in zip(answer["points"], coulomb["values"]):
-        # Way to the stop, in a second: v^2 / (2 mu g).
-        check(close(value, 1 / (2 * point["mu"] * 9.81), 1e-6), f"Coulomb's block at mu {point['mu']}: {value}")
+answer = read(BLOCK, "--step-sizes", "3", "--vary", "mu=0.2,0.3", "--points", "6")
+check({round(p["mu"], 9) for p in answer["points"]} == {0.2, 0.3}, f"words: {answer['points']}")
+names = [m["name"] for m in answer["models"]]
+check(names[0] == "unchanged model" and "Coulomb friction" in names, f"models of a block: {names}")
+coulomb = answer["models"][names.index("Coulomb friction")]
+for point, value in zip(answer["points"], coulomb["values"]):
+    # Way to the stop, in a second: v^2 / (2 mu g).
+    check(close(value, 1 / (2 * point["mu"] * 9.81), 1e-6), f"Coulomb's block at mu {point['mu']}: {value}")
 
 # ---- Files: all of them or none; the same numbers as in the answer.
-out = os.path.join(here, "deep", "out")
-done = run(BALL, "--step-sizes", "4", "-o", out, "--own-model")
-check(sorted(files_in(out)) == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {files_in(out)}")
-if "cheapest setting" not in done.stdout or not re.search(r"^ *0.5 % ", done.stdout, re.M):
-    fail(f"the table lacks something: {done.stdout}")
-written = json.load(open(os.path.join(out, "tradeoff.json")))
-rows = list(csv.DictReader(open(os.path.join(out, "tradeoff.csv"), newline="")))
-check(len(rows) == len(written["settings"]), f"{len(rows)} rows of {len(written['settings'])} settings")
-for row, setting in zip(rows, written["settings"]):
-    error = setting["step_error"]["worst"]
-    if float(row["step [s]"]) != setting["step"] or row["group"] != setting["group"] or \
-            float(row["error worst"]) != (math.inf if error is None else error):
-        fail(f"{row} and {setting} differ")
-svg = open(os.path.join(out, "tradeoff.svg"), encoding="utf-8").read()
-check("</svg>" in svg, "half a picture")
-before = {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}
-os.mkdir(os.path.join(here, "blocked"))
-os.mkdir(os.path.join(here, "blocked", "tradeoff.svg"))
-done = run(BALL, "--step-sizes", "1", "-o", os.path.join(here, "blocked"), code=4)
-if done.stdout or files_in(os.path.join(here, "blocked")) != ["tradeoff.svg"]:
-    fail(f"a blocked file: {done.stdout} {files_in(os.path.join(here, 'blocked'))}")
-run(BALL, "--integrator", "rk5", "-o", out, code=1)
-check(before == {f: open(os.path.join(out, f), "rb").read() for f in files_in(out)}, "a refusal changed files")
-done = run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
+done = run(BALL, "--step-sizes", "4", "-o", "deep/out", "--own-model")
+names = sorted(files_in(path("deep/out")))
+check(names == ["tradeoff.csv", "tradeoff.json", "tradeoff.svg"], f"files: {names}")
+check("cheapest setting" in done.stdout and re.search(r"^ *0.5 % ", done.stdout, re.M),
+      f"the table lacks something: {done.stdout}")
+before = [testing.read("deep/out", name) for name in names]
+table, written = testing.rows("deep/out/tradeoff.csv"), json.loads(before[1])
+check(len(table) == len(written["settings"]), f"{len(table)} rows of {len(written['settings'])} settings")
+for row, setting in zip(table, written["settings"]):
+    error, = infinite([setting["step_error"]["worst"]])
+    check((float(row["step [s]"]), row["group"], float(row["error worst"])) ==
+          (setting["step"], setting["group"], error), f"{row} and {setting} differ")
+check(b"</svg>" in before[2], "half a picture")
+os.makedirs(path("blocked/tradeoff.svg"))
+done = run(BALL, "--step-sizes", "1", "-o", "blocked", code=4)
+check(not done.stdout and files_in(path("blocked")) == ["tradeoff.svg"],
+      f"a blocked file: {done.stdout} {files_in(path('blocked'))}")
+run(BALL, "--integrator", "rk5", "-o", "deep/out", code=1)
+check(before == [testing.read("deep/out", name) for name in names], "a refusal changed files")
+run(BALL, "--step-sizes", "1", "-o", "/dev/full/x", code=4)
 
 # ---- An accuracy: the recommended setting, run as the report writes it, keeps the error, against a much
 # finer run by another method; it is the cheapest measured, and half the error lies on the measured curve.
 def measure(file, *words):
-    done = subprocess.run([strut, "run", file, "--json", "--quiet", *words], capture_output=True, text=True)
-    return json.loads(done.stdout)["velocity"] if done.returncode == 0 else math.nan
+    return testing.answer("run", file, "--quiet", *words)["velocity"]
 
 
 def promise(answer, i):
@@ -236,7 +203,7 @@ def promise(answer, i):
     row = answer["settings"][i]
     finer = [r for r in answer["settings"] if r["group"] == row["group"] and r["model"] == row["model"] and
              (r["tolerance"] or 0) <= (row["tolerance"] or 0) and (row["tolerance"] or r["step"] <= row["step"])]
-    return max(math.inf if r["total_error"]["worst"] is None else r["total_error"]["worst"] for r in finer)
+    return max(infinite(r["total_error"]["worst"] for r in finer))
 
 
 def check_half(what, answer):
@@ -257,13 +224,11 @@ def check_half(what, answer):
     check(close(wanted, advice["half_cost"], 1e-9), f"{what}: half costs {advice['half_cost']}, not {wanted}")
 
 
-for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0.1%"), (HOPPER, "1e-6"),
-                       ("models/gallery/two-mass-crawler.yaml", "2%"),
-                       ("models/gallery/two-mass-crawler.yaml", "0.1%")):
+for file, accuracy in ((BLOCK, "1e-4"), (HOPPER, "0.1%"), (HOPPER, "1e-6"), (TWO, "2%"), (TWO, "0.1%")):
     what, words = f"{file} to {accuracy}", (file, "--accuracy", accuracy, "--own-model", "--measure", "velocity")
     report, answer = run(*words).stdout, read(*words)
     solver = re.search(r"(solver: {.*})", report)
-    if not answer or not solver:
+    if not solver:
         fail(f"{what}: no recommendation: {report[-800:]}")
         continue
     check_advice(what, answer)
@@ -271,91 +236,78 @@ for file, accuracy in (("models/basics/sliding-block.yaml", "1e-4"), (HOPPER, "0
     advice, wanted = answer["advice"][0], eval(accuracy.replace("%", "/100"))
     row = answer["settings"][advice["setting"]]
     with open(file, encoding="utf-8") as text:
-        model = re.sub(r"(?m)^solver: .*$", solver[1], text.read())
-    with open(os.path.join(here, "model.yaml"), "w", encoding="utf-8") as out:
-        out.write(model)
+        write("model.yaml", re.sub(r"(?m)^solver: .*$", solver[1], text.read()))
     other = ("rk4-events", f"{row['step'] / 2048} s") if row["method"] == "adaptive" else ("adaptive", "1 ms")
     fine = measure(file, "--integrator", other[0], "--step", other[1], "--tolerance", "1e-11")
-    error = abs(measure(os.path.join(here, "model.yaml")) - fine) / max(abs(fine), answer["scale"])
+    error = abs(measure("model.yaml") - fine) / max(abs(fine), answer["scale"])
     floor = answer["models"][0]["floor"]["worst"]
-    if not error <= wanted or not abs(error - row["step_error"]["worst"]) <= 3 * floor + 1e-3 * wanted:
-        fail(f"{what}: {solver[1]} is {error} off, reported {row['step_error']['worst']}")
+    check(error <= wanted and abs(error - row["step_error"]["worst"]) <= 3 * floor + 1e-3 * wanted,
+          f"{what}: {solver[1]} is {error} off, reported {row['step_error']['worst']}")
     check(advice["known"] and floor <= 0.01 * wanted, f"{what}: floor {floor}")
     # The work is bounded, and counts all that is reported.
     work = answer["work"]
     least = answer["base_evaluations"] * sum(r["evaluations"] for r in answer["settings"] if not r["diverged"])
-    if not least <= work["evaluations"] <= 30 * work["unit"] or work["limit"] != 30 or work["cut_by_time"]:
-        fail(f"{what}: work {work}, of which settings {least}")
-    # The same numbers again, with another limit of CPU time too, but for CPU times.
+    check(least <= work["evaluations"] <= 30 * work["unit"] and work["limit"] == 30 and not work["cut_by_time"],
+          f"{what}: work {work}, of which settings {least}")
+    # The same numbers again, with another limit of CPU time too.
     again = read(*words, "--cpu-time", "5000 s")
-    for result in (answer, again):
-        del result["spent_seconds"], result["base_seconds"]
-        for setting in result["settings"]:
-            del setting["cpu"], setting["seconds"]
-    check(again == answer, f"{what}: two reports differ: {answer} {again}")
+    check(without_clock(again) == without_clock(answer), f"{what}: two reports differ: {answer} {again}")
 
 # ---- What the reference does not tell is not claimed; a limit of time that cuts is reported.
 done = run(OSCILLATOR, "--accuracy", "1e-15")
 check("not known: the references differ by more" in done.stdout, f"1e-15: {done.stdout[-500:]}")
 done = run(OSCILLATOR, "--accuracy", "1e-6", "--measure", "energy", "--integrator", "rk4")
-if "solver: {integrator: rk4, step: " not in done.stdout:
-    fail(f"energy: {done.stdout[-500:]}")
-done = run("models/crawler/crawler.yaml", "--accuracy", "1%", "--cpu-time", "2 s")
+check("solver: {integrator: rk4, step: " in done.stdout, f"energy: {done.stdout[-500:]}")
+done = run(CRAWLER, "--accuracy", "1%", "--cpu-time", "2 s")
 check("cut by --cpu-time" in done.stdout, f"a cut study: {done.stdout[-500:]}")
 check("cut by --cpu-time" not in run(OSCILLATOR, "--accuracy", "1%").stdout, "a short study is cut")
 
 
 # ---- Rigid bars of a pendulum vibrate nowhere: no limit says how long a step makes sense, and the
 # answer is still that of the stiff ones, nearly. They are a bargain: steps of a tenth of a second.
-found = read("models/basics/pendulum.yaml", "--integrator", "rk4", "--step-sizes", "3", "--cpu-time", "6 s")
+found = read(PENDULUM, "--integrator", "rk4", "--step-sizes", "3", "--cpu-time", "6 s")
 rigid = [model for model in found["models"] if model["name"] == "rigid bars"]
-if len(rigid) != 1 or not rigid[0]["model_error"]["worst"] < 1e-3:
-    fail(f"rigid bars of a pendulum change the answer: {rigid}")
+check(len(rigid) == 1 and rigid[0]["model_error"]["worst"] < 1e-3,
+      f"rigid bars of a pendulum change the answer: {rigid}")
 longest = max([r["step"] for r in found["settings"] if r["model"] == "rigid bars"], default=0)
 check(longest >= 0.02 * found["duration"], f"rigid bars of a pendulum step by {longest} at most")
 
 # ---- A method that no step is too long for begins at a hundred times the explicit limit, here
 # sqrt(8) / sqrt(3 k / m), and comes down to it.
-found = read("models/basics/pendulum.yaml", "--set", "stiffness=1e8 N/m", "--integrator", "rk4,midpoint",
+found = read(PENDULUM, "--set", "stiffness=1e8 N/m", "--integrator", "rk4,midpoint",
              "--step-sizes", "8", "--cpu-time", "6 s", "--own-model")
 limit = math.sqrt(8) / math.sqrt(3 * 1e8)
 steps = [r["step"] / limit for r in found["settings"] if r["method"] == "midpoint"]
-if not steps or not 80 < max(steps) < 100 or not 0.8 < min(steps) < 2:
-    fail(f"midpoint's steps are {steps} times the explicit limit")
+check(80 < max(steps) < 100 and 0.8 < min(steps) < 2, f"midpoint's steps are {steps} times the explicit limit")
 for row in found["settings"]:
     error = row["step_error"]["worst"]
-    if row["method"] == "midpoint" and not error < 0.01 * (row["step"] / limit / 95) ** 1.9:
-        fail(f"midpoint at {row['step']}: {error}")
+    check(row["method"] != "midpoint" or error < 0.01 * (row["step"] / limit / 95) ** 1.9,
+          f"midpoint at {row['step']}: {error}")
 
 # ---- Other models are offered where a scene has what they change, and bars that are driven cannot be
 # rigid. What one costs does not take it from the others: every one of them is run.
-def offered(file, *words):
-    found = read(file, "--step-sizes", "1", "--periods", "3", *words)
-    for model in found["models"]:
-        check(model["run"], f"{file}: {model['name']} is not run: {model['remark']}")
-    return [model["name"].split(",")[0] for model in found["models"][1:]]
-
-
 for file, wanted, *words in (
-        ("models/crawler/crawler.yaml", ["lumped masses", "rigid bars", "Hunt-Crossley ground",
+        (CRAWLER, ["lumped masses", "rigid bars", "Hunt-Crossley ground",
                                          "Coulomb friction", "smooth friction"], "--cpu-time", "5 s"),
         (BALL, ["Hunt-Crossley ground"], "--cpu-time", "1 s"),
-        ("models/gallery/two-mass-crawler.yaml", ["Coulomb friction", "smooth friction"],
+        (TWO, ["Coulomb friction", "smooth friction"],
          "--cpu-time", "3 s", "--set", "step=50 us", "--set", "band=1 mm/s"),
         (OSCILLATOR, [], "--cpu-time", "1 s")):
-    names = offered(file, *words)
+    found = read(file, "--step-sizes", "1", "--periods", "3", *words)["models"]
+    for model in found:
+        check(model["run"], f"{file}: {model['name']} is not run: {model['remark']}")
+    names = [model["name"].split(",")[0] for model in found[1:]]
     check(names == wanted, f"{file}: other models are {names}, not {wanted}")
 
 # ---- At the first of these points nothing touches down; refined steps make a difference at others.
-found = read("models/crawler/crawler.yaml", "--vary", "frequency=9.8..15", "--vary",
+found = read(CRAWLER, "--vary", "frequency=9.8..15", "--vary",
              "friction=0.05..0.5", "--vary", "start=I,II", "--points", "3", "--seed", "1", "--periods", "3",
              "--step-sizes", "1", "--own-model", "--cpu-time", "1 s", "--integrator", "verlet-events")
 groups = {row["group"] for row in found["settings"]}
-if "verlet-events, refined" not in groups or "verlet-events, refined 8" not in groups:
-    fail(f"no refined steps over several points: {groups}")
+check({"verlet-events, refined", "verlet-events, refined 8"} <= groups, f"no refined steps over several points: {groups}")
 
 # ---- What a model's reader notes is said once, not at each point.
-done = run("models/basics/pendulum.yaml", "--vary", "stiffness=1e9..2e9", "--points", "3", "--step-sizes", "1",
+done = run(PENDULUM, "--vary", "stiffness=1e9..2e9", "--points", "3", "--step-sizes", "1",
            "--integrator", "rk4", "--own-model", "--cpu-time", "3 s")
 check(done.stderr.count("note: --set stiffness") == 1, f"notes of three points: {done.stderr}")
 
@@ -385,6 +337,6 @@ for words, text in ((("--vary", "heigth=1..2"), "heigth"),
                     (("--set", "step=0"), "step")):
     done = run(BALL, *words, code=2)
     check(not done.stdout and text in done.stderr, f"{words}: {done.stderr}")
-done = run("models/gallery/x-joint.yaml", code=2)
+done = run(f"{models}/gallery/x-joint.yaml", code=2)
 check(not done.stdout and done.stderr, f"a scene without a run: {done.stderr}")
 finish()

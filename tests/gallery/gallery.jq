@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What filters of tests/gallery/*.answers may use besides jq's own. See run_gallery.sh.
+# What filters of tests/gallery/*.answers may use besides jq's own. See gallery_test.py.
 
 # Are two values the same, numbers within the tolerance? Lists and mappings entry by entry.
 def agrees($got; $want; $tolerance):

@@ -1,25 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut modes --plot: what is drawn is where `strut modes --json` says that the nodes go."""
-import json
 import math
 import os
-import re
-import subprocess
 
+import testing
 from svg_paths import has_segment, near, read, segments
-
-from testing import fail, finish, strut, work
+from testing import check, exported, fail, finish, models, run, work
 
 SWING = 0.08  # of the structure's larger extent
 UNSTRAINED = 1e-9  # rounding
 REST, ARROW = (0.8, 0.8, 0.8), (0, 0x9E / 255, 0x73 / 255)
-
-
-def members_of(model):
-    """Name to the names of both nodes, of the gallery's simple names."""
-    text = subprocess.run([strut, "export", model], capture_output=True, text=True).stdout
-    found = re.findall(r"^  (\w+): \{nodes: \[(\w+), (\w+)\]", text, re.M)
-    return {name: (a, b) for name, a, b in found}
+os.chdir(work)
 
 
 def strains(nodes, members, moved):
@@ -87,46 +78,38 @@ def check_panel(what, panel, nodes, members, shape):
     return scale
 
 
-def check(model, arguments, expected):
-    file = os.path.join(work, "a.svg")
-    command = [strut, "modes", model, *arguments, "--json", "--plot", file]
-    run = subprocess.run(command, capture_output=True)
-    if run.returncode != 0:
-        return fail(f"{command}: {run.stderr}")
-    first = open(file, "rb").read()
-    subprocess.run(command, capture_output=True)
-    if open(file, "rb").read() != first:
-        fail(f"{model}: drawn again it has other bytes")
-    width, height, paths = read(file)
-    answer = json.loads(run.stdout)
+def check_figure(model, *words, expected):
+    what = f"{model} {words}"
+    answer = testing.answer("modes", f"{models}/{model}.yaml", *words, "--plot", "a.svg")
+    first = testing.read("a.svg")
+    run("modes", f"{models}/{model}.yaml", *words, "--plot", "a.svg")
+    check(testing.read("a.svg") == first, f"{what}: drawn again it has other bytes")
+    width, height, paths = read("a.svg")
     panels = panels_of(paths)
     modes = [m for m in answer["modes"] if m["kind"] != "rigid-body"] or answer["modes"]
     if len(panels) != expected:
-        return fail(f"{model} {arguments}: {len(panels)} panels of {expected}")
-    members = members_of(model)
-    scales = [check_panel(f"{model} {arguments} panel {i + 1}", panel, answer["nodes"], members,
-                          modes[i]["shape"]) for i, panel in enumerate(panels)]
-    if max(scales) - min(scales) > 1e-3 * max(scales):
-        fail(f"{model}: panels have different scales: {scales}")
-    for path in paths:
-        for x, y in (p for line in path.lines for p in line):
-            ground = near(path.stroke, (0.3, 0.3, 0.3)) or path.stroke is None or \
-                near(path.stroke, (0.72, 0.72, 0.72))
-            if not ground and not (-0.5 <= x <= width + 0.5 and -0.5 <= y <= height + 0.5):
-                return fail(f"{model} {arguments}: ({x}, {y}) is beyond the page")
+        return fail(f"{what}: {len(panels)} panels of {expected}")
+    members = {name: member["nodes"] for name, member in exported(f"{models}/{model}.yaml")["members"].items()}
+    scales = [check_panel(f"{what} panel {i + 1}", panel, answer["nodes"], members, modes[i]["shape"])
+              for i, panel in enumerate(panels)]
+    check(max(scales) - min(scales) <= 1e-3 * max(scales), f"{what}: panels have different scales: {scales}")
+    grounds = ((0.3, 0.3, 0.3), (0.72, 0.72, 0.72))
+    outside = [(x, y) for path in paths if path.stroke and not any(near(path.stroke, ground) for ground in grounds)
+               for line in path.lines for x, y in line
+               if not (-0.5 <= x <= width + 0.5 and -0.5 <= y <= height + 0.5)]
+    check(not outside, f"{what}: {outside[:2]} are beyond the page")
 
 
-check("models/gallery/x-frame.yaml", [], 5)
-check("models/gallery/x-frame.yaml", ["--width", "column", "--count", "2"], 2)
-check("models/crawler/crawler.yaml", [], 6)
-check("models/crawler/crawler.yaml", ["--at", "II", "--count", "11"], 9)
-check("models/gallery/t-bar.yaml", [], 5)
-check("models/gallery/t-bar.yaml", ["--count", "3"], 3)  # nothing but rigid motions: they are drawn
-check("models/gallery/arm.yaml", ["--count", "3"], 3)
-check("models/gallery/double-pendulum.yaml", [], 4)
+check_figure("gallery/x-frame", expected=5)
+check_figure("gallery/x-frame", "--width", "column", "--count", "2", expected=2)
+check_figure("crawler/crawler", expected=6)
+check_figure("crawler/crawler", "--at", "II", "--count", "11", expected=9)
+check_figure("gallery/t-bar", expected=5)
+check_figure("gallery/t-bar", "--count", "3", expected=3)  # nothing but rigid motions: they are drawn
+check_figure("gallery/arm", "--count", "3", expected=3)
+check_figure("gallery/double-pendulum", expected=4)
 
 for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
-    run = subprocess.run([strut, "modes", "models/gallery/x-frame.yaml", "--plot", bad], capture_output=True)
-    if run.returncode != code or run.stdout or not run.stderr:
-        fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
+    done = run("modes", f"{models}/gallery/x-frame.yaml", "--plot", bad, code=code)
+    check(done.stderr and not done.stdout, f"--plot {bad}: {done.stdout}, {done.stderr}")
 finish()

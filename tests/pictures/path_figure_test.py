@@ -1,29 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut path --plot: the curve is that of path.csv, the shapes are those of path.json."""
-import csv
-import json
 import math
 import os
-import re
-import subprocess
 
-from svg_paths import distance, has_segment, near, read, segments
-
-from testing import fail, finish, strut, work
+import testing
+from svg_paths import distance, has_segment, middle, near, read, segments
+from testing import check, exported, fail, finish, models, rows, run, work, write
 
 CURVE, CURVE_WIDTH = (0.15, 0.15, 0.15), 1.2
+GALLERY = f"{models}/gallery"
+os.chdir(work)
 
 
-def members_of(model):
-    text = subprocess.run([strut, "export", model], capture_output=True, text=True).stdout
-    return [(a, b) for a, b in re.findall(r"^  \w+: \{nodes: \[(\w+), (\w+)\]", text, re.M)]
-
-
-def centres(paths, page):
-    """Where the dots are, with their fill."""
-    return [((min(p[0] for p in line) + max(p[0] for p in line)) / 2,
-             (min(p[1] for p in line) + max(p[1] for p in line)) / 2, path.fill)
-            for path in paths if path.curved and path.fill and not near(path.fill, (1, 1, 1))
+def dots(paths):
+    """Where the dots are."""
+    return [middle(line) for path in paths if path.curved and path.fill and not near(path.fill, (1, 1, 1))
             for line in path.lines if max(p[0] for p in line) - min(p[0] for p in line) < 6]
 
 
@@ -85,93 +76,73 @@ def check_shapes(what, paths, answer, members, larger):
                 return fail(f"{what}: {a}-{b} of shape {i} is not drawn where it is")
 
 
-def check(model, arguments, column, sign, larger, width="page", shapes=True, height="factor", upright=False):
-    what = f"{model} {' '.join(arguments)}"
-    file = os.path.join(work, "a.svg")
-    command = [strut, "path", model, *arguments, "--json", "--plot", file, "--width", width, "-o", work]
-    run = subprocess.run(command, capture_output=True)
-    if run.returncode != 0:
-        return fail(f"{command}: {run.stderr}")
-    rows = list(csv.DictReader(open(os.path.join(work, "path.csv"), newline="")))
-    page_width, page_height, paths = read(file)
-    answer = json.loads(run.stdout)
-    drawn = check_curve(what, paths, rows, column, sign, height, upright)
-    if not drawn:
-        return
-    dots = centres(paths, page_width)
-    stops = [0] + [i for i, r in enumerate(rows) if r["event"]] + [len(rows) - 1]
-    for i in stops:
-        if not any(math.dist(dot[:2], drawn[i]) < 0.1 for dot in dots):
-            fail(f"{what}: no dot at {rows[i]}")
-    if shapes:
-        check_shapes(what, paths, answer, members_of(model), larger)
-    for path in paths:
-        for x, y in (p for line in path.lines for p in line):
-            if path.stroke and not (-1 < x < page_width + 1 and -1 < y < page_height + 1):
-                return fail(f"{what}: ({x}, {y}) is beyond the page")
+def check_figure(model, *words, column, sign=-1, larger=1, height="factor", upright=False):
+    """larger: how many times as far as in path.json shapes have gone; 0: shapes overlap the curve."""
+    what = f"{model} {' '.join(words)}"
+    answer = testing.answer("path", f"{GALLERY}/{model}.yaml", *words, "--plot", "a.svg", "-o", work)
+    table = rows("path.csv")
+    page_width, page_height, paths = read("a.svg")
+    drawn = check_curve(what, paths, table, column, sign, height, upright)
+    for point, row in zip(drawn, table):
+        if row["event"] or row in (table[0], table[-1]):
+            check(any(math.dist(dot, point) < 0.1 for dot in dots(paths)), f"{what}: no dot at {row}")
+    if larger:
+        members = exported(f"{GALLERY}/{model}.yaml")["members"].values()
+        check_shapes(what, paths, answer, [member["nodes"] for member in members], larger)
+    outside = [(x, y) for path in paths if path.stroke for line in path.lines for x, y in line
+               if not (-1 < x < page_width + 1 and -1 < y < page_height + 1)]
+    check(not outside, f"{what}: {outside[:2]} are beyond the page")
 
 
-check("models/gallery/von-mises.yaml", ["--set", "load=0.1"], "apex.y [m]", -1, 1)
-check("models/gallery/von-mises.yaml", ["--set", "load=0.1"], "apex.y [m]", -1, 1, "column")
-check("models/gallery/half-t-bar.yaml", ["--set", "force=1", "--until", "100"], "n4.x [m]", 1, 200)
-check("models/gallery/x-frame.yaml", ["--set", "down=1", "--until", "10"], "n3.y [m]", -1, 1)
-check("models/gallery/x-frame.yaml", ["--set", "right=1", "--load", "push", "--until", "10"], "n3.x [m]", 1, 1)
-check("models/gallery/x-joint.yaml", ["--set", "load=1", "--until", "15"], "top_right.y [m]", -1, 500)
+check_figure("von-mises", "--set", "load=0.1", column="apex.y [m]")
+check_figure("von-mises", "--set", "load=0.1", "--width", "column", column="apex.y [m]")
+check_figure("half-t-bar", "--set", "force=1", "--until", "100", column="n4.x [m]", sign=1, larger=200)
+check_figure("x-frame", "--set", "down=1", "--until", "10", column="n3.y [m]")
+check_figure("x-frame", "--set", "right=1", "--load", "push", "--until", "10", column="n3.x [m]", sign=1)
+check_figure("x-joint", "--set", "load=1", "--until", "15", column="top_right.y [m]", larger=500)
 
 # Pushed through by the apex, which draws its reaction; and over a number, which runs to the right.
-check("models/gallery/von-mises.yaml", ["--over", "apex.y", "--until", "-0.5 m"], "apex.y [m]", -1,
-      1, height="apex.reaction_y [N]")
-check("models/gallery/von-mises.yaml", ["--set", "load=0.01", "--over", "load", "--until", "0.1 N"],
-      "apex.y [m]", -1, 1, height="value [N]", upright=True, shapes=False)
+check_figure("von-mises", "--over", "apex.y", "--until", "-0.5 m", column="apex.y [m]", height="apex.reaction_y [N]")
+check_figure("von-mises", "--set", "load=0.01", "--over", "load", "--until", "0.1 N", column="apex.y [m]", larger=0,
+             height="value [N]", upright=True)
 
 # What moves by rounding alone is not enlarged, and no second row of the key says so.
 heights = []
 for model, over, until in (("mast-with-guys", "tension", "8 N"), ("clustered-square-pulled", "pull", "0.5 m")):
-    file = os.path.join(work, "a.svg")
-    subprocess.run([strut, "path", f"models/gallery/{model}.yaml", "--over", over, "--until", until, "--quiet",
-                    "--plot", file], check=True)
-    heights.append(read(file)[1])
-if abs(heights[0] - heights[1]) > 0.01:
-    fail(f"a mast that does not move: the picture is {heights[0]} high, not {heights[1]}")
+    run("path", f"{GALLERY}/{model}.yaml", "--over", over, "--until", until, "--quiet", "--plot", "a.svg")
+    heights.append(read("a.svg")[1])
+check(abs(heights[0] - heights[1]) <= 0.01,
+      f"a mast that does not move: the picture is {heights[0]} high, not {heights[1]}")
 
 # A slider that snaps from one cable to the other: dashes from kink to kink, and nowhere else.
-TOGGLE = """strut: 1
+STOP = 0.1
+TURN = 500 * (1 - 0.7 / math.hypot(STOP, 0.5)) * -STOP / 2
+write("toggle.yaml", """strut: 1
 nodes: {anchor: {position: [0, 0.5], fixed: both}, left: {position: [-1, 0], fixed: both},
         right: {position: [1, 0], fixed: both}, tip: {position: [-0.12, 0], fixed: y}}
 members: {over: {kind: spring, nodes: [anchor, tip], stiffness: 500, rest_length: 0.7},
           a: {kind: cable, nodes: [left, tip], stiffness: 2000, rest_length: 1.1},
           b: {kind: cable, nodes: [right, tip], stiffness: 2000, rest_length: 1.1}}
 loads: {push: {node: tip, force: [2 N, 0]}}
-"""
-STOP = 0.1
-TURN = 500 * (1 - 0.7 / math.hypot(STOP, 0.5)) * -STOP / 2
-model, file = os.path.join(work, "toggle.yaml"), os.path.join(work, "a.svg")
-open(model, "w", encoding="utf-8").write(TOGGLE)
-run = subprocess.run([strut, "path", model, "--until", str(2 * TURN), "--plot", file, "--json",
-                      "-o", work], capture_output=True, text=True)
-if run.returncode != 0:
-    fail(f"toggle: {run.stderr}")
-else:
-    rows = list(csv.DictReader(open(os.path.join(work, "path.csv"), newline="")))
-    drawn = check_curve("toggle", read(file)[2], rows, "tip.x [m]", 1)
-    for row in rows:
-        x = float(row["tip.x [m]"])
-        middle = -STOP - 1e-9 < x < STOP - 1e-9
-        if row["negative_eigenvalues"] and (int(row["negative_eigenvalues"]) > 0) != middle:
-            fail(f"toggle: the path from x = {x} on is judged wrong: {row}")
-    dashed = [line for path in read(file)[2] if path.dash and near(path.stroke, CURVE)
-              and abs(path.width - CURVE_WIDTH) < 1e-6 for line in path.lines]
-    kinks = [d for d, row in zip(drawn, rows) if row["event"] == "limit point at a kink"]
-    if len(dashed) != 2 or len(kinks) != 2:  # the branch, and the sample in the key
-        fail(f"toggle: {len(dashed)} dashed lines, {len(kinks)} kinks")
-    else:
-        for end, kink in zip((dashed[0][0], dashed[0][-1]), kinks):
-            if math.dist(end, kink) > 0.02:
-                fail(f"toggle: the unstable branch ends at {end}, the kink is at {kink}")
-    answer = json.loads(run.stdout)
-    for event, turn in zip(answer["events"], (TURN, TURN, -TURN, -TURN)):
-        if abs(event["factor"] - turn) > 1e-9 or abs(event["force"] - 2 * turn) > 1e-9:
-            fail(f"toggle: {event['kind']} at {event['factor']}, not {turn}")
+""")
+answer = testing.answer("path", "toggle.yaml", "--until", str(2 * TURN), "--plot", "a.svg", "-o", work)
+table = rows("path.csv")
+drawn = check_curve("toggle", read("a.svg")[2], table, "tip.x [m]", 1)
+for row in table:
+    x = float(row["tip.x [m]"])
+    between = -STOP - 1e-9 < x < STOP - 1e-9
+    if row["negative_eigenvalues"] and (int(row["negative_eigenvalues"]) > 0) != between:
+        fail(f"toggle: the path from x = {x} on is judged wrong: {row}")
+dashed = [line for path in read("a.svg")[2] if path.dash and near(path.stroke, CURVE)
+          and abs(path.width - CURVE_WIDTH) < 1e-6 for line in path.lines]
+kinks = [d for d, row in zip(drawn, table) if row["event"] == "limit point at a kink"]
+check(len(dashed) == 2 and len(kinks) == 2,  # the branch, and the sample in the key
+      f"toggle: {len(dashed)} dashed lines, {len(kinks)} kinks")
+for end, kink in zip((dashed[0][0], dashed[0][-1]), kinks):
+    check(math.dist(end, kink) <= 0.02, f"toggle: the unstable branch ends at {end}, the kink is at {kink}")
+for event, turn in zip(answer["events"], (TURN, TURN, -TURN, -TURN)):
+    check(abs(event["factor"] - turn) <= 1e-9 and abs(event["force"] - 2 * turn) <= 1e-9,
+          f"toggle: {event['kind']} at {event['factor']}, not {turn}")
 
 # Names of any script and length, and a node that comes to touch the ground.
 LONG = "a_rather_long_name_of_some_sixty_letters_for_a_mere_node_of_it"
@@ -187,43 +158,29 @@ ground: {{stiffness: 1e4}}
 loads:
   {"م" * 32}: {{node: {LONG}, force: [0, -50]}}
 """
-model = os.path.join(work, "hostile.yaml")
-open(model, "w", encoding="utf-8").write(HOSTILE)
+write("hostile.yaml", HOSTILE)
 for size in ("page", "column", "40 mm"):
-    file = os.path.join(work, "a.svg")
-    run = subprocess.run([strut, "path", model, "--load", "م" * 32, "--until", "2", "--plot",
-                          file, "--width", size], capture_output=True, text=True)
-    if run.returncode != 0 or run.stderr:
-        fail(f"names of other scripts, {size}: {run.returncode} {run.stderr}")
-    else:
-        read(file)
-for bad, code in (("x.gif", 1), ("nowhere/x.svg", 4)):
-    run = subprocess.run([strut, "path", "models/gallery/von-mises.yaml", "--set", "load=1",
-                          "--plot", bad], capture_output=True)
-    if run.returncode != code or run.stdout or not run.stderr:
-        fail(f"--plot {bad}: exit code {run.returncode}, {run.stdout}, {run.stderr}")
+    done = run("path", "hostile.yaml", "--load", "م" * 32, "--until", "2", "--plot", "a.svg", "--width", size)
+    check(not done.stderr, f"names of other scripts, {size}: {done.stderr}")
+    read("a.svg")
+
 # Title, labels and limits; an event beyond the limits has no marker there.
-call = [strut, "path", "models/gallery/von-mises.yaml", "--set", "load=0.1", "--quiet"]
-words = ["--title", "Own title", "--x-label", "own label", "--x-limits", "0,0.02", "--y-limits", "-0.02,0.05"]
-for name, more in (("plain.svg", []), ("own.svg", words)):
-    subprocess.run(call + more + ["--plot", f"{work}/{name}"], check=True)
-plain, own = (read(f"{work}/{name}")[2] for name in ("plain.svg", "own.svg"))
-left = [len([c for c in centres(p, None) if c[0] < 250 and c[1] < 170]) for p in (plain, own)]
-if left != [4, 1]:
-    fail(f"path: {left} markers on the curve without and with limits, not 4 and 1")
-for bad, why in ((["--x-limits", "2,1", "--plot", f"{work}/bad.svg"], "two ascending numbers"),
-                 (["--title", "x"], "--title needs --plot"), (["--y-label", "x"], "--y-label needs --plot")):
-    done = subprocess.run(call + bad, capture_output=True, text=True)
-    if done.returncode != 1 or why not in done.stderr:
-        fail(f"path {bad}: {done.returncode} {done.stderr}")
+CALL = ("path", f"{GALLERY}/von-mises.yaml", "--set", "load=0.1", "--quiet")
+run(*CALL, "--plot", "plain.svg")
+run(*CALL, "--plot", "own.svg", "--title", "Own title", "--x-label", "own label", "--x-limits", "0,0.02",
+    "--y-limits", "-0.02,0.05")
+left = [len([c for c in dots(read(f"{name}.svg")[2]) if c[0] < 250 and c[1] < 170]) for name in ("plain", "own")]
+check(left == [4, 1], f"path: {left} markers on the curve without and with limits, not 4 and 1")
+for code, why, *words in ((1, "x.gif", "--plot", "x.gif"), (4, "nowhere", "--plot", "nowhere/x.svg"),
+                          (1, "two ascending numbers", "--x-limits", "2,1", "--plot", "bad.svg"),
+                          (1, "--title needs --plot", "--title", "x"), (1, "--y-label needs --plot", "--y-label", "x")):
+    check(not run(*CALL, *words, code=code, err=why).stdout, f"path {words} prints something")
 # The other commands take a title.
 for command in (["modes"], ["rigidity"], ["equilibria"], ["form"], ["compare", "--no-motion", "--no-states"]):
     texts = []
     for title in ("A", "A longer title"):
-        subprocess.run([strut, *command, "models/gallery/x-frame.yaml", "--quiet", "--title", title, "--plot",
-                        f"{work}/a.svg"], check=True, stdout=subprocess.DEVNULL)
-        texts.append(open(f"{work}/a.svg", encoding="utf-8").read().count("<use "))
-    if texts[1] - texts[0] != 13:
-        fail(f"{command[0]} --title: {texts} letters")
+        run(*command, f"{GALLERY}/x-frame.yaml", "--quiet", "--title", title, "--plot", "a.svg")
+        texts.append(testing.read("a.svg").count(b"<use "))
+    check(texts[1] - texts[0] == 13, f"{command[0]} --title: {texts} letters")
 
 finish()

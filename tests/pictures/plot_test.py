@@ -6,23 +6,27 @@ usage: plot_test.py STRUT
 import math
 import os
 import re
-import subprocess
 import time
 import xml.etree.ElementTree as tree
 
+import testing
 from svg_paths import near, read, texts
-
-from testing import check, finish, strut, work, write
+from testing import check, finish, run, work, write
 
 FIRST, SECOND = (0, 0x60 / 255, 0xA8 / 255), (0xD5 / 255, 0x5E / 255, 0)
 BAND, FRAME = (0.86, 0.86, 0.86), (0.25, 0.25, 0.25)
 
 
 def plot(*words, code=0, err=""):
-    done = subprocess.run([strut, "plot", *words], capture_output=True, text=True)
-    check(done.returncode == code and err in done.stderr and (code or not done.stderr),
-          f"strut plot {words}: exit code {done.returncode}, expected {code}; {done.stderr}")
+    done = run("plot", *words, code=code, err=err)
+    check(code or not done.stderr, f"strut plot {words}: {done.stderr}")
     return done
+
+
+def fills_of(name):
+    """Fills of a map's cells, row by row."""
+    return [path.fill for path in read(name)[2] if path.fill and not near(path.fill, (1, 1, 1)) and not path.curved
+            and max(p[0] for p in path.lines[0]) - min(p[0] for p in path.lines[0]) > 50]
 
 
 def curves(paths, colour):
@@ -220,20 +224,14 @@ for name in "yc":
 # A map: every cell where its row says.
 write("map.csv", "a,b,c\n" + "".join(f"{i},{k},{'x' if (i + k) % 3 else 'y'}\n" for i in range(5) for k in range(4)))
 plot("map.csv", "--kind", "map", "--plot", "map.svg")
-width, height, paths = read("map.svg")
-cells = [path for path in paths if path.fill and not near(path.fill, (1, 1, 1)) and not path.curved
-         and max(p[0] for p in path.lines[0]) - min(p[0] for p in path.lines[0]) > 50]
-colours = [tuple(round(c, 3) for c in path.fill) for path in cells]
-check(len(cells) == 20, f"map.svg: {len(cells)} cells of 20")
-if len(cells) == 20:
-    order = [((i + k) % 3 == 0) for k in range(4) for i in range(5)]
-    check(len({(c, o) for c, o in zip(colours, order)}) == 2, "map.svg: a cell has another's colour")
+fills = fills_of("map.svg")
+check(len(fills) == 20, f"map.svg: {len(fills)} cells of 20")
+kinds = {(fill, (i + k) % 3 == 0) for fill, (k, i) in zip(fills, ((k, i) for k in range(4) for i in range(5)))}
+check(len(kinds) == 2, "map.svg: a cell has another's colour")
 plot("map.csv", "--kind", "map", "--label", "a", "--plot", "numbers.svg")
-write("hole.csv", open("map.csv").read().replace("2,1,y", "2,1,"))
+write("hole.csv", testing.read("map.csv").decode().replace("2,1,y", "2,1,"))
 plot("hole.csv", "--kind", "map", "--plot", "hole.svg")
-fills = [tuple(round(c, 3) for c in path.fill) for path in read("hole.svg")[2]
-         if path.fill and not near(path.fill, (1, 1, 1)) and not path.curved
-         and max(p[0] for p in path.lines[0]) - min(p[0] for p in path.lines[0]) > 50]
+fills = fills_of("hole.svg")
 check(len(fills) == 19 and len(set(fills)) == 2, "a cell of which nothing is said has no category")
 
 # A map of a signed quantity: blue below zero, brown above, near white at it, whatever the extremes.
@@ -243,9 +241,7 @@ write("signed.csv", "a,b,v [m/s]\n" + "".join(
 
 def cells_of(*words):
     plot("signed.csv", "--kind", "map", *words, "--plot", "signed.svg")
-    return [path.fill for path in read("signed.svg")[2] if path.fill and not near(path.fill, (1, 1, 1))
-            and not path.curved and max(p[0] for p in path.lines[0]) -
-            min(p[0] for p in path.lines[0]) > 50][:20]
+    return fills_of("signed.svg")[:20]
 
 
 shades = cells_of()
@@ -263,11 +259,9 @@ write("lone.csv", "t,x\n" + "".join(f"{i},{'' if i in (3, 5) else i * i}\n" for 
 plot("lone.csv", "--plot", "lone.svg")
 dots = [path for path in read("lone.svg")[2] if path.curved and near(path.fill, FIRST)]
 check(len(dots) == 1, f"lone.svg: {len(dots)} dots of 1")
-for name in ("map.svg", "panels.svg"):
-    first = open(name, "rb").read()
-    words = ["--kind", "map"] if name == "map.svg" else ["--by", "start", "--panels", "mu", "--band", "outcome=III"]
-    plot(name.replace("svg", "csv"), *words, "--plot", name)
-    check(open(name, "rb").read() == first, f"{name}: other bytes the second time")
+for name, *words in (("map", "--kind", "map"), ("panels", "--by", "start", "--panels", "mu", "--band", "outcome=III")):
+    plot(f"{name}.csv", *words, "--plot", "again.svg")
+    check(testing.read("again.svg") == testing.read(f"{name}.svg"), f"{name}: other bytes the second time")
 
 # Oscillations too fast to be seen are an area, from least to largest; slower ones are a curve.
 for per_point, area in ((0.02, False), (0.45, True)):
@@ -323,9 +317,7 @@ write("bytes.csv", b"a\xff\xfe,b\n1,2\n3,4\n")
 plot("bytes.csv", "--plot", "bytes.svg")
 
 # A million rows take seconds.
-with open("long.csv", "w") as file:
-    file.write("t [s],x [m]\n")
-    file.writelines(f"{i},{i % 1000}\n" for i in range(1000000))
+write("long.csv", "t [s],x [m]\n" + "".join(f"{i},{i % 1000}\n" for i in range(1000000)))
 begin = time.monotonic()
 plot("long.csv", "--plot", "long.svg")
 check(time.monotonic() - begin < 60, "a million rows take a minute")

@@ -115,6 +115,31 @@ def near(colour_a, colour_b):
     return colour_a is not None and max(abs(a - b) for a, b in zip(colour_a, colour_b)) < 0.01
 
 
+def middle(line):
+    """Of the box around a line."""
+    return tuple((min(p[d] for p in line) + max(p[d] for p in line)) / 2 for d in (0, 1))
+
+
+def circles(paths, stroke):
+    """Centres of the nodes drawn with that edge, in their order."""
+    return [middle(line) for path in paths if path.curved and near(path.stroke, stroke) and near(path.fill, (1, 1, 1))
+            for line in path.lines]
+
+
+class Window:
+    """Where places [m] are on the page, upright: from where two of them are drawn that are far apart."""
+
+    def __init__(self, places, drawn):
+        pairs = [(math.dist(places[i], places[k]), i, k) for i in range(len(places)) for k in range(i)]
+        apart, i, k = max(pairs)
+        self.scale = math.dist(drawn[i], drawn[k]) / apart
+        self.left, self.top = drawn[i][0] - self.scale * places[i][0], drawn[i][1] + self.scale * places[i][1]
+        self.worst = max(math.dist(self.on_page(place), at) for place, at in zip(places, drawn))
+
+    def on_page(self, place):
+        return self.left + self.scale * place[0], self.top - self.scale * place[1]
+
+
 def segments(paths):
     """All straight lines of two points: (start, end, path)."""
     return [(line[0], line[1], path) for path in paths if not path.curved and path.stroke

@@ -5,17 +5,13 @@ import csv
 import html.parser
 import json
 import os
-import subprocess
 import zlib
 
-from testing import check, finish, models, strut, work
+import testing
+from testing import check, finish, models, run, work, write
 
-
-def run(*words, code=0):
-    done = subprocess.run([strut, *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    check(done.returncode == code,
-          f"strut {' '.join(words)}: exit code {done.returncode}, not {code}: {done.stderr[:300]}")
-    return done
+CRAWLER = f"{models}/crawler/crawler.yaml"
+os.chdir(work)
 
 
 class Page(html.parser.HTMLParser):
@@ -24,10 +20,8 @@ class Page(html.parser.HTMLParser):
     def __init__(self, path):
         super().__init__()
         self.tags, self.scripts, self.title, self.outside, self.inside = [], [], "", [], None
-        with open(path, encoding="utf-8") as file:
-            text = file.read()
-        self.bytes = len(text.encode())
-        self.feed(text)
+        self.text = testing.read(path).decode()
+        self.feed(self.text)
         self.close()
         data = [text for kind, text in self.scripts if ("id", "strut-data") in kind]
         check(len(data) == 1, f"{path}: {len(data)} elements of data")
@@ -95,17 +89,16 @@ def same(block, frames, wanted, what):
 
 
 def crawler():
-    run("run", f"{models}/crawler/crawler.yaml", "-o", "crawl", "-q")
+    run("run", CRAWLER, "-o", "crawl", "-q")
     said = run("view", "crawl", "-o", "crawl.html")
     page = Page("crawl.html")
     motion = page.data["motion"]
-    check(said.stdout == f"crawl.html: 1001 frames, {1e-6 * page.bytes:.1f} MB\n", said.stdout)
+    check(said.stdout == f"crawl.html: 1001 frames, {1e-6 * len(page.text.encode()):.1f} MB\n", said.stdout)
     check(not page.outside, f"asks for {page.outside}")
     check(page.title == "Nine-member multistable crawler", page.title)
     check(any("Dygraph" in text for _, text in page.scripts), "no dygraphs")
-    text = open("crawl.html", encoding="utf-8").read()
-    check("Permission is hereby granted" in text and "Vanderkam" in text, "no licence of dygraphs")
-    check("<!--strut:" not in text, "a placeholder is left")
+    check("Permission is hereby granted" in page.text and "Vanderkam" in page.text, "no licence of dygraphs")
+    check("<!--strut:" not in page.text, "a placeholder is left")
     check((motion["frames"], motion["recorded"], motion["every"]) == (1001, 1001, 1), "frames")
     check(motion["status"] == "completed" and motion["track"] is None, "status")
     check(abs(sum(motion["weights"]) - 0.14) < 1e-12, "weights")
@@ -116,13 +109,13 @@ def crawler():
     same(motion["contact"], 1001, table("crawl/contacts.csv")[1:], "contacts")
     check(motion["position"]["quantum"] == 5e-8, "quantum of positions")
     check(motion["energy"] is None, "energies that were not recorded")
-    velocity = json.load(open("crawl/summary.json"))["velocity"]
+    velocity = json.loads(testing.read("crawl/summary.json"))["velocity"]
     rows = {row["label"]: row["value"] for row in page.data["summary"]}
     check(rows["run"] == "completed" and
           rows["mean velocity of the centre of mass"].startswith(f"{1e3 * velocity:.4g} mm/s"),
           f"summary: {rows}")
     run("view", "crawl", "-o", "again.html", "-q")
-    check(open("again.html").read() == text, "not the same bytes twice")
+    check(testing.read("again.html") == page.text.encode(), "not the same bytes twice")
     parameters = {row["label"]: row["value"] for row in page.data["parameters"]}
     check(parameters == {"frequency": "10 Hz", "amplitude": "0.1 mm", "friction": "0.1", "start": "I",
                          "step": "0.1 ms", "integration method": "rk4",
@@ -134,7 +127,7 @@ def crawler():
 
 def cards(data, scene):
     """The cards are equilibria that strut finds; those that stand come first, the named ones ahead."""
-    found = {e["name"]: e for e in json.loads(run("equilibria", scene, "--json").stdout)["equilibria"]}
+    found = {e["name"]: e for e in testing.answer("equilibria", scene)["equilibria"]}
     listed = data["equilibria"]
     check(len(listed) == 40 and len(listed) + data["equilibria_left_out"] == len(found), "cards")
     check([card["name"] for card in listed[:4]] == ["III", "III-2", "I", "II"],
@@ -157,15 +150,11 @@ def cards(data, scene):
 
 def everything(name, *changes):
     """The crawler's scene as a file: with everything recorded from the start, every millisecond."""
-    with open(f"{models}/crawler/crawler.yaml", encoding="utf-8") as file:
-        scene = file.read()
-    scene = "\n".join(line for line in scene.splitlines() if not line.startswith("output:"))
-    for old, new in changes:
+    scene = testing.read(CRAWLER).decode()
+    for old, new in (("output: ", "# "), *changes):
         check(old in scene, f"the crawler has no '{old}'")
         scene = scene.replace(old, new)
-    with open(name, "w", encoding="utf-8") as file:
-        file.write(scene + "\noutput: {every: 1 ms, "
-                   "channels: [position, velocity, length, force, contact, energy]}\n")
+    write(name, scene + "\noutput: {every: 1 ms, channels: [position, velocity, length, force, contact, energy]}\n")
 
 
 def short_run():
@@ -174,7 +163,7 @@ def short_run():
     run("view", "short", "-o", "short.html")
     motion = Page("short.html").data["motion"]
     check(len(motion["energy_names"]) == 11 == motion["energy"]["columns"], "energies")
-    head = open("short/energy.csv", encoding="utf-8").readline()
+    head = testing.read("short/energy.csv").decode().splitlines()[0]
     places = [head.find(name) for name in motion["energy_names"]]
     check(places == sorted(places) and places[0] > 0, "energies have other names")
     energy = table("short/energy.csv")
@@ -189,7 +178,7 @@ def paper_run():
     run("view", "paper", "-o", "paper.html")
     page = Page("paper.html")
     motion = page.data["motion"]
-    check(page.bytes < 5e6, f"the paper's run takes {page.bytes} bytes")
+    check(len(page.text.encode()) < 5e6, f"the paper's run takes {len(page.text.encode())} bytes")
     check(motion["recorded"] == 110001 and motion["frames"] * motion["every"] >= 110001, "frames")
     time = columns(motion["time"], motion["frames"])[0]
     check(len(time) == motion["frames"] and time[0] == 0 and abs(time[-1] - 110) < 1e-9, "times")
@@ -209,8 +198,7 @@ def hostile():
     lines += ["members:"]
     for one, two in zip(NAMES, NAMES[1:]):
         lines.append(f"  {one}: {{kind: bar, nodes: [{one}, {two}], stiffness: 1000}}")
-    with open("hostile.yaml", "w", encoding="utf-8") as file:
-        file.write("\n".join(lines) + "\n")
+    write("hostile.yaml", "\n".join(lines) + "\n")
     run("view", f"{models}/gallery/x-frame.yaml", "-o", "plain.html")
     run("view", "hostile.yaml", "-o", "hostile.html")
     plain, page = Page("plain.html"), Page("hostile.html")
@@ -229,12 +217,10 @@ def hostile():
 
 def measured():
     """Columns of data named as those of the run, at times of the run."""
-    with open("film.csv", "w", encoding="utf-8") as file:
-        file.write("t [s],b.x [mm],m.force [N],b.y [s],a.y [m]\n0,1010,,1,2\n0.5,1003,2,1,\n3,1,1,1,1\n")
-    with open("spring.yaml", "w", encoding="utf-8") as file:
-        file.write("strut: 1\ndata: {film: {file: film.csv}}\nrun: {duration: 1}\nsolver: {step: 1 ms}\n"
-                   "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}}\n"
-                   "members: {m: {kind: spring, nodes: [a, b], stiffness: 100, rest_length: 0.99}}\n")
+    write("film.csv", "t [s],b.x [mm],m.force [N],b.y [s],a.y [m]\n0,1010,,1,2\n0.5,1003,2,1,\n3,1,1,1,1\n")
+    write("spring.yaml", "strut: 1\ndata: {film: {file: film.csv}}\nrun: {duration: 1}\nsolver: {step: 1 ms}\n"
+          "nodes: {a: {position: [0, 0], fixed: both}, b: {position: [1, 0], mass: 1, fixed: y}}\n"
+          "members: {m: {kind: spring, nodes: [a, b], stiffness: 100, rest_length: 0.99}}\n")
     run("run", "spring.yaml", "-o", "spring", "-q")
     run("view", "spring", "-o", "spring.html")
     motion = Page("spring.html").data["motion"]
@@ -257,8 +243,7 @@ def diverged():
 
 def alone():
     """Nothing at rest, and nothing looked for: the page says why there are no cards."""
-    with open("falling.yaml", "w", encoding="utf-8") as file:
-        file.write("strut: 1\nnodes: {stone: {position: [0, 1], mass: 1}}\ngravity: [0, -9.81]\n")
+    write("falling.yaml", "strut: 1\nnodes: {stone: {position: [0, 1], mass: 1}}\ngravity: [0, -9.81]\n")
     run("view", "falling.yaml", "-o", "falling.html")
     data = Page("falling.html").data
     check(not data["equilibria"] and len(data["equilibria_remark"]) > 10, "no word on equilibria")
@@ -267,7 +252,6 @@ def alone():
     check(data["equilibria"] is None and data["equilibria_remark"], "equilibria all the same")
 
 
-os.chdir(work)
 crawler()
 short_run()
 paper_run()

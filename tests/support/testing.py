@@ -82,6 +82,12 @@ def answer(*words, **how):
     return json.loads(run(*words, "--json", **how).stdout)
 
 
+def exported(model):
+    """What strut export writes, as a mapping."""
+    import yaml
+    return yaml.safe_load(run("export", model).stdout)
+
+
 def formats(*words, code=0, timeout=60):
     """Runs `python3 -m strut.formats` of the same build in the folder of the test."""
     environment = {**os.environ, "PYTHONPATH": path(os.path.dirname(strut), "python"), "PYTHONDONTWRITEBYTECODE": "1"}
