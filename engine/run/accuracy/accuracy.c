@@ -140,7 +140,7 @@ static void withhold(strut_summary *summary) {
 static void refuse_wide_bands(const strut_accuracy *accuracy) {
   strut_summary *summary = accuracy->summary;
   bool gives = summary->energy.rubbed > summary->accuracy.wanted * summary->energy.moved;
-  if (!(accuracy->creeps || gives) || !summary->accuracy.kept) return;
+  if (!accuracy->creeps && !(gives && summary->accuracy.kept)) return;
   withhold(summary);
   snprintf(summary->accuracy.why, sizeof summary->accuracy.why,
            "feet that should stick creep within their stick bands; use 'law: coulomb', or a far "

@@ -159,9 +159,10 @@ typedef struct strut_ladder {
   double earlier_distance;       /* of the two before */
   int runs, coarse_runs;         /* of all, the first ones, by the coarse method */
   int tried, failures;           /* runs, with those that failed; the latter */
+  int unrelated;           /* latest runs whose motion has nothing of that of the run before */
   double expected, margin; /* estimated error of the latest run, relative; reported over that */
   double unsteady;         /* how far that run is from its steady motion, as `change` */
-  bool same_motion, kept, budget_spent;
+  bool same_motion, creeps, kept, budget_spent;
   bool implicit;  /* runs with error control are by the implicit method */
   bool precise;   /* or by the method of higher order */
   bool imprecise; /* that method has failed */
@@ -192,6 +193,8 @@ double strut_ladder_tolerated_error(const strut_ladder *ladder, const strut_meas
 double strut_ladder_arrival_doubt(const strut_measured *one, const strut_measured *other);
 /** Decides whether the latest of two or more runs is accurate enough, and estimates its error. */
 void strut_ladder_judge(strut_ladder *ladder);
+/** Have the motions of the latest runs had nothing in common, so that the start may be what decides? */
+bool strut_ladder_is_lost(const strut_ladder *ladder);
 /** Lets the coarse method go on where one or two more halved steps should do, for less than another method takes. */
 void strut_ladder_extend_coarse(strut_ladder *ladder);
 /** No more runs follow: those that met a limit may still agree well enough. */

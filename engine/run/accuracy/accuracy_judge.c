@@ -62,6 +62,8 @@ static const double NOISE = 1e-9;
 static const double OF_DISTANCE = 0.5;
 /* Nor, over what is allowed of it, than this part of what is reported of the quantity that is known worst. */
 static const double OF_WORST = 0.1;
+/* Nor, where no convergence shows, than this part of what is wanted: errors may cancel. */
+static const double OF_WANTED = 0.1;
 /* Nor, where a motion repeats itself, a single run with error control, whose tolerance may add as much in each period. */
 static const double OF_FIRST_RUN = 0.5;
 /* Runs by the coarse method; and what those after the second may cost, over the first: as a run with error control. */
@@ -70,6 +72,12 @@ static const double WORTH = 5.0;
 /* Different motions: so many runs with error control, whose results must agree to this part of the wanted error. */
 enum { LEAST_MEANS = 5 };
 static const double ENOUGH_OF_MEANS = 0.1;
+
+/* Motions so far apart have nothing in common; after so many in a row a shifted start tells whether finer runs may. */
+static const double UNRELATED = 0.3;
+enum { MOST_UNRELATED = 3 };
+/* Shapes that agree so much better than velocities: what differs is how fast feet creep, which depends on history. */
+static const double CREEPS = 0.1;
 
 /* The row for the runs that there are; NULL: they say nothing. */
 static const strut_evidence *find_evidence(const strut_ladder *ladder) {
@@ -104,6 +112,8 @@ static double estimate_error(const strut_ladder *ladder, const strut_evidence *e
                      : 0.5;
   double rest =
       ladder->change > NOISE ? ladder->change * fmax(1.0, ratio / (1.0 - ratio)) : ladder->change;
+  bool by_chance = evidence->method == CONTROLLED && evidence->shrinks == 0.0 && rest > NOISE;
+  if (by_chance) rest = fmax(rest, OF_WANTED * ladder->a->target / evidence->margin);
   if (evidence->leaves == 0.0) return rest;
   return fmax(rest, evidence->leaves *
                         fmax(ladder->earlier_change, OF_DISTANCE * ladder->earlier_distance));
@@ -196,11 +206,31 @@ static double estimate_mean_error(const strut_ladder *ladder) {
   return few ? HUGE_VAL : range_of_runs(ladder, summary);
 }
 
+/* Do the latest runs differ by no more than feet may creep, which friction's law makes them do? */
+static bool differs_by_creep(const strut_ladder *ladder) {
+  const strut_summary *summary = &ladder->now->s;
+  const strut_contact_table *contacts = &ladder->model->contacts;
+  double band = 0.0;
+  for (int32_t i = 0; i < contacts->count; i++)
+    band = fmax(band, contacts->entry[i].friction.stick_velocity);
+  return !summary->measured_count && strut_ladder_runs_with_error_control(ladder) > 1 &&
+         summary->energy.rubbed > 0.0 && ladder->same_motion &&
+         ladder->distance <= CREEPS * ladder->change &&
+         fabs(summary->velocity - ladder->before->s.velocity) <= band;
+}
+
+bool strut_ladder_is_lost(const strut_ladder *ladder) {
+  return ladder->unrelated == MOST_UNRELATED && !ladder->kept && !ladder->a->single_method;
+}
+
 void strut_ladder_judge(strut_ladder *ladder) {
   const strut_evidence *evidence = find_evidence(ladder);
   double wanted = ladder->a->target;
   bool followed = is_followed(ladder, &ladder->now->s);
   ladder->same_motion = ladder->distance <= SAME_MOTION;
+  bool unrelated = strut_ladder_runs_with_error_control(ladder) > 1 &&
+                   ladder->distance >= UNRELATED && ladder->change > ENOUGH_OF_MEANS * wanted;
+  ladder->unrelated = unrelated ? ladder->unrelated + 1 : 0;
   ladder->expected = evidence ? estimate_error(ladder, evidence) : HUGE_VAL;
   ladder->margin = evidence ? evidence->margin : 1.0;
   ladder->unsteady = distance_from_steady(ladder);
@@ -208,6 +238,7 @@ void strut_ladder_judge(strut_ladder *ladder) {
   bool near = evidence && ladder->distance <= evidence->apart_of_wanted * wanted;
   ladder->kept = evidence && strut_accuracy_is_kept(near && followed, ladder->expected,
                                                     fmin(evidence->enough * wanted, allowed));
+  ladder->creeps = ladder->a->creeps || (!ladder->kept && differs_by_creep(ladder));
   if (ladder->kept || ladder->same_motion || !followed) return;
   ladder->expected = estimate_mean_error(ladder);
   ladder->kept =
@@ -229,7 +260,7 @@ static void describe_difference(const strut_ladder *ladder, char *text, size_t s
   if (summary->measured_count)
     snprintf(text, size, "'%.60s', which differs by %.2g %s", summary->measured[ladder->worst].name,
              ladder->difference[ladder->worst], summary->measured[ladder->worst].unit);
-  else if (summary->velocity_zero)
+  else if (summary->velocity_zero && !ladder->creeps)
     snprintf(text, size, "a velocity that is zero up to rounding, as by symmetry");
   else
     snprintf(text, size, "a velocity that differs by %.2g m/s",
@@ -290,6 +321,11 @@ static void explain_ladder(const strut_ladder *ladder, char *why, size_t size) {
                  ? strut_integrator_for(STRUT_ROLE_COARSE)->name
                  : "a coarser run",
              apart);
+  else if (ladder->creeps)
+    snprintf(why, size,
+             "%s; a coarser run gives the same shapes, but %s: feet that should stick creep within "
+             "their stick bands; use 'law: coulomb', or a far smaller stick_velocity",
+             how, apart);
   else if (ladder->same_motion)
     snprintf(why, size, "%s; a coarser run gives the same motion, but %s%s", how, apart,
              ladder->budget_spent ? "; the budget is used up: give a larger budget" : "");

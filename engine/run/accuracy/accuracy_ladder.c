@@ -279,7 +279,8 @@ static strut_status probe(strut_ladder *ladder, bool implicit) {
 }
 
 static bool may_refine(const strut_ladder *ladder) {
-  if (ladder->kept || ladder->failed || ladder->budget_spent || ladder->tried >= STRUT_LADDER_RUNS)
+  if (ladder->kept || ladder->failed || ladder->creeps || ladder->budget_spent ||
+      ladder->tried >= STRUT_LADDER_RUNS)
     return false;
   if (ladder->sensitivity > ladder->a->target && !ladder->model->feedback.sampled_count)
     return false;
@@ -358,10 +359,11 @@ static strut_status check_sensitivity(strut_ladder *ladder) {
   const strut_rung *rung =
       ladder->before && !ladder->before->s.status ? ladder->before : ladder->now;
   int64_t allowed = accuracy->allowed;
-  if (!ladder->same_motion || accuracy->single_method ||
+  bool lost = strut_ladder_is_lost(ladder);
+  if (!(ladder->same_motion || lost) || accuracy->single_method ||
       strut_ladder_runs_with_error_control(ladder) < 2)
     return STRUT_OK;
-  if (!(rung->e.tolerance < CHECKED_BELOW) && !ladder->model->feedback.sampled_count)
+  if (!(rung->e.tolerance < CHECKED_BELOW || lost) && !ladder->model->feedback.sampled_count)
     return STRUT_OK;
   ladder->shift = STRUT_LADDER_SHIFT; /* over the size of the structure */
   if (ladder->model->feedback.sampled_count)
@@ -399,7 +401,7 @@ strut_status strut_accuracy_climb_ladder(strut_accuracy *accuracy) {
     if (status || l.budget_spent || l.failed) break;
     if (l.runs > 1) strut_ladder_judge(&l);
     strut_ladder_extend_coarse(&l);
-    if (l.kept) status = check_sensitivity(&l);
+    if (l.kept || strut_ladder_is_lost(&l)) status = check_sensitivity(&l);
   }
   if (!status && !l.kept && !(l.sensitivity > accuracy->target)) {
     strut_ladder_judge_last(&l);

@@ -50,6 +50,16 @@ static const double MEAN = 20.0;
  * its own steady motion counts.
  */
 static const double TRIAL = 24.0, LONG_TRIAL = 60.0;
+/*
+ * A start is fast that changes the shape within a period by so many times its range there once it is steady: of those
+ * from an equilibrium it is one, of those that fall or are thrown fifty.
+ */
+static const double FAST = 10.0;
+/* Two runs end on the same orbit whose ends differ by this part of its range, and their velocities of themselves. */
+static const double SAME_ORBIT = 0.1;
+/* Runs by the reference method from a fast start, and the tolerance of one over that before. */
+enum { MOST_STARTS = 6 };
+static const double FINER_START = 0.2;
 /* Steps of the finer coarse method in one of the first coarse method. */
 static const double FINER = 4.0;
 /*
@@ -80,6 +90,11 @@ static bool is_periodic(const strut_summary *run) {
   return run->steady.kind == STRUT_MOTION_PERIODIC;
 }
 
+/* Fixed steps meet the events differently in each period: nothing is steadier than that. */
+static double coarse_tolerance(const strut_accuracy *accuracy) {
+  return fmax(0.1, 16.0 * accuracy->target);
+}
+
 /*
  * The step is chosen for the start; where the structure becomes so stiff that the step is too large, the run is
  * repeated with a step for the stiffest shape so far.
@@ -88,8 +103,8 @@ static void run_coarse_from_start(strut_orbit_solve *solve, double periods) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *run = &solve->coarse_run;
   for (int k = 0; k < MOST_STEPS; k++) {
-    strut_orbit_solve_run_until_steady(solve, accuracy->coarse, fmax(0.1, 16.0 * accuracy->target),
-                                       3, periods, false, run);
+    strut_orbit_solve_run_until_steady(solve, accuracy->coarse, coarse_tolerance(accuracy), 3,
+                                       periods, false, run);
     double limit = run->limit_fell.limit;
     bool fell = limit > 0.0 && limit < accuracy->coarse.step;
     if (solve->status ? solve->status != STRUT_DIVERGED : !fell) return;
@@ -100,29 +115,6 @@ static void run_coarse_from_start(strut_orbit_solve *solve, double periods) {
     accuracy->coarse.step = fell ? STRUT_COARSE_STEP * limit : 0.5 * accuracy->coarse.step;
   }
   solve->coarse_run.status = solve->status = STRUT_DIVERGED;
-}
-
-/*
- * Runs the coarse method until the motion repeats itself. Its fixed steps meet the events
- * differently in each period, which limits how closely the motion repeats: the first tolerance is
- * therefore loose. False where even that is not reached.
- */
-static bool run_coarse(strut_orbit_solve *solve) {
-  strut_accuracy *accuracy = solve->a;
-  strut_summary *run = &solve->coarse_run;
-  double periods = strut_accuracy_transient_periods(accuracy), first = fmin(FIRST, periods);
-  /* without ground transients may be slow; with it motions may be irregular */
-  bool may_be_slow = accuracy->model->contacts.count == 0;
-  if (solve->status) return false;
-  strut_accuracy_begin_phase(accuracy, "waiting for steady motion");
-  run_coarse_from_start(solve, first);
-  if (!solve->status && !is_periodic(run) && may_be_slow && periods > first)
-    strut_orbit_solve_run_on(solve, accuracy->coarse, fmin(0.005, 0.5 * accuracy->target), 5,
-                             periods - first, true, run);
-  bool steady = !solve->status && is_periodic(run) &&
-                strut_accuracy_orbit_covers_window(accuracy, &run->steady);
-  if (solve->status == STRUT_DIVERGED) solve->status = STRUT_OK;
-  return steady;
 }
 
 /* Takes the end of the coarse run as fixed point of the coarse map. */
@@ -170,6 +162,82 @@ static void create_maps(strut_orbit_solve *solve, int32_t repeats) {
       strut_accuracy_evaluations_left(accuracy);
   solve->coarse_map.time = solve->reference_map.time = solve->end.time;
   take_end_as_fixed_point(solve);
+}
+
+/* A run that does not agree counts as a check. */
+static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
+  solve->a->check_evaluations += orbit->spent.evaluations;
+  strut_summary_free(orbit);
+  *orbit = (strut_summary){0};
+}
+
+/* Are the ends of two runs, in solve->known and solve->end, on the same steady motion? */
+static bool ends_agree(strut_orbit_solve *solve, const strut_summary *one,
+                       const strut_summary *other) {
+  double size = strut_accuracy_velocity_scale(solve->a, other->velocity);
+  strut_period_map_subtract(&solve->coarse_map, solve->known.y, solve->end.y, solve->fixed_point);
+  double apart = strut_period_map_size(&solve->coarse_map, solve->fixed_point);
+  return one->steady.kind == other->steady.kind && one->steady.periods == other->steady.periods &&
+         one->steady.repeats == other->steady.repeats &&
+         apart <= SAME_ORBIT * other->steady.motion &&
+         fabs(one->velocity - other->velocity) <= SAME_ORBIT * size;
+}
+
+static bool is_fast(const strut_summary *run) {
+  return run->steady.fastest > FAST * run->steady.motion;
+}
+
+/*
+ * A start whose shape changes by far more than the steady motion's, or whose energy the coarse method does not keep, may
+ * lead to another steady motion. The reference method then runs from it, until two runs end on the same one.
+ */
+static void follow_start(strut_orbit_solve *solve, double periods) {
+  strut_accuracy *accuracy = solve->a;
+  strut_summary *run = &solve->coarse_run;
+  bool open = strut_accuracy_balance_is_open(accuracy, run), agree = false;
+  if (accuracy->creeps) run->steady.fastest = 0.0; /* nothing will be promised */
+  if (solve->status || !(open || is_fast(run))) return;
+  create_maps(solve, 1);
+  strut_experiment e = solve->reference;
+  e.steady.creep = accuracy->coarse.steady.creep;
+  strut_accuracy_begin_phase(accuracy, "following the start by adaptive");
+  for (int k = 0; k < MOST_STARTS && !solve->status && !agree; k++) {
+    strut_summary finer = {0};
+    strut_orbit_solve_run_until_steady(solve, e, coarse_tolerance(accuracy), 3, periods, false,
+                                       &finer);
+    agree = !solve->status && !open && ends_agree(solve, run, &finer);
+    discard_run(solve, run);
+    *run = finer;
+    open = strut_accuracy_balance_is_open(accuracy, run);
+    strut_orbit_place_copy(solve, &solve->end, &solve->known);
+    e.tolerance = fmax(1e-12, FINER_START * e.tolerance);
+  }
+  solve->followed = agree && !open;
+  run->steady.fastest = solve->followed ? 0.0 : HUGE_VAL;
+}
+
+/*
+ * Runs the coarse method until the motion repeats itself. Its fixed steps meet the events
+ * differently in each period, which limits how closely the motion repeats: the first tolerance is
+ * therefore loose. False where even that is not reached.
+ */
+static bool run_coarse(strut_orbit_solve *solve) {
+  strut_accuracy *accuracy = solve->a;
+  strut_summary *run = &solve->coarse_run;
+  double periods = strut_accuracy_transient_periods(accuracy), first = fmin(FIRST, periods);
+  /* without ground transients may be slow; with it motions may be irregular */
+  bool may_be_slow = accuracy->model->contacts.count == 0;
+  if (solve->status) return false;
+  strut_accuracy_begin_phase(accuracy, "waiting for steady motion");
+  run_coarse_from_start(solve, first);
+  follow_start(solve, first);
+  if (!solve->status && !is_periodic(run) && may_be_slow && periods > first)
+    strut_orbit_solve_run_on(solve, accuracy->coarse, fmin(0.005, 0.5 * accuracy->target), 5,
+                             periods - first, true, run);
+  bool steady = !solve->status && is_periodic(run) &&
+                strut_accuracy_orbit_covers_window(accuracy, &run->steady);
+  if (solve->status == STRUT_DIVERGED) solve->status = STRUT_OK;
+  return steady;
 }
 
 /*
@@ -292,10 +360,10 @@ static void correct_to_answer(strut_orbit_solve *solve) {
   double enough = (last_word ? 3.0 : 0.3) * accuracy->target * size;
   correct_orbit(solve, enough, accuracy->target >= COARSE || last_word ? 1 : 2);
   if (solve->status) return;
-  double moved = fabs(solve->orbit.velocity - solve->coarse_run.velocity) + solve->error;
-  if (accuracy->target >= COARSE && moved <= 0.8 * accuracy->target * size)
+  solve->apart = 0.0;
+  if (accuracy->target >= COARSE && strut_orbit_solve_error_share(solve, STRUT_ORBIT_COARSE) <= 1.0)
     solve->answer = STRUT_ORBIT_COARSE;
-  else if (!last_word && strut_orbit_solve_error_share(solve) <= 0.8)
+  else if (!last_word && strut_orbit_solve_error_share(solve, STRUT_ORBIT_CORRECTED) <= 1.0)
     solve->answer = STRUT_ORBIT_CORRECTED;
 }
 
@@ -459,13 +527,6 @@ static void check_window(strut_orbit_solve *solve) {
   strut_summary_free(&run);
 }
 
-/* A run that does not agree counts as a check. */
-static void discard_run(strut_orbit_solve *solve, strut_summary *orbit) {
-  solve->a->check_evaluations += orbit->spent.evaluations;
-  strut_summary_free(orbit);
-  *orbit = (strut_summary){0};
-}
-
 /*
  * Runs the orbit once: does its velocity agree within `part` of the wanted error? Where it is
  * recorded it is then run again, of which nothing is reported, so that the answer does not depend on
@@ -479,7 +540,9 @@ static bool confirm_by(strut_orbit_solve *solve, strut_experiment e, double part
   double size = strut_accuracy_velocity_scale(accuracy, solve->coarse_run.velocity);
   solve->apart = fabs(orbit->velocity - solve->orbit.velocity);
   bool ran_on = solve->answer > STRUT_ORBIT_CORRECTED;
-  if (solve->status || !(ran_on || solve->apart <= part * accuracy->target * size)) return false;
+  bool agrees = solve->apart <= part * accuracy->target * size &&
+                strut_orbit_solve_error_share(solve, solve->answer) <= 1.0;
+  if (solve->status || !(ran_on || agrees)) return false;
   if (!accuracy->options->sink_count) return true;
   strut_summary recorded = {0};
   int64_t allowed = accuracy->allowed;
@@ -541,15 +604,14 @@ strut_status strut_accuracy_try_orbit(strut_accuracy *accuracy, bool *done) {
   solve.orbit.y = solve.known.y = strut_orbit_solve_array(&solve);
   solve.fixed_point = strut_orbit_solve_array(&solve);
   bool steady = run_coarse(&solve);
-  if (!solve.status && solve.coarse_run.status == STRUT_OK &&
-      !strut_accuracy_balance_is_open(accuracy, &solve.coarse_run)) {
+  if (!solve.status && solve.coarse_run.status == STRUT_OK && !is_fast(&solve.coarse_run)) {
     if (solve.coarse_run.steady.kind == STRUT_MOTION_CREEPING) steady = find_creep(&solve);
     if (!is_over(&solve)) find_orbit(&solve, steady);
     if (!solve.status) confirm_orbit(&solve, &orbit);
   }
   bool followed =
       orbit.spent.forced + solve.last_run.spent.forced + solve.reference_map.forced == 0;
-  *done = !solve.status && solve.answer && followed;
+  *done = !solve.status && solve.answer && followed && !is_fast(&solve.coarse_run);
   if (*done) {
     strut_orbit_solve_report(&solve, &orbit);
   } else { /* the next strategy is charged with the cost */

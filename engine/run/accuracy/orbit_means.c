@@ -65,7 +65,6 @@ static void accept_mean(strut_orbit_solve *solve, strut_orbit_answer answer, str
                         strut_orbit_mean mean) {
   strut_summary_append(&solve->last_run, run);
   if (!isfinite(mean.interval)) return;
-  if (mean.disputed) mean.interval += mean.apart;
   solve->mean = mean;
   solve->last_run.velocity = mean.velocity;
   if (solve->last_run.steady.kind == STRUT_MOTION_TRANSIENT)
@@ -118,8 +117,9 @@ static void average(strut_orbit_solve *solve) {
     strut_orbit_place_copy(solve, &end, &solve->end);
     mean[1] =
         run_for_mean(solve, strut_orbit_solve_halve_step(solve), (double)before.periods, &run[1]);
-    mean[1].apart = fabs(mean[1].velocity - before.velocity);
+    mean[1].apart = fmax(before.apart, fabs(mean[1].velocity - before.velocity));
     mean[1].disputed = !agree(&mean[1], &before);
+    mean[1].interval += mean[1].apart; /* the step may change more than the mean scatters */
   }
   if (!solve->status) accept_mean(solve, STRUT_ORBIT_IRREGULAR, &run[1], mean[1]);
   for (int k = 0; k < 2; k++) strut_summary_free(&run[k]);
@@ -151,7 +151,7 @@ void strut_orbit_solve_average_disputed(strut_orbit_solve *solve) {
     bool left =
         run.steady.kind == STRUT_MOTION_PERIODIC; /* an orbit of its own, from the coarse one */
     mean.disputed = !left && !agree(&mean, &orbit);
-    if (left) mean.interval += mean.apart;
+    if (left || mean.disputed) mean.interval += mean.apart;
     accept_mean(solve, STRUT_ORBIT_DISPUTED, &run, mean);
   }
   strut_summary_free(&run);

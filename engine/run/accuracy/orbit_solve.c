@@ -122,9 +122,21 @@ bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status)
   return !solve->status;
 }
 
-double strut_orbit_solve_error_share(const strut_orbit_solve *solve) {
-  double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
-  return solve->error / (solve->a->target * size);
+/* Corrections of orbits to which a transient returns slowly were too small by up to a fifth of the estimate. */
+static const double SLOW_RETURN = 1.3;
+
+double strut_orbit_solve_error_share(const strut_orbit_solve *solve, strut_orbit_answer answer) {
+  double velocity =
+      answer == STRUT_ORBIT_COARSE ? solve->coarse_run.velocity : solve->orbit.velocity;
+  double wanted = solve->a->target * strut_accuracy_velocity_scale(solve->a, velocity);
+  if (answer >= STRUT_ORBIT_IRREGULAR) return solve->error / wanted;
+  double share = fmax(solve->error, solve->apart) / wanted +
+                 solve->reference.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 / solve->a->target;
+  /* a first correction is not known better than the fixed point it starts from was sought */
+  if (answer == STRUT_ORBIT_CORRECTED) share += STRUT_FIXED_POINT_PART;
+  if (answer == STRUT_ORBIT_COARSE)
+    share += fabs(solve->orbit.velocity - solve->coarse_run.velocity) / wanted;
+  return SLOW_RETURN * share;
 }
 
 static void accept_reference_run(strut_orbit_solve *solve) {
@@ -138,8 +150,10 @@ void strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit, 
   if (solve->status) return;
   strut_accuracy_begin_phase(solve->a, "until steady by adaptive");
   strut_orbit_place_copy(solve, &solve->known, &solve->end);
+  double wanted = solve->a->target * strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
+  solve->apart = 0.0;
   /* a failed correction means a sensitive orbit, for which local errors matter more than usual */
-  if (!solve->tightened && !(strut_orbit_solve_error_share(solve) <= 0.8)) {
+  if (!solve->tightened && !(solve->error <= 0.8 * wanted)) {
     solve->reference.tolerance = fmax(1e-12, solve->reference.tolerance / STRUT_TIGHTENED);
     solve->tightened = true;
   }
@@ -149,29 +163,37 @@ void strut_orbit_solve_run_reference(strut_orbit_solve *solve, bool from_orbit, 
     accept_reference_run(solve);
 }
 
+/* The error is no less than the difference from a finer result, unless it is too large then. */
+static bool admits_difference(strut_orbit_solve *solve, double apart) {
+  double error = solve->error;
+  solve->error = fmax(error, apart);
+  if (strut_orbit_solve_error_share(solve, STRUT_ORBIT_REFERENCE) <= 1.0) return true;
+  solve->error = error;
+  return false;
+}
+
 /*
- * Repeats a sensitive orbit with a tenth of the tolerance. It is accepted if both agree to half of
- * the wanted error; otherwise the finer result replaces it and is checked likewise.
+ * Repeats a sensitive orbit with a tenth of the tolerance. It is accepted if the difference is part of the error;
+ * otherwise the finer result replaces it and is checked likewise.
  */
 static void repeat_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_accuracy *accuracy = solve->a;
   bool stands = false, periodic = true;
   for (int k = 0; k < MOST_CHECKS && !solve->status && !stands && periodic; k++) {
     strut_summary finer = {0};
+    strut_experiment e = solve->reference;
     strut_orbit_place_copy(solve, &solve->known, &solve->end);
-    solve->reference.tolerance = fmax(1e-12, 0.1 * solve->reference.tolerance);
-    strut_orbit_solve_run_until_steady(solve, solve->reference, fmin(0.001, 0.2 * accuracy->target),
-                                       4, TRIAL, true, &finer);
+    e.tolerance = fmax(1e-12, 0.1 * e.tolerance);
+    strut_orbit_solve_run_until_steady(solve, e, fmin(0.001, 0.2 * accuracy->target), 4, TRIAL,
+                                       true, &finer);
     periodic = !solve->status && finer.steady.kind == STRUT_MOTION_PERIODIC;
-    double apart = periodic ? fabs(finer.velocity - solve->orbit.velocity) : HUGE_VAL;
-    stands = apart <= 0.5 * accuracy->target *
-                          strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity);
+    double apart = fabs(finer.velocity - solve->orbit.velocity);
+    stands = periodic && admits_difference(solve, apart);
     if (stands || !periodic) {
       accuracy->check_evaluations += finer.spent.evaluations;
-      solve->error = fmax(solve->error, stands ? apart : 0.0);
-      solve->reference.tolerance *= 10.0;
     } else {
       strut_summary_append(&solve->last_run, &finer);
+      solve->reference.tolerance = e.tolerance;
       accept_reference_run(solve);
       solve->error = fmax(solve->error, 0.5 * apart);
     }
@@ -191,8 +213,8 @@ static void correct_with_finer_tolerance(strut_orbit_solve *solve) {
   if (solve->status) return;
   memcpy(there.y, solve->orbit.y, solve->both * sizeof(double));
   finer.tolerance = fmax(1e-12, 0.1 * finer.tolerance);
-  double size = strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity),
-         half = 0.5 * accuracy->target * size;
+  double half =
+      0.5 * accuracy->target * strut_accuracy_velocity_scale(accuracy, solve->orbit.velocity);
   int64_t before = coarse->evaluations;
   solve->status =
       strut_period_map_create(accuracy->model, &finer, coarse->repeats, &map, accuracy->error);
@@ -208,10 +230,7 @@ static void correct_with_finer_tolerance(strut_orbit_solve *solve) {
   strut_period_map_free(&map);
   if (!strut_orbit_solve_check_maps(solve, status)) return;
   double apart = there.converged ? fabs(there.velocity - solve->orbit.velocity) : HUGE_VAL;
-  if (apart > half)
-    repeat_with_finer_tolerance(solve);
-  else
-    solve->error = fmax(solve->error, apart);
+  if (!admits_difference(solve, apart)) repeat_with_finer_tolerance(solve);
 }
 
 void strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
@@ -225,8 +244,6 @@ void strut_orbit_solve_check_tolerance(strut_orbit_solve *solve) {
 
 /* Periods in which a run with half the step must prove to creep, too. */
 static const double CREEPING = 30.0;
-/* Velocities agree if they differ by less than this part of the wanted error. */
-static const double AGREE = 0.4;
 
 strut_experiment strut_orbit_solve_halve_step(const strut_orbit_solve *solve) {
   strut_experiment half = solve->a->coarse;
@@ -259,10 +276,12 @@ void strut_orbit_solve_confirm_stuck(strut_orbit_solve *solve) {
   strut_orbit_solve_run_on(solve, strut_orbit_solve_halve_step(solve),
                            fmin(0.001, 0.2 * accuracy->target), 4,
                            fmax(20.0, strut_accuracy_transient_periods(accuracy)), false, run);
+  if (solve->status || run->steady.kind != STRUT_MOTION_PERIODIC) return;
   double apart = fabs(run->velocity - solve->coarse_run.velocity);
-  if (!solve->status && run->steady.kind == STRUT_MOTION_PERIODIC &&
-      apart <= AGREE * accuracy->target * strut_accuracy_velocity_scale(accuracy, run->velocity))
-    strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK, apart + run->steady.interval);
+  strut_orbit_solve_accept_last_run(solve, STRUT_ORBIT_STUCK, apart + run->steady.interval);
+  if (strut_orbit_solve_error_share(solve, solve->answer) <= 1.0) return;
+  solve->answer = STRUT_ORBIT_NONE;
+  solve->error = HUGE_VAL;
 }
 
 void strut_orbit_solve_confirm_creep(strut_orbit_solve *solve) {
@@ -325,22 +344,6 @@ static void explain_orbit(const strut_orbit_solve *solve, strut_accuracy_summary
   }
 }
 
-/*
- * Estimated error of the velocity [m/s]. A first correction is not known better than the fixed point it
- * starts from was sought.
- */
-static double estimate_error(const strut_orbit_solve *solve) {
-  double size = strut_accuracy_velocity_scale(solve->a, solve->orbit.velocity);
-  double method = solve->reference.tolerance / STRUT_TOLERANCE_PER_ERROR / 3.0 * size;
-  if (solve->answer >= STRUT_ORBIT_IRREGULAR) return solve->error;
-  double error = fmax(solve->error, solve->apart) + method;
-  if (solve->answer == STRUT_ORBIT_CORRECTED)
-    error += STRUT_FIXED_POINT_PART * solve->a->target * size;
-  if (solve->answer == STRUT_ORBIT_COARSE)
-    error += fabs(solve->orbit.velocity - solve->coarse_run.velocity);
-  return error;
-}
-
 /* The force evaluations of all parts of the answer. */
 static int64_t sum_evaluations(const strut_orbit_solve *solve) {
   int64_t coarse = solve->coarse_run.spent.evaluations;
@@ -363,16 +366,6 @@ static void tell_whole_motion(const strut_orbit_solve *solve, const strut_summar
   summary->steady.periods = llround(before / solve->coarse_map.period);
 }
 
-/* Corrections of orbits to which a transient returns slowly were too small by up to a fifth of the estimate. */
-static const double SLOW_RETURN = 1.3;
-
-/* The relative error to state, which does not exceed the wanted one where the estimate is below that. */
-static double state_error(const strut_orbit_solve *solve, double velocity) {
-  double error = estimate_error(solve) / strut_accuracy_velocity_scale(solve->a, velocity);
-  if (solve->answer >= STRUT_ORBIT_IRREGULAR) return error;
-  return fmin(SLOW_RETURN * error, fmax(error, solve->a->target));
-}
-
 void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orbit) {
   strut_accuracy *accuracy = solve->a;
   strut_summary *summary = accuracy->summary;
@@ -387,7 +380,7 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
       ran_on ? solve->last_run.velocity_spread : solve->coarse_run.velocity_spread;
   summary->settle_time = solve->coarse_run.settle_time;
   summary->steady = ran_on ? solve->last_run.steady : solve->coarse_run.steady;
-  double error = state_error(solve, summary->velocity);
+  double error = accuracy->target * strut_orbit_solve_error_share(solve, solve->answer);
   summary->steady.interval = error * strut_accuracy_velocity_scale(accuracy, summary->velocity);
   tell_whole_motion(solve, orbit, summary);
   if (solve->mean.periods > 0) summary->window = solve->last_run.window; /* that of the mean */
@@ -409,4 +402,9 @@ void strut_orbit_solve_report(strut_orbit_solve *solve, const strut_summary *orb
   double known = solve->answer == STRUT_ORBIT_CREEPING ? 0.0 : summary->accuracy.expected;
   summary->accuracy.kept = strut_accuracy_is_kept(!solve->mean.disputed, known, accuracy->target);
   explain_orbit(solve, &summary->accuracy);
+  char *why = summary->accuracy.why;
+  size_t length = strlen(why);
+  if (solve->followed)
+    snprintf(why + length, sizeof summary->accuracy.why - length,
+             "; adaptive followed the fast start");
 }

@@ -60,7 +60,8 @@ typedef struct strut_orbit_solve {
   int64_t until_steady; /* evaluations of the coarse map up to its fixed point */
   int64_t counted;      /* evaluations of the present maps already in a->used */
   strut_orbit_answer answer;
-  bool tightened;         /* the reference tolerance was reduced for a sensitive orbit */
+  bool tightened; /* the reference tolerance was reduced for a sensitive orbit */
+  bool followed;  /* the coarse run is one of the reference method: its start was too fast */
   strut_summary last_run; /* the run that gave the answer, if any */
   strut_arena arena;
   double finer; /* how often the coarse map's step is in the first coarse one [1] */
@@ -99,8 +100,11 @@ bool strut_orbit_solve_check_maps(strut_orbit_solve *solve, strut_status status)
 /** A state (both) in the arena; NULL: out of memory, which the status says. */
 double *strut_orbit_solve_array(strut_orbit_solve *solve);
 
-/** Error of the orbit velocity over the wanted error [1]. */
-double strut_orbit_solve_error_share(const strut_orbit_solve *solve);
+/**
+ * The error to state of an answer, over the wanted one [1]: that of the orbit's velocity, and what the method, the fixed
+ * point and a coarse orbit that stays as it is add. It is accepted up to 1.
+ */
+double strut_orbit_solve_error_share(const strut_orbit_solve *solve, strut_orbit_answer answer);
 /**
  * Runs the reference method for at most `periods` until it is steady: from the orbit or, where the
  * answer depends on history, from the start of the scene. Fills solve->last_run; sets solve->answer

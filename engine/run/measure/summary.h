@@ -114,6 +114,8 @@ typedef struct strut_steady_summary {
   double interval; /* half-width of the confidence interval of the velocity [m/s] */
   double residual; /* change of the shape over one repetition, relative to the shape's motion */
   double left;     /* of a decay: changes still to come, over that of one repetition [1] */
+  double motion,
+      fastest; /* range of the shape within a period; its largest change over one so far [1] */
   /* of a motion that has not repeated itself: the mean velocity over the latter half of the run, and its 95 % confidence
      interval by eight batches [m/s]; INFINITY of a run that was too short */
   double mean, scatter;

@@ -406,6 +406,9 @@ bool strut_steady_detector_period(const strut_state *state, double x,
     detector->latest.change[k][now % STRUT_RING] =
         fabs(mean_velocity(detector, now, n) - mean_velocity(detector, now - n, n));
   }
+  if (now > 0)
+    detector->result.fastest =
+        fmax(detector->result.fastest, detector->latest.residual[0][now % STRUT_RING]);
   if (!detector->known) add_mark(detector, now, x);
   for (int k = 0; k < STRUT_REPEATS && !detector->known; k++)
     detector->known = repeats_itself(detector, now, k);
@@ -419,6 +422,7 @@ bool strut_steady_detector_period(const strut_state *state, double x,
 
 void strut_steady_detector_finish(strut_steady_detector *detector, strut_summary *summary) {
   if (!detector->known) judge_irregular(detector);
+  detector->result.motion = detector->latest.amplitude;
   summary->steady = detector->result;
   if (!detector->known) {
     summary->steady.periods = detector->latest.seen > 0 ? detector->latest.seen - 1 : 0;
