@@ -30,6 +30,9 @@ static const double PLACED = 0.5, BETTER = 0.99;
 static const double FALL = 0.05; /* of a rise to an end of an interval: it falls */
 enum { STEPS_BESIDE = 6, PACES = 16, VAIN = 8 };
 
+/* A fit with the best one's values, but another delay, is kept where no other is this near to it, in parts of the rise. */
+static const double HANDICAP = 2.0;
+
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
@@ -283,11 +286,11 @@ static bool walk(const fitting *self, strut_fit_case *one, size_t i, double *par
   return lowest < HUGE_VAL;
 }
 
-/* Has a fit the values of the best one, up to their intervals? */
-static bool is_best(const fitting *self, const double *parameters) {
+/* Has a fit those of the best one's parameters from `first` on, up to their intervals? */
+static bool is_best(const fitting *self, const double *parameters, size_t first) {
   size_t n = self->layout->parameters;
   bool same = true;
-  for (size_t i = self->layout->aligned_count; i < n; i++)
+  for (size_t i = first; i < n; i++)
     same = same && fabs(parameters[i] - self->best[i]) <=
                        sqrt(self->rise * self->spectrum.covariance[i * n + i]);
   return same;
@@ -311,8 +314,10 @@ static strut_status fit_beside(const fitting *self, strut_fit_case *one, size_t 
       break;
     status = fit_again(self, one, at, &latest);
     vain = latest.sum < REACH * self->least ? 0 : vain + 1;
-    if (!(latest.sum < least) || is_best(self, at)) continue;
-    least = latest.sum, *solution = latest;
+    bool values = is_best(self, at, self->layout->aligned_count);
+    double sum = latest.sum + (values ? HANDICAP * self->rise : 0.0);
+    if (!(sum < least) || is_best(self, at, 0)) continue;
+    least = sum, *solution = latest;
     memcpy(parameters, at, bytes);
   }
   return status;
@@ -407,9 +412,8 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
   const strut_fit_layout *layout = self->layout;
   const strut_sweep_plan *plan = layout->plan;
   strut_result_slot slot;
-  size_t variables = layout->fit->variable_count;
   row->parameters = strut_arena_allocate(&self->result->arena, layout->parameters, sizeof(double));
-  row->values = strut_arena_allocate(&self->result->arena, variables, sizeof(double));
+  row->values = strut_arena_allocate(&self->result->arena, layout->parameters, sizeof(double));
   if (!row->parameters || !row->values) return strut_no_memory(self->points.error, "");
   if (!strut_slots_get(self->points.slots, point, &slot))
     return strut_fail(self->points.error, STRUT_FILE_TROUBLE, "row %lld of the fit is missing",
@@ -421,11 +425,10 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
     if (strcmp(end, strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
-  memcpy(row->values, slot.numbers + own, variables * sizeof(double));
   for (size_t i = 0; i < layout->parameters; i++) {
-    size_t k = i - layout->aligned_count;
-    row->parameters[i] = strut_fit_parameter(
-        layout, i, i < layout->aligned_count ? numbers[NUMBERS + i] : row->values[k]);
+    bool aligned = is_aligned(layout, i);
+    row->values[i] = aligned ? numbers[NUMBERS + i] : slot.numbers[own + i - layout->aligned_count];
+    row->parameters[i] = strut_fit_parameter(layout, i, row->values[i]);
   }
   return STRUT_OK;
 }
@@ -576,6 +579,7 @@ static bool fill_estimates(fitting *self) {
     *estimate = (strut_fit_estimate){.name = strut_arena_text(&result->arena, name, strlen(name)),
                                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
                                      .value = value,
+                                     .also = (double)NAN,
                                      .error = slope * error * result->scale};
     estimate->low = estimate->linear_low = value - slope * error * half;
     estimate->high = estimate->linear_high = value + slope * error * half;
