@@ -63,15 +63,12 @@ typedef struct strut_beyond {
   double farthest;     /* of them, by magnitude */
 } strut_beyond;
 /**
- * The limit of a scale for (count) magnitudes, which are sorted, beside `other` that it has to hold: the
- * largest is left out where it exceeds four times all smaller ones, and so on, up to `share` of them.
+ * The limit of a scale for (count) magnitudes, which are sorted, beside `other` that it has to hold: up to `share` of
+ * them are left out where the others take less than a quarter of it.
  */
 STRUT_API double strut_limit_without_outliers(double *magnitudes, size_t count, double other,
                                               double share, strut_beyond *beyond);
-/**
- * Narrows *low and *high to the values, which are sorted, without a twentieth at most of them where those
- * take more than three quarters of the range. Values that are not finite do not count.
- */
+/** Likewise of values, of which a twentieth at most is left out, to both sides. Those that are not finite do not count. */
 STRUT_API void strut_range_without_outliers(double *values, size_t count, double *low, double *high,
                                             strut_beyond *beyond);
 enum { STRUT_BEYOND_TEXT = 120 };

@@ -158,42 +158,44 @@ static size_t sort_finite(double *values, size_t count) {
   return kept;
 }
 
+/*
+ * Narrows a range to the shortest one of all values but that share of them, if it is a small part of the whole. Of the
+ * rest, those stay that are within half of it beside it. That of magnitudes begins at 0 and holds `other`.
+ */
+static void leave_out(double *values, size_t count, double share, bool magnitudes, double other,
+                      double *low, double *high, strut_beyond *beyond) {
+  size_t kept = sort_finite(values, count), most = (size_t)(share * (double)kept);
+  double least = HUGE_VAL, core[2] = {0};
+  *beyond = (strut_beyond){0};
+  if (!kept) return;
+  for (size_t below = 0; below <= (magnitudes ? 0 : most); below++) { /* the others above */
+    double from = magnitudes ? 0.0 : values[below];
+    double to = fmax(values[kept - 1 - (most - below)], other);
+    if (to - from < least) least = to - from, core[0] = from, core[1] = to;
+  }
+  double largest = fmax(values[kept - 1], other);
+  double whole = largest - (magnitudes ? 0.0 : values[0]);
+  if (magnitudes) *high = largest;
+  if (!(least < (1 - MOST_OF_RANGE) * whole) || !(least > 0)) return;
+  *low = core[0], *high = core[1];
+  for (size_t i = 0; i < kept; i++) {
+    bool below = values[i]<core[0] - 0.5 * least, above = values[i]> core[1] + 0.5 * least;
+    beyond->below += below, beyond->above += above;
+    if (!below && !above) *low = fmin(*low, values[i]), *high = fmax(*high, values[i]);
+    if ((below || above) && fabs(values[i]) > fabs(beyond->farthest)) beyond->farthest = values[i];
+  }
+}
+
 double strut_limit_without_outliers(double *magnitudes, size_t count, double other, double share,
                                     strut_beyond *beyond) {
-  size_t kept = sort_finite(magnitudes, count), most = (size_t)(share * (double)kept);
-  *beyond = (strut_beyond){0};
-  if (!kept) return other;
-  for (; beyond->above < most && kept > 1; kept--) {
-    double rest = fmax(magnitudes[kept - 2], other);
-    if (!(magnitudes[kept - 1] * (1 - MOST_OF_RANGE) > rest) || !(rest > 0)) break;
-    if (!beyond->above++) beyond->farthest = magnitudes[kept - 1];
-  }
-  return fmax(magnitudes[kept - 1], other);
+  double low = 0.0, high = other;
+  leave_out(magnitudes, count, share, true, other, &low, &high, beyond);
+  return high;
 }
 
 void strut_range_without_outliers(double *values, size_t count, double *low, double *high,
                                   strut_beyond *beyond) {
-  size_t kept = sort_finite(values, count), most = (size_t)(FEW * (double)kept), best = 0;
-  double least = HUGE_VAL;
-  *beyond = (strut_beyond){0};
-  if (!kept) return;
-  for (size_t below = 0; below <= most; below++) { /* so many at the lower end, the others above */
-    double range = values[kept - 1 - (most - below)] - values[below];
-    if (range < least) least = range, best = below;
-  }
-  double whole = values[kept - 1] - values[0];
-  if (!(least < (1 - MOST_OF_RANGE) * whole) || !(least > 0)) return;
-  /* The rest of the values decides; of those left out, which still fit into its neighbourhood stay. */
-  *low = values[best], *high = values[kept - 1 - (most - best)];
-  for (size_t i = best; i-- > 0 && values[i] >= *low - 0.5 * least;) *low = values[i];
-  for (size_t i = kept - (most - best); i < kept && values[i] <= *high + 0.5 * least; i++)
-    *high = values[i];
-  for (size_t i = 0; i < kept; i++) {
-    if (values[i] >= *low && values[i] <= *high) continue;
-    beyond->below += values[i] < *low;
-    beyond->above += values[i] > *high;
-    if (fabs(values[i]) > fabs(beyond->farthest)) beyond->farthest = values[i];
-  }
+  leave_out(values, count, FEW, false, -HUGE_VAL, low, high, beyond);
 }
 
 const char *strut_beyond_text(const strut_beyond *beyond, const char *what, const char *unit,

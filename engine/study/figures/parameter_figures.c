@@ -69,7 +69,8 @@ static void add_residuals(strut_figure *figure, const strut_fit_result *result, 
 
 /* The least sum over a parameter: its ends, and the parabola of the standard error. */
 static void add_profile(strut_figure *figure, const strut_fit_result *result, size_t k) {
-  const strut_fit_estimate *e = &result->estimates[result->aligned_count + k];
+  size_t own = result->aligned_count + k;
+  const strut_fit_estimate *e = &result->estimates[own];
   const strut_fit_row *ends = &result->ends[2 * k];
   double best = result->starts[result->best].sum, variance = result->scale * result->scale;
   strut_panel *panel = strut_add_panel(figure);
@@ -82,14 +83,15 @@ static void add_profile(strut_figure *figure, const strut_fit_result *result, si
     strut_add_point(figure, line, e->value + z * e->error, z * z);
   }
   for (int side = 0; side < 2; side++) {
-    double way = ends[side].values[k] - e->value, rise = (ends[side].sum - best) / variance;
+    double way = ends[side].values[own] - e->value, rise = (ends[side].sum - best) / variance;
     strut_series *profile = strut_add_series(figure, panel, "through the ends of the profile");
     profile->look = 0, profile->markers = STRUT_MARKERS_NONE;
     for (int i = 0; i < CURVE && isfinite(rise); i++) {
       double part = i / (CURVE - 1.0);
       strut_add_point(figure, profile, e->value + part * way, part * part * rise);
     }
-    if (isfinite(rise)) strut_add_mark(figure, panel, ends[side].values[k], rise, NULL)->dot = true;
+    if (isfinite(rise))
+      strut_add_mark(figure, panel, ends[side].values[own], rise, NULL)->dot = true;
   }
 }
 

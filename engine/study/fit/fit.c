@@ -30,6 +30,9 @@ static const double PLACED = 0.5, BETTER = 0.99;
 static const double FALL = 0.05; /* of a rise to an end of an interval: it falls */
 enum { STEPS_BESIDE = 6, PACES = 16, VAIN = 8 };
 
+/* A fit with the best one's values, but another delay, is kept where no other is this near to it, in parts of the rise. */
+static const double HANDICAP = 2.0;
+
 /* An end of a profile is found to this part of its distance; in so many fits, at most. */
 static const double FOUND = 0.01;
 enum { MOST_FITS = 12 };
@@ -283,11 +286,11 @@ static bool walk(const fitting *self, strut_fit_case *one, size_t i, double *par
   return lowest < HUGE_VAL;
 }
 
-/* Has a fit the values of the best one, up to their intervals? */
-static bool is_best(const fitting *self, const double *parameters) {
+/* Has a fit those of the best one's parameters from `first` on, up to their intervals? */
+static bool is_best(const fitting *self, const double *parameters, size_t first) {
   size_t n = self->layout->parameters;
   bool same = true;
-  for (size_t i = self->layout->aligned_count; i < n; i++)
+  for (size_t i = first; i < n; i++)
     same = same && fabs(parameters[i] - self->best[i]) <=
                        sqrt(self->rise * self->spectrum.covariance[i * n + i]);
   return same;
@@ -311,8 +314,10 @@ static strut_status fit_beside(const fitting *self, strut_fit_case *one, size_t 
       break;
     status = fit_again(self, one, at, &latest);
     vain = latest.sum < REACH * self->least ? 0 : vain + 1;
-    if (!(latest.sum < least) || is_best(self, at)) continue;
-    least = latest.sum, *solution = latest;
+    bool values = is_best(self, at, self->layout->aligned_count);
+    double sum = latest.sum + (values ? HANDICAP * self->rise : 0.0);
+    if (!(sum < least) || is_best(self, at, 0)) continue;
+    least = sum, *solution = latest;
     memcpy(parameters, at, bytes);
   }
   return status;
@@ -339,10 +344,6 @@ static strut_status fit_row(const fitting *self, strut_fit_case *one, row_kind w
   const strut_fit_layout *layout = self->layout;
   *solution = (strut_fit_solution){.end = STRUT_FIT_NONE, .sum = (double)NAN};
   if (what.kind == START) return fit_start(one, (int64_t)what.item, parameters, solution);
-  strut_fit_choose_start(layout, 0, parameters);
-  bool vain =
-      what.kind == BESIDE ? self->result->settled : self->unexplained && what.kind != WITHOUT;
-  if (!self->best || vain) return STRUT_OK;
   if (what.kind == BESIDE) return fit_beside(self, one, what.item, parameters, solution);
   if (what.kind != WITHOUT)
     return find_profile_end(self, one, layout->aligned_count + what.item,
@@ -402,18 +403,18 @@ static void compute_row(void *context, strut_sweep_job *job, int64_t point) {
   strut_fit_case_free(&one);
 }
 
-/* Reads a row back. */
-static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *row) {
+/* Reads a row back; one that was not needed is empty. False: memory is out. */
+static bool read_row(const fitting *self, int64_t point, strut_fit_row *row) {
   const strut_fit_layout *layout = self->layout;
   const strut_sweep_plan *plan = layout->plan;
   strut_result_slot slot;
-  size_t variables = layout->fit->variable_count;
-  row->parameters = strut_arena_allocate(&self->result->arena, layout->parameters, sizeof(double));
-  row->values = strut_arena_allocate(&self->result->arena, variables, sizeof(double));
-  if (!row->parameters || !row->values) return strut_no_memory(self->points.error, "");
-  if (!strut_slots_get(self->points.slots, point, &slot))
-    return strut_fail(self->points.error, STRUT_FILE_TROUBLE, "row %lld of the fit is missing",
-                      (long long)point);
+  size_t n = layout->parameters;
+  *row = (strut_fit_row){.end = STRUT_FIT_NONE, .sum = (double)NAN};
+  row->parameters = strut_arena_allocate(&self->result->arena, 2 * n, sizeof(double));
+  if (!row->parameters) return false;
+  row->values = row->parameters + n;
+  for (size_t i = 0; i < n; i++) row->values[i] = (double)NAN;
+  if (!strut_slots_get(self->points.slots, point, &slot)) return true;
   size_t first = plan->axis_columns, own = strut_slot_place(plan->columns, layout->fit->column);
   const double *numbers = slot.numbers + strut_slot_place(plan->columns, first + WORDS);
   const char *end = slot.words[strut_slot_place(plan->columns, first + END)];
@@ -421,13 +422,12 @@ static strut_status read_row(const fitting *self, int64_t point, strut_fit_row *
     if (strcmp(end, strut_fit_ends[k]) == 0) row->end = (strut_fit_end)k;
   row->sum = numbers[SUM];
   row->used = (int64_t)numbers[USED], row->evaluations = (int64_t)numbers[EVALUATIONS];
-  memcpy(row->values, slot.numbers + own, variables * sizeof(double));
-  for (size_t i = 0; i < layout->parameters; i++) {
-    size_t k = i - layout->aligned_count;
-    row->parameters[i] = strut_fit_parameter(
-        layout, i, i < layout->aligned_count ? numbers[NUMBERS + i] : row->values[k]);
+  for (size_t i = 0; i < n; i++) {
+    bool aligned = is_aligned(layout, i);
+    row->values[i] = aligned ? numbers[NUMBERS + i] : slot.numbers[own + i - layout->aligned_count];
+    row->parameters[i] = strut_fit_parameter(layout, i, row->values[i]);
   }
-  return STRUT_OK;
+  return true;
 }
 
 strut_status strut_fit_add_columns(strut_sweep_plan *plan, const strut_fit_series **at,
@@ -469,12 +469,13 @@ static int64_t count_rows(void *context) {
   return 0;
 }
 
-/* Computes the rows of the next stage, or waits until other workers have, and reads them. */
-static strut_status run_stage(fitting *self, size_t count) {
-  self->first += self->count, self->count = (int64_t)count;
-  strut_status status = strut_points_complete(&self->points, count_rows);
-  for (int64_t i = self->first; i < self->first + self->count && !status; i++)
-    status = read_row(self, i, &self->result->starts[i]);
+/* Computes rows from `first` on, or waits until other workers have, unless they are not needed; and reads them. */
+static strut_status run_stage(fitting *self, size_t first, size_t count, bool needed) {
+  self->first = (int64_t)first, self->count = (int64_t)count;
+  strut_status status = needed ? strut_points_complete(&self->points, count_rows) : STRUT_OK;
+  for (size_t i = first; i < first + count && !status; i++)
+    if (!read_row(self, (int64_t)i, &self->result->starts[i]))
+      status = strut_no_memory(self->points.error, "");
   return status;
 }
 
@@ -576,6 +577,7 @@ static bool fill_estimates(fitting *self) {
     *estimate = (strut_fit_estimate){.name = strut_arena_text(&result->arena, name, strlen(name)),
                                      .unit = strut_arena_text(&result->arena, unit, strlen(unit)),
                                      .value = value,
+                                     .also = (double)NAN,
                                      .error = slope * error * result->scale};
     estimate->low = estimate->linear_low = value - slope * error * half;
     estimate->high = estimate->linear_high = value + slope * error * half;
@@ -587,8 +589,8 @@ static bool fill_estimates(fitting *self) {
           covariance[i * n + j] / (error * sqrt(covariance[j * n + j]));
     const strut_fit_row *ends_of = i < first ? NULL : &result->ends[2 * (i - first)];
     if (!ends_of) continue;
-    estimate->low = strut_fit_value(layout, i, ends_of[0].parameters[i]);
-    estimate->high = strut_fit_value(layout, i, ends_of[1].parameters[i]);
+    estimate->low = ends_of[0].values[i];
+    estimate->high = ends_of[1].values[i];
     estimate->open_low = ends_of[0].end != STRUT_FIT_CONVERGED;
     estimate->open_high = ends_of[1].end != STRUT_FIT_CONVERGED;
     estimate->at_bound =
@@ -603,22 +605,23 @@ static strut_status run_stages(fitting *self) {
   const strut_study_fit *fit = self->layout->fit;
   strut_fit_result *result = self->result;
   size_t starts = result->start_count, beside = fit->beside_count;
-  size_t profiles = 2 * fit->variable_count;
-  size_t all = starts + STRUT_FIT_ROUNDS * beside + profiles + fit->omission_count;
-  result->starts = strut_arena_allocate(&result->arena, all, sizeof *result->starts);
+  size_t profiles = 2 * fit->variable_count, ends = starts + STRUT_FIT_ROUNDS * beside;
+  result->starts = strut_arena_allocate(&result->arena, ends + profiles + fit->omission_count,
+                                        sizeof *result->starts);
   if (!result->starts) return strut_no_memory(self->points.error, "");
-  strut_status status = run_stage(self, starts);
+  result->ends = result->starts + ends;
+  result->omissions = result->ends + profiles;
+  strut_status status = run_stage(self, 0, starts, true);
   if (!status) status = find_best(self, starts);
-  for (int round = 0; round < STRUT_FIT_ROUNDS && !status; round++) {
-    size_t best = result->best;
-    status = run_stage(self, beside);
+  for (int round = 0; round < STRUT_FIT_ROUNDS && !status && !result->settled; round++) {
+    size_t best = result->best, all = starts + result->beside_count;
+    status = run_stage(self, all, beside, result->found);
     result->beside_count += beside;
-    if (!status) status = find_best(self, starts + result->beside_count);
+    if (!status) status = find_best(self, all + beside);
     result->settled = result->best == best;
   }
-  result->ends = result->starts + starts + result->beside_count;
-  result->omissions = result->ends + profiles;
-  if (!status) status = run_stage(self, profiles + fit->omission_count);
+  if (!status) status = run_stage(self, ends, profiles, result->found && !self->unexplained);
+  if (!status) status = run_stage(self, ends + profiles, fit->omission_count, result->found);
   bool fine = status || !result->found ||
               (fill_estimates(self) && strut_fit_judge(self->layout, &self->spectrum, result));
   return fine ? status : strut_no_memory(self->points.error, "");

@@ -39,6 +39,7 @@ typedef struct strut_fit_estimate {
   bool open_low, open_high;       /* the profile has no end there, or none is known */
   bool at_bound;                  /* the value is an end of its range */
   double from, to;                /* its range */
+  double also; /* of a delay: another one that fits as well; NAN: there is none */
   strut_fit_verdict verdict;
 } strut_fit_estimate;
 
@@ -48,7 +49,7 @@ typedef struct strut_fit_row {
   double sum; /* of squared residuals */
   int64_t used, evaluations;
   double *parameters; /* (parameters) of the problem */
-  double *values;     /* (variables) SI */
+  double *values;     /* (parameters) of them, SI */
   bool agrees;        /* with the best */
 } strut_fit_row;
 

@@ -27,6 +27,10 @@ static const double AWAY = 2.0;
 /* There may be many such fits: one is left out only if its sum excludes it more surely than an interval has to. */
 static const double ELSEWHERE = 0.995;
 
+/* Residuals too large show a wrong model only where so many starts, and this part of them, end at the best fit. */
+enum { SEVERAL = 2 };
+static const double MANY = 0.25;
+
 /* Along a direction with this standard deviation, in parts of ranges, nothing is determined. */
 static const double WIDE = 0.25;
 
@@ -92,10 +96,9 @@ static const char *find_flaw(strut_fit_result *result) {
     if (strut_fit_is_unexplained(square, freedom))
       flaw = strut_arena_format(&result->arena,
                                 "the residuals%s%.40s%s are %.3g times the noise: chi square %.4g "
-                                "with %.0f degrees of freedom%s",
+                                "with %.0f degrees of freedom",
                                 of ? " of '" : "", of ? of->match->name : "", of ? "'" : "",
-                                sqrt(square / freedom), square, freedom,
-                                result->agreeing > 1 ? "" : "; only one start ends there");
+                                sqrt(square / freedom), square, freedom);
   }
   for (size_t m = 0; m < result->fit->match_count && flaw && !*flaw; m++)
     if (fabs(result->residuals[m].lag) > CORRELATED && result->scale > STRUT_FIT_EXACT)
@@ -194,22 +197,40 @@ static bool find_directions(const strut_fit_layout *layout, const strut_fit_spec
 
 /* ---- starts ---- */
 
-/* Is a fit that is about as good as the best one another answer? What is not determined may be anywhere. */
-static bool is_another(const strut_fit_result *result, const strut_fit_row *row) {
-  const strut_fit_estimate *estimate = result->estimates + result->aligned_count;
-  for (size_t k = 0; k < result->variable_count; k++, estimate++) {
-    double half = 0.5 * (estimate->high - estimate->low);
-    if (estimate->verdict == STRUT_FIT_IDENTIFIED &&
-        fabs(row->values[k] - estimate->value) > AWAY * half)
-      return true;
+/* Is estimate i of a row surely another than that of the best fit? What is not determined may be anywhere. */
+static bool differs(const strut_fit_result *result, const strut_fit_row *row, size_t i) {
+  const strut_fit_estimate *estimate = &result->estimates[i];
+  double half = 0.5 * (estimate->high - estimate->low);
+  return estimate->verdict == STRUT_FIT_IDENTIFIED &&
+         fabs(row->values[i] - estimate->value) > AWAY * half;
+}
+
+/* Is a fit that is about as good as the best one another answer? If only its delays are others, the nearest are kept. */
+static bool is_another(const strut_fit_layout *layout, strut_fit_result *result,
+                       const strut_fit_row *row) {
+  for (size_t i = layout->aligned_count; i < layout->parameters; i++)
+    if (differs(result, row, i)) return true;
+  for (size_t i = 0; i < layout->aligned_count; i++) {
+    strut_fit_estimate *estimate = &result->estimates[i];
+    double far = fabs(row->values[i] - estimate->value);
+    if (layout->aligned[i].what == STRUT_FIT_DELAY && differs(result, row, i) &&
+        !(far >= fabs(estimate->also - estimate->value)))
+      estimate->also = row->values[i];
   }
   return false;
 }
 
-/* Why starts disagree; "": they agree. `rise`: of the sum at an end of an interval. */
-static const char *compare_starts(double rise, strut_fit_result *result) {
-  double least = result->starts[result->best].sum;
-  double elsewhere = gsl_cdf_chisq_Pinv(ELSEWHERE, 1.0) * result->scale * result->scale;
+/*
+ * Why starts disagree; "": they agree. Sums of fits that do not explain the data, by `flaw`, are as uncertain as they
+ * are large.
+ */
+static const char *compare_starts(const strut_fit_layout *layout, const char *flaw,
+                                  strut_fit_result *result) {
+  double least = result->starts[result->best].sum, freedom = fmax(result->freedom, 1.0);
+  double unit = result->scale * result->scale;
+  if (*flaw) unit = fmax(unit, least / freedom);
+  double rise = gsl_cdf_chisq_Pinv(0.95, 1.0) * unit;
+  double elsewhere = gsl_cdf_chisq_Pinv(ELSEWHERE, 1.0) * unit;
   bool better = !result->settled, known = !isnan(result->chi_square);
   const char *why = "";
   for (size_t i = 0; i < result->start_count + result->beside_count; i++) {
@@ -218,7 +239,7 @@ static const char *compare_starts(double rise, strut_fit_result *result) {
     if (row->sum < least - SAME * rise) better = true;
     double more = row->end == STRUT_FIT_CONVERGED ? elsewhere : rise;
     if (row->end == STRUT_FIT_FAILED || !(row->sum <= least + more)) continue;
-    bool another = is_another(result, row);
+    bool another = is_another(layout, result, row);
     row->agrees = !another && row->sum <= least + SAME * rise;
     result->agreeing += start && row->agrees;
     if (another) why = "a fit with residuals about as small ends elsewhere";
@@ -233,6 +254,33 @@ static const char *compare_starts(double rise, strut_fit_result *result) {
               : "only one start ends at the best fit, and without the noise nothing says that it "
                 "is right";
   return why;
+}
+
+/*
+ * What the starts say of a flaw of the best fit: it may not be the model's where few of them, or none, end there, the
+ * best fit has not converged, or lies where the parameters hardly matter. NULL: memory is out.
+ */
+static const char *qualify_flaw(const char *flaw, strut_fit_result *result, bool *far) {
+  size_t starts = result->start_count, least = starts < SEVERAL ? starts : SEVERAL;
+  bool few = result->agreeing < least || (double)result->agreeing < MANY * (double)starts;
+  bool ended = result->starts[result->best].end == STRUT_FIT_CONVERGED && result->settled;
+  bool flat = true;
+  for (size_t i = result->aligned_count; i < result->parameters; i++)
+    flat = flat && !isfinite(result->estimates[i].error);
+  *far = few || flat || !ended;
+  if (*far)
+    return strut_arena_format(&result->arena,
+                              "%s; %sstarts that end there: %zu of %zu: give more starts or "
+                              "narrower ranges",
+                              flaw,
+                              !ended ? "the method has not converged; "
+                              : flat ? "the parameters hardly matter there; "
+                                     : "",
+                              result->agreeing, starts);
+  return starts > 1
+             ? flaw
+             : strut_arena_format(&result->arena,
+                                  "%s; a single start does not show that none fits better", flaw);
 }
 
 /* ---- verdicts ---- */
@@ -256,7 +304,6 @@ bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *s
                      strut_fit_result *result) {
   size_t first = layout->aligned_count;
   double sum = result->starts[result->best].sum;
-  double rise = gsl_cdf_chisq_Pinv(0.95, 1.0) * result->scale * result->scale;
   result->residuals =
       strut_arena_allocate(&result->arena, layout->fit->match_count, sizeof *result->residuals);
   if (!result->residuals) return false;
@@ -268,11 +315,14 @@ bool strut_fit_judge(const strut_fit_layout *layout, const strut_fit_spectrum *s
   for (size_t i = 0; i < layout->parameters; i++)
     result->estimates[i].verdict = first_verdict(&result->estimates[i]);
   if (!find_directions(layout, spectrum, result)) return false;
-  const char *other = compare_starts(rise, result), *flaw = find_flaw(result);
+  const char *flaw = find_flaw(result);
   if (!flaw) return false;
-  result->reason = *flaw ? flaw : other;
+  bool far = false;
+  result->reason = compare_starts(layout, flaw, result);
+  if (*flaw) result->reason = qualify_flaw(flaw, result, &far);
+  if (!result->reason) return false;
   for (size_t i = first; i < layout->parameters && *result->reason; i++)
-    result->estimates[i].verdict = *flaw ? STRUT_FIT_UNEXPLAINED : STRUT_FIT_DISAGREE;
+    result->estimates[i].verdict = *flaw && !far ? STRUT_FIT_UNEXPLAINED : STRUT_FIT_DISAGREE;
   for (size_t i = first; i < layout->parameters; i++) withdraw(&result->estimates[i]);
   return true;
 }
@@ -327,7 +377,10 @@ STRUT_VALUES_HERE(estimate_values, ESTIMATE, const strut_fit_estimate *e = of->a
   X("name", "", TEXT(e->name), "match and number", .label = {"alignment"})                         \
   X("unit", "", TEXT(e->unit), "of its numbers")                                                   \
   X("value", "", IN(e->unit, e->value), "of the best fit", .label = {""})                          \
-  X("standard_error", "", IN(e->unit, e->error), "by the derivatives", .label = {"standard error"})
+  X("standard_error", "", IN(e->unit, e->error), "by the derivatives",                             \
+    .label = {"standard error"})                                                                   \
+  X("also", "", IF(!isnan(e->also), IN(e->unit, e->also)),                                         \
+    "another delay that fits as well, such as one a period later", .label = {"also fits"})
 STRUT_VALUES_HERE(alignment_values, ALIGNMENT, const strut_fit_estimate *e = of->at)
 
 static const char *unit_of_match(const strut_fit_match *match) {
@@ -357,7 +410,8 @@ static const char *variable_name(const strut_result_object *of, size_t i) {
 
 static strut_value value_of_row(const strut_result_object *of, size_t i) {
   const strut_fit_row *row = of->at;
-  return STRUT_VALUE_AS_CALLED(NULL, result_of(of)->fit->variables[i].unit, row->values[i]);
+  return STRUT_VALUE_AS_CALLED(NULL, result_of(of)->fit->variables[i].unit,
+                               row->values[result_of(of)->aligned_count + i]);
 }
 
 #define ROW(X)                                                                                     \

@@ -39,6 +39,22 @@ static void read_over(strut_study_reader *reader, const strut_slot *over, strut_
 
 /* ---- what is compared ---- */
 
+static const char *match_key(const void *context, size_t i) {
+  (void)context;
+  int first = strut_section_first(STRUT_SECTION_MATCH);
+  return i < (size_t)strut_section_size(STRUT_SECTION_MATCH) ? strut_key_at(first + (int)i)->name
+                                                             : NULL;
+}
+
+/* Is a key the match's own, perhaps misspelt? What is compared has a column or a number, and another name. */
+static bool is_own(const strut_reader *reader, const strut_tree *key) {
+  const strut_data_table *table;
+  if (strut_key_find(STRUT_SECTION_MATCH, key->text) >= 0) return true;
+  if (key->next->kind != STRUT_TREE_SCALAR) return true;
+  return !strchr(key->text, '.') && strut_did_you_mean(key->text, match_key, NULL) &&
+         !strut_data_find(reader->tables, reader->table_count, key->next->text, &table);
+}
+
 /* Divides the mapping of a match into its own keys and the others. */
 static bool divide(strut_study_reader *reader, const strut_tree *map, reading *self) {
   strut_tree *items = strut_reader_allocate(reader->reader, &reader->reader->scratch,
@@ -49,7 +65,7 @@ static bool divide(strut_study_reader *reader, const strut_tree *map, reading *s
   self->own.first = self->rest.first = NULL;
   self->own.count = self->rest.count = 0;
   for (const strut_tree *key = map->first; key; key = key->next->next) {
-    bool own = strut_key_find(STRUT_SECTION_MATCH, key->text) >= 0;
+    bool own = is_own(reader->reader, key);
     items[0] = *key, items[1] = *key->next;
     items[0].next = &items[1], items[1].next = NULL;
     *ends[!own] = items;
