@@ -77,11 +77,11 @@ static inline bool strut_figure_of_search(const strut_study_figure *figure) {
 
 /**
  * Draws a figure of the study as directory/NAME.svg, of its table or of the runs recorded beside it. Of a refined
- * study, maps of the refined axes show the finest grid; refinement may be NULL.
+ * study, maps of the refined axes show the finest grid. `searched`: the result of a study that searches, else NULL.
  */
 strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
                                 const strut_study_figure *figure, const strut_table *table,
-                                const strut_refinement *refinement, strut_error *error);
+                                const strut_search_result *searched, strut_error *error);
 /** Has figures show the axes of the study's table in the units that the study gives them in. */
 void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table);
 /** Draws `best` beside the start of its search into the file `path`. */

@@ -141,7 +141,7 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
     strut_error error = {0};
     if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
     status = strut_sweep_figure(&job->study->plan, job->arguments->output, &study->figures[i],
-                                &table, job->refinement, &error);
+                                &table, job->searched, &error);
     strut_tell_failure(job->arguments->listener, status, &error);
   }
   strut_arena_free(&table.arena);

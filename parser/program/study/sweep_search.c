@@ -27,6 +27,7 @@ static strut_status run_search(strut_study_job *job, const strut_sweep_options *
   how.directory = NULL;
   how.worker = job->shard.index;
   how.workers = job->shard.count;
+  job->searched = &((searched *)context)->found;
   return strut_search_run(&job->study->plan, job->slots, &how, &job->state,
                           &((searched *)context)->found, error);
 }
