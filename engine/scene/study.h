@@ -391,6 +391,7 @@ typedef struct strut_study_figure {
   const char *x, *y, *series, *color, *panels, *difference; /* y: several with commas between */
   const char *doubt;                                        /* of a MAP; NULL: flips */
   const char *band, *only;                                  /* "COLUMN=TEXT", or NULL */
+  const char *low, *high;                                   /* ends of whiskers of LINES, or NULL */
   bool log_x, log_y;
   const char *title;               /* or NULL */
   size_t label_count;              /* 0: by the columns */

@@ -173,8 +173,8 @@ enum {
 typedef struct maker {
   const strut_study_figure *wanted;
   strut_table_marks marks;
-  int x, y[STRUT_MOST_Y], y_count, panel, by, band; /* `by` and `band` of curves */
-  int value, doubt;                                 /* of maps and points */
+  int x, y[STRUT_MOST_Y], y_count, panel, by, band, low, high; /* the last four of curves */
+  int value, doubt;                                            /* of maps and points */
   const char *band_text;
   strut_table_rows rows;
   strut_table_groups panels, curves; /* curves, or categories of a map */
@@ -210,7 +210,7 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
   double value = of->value ? of->value[groups->row[i]] : (double)NAN;
   bool unit = isfinite(value) && (*of->unit || of->shown.name);
   return strut_figure_text(
-      &self->page, "%s%s%s", of->name, between,
+      &self->page, "%s%s%s", of->name, *of->name ? between : "",
       unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
            : groups->name[i]);
 }
@@ -268,15 +268,15 @@ static const char *curve_name(maker *self, size_t curve, int k) {
                            group_text(self, self->by, &self->curves, curve, " "));
 }
 
-/* A bar for each row at the place of its text, `part` of the way through all bars of the place. */
-static void add_bars(maker *self, strut_series *series, int y, const size_t *rows, size_t count,
-                     double part) {
-  const char *const *text = column_of(self, self->x)->text;
-  series->pen = (strut_pen){.width = self->bar, .butt = true};
-  for (size_t i = 0; i < count; i++) {
-    double x = index_of(&self->places, text[rows[i]]) + BARS * (part - 0.5);
-    strut_add_bar(&self->page, series, x, value_of(self, y, rows[i]));
-  }
+/* The point of a row or, at the place of its text, a bar `part` of the way through all bars there. */
+static void add_row(maker *self, strut_series *series, int y, size_t row, double part) {
+  bool bar = self->places.count > 0;
+  double x =
+      bar ? index_of(&self->places, column_of(self, self->x)->text[row]) + BARS * (part - 0.5)
+          : value_of(self, self->x, row);
+  strut_point *point =
+      (bar ? strut_add_bar : strut_add_point)(&self->page, series, x, value_of(self, y, row));
+  point->low = value_of(self, self->low, row), point->high = value_of(self, self->high, row);
 }
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
@@ -290,13 +290,9 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
     if (k == 0) count = rows_of(self, number, curve, row);
     if (k == 0) add_bands(self, row, count, panel);
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
-    if (self->places.count) {
-      add_bars(self, series, self->y[k], row, count, ((double)n + 0.5) / (double)all);
-      series->pen.colour = strut_palette_thing(n);
-    }
-    for (size_t i = 0; i < count && !self->places.count; i++)
-      strut_add_point(&self->page, series, value_of(self, self->x, row[i]),
-                      value_of(self, self->y[k], row[i]));
+    for (size_t i = 0; i < count; i++)
+      add_row(self, series, self->y[k], row[i], ((double)n + 0.5) / (double)all);
+    if (self->places.count) series->pen = (strut_pen){strut_palette_thing(n), self->bar, {0}, true};
   }
   if (!self->places.count) return;
   panel->x.names = self->places.name, panel->x.name_count = self->places.count;
@@ -487,8 +483,8 @@ static strut_status prepare(maker *self) {
       !column_of(self, self->value)->value)
     status = strut_fail(error, STRUT_USAGE, "points are drawn over columns of numbers");
   if (!status)
-    status = strut_table_groups_find(rows, self->panel, STRUT_MOST_PANELS, "panels", &self->panels,
-                                     error);
+    status = strut_table_groups_find(rows, self->panel, STRUT_MOST_TABLE_GROUPS, "panels",
+                                     &self->panels, error);
   if (!status && lines)
     status = strut_table_groups_find(rows, self->by, STRUT_MOST_TABLE_GROUPS, "curves",
                                      &self->curves, error);
@@ -536,6 +532,8 @@ static void find_columns(maker *self, const strut_table *table) {
   self->panel = find_column(table, wanted->panels, NULL);
   self->by = find_column(table, map ? NULL : wanted->series, NULL);
   self->band = find_column(table, map ? NULL : wanted->band, &self->band_text);
+  self->low = find_column(table, wanted->low, NULL);
+  self->high = find_column(table, wanted->high, NULL);
   self->value = find_column(table, map || points ? wanted->color : NULL, NULL);
   self->doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL);
   for (const char *y = wanted->y, *end; y && self->y_count < STRUT_MOST_Y;

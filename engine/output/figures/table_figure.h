@@ -9,7 +9,7 @@
 #include "engine/output/record_files.h"
 #include "engine/scene/study.h"
 
-enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
+enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20 };
 
 /** What a figure of a search shows besides. Zero: all rows, without rings. */
 typedef struct strut_table_marks {

@@ -83,14 +83,14 @@ static void find_rows(searched_rows *rows, const strut_search_result *result) {
 }
 
 /* The table with a further column. */
-static strut_status extend(const strut_table *from, const double *best, const char *unit,
-                           strut_table *to, strut_error *error) {
+static strut_status extend(const strut_table *from, strut_table_column column, strut_table *to,
+                           strut_error *error) {
   to->row_count = from->row_count;
   to->column_count = from->column_count + 1;
   to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
   if (!to->columns) return strut_no_memory(error, "while drawing");
   memcpy(to->columns, from->columns, from->column_count * sizeof *to->columns);
-  to->columns[from->column_count] = (strut_table_column){.name = BEST, .unit = unit, .value = best};
+  to->columns[from->column_count] = column;
   return STRUT_OK;
 }
 
@@ -107,10 +107,11 @@ static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_
                         .shown = strut_arena_allocate(&own.arena, count, sizeof *rows.shown),
                         .marked = strut_arena_allocate(&own.arena, count, sizeof *rows.marked)};
   const char *unit = search->goal.program.unit;
-  strut_status status =
-      rows.best && rows.shown && rows.marked
-          ? extend(table, rows.best, strcmp(unit, "1") == 0 ? "" : unit, &own, error)
-          : strut_no_memory(error, "while drawing");
+  const strut_table_column best = {
+      .name = BEST, .unit = strcmp(unit, "1") == 0 ? "" : unit, .value = rows.best};
+  strut_status status = rows.best && rows.shown && rows.marked
+                            ? extend(table, best, &own, error)
+                            : strut_no_memory(error, "while drawing");
   if (!figure.color) figure.color = "objective";
   if (f->kind == STRUT_FIGURE_BEST) {
     figure.x = "evaluation", figure.y = BEST;
@@ -145,6 +146,60 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
     status = strut_table_draw(&plot, figure, table,
                               (strut_table_marks){.spread = plan->study->refine.depth > 0}, error);
   strut_arena_free(&arena);
+  return status;
+}
+
+/* ---- indices of sensitivity ---- */
+
+/* Rows of indices that have a value, as far as there are panels; who: the parameter, or the measure. */
+static bool choose_indices(const strut_table *table, size_t of, bool one, bool *shown,
+                           const char **who) {
+  const char *const *measure = table->columns[of + 1].text, *const *name = table->columns[of].text;
+  const char *const *parameter = table->columns[of + 2].text;
+  const double *value = table->columns[of + 3].value;
+  size_t panel = 0; /* of the results of a point */
+  bool some = false;
+  for (size_t i = 0; i < table->row_count && value; i++) {
+    panel = strcmp(name[i], name[0]) == 0 ? 0 : panel + (strcmp(name[i], name[i - 1]) != 0);
+    who[i] = *parameter[i] ? parameter[i] : measure[i];
+    shown[i] = isfinite(value[i]) && panel < STRUT_MOST_TABLE_GROUPS &&
+               (strcmp(measure[i], "total") == 0 ||
+                strcmp(measure[i], one ? "first_order" : "share") == 0);
+    some = some || shown[i];
+  }
+  return some;
+}
+
+strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study *study,
+                                      const strut_table *table, bool *drawn, strut_error *error) {
+  static const char *labels[] = {"first order", "total; whiskers: 95 %"};
+  const strut_study_axis *axes = study->axes;
+  size_t of = 0, points = 1, last = study->sensitivity.axis, over = 0;
+  strut_table own = {0};
+  for (size_t i = 0; i < last; i++)
+    over = of, of += axes[i].column_count, points *= (size_t)axes[i].count;
+  bool one = points == 1, numbers = one || !axes[last - 1].columns[0].word;
+  bool *shown = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *shown);
+  const char **who = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *who);
+  const strut_table_column column = {.name = "", .unit = "", .text = who};
+  strut_status status =
+      shown && who ? extend(table, column, &own, error) : strut_no_memory(error, "while drawing");
+  *drawn = !status && numbers && choose_indices(table, of, one, shown, who);
+  if (*drawn) {
+    strut_plot limited = *plot;
+    const strut_study_figure figure = {.x = one ? "parameter" : own.columns[over].name,
+                                       .y = "value",
+                                       .series = one ? "measure" : "",
+                                       .panels = "result",
+                                       .low = one ? "low" : NULL,
+                                       .high = one ? "high" : NULL,
+                                       .label_count = one ? 2 : 0,
+                                       .labels = labels};
+    own.columns[of].name = figure.panels;
+    limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2};
+    status = strut_table_draw(&limited, &figure, &own, (strut_table_marks){.shown = shown}, error);
+  }
+  strut_arena_free(&own.arena);
   return status;
 }
 
