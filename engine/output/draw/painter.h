@@ -53,6 +53,8 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 typedef struct strut_axes {
   strut_axis x, y; /* ranges settled */
   strut_box frame; /* where data go [pt] */
+  double ticks;    /* height of the texts below it [pt] */
+  bool upwards;    /* they are names too wide to stand side by side */
 } strut_axes;
 /** Lays out a frame for settled axes in `box`; panels side by side line up when their boxes do. */
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y);
@@ -83,8 +85,6 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 #define STRUT_BEYOND_SIZE 5.0
 
 /* ---- charts (axes.c, chart.c) ---- */
-
-#define STRUT_LEAST_BAR 4.0 /* wider lines are bars [pt] */
 
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
