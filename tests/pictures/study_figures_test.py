@@ -175,14 +175,30 @@ for figure, wanted in (
         ("{x: variant, y: velocity, x_limits: [2, 1]}", "'x_limits' of figure 'bad' must be two ascending"),
         ("{kind: map, colors: red}", "'colors'"),
         ("{x: mass, y: velocity, band: variant=rst}", "'band' of figure 'bad': 'rst' is no value of 'variant'"),
-        ("{kind: snapshots, only: node}", "'only' of figure 'bad': expects COLUMN=TEXT")):
+        ("{kind: snapshots, only: node}", "'only' of figure 'bad': expects COLUMN=TEXT"),
+        ("{kind: snapshots, only: node=block}", "'node' is recorded; expected an axis"),
+        ("{kind: snapshots, times: []}", "expected a list of times such as [0 s, 20 ms]"),
+        ("{kind: snapshots, times: [3 s]}", "the record goes from 0 s to 1 s"),
+        ("{kind: snapshots, difference: mass}", "'difference' of figure 'bad': it needs two values to compare; 'mass' has 1"),
+        ("{kind: motion, x: time, y: x, only: node=blok}", "no node 'blok'; did you mean 'block'?"),
+        ("{kind: motion, x: time, y: x, only: mass=1 g}",
+         "'1 g' is no value of 'mass'; expected a number as in the table, in kg"),
+        ("{kind: motion, x: time, y: x, from: 2 s}", "'from' of figure 'bad': nothing is recorded there: the record goes"),
+        ("{kind: motion, x: time, y: x, from: 2 ms, to: 2 ms}", "'to' of figure 'bad' must be later than 'from'"),
+        ("{kind: motion, x: time, y: x, from: 2 m}", "expected a time such as '0.1 ms' for 'from' of figure 'bad'"),
+        ("{kind: motion, x: time, y: x, series: node, labels: [a]}", "1 labels for the 2 values of 'node'"),
+        ("{kind: motion, x: time, y: 'x,y', labels: [a]}", "'labels' of figure 'bad': 1 labels for 2 curves"),
+        ("{kind: motion, x: time, y: 'x,time'}", "'time' has another unit (s) than the columns before it (m)"),
+        ("{x: variant, y: 'velocity,mass'}", "'mass' has another unit (kg) than the columns before it (m/s)"),
+        ("{x: variant, y: 'velocity,velocity', labels: [a]}", "1 labels for 2 curves")):
     said = sweep(STUDY + f"  bad: {figure}\n", code=2)
     check(wanted in said and said.startswith("study.yaml:"), f"{figure}: {said}")
 said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n", code=2)
 check("add 'trajectories: yes' to the study" in said and "study.yaml:" in said, said)
-os.rename("out", "before")
-said = sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1)
-check("no run recorded any of this" in said, said)
-said = sweep(STUDY + "  bad: {kind: snapshots, difference: mass}\n", code=1)
-check("'difference' needs an axis of two values; 'mass' has 1" in said, said)
+# Texts that are computed are known at the end.
+os.rename("out", "refused")
+said = sweep(STUDY + "  bad: {x: variant, y: velocity, only: velocity=x}\n", code=2)
+check("figure 'bad': no row of the table has 'x' in column 'velocity'" in said and "study.yaml:" in said, said)
+said = sweep(STUDY + "  bad: {kind: period}\noutput: {channels: [force]}\n", code=2)
+check("'kind' of figure 'bad': the runs record no positions" in said and "study.yaml:" in said, said)
 finish()
