@@ -9,12 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 int strut_table_column_of(const strut_table *table, const char *name, size_t length) {
   for (size_t i = 0; name && i < table->column_count; i++)
     if (strlen(table->columns[i].name) == length &&
         memcmp(table->columns[i].name, name, length) == 0)
       return (int)i;
   return STRUT_NO_COLUMN;
+}
+
+void strut_table_show_unit(strut_table *table, const char *name, strut_file_unit shown) {
+  int column = name ? strut_table_column_of(table, name, strlen(name)) : STRUT_NO_COLUMN;
+  if (column != STRUT_NO_COLUMN) table->columns[column].shown = shown;
 }
 
 bool strut_table_belongs(const strut_table_rows *rows, int column, const char *name, size_t row) {
@@ -160,24 +167,28 @@ strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const cha
 }
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
-static const double BARS = 0.7;                          /* of a place */
+static const double BARS = 0.7,
+                    WIDTH = 1.4; /* of a place; of lines of which some are dashed [pt] */
 enum {
   DIGITS = 9 /* of a group's number */,
   NAME = 46,
   MOST_NAMES = 3 /* bytes and columns of an axis label; more are in the legend */,
-  MOST_CELLS = 4000000
+  MOST_CELLS = 4000000,
+  MOST_MARKS = 40 /* with texts */
 };
 
 /* A figure being filled in. Columns by number. */
 typedef struct maker {
   const strut_study_figure *wanted;
   strut_table_marks marks;
-  int x, y[STRUT_MOST_Y], y_count, panel, by, band, low, high; /* the last four of curves */
-  int value, doubt;                                            /* of maps and points */
+  int x, y[STRUT_MOST_Y], y_count, panel;
+  int by, band, low, high, stable, line, mark, thing; /* of curves */
+  int value, doubt;                                   /* of maps and points */
   const char *band_text;
   strut_table_rows rows;
   strut_table_groups panels, curves; /* curves, or categories of a map */
   strut_table_groups places;         /* along x, of bars; else none */
+  strut_table_groups kinds;          /* of marks */
   size_t deepest;                    /* the most rows of one of them in a curve */
   double *at[2];                     /* of a map: the grid's positions */
   size_t count[2];
@@ -276,15 +287,42 @@ static const char *curve_name(maker *self, size_t curve, int k) {
   bool several = self->y_count > 1;
   if (self->wanted->label_count)
     return self->wanted->labels[curve * (size_t)self->y_count + (size_t)k];
-  if (self->curves.count * (size_t)self->y_count < 2) return NULL;
+  bool kind = self->mark != STRUT_NO_COLUMN && self->by != STRUT_NO_COLUMN &&
+              !column_of(self, self->by)->value;
+  if (self->curves.count * (size_t)self->y_count < 2 && !kind) return NULL;
   if (self->by == STRUT_NO_COLUMN) return column;
   return strut_figure_text(&self->page, "%s%s%s", several ? column : "", several ? ", " : "",
                            group_text(self, self->by, &self->curves, curve, " "));
 }
 
-static void add_row(maker *self, strut_series *series, int y, size_t row, double x) {
+/* A dot in the colour of its kind. */
+static void add_kind(maker *self, strut_panel *panel, size_t row, const strut_point *at) {
+  const char *kind = column_of(self, self->mark)->text[row];
+  const strut_table_column *thing = column_of(self, self->thing);
+  if (!*kind) return;
+  strut_label *mark = strut_add_mark(
+      &self->page, panel, at->x, at->y,
+      strut_figure_text(&self->page, "%s%s%.60s", kind, thing && *thing->text[row] ? " " : "",
+                        thing ? thing->text[row] : ""));
+  mark->dot = true;
+  mark->colour = strut_palette_thing((size_t)index_of(&self->kinds, kind));
+  mark->angle = 0.25 * STRUT_PI;
+}
+
+static void add_row(maker *self, strut_panel *panel, strut_series *series, int y, size_t row,
+                    double x) {
+  const strut_table_column *stable = column_of(self, self->stable);
   strut_point *point = strut_add_point(&self->page, series, x, value_of(self, y, row));
   point->low = value_of(self, self->low, row), point->high = value_of(self, self->high, row);
+  point->unstable = stable && strcmp(stable->text[row], "no") == 0;
+  if (self->mark != STRUT_NO_COLUMN) add_kind(self, panel, row, point);
+}
+
+/* True if a line ends between two rows. */
+static bool is_gap(const maker *self, size_t row, size_t next) {
+  for (int i = 0; i <= self->line; i++)
+    if (strcmp(column_of(self, i)->text[row], column_of(self, i)->text[next]) != 0) return true;
+  return false;
 }
 
 /* A bar for each row at the place of its text: series n beside the others, rows of one text beside each other. */
@@ -300,7 +338,7 @@ static void add_bars(maker *self, strut_panel *panel, strut_series *series, size
     double x = (double)place - 0.5 * BARS + (next[place]++ + 0.5) * series->bar;
     if (is_in_band(self, rows[i]))
       add_band(self, panel, x - 0.5 * series->bar, x + 0.5 * series->bar);
-    add_row(self, series, self->y[n % (size_t)self->y_count], rows[i], x);
+    add_row(self, panel, series, self->y[n % (size_t)self->y_count], rows[i], x);
   }
 }
 
@@ -308,7 +346,7 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
   size_t all = self->curves.count * (size_t)self->y_count, places = self->places.count;
   size_t *row =
       strut_arena_allocate(&self->page.arena, self->rows.table->row_count + 1, sizeof *row);
-  panel->outliers = true;
+  panel->outliers = self->stable == STRUT_NO_COLUMN;
   self->page.failed |= !row;
   for (size_t n = 0, count = 0; n < all && row; n++) {
     size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
@@ -316,13 +354,38 @@ static void add_curves(maker *self, size_t number, strut_panel *panel) {
     if (k == 0 && !places) add_bands(self, row, count, panel);
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
     if (places) add_bars(self, panel, series, n, row, count);
-    for (size_t i = 0; i < count && !places; i++)
-      add_row(self, series, self->y[k], row[i], value_of(self, self->x, row[i]));
+    if (self->stable != STRUT_NO_COLUMN)
+      series->pen = (strut_pen){.colour = strut_palette_thing(n), .width = WIDTH};
+    for (size_t i = 0; i < count && !places; i++) {
+      if (i && is_gap(self, row[i - 1], row[i])) strut_add_gap(&self->page, series);
+      add_row(self, panel, series, self->y[k], row[i], value_of(self, self->x, row[i]));
+    }
   }
   if (!places) return;
   panel->x.names = self->places.name, panel->x.name_count = places;
   panel->x.low = -0.5, panel->x.high = (double)places - 0.5;
   panel->zero = true;
+}
+
+/* Explains dashes and marks; of very many marks there are no texts. */
+static void add_keys(maker *self) {
+  const strut_table_column *stable = column_of(self, self->stable);
+  static const char *const words[] = {"stable", "unstable"};
+  for (int k = 0; k < 2 && stable; k++) {
+    bool some = false;
+    for (size_t i = 0; i < self->rows.table->row_count; i++)
+      some = some || (strcmp(stable->text[i], "no") == 0) == k;
+    strut_pen pen = {.colour = strut_grey(0.2), .width = WIDTH, .dash = {k ? 3 : 0, 2}, .butt = k};
+    if (some) strut_add_key(&self->page, STRUT_KEY_LINE, pen, words[k]);
+  }
+  for (size_t i = 0; i < self->kinds.count; i++)
+    if (*self->kinds.name[i])
+      strut_add_key(&self->page, STRUT_KEY_DOT, (strut_pen){strut_grey(0.1), 0.6, {0}, false},
+                    self->kinds.name[i])
+          ->fill.colour = strut_palette_thing(i);
+  for (size_t i = 0; i < self->page.panel_count; i++)
+    for (size_t k = 0; k < self->page.panels[i].mark_count; k++)
+      if (self->page.panels[i].mark_count > MOST_MARKS) self->page.panels[i].marks[k].text = NULL;
 }
 
 /* ---- points ---- */
@@ -524,11 +587,12 @@ static strut_status prepare(maker *self) {
     strut_table_groups *groups;
   } groups[] = {{bars, self->x, "places", &self->places},
                 {true, self->panel, "panels", &self->panels},
+                {self->mark != STRUT_NO_COLUMN, self->mark, "marks", &self->kinds},
                 {!is_map(self) && !points, self->by, "curves", &self->curves}};
   strut_status status = bars ? STRUT_OK : check_column(self, self->x, NULL);
   for (int k = 0; k < self->y_count && !status; k++) status = check_column(self, self->y[k], first);
   if (!status && points && self->value >= 0) status = check_column(self, self->value, NULL);
-  for (int i = 0; i < 3 && !status; i++)
+  for (size_t i = 0; i < sizeof groups / sizeof *groups && !status; i++)
     if (groups[i].wanted)
       status = strut_table_groups_find(&self->rows, groups[i].column, STRUT_MOST_TABLE_GROUPS,
                                        groups[i].what, groups[i].groups, self->error);
@@ -583,6 +647,10 @@ static void find_columns(maker *self, const strut_table *table) {
   self->band = find_column(table, map ? NULL : wanted->band, &self->band_text);
   self->low = find_column(table, wanted->low, NULL);
   self->high = find_column(table, wanted->high, NULL);
+  self->stable = find_column(table, wanted->stable, NULL);
+  self->line = find_column(table, wanted->line, NULL);
+  self->mark = find_column(table, wanted->mark, NULL);
+  self->thing = find_column(table, wanted->thing, NULL);
   self->value = find_column(table, map || points ? wanted->color : NULL, NULL);
   self->doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL);
   for (const char *y = wanted->y, *end; y && self->y_count < STRUT_MOST_Y;
@@ -616,6 +684,7 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
     m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
   if (!status) status = prepare(&m);
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
+  add_keys(&m);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);
   return status;

@@ -13,15 +13,10 @@
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static int column_of(const strut_table *table, const char *name) {
-  return strut_table_column_of(table, name, name ? strlen(name) : 0);
-}
-
 void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
   for (size_t k = 0; k < strut_grid_columns(plan->study); k++) {
     const strut_study_column *of = strut_grid_column(plan->study, k, NULL);
-    int column = column_of(table, of->name);
-    if (column >= 0) table->columns[column].shown = of->shown;
+    strut_table_show_unit(table, of->name, of->shown);
   }
 }
 

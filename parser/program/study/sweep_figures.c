@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "engine/output/figures/run_figure.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_parts.h"
@@ -329,8 +330,11 @@ static strut_status draw_branches(const strut_study_job *job, strut_error *error
                            .width = PAGE};
   if (!from || !plot.path) return strut_no_memory(error, "");
   strut_status status = strut_table_read(job->arguments->listener, from, &table);
-  strut_sweep_show_units(plan, &table);
-  if (!status) status = strut_follow_points_figure(&plot, plan, &table, error);
+  if (!status) {
+    strut_sweep_show_units(plan, &table);
+    strut_table_show_unit(&table, plan->study->follow->over, plan->study->follow->shown);
+    status = strut_follow_figure(&plot, plan->study->name, plan->axis_columns, &table, error);
+  }
   strut_arena_free(&table.arena);
   return status;
 }
