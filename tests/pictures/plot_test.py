@@ -299,6 +299,13 @@ for name, _, _ in rows:
 plot("same.csv", "--log", "x", "--plot", "a.svg", code=1, err="'gait' holds texts, which have no logarithmic axis")
 plot("two.csv", "--x", "v", "--y", "v,w", "--plot", "a.svg", code=1, err="different units (m/s, J)")
 
+# Charts of a row line up below titles of one line and of two.
+write("titles.csv", "kind,x,y\n" + "".join(f"{name},{x},{x}\n" for name in ("a", "a name for which two lines are needed")
+                                        for x in (1, 2)))
+plot("titles.csv", "--x", "x", "--y", "y", "--panels", "kind", "--plot", "titles.svg")
+middles = [float(box.split()[1]) for box in re.findall(r'<t box="([^"]*)">y</t>', open("titles.svg").read())]
+check(len(middles) == 2 and middles[0] == middles[1], f"titles.svg: labels at {middles}")
+
 # Numbers over texts are bars side by side, as high as the numbers.
 write("bars.csv", "gait,speed [mm/s],side\n" + "".join(f"{g},{v},{s}\n" for g, v, s in (
     ("walk", 2, "a"), ("hop", -4, "a"), ("crawl", 6, "a"), ("walk", 3, "b"), ("hop", 1, "b"))))

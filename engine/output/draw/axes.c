@@ -165,7 +165,7 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TICK = 2.5, GAP = 2.5;
 static const double RIGHT = 10;      /* half of the last tick's text */
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
-static const double UPWARDS = 0.45;  /* of a chart's height, most of names that stand upwards */
+static const double UPWARDS = 120;   /* most of names that stand upwards [pt] */
 
 static double widest_text(strut_canvas *canvas, const strut_tick_set *set) {
   double widest = 0;
@@ -199,7 +199,7 @@ strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, s
   strut_tick_set set;
   strut_axis_ticks(&x, 1, &set);
   axes.upwards = x.name_count && widest_text(canvas, &set) > room / (double)x.name_count - 2;
-  if (axes.upwards) axes.ticks = fmin(widest_text(canvas, &set), UPWARDS * box.height);
+  if (axes.upwards) axes.ticks = fmin(widest_text(canvas, &set), UPWARDS);
   double below = x.names && !x.name_count ? GAP : TICK + GAP + axes.ticks + label;
   double height = fmax(box.height - above - below, 10);
   set = ticks_along_y(&y, height);

@@ -504,17 +504,16 @@ static void draw_data(const chart *self) {
   if (areas) draw_note(self, "areas: ranges of oscillations");
 }
 
-/* A title, centred above the frame; returns its height. */
-static double draw_title(const chart *self, strut_box box, bool draw) {
-  const strut_box *f = &self->axes.frame;
-  const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
-  double height = strut_text_box(self->canvas, self->panel->title, font).height;
-  if (draw) strut_draw_text(self->canvas, f->x + 0.5 * f->width, box.y, self->panel->title, font);
+double strut_chart_title(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool draw) {
+  const strut_box frame = strut_axes_place(canvas, box, panel->x, panel->y).frame;
+  const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = frame.width};
+  double height = strut_text_box(canvas, panel->title, font).height;
+  if (draw) strut_draw_text(canvas, frame.x + 0.5 * frame.width, box.y, panel->title, font);
   return height > 0 ? height + TITLE_GAP : 0;
 }
 
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
-                      strut_arena *arena) {
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, double title, const strut_panel *panel,
+                      bool legend, strut_arena *arena) {
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
@@ -522,7 +521,6 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
   strut_box rest = box;
   c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
-  double title = draw_title(&c, box, false);
   const strut_box key = {c.axes.frame.x + PADDING, rest.y + title + PADDING,
                          fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
   double above = strut_draw_key(canvas, key, items, count, true).height;
@@ -533,7 +531,7 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   rest.y += above, rest.height -= above;
   c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
   if (!place_lines(&c)) return false;
-  draw_title(&c, box, true);
+  strut_chart_title(canvas, box, panel, true);
   draw_data(&c);
   if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;

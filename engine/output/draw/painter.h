@@ -94,9 +94,14 @@ bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
  */
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count);
 size_t strut_panel_legend_room(const strut_panel *panel);
-/** Draws a chart with settled axes in a box, with its legend or without. False: out of memory. */
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
-                      strut_arena *arena);
+/** Height of a chart's title, centred above its frame, and the space below; draws it if `draw`. */
+double strut_chart_title(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool draw);
+/**
+ * Draws a chart with settled axes in a box, below so high a title [pt], with its legend or without. False: out of
+ * memory.
+ */
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, double title, const strut_panel *panel,
+                      bool legend, strut_arena *arena);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
 /**
