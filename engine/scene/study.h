@@ -391,6 +391,9 @@ typedef struct strut_study_figure {
   const char *x, *y, *series, *color, *panels, *difference; /* y: several with commas between */
   const char *doubt;                                        /* of a MAP; NULL: flips */
   const char *band, *only;                                  /* "COLUMN=TEXT", or NULL */
+  /* Of LINES besides, columns, or NULL: ends of whiskers; "no" where a line is dashed; where it or a column before it
+     differs, a line ends; kinds of marks, "" for none, and what they are about. */
+  const char *low, *high, *stable, *line, *mark, *thing;
   bool log_x, log_y;
   const char *title;               /* or NULL */
   size_t label_count;              /* 0: by the columns */

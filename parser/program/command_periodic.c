@@ -6,10 +6,13 @@
 
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
+#include "engine/output/figures/table_figure.h"
+#include "engine/output/result_values.h"
 #include "engine/scene/things.h"
 #include "engine/study/follow/follow_study.h"
 #include "engine/study/sweep/sweep.h"
 #include "parser/program/command/analyses.h"
+#include "parser/program/command/scene_options.h"
 
 #define RANGE .expected = "NAME=LOW..HIGH, such as frequency=8Hz..12Hz"
 
@@ -250,8 +253,18 @@ static bool has_curves(const strut_analysis *analysis, size_t number) {
 static strut_status draw(const strut_analysis *analysis, const strut_plot *plot, size_t number,
                          strut_error *error) {
   bool curves = number == CURVES || (number == FIGURE && has_curves(analysis, CURVES));
-  return (curves ? strut_follow_curves_figure : strut_follow_figure)(plot, result_of(analysis),
-                                                                     error);
+  const strut_follow_result *result = result_of(analysis);
+  strut_table table = {0};
+  char *text = strut_values_csv(curves ? &strut_follow_curves_values : &strut_follow_values,
+                                curves ? "curves.points" : "branches.points", NULL, result, NULL);
+  strut_status status = text ? strut_table_parse(NULL, "", text, strlen(text), &table)
+                             : strut_no_memory(error, "while drawing");
+  strut_table_show_unit(&table, result->name, result->shown);
+  strut_table_show_unit(&table, result->second.name, result->second.shown);
+  if (!status) status = strut_follow_figure(plot, result->title, 0, &table, error);
+  strut_arena_free(&table.arena);
+  strut_release(text);
+  return status;
 }
 
 static const strut_output_file files[] = {

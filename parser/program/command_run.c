@@ -58,7 +58,7 @@ static strut_status check_pictures(run_pictures *pictures, const strut_experimen
   if (pictures->film.path)
     status = strut_film_check(&pictures->film, span.duration - span.record_start, error);
   if (status != STRUT_OK || !pictures->figure.plot.path) return status;
-  return strut_run_figure_check(&pictures->figure, model, error);
+  return strut_run_figure_check(&pictures->figure, model->scene, error);
 }
 
 /* The sink that collects the motion, or NULL where none is needed or *status is an error. */

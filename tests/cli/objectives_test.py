@@ -175,7 +175,8 @@ like: "II"
     base = f"strut: 1\nstudy: s\nmodel: {truss}\naxes: [{{load: [0 N]}}]\n"
     for more, words in (
             ("compute: modes\nkeep: [stiffness]\n", "'stiffness' needs 'stiffness_at'"),
-            ("compute: modes\nkeep: [stiffness]\nstiffness_at: {node: top, direction: 0 deg}\n", "no node 'top'"),
+            ("compute: modes\nkeep: [stiffness]\nstiffness_at: {node: top, direction: 0 deg}\n",
+             "7:22: error: 'stiffness_at' of the study: the model has no node 'top'"),
             ("compute: modes\nstiffness_at: {node: apex, direction: 0 deg}\n", "add it to 'keep'"),
             ("compute: modes\nkeep: [stiffness]\nstiffness_at: {node: apex, direction: 1 m}\n", "expected an angle"),
             ("keep: [shape_distance]\n", "'shape_distance' needs 'shape' of the study, or 'like'"),

@@ -3,6 +3,7 @@
 
 usage: plot_test.py STRUT
 """
+import json
 import math
 import os
 import re
@@ -275,6 +276,29 @@ for per_point, area in ((0.02, False), (0.45, True)):
             lambda x: x < areas[0][0][0] + 8, lambda x: x > max(p[0] for p in areas[0]) - 8))
         grown = (max(right) - min(right)) / (max(left) - min(left))
         check(abs(grown - 1.5) < 0.06, f"fast.svg: the area is {grown} times as high at its end")
+
+# Rows of one text stand side by side; a band is behind their bars; names that are too wide stand upwards.
+rows = [("walk", 1, "I"), ("walk", 2, "II"), ("hop", 3, "I"), ("a long name of it", 4, "I")]
+write("same.csv", "gait,speed [mm/s],state\n" + "".join(f"{g},{v},{s}\n" for g, v, s in rows))
+plot("same.csv", "--band", "state=II", "--width", "column", "--plot", "same.svg")
+plot("same.csv", "--plot", "same.json")
+series = json.load(open("same.json"))["panels"][0]["series"][0]
+check(near(series["x"], (-0.175, 0.175, 1, 2)) and near(series["y"], (1, 2, 3, 4)) and series["bar"] == 0.35,
+      f"same.json: {series}")
+check("state II" in texts("same.svg"), f"same.svg: no band in {texts('same.svg')}")
+boxes = {text: [float(x) for x in box.split()]
+         for box, text in re.findall(r'<t box="(.*?)".*?>(.*?)</t>', open("same.svg").read())}
+for name, _, _ in rows:
+    check(boxes[name][3] > boxes[name][2], f"same.svg: '{name}' lies in {boxes[name]}")
+plot("same.csv", "--log", "x", "--plot", "a.svg", code=1, err="'gait' holds texts, which have no logarithmic axis")
+plot("two.csv", "--x", "v", "--y", "v,w", "--plot", "a.svg", code=1, err="different units (m/s, J)")
+
+# Charts of a row line up below titles of one line and of two.
+write("titles.csv", "kind,x,y\n" + "".join(f"{name},{x},{x}\n" for name in ("a", "a name for which two lines are needed")
+                                        for x in (1, 2)))
+plot("titles.csv", "--x", "x", "--y", "y", "--panels", "kind", "--plot", "titles.svg")
+middles = [float(box.split()[1]) for box in re.findall(r'<t box="([^"]*)">y</t>', open("titles.svg").read())]
+check(len(middles) == 2 and middles[0] == middles[1], f"titles.svg: labels at {middles}")
 
 # Numbers over texts are bars side by side, as high as the numbers.
 write("bars.csv", "gait,speed [mm/s],side\n" + "".join(f"{g},{v},{s}\n" for g, v, s in (

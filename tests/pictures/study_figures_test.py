@@ -5,25 +5,25 @@ usage: study_figures_test.py STRUT
 import json
 import math
 import os
+import subprocess
 
 from svg_paths import near, read, texts
-from testing import check, finish, run, work, write
+
+from testing import check, finish, strut, work, write
 
 FIRST, DASHED = (0, 0x60 / 255, 0xA8 / 255), (0.25, 0.25, 0.25)
 
 
-def sweep(text, **how):
+def sweep(text, code=0):
     write("study.yaml", text)
-    return run("sweep", "study.yaml", "-o", "out", "--quiet", **how).stderr
-
-
-def curves(name):
-    return [line for path in read(name)[2] if near(path.stroke, FIRST) and not path.curved
-            for line in path.lines if len(line) > 20]
+    done = subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet"], capture_output=True, text=True)
+    check(done.returncode == code, f"exit code {done.returncode}: {done.stderr}")
+    return done.stderr
 
 
 def curve(name):
-    found = curves(name)
+    found = [line for path in read(name)[2] if near(path.stroke, FIRST) and not path.curved
+             for line in path.lines if len(line) > 20]
     check(len(found) == 1, f"{name}: {len(found)} curves of 1")
     return found[0] if found else []
 
@@ -86,7 +86,9 @@ if len(dashed) == 2:
     check(abs(lengths[1] / lengths[0] - ratio) < 2e-3, f"seen.svg: {lengths[1] / lengths[0]}, expected {ratio}")
 check(not [p for p in read("out/alone.svg")[2] if p.dash and near(p.stroke, DASHED)],
       "alone.svg: there is no other motion")
-check(not curves("out/late.svg"), "late.svg: the wall does not move, so that its curve has no bends")
+late = [line for path in read("out/late.svg")[2] if near(path.stroke, FIRST) and not path.curved
+        for line in path.lines if len(line) > 20]
+check(not late, "late.svg: the wall does not move, so that its curve has no bends")
 
 # Labels and limits of an axis: the motion of x, 0.1 sin(10 t) and 0.2 cos(10 t), in ranges of 1 m and 2 m.
 sweep(STUDY + "".join(
@@ -148,7 +150,7 @@ for name, wanted, missing in (
         ("map", ("tilt in deg", "stretch in mm", "60", "20", "25"), ("tilt in rad",))):
     said = texts(f"out/{name}.svg")
     check(set(wanted) <= set(said) and not set(missing) & set(said), f"{name}.svg: {said}")
-run("sweep", "study.yaml", "-o", "out", "--quiet", "--plot", "all.json")
+subprocess.run([strut, "sweep", "study.yaml", "-o", "out", "--quiet", "--plot", "all.json"], check=True)
 panels = json.load(open("all.json"))["panels"]  # a third axis makes panels
 check([panel["title"][3:] for panel in panels] == ["stiffness = 0.1 kN/m", "stiffness = 3 kN/m"], "all.json: panels")
 check(panels[0]["x"]["shown"] == "deg" and near([180 / math.pi * panels[0]["x"]["shown_size"]] * 3, (1, 1, 1)),
@@ -173,13 +175,30 @@ for figure, wanted in (
         ("{x: variant, y: velocity, x_limits: [2, 1]}", "'x_limits' of figure 'bad' must be two ascending"),
         ("{kind: map, colors: red}", "'colors'"),
         ("{x: mass, y: velocity, band: variant=rst}", "'band' of figure 'bad': 'rst' is no value of 'variant'"),
-        ("{kind: snapshots, only: node}", "'only' of figure 'bad': expects COLUMN=TEXT")):
+        ("{kind: snapshots, only: node}", "'only' of figure 'bad': expects COLUMN=TEXT"),
+        ("{kind: snapshots, only: node=block}", "'node' is recorded; expected an axis"),
+        ("{kind: snapshots, times: []}", "expected a list of times such as [0 s, 20 ms]"),
+        ("{kind: snapshots, times: [3 s]}", "the record goes from 0 s to 1 s"),
+        ("{kind: snapshots, difference: mass}", "'difference' of figure 'bad': it needs two values to compare; 'mass' has 1"),
+        ("{kind: motion, x: time, y: x, only: node=blok}", "no node 'blok'; did you mean 'block'?"),
+        ("{kind: motion, x: time, y: x, only: mass=1 g}",
+         "'1 g' is no value of 'mass'; expected a number as in the table, in kg"),
+        ("{kind: motion, x: time, y: x, from: 2 s}", "'from' of figure 'bad': nothing is recorded there: the record goes"),
+        ("{kind: motion, x: time, y: x, from: 2 ms, to: 2 ms}", "'to' of figure 'bad' must be later than 'from'"),
+        ("{kind: motion, x: time, y: x, from: 2 m}", "expected a time such as '0.1 ms' for 'from' of figure 'bad'"),
+        ("{kind: motion, x: time, y: x, series: node, labels: [a]}", "1 labels for the 2 values of 'node'"),
+        ("{kind: motion, x: time, y: 'x,y', labels: [a]}", "'labels' of figure 'bad': 1 labels for 2 curves"),
+        ("{kind: motion, x: time, y: 'x,time'}", "'time' has another unit (s) than the columns before it (m)"),
+        ("{x: variant, y: 'velocity,mass'}", "'mass' has another unit (kg) than the columns before it (m/s)"),
+        ("{x: variant, y: 'velocity,velocity', labels: [a]}", "1 labels for 2 curves")):
     said = sweep(STUDY + f"  bad: {figure}\n", code=2)
     check(wanted in said and said.startswith("study.yaml:"), f"{figure}: {said}")
 said = sweep(STUDY.replace("trajectories: yes\n", "") + "  bad: {kind: period}\n", code=2)
 check("add 'trajectories: yes' to the study" in said and "study.yaml:" in said, said)
-os.rename("out", "before")
-sweep(STUDY + "  bad: {kind: motion, x: time, y: x, only: node=blok}\n", code=1, err="no run recorded any of this")
-sweep(STUDY + "  bad: {kind: snapshots, difference: mass}\n", code=1,
-      err="'difference' needs an axis of two values; 'mass' has 1")
+# Texts that are computed are known at the end.
+os.rename("out", "refused")
+said = sweep(STUDY + "  bad: {x: variant, y: velocity, only: velocity=x}\n", code=2)
+check("figure 'bad': no row of the table has 'x' in column 'velocity'" in said and "study.yaml:" in said, said)
+said = sweep(STUDY + "  bad: {kind: period}\noutput: {channels: [force]}\n", code=2)
+check("'kind' of figure 'bad': the runs record no positions" in said and "study.yaml:" in said, said)
 finish()

@@ -165,6 +165,7 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set) {
 static const double TICK_SIZE = 7.5, LABEL_SIZE = 8, TICK = 2.5, GAP = 2.5;
 static const double RIGHT = 10;      /* half of the last tick's text */
 static const double LEAST_LEFT = 26; /* so that frames one above the other line up more often */
+static const double UPWARDS = 120;   /* most of names that stand upwards [pt] */
 
 static double widest_text(strut_canvas *canvas, const strut_tick_set *set) {
   double widest = 0;
@@ -193,15 +194,18 @@ static strut_tick_set ticks_along_y(const strut_axis *axis, double height) {
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y) {
   double line = strut_text_box(canvas, "0", (strut_font){.size = TICK_SIZE}).height;
   double label = strut_text_box(canvas, "0", (strut_font){.size = LABEL_SIZE}).height;
-  double above = 0.5 * TICK_SIZE;
-  double below = x.names && !x.name_count ? GAP : TICK + GAP + line + label;
+  double above = 0.5 * TICK_SIZE, room = box.width - LEAST_LEFT - label - GAP - RIGHT;
+  strut_axes axes = {.x = x, .y = y, .ticks = line};
+  strut_tick_set set;
+  strut_axis_ticks(&x, 1, &set);
+  axes.upwards = x.name_count && widest_text(canvas, &set) > room / (double)x.name_count - 2;
+  if (axes.upwards) axes.ticks = fmin(widest_text(canvas, &set), UPWARDS);
+  double below = x.names && !x.name_count ? GAP : TICK + GAP + axes.ticks + label;
   double height = fmax(box.height - above - below, 10);
-  strut_tick_set set = ticks_along_y(&y, height);
+  set = ticks_along_y(&y, height);
   double left = fmax(widest_text(canvas, &set) + TICK + GAP, LEAST_LEFT) + label + GAP;
-  return (strut_axes){
-      .x = x,
-      .y = y,
-      .frame = {box.x + left, box.y + above, fmax(box.width - left - RIGHT, 10), height}};
+  axes.frame = (strut_box){box.x + left, box.y + above, fmax(box.width - left - RIGHT, 10), height};
+  return axes;
 }
 
 static double axis_fraction(const strut_axis *axis, double value) {
@@ -235,8 +239,10 @@ static void draw_tick(strut_canvas *canvas, const strut_axes *axes, int d, doubl
   if (text && !d) strut_draw_segment(canvas, at[0], box->y, at[0], bottom, grid);
   strut_draw_segment(canvas, at[0], at[1], at[0] - d * length, at[1] + (1 - d) * length, tick);
   strut_font font = {.size = TICK_SIZE, .across = d ? 1 : 0.5, .down = d ? 0.5 : 0};
-  if (!d && axes->x.name_count) /* names side by side */
-    font.lines = 1, font.width = box->width / (double)axes->x.name_count - 2;
+  if (!d && axes->x.name_count) /* names side by side, or upwards */
+    font.lines = 1,
+    font.width = axes->upwards ? axes->ticks : box->width / (double)axes->x.name_count - 2;
+  if (!d && axes->upwards) font.upwards = true, font.across = 1, font.down = 0.5;
   strut_draw_text(canvas, d ? box->x - TICK - GAP : at[0], d ? at[1] : bottom + TICK + 1, text,
                   font);
 }
@@ -251,11 +257,10 @@ void strut_draw_axes(strut_canvas *canvas, const strut_axes *axes) {
   const strut_box *box = &axes->frame;
   const strut_tick_set x = ticks_along_x(canvas, &axes->x, box->width);
   const strut_tick_set y = ticks_along_y(&axes->y, box->height);
-  double line = strut_text_box(canvas, "0", (strut_font){.size = TICK_SIZE}).height;
   double left = fmax(widest_text(canvas, &y), LEAST_LEFT - TICK - GAP);
   draw_ticks(canvas, axes, 0, &x);
   draw_ticks(canvas, axes, 1, &y);
-  label_x(canvas, box, box->y + box->height + TICK + 1 + line, x.label);
+  label_x(canvas, box, box->y + box->height + TICK + 1 + axes->ticks, x.label);
   strut_draw_text(canvas, box->x - TICK - 2 * GAP - left, box->y + 0.5 * box->height, y.label,
                   (strut_font){.size = LABEL_SIZE, .across = 0.5, .down = 1, .upwards = true});
   strut_draw_box(canvas, *box, NULL, &(strut_pen){.colour = strut_grey(0.25), .width = 0.6});

@@ -45,7 +45,8 @@ static strut_pen pen_of(const strut_panel *panel, size_t i) {
 
 static bool has_markers(const strut_panel *panel, const strut_series *series) {
   if (series->markers != STRUT_MARKERS_AUTO) return series->markers == STRUT_MARKERS_ALL;
-  return panel->series_count > 1 && !(series->pen.width > 0) && !series->cloud;
+  return panel->series_count > 1 && !(series->pen.width > 0) && !series->cloud &&
+         !(series->bar > 0);
 }
 
 /* ---- the cells of a map ---- */
@@ -115,7 +116,7 @@ static const strut_fill band_fill = {.colour = {0.86, 0.86, 0.86, 1}};
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count) {
   for (size_t i = 0; i < panel->series_count; i++) {
     strut_pen pen = pen_of(panel, i);
-    strut_key_sign sign = pen.width > STRUT_LEAST_BAR ? STRUT_KEY_AREA : STRUT_KEY_LINE;
+    strut_key_sign sign = panel->series[i].bar > 0 ? STRUT_KEY_AREA : STRUT_KEY_LINE;
     if (panel->series[i].cloud) sign = STRUT_KEY_DOT;
     count = add_item(items, count,
                      (strut_key_item){.sign = sign,
@@ -231,6 +232,7 @@ static bool place_lines(chart *self) {
     l->series = &panel->series[i], l->look = look_of(panel, i), l->pen = pen_of(panel, i);
     l->at = strut_arena_allocate(self->arena, l->series->count + 1, sizeof *l->at);
     if (!l->at) return false;
+    if (l->series->bar > 0) continue;
     place_line(self, l);
     if (!l->series->cloud && !(l->series->pen.width > 0)) find_area(self, l);
   }
@@ -308,6 +310,19 @@ static void draw_line(const chart *self, const line *l) {
   }
 }
 
+static void draw_bars(const chart *self, const line *l) {
+  const strut_axis *x = &self->axes.x, *y = &self->axes.y;
+  const strut_pen pen = {.colour = l->pen.colour,
+                         .width = l->series->bar / (x->high - x->low) * self->axes.frame.width,
+                         .butt = true};
+  double ends[2][2];
+  for (size_t k = 0; k < l->series->count; k++) {
+    place(self, l, k, ends[1]);
+    strut_axes_point(&self->axes, l->series->points[k].x, y->logarithmic ? y->low : 0, ends[0]);
+    if (isfinite(ends[1][1])) strut_draw_line(self->canvas, (const double(*)[2])ends, 2, pen);
+  }
+}
+
 /* True on the frame's edge, too. */
 static bool is_inside(const chart *self, const double at[2]) {
   const double hair = 0.01; /* [pt] */
@@ -319,9 +334,7 @@ static bool is_inside(const chart *self, const double at[2]) {
 static void draw_whiskers(const chart *self, const line *l) {
   const strut_series *series = l->series;
   const strut_pen bar = {
-      .colour = l->pen.width > STRUT_LEAST_BAR ? strut_grey(0.15) : l->pen.colour,
-      .width = 0.7,
-      .butt = true};
+      .colour = l->series->bar > 0 ? strut_grey(0.15) : l->pen.colour, .width = 0.7, .butt = true};
   for (const strut_point *p = series->points; p < series->points + series->count; p++) {
     double ends[2][2];
     if (!isfinite(p->low) || !isfinite(p->high)) continue;
@@ -474,7 +487,8 @@ static void draw_data(const chart *self) {
     if (l->series->cloud) draw_points(self, l);
   strut_canvas_clip(self->canvas, self->axes.frame);
   for (const line *l = self->lines; l < end; l++)
-    if (!l->series->cloud) draw_line(self, l), draw_whiskers(self, l);
+    if (!l->series->cloud)
+      (l->series->bar > 0 ? draw_bars : draw_line)(self, l), draw_whiskers(self, l);
   strut_canvas_unclip(self->canvas);
   if (panel->map) strut_draw_box(self->canvas, self->axes.frame, NULL, &frame);
   for (const line *l = self->lines; l < end; l++)
@@ -490,17 +504,16 @@ static void draw_data(const chart *self) {
   if (areas) draw_note(self, "areas: ranges of oscillations");
 }
 
-/* A title, centred above the frame; returns its height. */
-static double draw_title(const chart *self, strut_box box, bool draw) {
-  const strut_box *f = &self->axes.frame;
-  const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = f->width};
-  double height = strut_text_box(self->canvas, self->panel->title, font).height;
-  if (draw) strut_draw_text(self->canvas, f->x + 0.5 * f->width, box.y, self->panel->title, font);
+double strut_chart_title(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool draw) {
+  const strut_box frame = strut_axes_place(canvas, box, panel->x, panel->y).frame;
+  const strut_font font = {.size = TITLE, .bold = true, .across = 0.5, .width = frame.width};
+  double height = strut_text_box(canvas, panel->title, font).height;
+  if (draw) strut_draw_text(canvas, frame.x + 0.5 * frame.width, box.y, panel->title, font);
   return height > 0 ? height + TITLE_GAP : 0;
 }
 
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
-                      strut_arena *arena) {
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, double title, const strut_panel *panel,
+                      bool legend, strut_arena *arena) {
   chart c = {.canvas = canvas, .panel = panel, .arena = arena};
   strut_key_item *items =
       strut_arena_allocate(arena, strut_panel_legend_room(panel), sizeof *items);
@@ -508,7 +521,6 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   size_t count = legend ? strut_panel_legend(panel, items, 0) : 0;
   strut_box rest = box;
   c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
-  double title = draw_title(&c, box, false);
   const strut_box key = {c.axes.frame.x + PADDING, rest.y + title + PADDING,
                          fmax(c.axes.frame.width, 60) - 2 * PADDING, 0};
   double above = strut_draw_key(canvas, key, items, count, true).height;
@@ -519,7 +531,7 @@ bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *pa
   rest.y += above, rest.height -= above;
   c.axes = strut_axes_place(canvas, rest, panel->x, panel->y);
   if (!place_lines(&c)) return false;
-  draw_title(&c, box, true);
+  strut_chart_title(canvas, box, panel, true);
   draw_data(&c);
   if (panel->scale.name) strut_draw_colour_scale(canvas, scale, &panel->scale);
   return true;

@@ -59,26 +59,34 @@ static size_t find_row(const page *self, size_t first, double inner, double *wid
   return count;
 }
 
-static double chart_height(const page *self, const strut_panel *panel, double width) {
+/* Names that stand upwards below a chart make it higher. */
+static double chart_height(const page *self, strut_canvas *canvas, const strut_panel *panel,
+                           double width) {
+  strut_axes axes = {.upwards = false};
+  if (panel->x.name_count)
+    axes = strut_axes_place(canvas, (strut_box){0, 0, width, LOWEST}, panel->x, panel->y);
   double aspect = self->figure->aspect > 0 ? self->figure->aspect : ASPECT;
   double height = aspect * width, scale = panel->scale.name ? STRUT_SCALE_HEIGHT : 0;
   if (self->figure->least_width > 0) height = fmax(LOWEST, fmin(height, HIGHEST));
-  return panel->height > 0 ? panel->height : height + scale;
+  return panel->height > 0 ? panel->height : height + scale + (axes.upwards ? axes.ticks : 0);
 }
 
 /* The row of a chart; draws it if `fine`, which becomes false where memory is out. Returns its height. */
 static double put_row(page *self, strut_canvas *canvas, strut_box box, size_t first, size_t count,
                       bool *fine) {
   const strut_panel *panels = self->figure->panels;
-  double gap = panels[first + count - 1].beside ? GAP : 0, height = 0;
+  double gap = panels[first + count - 1].beside ? GAP : 0, height = 0, title = 0;
   for (size_t i = first; i < first + count; i++)
-    height = fmax(height, chart_height(self, &panels[i], box.width));
+    height = fmax(height, chart_height(self, canvas, &panels[i], box.width));
   box.height = height;
+  for (size_t i = first; i < first + count; i++)
+    if (!panels[i].shape_count)
+      title = fmax(title, strut_chart_title(canvas, box, &panels[i], false));
   for (size_t i = first; i < first + count && fine && *fine; i++, box.x += box.width + gap)
     if (panels[i].shape_count)
       strut_draw_view(canvas, box, &panels[i]);
     else
-      *fine = strut_draw_chart(canvas, box, &panels[i], !self->figure->one_legend,
+      *fine = strut_draw_chart(canvas, box, title, &panels[i], !self->figure->one_legend,
                                &self->figure->arena);
   return height;
 }

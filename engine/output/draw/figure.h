@@ -60,6 +60,7 @@ typedef struct strut_series {
   int look;            /* index of colour, dashes and marker; -1: the series' own index */
   strut_pen pen;       /* replaces the look's line; width 0: the look */
   bool cloud; /* dots instead of a line; in the look's colour where the panel has no scale */
+  double bar; /* bars from 0 instead of a line, so wide along x; 0: none */
   strut_markers markers;
 } strut_series;
 
@@ -178,9 +179,6 @@ STRUT_API strut_series *strut_add_series(strut_figure *figure, strut_panel *pane
                                          const char *label);
 STRUT_API strut_point *strut_add_point(strut_figure *figure, strut_series *series, double x,
                                        double y);
-/** A bar from 0 to y, of a series whose pen is as wide; returns its end, for a whisker. */
-STRUT_API strut_point *strut_add_bar(strut_figure *figure, strut_series *series, double x,
-                                     double y);
 /** The line ends, and the next point begins another. */
 STRUT_API void strut_add_gap(strut_figure *figure, strut_series *series);
 STRUT_API strut_band *strut_add_band(strut_figure *figure, strut_panel *panel, double low,

@@ -49,12 +49,6 @@ strut_point *strut_add_point(strut_figure *figure, strut_series *series, double 
   return point;
 }
 
-strut_point *strut_add_bar(strut_figure *figure, strut_series *series, double x, double y) {
-  strut_add_gap(figure, series);
-  strut_add_point(figure, series, x, 0);
-  return strut_add_point(figure, series, x, y);
-}
-
 void strut_add_gap(strut_figure *figure, strut_series *series) {
   strut_add_point(figure, series, (double)NAN, (double)NAN);
 }
@@ -264,6 +258,7 @@ static const strut_point none;
   X("x", "", OF_POINTS(x), "in the axis's unit")                                                   \
   X("y", "", OF_POINTS(y), "null: a gap")                                                          \
   X("dots", "", IF(s->cloud, FLAG(true)), "not joined by lines")                                   \
+  X("bar", "", IF(s->bar > 0, NUMBER(s->bar)), "the width of bars from 0, along x")                \
   X("low", "", IF(any(s, 1), OF_POINTS(low)), "ends of whiskers")                                  \
   X("high", "", IF(any(s, 1), OF_POINTS(high)), "ends of whiskers")                                \
   X("stable", "", IF(any(s, 0), ARRAY(s->count, stable)), "else the line is dashed")               \

@@ -53,6 +53,8 @@ void strut_axis_ticks(const strut_axis *axis, int wanted, strut_tick_set *set);
 typedef struct strut_axes {
   strut_axis x, y; /* ranges settled */
   strut_box frame; /* where data go [pt] */
+  double ticks;    /* height of the texts below it [pt] */
+  bool upwards;    /* they are names too wide to stand side by side */
 } strut_axes;
 /** Lays out a frame for settled axes in `box`; panels side by side line up when their boxes do. */
 strut_axes strut_axes_place(strut_canvas *canvas, strut_box box, strut_axis x, strut_axis y);
@@ -84,8 +86,6 @@ void strut_draw_beyond(strut_canvas *canvas, double x, double y, const double ou
 
 /* ---- charts (axes.c, chart.c) ---- */
 
-#define STRUT_LEAST_BAR 4.0 /* wider lines are bars [pt] */
-
 /** Settles ranges and scales that are not given, the same for all the panels. False: out of memory. */
 bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
 /**
@@ -94,9 +94,14 @@ bool strut_panels_settle(strut_panel *panels, size_t count, strut_arena *arena);
  */
 size_t strut_panel_legend(const strut_panel *panel, strut_key_item *items, size_t count);
 size_t strut_panel_legend_room(const strut_panel *panel);
-/** Draws a chart with settled axes in a box, with its legend or without. False: out of memory. */
-bool strut_draw_chart(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool legend,
-                      strut_arena *arena);
+/** Height of a chart's title, centred above its frame, and the space below; draws it if `draw`. */
+double strut_chart_title(strut_canvas *canvas, strut_box box, const strut_panel *panel, bool draw);
+/**
+ * Draws a chart with settled axes in a box, below so high a title [pt], with its legend or without. False: out of
+ * memory.
+ */
+bool strut_draw_chart(strut_canvas *canvas, strut_box box, double title, const strut_panel *panel,
+                      bool legend, strut_arena *arena);
 /** Limits of a map's cells along x or y. */
 void strut_map_limits(const double *at, size_t count, double limits[2]);
 /**

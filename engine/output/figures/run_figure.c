@@ -26,9 +26,9 @@ static const struct {
     [STRUT_RUN_CURVES] = {strut_run_curves, true},
 };
 
-strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_model *model,
+strut_status strut_run_figure_check(const strut_run_figure *figure, const strut_scene *scene,
                                     strut_error *error) {
-  strut_span span = strut_experiment_span(figure->experiment, model->scene);
+  strut_span span = strut_experiment_span(figure->experiment, scene);
   double least = figure->experiment->output_every > 0.0 ? 0.0 : figure->experiment->step;
   double every = fmax(span.record_every, least), slack = 0.5 * every;
   double from = span.record_start - slack, to = span.duration + slack;

@@ -48,7 +48,7 @@ static inline unsigned strut_run_figure_channels(strut_run_view view) {
  * reason where a period has too few samples, or a time is outside the record.
  */
 STRUT_API strut_status strut_run_figure_check(const strut_run_figure *figure,
-                                              const strut_model *model, strut_error *error);
+                                              const strut_scene *scene, strut_error *error);
 /**
  * Draws it. The summary provides velocity, status and duration. STRUT_USAGE
  * where there is no frame to draw; STRUT_NO_MEMORY; else as strut_canvas_open and

@@ -9,12 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/base/vec.h"
+
 int strut_table_column_of(const strut_table *table, const char *name, size_t length) {
   for (size_t i = 0; name && i < table->column_count; i++)
     if (strlen(table->columns[i].name) == length &&
         memcmp(table->columns[i].name, name, length) == 0)
       return (int)i;
   return STRUT_NO_COLUMN;
+}
+
+void strut_table_show_unit(strut_table *table, const char *name, strut_file_unit shown) {
+  int column = name ? strut_table_column_of(table, name, strlen(name)) : STRUT_NO_COLUMN;
+  if (column != STRUT_NO_COLUMN) table->columns[column].shown = shown;
 }
 
 bool strut_table_belongs(const strut_table_rows *rows, int column, const char *name, size_t row) {
@@ -160,26 +167,29 @@ strut_status strut_table_rows_choose(strut_table_rows *rows, int only, const cha
 }
 
 static const double CURVES_WIDTH = 165, MAP_WIDTH = 200; /* panels at least [pt] */
-static const double BARS = 0.7, BROADEST = 14,
-                    FRAME = 0.6; /* of a place; [pt]; of a panel's width */
+static const double BARS = 0.7,
+                    WIDTH = 1.4; /* of a place; of lines of which some are dashed [pt] */
 enum {
   DIGITS = 9 /* of a group's number */,
   NAME = 46,
   MOST_NAMES = 3 /* bytes and columns of an axis label; more are in the legend */,
-  MOST_CELLS = 4000000
+  MOST_CELLS = 4000000,
+  MOST_MARKS = 40 /* with texts */
 };
 
 /* A figure being filled in. Columns by number. */
 typedef struct maker {
   const strut_study_figure *wanted;
   strut_table_marks marks;
-  int x, y[STRUT_MOST_Y], y_count, panel, by, band; /* `by` and `band` of curves */
-  int value, doubt;                                 /* of maps and points */
+  int x, y[STRUT_MOST_Y], y_count, panel;
+  int by, band, low, high, stable, line, mark, thing; /* of curves */
+  int value, doubt;                                   /* of maps and points */
   const char *band_text;
   strut_table_rows rows;
   strut_table_groups panels, curves; /* curves, or categories of a map */
   strut_table_groups places;         /* along x, of bars; else none */
-  double bar;                        /* their width [pt] */
+  strut_table_groups kinds;          /* of marks */
+  size_t deepest;                    /* the most rows of one of them in a curve */
   double *at[2];                     /* of a map: the grid's positions */
   size_t count[2];
   strut_figure page;
@@ -203,6 +213,12 @@ static double index_of(const strut_table_groups *groups, const char *text) {
   return (double)NAN;
 }
 
+static size_t group_of(const maker *self, int column, const strut_table_groups *groups,
+                       size_t row) {
+  return column == STRUT_NO_COLUMN ? 0
+                                   : (size_t)index_of(groups, column_of(self, column)->text[row]);
+}
+
 /* "stiffness 3 kN/m" of a group's first row, with `between` after the name; numbers without unit as they are written. */
 static const char *group_text(maker *self, int column, const strut_table_groups *groups, size_t i,
                               const char *between) {
@@ -210,7 +226,7 @@ static const char *group_text(maker *self, int column, const strut_table_groups 
   double value = of->value ? of->value[groups->row[i]] : (double)NAN;
   bool unit = isfinite(value) && (*of->unit || of->shown.name);
   return strut_figure_text(
-      &self->page, "%s%s%s", of->name, between,
+      &self->page, "%s%s%s", of->name, *of->name ? between : "",
       unit ? strut_quantity_shown(value, DIGITS, *of->unit ? of->unit : "1", of->shown).text
            : groups->name[i]);
 }
@@ -239,19 +255,28 @@ static size_t rows_of(const maker *self, size_t panel, size_t curve, size_t *row
   return count;
 }
 
+/* A grey area, which the legend names after the text that rows have there. */
+static void add_band(maker *self, strut_panel *panel, double low, double high) {
+  strut_add_band(
+      &self->page, panel, fmin(low, high), fmax(low, high),
+      strut_figure_text(&self->page, "%s %s", column_of(self, self->band)->name, self->band_text));
+}
+
+static bool is_in_band(const maker *self, size_t row) {
+  const strut_table_column *band = column_of(self, self->band);
+  return band && strcmp(band->text[row], self->band_text) == 0;
+}
+
 /* Grey areas over stretches of matching rows. */
 static void add_bands(maker *self, const size_t *rows, size_t count, strut_panel *panel) {
-  const strut_table_column *band = column_of(self, self->band);
-  const double *x = column_of(self, self->x)->value;
-  for (size_t i = 0; band && x && i < count; i++) {
-    if (strcmp(band->text[rows[i]], self->band_text) != 0) continue;
+  for (size_t i = 0; i < count; i++) {
+    if (!is_in_band(self, rows[i])) continue;
     size_t last = i;
-    while (last + 1 < count && strcmp(band->text[rows[last + 1]], self->band_text) == 0) last++;
-    double low = x[rows[i]], high = x[rows[last]];
-    if (i > 0) low = 0.5 * (low + x[rows[i - 1]]);
-    if (last + 1 < count) high = 0.5 * (high + x[rows[last + 1]]);
-    strut_add_band(&self->page, panel, fmin(low, high), fmax(low, high),
-                   strut_figure_text(&self->page, "%s %s", band->name, self->band_text));
+    while (last + 1 < count && is_in_band(self, rows[last + 1])) last++;
+    double low = value_of(self, self->x, rows[i]), high = value_of(self, self->x, rows[last]);
+    if (i > 0) low = 0.5 * (low + value_of(self, self->x, rows[i - 1]));
+    if (last + 1 < count) high = 0.5 * (high + value_of(self, self->x, rows[last + 1]));
+    add_band(self, panel, low, high);
     i = last;
   }
 }
@@ -262,46 +287,105 @@ static const char *curve_name(maker *self, size_t curve, int k) {
   bool several = self->y_count > 1;
   if (self->wanted->label_count)
     return self->wanted->labels[curve * (size_t)self->y_count + (size_t)k];
-  if (self->curves.count * (size_t)self->y_count < 2) return NULL;
+  bool kind = self->mark != STRUT_NO_COLUMN && self->by != STRUT_NO_COLUMN &&
+              !column_of(self, self->by)->value;
+  if (self->curves.count * (size_t)self->y_count < 2 && !kind) return NULL;
   if (self->by == STRUT_NO_COLUMN) return column;
   return strut_figure_text(&self->page, "%s%s%s", several ? column : "", several ? ", " : "",
                            group_text(self, self->by, &self->curves, curve, " "));
 }
 
-/* A bar for each row at the place of its text, `part` of the way through all bars of the place. */
-static void add_bars(maker *self, strut_series *series, int y, const size_t *rows, size_t count,
-                     double part) {
-  const char *const *text = column_of(self, self->x)->text;
-  series->pen = (strut_pen){.width = self->bar, .butt = true};
+/* A dot in the colour of its kind. */
+static void add_kind(maker *self, strut_panel *panel, size_t row, const strut_point *at) {
+  const char *kind = column_of(self, self->mark)->text[row];
+  const strut_table_column *thing = column_of(self, self->thing);
+  if (!*kind) return;
+  strut_label *mark = strut_add_mark(
+      &self->page, panel, at->x, at->y,
+      strut_figure_text(&self->page, "%s%s%.60s", kind, thing && *thing->text[row] ? " " : "",
+                        thing ? thing->text[row] : ""));
+  mark->dot = true;
+  mark->colour = strut_palette_thing((size_t)index_of(&self->kinds, kind));
+  mark->angle = 0.25 * STRUT_PI;
+}
+
+static void add_row(maker *self, strut_panel *panel, strut_series *series, int y, size_t row,
+                    double x) {
+  const strut_table_column *stable = column_of(self, self->stable);
+  strut_point *point = strut_add_point(&self->page, series, x, value_of(self, y, row));
+  point->low = value_of(self, self->low, row), point->high = value_of(self, self->high, row);
+  point->unstable = stable && strcmp(stable->text[row], "no") == 0;
+  if (self->mark != STRUT_NO_COLUMN) add_kind(self, panel, row, point);
+}
+
+/* True if a line ends between two rows. */
+static bool is_gap(const maker *self, size_t row, size_t next) {
+  for (int i = 0; i <= self->line; i++)
+    if (strcmp(column_of(self, i)->text[row], column_of(self, i)->text[next]) != 0) return true;
+  return false;
+}
+
+/* A bar for each row at the place of its text: series n beside the others, rows of one text beside each other. */
+static void add_bars(maker *self, strut_panel *panel, strut_series *series, size_t n,
+                     const size_t *rows, size_t count) {
+  double next[STRUT_MOST_TABLE_GROUPS]; /* bars left of the next one at a place */
+  for (size_t i = 0; i < self->places.count; i++)
+    next[i] = ((double)n + 0.5) * (double)self->deepest;
+  for (size_t i = 0; i < count; i++) next[group_of(self, self->x, &self->places, rows[i])] -= 0.5;
+  series->bar = BARS / (double)(self->curves.count * (size_t)self->y_count * self->deepest);
   for (size_t i = 0; i < count; i++) {
-    double x = index_of(&self->places, text[rows[i]]) + BARS * (part - 0.5);
-    strut_add_bar(&self->page, series, x, value_of(self, y, rows[i]));
+    size_t place = group_of(self, self->x, &self->places, rows[i]);
+    double x = (double)place - 0.5 * BARS + (next[place]++ + 0.5) * series->bar;
+    if (is_in_band(self, rows[i]))
+      add_band(self, panel, x - 0.5 * series->bar, x + 0.5 * series->bar);
+    add_row(self, panel, series, self->y[n % (size_t)self->y_count], rows[i], x);
   }
 }
 
 static void add_curves(maker *self, size_t number, strut_panel *panel) {
-  size_t all = self->curves.count * (size_t)self->y_count;
+  size_t all = self->curves.count * (size_t)self->y_count, places = self->places.count;
   size_t *row =
       strut_arena_allocate(&self->page.arena, self->rows.table->row_count + 1, sizeof *row);
-  panel->outliers = true;
+  panel->outliers = self->stable == STRUT_NO_COLUMN;
   self->page.failed |= !row;
   for (size_t n = 0, count = 0; n < all && row; n++) {
     size_t curve = n / (size_t)self->y_count, k = n % (size_t)self->y_count;
     if (k == 0) count = rows_of(self, number, curve, row);
-    if (k == 0) add_bands(self, row, count, panel);
+    if (k == 0 && !places) add_bands(self, row, count, panel);
     strut_series *series = strut_add_series(&self->page, panel, curve_name(self, curve, (int)k));
-    if (self->places.count) {
-      add_bars(self, series, self->y[k], row, count, ((double)n + 0.5) / (double)all);
-      series->pen.colour = strut_palette_thing(n);
+    if (places) add_bars(self, panel, series, n, row, count);
+    if (self->stable != STRUT_NO_COLUMN)
+      series->pen = (strut_pen){.colour = strut_palette_thing(n), .width = WIDTH};
+    for (size_t i = 0; i < count && !places; i++) {
+      if (i && is_gap(self, row[i - 1], row[i])) strut_add_gap(&self->page, series);
+      add_row(self, panel, series, self->y[k], row[i], value_of(self, self->x, row[i]));
     }
-    for (size_t i = 0; i < count && !self->places.count; i++)
-      strut_add_point(&self->page, series, value_of(self, self->x, row[i]),
-                      value_of(self, self->y[k], row[i]));
   }
-  if (!self->places.count) return;
-  panel->x.names = self->places.name, panel->x.name_count = self->places.count;
-  panel->x.low = -0.5, panel->x.high = (double)self->places.count - 0.5;
+  if (!places) return;
+  panel->x.names = self->places.name, panel->x.name_count = places;
+  panel->x.low = -0.5, panel->x.high = (double)places - 0.5;
   panel->zero = true;
+}
+
+/* Explains dashes and marks; of very many marks there are no texts. */
+static void add_keys(maker *self) {
+  const strut_table_column *stable = column_of(self, self->stable);
+  static const char *const words[] = {"stable", "unstable"};
+  for (int k = 0; k < 2 && stable; k++) {
+    bool some = false;
+    for (size_t i = 0; i < self->rows.table->row_count; i++)
+      some = some || (strcmp(stable->text[i], "no") == 0) == k;
+    strut_pen pen = {.colour = strut_grey(0.2), .width = WIDTH, .dash = {k ? 3 : 0, 2}, .butt = k};
+    if (some) strut_add_key(&self->page, STRUT_KEY_LINE, pen, words[k]);
+  }
+  for (size_t i = 0; i < self->kinds.count; i++)
+    if (*self->kinds.name[i])
+      strut_add_key(&self->page, STRUT_KEY_DOT, (strut_pen){strut_grey(0.1), 0.6, {0}, false},
+                    self->kinds.name[i])
+          ->fill.colour = strut_palette_thing(i);
+  for (size_t i = 0; i < self->page.panel_count; i++)
+    for (size_t k = 0; k < self->page.panels[i].mark_count; k++)
+      if (self->page.panels[i].mark_count > MOST_MARKS) self->page.panels[i].marks[k].text = NULL;
 }
 
 /* ---- points ---- */
@@ -454,12 +538,13 @@ static const char *name_y_axis(maker *self) {
   return self->y_count > 1 && strlen(text) > NAME ? "" : text;
 }
 
-static strut_status check_column(const maker *self, int column) {
-  const strut_table_column *of = column_of(self, column), *first = column_of(self, self->y[0]);
+/* Numbers, in the unit of `first` unless that is NULL. */
+static strut_status check_column(const maker *self, int column, const strut_table_column *first) {
+  const strut_table_column *of = column_of(self, column);
   if (!of || !of->value)
     return strut_fail(self->error, STRUT_USAGE, "column '%s' does not hold numbers",
                       of ? of->name : "");
-  if (column == self->x || strcmp(of->unit, first->unit) == 0) return STRUT_OK;
+  if (!first || strcmp(of->unit, first->unit) == 0) return STRUT_OK;
   return strut_fail(self->error, STRUT_USAGE,
                     "columns '%.60s' and '%.60s' have different units (%s, %s): draw them in "
                     "separate figures",
@@ -473,29 +558,53 @@ static bool has_bars(const maker *self) {
          !column_of(self, self->x)->value;
 }
 
+/* Finds the most rows with the same text in a curve of a panel. */
+static strut_status find_deepest(maker *self) {
+  size_t cells = self->panels.count * self->curves.count * self->places.count;
+  size_t *used = strut_arena_allocate(&self->page.arena, cells + 1, sizeof *used);
+  if (!used) return strut_no_memory(self->error, "while drawing");
+  for (size_t i = 0; i < self->rows.table->row_count; i++) {
+    if (!self->rows.shown[i]) continue;
+    size_t curve = group_of(self, self->panel, &self->panels, i) * self->curves.count +
+                   group_of(self, self->by, &self->curves, i);
+    size_t *rows = &used[curve * self->places.count + group_of(self, self->x, &self->places, i)];
+    if (++*rows > self->deepest) self->deepest = *rows;
+  }
+  return self->deepest <= STRUT_MOST_TABLE_GROUPS
+             ? STRUT_OK
+             : strut_fail(self->error, STRUT_USAGE, "column '%.60s' has the same text in %zu rows",
+                          column_of(self, self->x)->name, self->deepest);
+}
+
 /* Checks the columns and finds the groups of rows. */
 static strut_status prepare(maker *self) {
-  const strut_table_rows *rows = &self->rows;
-  strut_error *error = self->error;
-  bool lines = !is_map(self) && self->wanted->kind != STRUT_FIGURE_POINTS;
-  strut_status status = has_bars(self)
-                            ? strut_table_groups_find(rows, self->x, STRUT_MOST_TABLE_GROUPS,
-                                                      "places", &self->places, error)
-                            : check_column(self, self->x);
-  for (int k = 0; k < self->y_count && !status; k++) status = check_column(self, self->y[k]);
-  if (!status && self->wanted->kind == STRUT_FIGURE_POINTS && self->value >= 0 &&
-      !column_of(self, self->value)->value)
-    status = strut_fail(error, STRUT_USAGE, "points are drawn over columns of numbers");
-  if (!status)
-    status = strut_table_groups_find(rows, self->panel, STRUT_MOST_PANELS, "panels", &self->panels,
-                                     error);
-  if (!status && lines)
-    status = strut_table_groups_find(rows, self->by, STRUT_MOST_TABLE_GROUPS, "curves",
-                                     &self->curves, error);
+  const strut_table_column *first = column_of(self, self->y[0]);
+  bool points = self->wanted->kind == STRUT_FIGURE_POINTS, bars = has_bars(self);
+  const struct {
+    bool wanted;
+    int column;
+    const char *what;
+    strut_table_groups *groups;
+  } groups[] = {{bars, self->x, "places", &self->places},
+                {true, self->panel, "panels", &self->panels},
+                {self->mark != STRUT_NO_COLUMN, self->mark, "marks", &self->kinds},
+                {!is_map(self) && !points, self->by, "curves", &self->curves}};
+  strut_status status = bars ? STRUT_OK : check_column(self, self->x, NULL);
+  for (int k = 0; k < self->y_count && !status; k++) status = check_column(self, self->y[k], first);
+  if (!status && points && self->value >= 0) status = check_column(self, self->value, NULL);
+  for (size_t i = 0; i < sizeof groups / sizeof *groups && !status; i++)
+    if (groups[i].wanted)
+      status = strut_table_groups_find(&self->rows, groups[i].column, STRUT_MOST_TABLE_GROUPS,
+                                       groups[i].what, groups[i].groups, self->error);
+  if (!status && bars && self->wanted->log_x)
+    status = strut_fail(self->error, STRUT_USAGE,
+                        "column '%.60s' holds texts, which have no logarithmic axis",
+                        column_of(self, self->x)->name);
   size_t curves = self->curves.count * (size_t)self->y_count, labels = self->wanted->label_count;
   if (!status && labels && labels != curves)
-    status = strut_fail(error, STRUT_USAGE, "%zu labels were given for %zu curve%s", labels, curves,
-                        curves == 1 ? "" : "s");
+    status = strut_fail(self->error, STRUT_USAGE, "%zu labels were given for %zu curve%s", labels,
+                        curves, curves == 1 ? "" : "s");
+  if (!status && bars) status = find_deepest(self);
   return status || !is_map(self) ? status : prepare_grid(self);
 }
 
@@ -536,6 +645,12 @@ static void find_columns(maker *self, const strut_table *table) {
   self->panel = find_column(table, wanted->panels, NULL);
   self->by = find_column(table, map ? NULL : wanted->series, NULL);
   self->band = find_column(table, map ? NULL : wanted->band, &self->band_text);
+  self->low = find_column(table, wanted->low, NULL);
+  self->high = find_column(table, wanted->high, NULL);
+  self->stable = find_column(table, wanted->stable, NULL);
+  self->line = find_column(table, wanted->line, NULL);
+  self->mark = find_column(table, wanted->mark, NULL);
+  self->thing = find_column(table, wanted->thing, NULL);
   self->value = find_column(table, map || points ? wanted->color : NULL, NULL);
   self->doubt = find_column(table, wanted->doubt ? wanted->doubt : "flips", NULL);
   for (const char *y = wanted->y, *end; y && self->y_count < STRUT_MOST_Y;
@@ -568,10 +683,8 @@ strut_status strut_table_draw(const strut_plot *plot, const strut_study_figure *
   for (size_t i = 0; i < table->row_count && marks.shown && !status; i++)
     m.rows.shown[i] = m.rows.shown[i] && marks.shown[i];
   if (!status) status = prepare(&m);
-  double bars =
-      (double)(m.places.count * m.curves.count) * m.y_count * fmin((double)m.panels.count, 3);
-  m.bar = fmin(BROADEST, BARS * FRAME * (plot->width > 0 ? plot->width : 510) / fmax(bars, 1));
   for (size_t i = 0; i < m.panels.count && !status; i++) add_panel(&m, i);
+  add_keys(&m);
   if (!status) status = strut_figure_draw(plot, &m.page, error);
   strut_arena_free(&m.page.arena);
   return status;

@@ -9,7 +9,7 @@
 #include "engine/output/record_files.h"
 #include "engine/scene/study.h"
 
-enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20, STRUT_MOST_PANELS = 24 };
+enum { STRUT_NO_COLUMN = -1, STRUT_MOST_Y = 20 };
 
 /** What a figure of a search shows besides. Zero: all rows, without rings. */
 typedef struct strut_table_marks {
@@ -19,6 +19,9 @@ typedef struct strut_table_marks {
 
 /** Number of the column of that name, of `length` bytes; STRUT_NO_COLUMN where there is none, or no name. */
 STRUT_API int strut_table_column_of(const strut_table *table, const char *name, size_t length);
+
+/** Has figures show a column, if there is one of that name, in a unit. */
+STRUT_API void strut_table_show_unit(strut_table *table, const char *name, strut_file_unit shown);
 
 /**
  * Draws lines, a map or points as a figure of a study says, whose columns the table has. Rows of a map are in any order;

@@ -65,8 +65,9 @@ static const char *words_of(sheet *self, const strut_compare_column *column) {
   const char *name = column->model->scene->name;
   if (*figure->title || strcasecmp(name, column->input->label) == 0) name = "";
   const char *words =
-      strut_figure_text(figure, "%s%s%.0f nodes, %.0f members", name, *name ? "\n" : "",
-                        cell[STRUT_COMPARE_NODES].value, cell[STRUT_COMPARE_MEMBERS].value);
+      strut_figure_text(figure, "%s%s%.0f nodes, %.0f member%s", name, *name ? "\n" : "",
+                        cell[STRUT_COMPARE_NODES].value, cell[STRUT_COMPARE_MEMBERS].value,
+                        cell[STRUT_COMPARE_MEMBERS].value == 1 ? "" : "s");
 #define ADD(FORMAT, ...) words = strut_figure_text(figure, "%s" FORMAT, words, __VA_ARGS__)
   if (mass > 0) ADD(", %s", strut_quantity_of(1000 * mass, 3, "g").text);
   if (states > 0) ADD("\n%.0f stable state%s", states, states > 1 ? "s" : "");

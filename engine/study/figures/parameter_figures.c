@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Figures of what parameters do: of a fit, and of indices of sensitivity. */
+/* Figures of a fit. */
 #include <math.h>
 #include <string.h>
 
 #include "engine/output/draw/figure.h"
 #include "engine/study/fit/fit.h"
-#include "engine/study/sensitivity/sensitivity.h"
 
 /* Residuals within so many standard deviations are usual. */
 static const double USUAL = 2.0;
@@ -121,118 +120,4 @@ strut_status strut_fit_figures(const strut_fit_result *result, const char *direc
     if (!status) status = drawn;
   }
   return status;
-}
-
-/* Indices as bars with whiskers, or over an axis of the study. */
-
-static const double BAR = 0.32, BARS = 70, BROADEST = 10; /* of a place; all of a panel, one [pt] */
-static const double LEAST = -0.1, MOST = 1.2;
-static const double NARROWEST = 165; /* panel [pt] */
-
-/* The next result with indices at or after row i, in *first; how many parameters it has. */
-static size_t find_result(const strut_sensitivity_result *result, size_t i, size_t *first) {
-  const strut_sensitivity_row *rows = result->rows;
-  size_t parameters = 0;
-  while (i < result->count && rows[i].measure != STRUT_SENSITIVITY_FIRST_ORDER) i++;
-  *first = i;
-  for (; i + 1 < result->count && rows[i].of == rows[*first].of &&
-         rows[i].measure == STRUT_SENSITIVITY_FIRST_ORDER;
-       i += 2) /* the total follows each */
-    parameters++;
-  return parameters;
-}
-
-/* Adds a panel of (count) parameters, from row `first` on. */
-static void add_panel(strut_figure *figure, const strut_sensitivity_row *rows, size_t count) {
-  static const strut_colour colours[] = {{0.16, 0.38, 0.62, 1.0}, {0.65, 0.76, 0.87, 1.0}};
-  static const char *const labels[] = {"first order", "total; whiskers: 95 %"};
-  strut_panel *panel = strut_add_panel(figure);
-  const char **names = strut_arena_allocate(&figure->arena, count, sizeof *names);
-  figure->failed |= !names;
-  for (size_t k = 0; k < count && names; k++) names[k] = rows[2 * k].parameter;
-  for (size_t i = 0; i < 2; i++) {
-    strut_series *series = strut_add_series(figure, panel, labels[i]);
-    series->pen = (strut_pen){
-        .colour = colours[i], .width = fmin(BROADEST, BARS / (double)count), .butt = true};
-    for (size_t k = 0; k < count; k++) {
-      const strut_estimate *e = &rows[2 * k + i].estimate;
-      strut_point *end =
-          strut_add_bar(figure, series, (double)k + ((double)i - 0.5) * BAR, e->value);
-      end->low = e->low, end->high = e->high;
-    }
-  }
-  panel->title = rows->of;
-  panel->x =
-      (strut_axis){.low = -0.5, .high = (double)count - 0.5, .names = names, .name_count = count};
-  panel->y = (strut_axis){.name = "part of the variance", .low = LEAST, .high = MOST};
-}
-
-static strut_status draw_bars(const strut_plot *plot, const strut_sensitivity_result *result,
-                              bool *drawn, strut_error *error) {
-  strut_figure figure = {.least_width = NARROWEST, .columns = 2, .one_legend = true};
-  size_t first = 0, count = 0;
-  *drawn = false;
-  for (size_t i = 0; (count = find_result(result, i, &first)); i = first + 2 * count) {
-    if (!isfinite(result->rows[first].estimate.value)) continue;
-    add_panel(&figure, &result->rows[first], count);
-    *drawn = true;
-  }
-  return *drawn ? strut_figure_draw(plot, &figure, error) : STRUT_OK;
-}
-
-/* ---- over an axis ---- */
-
-/* The numbers of the axis that changes fastest, of those before the analysis; NULL: it has texts. */
-static const strut_study_column *last_numbers(const strut_study *study, size_t *column) {
-  size_t count = 0, last = study->sensitivity.axis;
-  for (size_t i = 0; i < last; i++) count += study->axes[i].column_count;
-  if (!count || study->axes[last - 1].columns[0].word) return NULL;
-  *column = count - study->axes[last - 1].column_count;
-  return &study->axes[last - 1].columns[0];
-}
-
-static double axis_value(strut_slots *slots, int64_t point, size_t column) {
-  const strut_slots_description *plan = strut_slots_description_of(slots);
-  strut_result_slot row;
-  return strut_slots_get(slots, point, &row) ? row.numbers[strut_slot_place(plan->columns, column)]
-                                             : (double)NAN;
-}
-
-/* The curve of a row's parameter in the panel of its result. */
-static strut_series *find_curve(strut_figure *figure, const strut_study_column *over,
-                                const strut_sensitivity_row *row) {
-  const char *label = row->parameter ? row->parameter : "share";
-  size_t i = 0, k = 0;
-  while (i < figure->panel_count && strcmp(figure->panels[i].title, row->of) != 0) i++;
-  strut_panel *panel = i < figure->panel_count ? &figure->panels[i] : strut_add_panel(figure);
-  panel->title = row->of;
-  panel->x = strut_axis_in(over->name, over->unit, over->shown);
-  panel->y = strut_axis_of("total index", "");
-  panel->outliers = true;
-  while (k < panel->series_count && strcmp(panel->series[k].label, label) != 0) k++;
-  return k < panel->series_count ? &panel->series[k] : strut_add_series(figure, panel, label);
-}
-
-static strut_status draw_over(const strut_plot *plot, const strut_study *study, strut_slots *slots,
-                              const strut_sensitivity_result *result, bool *drawn,
-                              strut_error *error) {
-  strut_figure figure = {.least_width = NARROWEST, .shared_axes = true, .one_legend = true};
-  size_t column = 0;
-  const strut_study_column *over = last_numbers(study, &column);
-  for (size_t i = 0; over && i < result->count; i++) {
-    const strut_sensitivity_row *row = &result->rows[i];
-    if (row->measure == STRUT_SENSITIVITY_TOTAL || row->measure == STRUT_SENSITIVITY_SHARE)
-      strut_add_point(&figure, find_curve(&figure, over, row),
-                      axis_value(slots, row->point, column), row->estimate.value);
-  }
-  *drawn = figure.panel_count > 0;
-  return *drawn || figure.failed ? strut_figure_draw(plot, &figure, error) : STRUT_OK;
-}
-
-strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study *study,
-                                      strut_slots *slots, const strut_sensitivity_result *result,
-                                      bool *drawn, strut_error *error) {
-  bool one = result->count && result->rows[0].point == result->rows[result->count - 1].point;
-  return one ? draw_bars(plot, result, drawn, error)
-             : draw_over(plot, study, slots, result, drawn, error);
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Figures of a study's table or of its recorded runs. */
+#include <gsl/gsl_interp.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,15 +13,10 @@
 
 static const double PAGE = 510.24; /* 180 mm [pt] */
 
-static int column_of(const strut_table *table, const char *name) {
-  return strut_table_column_of(table, name, name ? strlen(name) : 0);
-}
-
 void strut_sweep_show_units(const strut_sweep_plan *plan, strut_table *table) {
   for (size_t k = 0; k < strut_grid_columns(plan->study); k++) {
     const strut_study_column *of = strut_grid_column(plan->study, k, NULL);
-    int column = column_of(table, of->name);
-    if (column >= 0) table->columns[column].shown = of->shown;
+    strut_table_show_unit(table, of->name, of->shown);
   }
 }
 
@@ -47,158 +43,88 @@ static strut_status draw_motion(const strut_sweep_plan *plan, const char *direct
   return status;
 }
 
-/* Figures of a search: its best objective over evaluations, and its points over two variables, its best point. */
+/* ---- a search: its best objective over evaluations, its points over two variables ---- */
 
 static const char BEST[] = "best so far"; /* a column */
 
-/* What a row of the table means to a search. */
-typedef struct tracker {
-  const strut_study_search *search;
+/* Rows of a search's table, by number of the point. */
+typedef struct searched_rows {
   const strut_table *table;
-  int number, evaluation, objective, second, violation; /* columns */
-  size_t outer; /* columns of the axes before the searches */
-} tracker;
+  double *best; /* (rows) the best objective so far */
+  bool *shown, *marked;
+} searched_rows;
 
-static double value_at(const tracker *self, int column, size_t row) {
-  const double *value = column >= 0 ? self->table->columns[column].value : NULL;
-  return value ? value[row] : (double)NAN;
+static size_t row_of(const searched_rows *rows, int64_t point) {
+  return gsl_interp_bsearch(rows->table->columns[0].value, (double)point, 0,
+                            rows->table->row_count - 1);
 }
 
-static bool same_text(const tracker *self, size_t column, size_t a, size_t b) {
-  const char *const *text = self->table->columns[column].text;
-  return text && text[a] && text[b]
-             ? strcmp(text[a], text[b]) == 0
-             : value_at(self, (int)column, a) == value_at(self, (int)column, b);
-}
-
-/* Are both rows of one search, or even of one evaluation? Column 0 is the point. */
-static bool same_search(const tracker *self, size_t a, size_t b) {
-  bool same = value_at(self, self->number, a) == value_at(self, self->number, b);
-  for (size_t i = 1; i <= self->outer && same; i++) same = same_text(self, i, a, b);
-  return same;
-}
-
-static bool same_evaluation(const tracker *self, size_t a, size_t b) {
-  return same_search(self, a, b) &&
-         value_at(self, self->evaluation, a) == value_at(self, self->evaluation, b);
-}
-
-/* The worst of the scenarios from `row` on, NAN where a condition is broken; *next: the row behind. */
-static double judge(const tracker *self, int column, size_t row, size_t *next) {
-  double worst = value_at(self, column, row);
-  bool broken = false;
-  size_t i = row;
-  for (; i < self->table->row_count && same_evaluation(self, row, i); i++) {
-    double value = value_at(self, column, i);
-    bool worse = self->search->maximise ? value < worst : value > worst;
-    if (worse || isnan(value)) worst = value;
-    broken = broken || isnan(value) || value_at(self, self->violation, i) > 0.0;
-  }
-  *next = i;
-  return broken ? (double)NAN : worst;
-}
-
-static tracker track(const strut_sweep_plan *plan, const strut_table *table) {
-  tracker t = {.search = plan->study->search,
-               .table = table,
-               .number = column_of(table, "search"),
-               .evaluation = column_of(table, "evaluation"),
-               .objective = column_of(table, "objective"),
-               .second = column_of(table, "objective_2"),
-               .violation = column_of(table, "violation")};
-  for (size_t i = 0; i < t.search->axis; i++) t.outer += plan->study->axes[i].column_count;
-  return t;
-}
-
-/* Fills the best objective so far, in each row of a search, and marks the row of the best of each. */
-static void follow(const tracker *self, double *best, bool *shown, bool *marked) {
-  double so_far = (double)NAN;
-  size_t at = 0, next = 0;
-  bool any = false;
-  for (size_t row = 0; row < self->table->row_count; row = next) {
-    bool begins = row == 0 || !same_search(self, row - 1, row);
-    if (begins && any) marked[at] = true;
-    if (begins) so_far = (double)NAN, any = false;
-    double value = judge(self, self->objective, row, &next);
-    bool proper = value_at(self, self->number, row) > 0.0;
-    if (proper && isfinite(value) &&
-        (isnan(so_far) || (self->search->maximise ? value > so_far : value < so_far)))
-      so_far = value, at = row, any = true;
-    for (size_t i = row; i < next; i++) {
-      best[i] = proper ? so_far : (double)NAN;
-      shown[i] = proper && i == row;
+/* Shows the worst scenario of each evaluation; marks the best of each search, or the front of two goals. */
+static void find_rows(searched_rows *rows, const strut_search_result *result) {
+  for (size_t i = 0; i < rows->table->row_count; i++) rows->best[i] = (double)NAN;
+  for (size_t i = 0; i < result->outcome_count; i++) {
+    const strut_search_outcome *outcome = &result->outcomes[i];
+    for (int64_t k = 0; k < outcome->evaluations; k++) {
+      size_t row = row_of(rows, outcome->steps[k].worst);
+      rows->best[row] = outcome->steps[k].best;
+      rows->shown[row] = true;
     }
+    if (outcome->best.evaluation >= 0 && outcome->best.violation <= 0.0 && !result->front_count)
+      rows->marked[row_of(rows, outcome->best.worst)] = true;
   }
-  if (any) marked[at] = true;
-}
-
-/* Marks the points that no other of the same axes beats in both goals. */
-static bool mark_front(const tracker *self, const bool *shown, bool *marked, strut_arena *arena) {
-  size_t rows = self->table->row_count, next;
-  double sign = self->search->maximise ? -1.0 : 1.0;
-  double(*goal)[2] = strut_arena_allocate(arena, rows, sizeof *goal);
-  for (size_t i = 0; goal && i < rows; i++) {
-    marked[i] = false;
-    if (!shown[i]) continue;
-    goal[i][0] = sign * judge(self, self->objective, i, &next);
-    goal[i][1] = sign * judge(self, self->second, i, &next);
-    marked[i] = !isnan(goal[i][0]) && !isnan(goal[i][1]);
-  }
-  for (size_t i = 0; goal && i < rows; i++)
-    for (size_t k = 0; k < rows && marked[i]; k++) {
-      bool same = shown[k];
-      for (size_t c = 1; c <= self->outer && same; c++) same = same_text(self, c, i, k);
-      bool better = same && goal[k][0] <= goal[i][0] && goal[k][1] <= goal[i][1] &&
-                    (goal[k][0] < goal[i][0] || goal[k][1] < goal[i][1]);
-      if (better) marked[i] = false;
-    }
-  return goal != NULL;
+  for (size_t i = 0; i < result->front_count; i++)
+    for (size_t k = 0; k < result->fronts[i].count; k++)
+      rows->marked[row_of(rows, result->fronts[i].points[k].worst)] = true;
 }
 
 /* The table with a further column. */
-static strut_status extend(const strut_table *from, const double *best, const char *unit,
-                           strut_table *to, strut_error *error) {
+static strut_status extend(const strut_table *from, strut_table_column column, strut_table *to,
+                           strut_error *error) {
   to->row_count = from->row_count;
   to->column_count = from->column_count + 1;
   to->columns = strut_arena_allocate(&to->arena, to->column_count, sizeof *to->columns);
   if (!to->columns) return strut_no_memory(error, "while drawing");
   memcpy(to->columns, from->columns, from->column_count * sizeof *to->columns);
-  to->columns[from->column_count] = (strut_table_column){.name = BEST, .unit = unit, .value = best};
+  to->columns[from->column_count] = column;
   return STRUT_OK;
 }
 
 static strut_status draw_search(const strut_sweep_plan *plan, const strut_study_figure *f,
-                                const char *path, const strut_table *table, strut_error *error) {
-  const tracker t = track(plan, table);
+                                const char *path, const strut_table *table,
+                                const strut_search_result *result, strut_error *error) {
+  const strut_study_search *search = plan->study->search;
   strut_table own = {0};
   strut_plot plot = plot_of(f, path);
   strut_study_figure figure = *f; /* points over two variables, the best ringed; else: */
-  size_t rows = table->row_count;
-  double *best = strut_arena_allocate(&own.arena, rows, sizeof *best);
-  bool *shown = strut_arena_allocate(&own.arena, rows, sizeof *shown);
-  bool *marked = strut_arena_allocate(&own.arena, rows, sizeof *marked);
-  const char *unit = t.search->goal.program.unit;
-  bool fine = best && shown && marked;
-  if (fine) follow(&t, best, shown, marked);
-  if (fine && t.second >= 0) fine = mark_front(&t, shown, marked, &own.arena);
-  strut_status status = fine ? extend(table, best, strcmp(unit, "1") == 0 ? "" : unit, &own, error)
-                             : strut_no_memory(error, "while drawing");
+  size_t count = table->row_count + 1;
+  searched_rows rows = {.table = table,
+                        .best = strut_arena_allocate(&own.arena, count, sizeof *rows.best),
+                        .shown = strut_arena_allocate(&own.arena, count, sizeof *rows.shown),
+                        .marked = strut_arena_allocate(&own.arena, count, sizeof *rows.marked)};
+  const char *unit = search->goal.program.unit;
+  const strut_table_column best = {
+      .name = BEST, .unit = strcmp(unit, "1") == 0 ? "" : unit, .value = rows.best};
+  strut_status status = rows.best && rows.shown && rows.marked
+                            ? extend(table, best, &own, error)
+                            : strut_no_memory(error, "while drawing");
   if (!figure.color) figure.color = "objective";
   if (f->kind == STRUT_FIGURE_BEST) {
     figure.x = "evaluation", figure.y = BEST;
-    if (!figure.series && t.search->starts > 1) figure.series = "search";
-    if (!plot.y.label) plot.y.label = t.search->goal.text;
+    if (!figure.series && search->starts > 1) figure.series = "search";
+    if (!plot.y.label) plot.y.label = search->goal.text;
   }
+  if (!status) find_rows(&rows, result);
   if (!status)
-    status = strut_table_draw(&plot, &figure, &own,
-                              (strut_table_marks){.shown = shown, .marked = marked}, error);
+    status =
+        strut_table_draw(&plot, &figure, &own,
+                         (strut_table_marks){.shown = rows.shown, .marked = rows.marked}, error);
   strut_arena_free(&own.arena);
   return status;
 }
 
 strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *directory,
                                 const strut_study_figure *figure, const strut_table *table,
-                                const strut_refinement *refinement, strut_error *error) {
+                                const strut_search_result *searched, strut_error *error) {
   strut_arena arena = {0};
   const char *file = strut_arena_format(&arena, "%s/%s.svg", directory, figure->name);
   const strut_plot plot = plot_of(figure, file);
@@ -208,13 +134,67 @@ strut_status strut_sweep_figure(const strut_sweep_plan *plan, const char *direct
   else if (figure->kind == STRUT_FIGURE_MOTION)
     status = draw_motion(plan, directory, figure, file, error);
   else if (strut_figure_of_search(figure))
-    status = draw_search(plan, figure, file, table, error);
+    status = draw_search(plan, figure, file, table, searched, error);
   else if (strut_figure_of_runs(figure))
     status = strut_study_pictures(plan, directory, figure, PAGE, error);
   else
     status = strut_table_draw(&plot, figure, table,
-                              (strut_table_marks){.spread = refinement != NULL}, error);
+                              (strut_table_marks){.spread = plan->study->refine.depth > 0}, error);
   strut_arena_free(&arena);
+  return status;
+}
+
+/* ---- indices of sensitivity ---- */
+
+/* Rows of indices that have a value, as far as there are panels; who: the parameter, or the measure. */
+static bool choose_indices(const strut_table *table, size_t of, bool one, bool *shown,
+                           const char **who) {
+  const char *const *measure = table->columns[of + 1].text, *const *name = table->columns[of].text;
+  const char *const *parameter = table->columns[of + 2].text;
+  const double *value = table->columns[of + 3].value;
+  size_t panel = 0; /* of the results of a point */
+  bool some = false;
+  for (size_t i = 0; i < table->row_count && value; i++) {
+    panel = strcmp(name[i], name[0]) == 0 ? 0 : panel + (strcmp(name[i], name[i - 1]) != 0);
+    who[i] = *parameter[i] ? parameter[i] : measure[i];
+    shown[i] = isfinite(value[i]) && panel < STRUT_MOST_TABLE_GROUPS &&
+               (strcmp(measure[i], "total") == 0 ||
+                strcmp(measure[i], one ? "first_order" : "share") == 0);
+    some = some || shown[i];
+  }
+  return some;
+}
+
+strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study *study,
+                                      const strut_table *table, bool *drawn, strut_error *error) {
+  static const char *labels[] = {"first order", "total; whiskers: 95 %"};
+  const strut_study_axis *axes = study->axes;
+  size_t of = 0, points = 1, last = study->sensitivity.axis, over = 0;
+  strut_table own = {0};
+  for (size_t i = 0; i < last; i++)
+    over = of, of += axes[i].column_count, points *= (size_t)axes[i].count;
+  bool one = points == 1, numbers = one || !axes[last - 1].columns[0].word;
+  bool *shown = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *shown);
+  const char **who = strut_arena_allocate(&own.arena, table->row_count + 1, sizeof *who);
+  const strut_table_column column = {.name = "", .unit = "", .text = who};
+  strut_status status =
+      shown && who ? extend(table, column, &own, error) : strut_no_memory(error, "while drawing");
+  *drawn = !status && numbers && choose_indices(table, of, one, shown, who);
+  if (*drawn) {
+    strut_plot limited = *plot;
+    const strut_study_figure figure = {.x = one ? "parameter" : own.columns[over].name,
+                                       .y = "value",
+                                       .series = one ? "measure" : "",
+                                       .panels = "result",
+                                       .low = one ? "low" : NULL,
+                                       .high = one ? "high" : NULL,
+                                       .label_count = one ? 2 : 0,
+                                       .labels = labels};
+    own.columns[of].name = figure.panels;
+    limited.y = (strut_axis_choice){one ? "part of the variance" : "index", one, -0.1, 1.2};
+    status = strut_table_draw(&limited, &figure, &own, (strut_table_marks){.shown = shown}, error);
+  }
+  strut_arena_free(&own.arena);
   return status;
 }
 

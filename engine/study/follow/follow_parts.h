@@ -84,10 +84,3 @@ typedef struct strut_follow_points_rows {
   strut_slots *slots;
 } strut_follow_points_rows;
 STRUT_API extern const strut_value_rows strut_follow_points_values;
-
-/* follow_figure.c */
-
-/** Draws the branches of `table`, as combine has written it: a colour for each point of the axes. */
-STRUT_API strut_status strut_follow_points_figure(const strut_plot *plot,
-                                                  const strut_sweep_plan *plan,
-                                                  const strut_table *table, strut_error *error);

@@ -7,6 +7,7 @@
 
 #include "engine/base/flag.h"
 #include "engine/output/draw/chart.h"
+#include "engine/output/record_files.h"
 #include "engine/run/follow/follow.h"
 #include "engine/scene/study.h"
 #include "engine/scene/value_rows.h"
@@ -96,11 +97,10 @@ STRUT_API void strut_follow_free(strut_follow_result *result);
 /** Of a result; those of curves of one with a second parameter. */
 STRUT_API extern const strut_value_rows strut_follow_values, strut_follow_curves_values;
 
-/** The curves in the plane of both parameters, with their cusps. */
-STRUT_API strut_status strut_follow_curves_figure(const strut_plot *plot,
-                                                  const strut_follow_result *result,
-                                                  strut_error *error);
-
-/** Velocity over the parameter: stable solid, unstable dashed, special points marked. */
-STRUT_API strut_status strut_follow_figure(const strut_plot *plot,
-                                           const strut_follow_result *result, strut_error *error);
+/**
+ * Draws a table of branches.csv or curves.csv, whose marks it changes: velocity or amplitude over the parameter, or
+ * curves in the plane of both. Stable motions are solid, unstable ones dashed, special points marked; behind `axes` of a
+ * study a colour for each value of the last, a panel for each of the one before.
+ */
+STRUT_API strut_status strut_follow_figure(const strut_plot *plot, const char *title, size_t axes,
+                                           strut_table *table, strut_error *error);

@@ -117,14 +117,22 @@ static search *begin_search(conductor *self, strut_search_outcome *outcome) {
   return NULL;
 }
 
-/* The values of a point as owned by the result. */
-static bool keep_best(conductor *self, search *s) {
+/* What the result keeps of a search: the values of its best point, and its steps. */
+static bool keep_outcome(conductor *self, search *s) {
   strut_search_outcome *outcome = s->outcome;
-  size_t n = self->layout.variables;
-  strut_study_value *values = strut_arena_allocate(&self->result->arena, n, sizeof *values);
-  if (!values) return false;
+  strut_arena *arena = &self->result->arena;
+  size_t n = self->layout.variables, count = (size_t)outcome->evaluations;
+  strut_study_value *values = strut_arena_allocate(arena, n, sizeof *values);
+  outcome->steps = strut_arena_allocate(arena, count + 1, sizeof *outcome->steps);
+  if (!values || !outcome->steps) return false;
   if (outcome->best.evaluation >= 0) memcpy(values, outcome->best.values, n * sizeof *values);
   outcome->best.values = values;
+  strut_search_point best = {.evaluation = -1, .objective = (double)NAN};
+  for (size_t i = 0; i < count; i++) {
+    const strut_search_point *point = &s->list[i].point;
+    if (point->violation <= 0.0 && strut_search_better(self->what, point, &best)) best = *point;
+    outcome->steps[i] = (strut_search_step){point->worst, best.objective};
+  }
   return true;
 }
 
@@ -343,7 +351,7 @@ static bool collect_questions(conductor *self) {
       continue;
     }
     if (!s->over) s->outcome->end = STRUT_SEARCH_CONVERGED;
-    fine = keep_best(self, s) && fine;
+    fine = keep_outcome(self, s) && fine;
     fine = strut_dialogue_end(s->dialogue) && fine;
     s->dialogue = NULL;
     free_search(s);

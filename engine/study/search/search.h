@@ -50,6 +50,12 @@ typedef enum strut_search_end {
 
 enum { STRUT_SEARCH_LATEST = 10 };
 
+/** An evaluation of a search. */
+typedef struct strut_search_step {
+  int64_t worst; /* point of the study */
+  double best;   /* the best objective of feasible points up to here; NAN: none */
+} strut_search_step;
+
 /** One search. */
 typedef struct strut_search_outcome {
   int64_t outer;           /* point of the axes before the searches */
@@ -59,8 +65,9 @@ typedef struct strut_search_outcome {
   int64_t evaluations, repeated, failed, feasible, valueless; /* valueless: the goal has no value */
   double top[STRUT_SEARCH_LATEST];                            /* the best objectives, best first */
   size_t top_count;
-  bool constant;      /* all objectives are the same */
-  double least, most; /* objectives of all points, feasible or not */
+  strut_search_step *steps; /* (evaluations) */
+  bool constant;            /* all objectives are the same */
+  double least, most;       /* objectives of all points, feasible or not */
 } strut_search_outcome;
 
 /** A point beside the best one, along one variable. */

@@ -13,7 +13,6 @@
 
 #include "engine/base/derivatives.h"
 #include "engine/base/memory.h"
-#include "engine/output/draw/chart.h"
 #include "engine/scene/study.h"
 #include "engine/scene/value_rows.h"
 #include "engine/study/results/slots.h"
@@ -90,11 +89,3 @@ STRUT_API strut_status strut_sensitivity_find(const strut_study *study, strut_sl
  */
 STRUT_API strut_status strut_sensitivity_write(const strut_sensitivity_result *result,
                                                const char *directory, strut_error *error);
-/**
- * Draws the picture: of one point, indices as bars with their 95 % intervals; of several along an axis of numbers,
- * indices over it. *drawn: false where there is nothing to draw.
- */
-STRUT_API strut_status strut_sensitivity_figure(const strut_plot *plot, const strut_study *study,
-                                                strut_slots *slots,
-                                                const strut_sensitivity_result *result, bool *drawn,
-                                                strut_error *error);

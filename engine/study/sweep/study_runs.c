@@ -19,7 +19,10 @@ static const struct {
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 static const size_t MOST_ROWS = 20000000;
 
-const char *strut_study_motion_column(size_t i) { return i < COLUMNS ? columns[i].name : NULL; }
+const char *strut_study_motion_column(size_t i, const char **unit) {
+  *unit = i < COLUMNS ? columns[i].unit : "";
+  return i < COLUMNS ? columns[i].name : NULL;
+}
 
 /* Does the figure's `only` select this text of a column? */
 static bool shows(const strut_study_figure *figure, const char *column, const char *text) {
@@ -82,10 +85,7 @@ static strut_status open_run(const strut_sweep_plan *plan, const char *directory
     status = strut_trajectory_read(folder, &opened->setup.scene, STRUT_TRAJECTORY_ROOM,
                                    &opened->motion, error);
   if (!status && !opened->motion.position)
-    status = strut_fail(error, STRUT_USAGE,
-                        "figure '%.60s' of the study: the runs recorded no "
-                        "positions ('output: {channels: [position]}')",
-                        figure->name);
+    status = strut_fail(error, STRUT_USAGE, "its runs recorded no positions");
   *there = !status && opened->motion.frames > 0;
   return status;
 }
@@ -180,8 +180,7 @@ static strut_status add_run(builder *self, const opened_run *run, strut_error *e
   }
   if (trajectory->frames > MOST_ROWS / trajectory->node_count ||
       table->row_count > MOST_ROWS - trajectory->frames * trajectory->node_count)
-    return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: more than %zu rows",
-                      self->figure->name, MOST_ROWS);
+    return strut_fail(error, STRUT_USAGE, "more than %zu rows", MOST_ROWS);
   for (size_t node = 0; node < trajectory->node_count; node++) {
     const char *name = run->setup.scene.nodes[node].name;
     if (!shows(self->figure, "node", name)) continue;
@@ -210,8 +209,7 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
     close_run(&opened);
   }
   if (!status && !table->row_count)
-    status = strut_fail(error, STRUT_USAGE,
-                        "figure '%.60s' of the study: no run recorded any of this", figure->name);
+    status = strut_fail(error, STRUT_USAGE, "no run recorded any of this");
   if (status) strut_arena_free(&table->arena);
   return status;
 }
@@ -219,18 +217,12 @@ strut_status strut_study_motion(const strut_sweep_plan *plan, const char *direct
 /* ---- figures of single runs ---- */
 
 /* The axis that `difference` names, or axis_count. */
-static strut_status find_axis(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                              size_t *axis, strut_error *error) {
-  const strut_study *study = plan->study;
-  *axis = study->axis_count;
+static size_t find_axis(const strut_sweep_plan *plan, const strut_study_figure *figure) {
+  size_t axis = plan->study->axis_count;
   for (size_t i = 0; figure->difference && i < plan->axis_columns; i++)
-    if (strcmp(plan->columns[i].name, figure->difference) == 0) strut_grid_column(study, i, axis);
-  if (*axis == study->axis_count || study->axes[*axis].count == 2) return STRUT_OK;
-  return strut_fail(
-      error, STRUT_USAGE,
-      "figure '%.60s' of the study: 'difference' needs an axis of two values; '%.60s' "
-      "has %lld",
-      figure->name, figure->difference, (long long)study->axes[*axis].count);
+    if (strcmp(plan->columns[i].name, figure->difference) == 0)
+      strut_grid_column(plan->study, i, &axis);
+  return axis;
 }
 
 /* The point with the first value along that axis. */
@@ -316,11 +308,10 @@ static strut_status draw_point(pictures *self, int64_t point, strut_error *error
 strut_status strut_study_pictures(const strut_sweep_plan *plan, const char *directory,
                                   const strut_study_figure *figure, double width,
                                   strut_error *error) {
-  pictures p = {.plan = plan, .directory = directory, .figure = figure, .width = width};
-  strut_status status = find_axis(plan, figure, &p.axis, error);
+  pictures p = {plan, directory, figure, width, find_axis(plan, figure), false};
+  strut_status status = STRUT_OK;
   for (int64_t point = 0; point < plan->points && !status; point++)
     status = draw_point(&p, point, error);
   if (status || p.drawn) return status;
-  return strut_fail(error, STRUT_USAGE, "figure '%.60s' of the study: no run recorded any of this",
-                    figure->name);
+  return strut_fail(error, STRUT_USAGE, "no run recorded any of this");
 }

@@ -156,8 +156,8 @@ STRUT_API int strut_sweep_threads(void);
  * What the runs of a study recorded, where it has `trajectories: yes`: as a table, and as pictures.
  */
 
-/** The i-th name of the columns behind those of the axes, or NULL after the last; "node" is first. */
-STRUT_API const char *strut_study_motion_column(size_t i);
+/** The i-th name of the columns behind those of the axes, and its unit, or NULL after the last; "node" is first. */
+STRUT_API const char *strut_study_motion_column(size_t i, const char **unit);
 
 /**
  * The motion as a table in an arena of its own: for each run in turn a row for each time and node,

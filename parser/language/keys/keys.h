@@ -54,7 +54,7 @@ typedef enum strut_section {
   X(EXPRESSION, SCALAR, 0, 0, "an expression such as com.vy, n1.y - n2.y or m1.force", "") /* CONTEXT: of sensors */ \
   X(KEEP, LIST, 0, UINT32_MAX, NULL, "list of quantities, or of ") /* the key's words and quantities */ \
   X(AXES, LIST, 0, UINT32_MAX, "a list of axes such as [{friction: [0.1, 0.2]}]", "list of axes") \
-  X(TIMES, LIST, 0, UINT32_MAX, "a list of times such as [0 s, 20 ms]", "list of times [s]") \
+  X(TIMES, LIST, 1, UINT32_MAX, "a list of times such as [0 s, 20 ms]", "list of times [s]") \
   X(MAP, MAP, 0, 0, "a mapping {key: value, ...}", "") /* the keys of the section that has the key's name */ \
   X(THINGS, MAP, 0, 0, "a mapping {name: ..., ...}", "names, each with ") /* from names to things, described by `words` */ \
   X(NODE_RING, LIST, 3, UINT32_MAX, "three nodes or more such as [n1, n2, n3]", "names of three nodes or more") \

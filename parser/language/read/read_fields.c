@@ -425,6 +425,7 @@ static const companion companions[] = {
     OF_FIGURE(TO, "motion"),
     OF_FIGURE(SCALE, "period"),
     OF_FIGURE(TIMES, "snapshots"),
+    OF_FIGURE(LABELS, "lines|motion|best"),
     OF_FIGURE(X_LABEL, "lines|map|motion|best|points"),
     OF_FIGURE(Y_LABEL, "lines|map|motion|best|points"),
     OF_FIGURE(X_LIMITS, "lines|map|motion|best|points"),

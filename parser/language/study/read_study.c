@@ -218,6 +218,10 @@ static void read_figure(strut_study_reader *reader, const strut_tree *key,
   check_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_X_LIMITS), key, figure->x_limits);
   check_limits(reader, strut_slot_of(&fields, STRUT_KEY_FIGURE_Y_LIMITS), key, figure->y_limits);
   require_columns(reader, &fields, key, figure);
+  const strut_slot *to = strut_slot_of(&fields, STRUT_KEY_FIGURE_TO);
+  if (to->state == STRUT_GIVEN && !(figure->from < figure->to))
+    strut_report_error(reader->reader, to->value->place,
+                       "'to' of figure '%s' must be later than 'from'", key->text);
 }
 
 static void read_figures(strut_study_reader *reader, const strut_slot *slot) {

@@ -493,18 +493,13 @@ static bool make_columns(strut_csv *csv, strut_table *table) {
   return good;
 }
 
-strut_status strut_table_read(const strut_listener *listener, const char *path,
-                              strut_table *table) {
-  char *text;
-  size_t length;
-  strut_error error = {0};
+strut_status strut_table_parse(const strut_listener *listener, const char *path, const char *text,
+                               size_t length, strut_table *table) {
   strut_diagnostics diagnostics = {0};
   strut_csv csv;
   *table = (strut_table){0};
-  strut_status status = strut_file_read(path, &text, &length, &error);
-  if (status) return strut_tell_failure(listener, status, &error);
   strut_diagnostics_source(&diagnostics, strcmp(path, "-") == 0 ? "<stdin>" : path, text, length);
-  status = strut_csv_read(text, length, STRUT_CSV_ANY_HEADER, &diagnostics, &csv);
+  strut_status status = strut_csv_read(text, length, STRUT_CSV_ANY_HEADER, &diagnostics, &csv);
   if (status == STRUT_OK && !make_columns(&csv, table)) status = STRUT_NO_MEMORY;
   if (status == STRUT_BAD_SCENE) {
     const char *messages = strut_diagnostics_render(&diagnostics, MOST_MESSAGES);
@@ -514,7 +509,19 @@ strut_status strut_table_read(const strut_listener *listener, const char *path,
   }
   strut_diagnostics_free(&diagnostics);
   strut_arena_free(&csv.arena);
-  strut_release(text);
   if (status != STRUT_OK) strut_arena_free(&table->arena);
+  return status;
+}
+
+strut_status strut_table_read(const strut_listener *listener, const char *path,
+                              strut_table *table) {
+  char *text;
+  size_t length;
+  strut_error error = {0};
+  *table = (strut_table){0};
+  strut_status status = strut_file_read(path, &text, &length, &error);
+  if (status) return strut_tell_failure(listener, status, &error);
+  status = strut_table_parse(listener, path, text, length, table);
+  strut_release(text);
   return status;
 }

@@ -129,3 +129,6 @@ const strut_figure_key *strut_figure_fault(const strut_study_figure *figure,
  * STRUT_BAD_SCENE where it is not a table. The table is freed by strut_arena_free(&table->arena).
  */
 strut_status strut_table_read(const strut_listener *listener, const char *path, strut_table *table);
+/** The same of the text of a file. */
+strut_status strut_table_parse(const strut_listener *listener, const char *path, const char *text,
+                               size_t length, strut_table *table);

@@ -77,8 +77,9 @@ struct strut_study_job {
   strut_shard shard;  /* of a search: which of its workers; count 0: none */
   strut_slots *slots; /* strut_slots_close closes them */
   strut_sweep_state state;
-  strut_refinement *refinement; /* of a refined map, or NULL */
-  int64_t others;               /* points of other shards that must be known before more can be */
+  strut_refinement *refinement;        /* of a refined map, or NULL */
+  const strut_search_result *searched; /* of a search, once it is there */
+  int64_t others; /* points of other shards that must be known before more can be */
 };
 
 /** Finds the shard that --shard names, and the file of its slots, which the workers of a search share. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include <string.h>
 
+#include "engine/output/figures/run_figure.h"
+#include "engine/output/figures/table_figure.h"
 #include "engine/output/file.h"
 #include "engine/output/results.h"
 #include "engine/study/follow/follow_parts.h"
@@ -13,23 +15,53 @@
 /* The source of a figure: the table, or the recorded runs. */
 typedef struct source {
   const strut_sweep_plan *plan;
-  bool runs, lines; /* lines may be bars over texts */
+  const strut_study_figure *figure;
+  bool runs, lines;  /* lines may be bars over texts */
+  const char **unit; /* of the y before; NULL: none */
 } source;
 
 static const char *column_name(const void *context, size_t i) {
   const source *self = context;
+  const char *unit;
   size_t count = self->runs ? self->plan->axis_columns : self->plan->column_count;
   if (i < count) return self->plan->columns[i].name;
-  return self->runs ? strut_study_motion_column(i - count) : i == count ? "status" : NULL;
+  return self->runs ? strut_study_motion_column(i - count, &unit) : i == count ? "status" : NULL;
 }
 
-/* May a key have a text of this axis? */
+/* The unit of a column of numbers, "" for none. */
+static const char *unit_of(const source *self, size_t i) {
+  const char *unit = "";
+  if (self->runs && i >= self->plan->axis_columns)
+    strut_study_motion_column(i - self->plan->axis_columns, &unit);
+  else if (i < self->plan->column_count && strcmp(self->plan->columns[i].unit, "1") != 0)
+    unit = self->plan->columns[i].unit;
+  return unit;
+}
+
+/* The axis of column i; NULL where its values are chosen while the study runs. */
+static const strut_study_axis *known_axis(const source *self, size_t i) {
+  const strut_study *study = self->plan->study;
+  size_t a = 0;
+  if (i >= self->plan->axis_columns || study->fit) return NULL;
+  strut_grid_column(study, i, &a);
+  bool chosen = (study->search && a >= study->search->axis) ||
+                (study->sensitivity.wanted && a >= study->sensitivity.axis);
+  return chosen ? NULL : &study->axes[a];
+}
+
+/* Has an axis this text? Numbers are written as in the table. */
 static bool has_text(const source *self, size_t i, const char *text) {
+  enum { MOST = 100000 };
   size_t a;
+  const strut_study_axis *axis = known_axis(self, i);
+  char number[STRUT_NUMBER_TEXT];
+  if (!axis || axis->count > MOST) return true;
   const strut_study_column *column = strut_grid_column(self->plan->study, i, &a);
-  for (int64_t k = 0; k < self->plan->study->axes[a].count && column->word; k++)
-    if (strcmp(column->words[k], text) == 0) return true;
-  return !column->word;
+  for (int64_t k = 0; k < axis->count; k++) {
+    if (!column->word) strut_number_text(strut_grid_value(column, k, axis->count), number);
+    if (strcmp(column->word ? column->words[k] : number, text) == 0) return true;
+  }
+  return false;
 }
 
 /* What was recorded is numbers behind the names of nodes; it does not split rows into series. */
@@ -38,40 +70,133 @@ static void judge_column(const void *context, size_t i, const strut_figure_key *
   const source *self = context;
   const strut_sweep_plan *plan = self->plan;
   const size_t node = plan->axis_columns;
-  const char *name = column_name(self, i);
+  const char *name = column_name(self, i), *unit = unit_of(self, i);
+  bool motion = self->figure->kind == STRUT_FIGURE_MOTION;
   bool words =
       self->runs && i >= node ? i == node : i == plan->column_count || plan->columns[i].word;
-  bool bars = self->lines && strcmp(key->key, "x") == 0;
-  if (key->number ? words && !bars : self->runs && i > node)
+  bool bars = self->lines && strcmp(key->key, "x") == 0, y = strcmp(key->key, "y") == 0;
+  if (key->number ? words && !bars : self->runs && i >= node + motion)
     snprintf(fault, STRUT_MESSAGE_MOST,
-             !key->number ? "'%.60s' is recorded; expected an axis, or 'node'"
+             !key->number ? motion ? "'%.60s' is recorded; expected an axis, or 'node'"
+                                   : "'%.60s' is recorded; expected an axis"
              : self->lines
                  ? "column '%.60s' holds texts, not numbers; 'series' and 'panels' take texts"
                  : "column '%.60s' holds texts, not numbers",
              name);
-  else if (*key->ends == '=' && i < node && !has_text(self, i, text))
-    snprintf(fault, STRUT_MESSAGE_MOST, "'%.60s' is no value of '%.60s'", text, name);
+  else if (*key->ends == '=' && !has_text(self, i, text))
+    snprintf(fault, STRUT_MESSAGE_MOST, "'%.60s' is no value of '%.60s'%s%s%s", text, name,
+             words ? "" : "; expected a number as in the table", !words && *unit ? ", in " : "",
+             words ? "" : unit);
+  else if (y && *self->unit && strcmp(*self->unit, unit) != 0)
+    snprintf(fault, STRUT_MESSAGE_MOST,
+             "'%.60s' has another unit (%s) than the columns before it (%s)", name,
+             *unit ? unit : "none", **self->unit ? *self->unit : "none");
+  else if (y)
+    *self->unit = unit;
 }
 
-/* A label for each value of an axis by itself; of other columns the curves are counted when they are drawn. */
-static bool has_labels(const strut_sweep_plan *plan, const strut_study_figure *figure,
-                       char fault[STRUT_MESSAGE_MOST]) {
-  for (size_t i = 0, a; i < plan->axis_columns && figure->series && figure->label_count; i++) {
-    if (strcmp(plan->columns[i].name, figure->series) != 0) continue;
-    strut_grid_column(plan->study, i, &a);
-    const strut_study_axis *axis = &plan->study->axes[a];
-    if (axis->column_count > 1 || axis->count == (int64_t)figure->label_count) continue;
-    snprintf(fault, STRUT_MESSAGE_MOST, "%zu labels for the %lld values of '%.60s'",
-             figure->label_count, (long long)axis->count, figure->series);
-    return false;
+/* How many texts the figure's rows have in a column, of which `nodes` are those of "node"; 0: not known. */
+static size_t count_texts(const source *self, const char *name, size_t nodes) {
+  const char *only = self->figure->only ? self->figure->only : "=";
+  size_t length = strcspn(only, "=");
+  bool one = name && strlen(name) == length && memcmp(name, only, length) == 0;
+  if (name && self->runs && strcmp(name, "node") == 0) return one ? 1 : nodes;
+  for (size_t i = 0; name && i < self->plan->axis_columns; i++) {
+    const strut_study_axis *axis = known_axis(self, i);
+    if (strcmp(self->plan->columns[i].name, name) == 0 && axis && axis->column_count == 1)
+      return one ? 1 : (size_t)axis->count;
   }
-  return true;
+  return 0;
+}
+
+/* The key whose texts are too many or too few; of tables, the texts of axes are known. */
+static const char *judge_counts(const source *self, size_t nodes, char fault[STRUT_MESSAGE_MOST]) {
+  const strut_study_figure *figure = self->figure;
+  size_t sides = count_texts(self, figure->difference, nodes), ys = 1;
+  size_t curves = figure->series ? count_texts(self, figure->series, nodes) : 1;
+  for (const char *y = figure->y; y && (y = strchr(y, ',')); y++) ys++;
+  if (figure->difference && curves && figure->series &&
+      strcmp(figure->series, figure->difference) == 0)
+    curves = 1;
+  if (sides && sides != 2) {
+    snprintf(fault, STRUT_MESSAGE_MOST, "it needs two values to compare; '%.60s' has %zu",
+             figure->difference, sides);
+    return "difference";
+  }
+  if (!figure->label_count || !curves || figure->label_count == curves * ys) return NULL;
+  if (figure->series && ys == 1)
+    snprintf(fault, STRUT_MESSAGE_MOST, "%zu labels for the %zu values of '%.60s'",
+             figure->label_count, curves, figure->series);
+  else
+    snprintf(fault, STRUT_MESSAGE_MOST, "%zu labels for %zu curve%s", figure->label_count,
+             curves * ys, curves * ys == 1 ? "" : "s");
+  return "labels";
+}
+
+/* The key of a figure of runs that has a fault in a run of this scene. */
+static const char *judge_run(const source *self, const strut_setup *setup,
+                             char fault[STRUT_MESSAGE_MOST]) {
+  const strut_study_figure *figure = self->figure;
+  const strut_scene *scene = &setup->scene;
+  const strut_span span = strut_experiment_span(&setup->experiment, scene);
+  const strut_run_figure picture = {
+      .experiment = &setup->experiment,
+      .view = figure->kind == STRUT_FIGURE_PERIOD ? STRUT_RUN_PERIOD : STRUT_RUN_SNAPSHOTS,
+      .time_count = figure->time_count,
+      .times = figure->times};
+  const char *node =
+      figure->only && strncmp(figure->only, "node=", 5) == 0 ? figure->only + 5 : NULL;
+  bool late = figure->from > span.duration;
+  strut_error error = {0};
+  if (!(setup->experiment.channels & STRUT_CHANNEL_POSITION)) {
+    snprintf(fault, STRUT_MESSAGE_MOST,
+             "the runs record no positions: expected 'position' in 'output: {channels: [...]}'");
+    return "kind";
+  }
+  if (node && strut_thing_find(scene, STRUT_THING_NODE, node) < 0) {
+    snprintf(
+        fault, STRUT_MESSAGE_MOST, "the model has no node '%.60s'%s", node,
+        strut_near_to(node, strut_row_name, STRUT_NAMED(scene->nodes, scene->node_count)).text);
+    return "only";
+  }
+  if (late || figure->to < span.record_start) {
+    snprintf(fault, STRUT_MESSAGE_MOST, "nothing is recorded there: the record goes from %s to %s",
+             strut_quantity_of(span.record_start, 6, "s").text,
+             strut_quantity_of(span.duration, 6, "s").text);
+    return late ? "from" : "to";
+  }
+  if (figure->kind != STRUT_FIGURE_MOTION && strut_run_figure_check(&picture, scene, &error)) {
+    snprintf(fault, STRUT_MESSAGE_MOST, "%s", error.message);
+    return figure->time_count ? "times" : "kind";
+  }
+  return judge_counts(self, scene->node_count, fault);
+}
+
+/* The same in the first and the last run of each variant: some run must be without a fault. */
+static const char *judge_runs(const source *self, bool variants, char fault[STRUT_MESSAGE_MOST]) {
+  const strut_sweep_plan *plan = self->plan;
+  int64_t count = variants ? plan->study->axes[0].count : 1, each = plan->points / count;
+  const char *key = NULL;
+  strut_study_value *values = strut_allocate(plan->axis_columns + 1, sizeof *values);
+  for (int64_t i = 0; i < 2 * count && values; i++) {
+    strut_setup setup;
+    strut_grid_values(plan->study, i / 2 * each + i % 2 * (each - 1), values);
+    if (plan->scenes.setup(plan->scenes.context, values, &setup, NULL)) continue;
+    key = judge_run(self, &setup, fault);
+    strut_setup_free(&setup);
+    if (!key) break;
+  }
+  strut_release(values);
+  return key;
 }
 
 /* The key that has a fault, which it says; NULL: none. */
-static const char *check_figure(const strut_sweep_plan *plan, const strut_study_figure *figure,
+static const char *check_figure(const strut_sweep_study *study, const strut_study_figure *figure,
                                 char fault[STRUT_MESSAGE_MOST]) {
-  const source s = {plan, strut_figure_of_runs(figure), figure->kind == STRUT_FIGURE_LINES};
+  const strut_sweep_plan *plan = &study->plan;
+  const char *unit = NULL;
+  const source s = {plan, figure, strut_figure_of_runs(figure), figure->kind == STRUT_FIGURE_LINES,
+                    &unit};
   const strut_figure_columns columns = {s.runs ? "the motion" : "the table", column_name,
                                         judge_column, &s};
   const bool no_search = strut_figure_of_search(figure) && !plan->study->search;
@@ -81,25 +206,32 @@ static const char *check_figure(const strut_sweep_plan *plan, const strut_study_
                        : "it needs recorded runs: add 'trajectories: yes' to the study");
     return "kind";
   }
-  if (!has_labels(plan, figure, fault)) return "labels";
   const strut_figure_key *key = strut_figure_fault(figure, &columns, fault);
-  return key ? key->key : NULL;
+  if (key) return key->key;
+  return s.runs                           ? judge_runs(&s, study->file.variants, fault)
+         : strut_figure_of_search(figure) ? NULL
+                                          : judge_counts(&s, 0, fault);
+}
+
+/* Adds a message at the key of a figure, or at its name. */
+static void report_fault(strut_sweep_study *study, const strut_study_figure *figure,
+                         const char *key, const char *fault) {
+  strut_study_file *file = &study->file;
+  const strut_tree *own =
+      strut_tree_find(strut_tree_find(file->document.root, "figures", NULL), figure->name, NULL);
+  const strut_tree *at = key ? strut_tree_find(own, key, NULL) : NULL;
+  strut_diagnose(&file->diagnostics, (at ? at : own)->place, "%s%s%sfigure '%.60s': %s",
+                 key ? "'" : "", key ? key : "", key ? "' of " : "", figure->name, fault);
 }
 
 strut_status strut_sweep_figures_check(strut_sweep_study *study) {
-  strut_study_file *file = &study->file;
-  const strut_tree *figures = strut_tree_find(file->document.root, "figures", NULL);
   char fault[STRUT_MESSAGE_MOST];
-  for (size_t i = 0; i < file->study.figure_count; i++) {
-    const strut_study_figure *figure = &file->study.figures[i];
-    const char *key = check_figure(&study->plan, figure, fault);
-    const strut_tree *own = strut_tree_find(figures, figure->name, NULL);
-    const strut_tree *at = key ? strut_tree_find(own, key, NULL) : NULL;
-    if (key)
-      strut_diagnose(&file->diagnostics, (at ? at : own)->place, "'%s' of figure '%.60s': %s", key,
-                     figure->name, fault);
+  for (size_t i = 0; i < study->file.study.figure_count; i++) {
+    const strut_study_figure *figure = &study->file.study.figures[i];
+    const char *key = check_figure(study, figure, fault);
+    if (key) report_fault(study, figure, key, fault);
   }
-  return file->diagnostics.count ? STRUT_BAD_SCENE : STRUT_OK;
+  return study->file.diagnostics.count ? STRUT_BAD_SCENE : STRUT_OK;
 }
 
 strut_status strut_sweep_figures_check_files(const strut_sweep_plan *plan, const char *directory,
@@ -141,8 +273,14 @@ strut_status strut_sweep_figures_draw(const strut_study_job *job, const char *pa
     strut_error error = {0};
     if (study->figures[i].kind == STRUT_FIGURE_WINNER) continue; /* sweep_search.c draws it */
     status = strut_sweep_figure(&job->study->plan, job->arguments->output, &study->figures[i],
-                                &table, job->refinement, &error);
-    strut_tell_failure(job->arguments->listener, status, &error);
+                                &table, job->searched, &error);
+    if (status != STRUT_USAGE) {
+      strut_tell_failure(job->arguments->listener, status, &error);
+      continue;
+    }
+    report_fault(job->study, &study->figures[i], NULL, error.message);
+    status = strut_sweep_study_report(job->arguments->listener, job->study, STRUT_BAD_SCENE,
+                                      &(strut_error){0});
   }
   strut_arena_free(&table.arena);
   return status;
@@ -192,8 +330,11 @@ static strut_status draw_branches(const strut_study_job *job, strut_error *error
                            .width = PAGE};
   if (!from || !plot.path) return strut_no_memory(error, "");
   strut_status status = strut_table_read(job->arguments->listener, from, &table);
-  strut_sweep_show_units(plan, &table);
-  if (!status) status = strut_follow_points_figure(&plot, plan, &table, error);
+  if (!status) {
+    strut_sweep_show_units(plan, &table);
+    strut_table_show_unit(&table, plan->study->follow->over, plan->study->follow->shown);
+    status = strut_follow_figure(&plot, plan->study->name, plan->axis_columns, &table, error);
+  }
   strut_arena_free(&table.arena);
   return status;
 }

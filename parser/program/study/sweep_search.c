@@ -10,6 +10,7 @@
 #include "engine/study/results/study_table.h"
 #include "engine/study/sensitivity/sensitivity.h"
 #include "parser/language/yaml/document.h"
+#include "parser/program/command/scene_options.h"
 #include "parser/program/study/sweep.h"
 
 static const char table_name[] = "table.csv";
@@ -27,6 +28,7 @@ static strut_status run_search(strut_study_job *job, const strut_sweep_options *
   how.directory = NULL;
   how.worker = job->shard.index;
   how.workers = job->shard.count;
+  job->searched = &((searched *)context)->found;
   return strut_search_run(&job->study->plan, job->slots, &how, &job->state,
                           &((searched *)context)->found, error);
 }
@@ -260,20 +262,26 @@ strut_status strut_sweep_sensitivity_complete(const strut_study_job *job) {
   strut_slots *slots = job->slots;
   const char *directory = arguments->output;
   strut_sensitivity_result result = {0};
+  strut_table table = {0};
   strut_arena arena = {0};
   strut_error error = {0};
   bool drawn;
   if (!plan->study->sensitivity.wanted) return STRUT_OK;
   const char *path = strut_arena_format(&arena, "%s/sensitivity.svg", directory);
-  strut_status status = path ? STRUT_OK : strut_no_memory(&error, "");
+  const char *from = strut_arena_format(&arena, "%s/sensitivity.csv", directory);
+  strut_status status = path && from ? STRUT_OK : strut_no_memory(&error, "");
   if (!status) status = strut_sensitivity_find(plan->study, slots, &result, &error);
   if (!status) status = strut_sensitivity_write(&result, directory, &error);
-  if (!status)
-    status = strut_sensitivity_figure(&(strut_plot){.path = path}, plan->study, slots, &result,
-                                      &drawn, &error);
+  if (!status) status = strut_table_read(arguments->listener, from, &table);
+  if (!status) {
+    strut_sweep_show_units(plan, &table);
+    status =
+        strut_sensitivity_figure(&(strut_plot){.path = path}, plan->study, &table, &drawn, &error);
+  }
   strut_tell_failure(arguments->listener, status, &error);
   if (!status && !arguments->json)
     status = job->report(job, &strut_sensitivity_values, &result, NULL);
+  strut_arena_free(&table.arena);
   strut_arena_free(&result.arena);
   strut_arena_free(&arena);
   return status;
