@@ -567,7 +567,7 @@ strut_status strut_run_begin(const strut_model *model, const strut_experiment *e
   return status;
 }
 
-strut_status strut_run_end(strut_run *run, strut_status status) {
+strut_status strut_run_complete(strut_run *run, strut_status status) {
   strut_summary *summary = run->summary;
   strut_error *error = run->error;
   if (run->ready) {
@@ -586,11 +586,15 @@ strut_status strut_run_end(strut_run *run, strut_status status) {
   summary->status = status;
   for (size_t i = 0; status && i + 1 < sizeof summary->reason; i++)
     if (!(summary->reason[i] = error->message[i])) break;
+  run->ready = false;
+  return status;
+}
+
+void strut_run_free(strut_run *run) {
   strut_recording_free(&run->recording);
   strut_measure_free(&run->measure);
   strut_steady_detector_free(&run->steady.detector);
   strut_state_free(run->state);
-  return status;
 }
 
 strut_status strut_simulate(const strut_model *model, const strut_experiment *experiment,
@@ -606,5 +610,7 @@ strut_status strut_simulate(const strut_model *model, const strut_experiment *ex
     if (status || stop == r.state->step) break;
     strut_run_step(&r, stop);
   }
-  return strut_run_end(&r, status);
+  status = strut_run_complete(&r, status);
+  strut_run_free(&r);
+  return status;
 }

@@ -128,7 +128,7 @@ typedef struct strut_run {
 
 /**
  * Prepares everything before the first step. `run` and all arguments must stay in place until
- * strut_run_end, which must be called whatever is returned.
+ * strut_run_free, which must be called whatever is returned.
  */
 strut_status strut_run_begin(const strut_model *model, const strut_experiment *experiment,
                              const strut_run_options *options, strut_summary *summary,
@@ -142,8 +142,9 @@ strut_status strut_run_sample(strut_run *run, int64_t *stop);
 void strut_run_step(strut_run *run, int64_t stop);
 /** Time reached [s]. */
 double strut_run_time(const strut_run *run);
-/** Fills the summary and frees the run; `status` is that of begin or sample. */
-strut_status strut_run_end(strut_run *run, strut_status status);
+/** Completes summary and recording; `status` is that of begin or sample. Returns it, or that of a sink. */
+strut_status strut_run_complete(strut_run *run, strut_status status);
+void strut_run_free(strut_run *run);
 
 /* ---- run_diagnosis.c ---- */
 

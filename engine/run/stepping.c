@@ -230,7 +230,8 @@ struct strut_stepping {
   stepping_inputs inputs;
   strut_recording live;
   strut_channels shown; /* channels that follow */
-  int64_t checked;      /* step of the latest strut_run_sample; -1: none */
+  strut_sink *sink;     /* or NULL */
+  int64_t stop;         /* step of the next strut_run_sample */
   strut_status status;
   uint64_t identity;
   bool begun;
@@ -240,7 +241,7 @@ struct strut_stepping_snapshot {
   uint64_t identity;
   strut_run run;
   strut_state state;
-  int64_t checked;
+  int64_t stop;
   strut_status status;
   double *inputs; /* inputs_store */
   void *arena;    /* strut_arena_store */
@@ -251,14 +252,15 @@ static uint64_t next_identity(void) {
   return atomic_fetch_add(&last, 1) + 1;
 }
 
-/* Without measurements, and without an end. */
-static strut_status make_endless(strut_experiment *experiment, strut_error *error) {
+/* Of one motion as it is, and where nobody records it without measurements, and without an end. */
+static strut_status make_plain(strut_experiment *experiment, bool recorded, strut_error *error) {
   if (!(experiment->step > 0.0))
     return strut_fail(error, STRUT_USAGE,
                       "the scene leaves its step to be chosen: a simulation needs the option "
                       "'step', such as 0.1 ms");
   experiment->accuracy = 0.0;
   experiment->steady.wanted = false;
+  if (recorded) return STRUT_OK;
   experiment->quantity_count = 0;
   experiment->periods = 0.0;
   experiment->duration = ENDLESS * experiment->step;
@@ -267,15 +269,17 @@ static strut_status make_endless(strut_experiment *experiment, strut_error *erro
 }
 
 strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_flag *interrupt,
-                                   strut_stepping **stepping, strut_error *error) {
+                                   strut_sink *sink, strut_stepping **stepping,
+                                   strut_error *error) {
   strut_stepping *s = strut_allocate(1, sizeof *s);
   *stepping = NULL;
   if (!s) return strut_no_memory(error, "");
   s->experiment = setup->experiment;
-  s->options = (strut_run_options){.force = force, .interrupt = interrupt};
-  s->checked = -1;
+  s->sink = sink;
+  s->options = (strut_run_options){
+      .force = force, .interrupt = interrupt, .sinks = &s->sink, .sink_count = sink ? 1 : 0};
   s->identity = next_identity();
-  strut_status status = make_endless(&s->experiment, error);
+  strut_status status = make_plain(&s->experiment, sink, error);
   if (!status) status = inputs_prepare(setup, error);
   if (!status) status = strut_model_compile(&setup->scene, &s->model, error);
   if (!status) {
@@ -285,6 +289,7 @@ strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_f
   if (status == STRUT_OK)
     status = strut_recording_create_alone(s->model, &s->run.grid, &s->live, error);
   if (!status) status = inputs_create(setup, s->model, &s->inputs, error);
+  if (!status) status = strut_run_sample(&s->run, &s->stop);
   s->run.error = &s->error; /* `error` is the caller's, and may be gone */
   if (!status) {
     *stepping = s;
@@ -297,7 +302,7 @@ strut_status strut_stepping_create(strut_setup *setup, bool force, const strut_f
 void strut_stepping_free(strut_stepping *stepping) {
   if (!stepping) return;
   stepping->run.error = &stepping->error;
-  if (stepping->begun) strut_run_end(&stepping->run, STRUT_OK);
+  if (stepping->begun) strut_run_free(&stepping->run);
   strut_summary_free(&stepping->summary);
   strut_recording_free(&stepping->live);
   strut_arena_free(&stepping->inputs.arena);
@@ -317,22 +322,15 @@ static void refresh(strut_stepping *stepping) {
 
 /* ---- steps ---- */
 
-/* Checks the state as a run does between its steps. */
-static strut_status check(strut_stepping *stepping) {
-  int64_t stop;
-  stepping->checked = stepping->run.check = stepping->run.state->step;
-  return strut_run_sample(&stepping->run, &stop);
-}
-
+/* With the checks and the records of a run between its steps. */
 static strut_status step_to(strut_stepping *stepping, int64_t last) {
   strut_run *run = &stepping->run;
   strut_status status = STRUT_OK;
   while (status == STRUT_OK && run->state->step < last) {
-    if (stepping->checked < 0 || run->state->step - stepping->checked >= run->chunk)
-      status = check(stepping);
-    int64_t stop = stepping->checked + run->chunk;
-    if (!status) strut_run_step(run, stop < last ? stop : last);
-    if (status == STRUT_OK && run->state->trouble) status = check(stepping);
+    if (stepping->stop > run->state->step)
+      strut_run_step(run, stepping->stop < last ? stepping->stop : last);
+    if (run->state->step >= stepping->stop || run->state->trouble)
+      status = strut_run_sample(run, &stepping->stop);
   }
   return status;
 }
@@ -352,13 +350,27 @@ strut_status strut_stepping_advance(strut_stepping *stepping, int64_t steps, str
     strut_status valid = inputs_apply(in, stepping->model, &stepping->run, error);
     if (valid) return valid;
   }
-  int64_t done = stepping->run.state->step, most = INT64_MAX - done;
+  int64_t done = stepping->run.state->step, most = stepping->run.steps - done;
   strut_status status = step_to(stepping, done + (steps < most ? steps : most));
   refresh(stepping);
   if (!status) return STRUT_OK;
   if (error) *error = stepping->error;
   if (status != STRUT_INTERRUPTED) stepping->status = status;
   if (status == STRUT_INTERRUPTED) stepping->run.state->trouble = STRUT_FAILURE_NONE;
+  return status;
+}
+
+strut_status strut_stepping_finish(strut_stepping *stepping, strut_summary *summary) {
+  strut_run *run = &stepping->run;
+  bool whole = run->state->step >= run->steps;
+  strut_status status = stepping->status || whole ? stepping->status : STRUT_INTERRUPTED;
+  status = strut_run_complete(run, status);
+  *summary = stepping->summary;
+  summary->controlled = true;
+  summary->input_work = stepping->inputs.work;
+  stepping->summary = (strut_summary){0};
+  if (!stepping->status)
+    stepping->status = strut_fail(&stepping->error, STRUT_USAGE, "the simulation was finished");
   return status;
 }
 
@@ -403,7 +415,7 @@ strut_stepping_snapshot *strut_stepping_store(const strut_stepping *stepping) {
   *snapshot = (strut_stepping_snapshot){.identity = stepping->identity,
                                         .run = stepping->run,
                                         .state = *state,
-                                        .checked = stepping->checked,
+                                        .stop = stepping->stop,
                                         .status = stepping->status};
   snapshot->arena = strut_allocate(strut_arena_stored_size(&state->arena), 1);
   snapshot->inputs = inputs_store(&stepping->inputs);
@@ -416,12 +428,12 @@ strut_stepping_snapshot *strut_stepping_store(const strut_stepping *stepping) {
 }
 
 bool strut_stepping_restore(strut_stepping *stepping, const strut_stepping_snapshot *snapshot) {
-  if (snapshot->identity != stepping->identity) return false;
+  if (snapshot->identity != stepping->identity || stepping->sink) return false;
   strut_state *state = stepping->run.state;
   strut_arena arena = state->arena; /* may have grown since */
   inputs_restore(&stepping->inputs, stepping->model, snapshot->inputs);
   stepping->run = snapshot->run;
-  stepping->checked = snapshot->checked;
+  stepping->stop = snapshot->stop;
   stepping->status = snapshot->status;
   *state = snapshot->state;
   state->arena = arena;

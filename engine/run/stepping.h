@@ -2,13 +2,14 @@
 /**
  * A run that is stepped from outside: some steps at a time, with inputs that are held between.
  *
- * The steps are those of strut_simulate, bit for bit, however they are divided into calls. Nothing is
- * measured or summarised. Inputs may change between two calls; a change is an event from which methods begin
- * anew, and what it does to the stored energy is work of the drive.
+ * The steps are those of strut_simulate, bit for bit, however they are divided into calls. Inputs may change between
+ * two calls; a change is an event from which methods begin anew, and what it does to the stored energy is work of
+ * the drive. With a sink it is recorded, measured and summarised as a run is, else nothing is.
  */
 #pragma once
 
 #include "engine/base/flag.h"
+#include "engine/run/measure/summary.h"
 #include "engine/run/recorder.h"
 #include "engine/scene/experiment.h"
 
@@ -26,11 +27,18 @@ typedef enum strut_input {
 /**
  * A stepping at the start of the experiment on a scene, both of which become its own: they are changed by
  * inputs, must stay in place, and are not released by it. force: run even above the step limit. The start
- * must be resolved and the step be given. Fails as strut_simulate before its first step.
+ * must be resolved and the step be given. The sink hears of what is recorded, each row before inputs change at its
+ * time, and the experiment's end is that of the steps; NULL: they have no end. Fails as strut_simulate before its
+ * first step.
  */
 STRUT_API strut_status strut_stepping_create(strut_setup *setup, bool force,
-                                             const strut_flag *interrupt, strut_stepping **stepping,
-                                             strut_error *error);
+                                             const strut_flag *interrupt, strut_sink *sink,
+                                             strut_stepping **stepping, strut_error *error);
+/**
+ * Ends the recording and gives its summary away, whose names are the setup's. The simulation stays where it is.
+ * Returns the status of the run: STRUT_INTERRUPTED before its end, or that of the sink.
+ */
+STRUT_API strut_status strut_stepping_finish(strut_stepping *stepping, strut_summary *summary);
 STRUT_API void strut_stepping_free(strut_stepping *stepping); /* NULL is allowed */
 
 /**
@@ -58,7 +66,7 @@ STRUT_API double strut_stepping_input_work(const strut_stepping *stepping);
 
 /** All that changes while it is stepped, inputs too. NULL: memory is out. */
 STRUT_API strut_stepping_snapshot *strut_stepping_store(const strut_stepping *stepping);
-/** Back to a snapshot of the same stepping: what follows has the same bits. False: it is of another. */
+/** Back to a snapshot of the same stepping: what follows has the same bits. False: of another, or with a sink. */
 STRUT_API bool strut_stepping_restore(strut_stepping *stepping,
                                       const strut_stepping_snapshot *snapshot);
 STRUT_API void strut_stepping_snapshot_free(

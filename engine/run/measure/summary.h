@@ -175,6 +175,8 @@ typedef struct strut_summary {
   } window;
   double duration;    /* from t = 0 to the end, whose state, works and losses these are [s] */
   double settle_time; /* simulated before t = 0 to come to rest [s]; not in duration */
+  bool controlled;    /* stepped from outside, */
+  double input_work;  /* whose changes of inputs did this part of the drive work [J] */
   strut_settle_summary settle;
   struct {
     int64_t steps;       /* of the duration */

@@ -76,6 +76,7 @@ static void write_residual(const strut_result_object *of, char text[STRUT_VALUE_
 
 #define ENERGY(X)                                                                                  \
   STRUT_ENERGY_TABLE(ENERGY_OF_##X)                                                                \
+  X("input_work", "J", IF(s->controlled, NUMBER(s->input_work)), "by a controller; in drive_work") \
   X("initial", "J", NUMBER(s->energy.initial), "at the beginning")                                 \
   X("residual", "J", NUMBER(s->energy.residual), "that appeared without a source")                 \
   X("exchanged", "J", NUMBER(s->energy.moved), "what the residual compares to")                    \

@@ -434,7 +434,8 @@ STRUTLIB_API void strutlib_result_free(strutlib_result *result);
 /**
  * A simulation at the start of the scene's run, settled if the scene says so. Options: "step",
  * "integrator", "tolerance", "force" and those of the model ("bars", "mass-model",
- * "friction-law", "damping-law") as of strutlib_run. The duration of the scene's run is no limit.
+ * "friction-law", "damping-law") as of strutlib_run. The duration of the scene's run is no limit, unless the
+ * simulation records by "record" or "channels": then it ends there, and cannot be restored.
  * `control` stays in use by every advance until the simulation is closed; it may be NULL.
  */
 STRUTLIB_API strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene,
@@ -450,6 +451,12 @@ STRUTLIB_API void strutlib_simulation_close(strutlib_simulation *simulation);
  */
 STRUTLIB_API int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
                                              strutlib_error **error);
+/**
+ * Ends a simulation that records and returns its run, as of strutlib_run, with the status STRUTLIB_INTERRUPTED before
+ * its end; it stays where it is. NULL: it records nothing, it was finished before, or memory is out.
+ */
+STRUTLIB_API strutlib_result *strutlib_simulation_finish(strutlib_simulation *simulation,
+                                                         strutlib_error **error);
 /** Time reached [s]. */
 STRUTLIB_API double strutlib_simulation_time(const strutlib_simulation *simulation);
 /** The step [s]: of an adaptive method the time between two stops. */

@@ -493,10 +493,15 @@ static const strut_option run_options[] = {
      .words = STRUT_CHANNEL_WORDS},
     {STRUT_FILLS(record), "record", "YES|NO", "record channels (default yes)", .words = "yes|no"},
     {.name = NULL}};
-static const strut_option simulation_options[] = {STRUT_FORCE_OPTION,
-                                                  {.table = strut_method_options},
-                                                  {.table = strut_fidelity_options},
-                                                  {.name = NULL}};
+static const strut_option simulation_options[] = {
+    STRUT_FORCE_OPTION,
+    {.table = strut_method_options},
+    {.table = strut_fidelity_options},
+    {STRUT_FILLS(channels), "channels", "NAME,...", "channels to record; sets record",
+     .words = STRUT_CHANNEL_WORDS},
+    {STRUT_FILLS(record), "record", "YES|NO", "record the run, up to its end (default no)",
+     .words = "yes|no"},
+    {.name = NULL}};
 static const strut_option sweep_options[] = {
     {STRUT_FILLS(compute), "compute", "WHAT",
      "run (default), equilibria, modes, rigidity, path or form", .key = STRUT_KEY_STUDY_COMPUTE},

@@ -124,27 +124,34 @@ static strut_status draw(const strutlib_result *result, const strut_arguments *a
   return strut_run_figure_draw(&figure, result->model, &run->motion, &run->summary, error);
 }
 
-/* Runs what is open, and completes the result; sets the error of a run that ended early, too. */
-static strut_status run_model(abi_call *call, const strutlib_scene *scene,
-                              strutlib_result *result) {
+/* A model of the result's setup, and a sink for what is recorded, if anything is. */
+static strut_status prepare(const strut_arguments *arguments, strutlib_result *result,
+                            strut_sink **sink, strut_error *what) {
   run_detail *run = strut_allocate(1, sizeof *run);
-  strut_error what = {0};
-  strut_sink *sink = NULL;
-  if (!run) return (strut_status)abi_no_memory(call->error);
+  if (!run) return strut_no_memory(what, "");
   result->release = release;
   result->detail = run;
   result->draw = draw;
-  const strut_channels channels = choose_channels(&call->arguments, &result->setup);
-  strut_status status = strut_model_compile(&result->setup.scene, &result->model, &what);
+  const strut_channels channels = choose_channels(arguments, &result->setup);
+  strut_status status = strut_model_compile(&result->setup.scene, &result->model, what);
   if (status == STRUT_OK && channels) {
-    sink = strut_trajectory_sink(&run->motion, &result->setup.scene, channels, ROOM);
-    if (!sink) status = strut_no_memory(&what, "");
+    *sink = strut_trajectory_sink(&run->motion, &result->setup.scene, channels, ROOM);
+    if (!*sink) status = strut_no_memory(what, "");
   }
-  if (status == STRUT_OK) status = simulate(call, scene, result, run, sink, &what);
+  return status;
+}
+
+/* Runs what is open, and completes the result; sets the error of a run that ended early, too. */
+static strut_status run_model(abi_call *call, const strutlib_scene *scene,
+                              strutlib_result *result) {
+  strut_error what = {0};
+  strut_sink *sink = NULL;
+  strut_status status = prepare(&call->arguments, result, &sink, &what);
+  if (status == STRUT_OK) status = simulate(call, scene, result, result->detail, sink, &what);
   strut_trajectory_sink_free(sink);
   result->status = (int)status;
   if (status != STRUT_OK) abi_call_fail(call, status, &what);
-  if (!strut_run_has_results(status) || complete(result, run)) return status;
+  if (!strut_run_has_results(status) || complete(result, result->detail)) return status;
   if (call->error && *call->error) strutlib_error_free(*call->error);
   return (strut_status)abi_no_memory(call->error);
 }
@@ -171,11 +178,22 @@ struct strutlib_simulation {
   strut_setup setup; /* of the stepping, which refers to it */
   bool opened;
   strut_stepping *stepping;
+  strutlib_result *recorded; /* the run that it becomes, or NULL */
+  strut_sink *sink;          /* of its motion */
 };
 
 struct strutlib_snapshot {
   strut_stepping_snapshot *stored;
 };
+
+/* The result has a scene and a model of its own, since inputs change those of the simulation. */
+static strut_status begin_recording(abi_call *call, const strutlib_scene *scene,
+                                    strutlib_simulation *simulation, strut_error *what) {
+  strutlib_result *result = simulation->recorded = abi_result_create(&abi_run_command, call->error);
+  if (!result) return STRUT_NO_MEMORY;
+  strut_status status = open_setup(call, scene, &result->setup, &result->opened);
+  return status ? status : prepare(&call->arguments, result, &simulation->sink, what);
+}
 
 strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_t count,
                                               const char *const *names, const char *const *values,
@@ -193,11 +211,15 @@ strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_
     abi_no_memory(error);
   if (status == STRUT_OK)
     status = open_setup(&call, scene, &simulation->setup, &simulation->opened);
-  if (status == STRUT_OK) {
-    status = strut_stepping_create(&simulation->setup, call.arguments.force,
-                                   abi_interrupt_of(control), &simulation->stepping, &what);
-    if (status != STRUT_OK) abi_call_fail(&call, status, &what);
-  }
+  const strut_given_word *record = &call.arguments.record;
+  if (status == STRUT_OK &&
+      (record->text ? record->index == 0 : call.arguments.channels.text != NULL))
+    status = begin_recording(&call, scene, simulation, &what);
+  if (status == STRUT_OK)
+    status =
+        strut_stepping_create(&simulation->setup, call.arguments.force, abi_interrupt_of(control),
+                              simulation->sink, &simulation->stepping, &what);
+  if (status != STRUT_OK && error && !*error) abi_call_fail(&call, status, &what);
   if (status != STRUT_OK) {
     strutlib_simulation_close(simulation);
     simulation = NULL;
@@ -210,6 +232,8 @@ strutlib_simulation *strutlib_simulation_open(const strutlib_scene *scene, size_
 void strutlib_simulation_close(strutlib_simulation *simulation) {
   if (!simulation) return;
   strut_stepping_free(simulation->stepping);
+  strut_trajectory_sink_free(simulation->sink);
+  strutlib_result_free(simulation->recorded);
   if (simulation->opened) strut_setup_free(&simulation->setup);
   strut_release(simulation);
 }
@@ -222,6 +246,24 @@ int strutlib_simulation_advance(strutlib_simulation *simulation, long steps,
   what.message[0] = '\0'; /* a step is short: nothing more is cleared */
   strut_status status = strut_stepping_advance(simulation->stepping, steps, &what);
   return status == STRUT_OK ? STRUTLIB_OK : abi_fail_with(error, status, &what);
+}
+
+strutlib_result *strutlib_simulation_finish(strutlib_simulation *simulation,
+                                            strutlib_error **error) {
+  if (abi_lacks(error, simulation, "simulation")) return NULL;
+  strutlib_result *result = simulation->recorded;
+  abi_enter(error);
+  if (result) {
+    run_detail *run = result->detail;
+    simulation->recorded = NULL;
+    result->status = (int)strut_stepping_finish(simulation->stepping, &run->summary);
+    bool kept = complete(result, run);
+    if (!kept) abi_no_memory(error);
+    return abi_result_leave(result, kept);
+  }
+  abi_fail(error, STRUTLIB_USAGE, "the simulation records nothing, or was finished before");
+  abi_leave();
+  return NULL;
 }
 
 #define OF_SIMULATION(PART)                                                                        \
@@ -322,7 +364,9 @@ int strutlib_simulation_restore(strutlib_simulation *simulation, const strutlib_
     return STRUTLIB_USAGE;
   if (error) *error = NULL;
   if (strut_stepping_restore(simulation->stepping, snapshot->stored)) return STRUTLIB_OK;
-  return abi_fail(error, STRUTLIB_USAGE, "the snapshot is of another simulation");
+  return abi_fail(error, STRUTLIB_USAGE, "%s",
+                  simulation->sink ? "a simulation that records cannot go back"
+                                   : "the snapshot is of another simulation");
 }
 
 void strutlib_snapshot_free(strutlib_snapshot *snapshot) {

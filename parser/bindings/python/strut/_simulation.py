@@ -3,12 +3,11 @@
 
 from __future__ import annotations
 
-import json
 import math
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable
 
 from . import _strut
-from ._results import Run, _Stored
+from ._results import Run
 from ._values import COMPONENTS, Frozen, Named, Words, fixed, numpy, parts_of, unknown
 
 if TYPE_CHECKING:
@@ -16,62 +15,22 @@ if TYPE_CHECKING:
 
 
 class Motion(Run):
-    """A run under a controller: what it recorded, and a summary with `velocity`, the mean one along x [m/s].
+    """A run under a controller: what any run is, but of one motion as it is, neither steady nor of a known accuracy.
 
-    Energies are those at the end; `input_work` is the controller's part of `drive_work`. There is no figure and no page.
+    `energy.input_work` is the controller's part of `energy.drive_work`.
     """
 
-    _guesses = {
-        **Run._guesses,
-        **dict.fromkeys(("accuracy", "steady"), "a run under a controller measures from start to end"),
-    }
 
-
-def controlled(
-    sim: Simulation, scene: Scene, controller: Callable[[Simulation], object], channels: Sequence[str]
-) -> Motion:
-    """Advances by single steps, before each of which the controller sets inputs, and records as the scene says."""
-    steps, until = 0, scene["run.duration"] - 0.5 * sim.step
-    stride = max(1, round(scene.get("output.every", 0.0) / sim.step))
-    watched = [getattr(sim, name) for name in channels]
-    time: list[float] = []
-    rows: list[list[Any]] = [[] for _ in channels]
-    start, before = sim.com.x.copy(), _energies(sim)
-
-    def motion() -> Motion:
-        arrays = {"time": fixed(time), **{name: fixed(each) for name, each in zip(channels, rows)}}
-        words: dict[str, Any] = {name: scene[name] for name in ("name", "parameters") if scene.get(name) is not None}
-        words |= {"status": "completed" if sim.time >= until else "interrupted", "duration": sim.time, "steps": steps}
-        words |= {"step": sim.step, "velocity": float(sim.com.x - start) / sim.time if steps else None}
-        words["nodes"] = {name: {"position": place.tolist()} for name, place in sim.position.items()}
-        energy, initial = _energies(sim), sum(before[name] for name in ("kinetic", "elastic", "gravity", "contact"))
-        words["energy"] = energy | {"initial": initial, "residual": _balance(energy) - _balance(before)}
-        units = {name: "s" if name == "time" else _strut.unit(name) for name in arrays}
-        missing = "a run under a controller has no {}; plot() draws it, save('x.csv') writes it"
-        return Motion(_Stored(missing, arrays, units, json=json.dumps(words)), scene)
-
+def controlled(sim: Simulation, until: float, controller: Callable[[Simulation], object]) -> Motion:
+    """Advances by single steps, before each of which the controller sets inputs."""
     try:
         while sim.time < until:
             controller(sim)
             sim.advance(1)
-            steps += 1
-            if steps % stride == 0:
-                time.append(sim.time)
-                for row, values in zip(rows, watched):
-                    row.append(values.array.copy())
     except BaseException as error:
-        error.result = motion()  # type: ignore[attr-defined]
+        error.result = sim.finish()  # type: ignore[attr-defined]
         raise
-    return motion()
-
-
-def _energies(sim: Simulation) -> dict[str, float]:
-    return {**{name: float(value) for name, value in sim.energy.items()}, "input_work": sim.input_work}
-
-
-def _balance(energy: Mapping[str, float]) -> float:
-    """What is stored and dissipated, less the work that was done; drive_work has input_work in it."""
-    return sum(-value if name.endswith("_work") else value for name, value in energy.items() if name != "input_work")
+    return sim.finish()
 
 
 _INPUTS = {"rest": "members", "actuators": "actuators", "load": "nodes"}
@@ -107,6 +66,10 @@ class Simulation(Frozen):
             snapshot=raw.snapshot,
             restore=raw.restore,
         )
+
+    def finish(self) -> Motion:
+        """The run that simulation(record=True) was, up to its end or as far as it came. It stays where it is."""
+        return Motion(self._raw.finish(), self._scene)
 
     def advance_to(self, time: float) -> None:
         """Makes the steps until `time` [s] is reached, none where it has passed."""

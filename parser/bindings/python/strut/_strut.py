@@ -379,6 +379,11 @@ class Simulation(_Handle):
     def input(self, name: str) -> Any:
         return _array(_api.simulation_input, self, name, read_only=False)
 
+    def finish(self) -> Result:
+        run = Result()
+        run._handle = _api.simulation_finish(self)
+        return run
+
     def snapshot(self) -> Snapshot:
         return Snapshot(_api.simulation_snapshot(self), self)
 

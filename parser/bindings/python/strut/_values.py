@@ -196,6 +196,24 @@ def parts_of(name: str, channels: Iterable[str]) -> dict[str, str]:
     return {channel.removeprefix(f"{name}."): channel for channel in channels if channel.startswith(f"{name}.")}
 
 
+def all_parts(channels: Values | None) -> list[str] | None:
+    """Channels, of which "com" is all that begin so: com.x, com.y, ..."""
+    if channels is None:
+        return None
+    names = text(channels).split(",")
+    return [part for n in names for part in parts_of(n, () if n in COMPONENTS else COMPONENTS).values() or [n]]
+
+
+def unrecorded(name: str, things: Callable[[str], Sequence[str]]) -> str | None:
+    """Why a run has not recorded a channel; None where there is none of that name."""
+    kind = next((kind for channel, kind, _, _ in _strut.channels() if name in (channel, channel.split(".")[0])), None)
+    if kind is None:
+        return None
+    if kind != "run" and not things(kind):
+        return f"no '{name}': the scene has no {kind}"
+    return f"'{name}' was not recorded: run(channels=['{name}'])"
+
+
 class Named(Frozen):
     """A numpy array one axis of which has names: force["m8"], force[0], force.max().
 
