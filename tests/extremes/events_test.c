@@ -62,11 +62,9 @@ TEST(order_through_a_bounce) {
 /* One block of 1 kg on level ground that carries it already, on a spring to a wall. */
 static strut_setup spring_block(double stiffness, double mu_static, double mu_kinetic,
                                 double stretch) {
-  const double g = 9.81, ground = 1e5;
-  strut_setup setup = build_setup();
-  setup.scene.gravity[1] = -g;
-  int32_t block = build_mass(&setup.scene, 0, -g / ground, 1);
-  int32_t wall = build_support(&setup.scene, -1, -g / ground);
+  const double ground = 1e5, y = -GRAVITY / ground;
+  strut_setup setup = build_falling();
+  int32_t block = build_mass(&setup.scene, 0, y, 1), wall = build_support(&setup.scene, -1, y);
   build_member(&setup.scene, STRUT_SPRING, block, wall, stiffness, 0, 0);
   setup.scene.nodes[0].start[0] = stretch;
   build_rough_contact(&setup.scene, 0, ground, 0, mu_static, mu_kinetic, 1e-4);

@@ -7,17 +7,11 @@
 
 static const double G = 9.81;
 
-static void begin(motion *m, const strut_scene *scene, const char *method, double step,
-                  double tolerance) {
-  strut_experiment experiment = strut_experiment_default();
-  experiment.tolerance = tolerance, experiment.step = step;
-  strut_integrator_settings settings = strut_integrator_settings_of(&experiment);
-  *m = (motion){.model = motion_compile(scene), .step = step};
-  assert_ok(strut_state_create(m->model, &m->state, NULL));
-  m->method = strut_integrator_find(method);
-  m->workspace = m->method->create(m->model, m->state, &settings);
-  assert_non_null(m->workspace);
-  m->state->balance = true;
+static motion begin(strut_setup *setup, const char *method, double step, double tolerance) {
+  setup->experiment.tolerance = tolerance;
+  motion m = motion_begin_by(setup, method, step);
+  m.state->balance = true;
+  return m;
 }
 
 /* ---- closed forms ---- */
@@ -38,26 +32,25 @@ static double block_at(double width, double t) {
   return side * (less + (width - less) * cos(sqrt(SPRING) * t));
 }
 
-static strut_scene make_blocks(void) {
-  strut_scene scene = build_scene();
-  scene.gravity[1] = -G;
+static strut_setup make_blocks(void) {
+  strut_setup setup = build_falling();
+  strut_scene *scene = &setup.scene;
   for (int32_t i = 0; i < BLOCKS; i++) {
     double y = -G / GROUND, x = width_of(i);
-    int32_t block = build_mass(&scene, x, y, 1.0), wall = build_support(&scene, -1.0, y);
-    int32_t contact = build_contact(&scene, block, GROUND, 0.0);
-    scene.contacts[contact].friction =
+    int32_t block = build_mass(scene, x, y, 1.0), wall = build_support(scene, -1.0, y);
+    int32_t contact = build_contact(scene, block, GROUND, 0.0);
+    scene->contacts[contact].friction =
         (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = MU, .mu_kinetic = MU};
-    build_sized(&scene, STRUT_SPRING, block, wall, SPRING, 0.0, 0.0, 1.0);
+    build_sized(scene, STRUT_SPRING, block, wall, SPRING, 0.0, 0.0, 1.0);
   }
-  return scene;
+  return setup;
 }
 
 TEST(blocks_stop_where_coulomb_says) {
   static const char *const methods[] = {"rk4-events", "adaptive", "adaptive8"};
   for (int k = 0; k < 3; k++) {
-    OWN(motion) m;
-    OWN(strut_scene) scene = make_blocks();
-    begin(&m, &scene, methods[k], 1e-3, 1e-9);
+    OWN(strut_setup) setup = make_blocks();
+    OWN(motion) m = begin(&setup, methods[k], 1e-3, 1e-9);
     for (int n = 0; n < 25; n++) {
       motion_steps(&m, 70);
       for (int32_t i = 0; i < BLOCKS; i++)
@@ -78,12 +71,10 @@ TEST(blocks_that_touch_at_once_move_as_one) {
   for (int k = 0; k < 4; k++) {
     double alone[2] = {0.0, 0.0};
     for (int blocks = 1; blocks <= BLOCKS; blocks += BLOCKS - 1) {
-      OWN(strut_scene) scene = build_scene();
-      OWN(motion) m;
-      scene.gravity[1] = -G;
+      OWN(strut_setup) setup = build_falling();
       for (int i = 0; i < blocks; i++)
-        build_contact(&scene, build_mass(&scene, i, 0.0123, 1.0), GROUND, 20.0);
-      begin(&m, &scene, methods[k], 1e-3, TOLERANCE);
+        build_contact(&setup.scene, build_mass(&setup.scene, i, 0.0123, 1.0), GROUND, 20.0);
+      OWN(motion) m = begin(&setup, methods[k], 1e-3, TOLERANCE);
       motion_steps(&m, 100);
       if (blocks == 1) alone[0] = m.state->q[1], alone[1] = m.state->v[1];
       for (int i = 0; i < blocks; i++) {
@@ -119,32 +110,32 @@ static void add_contact(strut_scene *scene, uint64_t *random, int32_t node, int 
 /* A grid that falls on its lowest nodes and slides; law: of friction, 0: none. */
 enum { COLUMNS = 36, ROWS = 3, NODES = COLUMNS * ROWS, LAWS = 3 };
 
-static strut_scene make_grid(uint64_t seed, int law, bool lumped) {
+static strut_setup make_grid(uint64_t seed, int law, bool lumped) {
   uint64_t random = seed;
-  strut_scene scene = build_scene();
-  scene.gravity[1] = -G;
-  scene.mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
+  strut_setup setup = build_falling();
+  strut_scene *scene = &setup.scene;
+  scene->mass_model = lumped ? STRUT_MASS_LUMPED : STRUT_MASS_CONSISTENT;
   for (int32_t c = 0; c < COLUMNS; c++)
     for (int32_t r = 0; r < ROWS; r++) {
       double up = random_between(&random, 0.0005, 0.008),
              right = random_between(&random, -0.01, 0.01);
-      int32_t i = build_mass(&scene, 0.1 * c + right, 0.1 * r + up, 0.05);
-      scene.nodes[i].velocity[0] = 0.2 + random_between(&random, -0.1, 0.1);
-      scene.nodes[i].velocity[1] = -0.8;
-      if (r == 0) add_contact(&scene, &random, i, law);
+      int32_t i = build_mass(scene, 0.1 * c + right, 0.1 * r + up, 0.05);
+      scene->nodes[i].velocity[0] = 0.2 + random_between(&random, -0.1, 0.1);
+      scene->nodes[i].velocity[1] = -0.8;
+      if (r == 0) add_contact(scene, &random, i, law);
     }
   for (int32_t c = 0; c < COLUMNS; c++)
     for (int32_t r = 0; r < ROWS; r++) {
       int32_t i = c * ROWS + r;
-      if (c + 1 < COLUMNS) add_member(&scene, &random, i, i + ROWS, true);
-      if (r + 1 < ROWS) add_member(&scene, &random, i, i + 1, true);
+      if (c + 1 < COLUMNS) add_member(scene, &random, i, i + ROWS, true);
+      if (r + 1 < ROWS) add_member(scene, &random, i, i + 1, true);
       if (c + 1 == COLUMNS || r + 1 == ROWS) continue;
-      add_member(&scene, &random, i, i + ROWS + 1, false);
-      add_member(&scene, &random, i + 1, i + ROWS, false);
+      add_member(scene, &random, i, i + ROWS + 1, false);
+      add_member(scene, &random, i + 1, i + ROWS, false);
     }
-  if (law) build_actuator(&scene, COLUMNS, build_sine(&scene, 1e-3, 40.0));
-  if (law == 1) scene.ground.slope = -0.002;
-  return scene;
+  if (law) build_actuator(scene, COLUMNS, build_sine(scene, 1e-3, 40.0));
+  if (law == 1) scene->ground.slope = -0.002;
+  return setup;
 }
 
 typedef struct fall {
@@ -159,10 +150,9 @@ static double total_energy(motion *m) {
          w[STRUT_POWER_CONTACT] + w[STRUT_POWER_FRICTION] - w[STRUT_POWER_DRIVE];
 }
 
-static void let_fall(const strut_scene *scene, const char *method, double step, double tolerance,
+static void let_fall(strut_setup *setup, const char *method, double step, double tolerance,
                      fall *f) {
-  OWN(motion) m;
-  begin(&m, scene, method, step, tolerance);
+  OWN(motion) m = begin(setup, method, step, tolerance);
   double before = total_energy(&m);
   motion_steps(&m, llround(0.02 / step));
   assert_int_equal(m.state->trouble, STRUT_FAILURE_NONE);
@@ -185,10 +175,10 @@ TEST(grids_fall_alike_by_every_method_with_events) {
   static fall exact, other;
   for (int lumped = 0; lumped < 2; lumped++)
     for (int law = 0; law < LAWS; law++) {
-      OWN(strut_scene) scene = make_grid(1 + (uint64_t)law, law, lumped);
-      let_fall(&scene, "adaptive", 4e-5, 1e-11, &exact);
+      OWN(strut_setup) setup = make_grid(1 + (uint64_t)law, law, lumped);
+      let_fall(&setup, "adaptive", 4e-5, 1e-11, &exact);
       for (int k = 0; k < 2; k++) {
-        let_fall(&scene, k ? "adaptive" : "rk4-events", 1e-4, 1e-6, &other);
+        let_fall(&setup, k ? "adaptive" : "rk4-events", 1e-4, 1e-6, &other);
         assert_within(distance(other.q, exact.q), 0.0, NEAR[k]);
         assert_within(distance(other.v, exact.v), 0.0, 1e3 * NEAR[k]);
         assert_near(other.residual, 0.0, 1e-6);

@@ -234,10 +234,9 @@ TEST(samples_between_steps_do_not_reach_across_a_touchdown) {
   const double touch = sqrt(2 * height / g), speed = g * touch, sag = mass * g / k;
   static const char *const methods[] = {"rk4-events", "adaptive"};
   for (int i = 0; i < 2; i++) {
-    OWN(strut_setup) setup = build_setup();
+    OWN(strut_setup) setup = build_falling();
     clean();
     build_contact(&setup.scene, build_mass(&setup.scene, 0, height, mass), k, 0);
-    setup.scene.gravity[1] = -g;
     motion_experiment_by(&setup, 1e-3, touch + 0.01, methods[i]);
     setup.experiment.tolerance = 1e-9;
     setup.experiment.output_every = 1.7e-4;
@@ -337,12 +336,11 @@ TEST(contact_forces_of_methods_with_events) {
   static const char *const methods[] = {"rk4-events", "verlet-events", "euler-events", "adaptive"};
   const double mass = 2, g = 9.81, k = 1e4, push = 0.2 * mass * g;
   for (int i = 0; i < 4; i++) {
-    OWN(strut_setup) setup = build_setup();
+    OWN(strut_setup) setup = build_falling();
     clean();
     build_contact(&setup.scene, build_mass(&setup.scene, 0, -mass * g / k, mass), k, 10);
     setup.scene.contacts[0].friction =
         (strut_friction){.law = STRUT_FRICTION_COULOMB, .mu_static = 0.5, .mu_kinetic = 0.4};
-    setup.scene.gravity[1] = -g;
     build_load(&setup.scene, 0, push, 0, -1);
     motion_experiment_by(&setup, 1e-3, 0.1, methods[i]);
     setup.experiment.output_every = 0.01;

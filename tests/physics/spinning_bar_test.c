@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A free bar and a free frame: lengths, frequencies, centre of mass and angular momentum. */
+/* A free bar and a free frame: lengths, frequencies, the centre of mass; channels_test.c has angular momentum. */
 #include "tests/support/oscillation.h"
 #include "tests/support/structures.h"
 
@@ -99,40 +99,4 @@ static void follow_the_parabola(strut_mass_model mass_model) {
 TEST(the_centre_of_mass_follows_its_parabola) {
   follow_the_parabola(STRUT_MASS_CONSISTENT);
   follow_the_parabola(STRUT_MASS_LUMPED);
-}
-
-/* About the origin: of rods (m/6)(2 a x va + 2 b x vb + a x vb + b x va), lumped m/2 at each end. */
-static double angular_momentum(const strut_scene *scene, const double *q, const double *v) {
-  bool lumped = scene->mass_model == STRUT_MASS_LUMPED;
-  double sum = 0;
-  for (size_t i = 0; i < scene->node_count; i++)
-    sum += scene->nodes[i].mass * (q[2 * i] * v[2 * i + 1] - q[2 * i + 1] * v[2 * i]);
-  for (size_t j = 0; j < scene->member_count; j++) {
-    const strut_member *member = &scene->members[j];
-    for (int e = 0; e < 2; e++)
-      for (int f = 0; f < 2; f++) {
-        const double *a = q + 2 * member->node[e], *b = v + 2 * member->node[f];
-        double share = lumped ? (e == f ? 0.5 : 0) : (e == f ? 1.0 / 3 : 1.0 / 6);
-        sum += share * member->mass * (a[0] * b[1] - a[1] * b[0]);
-      }
-  }
-  return sum;
-}
-
-static void keep_turning(strut_mass_model mass_model) {
-  double error[5];
-  for (int k = 0; k < 5; k++) {
-    OWN(strut_scene) scene = tumbling_frame(mass_model, 0.5);
-    OWN(motion) m = motion_begin(&scene, ldexp(2e-3, -k));
-    double before = angular_momentum(&scene, m.state->q, m.state->v);
-    motion_steps(&m, 1000 << k);
-    error[k] = fabs(angular_momentum(&scene, m.state->q, m.state->v) / before - 1);
-  }
-  assert_true(error[0] < 1e-3 && error[4] < 1e-8);
-  assert_true(observed_order(error, 5) > 3.9);
-}
-
-TEST(angular_momentum_is_conserved_at_order_four) {
-  keep_turning(STRUT_MASS_CONSISTENT);
-  keep_turning(STRUT_MASS_LUMPED);
 }
