@@ -3,7 +3,6 @@
 # Wanted accuracy, steady motion and methods with events on the crawler, against an independent
 # program: its RK4 with located events at 5 us and its fifth-order pair agree on these to 0.02 %.
 . "$(dirname "$0")/lib.sh"
-crawler=$here/../../models/crawler/crawler.yaml
 
 # about FILTER WANTED PART: of the JSON in out, within PART of WANTED
 about() { near "$1 / $2" 1 "$3"; }
@@ -93,7 +92,7 @@ expect 0 run "$crawler" --set frequency="1.1 Hz" --steady 0.1% --integrator adap
   --tolerance 1e-7 --step "2 ms" --json
 near .velocity "${wanted% *}" "0.005 * ${wanted#* }"
 # Stiff members and slow motion, no ground: implicit midpoint, far above the explicit limit.
-moves -2.068963889494835 0.001 "$here/../../models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1%
+moves -2.068963889494835 0.001 "$models/basics/pendulum.yaml" --set stiffness="1e12 N/m" --accuracy 0.1%
 holds '.method == "midpoint" and .accuracy.kept and .accuracy.expected <= 0.001'
 # verlet's largest stable step is 1.1 us here, which 2.3e6 evaluations go through
 holds '.force_evaluations + .accuracy.check_evaluations < 40000'
@@ -157,14 +156,14 @@ thrown 7.1 -0.0022741048637
 up 2.1 0.0064544045056
 END
 # Rigid bars, which one method takes: at 5/4 of its period the rod hangs, having been level at one.
-sed 's/^nodes:/bars: rigid\nnodes:/' "$here/../../models/basics/pendulum.yaml" >rod.yaml
+sed 's/^nodes:/bars: rigid\nnodes:/' "$models/basics/pendulum.yaml" >rod.yaml
 moves -2.068963889494835 1e-6 rod.yaml --accuracy 0.01% # 4 length / period
 holds '.method == "rk4" and .accuracy.kept'
 # and that no method takes together with exact friction
 edit 's/^nodes:/bars: rigid\nnodes:/; s/law: karnopp/law: coulomb/' "$crawler" tells 1 "no method supports both" run --accuracy 1%
 # Exact friction: speed^2 / (2 mu g) in a second.
 sed 's/law: karnopp/law: coulomb/; s/, stick_velocity: [^}]*//' \
-  "$here/../../models/basics/sliding-block.yaml" >block.yaml
+  "$models/basics/sliding-block.yaml" >block.yaml
 moves 0.2548419979 1e-6 block.yaml --accuracy 0.1%
 # All steps count, those of corrections too: every one of them took one evaluation or more.
 expect 0 run "$crawler" --set friction=0.2 --accuracy 0.1% --json
@@ -253,7 +252,7 @@ yaml stiffer.yaml <<END
 base: springs.yaml
 run: {measure: {steady: true}}
 END
-cp "$here/../../models/crawler/crawler.yaml" "$here/../../models/crawler/springs.yaml" "$work"
+cp "$crawler" "$models/crawler/springs.yaml" "$work"
 expect 0 run stiffer.yaml --set "frequency=7 Hz" --set friction=0.15933 --set "soft=2989.6 N/m" \
   --set "strong=9809.7 N/m" --accuracy 2% --json
 holds '.accuracy.kept and .accuracy.check_evaluations < 1000000'

@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """strut equilibria of lattices of n bistable cells, which have 2^n stable states, one for each choice of
-up or down, as long as their coupling is weak: all where they are few; else what it says of the rest holds.
-
-usage: lattice_test.py STRUT LATTICE
-"""
+up or down, as long as their coupling is weak: all where they are few; else what it says of the rest holds."""
 import re
-import sys
 
-from testing import answer, check, finish, run
+from testing import answer, check, finish, models, run
 
 
 def cells(columns, rows):
-    return "equilibria", sys.argv[2], "--set", f"columns={columns}", "--set", f"rows={rows}"
+    return "equilibria", f"{models}/parts/bistable-lattice.yaml", "--set", f"columns={columns}", "--set", f"rows={rows}"
 
 
 def choice(equilibrium, columns, rows):

@@ -255,7 +255,7 @@ short spine.yaml --set vertebrae=3 --set hold=0.8
 grep -qF 'parameters: {vertebrae: 3, spacing: 0.15 m, hold: 0.8}' alone/short.yaml || fail "what was set"
 short spine.yaml --set spacing=0.25
 grep -qF 'spacing: 0.25 m' alone/short.yaml || fail "a plain number gets the declared unit"
-for file in crawler/crawler gallery/x-frame gallery/spine; do short "$here/../../models/$file.yaml"; done
+for file in crawler/crawler gallery/x-frame gallery/spine; do short "$models/$file.yaml"; done
 
 # 5. A form in the words of its model; where a node of a copy moves, without them.
 yaml chain.yaml <<'END'
@@ -281,7 +281,7 @@ tells 0 "strut: the scene is written without parameters, groups and parts" form 
 expect 0 check form.yaml
 # Also where the file says start or shapes in another way than what is written, or names a file beside it.
 for form in bistable-chain:densities t-bar:densities voxel-with-network:prestress; do
-  model=$here/../../models/gallery/${form%:*}
+  model=$models/gallery/${form%:*}
   cp "$model.yaml" model.yaml
   [ ! -e "$model.csv" ] || cp "$model.csv" .
   expect 0 form model.yaml --given "${form#*:}" -o form.yaml

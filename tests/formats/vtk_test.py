@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `python3 -m strut.formats vtk` writes, read by VTK itself and compared with the run's CSV files.
 
-usage: vtk_test.py STRUT HOPPER
+usage: vtk_test.py STRUT
 """
 import csv
 import math
 import os
 import shutil
-import sys
 import xml.etree.ElementTree as ElementTree
 
 from testing import check, files_in, finish, formats, needs, run, work
@@ -15,7 +14,7 @@ from testing import check, files_in, finish, formats, needs, run, work
 needs("vtkmodules")
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader  # noqa: E402
 
-hopper = os.path.abspath(sys.argv[2])
+hopper = os.path.abspath("tests/cli/hopper.yaml")
 os.chdir(work)
 
 

@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Films of `strut run --animate`: what ffprobe and ffmpeg find in them, and what happens without.
 
-usage: film_test.py STRUT HOPPER
+usage: film_test.py STRUT
 """
 import os
 import re
 import signal
 import stat
 import subprocess
-import sys
 import time
 
 from testing import check, finish, needs, read, run, strut, work, write
 
 needs("ffmpeg", "ffprobe")
-hopper = os.path.abspath(sys.argv[2])
+hopper = os.path.abspath("tests/cli/hopper.yaml")
 os.chdir(work)
 
 # A ball that flies 0.6 m in 1 s, on a straight line and at one speed.
