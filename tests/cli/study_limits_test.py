@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from testing import check, copy_models, finish, path, read, rows, run, strut, work, write
+from testing import check, copy_models, finish, path, read, rows, run, same_table, strut, work, write
 
 copy_models()
 
@@ -39,14 +39,7 @@ def evaluations():
     check(good == [True, False, True, False, True, True, False, True], f"{good}")
     check(table[1]["status"] == "the work allowed was used up" and
           "work budget of 20000 force evaluations" in table[1]["message"], f"{table[1]}")
-    for words in (["--threads", "2"], ["--threads", "8"]):
-        run("sweep", "budget.yaml", "-o", "other", *words, code=3)
-        check(lines("other/table.csv") == lines("one/table.csv"), f"{words}: another table")
-        shutil.rmtree(path("other"))
-    for k in range(3):
-        run("sweep", "budget.yaml", "-o", "parts", "--shard", f"{k}/3", code=(3, 3, 0)[k])
-    run("sweep", "--merge", "parts", code=3)
-    check(lines("parts/table.csv") == lines("one/table.csv"), "shards: another table")
+    same_table("budget.yaml", "one", (2, 8), (3, 3, 0), code=3)
     # An accuracy has its own budget, which this one bounds.
     write("accurate.yaml", f"""strut: 1
 study: s

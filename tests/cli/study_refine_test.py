@@ -10,7 +10,7 @@ import signal
 import subprocess
 import time
 
-from testing import answer, check, copy_models, finish, path, read, rows, run, strut, work, write
+from testing import answer, check, copy_models, finish, path, read, rows, run, same_table, strut, work, write
 
 
 copy_models()
@@ -63,10 +63,7 @@ def the_edge_is_found():
 
 def same_bytes():
     table = read("fine/table.csv")
-    for words in (["--threads", "1"], ["--threads", "3"]):
-        run("sweep", "fine.yaml", "-o", "other", "--quiet", *words)
-        check(read("other/table.csv") == table, f"{words}: another table")
-        shutil.rmtree(path("other"))
+    same_table("fine.yaml", "fine", shards=())
     # Shards in rounds, in any order, until no one waits for another.
     rounds = random.Random(1)
     for _ in range(12):

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from testing import answer, check, copy_models, finish, models, needs, read, rows, run, strut, sweep, work, write
+from testing import answer, check, copy_models, finish, models, needs, read, rows, run, same_table, strut, sweep, work, write
 
 needs("numpy")
 import numpy as np  # noqa: E402
@@ -148,17 +148,6 @@ def rows_are_single_runs():
     check(len({row["velocity [m/s]"] for row in table}) == len(table), "velocities are all alike")
 
 
-def the_same_bytes():
-    for threads in ("2", "4"):
-        run("sweep", "crawler.yaml", "-o", threads, "--threads", threads, "--quiet")
-        check(read(f"{threads}/table.csv") == read("one/table.csv"), f"{threads} threads: table")
-        check(read(f"{threads}/points.slots") == read("one/points.slots"), f"{threads} threads: slots")
-    for shard in ("0/2", "1/2"):
-        run("sweep", "crawler.yaml", "-o", "shards", "--shard", shard, "--quiet")
-    run("sweep", "--merge", "shards")
-    check(read("shards/table.csv") == read("one/table.csv"), "shards: table")
-
-
 # Points that fail or have other terms stand between those that go side by side; all are run twice.
 MIXED = """strut: 1
 study: mixed
@@ -194,6 +183,7 @@ def threads_change_nothing():
             run("sweep", f"{name}.yaml", "-o", folder, "--threads", f"{threads}", "--quiet", code=code)
             for file in ("table.csv", "points.slots"):
                 check(read(f"{folder}/{file}") == read(f"{name}-1/{file}"), f"{folder}/{file}")
+    same_table("crawler.yaml", "one", (), (0, 0))
     table = rows("mixed-1/table.csv")
     check(len(table) == 48 and [row["status"] for row in table].count("completed") == 24,
           "half of the mixed points fail")
@@ -543,7 +533,7 @@ keep: [velocity]
     check(peak[1] < peak[0] + 3000, f"memory grows with the points: {peak} kB")
 
 
-for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs, the_same_bytes,
+for test in (points_are_those_of_numpy, warnings_are_counted, rows_are_single_runs,
              threads_change_nothing, killed_and_resumed, interrupted, points_that_fail,
              failed_points_once_more, a_directory_stands_for_itself, checked_again, figures,
              trajectories, killed_while_recording,

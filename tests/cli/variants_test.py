@@ -2,7 +2,7 @@
 """strut sweep with variants: their rows are those of studies with the same keys, each by itself."""
 import os
 
-from testing import check, finish, read, rows, run, work, write
+from testing import check, finish, rows, run, same_table, work, write
 
 os.chdir(work)
 
@@ -72,11 +72,5 @@ for old, new, wanted in (("only: variant=", "only: varian=", "did you mean 'vari
     sweep("all", variants + figures.replace(old, new), code=2, err=wanted)
 sweep("all", variants, "--set", "variant=near", code=2, err="variant")
 
-# The same bytes whatever the threads and shards.
-sweep("two", variants, "--threads", "1")
-check(read("two/table.csv") == read("all/table.csv"), "one thread: table")
-for shard in ("0/4", "1/4", "2/4", "3/4"):
-    sweep("shards", variants, "--shard", shard)
-run("sweep", "--merge", "shards")
-check(read("shards/table.csv") == read("all/table.csv"), "shards: table")
+same_table("all.yaml", "all", shards=(0, 0, 0, 0))
 finish()

@@ -110,6 +110,20 @@ def sweep(name, text, *words, code=0):
     return rows(name, "table.csv")
 
 
+def same_table(study, folder, threads=(1, 3), shards=(0, 0, 0), code=0):
+    """The study has the table of the folder by any number of threads, and by shards, which end with these exit codes and
+    are merged."""
+    wanted = read(folder, "table.csv")
+    for count in threads:
+        run("sweep", study, "-o", f"{folder}-by-{count}", "--quiet", "--threads", str(count), code=code)
+        check(read(f"{folder}-by-{count}", "table.csv") == wanted, f"{study}: another table by {count} threads")
+    for k, end in reversed(list(enumerate(shards))):
+        run("sweep", study, "-o", f"{folder}-parts", "--quiet", "--shard", f"{k}/{len(shards)}", code=end)
+    if shards:
+        run("sweep", "--merge", f"{folder}-parts", code=code)
+        check(read(f"{folder}-parts", "table.csv") == wanted, f"{study}: another table by shards")
+
+
 def files_in(folder):
     """Names of all files in a folder but strut's list of those it wrote."""
     return [name for name in os.listdir(folder) if name != ".strut-files"]
