@@ -13,7 +13,7 @@ import random
 import subprocess
 import sys
 
-from testing import answer, check, finish, models, near, path, read, rows, run, strut, work, write
+from testing import answer, check, finish, models, near, path, read, rows, run, stopped, strut, work, write
 
 
 def fit(name, study, code=0, err=""):
@@ -297,12 +297,7 @@ def alike():
                                 cwd=work, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for i in range(2)]
     check([w.wait() for w in workers] == [5, 5], "workers")
     check(read("shared", "table.csv") == same, "workers: another table")
-    killed = subprocess.Popen([strut, "sweep", "alike-fit.yaml", "-o", "killed", "-q"], cwd=work)
-    try:
-        killed.wait(0.15)
-    except subprocess.TimeoutExpired:
-        killed.kill()
-        killed.wait()
+    stopped("sweep", "alike-fit.yaml", "-o", "killed", "-q", after=0.15)
     run("sweep", "alike-fit.yaml", "-o", "killed", "-q", code=5)
     check(read("killed", "table.csv") == same, "killed: another table")
     one = ALIKE.replace("    other: {from: 0.1 N s/m, to: 5 N s/m}\n", "")

@@ -4,10 +4,9 @@
 import os
 import shutil
 import signal
-import subprocess
 import time
 
-from testing import check, copy_models, finish, path, read, rows, run, same_table, strut, work, write
+from testing import check, copy_models, finish, path, read, rows, run, same_table, stopped, write
 
 copy_models()
 
@@ -82,25 +81,16 @@ limit: {{time: 50 ms}}
     check("0.05 s by the clock" in rows("search/table.csv")[0]["message"], "a search is ended")
 
 
-def interrupted(send, wait):
-    """Ctrl-C: the rows that are done, byte for byte those of the whole table."""
-    shutil.rmtree(path("stopped"), ignore_errors=True)
-    child = subprocess.Popen([strut, "sweep", "long.yaml", "-o", "stopped", "--threads", "2"],
-                             cwd=work, stderr=subprocess.PIPE, text=True)
-    time.sleep(wait)
-    child.send_signal(send)
-    said = child.communicate()[1]
-    return said
-
-
 def partial():
+    """Ctrl-C: the rows that are done, byte for byte those of the whole table."""
     study("long", "axes: [{mass: {from: 1 kg, to: 2 kg, count: 200}}]\nset: {seconds: 100 s}\n"
                   "keep: [duration, velocity]\n")
     run("sweep", "long.yaml", "-o", "whole", "--quiet")
     whole = lines("whole/table.csv")
     check(not os.path.exists(path("whole/table-partial.csv")), "the whole table needs no partial one")
     for wait in (0.5, 1.0):
-        said = interrupted(signal.SIGINT, wait)
+        shutil.rmtree(path("stopped"), ignore_errors=True)
+        said = stopped("sweep", "long.yaml", "-o", "stopped", "--threads", "2", after=wait, by=signal.SIGINT).stderr
         if os.path.exists(path("stopped/table.csv")):
             print("    it was done before it could be interrupted")
             continue

@@ -7,10 +7,8 @@ import os
 import random
 import shutil
 import signal
-import subprocess
-import time
 
-from testing import answer, check, copy_models, finish, path, read, rows, run, same_table, strut, work, write
+from testing import answer, check, copy_models, finish, path, read, rows, run, same_table, stopped, write
 
 
 copy_models()
@@ -102,11 +100,8 @@ def emitted():
 def killed():
     table = read("fine/table.csv")
     for n in range(8):
-        child = subprocess.Popen([strut, "sweep", "fine.yaml", "-o", "killed", "--quiet"], cwd=work,
-                                 stderr=subprocess.DEVNULL)
-        time.sleep(random.Random(n).uniform(0.01, 0.25))
-        child.send_signal(signal.SIGKILL if n % 2 else signal.SIGINT)
-        child.wait()
+        stopped("sweep", "fine.yaml", "-o", "killed", "--quiet", after=random.Random(n).uniform(0.01, 0.25),
+                by=signal.SIGKILL if n % 2 else signal.SIGINT)
     run("sweep", "fine.yaml", "-o", "killed", "--quiet")
     check(read("killed/table.csv") == table, "kills: another table")
 

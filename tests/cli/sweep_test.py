@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 
-from testing import answer, check, copy_models, finish, models, needs, read, rows, run, same_table, strut, sweep, work, write
+from testing import answer, check, copy_models, finish, models, needs, read, rows, run, same_table, stopped, strut, sweep, work, write
 
 needs("numpy")
 import numpy as np  # noqa: E402
@@ -198,10 +198,9 @@ def threads_change_nothing():
 def killed_and_resumed():
     before = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "killed", "--threads", "2", "--quiet"])
-        time.sleep(random.uniform(0.0, 0.25))
-        child.send_signal(signal.SIGKILL)
-        if child.wait() == 0:  # over before: once more from the beginning
+        child = stopped("sweep", "crawler.yaml", "-o", "killed", "--threads", "2", "--quiet",
+                        after=random.uniform(0.0, 0.25))
+        if child.returncode == 0:  # over before: once more from the beginning
             check(read("killed/table.csv") == read("one/table.csv"), f"after {n} kills: table")
             shutil.rmtree("killed")
             before = 0
@@ -234,13 +233,9 @@ def killed_while_recording():
     run("sweep", "motions.yaml", "-o", "recorded", "--quiet")
     left = 0
     for n in range(kills):
-        child = subprocess.Popen([strut, "sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet"])
-        deadline = time.monotonic() + 60
-        while child.poll() is None and not stages("cut") and time.monotonic() < deadline:
-            time.sleep(0.002)
-        time.sleep(random.uniform(0.0, 0.05))
-        child.send_signal(signal.SIGKILL)
-        child.wait()
+        chance = random.random()
+        stopped("sweep", "motions.yaml", "-o", "cut", "--threads", "2", "--quiet",
+                after=lambda: stages("cut") and random.random() < 0.1 + 0.9 * chance)
         left += len(stages("cut"))
         if os.path.exists("cut/points.slots") and n % 3 == 2:
             os.remove("cut/points.slots")  # begin anew, so that there is something to kill
@@ -264,17 +259,13 @@ def killed_while_recording():
 def interrupted():
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     os.remove("stopped/points.slots")  # its table is that of an earlier sweep then
-    child = subprocess.Popen([strut, "sweep", "crawler.yaml", "-o", "stopped", "--threads", "1"],
-                             stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    path = "stopped/points.slots"
-    while child.poll() is None and not (os.path.exists(path) and os.path.getsize(path) > 6000):
-        time.sleep(0.001)
-    child.send_signal(signal.SIGINT)
-    _, err = child.communicate()
+    slots = "stopped/points.slots"
+    child = stopped("sweep", "crawler.yaml", "-o", "stopped", "--threads", "1", by=signal.SIGINT,
+                    after=lambda: os.path.exists(slots) and os.path.getsize(slots) > 6000)
     if child.returncode == 0:
         return  # it was over before
     check(child.returncode == 130, f"interrupted: exit code {child.returncode}")
-    check("the same command resumes" in err, f"interrupted: {err}")
+    check("the same command resumes" in child.stderr, f"interrupted: {child.stderr}")
     check(not os.path.exists("stopped/table.csv"), "an earlier table beside new points")
     run("sweep", "crawler.yaml", "-o", "stopped", "--quiet")
     check(read("stopped/table.csv") == read("one/table.csv"), "after an interrupt: table")

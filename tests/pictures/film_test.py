@@ -3,6 +3,7 @@
 
 usage: film_test.py STRUT
 """
+import itertools
 import os
 import re
 import signal
@@ -10,7 +11,7 @@ import stat
 import subprocess
 import time
 
-from testing import check, finish, needs, read, run, strut, work, write
+from testing import check, finish, needs, read, run, stopped, work, write
 
 needs("ffmpeg", "ffprobe")
 hopper = os.path.abspath("tests/cli/hopper.yaml")
@@ -186,16 +187,11 @@ def test_usage():
 
 def test_interrupt():
     """Ctrl-C while the film is made: no film, nothing left, and no ffmpeg behind."""
-    process = subprocess.Popen([strut, "run", hopper, "--animate", "i.mp4", "--speed", "0.001"],
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    deadline = time.monotonic() + 60
-    while not any(n.startswith("i.mp4.") for n in os.listdir(".")) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    time.sleep(0.3)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    check(process.returncode == 130, f"exit code {process.returncode}: {err}")
-    check("interrupted" in err and "velocity" in out, err)
+    looks = itertools.count()  # 0.3 s of them
+    done = stopped("run", hopper, "--animate", "i.mp4", "--speed", "0.001", by=signal.SIGINT, after=lambda: (
+        any(name.startswith("i.mp4.") for name in os.listdir(".")) and next(looks) > 150))
+    check(done.returncode == 130, f"exit code {done.returncode}: {done.stderr}")
+    check("interrupted" in done.stderr and "velocity" in done.stdout, done.stderr)
     check(not left("old.mp4"), f"left: {left('old.mp4')}")
 
 

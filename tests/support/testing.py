@@ -8,9 +8,11 @@ import json
 import math
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 strut = os.path.realpath(sys.argv[1])
 models = os.path.realpath("models")
@@ -75,6 +77,19 @@ def run(*words, code=0, err="", timeout=120, stdin="", env=None):
     check(done.returncode == code and err in done.stderr,
           f"strut {' '.join(words)}: exit code {done.returncode}, expected {code}: {done.stderr}")
     return done
+
+
+def stopped(*words, after, by=signal.SIGKILL):
+    """As run, but ended by a signal after so many seconds, or as soon as `after()` holds; its exit code may be any."""
+    child = subprocess.Popen([strut, *words], cwd=work, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    begun = time.monotonic()
+    while child.poll() is None and time.monotonic() - begun < 60:
+        if after() if callable(after) else time.monotonic() - begun >= after:
+            break
+        time.sleep(0.002)
+    child.send_signal(by)
+    out, err = child.communicate(timeout=120)
+    return subprocess.CompletedProcess(words, child.returncode, out, err)
 
 
 def answer(*words, **how):
