@@ -5,9 +5,8 @@ The chain is enumerated apart: where the first apex stands tells where all other
 of one cell after the other, so that its equilibria are the roots of one function of one number."""
 from testing import answer, check, fail, finish, models, needs
 
-needs("numpy", "scipy")
+needs("numpy")
 import numpy  # noqa: E402
-from scipy.optimize import brentq  # noqa: E402
 
 SPACING = 2.0
 REST = numpy.hypot(1, 0.3)
@@ -36,7 +35,12 @@ def enumerate_all(coupling, cells, points=40000):
 
     firsts = 0.66 * (numpy.arange(points) + 0.37) / points - 0.33
     changes = numpy.flatnonzero(numpy.diff(numpy.sign(lacks(firsts))))
-    return [shoot(brentq(lacks, firsts[k], firsts[k + 1], xtol=1e-17), coupling, cells)[0] for k in changes]
+    low, high = firsts[changes], firsts[changes + 1]
+    for _ in range(60):
+        middle = (low + high) / 2
+        below = lacks(low) * lacks(middle) > 0
+        low, high = numpy.where(below, middle, low), numpy.where(below, high, middle)
+    return list(zip(*shoot(low, coupling, cells)[0]))
 
 
 def is_stable(heights, coupling):
