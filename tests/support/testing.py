@@ -69,6 +69,11 @@ def rows(*names):
         return list(csv.DictReader(file))
 
 
+def numbers(*names):
+    """The same as numbers, under the columns' names without their units."""
+    return [{key.rsplit(" [", 1)[0]: float(value) for key, value in row.items()} for row in rows(*names)]
+
+
 def run(*words, code=0, err="", timeout=120, stdin="", env=None):
     """Runs strut in the folder of the test, with `env` beside its own environment; what it printed. Its exit code is to
     be `code`, and its messages are to have `err`."""
