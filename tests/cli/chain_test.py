@@ -1,15 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut equilibria finds every state of a chain of bistable cells, those about to vanish too.
+"""strut equilibria finds every state of a chain of bistable cells, those about to vanish too; and of lattices of n
+cells, which have 2^n stable states, one for each choice of up or down, as long as their coupling is weak: all where they
+are few; else what it says of the rest holds.
 
 The chain is enumerated apart: where the first apex stands tells where all others must, by the balance
 of one cell after the other, so that its equilibria are the roots of one function of one number."""
-from testing import answer, check, fail, finish, models, needs
+import re
+
+from testing import answer, check, fail, finish, models, needs, run
 
 needs("numpy")
 import numpy  # noqa: E402
 
 SPACING = 2.0
 REST = numpy.hypot(1, 0.3)
+
+
+def lattice(columns, rows):
+    return ("equilibria", f"{models}/parts/bistable-lattice.yaml", "--set", f"columns={columns}", "--set", f"rows={rows}")
 
 
 def force(x):
@@ -52,8 +60,7 @@ def is_stable(heights, coupling):
 def check_chain(cells, coupling, seed):
     what = f"{cells} cells, coupling {coupling}, seed {seed}"
     states = [h for h in enumerate_all(coupling, cells) if is_stable(h, coupling)]
-    reported = answer("equilibria", f"{models}/parts/bistable-lattice.yaml", "--set", "columns=1", "--set",
-                      f"rows={cells}", "--set", f"coupling={coupling} N/m", "--seed", str(seed))
+    reported = answer(*lattice(1, cells), "--set", f"coupling={coupling} N/m", "--seed", str(seed))
     stable = [e for e in reported["equilibria"] if e["label"] == "stable"]
     for heights in states:
         if not any(all(abs(e["nodes"][f"cell.0.{i}.apex"][1] - SPACING * i - x) < 1e-6
@@ -75,5 +82,25 @@ for value in (0.02, 0.0288, 0.02885, 0.0289, 0.029, 0.0291, 0.02913, 0.02914, 0.
     check_chain(4, value, 1)
 for number in (2, 3):
     check_chain(4, 0.029, number)
+
+
+def choice(equilibrium, columns, rows):
+    """Which apexes are below the feet of their arches."""
+    return tuple(equilibrium["nodes"][f"cell.{i}.{j}.apex"][1] < 2 * j for i in range(columns) for j in range(rows))
+
+
+for columns, rows in ((2, 2), (2, 3)):
+    reported = answer(*lattice(columns, rows))
+    stable = {choice(e, columns, rows) for e in reported["equilibria"] if e["label"] == "stable"}
+    labels = [e["label"] for e in reported["equilibria"]]
+    check(len(stable) == labels.count("stable") == 2 ** (columns * rows),
+          f"{columns} x {rows} cells: {labels.count('stable')} stable states, {len(stable)} different ones")
+    check(reported["missed"]["at_least"] == 0, f"{columns} x {rows} cells: {reported['missed']}")
+
+printed = run(*lattice(6, 4)).stdout
+listed = int(re.search(r"equilibria +(\d+)", printed)[1])
+more = int(re.search(r"more stable ones exist, at least \(95 %\) +(\d+)", printed)[1])
+chance = float(re.search(r"next start finds a new stable one +([0-9.]+)", printed)[1])
+check("cut short" in printed and 1000 < more <= 2 ** 24 - listed and chance > 0.5, f"6 x 4 cells: {printed[:800]}")
 
 finish()
