@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""strut equilibria finds every state of a chain of bistable cells, those about to vanish too; and of lattices of n
-cells, which have 2^n stable states, one for each choice of up or down, as long as their coupling is weak: all where they
-are few; else what it says of the rest holds.
+"""strut equilibria finds every state of a chain of bistable cells, those about to vanish too; and of
+lattices of n cells, which have 2^n stable states, one for each choice of up or down, as long as
+their coupling is weak: all where they are few; else what it says of the rest holds.
 
-The chain is enumerated apart: where the first apex stands tells where all others must, by the balance
-of one cell after the other, so that its equilibria are the roots of one function of one number."""
+The chain is enumerated apart: where the first apex stands tells where all others must, by the
+balance of one cell after the other: equilibria are the roots of one function of one number."""
 import re
 
 from testing import answer, check, fail, finish, models, needs, run
@@ -17,7 +17,7 @@ REST = numpy.hypot(1, 0.3)
 
 
 def lattice(columns, rows):
-    return ("equilibria", f"{models}/parts/bistable-lattice.yaml", "--set", f"columns={columns}", "--set", f"rows={rows}")
+    return ("equilibria", f"{models}/parts/bistable-lattice.yaml", f"--set=columns={columns}", f"--set=rows={rows}")
 
 
 def force(x):

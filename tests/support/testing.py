@@ -85,7 +85,7 @@ def run(*words, code=0, err="", timeout=120, stdin="", env=None):
 
 
 def stopped(*words, after, by=signal.SIGKILL):
-    """As run, but ended by a signal after so many seconds, or as soon as `after()` holds; its exit code may be any."""
+    """As run, but ended by a signal after so many seconds, or as soon as `after()` holds."""
     child = subprocess.Popen([strut, *words], cwd=work, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     begun = time.monotonic()
     while child.poll() is None and time.monotonic() - begun < 60:
@@ -131,8 +131,8 @@ def sweep(name, text, *words, code=0):
 
 
 def same_table(study, folder, threads=(1, 3), shards=(0, 0, 0), code=0):
-    """The study has the table of the folder by any number of threads, and by shards, which end with these exit codes and
-    are merged."""
+    """The study has the table of the folder by any number of threads, and by shards, which end with
+    these exit codes and are merged."""
     wanted = read(folder, "table.csv")
     for count in threads:
         run("sweep", study, "-o", f"{folder}-by-{count}", "--quiet", "--threads", str(count), code=code)
